@@ -1,0 +1,17 @@
+//! Every tolerance of the step, with its unit and what breaks when it is changed.
+
+/// Lengths below this are none, m. Smaller: a collapsed link divides by nothing. Larger: fine meshes
+/// lose their finest links.
+pub(crate) const LEAST_LENGTH: f32 = 1e-9;
+
+/// Squares of doubled areas below this are no triangle, m⁴. Smaller: a collapsed triangle divides by
+/// nothing. Larger: fine meshes feel no wind.
+pub(crate) const LEAST_AREA_SQUARED: f32 = 1e-24;
+
+/// Part of its trace that is added to a cloth's inertia tensor, so that a line or a point has an
+/// inverse. Smaller: a line's spin is noise. Larger: internal damping slows the rigid spin.
+pub(crate) const INERTIA_RIDGE: f32 = 1e-6;
+
+/// Distance that every particle keeps from a collider, m. Smaller: a cloth at rest on a shape
+/// crosses its surface in each substep and sticks as if it had been hit.
+pub(crate) const LEAST_CLEARANCE: f32 = 1e-4;

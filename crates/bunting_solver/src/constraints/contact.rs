@@ -1,0 +1,119 @@
+//! Contacts: a particle stays a thickness away from a collider, C = n·(x − q) − d ≥ 0, and slides
+//! along it with Coulomb friction.
+
+use glam::Vec3;
+use parry3d::query::Ray;
+use parry3d::shape::Shape;
+
+use crate::constants::{LEAST_CLEARANCE, LEAST_LENGTH};
+use crate::lane_batch::{Clock, LaneBatch};
+use crate::lanes::Pack;
+use crate::vector::{lane3, set_lane3};
+
+impl<P: Pack> LaneBatch<P> {
+    /// Projects every contact candidate once.
+    pub fn solve_contacts(&mut self) {
+        let Clock { settings, done, step } = self.clock;
+        // `integrate` has counted this substep already.
+        let index = done - 1;
+        let part = |substep: u32| substep as f32 / settings.substeps as f32;
+        for (lane, slot) in self.slots.iter().enumerate() {
+            let Some(slot) = slot else { continue };
+            let carry = slot.drive.motion.carry(index, settings.substeps);
+            for (collider, candidates) in slot.colliders.iter().zip(&slot.contacts) {
+                let (old_pose, pose) =
+                    (collider.pose_at(part(index)), collider.pose_at(part(done)));
+                let surface = Surface {
+                    shape: &*collider.shape.0,
+                    keep: (slot.material.thickness + collider.margin).max(LEAST_CLEARANCE),
+                    friction: (slot.material.surface_friction * collider.friction).sqrt(),
+                };
+                for &particle in candidates {
+                    let position = &mut self.position[particle as usize];
+                    let velocity = &mut self.velocity[particle as usize];
+                    let predicted = lane3(&self.predicted[particle as usize], lane);
+                    let old = predicted - lane3(velocity, lane) * step;
+                    // Both ends of the particle's way in the collider's own frame, so that it is
+                    // relative to the surface; the old end as it stood before the frame moved.
+                    let from = old_pose.inverse_transform_point(carry.back(old));
+                    let to = pose.inverse_transform_point(lane3(position, lane));
+                    let Some(push) = surface.push(from, to) else { continue };
+                    set_lane3(position, lane, pose.transform_point(push.to));
+                    if let Some(thrown) = push.thrown {
+                        let slowed = lane3(velocity, lane) - pose.rotation * thrown / step;
+                        set_lane3(velocity, lane, slowed);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A collider as a particle meets it, in the collider's frame.
+struct Surface<'a> {
+    shape: &'a dyn Shape,
+    /// Distance to keep, m.
+    keep: f32,
+    /// Coulomb friction coefficient.
+    friction: f32,
+}
+
+/// A particle's distance from a plane that it should stay above.
+struct Touch {
+    normal: Vec3,
+    /// How far it is short of the distance to keep, m.
+    depth: f32,
+}
+
+/// Where a contact puts a particle.
+struct Push {
+    to: Vec3,
+    /// The part of the push that must not become velocity, m.
+    thrown: Option<Vec3>,
+}
+
+impl Surface<'_> {
+    /// Pushes a particle that goes from one point to another out of the shape, if it is in it.
+    fn push(&self, from: Vec3, to: Vec3) -> Option<Push> {
+        let (Touch { normal, depth }, friction) = match self.crossing(from, to) {
+            // What a fast shape overtakes goes with it: a slide as long as the way would let the
+            // particle slip round the shape within the substep.
+            Some(touch) => (touch, f32::INFINITY),
+            None => (self.overlap(from, to)?, self.friction),
+        };
+        let moved = to - from;
+        let slide = moved - normal * moved.dot(normal);
+        // Friction holds back a slide as far as the push is deep (Coulomb's cone).
+        let held = (friction * depth / slide.length().max(LEAST_LENGTH)).min(1.0);
+        let out = to + normal * depth - slide * held;
+        // A particle that was inside to begin with is put outside without being thrown.
+        let thrown = moved.dot(normal) + depth - moved.dot(normal).max(0.0);
+        Some(Push { to: out, thrown: (thrown > 0.0).then(|| normal * thrown) })
+    }
+
+    /// Where the way enters the shape from outside.
+    fn crossing(&self, from: Vec3, to: Vec3) -> Option<Touch> {
+        if self.shape.contains_local_point(from) {
+            return None;
+        }
+        let way = Ray::new(from, to - from);
+        let hit = self.shape.cast_local_ray_and_get_normal(&way, 1.0, true)?;
+        let depth = self.keep - hit.normal.dot(to - way.point_at(hit.time_of_impact));
+        (depth > 0.0).then_some(Touch { normal: hit.normal, depth })
+    }
+
+    /// The surface nearest to `to`, if it is nearer than the distance to keep.
+    fn overlap(&self, from: Vec3, to: Vec3) -> Option<Touch> {
+        let nearest = self.shape.project_local_point(to, false);
+        let away = if nearest.is_inside { nearest.point - to } else { to - nearest.point };
+        let distance = away.length();
+        let signed = if nearest.is_inside { -distance } else { distance };
+        if signed >= self.keep {
+            return None;
+        }
+        // On the surface itself, or at the centre of a ball, the way it came tells the side.
+        let normal =
+            if distance > LEAST_LENGTH { away / distance } else { (from - to).try_normalize()? };
+        Some(Touch { normal, depth: self.keep - signed })
+    }
+}

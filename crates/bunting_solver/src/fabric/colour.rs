@@ -1,0 +1,83 @@
+//! Colours: runs of constraints that share no particle.
+//!
+//! Gauss–Seidel in row order pumps energy along the rows and chains each constraint to the last;
+//! in colour order neighbours in the stream are independent.
+
+use core::ops::Range;
+
+/// Where each colour begins and ends in a list of constraints.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Colours(Vec<Range<usize>>);
+
+impl Colours {
+    /// The ranges, one a colour, in the order in which they are solved.
+    #[must_use]
+    pub fn ranges(&self) -> &[Range<usize>] {
+        &self.0
+    }
+}
+
+/// Sorts constraints by the smallest colour that no earlier one of their particles has, keeping the
+/// order within a colour. Constraints of a lower `rank` come first, whatever their colour.
+pub(crate) fn colour<C, const N: usize>(
+    particle_count: usize,
+    constraints: Vec<C>,
+    particles: impl Fn(&C) -> [u32; N],
+    rank: impl Fn(&C) -> u32,
+) -> (Vec<C>, Colours) {
+    let mut taken: Vec<Vec<bool>> = vec![Vec::new(); particle_count];
+    let mut keyed: Vec<((u32, usize), C)> = constraints
+        .into_iter()
+        .map(|constraint| {
+            let members = particles(&constraint).map(|particle| particle as usize);
+            let is_free = |colour: usize| {
+                members
+                    .iter()
+                    .all(|&particle| !taken[particle].get(colour).copied().unwrap_or(false))
+            };
+            let colour = (0..).find(|&colour| is_free(colour)).unwrap_or_default();
+            for particle in members {
+                let colours = &mut taken[particle];
+                colours.resize(colours.len().max(colour + 1), false);
+                colours[colour] = true;
+            }
+            ((rank(&constraint), colour), constraint)
+        })
+        .collect();
+    keyed.sort_by_key(|(key, _)| *key);
+
+    let mut ranges: Vec<Range<usize>> = Vec::new();
+    let mut last = None;
+    for (index, (key, _)) in keyed.iter().enumerate() {
+        match ranges.last_mut() {
+            Some(range) if last == Some(*key) => range.end = index + 1,
+            _ => ranges.push(index..index + 1),
+        }
+        last = Some(*key);
+    }
+    (keyed.into_iter().map(|(_, constraint)| constraint).collect(), Colours(ranges))
+}
+
+/// Replaces values that are equal but for rounding by indices into a table of the distinct ones.
+pub(crate) struct Classes<const N: usize> {
+    keys: std::collections::HashMap<[u32; N], u32>,
+}
+
+/// Bits of an f32 that a class ignores: values within 2⁻¹² of one another are one class.
+const CLASS_ROUNDING_BITS: u32 = 12;
+
+impl<const N: usize> Classes<N> {
+    pub fn new() -> Self {
+        Self { keys: std::collections::HashMap::new() }
+    }
+
+    /// The class of a value, and whether it is new: then it is the next in the table.
+    pub fn class_of(&mut self, value: [f32; N]) -> (u32, bool) {
+        let round = |value: f32| {
+            (value.to_bits() + (1 << (CLASS_ROUNDING_BITS - 1))) >> CLASS_ROUNDING_BITS
+        };
+        let next = self.keys.len() as u32;
+        let class = *self.keys.entry(value.map(round)).or_insert(next);
+        (class, class == next)
+    }
+}

@@ -1,0 +1,90 @@
+//! What can be wrong with a fabric.
+
+/// Why a fabric cannot be built, and where.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FabricError {
+    /// There is nothing to simulate.
+    #[error("the mesh has no triangles: give it at least one")]
+    Empty,
+    /// The indices do not come in threes.
+    #[error("{count} indices do not make whole triangles: give three a triangle")]
+    IndexCount {
+        /// Number of indices given.
+        count: usize,
+    },
+    /// An index points past the last vertex.
+    #[error("triangle {triangle} uses vertex {vertex}, but there are {vertices} vertices")]
+    IndexOutOfRange {
+        /// The triangle.
+        triangle: usize,
+        /// The index that is out of range.
+        vertex: u32,
+        /// Number of vertices given.
+        vertices: usize,
+    },
+    /// A pin points past the last vertex.
+    #[error("vertex {vertex} cannot be pinned: there are {vertices} vertices")]
+    PinOutOfRange {
+        /// The index that is out of range.
+        vertex: u32,
+        /// Number of vertices given.
+        vertices: usize,
+    },
+    /// A position is infinite or not a number.
+    #[error("the position of vertex {vertex} is not finite")]
+    NotFinite {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// There must be one texture coordinate a vertex.
+    #[error("{uvs} texture coordinates for {vertices} vertices: give one a vertex, or none")]
+    UvCount {
+        /// Number of texture coordinates given.
+        uvs: usize,
+        /// Number of vertices given.
+        vertices: usize,
+    },
+    /// A triangle has no area, so neither mass nor normal.
+    #[error("triangle {triangle} has no area: remove it, or move its corners apart")]
+    ZeroArea {
+        /// The triangle.
+        triangle: usize,
+    },
+    /// A vertex would have no mass.
+    #[error("vertex {vertex} belongs to no triangle: remove it")]
+    LooseVertex {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// More than two triangles share an edge.
+    #[error("more than two triangles share the edge from vertex {a} to {b}: split the mesh there")]
+    NonManifoldEdge {
+        /// One end of the edge.
+        a: u32,
+        /// The other end.
+        b: u32,
+    },
+    /// A grid needs two particles and some length each way.
+    #[error(
+        "a grid of {columns} × {rows} particles over {width} m × {height} m is not a cloth: give at least 2 × 2 and a positive size"
+    )]
+    Grid {
+        /// Particles in a row.
+        columns: u32,
+        /// Particles in a column.
+        rows: u32,
+        /// Extent along a row, m.
+        width: f32,
+        /// Extent along a column, m.
+        height: f32,
+    },
+    /// A material value cannot be simulated.
+    #[error("the material's {name} cannot be {value}")]
+    Material {
+        /// The field's name.
+        name: &'static str,
+        /// Its value.
+        value: f32,
+    },
+}

@@ -1,0 +1,165 @@
+//! A cloth at rest: what every cloth cut from the same piece shares, and nothing that moves.
+//!
+//! A [`Fabric`] holds geometry only. Masses are areas (the mass of a particle is its area times
+//! the material's density) and stiffnesses are weights of the material's moduli, so cloths of
+//! different [`FabricMaterial`]s share one fabric and ride in one batch.
+
+mod builder;
+mod colour;
+mod error;
+mod grid;
+mod hinges;
+mod links;
+mod material;
+mod topology;
+mod weld;
+
+use glam::{Vec2, Vec3};
+
+pub use builder::FabricBuilder;
+pub use colour::Colours;
+pub use error::FabricError;
+pub use grid::Grid;
+#[cfg(test)]
+pub(crate) use hinges::angle as hinge_angle;
+pub use hinges::{Hinge, HingeClass};
+pub use links::{Link, LinkClass, LinkFamily};
+pub use material::FabricMaterial;
+
+/// A piece of cloth at rest, cut with its pins. Immutable; share it in an `Arc`.
+#[derive(Clone, Debug)]
+pub struct Fabric {
+    rest: Vec<Vec3>,
+    uv: Vec<Vec2>,
+    triangles: Vec<[u32; 3]>,
+    triangle_areas: Vec<f32>,
+    particle_of_vertex: Vec<u32>,
+    areas: Vec<f32>,
+    inverse_areas: Vec<f32>,
+    border: Vec<bool>,
+    links: Vec<Link>,
+    link_classes: Vec<LinkClass>,
+    link_colours: Colours,
+    hinges: Vec<Hinge>,
+    hinge_classes: Vec<HingeClass>,
+    hinge_colours: Colours,
+    grid: Option<Grid>,
+}
+
+impl Fabric {
+    /// Positions at rest in the cloth's frame, m, one a particle.
+    #[must_use]
+    pub fn rest_positions(&self) -> &[Vec3] {
+        &self.rest
+    }
+
+    /// Texture coordinates, one a particle: u runs along the warp, v along the weft.
+    #[must_use]
+    pub fn uvs(&self) -> &[Vec2] {
+        &self.uv
+    }
+
+    /// Triangles as particle indices, counter-clockwise seen from the front.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles
+    }
+
+    /// Areas of the triangles at rest, m².
+    #[must_use]
+    pub fn triangle_areas(&self) -> &[f32] {
+        &self.triangle_areas
+    }
+
+    /// The particle that each vertex of the source mesh was welded into.
+    #[must_use]
+    pub fn particle_of_vertex(&self) -> &[u32] {
+        &self.particle_of_vertex
+    }
+
+    /// Number of particles.
+    #[must_use]
+    pub fn particle_count(&self) -> usize {
+        self.rest.len()
+    }
+
+    /// Area that each particle carries, m²: a third of each triangle that it borders (thesis, 5.1.3).
+    /// Times the material's density it is the particle's mass, pinned or not.
+    #[must_use]
+    pub fn particle_areas(&self) -> &[f32] {
+        &self.areas
+    }
+
+    /// One over the area of each particle, 1/m²; zero where it is pinned, as if infinitely heavy
+    /// (thesis, 5.1.4).
+    #[must_use]
+    pub fn inverse_areas(&self) -> &[f32] {
+        &self.inverse_areas
+    }
+
+    /// Whether a particle is pinned to the cloth's frame.
+    #[must_use]
+    pub fn is_pinned(&self, particle: usize) -> bool {
+        self.inverse_areas[particle] == 0.0
+    }
+
+    /// Whether any particle is pinned.
+    #[must_use]
+    pub fn has_pins(&self) -> bool {
+        self.inverse_areas.contains(&0.0)
+    }
+
+    /// Whether each particle lies on the border of the mesh.
+    #[must_use]
+    pub fn border(&self) -> &[bool] {
+        &self.border
+    }
+
+    /// Distance constraints, colour by colour.
+    #[must_use]
+    pub fn links(&self) -> &[Link] {
+        &self.links
+    }
+
+    /// Stiffness classes that links refer to.
+    #[must_use]
+    pub fn link_classes(&self) -> &[LinkClass] {
+        &self.link_classes
+    }
+
+    /// Runs of links that share no particle.
+    #[must_use]
+    pub fn link_colours(&self) -> &Colours {
+        &self.link_colours
+    }
+
+    /// Bending constraints, colour by colour.
+    #[must_use]
+    pub fn hinges(&self) -> &[Hinge] {
+        &self.hinges
+    }
+
+    /// Stiffness classes that hinges refer to.
+    #[must_use]
+    pub fn hinge_classes(&self) -> &[HingeClass] {
+        &self.hinge_classes
+    }
+
+    /// Runs of hinges that share no particle.
+    #[must_use]
+    pub fn hinge_colours(&self) -> &Colours {
+        &self.hinge_colours
+    }
+
+    /// The grid that the fabric was made from, if it was.
+    #[must_use]
+    pub fn grid(&self) -> Option<&Grid> {
+        self.grid.as_ref()
+    }
+
+    /// Area of the whole fabric, m².
+    #[must_use]
+    pub fn area(&self) -> f32 {
+        self.areas.iter().sum()
+    }
+}

@@ -1,0 +1,295 @@
+//! The only file that knows how wide a vector is.
+//!
+//! A batch keeps one cloth in each lane: a particle's x coordinate is a [`Pack`] of as many floats
+//! as there are lanes. A kernel is written once over a [`Lane`], the register that holds a pack,
+//! and runs at every width through [`Pack::run`].
+//!
+//! Only `+ − × ÷ √`, comparisons and selects exist here, each correctly rounded by IEEE 754, and
+//! nothing is fused or estimated. So a lane's bits depend neither on the width, nor on the
+//! instruction set, nor on what rides in the other lanes.
+
+use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
+
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f32x8, f32x16};
+
+/// One float for each lane of a batch, in memory.
+pub(crate) trait Pack: Copy + Send + Sync + 'static {
+    /// Number of lanes.
+    const WIDTH: usize;
+
+    /// The same value in every lane.
+    fn splat(value: f32) -> Self;
+
+    /// The lanes, in order.
+    fn lanes(&self) -> &[f32];
+
+    /// The lanes, in order, to be written.
+    fn lanes_mut(&mut self) -> &mut [f32];
+
+    /// Runs a kernel with the best instructions that this machine has for the width.
+    fn run<K: Kernel<Self>>(kernel: K);
+}
+
+/// A piece of the step that is the same for every width.
+pub(crate) trait Kernel<P: Pack> {
+    /// Runs it; must be `#[inline(always)]`, so that it is compiled for the caller's target features.
+    fn run<L: Lane<Pack = P>>(self, token: L::Token);
+}
+
+/// What a comparison of two [`Lane`]s gives: a truth value for each lane.
+pub(crate) trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> {
+    /// True if any lane is.
+    fn any(self) -> bool;
+}
+
+/// One float for each lane of a batch, in a register.
+pub(crate) trait Lane:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
+{
+    /// The same floats in memory.
+    type Pack: Pack;
+    /// Proof that the instructions in use exist.
+    type Token: Copy;
+    /// The result of a comparison.
+    type Mask: Mask;
+
+    fn splat(token: Self::Token, value: f32) -> Self;
+    fn load(token: Self::Token, pack: &Self::Pack) -> Self;
+    fn store(self, pack: &mut Self::Pack);
+    fn sqrt(self) -> Self;
+    fn abs(self) -> Self;
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self` where the mask is true, `other` elsewhere.
+    fn or_where_not(self, mask: Self::Mask, other: Self) -> Self;
+
+    /// The larger of the two; `other` if either is not a number.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        self.or_where_not(other.lt(self), other)
+    }
+}
+
+/// A single lane: the scalar solver, and the oracle of the wide ones.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub(crate) struct Pack1([f32; 1]);
+
+/// Eight lanes: one AVX register, or two of SSE or NEON.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(crate) struct Pack8([f32; 8]);
+
+/// Sixteen lanes: one AVX-512 register, or two of AVX.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Pack16([f32; 16]);
+
+macro_rules! pack_memory {
+    ($width:literal) => {
+        const WIDTH: usize = $width;
+
+        #[inline(always)]
+        fn splat(value: f32) -> Self {
+            Self([value; $width])
+        }
+
+        #[inline(always)]
+        fn lanes(&self) -> &[f32] {
+            &self.0
+        }
+
+        #[inline(always)]
+        fn lanes_mut(&mut self) -> &mut [f32] {
+            &mut self.0
+        }
+    };
+}
+
+impl Pack for Pack1 {
+    pack_memory!(1);
+
+    fn run<K: Kernel<Self>>(kernel: K) {
+        kernel.run::<f32>(());
+    }
+}
+
+macro_rules! wide {
+    ($pack:ident, $vector:ident, $width:literal) => {
+        impl Pack for $pack {
+            pack_memory!($width);
+
+            fn run<K: Kernel<Self>>(kernel: K) {
+                #[inline(always)]
+                fn with_token<S: Simd, K: Kernel<$pack>>(token: S, kernel: K) {
+                    kernel.run::<$vector<S>>(token);
+                }
+                dispatch!(Level::new(), token => with_token(token, kernel));
+            }
+        }
+
+        impl<S: Simd> Lane for $vector<S> {
+            type Pack = $pack;
+            type Token = S;
+            type Mask = <$vector<S> as SimdBase<S>>::Mask;
+
+            #[inline(always)]
+            fn splat(token: S, value: f32) -> Self {
+                SimdBase::splat(token, value)
+            }
+
+            #[inline(always)]
+            fn load(token: S, pack: &$pack) -> Self {
+                SimdBase::load_array_ref(token, &pack.0)
+            }
+
+            #[inline(always)]
+            fn store(self, pack: &mut $pack) {
+                SimdBase::store_array(self, &mut pack.0);
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                SimdFloat::sqrt(self)
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                SimdBase::abs(self)
+            }
+
+            #[inline(always)]
+            fn lt(self, other: Self) -> Self::Mask {
+                self.simd_lt(other)
+            }
+
+            #[inline(always)]
+            fn or_where_not(self, mask: Self::Mask, other: Self) -> Self {
+                mask.select(self, other)
+            }
+        }
+    };
+}
+
+wide!(Pack8, f32x8, 8);
+wide!(Pack16, f32x16, 16);
+
+impl<S: Simd> Mask for fearless_simd::mask32x8<S> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        fearless_simd::SimdMask::any_true(self)
+    }
+}
+
+impl<S: Simd> Mask for fearless_simd::mask32x16<S> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        fearless_simd::SimdMask::any_true(self)
+    }
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+}
+
+impl Lane for f32 {
+    type Pack = Pack1;
+    type Token = ();
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat((): (), value: f32) -> Self {
+        value
+    }
+
+    #[inline(always)]
+    fn load((): (), pack: &Pack1) -> Self {
+        pack.0[0]
+    }
+
+    #[inline(always)]
+    fn store(self, pack: &mut Pack1) {
+        pack.0[0] = self;
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // Correctly rounded by IEEE 754 on every target.
+        f32::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f32::abs(self)
+    }
+
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self < other
+    }
+
+    #[inline(always)]
+    fn or_where_not(self, mask: bool, other: Self) -> Self {
+        if mask { self } else { other }
+    }
+}
+
+/// The instruction set that wide kernels run with on this machine, for reports.
+#[must_use]
+pub fn instruction_set() -> &'static str {
+    match Level::new() {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx512(_) => "AVX-512",
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx2(_) => "AVX2",
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Sse4_2(_) => "SSE4.2",
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Sse2(_) => "SSE2",
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon(_) => "NEON",
+        _ => "scalar",
+    }
+}
+
+/// How many cloths ride side by side in a batch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum LaneCount {
+    /// One cloth: scalar code.
+    One,
+    /// Eight cloths: full speed with AVX2.
+    #[default]
+    Eight,
+    /// Sixteen cloths: full speed with AVX-512.
+    Sixteen,
+}
+
+impl LaneCount {
+    /// Number of lanes.
+    #[must_use]
+    pub const fn get(self) -> usize {
+        match self {
+            Self::One => 1,
+            Self::Eight => 8,
+            Self::Sixteen => 16,
+        }
+    }
+
+    /// The narrowest width that holds `cloths`, at most the widest that pays on this machine.
+    #[must_use]
+    pub fn holding(cloths: usize) -> Self {
+        match cloths {
+            0 | 1 => Self::One,
+            2..=8 => Self::Eight,
+            _ if instruction_set() == "AVX-512" => Self::Sixteen,
+            _ => Self::Eight,
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! What a step is told: how finely to solve, and how each cloth is driven.
+
+use glam::Vec3;
+
+use crate::frame::FrameMotion;
+
+/// How finely a batch is solved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct StepSettings {
+    /// Substeps in a tick; at least 1. More substeps cost in proportion and are worth more than
+    /// passes (Macklin 2019, "Small steps in physics simulation").
+    pub substeps: u32,
+    /// Passes over all constraints in a substep; at least 1.
+    pub passes: u32,
+}
+
+impl StepSettings {
+    /// `substeps` substeps of one pass.
+    #[must_use]
+    pub const fn substeps(substeps: u32) -> Self {
+        Self { substeps, passes: 1 }
+    }
+}
+
+impl Default for StepSettings {
+    fn default() -> Self {
+        Self::substeps(10)
+    }
+}
+
+/// What acts on one cloth during a tick. Vectors are along the axes of the cloth's frame as it
+/// stands at the end of the tick.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// How the cloth's frame moves in this tick.
+    pub motion: FrameMotion,
+    /// Acceleration of gravity, m/s².
+    pub gravity: Vec3,
+    /// Velocity of the air relative to the world, m/s.
+    pub wind: Vec3,
+    /// Density of the air, kg/m³.
+    pub air_density: f32,
+}
+
+impl Drive {
+    /// Nothing acts.
+    pub const NONE: Self =
+        Self { motion: FrameMotion::NONE, gravity: Vec3::ZERO, wind: Vec3::ZERO, air_density: 0.0 };
+}
+
+/// Standard density of air at sea level and 15 °C, kg/m³.
+const AIR_DENSITY: f32 = 1.225;
+
+impl Default for Drive {
+    /// A frame at rest, y up, standard gravity, still air.
+    fn default() -> Self {
+        Self {
+            motion: FrameMotion::NONE,
+            gravity: Vec3::new(0.0, -9.81, 0.0),
+            wind: Vec3::ZERO,
+            air_density: AIR_DENSITY,
+        }
+    }
+}

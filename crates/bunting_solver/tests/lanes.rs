@@ -1,0 +1,114 @@
+//! A lane's bits depend on its own history only.
+
+use std::sync::Arc;
+
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion,
+    Grid, LaneCount, StepSettings,
+};
+use glam::{Quat, Vec3};
+use parry3d::shape::SharedShape;
+
+const TICK: f32 = 1.0 / 60.0;
+
+fn flag() -> Arc<Fabric> {
+    let builder = FabricBuilder::grid(Grid::new(9, 7, 1.2, 0.8)).pin_where(|_, uv| uv.x == 0.0);
+    Arc::new(builder.build().expect("a good fabric"))
+}
+
+/// Cloths that differ in everything that may differ within a batch.
+fn material(seed: usize) -> FabricMaterial {
+    match seed % 3 {
+        0 => FabricMaterial { friction_coefficient: 0.0, ..FabricMaterial::SILK },
+        1 => FabricMaterial::DENIM,
+        _ => FabricMaterial { internal_damping: 1.0, ..FabricMaterial::COTTON },
+    }
+}
+
+fn drive(seed: usize, tick: usize) -> Drive {
+    let seed = seed as f32;
+    let motion = if seed as usize % 2 == 1 && tick < 20 {
+        FrameMotion {
+            rotation: Quat::from_rotation_y(0.01 * seed),
+            translation: Vec3::new(0.02 * seed, 0.0, -0.01),
+        }
+    } else {
+        FrameMotion::NONE
+    };
+    Drive { motion, wind: Vec3::new(5.0, 0.2 * seed, 1.0), ..Drive::default() }
+}
+
+fn colliders(seed: usize) -> Vec<Collider> {
+    let ball = Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.7, -0.4, 0.3), Quat::IDENTITY);
+    if seed % 4 == 2 { vec![ball] } else { Vec::new() }
+}
+
+/// The states of cloths with these seeds after a while in batches of a width.
+fn fly(
+    fabric: &Arc<Fabric>,
+    lanes: LaneCount,
+    seeds: &[usize],
+    settings: StepSettings,
+) -> Vec<ClothSnapshot> {
+    let mut batch = ClothBatch::new(fabric.clone(), lanes);
+    for &seed in seeds {
+        let lane =
+            batch.insert(&ClothSnapshot::at_rest(fabric), material(seed)).expect("a free lane");
+        batch.set_colliders(lane, colliders(seed));
+    }
+    for tick in 0..60 {
+        for (lane, &seed) in seeds.iter().enumerate() {
+            batch.drive(lane, drive(seed, tick));
+        }
+        batch.step(TICK, settings);
+    }
+    (0..seeds.len()).map(|lane| batch.snapshot(lane)).collect()
+}
+
+fn bits(snapshot: &ClothSnapshot) -> Vec<u32> {
+    let vectors = snapshot.positions.iter().chain(&snapshot.velocities);
+    vectors.flat_map(|vector| vector.to_array().map(f32::to_bits)).collect()
+}
+
+#[test]
+fn every_width_gives_the_scalar_bits() {
+    let fabric = flag();
+    for settings in
+        [StepSettings { substeps: 5, passes: 1 }, StepSettings { substeps: 2, passes: 3 }]
+    {
+        let alone: Vec<_> =
+            (0..16).map(|seed| fly(&fabric, LaneCount::One, &[seed], settings).remove(0)).collect();
+        let (low, high): (Vec<_>, Vec<_>) = ((0..8).collect(), (8..16).collect());
+        let mut by_eight = fly(&fabric, LaneCount::Eight, &low, settings);
+        by_eight.extend(fly(&fabric, LaneCount::Eight, &high, settings));
+        let by_sixteen = fly(&fabric, LaneCount::Sixteen, &[low, high].concat(), settings);
+        for seed in 0..16 {
+            assert!(alone[seed].is_finite());
+            assert_eq!(bits(&alone[seed]), bits(&by_eight[seed]), "eight lanes, cloth {seed}");
+            assert_eq!(bits(&alone[seed]), bits(&by_sixteen[seed]), "sixteen lanes, cloth {seed}");
+        }
+    }
+}
+
+#[test]
+fn a_neighbour_that_goes_wild_is_not_felt() {
+    let fabric = flag();
+    let settings = StepSettings::substeps(4);
+    let calm = fly(&fabric, LaneCount::Eight, &[0, 1], settings);
+    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::Eight);
+    for seed in [0, 1] {
+        batch.insert(&ClothSnapshot::at_rest(&fabric), material(seed)).expect("a free lane");
+    }
+    let wild = batch.insert(&ClothSnapshot::at_rest(&fabric), material(2)).expect("a free lane");
+    for tick in 0..60 {
+        for seed in [0, 1] {
+            batch.drive(seed, drive(seed, tick));
+        }
+        batch.drive(wild, Drive { wind: Vec3::splat(f32::NAN), ..Drive::default() });
+        batch.step(TICK, settings);
+    }
+    assert!(!batch.is_finite(wild));
+    for (lane, calm) in calm.iter().enumerate() {
+        assert_eq!(bits(calm), bits(&batch.snapshot(lane)));
+    }
+}

@@ -1,0 +1,244 @@
+//! The solver against closed forms, through its public API.
+
+use std::sync::Arc;
+
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion, Grid,
+    LaneCount, LinkFamily, StepSettings,
+};
+use glam::{Quat, Vec3};
+
+const TICK: f32 = 1.0 / 60.0;
+const GRAVITY: f32 = 9.81;
+
+/// What rounding may do to the momentum of a cloth in a second, as a part of it: corrections are
+/// rounded to a unit in the last place of a position, 6e-8 m at 1 m, in each of 240 substeps.
+const MOMENTUM_ROUNDING: f32 = 1e-3;
+
+/// The standard scenes' material: σ = 0.2, Y = 1e4, G = 200, B = 2e-5, nothing else.
+const STANDARD: FabricMaterial = FabricMaterial {
+    area_density: 0.2,
+    warp_stiffness: 1e4,
+    weft_stiffness: 1e4,
+    shear_stiffness: 200.0,
+    bend_stiffness: 2e-5,
+    damping: 0.0,
+    internal_damping: 0.0,
+    pressure_coefficient: 0.0,
+    friction_coefficient: 0.0,
+    thickness: 0.0,
+    surface_friction: 0.0,
+};
+
+fn square(n: u32, pinned: impl Fn(Vec3) -> bool) -> Arc<Fabric> {
+    let builder =
+        FabricBuilder::grid(Grid::new(n, n, 1.0, 1.0)).pin_where(|position, _| pinned(position));
+    Arc::new(builder.build().expect("a good fabric"))
+}
+
+fn lone(fabric: &Arc<Fabric>, material: FabricMaterial, drive: Drive) -> ClothBatch {
+    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+    let lane = batch.insert(&ClothSnapshot::at_rest(fabric), material).expect("a free lane");
+    batch.drive(lane, drive);
+    batch
+}
+
+fn mean_strain(fabric: &Fabric, positions: &[Vec3], family: LinkFamily) -> f32 {
+    let strains: Vec<f32> = fabric
+        .links()
+        .iter()
+        .filter(|link| link.family == family)
+        .map(|link| {
+            let [a, b] = link.particles.map(|particle| positions[particle as usize]);
+            a.distance(b) / link.rest_length - 1.0
+        })
+        .collect();
+    strains.iter().sum::<f32>() / strains.len() as f32
+}
+
+fn mass_weighted(fabric: &Fabric, value: impl Fn(usize) -> Vec3) -> Vec3 {
+    fabric.particle_areas().iter().enumerate().map(|(particle, &area)| value(particle) * area).sum()
+}
+
+#[test]
+fn free_fall_is_the_schemes_own_sum() {
+    let fabric = square(5, |_| false);
+    let mut batch = lone(&fabric, STANDARD, Drive::default());
+    let settings = StepSettings::substeps(4);
+    for _ in 0..30 {
+        batch.step(TICK, settings);
+    }
+    let n = 120.0;
+    let h = TICK / 4.0;
+    let expected = -GRAVITY * h * h * n * (n + 1.0) / 2.0;
+    for (now, rest) in batch.snapshot(0).positions.iter().zip(fabric.rest_positions()) {
+        let fallen = *now - *rest;
+        assert!(
+            (fallen.y - expected).abs() < 1e-4 * expected.abs() && fallen.x.abs() < 1e-4,
+            "{fallen} {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_hanging_sheet_stretches_as_its_material_says() {
+    let soft = FabricMaterial {
+        warp_stiffness: 100.0,
+        weft_stiffness: 100.0,
+        shear_stiffness: 1.0,
+        damping: 3.0,
+        ..STANDARD
+    };
+    for n in [5, 9] {
+        let fabric = square(n, |position| position.y == 0.0);
+        let mut batch = lone(&fabric, soft, Drive::default());
+        for _ in 0..400 {
+            batch.step(TICK, StepSettings::substeps(30));
+        }
+        let strain = mean_strain(&fabric, &batch.snapshot(0).positions, LinkFamily::Weft);
+        let expected = soft.area_density * GRAVITY / (2.0 * soft.weft_stiffness);
+        assert!((strain / expected - 1.0).abs() < 0.02, "{n}: {strain} {expected}");
+    }
+}
+
+#[test]
+fn broadside_fall_reaches_terminal_speed() {
+    let fabric = square(5, |_| false);
+    let material = FabricMaterial { area_density: 0.1, pressure_coefficient: 1.2, ..STANDARD };
+    // It lies in the xy plane; let it fall along z.
+    let drive = Drive { gravity: Vec3::new(0.0, 0.0, -GRAVITY), ..Drive::default() };
+    let mut batch = lone(&fabric, material, drive);
+    for _ in 0..60 {
+        batch.step(TICK, StepSettings::substeps(20));
+    }
+    let velocity = batch.snapshot(0).velocities[12].z;
+    // Each substep solves βv²/(1 + βv) = gh for v: v_t, but for a first-order βv_t/2.
+    let terminal = 1.155_29_f32;
+    let half = 0.5 * GRAVITY * (TICK / 20.0) / terminal;
+    let expected = terminal * (half + (1.0 + half * half).sqrt());
+    assert!((velocity / -expected - 1.0).abs() < 1e-4, "{velocity} {expected}");
+}
+
+#[test]
+fn strong_wind_never_overshoots() {
+    let fabric = square(3, |_| false);
+    let material = FabricMaterial { area_density: 0.02, pressure_coefficient: 1.2, ..STANDARD };
+    let wind = Vec3::new(0.0, 0.0, 40.0);
+    let drive = Drive { gravity: Vec3::ZERO, wind, ..Drive::default() };
+    let mut batch = lone(&fabric, material, drive);
+    for _ in 0..20 {
+        batch.step(TICK, StepSettings::substeps(1));
+        for velocity in batch.snapshot(0).velocities {
+            assert!((0.0..=40.0).contains(&velocity.z), "{velocity}");
+        }
+    }
+}
+
+#[test]
+fn free_cloth_keeps_its_momenta() {
+    let fabric = square(7, |_| false);
+    let crumple =
+        |position: Vec3| Vec3::new(0.0, 0.0, 0.1 * libm::sinf(7.0 * position.x + 3.0 * position.y));
+    let mut start = ClothSnapshot::at_rest(&fabric);
+    for (position, velocity) in start.positions.iter_mut().zip(&mut start.velocities) {
+        *velocity = Vec3::new(0.3, -0.2, 0.1)
+            + Vec3::new(0.0, 0.5, 2.0).cross(*position)
+            + crumple(*position) * 5.0;
+        *position += crumple(*position);
+    }
+    let material = FabricMaterial { internal_damping: 2.0, ..STANDARD };
+    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+    batch.insert(&start, material).expect("a free lane");
+    batch.drive(0, Drive::NONE);
+    let momentum = |state: &ClothSnapshot| mass_weighted(&fabric, |i| state.velocities[i]);
+    let spin = |state: &ClothSnapshot| {
+        mass_weighted(&fabric, |i| state.positions[i].cross(state.velocities[i]))
+    };
+    for _ in 0..60 {
+        batch.step(TICK, StepSettings::substeps(4));
+    }
+    let end = batch.snapshot(0);
+    let (before, after) = (momentum(&start), momentum(&end));
+    assert!((after - before).length() < MOMENTUM_ROUNDING * before.length(), "{before} {after}");
+    let (before, after) = (spin(&start), spin(&end));
+    assert!((after - before).length() < 0.05 * before.length(), "{before} {after}");
+}
+
+#[test]
+fn internal_damping_leaves_a_rigid_spin_and_stops_a_wobble() {
+    let fabric = square(5, |_| false);
+    let material = FabricMaterial { internal_damping: 10.0, ..STANDARD };
+    let mut start = ClothSnapshot::at_rest(&fabric);
+    let centre = Vec3::new(0.5, -0.5, 0.0);
+    for (index, (position, velocity)) in
+        start.positions.iter().zip(&mut start.velocities).enumerate()
+    {
+        let wobble = [0.2, -0.2, 0.0, -0.2, 0.2][index % 5];
+        *velocity = Vec3::X + Vec3::Z.cross(*position - centre) + Vec3::Z * wobble;
+    }
+    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+    batch.insert(&start, material).expect("a free lane");
+    batch.drive(0, Drive::NONE);
+    for _ in 0..60 {
+        batch.step(TICK, StepSettings::substeps(4));
+    }
+    let end = batch.snapshot(0);
+    let momentum = |state: &ClothSnapshot| mass_weighted(&fabric, |i| state.velocities[i]);
+    let drift = momentum(&end);
+    assert!((drift - momentum(&start)).length() < MOMENTUM_ROUNDING, "{drift}");
+    let wobble =
+        end.velocities.iter().map(|velocity| (velocity.z - drift.z).abs()).fold(0.0, f32::max);
+    assert!(wobble < 0.01, "{wobble}");
+    let corner = (end.velocities[0] - drift).length()
+        / (end.positions[0] - mass_weighted(&fabric, |i| end.positions[i])).length();
+    assert!((corner - 1.0).abs() < 0.05, "spin {corner} rad/s");
+}
+
+/// What the frame does cannot matter to the motion in the world.
+#[test]
+fn a_moving_frame_changes_nothing_in_the_world() {
+    let fabric = square(5, |_| false);
+    let motion = FrameMotion {
+        rotation: Quat::from_euler(glam::EulerRot::XYZ, 0.05, 0.1, -0.07),
+        translation: Vec3::new(0.03, -0.01, 0.02),
+    };
+    let mut fixed = lone(&fabric, STANDARD, Drive::default());
+    let mut moving = lone(&fabric, STANDARD, Drive::default());
+    let (mut origin, mut axes) = (Vec3::ZERO, Quat::IDENTITY);
+    for _ in 0..20 {
+        origin += axes * motion.translation;
+        axes = (axes * motion.rotation).normalize();
+        moving.drive(
+            0,
+            Drive { motion, gravity: axes.inverse() * Vec3::NEG_Y * GRAVITY, ..Drive::default() },
+        );
+        fixed.step(TICK, StepSettings::substeps(8));
+        moving.step(TICK, StepSettings::substeps(8));
+    }
+    let (fixed, moving) = (fixed.snapshot(0), moving.snapshot(0));
+    for (here, there) in fixed.positions.iter().zip(&moving.positions) {
+        let there = origin + axes * *there;
+        assert!(here.distance(there) < 2e-4, "{here} {there}");
+    }
+    for (here, there) in fixed.velocities.iter().zip(&moving.velocities) {
+        assert!(here.distance(axes * *there) < 2e-3);
+    }
+}
+
+#[test]
+fn damping_does_not_hold_back_a_frame_that_travels() {
+    let fabric = square(5, |position| position.x == 0.0);
+    let material = FabricMaterial { damping: 20.0, ..STANDARD };
+    let motion = FrameMotion { translation: Vec3::new(0.0, 0.0, 20.0 * TICK), ..FrameMotion::NONE };
+    let mut start = ClothSnapshot::at_rest(&fabric);
+    start.velocities.fill(Vec3::Z * 20.0);
+    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+    batch.insert(&start, material).expect("a free lane");
+    batch.drive(0, Drive { motion, gravity: Vec3::ZERO, ..Drive::default() });
+    for _ in 0..60 {
+        batch.step(TICK, StepSettings::substeps(4));
+    }
+    for (now, rest) in batch.snapshot(0).positions.iter().zip(fabric.rest_positions()) {
+        assert!(now.distance(*rest) < 1e-3, "{now} {rest}");
+    }
+}
