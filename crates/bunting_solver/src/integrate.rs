@@ -1,32 +1,53 @@
 //! External forces, damping and prediction: the thesis's `v += Δt w F`, `damp`, `p = x + Δt v`.
+//!
+//! Both orders are one formula (see [`Formula`](crate::parameters::Formula)): what has changed in
+//! the last substep is extrapolated by γ, and the new derivative counts for β h. Gauss–Seidel takes
+//! γ = 0 and β = 1, backward Euler; yarns take BDF2's γ = 1/3 and β = 2/3.
 
-use crate::fabric::Fabric;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
 use crate::parameters::Parameters;
+use crate::step::Scheme;
 use crate::vector::{Pack3, V3};
 
 impl<P: Pack> LaneBatch<P> {
-    /// Begins a substep: carries the state into the moved frame, applies the air and gravity, damps,
+    /// Begins a substep: carries the state into the moved frame, applies gravity and the air, damps,
     /// and predicts positions.
     pub fn integrate(&mut self) {
         self.begin_substep();
+        let inverse_areas = self.fabric.inverse_areas();
         if self.parameters.carries {
             P::run(CarryState {
-                fabric: &self.fabric,
+                inverse_areas,
                 parameters: &self.parameters,
                 inverse_step: 1.0 / self.clock.step,
                 position: &mut self.position,
+                displacement: &mut self.displacement,
                 velocity: &mut self.velocity,
+                older_velocity: &mut self.older_velocity,
+                air_impulse: &mut self.air_impulse,
+                memory: &mut self.memory,
             });
         }
-        self.apply_air();
-        P::run(Predict {
-            fabric: &self.fabric,
+        P::run(Extrapolate {
+            inverse_areas,
             parameters: &self.parameters,
-            step: self.clock.step,
+            frame_rate: -1.0 / self.clock.step,
+            position: &self.position,
+            velocity: &mut self.velocity,
+            older_velocity: &mut self.older_velocity,
+        });
+        // Yarns take few substeps, each dear: the air of the whole tick is reckoned at its start.
+        if self.clock.settings.scheme == Scheme::GaussSeidel || self.clock.done == 0 {
+            self.apply_air();
+        }
+        P::run(Predict {
+            areas: self.fabric.particle_areas(),
+            weights: &self.weights,
+            parameters: &self.parameters,
             position: &mut self.position,
             predicted: &mut self.predicted,
+            displacement: &mut self.displacement,
             velocity: &mut self.velocity,
             air_impulse: &self.air_impulse,
         });
@@ -34,20 +55,11 @@ impl<P: Pack> LaneBatch<P> {
     }
 }
 
-/// Rewrites the state in the coordinates of the moved frame. Free particles stay where they are in
-/// the world; pinned ones go with the frame, and so have a velocity.
-struct CarryState<'a, P: Pack> {
-    fabric: &'a Fabric,
-    parameters: &'a Parameters<P>,
-    inverse_step: f32,
-    position: &'a mut [Pack3<P>],
-    velocity: &'a mut [Pack3<P>],
-}
-
 /// The frame's motion in registers.
-struct Motion<L> {
+struct Motion<L: Lane> {
     turn: [V3<L>; 3],
     shift: V3<L>,
+    moves: L::Mask,
 }
 
 impl<L: Lane> Motion<L> {
@@ -57,6 +69,7 @@ impl<L: Lane> Motion<L> {
         Self {
             turn: [V3::load(token, x), V3::load(token, y), V3::load(token, z)],
             shift: V3::load(token, &parameters.shift),
+            moves: L::splat(token, 0.0).lt(L::load(token, &parameters.moves)),
         }
     }
 
@@ -72,37 +85,108 @@ impl<L: Lane> Motion<L> {
     fn moved(&self, point: V3<L>) -> V3<L> {
         self.turned(point) + self.shift
     }
+
+    /// The changed vector in lanes whose frame moves; a lane at rest keeps its bits, whatever its
+    /// neighbours do.
+    #[inline(always)]
+    fn apply(&self, vector: V3<L>, change: V3<L>) -> V3<L> {
+        (vector + change).or_where_not(self.moves, vector)
+    }
+}
+
+/// Rewrites the state in the coordinates of the moved frame. Free particles stay where they are in
+/// the world; pinned ones go with the frame, and so have a velocity.
+struct CarryState<'a, P: Pack> {
+    inverse_areas: &'a [f32],
+    parameters: &'a Parameters<P>,
+    inverse_step: f32,
+    position: &'a mut [Pack3<P>],
+    displacement: &'a mut [Pack3<P>],
+    velocity: &'a mut [Pack3<P>],
+    older_velocity: &'a mut [Pack3<P>],
+    air_impulse: &'a mut [Pack3<P>],
+    memory: &'a mut [Pack3<P>],
 }
 
 impl<P: Pack> Kernel<P> for CarryState<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let motion = Motion::<L>::load(token, self.parameters);
-        let moves = L::splat(token, 0.0).lt(L::load(token, &self.parameters.moves));
         let inverse_step = L::splat(token, self.inverse_step);
         let particles = self.position.iter_mut().zip(self.velocity);
-        for ((position, velocity), &inverse_area) in particles.zip(self.fabric.inverse_areas()) {
+        let history = self.displacement.iter_mut().zip(self.older_velocity);
+        let forces = self.air_impulse.iter_mut().zip(self.memory);
+        for ((((position, velocity), (displacement, older)), (air, memory)), &inverse_area) in
+            particles.zip(history).zip(forces).zip(self.inverse_areas)
+        {
             let x: V3<L> = V3::load(token, position);
-            // A lane at rest keeps its bits, whatever its neighbours do.
-            let change = motion.moved(x);
-            let carried = (x + change).or_where_not(moves, x);
+            let carried = motion.apply(x, motion.moved(x));
             if inverse_area == 0.0 {
                 ((x - carried) * inverse_step).store(velocity);
-            } else {
-                carried.store(position);
-                let v: V3<L> = V3::load(token, velocity);
-                (v + motion.turned(v)).or_where_not(moves, v).store(velocity);
+                continue;
+            }
+            carried.store(position);
+            for direction in [displacement, velocity, older, air, memory] {
+                let d: V3<L> = V3::load(token, direction);
+                motion.apply(d, motion.turned(d)).store(direction);
             }
         }
     }
 }
 
-struct Predict<'a, P: Pack> {
-    fabric: &'a Fabric,
+/// Extrapolates velocities and damps them. Gravity and air come after, undamped, so that rest states
+/// are exact.
+struct Extrapolate<'a, P: Pack> {
+    inverse_areas: &'a [f32],
     parameters: &'a Parameters<P>,
-    step: f32,
+    /// −1/h, 1/s.
+    frame_rate: f32,
+    position: &'a [Pack3<P>],
+    velocity: &'a mut [Pack3<P>],
+    older_velocity: &'a mut [Pack3<P>],
+}
+
+impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let extrapolation = L::load(token, &self.parameters.extrapolation);
+        let keep = L::load(token, &self.parameters.keep);
+        let motion = Motion::<L>::load(token, self.parameters);
+        let any_moves = motion.moves.any();
+        let frame_rate = L::splat(token, self.frame_rate);
+        let zero = V3::splat(token, 0.0);
+        let speeds = self.velocity.iter_mut().zip(self.older_velocity);
+        for (((velocity, older), position), &inverse_area) in
+            speeds.zip(self.position).zip(self.inverse_areas)
+        {
+            if inverse_area == 0.0 {
+                continue;
+            }
+            let v: V3<L> = V3::load(token, velocity);
+            let before: V3<L> = V3::load(token, older);
+            v.store(older);
+            let v = v + (v - before) * extrapolation;
+            // Damping acts on the motion relative to the frame, whose point at x has this velocity.
+            let damped = if any_moves {
+                let x = V3::load(token, position);
+                let frame = (motion.moved(x) * frame_rate).or_where_not(motion.moves, zero);
+                (frame + (v - frame) * keep).or_where_not(motion.moves, v * keep)
+            } else {
+                v * keep
+            };
+            damped.store(velocity);
+        }
+    }
+}
+
+/// Adds what air and gravity do, and moves the particles to where they would go unconstrained.
+struct Predict<'a, P: Pack> {
+    areas: &'a [f32],
+    weights: &'a [f32],
+    parameters: &'a Parameters<P>,
     position: &'a mut [Pack3<P>],
     predicted: &'a mut [Pack3<P>],
+    displacement: &'a mut [Pack3<P>],
     velocity: &'a mut [Pack3<P>],
     air_impulse: &'a [Pack3<P>],
 }
@@ -110,34 +194,28 @@ struct Predict<'a, P: Pack> {
 impl<P: Pack> Kernel<P> for Predict<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let step = L::splat(token, self.step);
+        let step = L::load(token, &self.parameters.step);
+        let extrapolation = L::load(token, &self.parameters.extrapolation);
         let gravity: V3<L> = V3::load(token, &self.parameters.gravity_step);
-        let keep = L::load(token, &self.parameters.keep);
-        let motion = Motion::<L>::load(token, self.parameters);
-        let moves = L::splat(token, 0.0).lt(L::load(token, &self.parameters.moves));
-        let any_moves = moves.any();
-        let minus_rate = L::splat(token, -1.0 / self.step);
-        let zero = V3::splat(token, 0.0);
-        let particles = self.position.iter_mut().zip(self.predicted).zip(self.velocity);
-        for (((position, predicted), velocity), (impulse, &inverse_area)) in
-            particles.zip(self.air_impulse.iter().zip(self.fabric.inverse_areas()))
+        let air_share = L::load(token, &self.parameters.air_share);
+        let places = self.position.iter_mut().zip(self.predicted).zip(self.displacement);
+        let speeds = self.velocity.iter_mut().zip(self.air_impulse);
+        let inertia = self.weights.iter().zip(self.areas);
+        for ((((position, predicted), displacement), (velocity, impulse)), (&weight, &area)) in
+            places.zip(speeds).zip(inertia)
         {
-            if inverse_area == 0.0 {
+            if weight == 0.0 {
                 continue;
             }
-            let x: V3<L> = V3::load(token, position);
             let air: V3<L> = V3::load(token, impulse);
-            let mut v: V3<L> = V3::load(token, velocity);
-            v = v + gravity + air * L::splat(token, inverse_area);
-            // Damping acts on the motion relative to the frame, whose point at x has this velocity.
-            if any_moves {
-                let frame = (motion.moved(x) * minus_rate).or_where_not(moves, zero);
-                v = (frame + (v - frame) * keep).or_where_not(moves, v * keep);
-            } else {
-                v = v * keep;
-            }
+            let v = V3::load(token, velocity)
+                + air * (air_share * L::splat(token, weight))
+                // Gravity acts on the true mass, whatever inertia is added to it.
+                + gravity * L::splat(token, weight * area);
             v.store(velocity);
-            let x = x + v * step;
+            let change = V3::load(token, displacement) * extrapolation + v * step;
+            change.store(displacement);
+            let x = V3::load(token, position) + change;
             x.store(predicted);
             x.store(position);
         }

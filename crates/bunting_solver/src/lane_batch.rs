@@ -4,12 +4,14 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::added_mass;
 use crate::collision::Collider;
+use crate::constraints::Knot;
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::lanes::Pack;
-use crate::parameters::Parameters;
+use crate::parameters::{Formula, Parameters};
 use crate::snapshot::ClothSnapshot;
-use crate::step::{Drive, StepSettings};
+use crate::step::{Drive, Scheme, StepSettings};
 use crate::vector::{Pack3, lane3, set_lane3, splat3};
 
 /// One cloth's place in a batch: what the lanes do not hold.
@@ -18,8 +20,25 @@ pub(crate) struct Slot {
     pub material: FabricMaterial,
     pub drive: Drive,
     pub colliders: Vec<Collider>,
+    /// Length of the substep that the lane's history was made with, s; zero where there is none, and
+    /// the next substep is one of backward Euler.
+    pub history_step: f32,
+    /// What the lane's parameters were last computed from.
+    pub applied: Option<Applied>,
     /// For each collider, the particles that may touch it in this tick.
     pub contacts: Vec<Vec<u32>>,
+}
+
+/// What a lane's compliances, air and damping depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Applied {
+    pub material: FabricMaterial,
+    pub air_density: f32,
+    /// Length of a substep, s.
+    pub step: f32,
+    pub formula: Formula,
+    /// For how long the air is reckoned to act at once, s.
+    pub air_step: f32,
 }
 
 /// Up to `P::WIDTH` cloths of one fabric.
@@ -34,6 +53,10 @@ pub(crate) struct LaneBatch<P: Pack> {
     pub predicted: Vec<Pack3<P>>,
     /// Velocities relative to the world along the frame's axes, m/s.
     pub velocity: Vec<Pack3<P>>,
+    /// Change of position in the last substep, or so far in this one, m.
+    pub displacement: Vec<Pack3<P>>,
+    /// Velocities a substep earlier, m/s.
+    pub older_velocity: Vec<Pack3<P>>,
     /// Unit normals.
     pub normal: Vec<Pack3<P>>,
     /// Sum over a particle's triangles of area times change of velocity, m³/s.
@@ -43,6 +66,20 @@ pub(crate) struct LaneBatch<P: Pack> {
     pub link_multiplier: Vec<P>,
     pub hinge_multiplier: Vec<P>,
 
+    /// Positions after bending, before stretch, m.
+    pub bent: Vec<Pack3<P>>,
+    /// What stretch does to each particle, as a remembered acceleration, m/s².
+    pub memory: Vec<Pack3<P>>,
+    /// Room for the bending moments of a line.
+    pub moments: Vec<Pack3<P>>,
+    /// Room for the links of two yarns side by side.
+    pub knots: Vec<Knot<P>>,
+
+    /// One over each particle's inertia, in units of the density, 1/m²; zero where it is pinned.
+    pub weights: Vec<f32>,
+    /// The effective substep that the weights are for, s; zero with the fabric's own.
+    weights_step: f32,
+
     pub parameters: Parameters<P>,
     pub clock: Clock,
 }
@@ -51,6 +88,8 @@ pub(crate) struct LaneBatch<P: Pack> {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Clock {
     pub settings: StepSettings,
+    /// Length of a tick, s.
+    pub tick: f32,
     /// Length of a substep, s.
     pub step: f32,
     /// Substeps done in this tick.
@@ -63,15 +102,26 @@ impl<P: Pack> LaneBatch<P> {
             fabric.rest_positions().iter().map(|&rest| splat3(rest)).collect();
         let zero = vec![splat3(Vec3::ZERO); rest.len()];
         let nothing = P::splat(0.0);
+        let longest_line =
+            fabric.bend_lines().iter().map(|line| line.particles.len()).max().unwrap_or(0);
+        let longest_yarn = fabric.yarns().iter().map(|yarn| yarn.links.len()).max().unwrap_or(0);
         Self {
             slots: vec![None; P::WIDTH],
             predicted: rest.clone(),
+            displacement: zero.clone(),
+            bent: zero.clone(),
+            memory: zero.clone(),
+            older_velocity: zero.clone(),
             position: rest,
             velocity: zero.clone(),
             air_impulse: zero.clone(),
             normal: zero,
             link_multiplier: vec![nothing; fabric.links().len()],
             hinge_multiplier: vec![nothing; fabric.hinges().len()],
+            moments: vec![splat3(Vec3::ZERO); longest_line],
+            knots: vec![Knot::new(); 2 * longest_yarn],
+            weights: fabric.inverse_areas().to_vec(),
+            weights_step: 0.0,
             parameters: Parameters::new(&fabric),
             clock: Clock::default(),
             fabric,
@@ -83,6 +133,8 @@ impl<P: Pack> LaneBatch<P> {
             material,
             drive: Drive::default(),
             colliders: Vec::new(),
+            history_step: 0.0,
+            applied: None,
             contacts: Vec::new(),
         });
         self.restore(lane, snapshot);
@@ -103,6 +155,15 @@ impl<P: Pack> LaneBatch<P> {
             set_lane3(&mut self.predicted[particle], lane, position);
             let velocity = if self.fabric.is_pinned(particle) { Vec3::ZERO } else { velocity };
             set_lane3(&mut self.velocity[particle], lane, velocity);
+            set_lane3(&mut self.memory[particle], lane, Vec3::ZERO);
+        }
+        self.restart(lane);
+    }
+
+    /// Forgets a lane's history: the next substep is one of backward Euler.
+    pub fn restart(&mut self, lane: usize) {
+        if let Some(slot) = &mut self.slots[lane] {
+            slot.history_step = 0.0;
         }
     }
 
@@ -129,13 +190,14 @@ impl<P: Pack> LaneBatch<P> {
     /// Sets everything that is constant over the tick, and gathers contacts.
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
         let step = tick / settings.substeps as f32;
-        self.clock = Clock { settings, step, done: 0 };
-        for (lane, slot) in self.slots.iter().enumerate() {
-            let (material, air_density) = match slot {
-                Some(slot) => (slot.material, slot.drive.air_density),
-                None => (FabricMaterial::default(), 0.0),
-            };
-            self.parameters.set_material(lane, &self.fabric, &material, air_density, step);
+        self.clock = Clock { settings, tick, step, done: 0 };
+        let weights_step = match settings.scheme {
+            Scheme::GaussSeidel => 0.0,
+            Scheme::Yarns => Formula::BDF2.weight * step,
+        };
+        if self.weights_step != weights_step {
+            self.weights_step = weights_step;
+            self.weights = added_mass::weights(&self.fabric, weights_step);
         }
         self.gather_contacts(tick);
     }
@@ -143,9 +205,30 @@ impl<P: Pack> LaneBatch<P> {
     /// Sets everything that is constant over the substep.
     pub fn begin_substep(&mut self) {
         let moved = self.parameters.moves_any();
-        for (lane, slot) in self.slots.iter().enumerate() {
-            let drive = slot.as_ref().map_or(Drive::NONE, |slot| slot.drive);
-            self.parameters.set_drive(lane, &drive, &self.clock);
+        let Clock { settings, tick, step, .. } = self.clock;
+        for (lane, slot) in self.slots.iter_mut().enumerate() {
+            let Some(slot) = slot else {
+                self.parameters.set_empty(lane);
+                continue;
+            };
+            // BDF2 needs a substep of the same length before it.
+            let second_order = settings.scheme == Scheme::Yarns && slot.history_step == step;
+            let formula = if second_order { Formula::BDF2 } else { Formula::BACKWARD_EULER };
+            slot.history_step = step;
+            let applied = Applied {
+                material: slot.material,
+                air_density: slot.drive.air_density,
+                step,
+                formula,
+                air_step: match settings.scheme {
+                    Scheme::GaussSeidel => formula.weight * step,
+                    Scheme::Yarns => tick,
+                },
+            };
+            if slot.applied.replace(applied) != Some(applied) {
+                self.parameters.apply(lane, &self.fabric, &applied);
+            }
+            self.parameters.set_drive(lane, &slot.drive, &self.clock);
         }
         // One substep more than the motion lasts, so that pinned particles come to rest.
         self.parameters.carries = moved || self.parameters.moves_any();

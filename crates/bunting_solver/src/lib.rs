@@ -32,6 +32,7 @@
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
+mod added_mass;
 mod aerodynamics;
 mod batch;
 mod collision;
@@ -54,11 +55,11 @@ mod velocity;
 pub use batch::{BatchError, ClothBatch};
 pub use collision::Collider;
 pub use fabric::{
-    Colours, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Hinge, HingeClass, Link,
-    LinkClass, LinkFamily,
+    BendLine, BendProfile, Colours, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid,
+    Hinge, HingeClass, Link, LinkClass, LinkFamily, Tether, Yarn, YarnLink,
 };
 pub use frame::FrameMotion;
 pub use lanes::{LaneCount, instruction_set};
 pub use snapshot::ClothSnapshot;
-pub use step::{Drive, StepSettings};
+pub use step::{Drive, Scheme, StepSettings};
 pub use transfer::{LevelTransfer, TransferError};

@@ -2,26 +2,111 @@
 
 use glam::Vec3;
 
-use crate::fabric::{Fabric, FabricMaterial};
-use crate::lane_batch::Clock;
+use crate::constraints::anticipated;
+use crate::fabric::{BendProfile, Fabric};
+use crate::lane_batch::{Applied, Clock};
 use crate::lanes::Pack;
 use crate::step::Drive;
 use crate::vector::{Pack3, set_lane3, splat3};
 
+/// A backward differentiation formula: x and v at the end of a substep of h seconds are
+/// x + extrapolation · (x − x₋₁) + weight · h v̇ and alike for v (of order two: Curtiss and
+/// Hirschfelder 1952). With ṽ the velocity so extrapolated, x̃ = x + γ (x − x₋₁) + β h ṽ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Formula {
+    /// γ: how much of the last change is extrapolated.
+    pub extrapolation: f32,
+    /// β: what part of the substep the new derivative counts for.
+    pub weight: f32,
+}
+
+impl Formula {
+    pub const BACKWARD_EULER: Self = Self { extrapolation: 0.0, weight: 1.0 };
+    pub const BDF2: Self = Self { extrapolation: 1.0 / 3.0, weight: 2.0 / 3.0 };
+}
+
+/// Factors L and D of a bend profile's pentadiagonal system, for each inner particle.
+#[derive(Clone, Debug)]
+pub(crate) struct BendFactors<P: Pack> {
+    pub rows: Vec<BendFactor<P>>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BendFactor<P: Pack> {
+    /// Factor of L one below the diagonal.
+    pub near: P,
+    /// Factor of L two below the diagonal.
+    pub far: P,
+    /// One over the diagonal.
+    pub inverse: P,
+}
+
+impl<P: Pack> BendFactors<P> {
+    fn new(profile: &BendProfile) -> Self {
+        let nothing = P::splat(0.0);
+        let row = BendFactor { near: nothing, far: nothing, inverse: nothing };
+        Self { rows: vec![row; profile.weights.len()] }
+    }
+
+    /// Factorises D W Dᵀ + α̃ for one lane, α̃ being `compliance` over a row's weight. In double
+    /// precision, since it is done once.
+    fn factorise(&mut self, lane: usize, profile: &BendProfile, compliance: f32) {
+        let per_spacing = f64::from(profile.inverse_spacing);
+        let areas: Vec<f64> = profile
+            .inverse_areas
+            .iter()
+            .map(|&w| f64::from(w) * per_spacing * per_spacing)
+            .collect();
+        // Of the last two rows: 1/d, and what couples them.
+        let (mut one, mut two) = ((0.0, 0.0), (0.0, 0.0));
+        for (row, (factor, &weight)) in self.rows.iter_mut().zip(&profile.weights).enumerate() {
+            let softness = f64::from(compliance) / f64::from(weight);
+            let diagonal = areas[row] + 4.0 * areas[row + 1] + areas[row + 2] + softness;
+            let beside = if row >= 1 { -2.0 * (areas[row] + areas[row + 1]) } else { 0.0 };
+            let beyond = if row >= 2 { areas[row] } else { 0.0 };
+            // L D Lᵀ: far = a₂/d₋₂, near = (a₁ − far d₋₂ near₋₁)/d₋₁.
+            let far = beyond * two.0;
+            let near = (beside - beyond * one.1) * one.0;
+            let pivot = diagonal - beyond * far - near * (beside - beyond * one.1);
+            for (pack, value) in [
+                (&mut factor.near, near),
+                (&mut factor.far, far),
+                (&mut factor.inverse, 1.0 / pivot),
+            ] {
+                pack.lanes_mut()[lane] = value as f32;
+            }
+            (two, one) = (one, (1.0 / pivot, near));
+        }
+    }
+}
+
 /// One value for each lane of everything that a kernel needs besides the particles.
 #[derive(Clone, Debug)]
 pub(crate) struct Parameters<P: Pack> {
+    /// γ of the [`Formula`].
+    pub extrapolation: P,
+    /// The effective substep β h of the [`Formula`], s. Everything below that is "in a substep" is in
+    /// this one.
+    pub step: P,
+    /// One over it, 1/s.
+    pub inverse_step: P,
     /// σ/(k h²) of each link class, 1/m²: compliance in units of inverse areas.
     pub link_compliance: Vec<P>,
     /// σ/(k h²) of each hinge class, 1/m⁴.
     pub hinge_compliance: Vec<P>,
+    /// Of each bend profile.
+    pub bend_factors: Vec<BendFactors<P>>,
+    /// Part of its memory of stretch that bending anticipates.
+    pub anticipated: P,
     /// Gravity times the substep, m/s.
     pub gravity_step: Pack3<P>,
     /// Air velocity, m/s.
     pub wind: Pack3<P>,
-    /// ½ ρ C_n h/σ, s/m.
+    /// Part of the air's impulse that falls to this substep.
+    pub air_share: P,
+    /// ½ ρ C_n h/σ with the time for which the air is reckoned at once, s/m.
     pub pressure: P,
-    /// ½ ρ C_t h/σ, s/m.
+    /// ½ ρ C_t h/σ with the same time, s/m.
     pub friction: P,
     /// Part of the velocity relative to the frame that damping leaves in a substep.
     pub keep: P,
@@ -41,10 +126,16 @@ impl<P: Pack> Parameters<P> {
     pub fn new(fabric: &Fabric) -> Self {
         let nothing = P::splat(0.0);
         Self {
+            extrapolation: nothing,
+            step: nothing,
+            inverse_step: nothing,
             link_compliance: vec![nothing; fabric.link_classes().len()],
             hinge_compliance: vec![nothing; fabric.hinge_classes().len()],
+            bend_factors: fabric.bend_profiles().iter().map(BendFactors::new).collect(),
+            anticipated: nothing,
             gravity_step: splat3(Vec3::ZERO),
             wind: splat3(Vec3::ZERO),
+            air_share: nothing,
             pressure: nothing,
             friction: nothing,
             keep: P::splat(1.0),
@@ -56,16 +147,24 @@ impl<P: Pack> Parameters<P> {
         }
     }
 
-    /// Compliances, air and damping for a substep of `step` seconds.
-    pub fn set_material(
-        &mut self,
-        lane: usize,
-        fabric: &Fabric,
-        material: &FabricMaterial,
-        air_density: f32,
-        step: f32,
-    ) {
+    /// A lane without a cloth stands still.
+    pub fn set_empty(&mut self, lane: usize) {
         let set = |pack: &mut P, value: f32| pack.lanes_mut()[lane] = value;
+        set(&mut self.step, 0.0);
+        set(&mut self.inverse_step, 0.0);
+        set(&mut self.moves, 0.0);
+        set_lane3(&mut self.gravity_step, lane, Vec3::ZERO);
+        set_lane3(&mut self.wind, lane, Vec3::ZERO);
+    }
+
+    /// Integration formula, compliances, air and damping.
+    pub fn apply(&mut self, lane: usize, fabric: &Fabric, applied: &Applied) {
+        let Applied { material, air_density, step, formula, air_step } = applied;
+        let step = formula.weight * step;
+        let set = |pack: &mut P, value: f32| pack.lanes_mut()[lane] = value;
+        set(&mut self.extrapolation, formula.extrapolation);
+        set(&mut self.step, step);
+        set(&mut self.inverse_step, 1.0 / step);
         // A stiffness of zero has an infinite compliance; the largest number is as soft, and zero
         // times it is still zero.
         let compliance =
@@ -76,7 +175,16 @@ impl<P: Pack> Parameters<P> {
         for (pack, class) in self.hinge_compliance.iter_mut().zip(fabric.hinge_classes()) {
             set(pack, compliance(class.stiffness(material)));
         }
-        let air = 0.5 * air_density * step / material.area_density;
+        for (factors, profile) in self.bend_factors.iter_mut().zip(fabric.bend_profiles()) {
+            factors.factorise(lane, profile, compliance(material.bend_stiffness));
+        }
+        let spacing = fabric.bend_profiles().iter().map(|profile| profile.inverse_spacing);
+        let finest = spacing.fold(0.0, f32::max);
+        let stiffness_number =
+            16.0 * step * step * material.bend_stiffness / material.area_density * finest.powi(4);
+        set(&mut self.anticipated, anticipated(stiffness_number));
+        let air = 0.5 * air_density * air_step / material.area_density;
+        set(&mut self.air_share, step / air_step);
         set(&mut self.pressure, air * material.pressure_coefficient);
         set(&mut self.friction, air * material.friction_coefficient);
         // The rigid motion of a pinned cloth is its frame's.
@@ -93,7 +201,7 @@ impl<P: Pack> Parameters<P> {
     pub fn set_drive(&mut self, lane: usize, drive: &Drive, clock: &Clock) {
         let (index, count) = (clock.done, clock.settings.substeps);
         let turned = |direction| drive.motion.turn_back(direction, index, count);
-        set_lane3(&mut self.gravity_step, lane, turned(drive.gravity) * clock.step);
+        set_lane3(&mut self.gravity_step, lane, turned(drive.gravity) * self.step.lanes()[lane]);
         set_lane3(&mut self.wind, lane, turned(drive.wind));
         let carry = drive.motion.carry(index, count);
         for (pack, row) in self.turn.iter_mut().zip(carry.turn.rows) {

@@ -4,9 +4,22 @@ use glam::Vec3;
 
 use crate::frame::FrameMotion;
 
+/// How the constraints are solved, and with which integrator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Scheme {
+    /// The thesis's: Gauss–Seidel over every constraint, backward Euler. PBD, and XPBD where the
+    /// material has a compliance.
+    #[default]
+    GaussSeidel,
+    /// Each yarn's links solved together, exactly; BDF2, of second order.
+    Yarns,
+}
+
 /// How finely a batch is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct StepSettings {
+    /// How the constraints are solved.
+    pub scheme: Scheme,
     /// Substeps in a tick; at least 1. More substeps cost in proportion and are worth more than
     /// passes (Macklin 2019, "Small steps in physics simulation").
     pub substeps: u32,
@@ -15,16 +28,22 @@ pub struct StepSettings {
 }
 
 impl StepSettings {
-    /// `substeps` substeps of one pass.
+    /// Gauss–Seidel in `substeps` substeps of one pass.
     #[must_use]
-    pub const fn substeps(substeps: u32) -> Self {
-        Self { substeps, passes: 1 }
+    pub const fn gauss_seidel(substeps: u32) -> Self {
+        Self { scheme: Scheme::GaussSeidel, substeps, passes: 1 }
+    }
+
+    /// Yarns in `substeps` substeps of one pass.
+    #[must_use]
+    pub const fn yarns(substeps: u32) -> Self {
+        Self { scheme: Scheme::Yarns, substeps, passes: 1 }
     }
 }
 
 impl Default for StepSettings {
     fn default() -> Self {
-        Self::substeps(10)
+        Self::gauss_seidel(10)
     }
 }
 

@@ -64,7 +64,7 @@ fn cloth_comes_to_lie_on_every_shape() {
         let mut batch = cloth(&fabric, material());
         batch.set_colliders(0, [Collider::fixed(shape.clone(), centre, Quat::IDENTITY)]);
         for _ in 0..45 {
-            batch.step(TICK, StepSettings::substeps(8));
+            batch.step(TICK, StepSettings::gauss_seidel(8));
             assert!(deepest(&batch, &shape, centre) < 1e-3, "{:?}", shape.shape_type());
         }
         assert!(batch.is_finite(0));
@@ -88,7 +88,7 @@ fn a_fast_ball_does_not_tunnel() {
             ..Collider::fixed(shape.clone(), at(tick), Quat::IDENTITY)
         };
         batch.set_colliders(0, [ball]);
-        batch.step(TICK, StepSettings::substeps(8));
+        batch.step(TICK, StepSettings::gauss_seidel(8));
         let ball = at(tick + 1);
         for position in batch.snapshot(0).positions {
             let (beside, below) =
@@ -114,7 +114,7 @@ fn friction_holds_a_cloth_on_a_slope_and_its_absence_does_not() {
         // Its friction is the root of the product with the collider's.
         batch.set_colliders(0, [Collider { friction, ..ground }]);
         for _ in 0..60 {
-            batch.step(TICK, StepSettings::substeps(4));
+            batch.step(TICK, StepSettings::gauss_seidel(4));
         }
         let slid = batch.snapshot(0).positions[40].x - 0.5;
         let free = 0.5 * 9.81 * libm::sinf(slope);
@@ -135,7 +135,7 @@ fn a_cloth_that_starts_inside_is_put_out_without_being_thrown() {
     let centre = Vec3::new(0.5, -0.5, -0.1);
     batch.set_colliders(0, [Collider::fixed(shape.clone(), centre, Quat::IDENTITY)]);
     for _ in 0..30 {
-        batch.step(TICK, StepSettings::substeps(4));
+        batch.step(TICK, StepSettings::gauss_seidel(4));
     }
     assert!(deepest(&batch, &shape, centre) < 1e-3);
     let fastest = batch.snapshot(0).velocities.iter().map(|v| v.length()).fold(0.0, f32::max);

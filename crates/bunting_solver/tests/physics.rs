@@ -64,7 +64,7 @@ fn mass_weighted(fabric: &Fabric, value: impl Fn(usize) -> Vec3) -> Vec3 {
 fn free_fall_is_the_schemes_own_sum() {
     let fabric = square(5, |_| false);
     let mut batch = lone(&fabric, STANDARD, Drive::default());
-    let settings = StepSettings::substeps(4);
+    let settings = StepSettings::gauss_seidel(4);
     for _ in 0..30 {
         batch.step(TICK, settings);
     }
@@ -93,7 +93,7 @@ fn a_hanging_sheet_stretches_as_its_material_says() {
         let fabric = square(n, |position| position.y == 0.0);
         let mut batch = lone(&fabric, soft, Drive::default());
         for _ in 0..400 {
-            batch.step(TICK, StepSettings::substeps(30));
+            batch.step(TICK, StepSettings::gauss_seidel(30));
         }
         let strain = mean_strain(&fabric, &batch.snapshot(0).positions, LinkFamily::Weft);
         let expected = soft.area_density * GRAVITY / (2.0 * soft.weft_stiffness);
@@ -109,10 +109,10 @@ fn broadside_fall_reaches_terminal_speed() {
     let drive = Drive { gravity: Vec3::new(0.0, 0.0, -GRAVITY), ..Drive::default() };
     let mut batch = lone(&fabric, material, drive);
     for _ in 0..60 {
-        batch.step(TICK, StepSettings::substeps(20));
+        batch.step(TICK, StepSettings::gauss_seidel(20));
     }
     let velocity = batch.snapshot(0).velocities[12].z;
-    // Each substep solves βv²/(1 + βv) = gh for v: v_t, but for a first-order βv_t/2.
+    // Each substep slows v by βv²/(1 + βv) and then adds gh: v is v_t, but for a first-order gh/2.
     let terminal = 1.155_29_f32;
     let half = 0.5 * GRAVITY * (TICK / 20.0) / terminal;
     let expected = terminal * (half + (1.0 + half * half).sqrt());
@@ -127,7 +127,7 @@ fn strong_wind_never_overshoots() {
     let drive = Drive { gravity: Vec3::ZERO, wind, ..Drive::default() };
     let mut batch = lone(&fabric, material, drive);
     for _ in 0..20 {
-        batch.step(TICK, StepSettings::substeps(1));
+        batch.step(TICK, StepSettings::gauss_seidel(1));
         for velocity in batch.snapshot(0).velocities {
             assert!((0.0..=40.0).contains(&velocity.z), "{velocity}");
         }
@@ -155,7 +155,7 @@ fn free_cloth_keeps_its_momenta() {
         mass_weighted(&fabric, |i| state.positions[i].cross(state.velocities[i]))
     };
     for _ in 0..60 {
-        batch.step(TICK, StepSettings::substeps(4));
+        batch.step(TICK, StepSettings::gauss_seidel(4));
     }
     let end = batch.snapshot(0);
     let (before, after) = (momentum(&start), momentum(&end));
@@ -180,7 +180,7 @@ fn internal_damping_leaves_a_rigid_spin_and_stops_a_wobble() {
     batch.insert(&start, material).expect("a free lane");
     batch.drive(0, Drive::NONE);
     for _ in 0..60 {
-        batch.step(TICK, StepSettings::substeps(4));
+        batch.step(TICK, StepSettings::gauss_seidel(4));
     }
     let end = batch.snapshot(0);
     let momentum = |state: &ClothSnapshot| mass_weighted(&fabric, |i| state.velocities[i]);
@@ -212,8 +212,8 @@ fn a_moving_frame_changes_nothing_in_the_world() {
             0,
             Drive { motion, gravity: axes.inverse() * Vec3::NEG_Y * GRAVITY, ..Drive::default() },
         );
-        fixed.step(TICK, StepSettings::substeps(8));
-        moving.step(TICK, StepSettings::substeps(8));
+        fixed.step(TICK, StepSettings::gauss_seidel(8));
+        moving.step(TICK, StepSettings::gauss_seidel(8));
     }
     let (fixed, moving) = (fixed.snapshot(0), moving.snapshot(0));
     for (here, there) in fixed.positions.iter().zip(&moving.positions) {
@@ -236,7 +236,7 @@ fn damping_does_not_hold_back_a_frame_that_travels() {
     batch.insert(&start, material).expect("a free lane");
     batch.drive(0, Drive { motion, gravity: Vec3::ZERO, ..Drive::default() });
     for _ in 0..60 {
-        batch.step(TICK, StepSettings::substeps(4));
+        batch.step(TICK, StepSettings::gauss_seidel(4));
     }
     for (now, rest) in batch.snapshot(0).positions.iter().zip(fabric.rest_positions()) {
         assert!(now.distance(*rest) < 1e-3, "{now} {rest}");

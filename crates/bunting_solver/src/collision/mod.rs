@@ -59,7 +59,7 @@ impl<P: Pack> LaneBatch<P> {
     /// bounding box reaches, grown by how far the particle may go.
     pub fn gather_contacts(&mut self, tick: f32) {
         for (lane, slot) in self.slots.iter_mut().enumerate() {
-            let Some(Slot { material, drive, colliders, contacts }) = slot else {
+            let Some(Slot { material, drive, colliders, contacts, .. }) = slot else {
                 continue;
             };
             contacts.resize_with(colliders.len(), Vec::new);

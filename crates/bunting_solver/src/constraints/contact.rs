@@ -13,12 +13,13 @@ use crate::vector::{lane3, set_lane3};
 impl<P: Pack> LaneBatch<P> {
     /// Projects every contact candidate once.
     pub fn solve_contacts(&mut self) {
-        let Clock { settings, done, step } = self.clock;
+        let Clock { settings, done, .. } = self.clock;
         // `integrate` has counted this substep already.
         let index = done - 1;
         let part = |substep: u32| substep as f32 / settings.substeps as f32;
         for (lane, slot) in self.slots.iter().enumerate() {
             let Some(slot) = slot else { continue };
+            let effective_step = self.parameters.step.lanes()[lane];
             let carry = slot.drive.motion.carry(index, settings.substeps);
             for (collider, candidates) in slot.colliders.iter().zip(&slot.contacts) {
                 let (old_pose, pose) =
@@ -32,7 +33,7 @@ impl<P: Pack> LaneBatch<P> {
                     let position = &mut self.position[particle as usize];
                     let velocity = &mut self.velocity[particle as usize];
                     let predicted = lane3(&self.predicted[particle as usize], lane);
-                    let old = predicted - lane3(velocity, lane) * step;
+                    let old = predicted - lane3(&self.displacement[particle as usize], lane);
                     // Both ends of the particle's way in the collider's own frame, so that it is
                     // relative to the surface; the old end as it stood before the frame moved.
                     let from = old_pose.inverse_transform_point(carry.back(old));
@@ -40,7 +41,8 @@ impl<P: Pack> LaneBatch<P> {
                     let Some(push) = surface.push(from, to) else { continue };
                     set_lane3(position, lane, pose.transform_point(push.to));
                     if let Some(thrown) = push.thrown {
-                        let slowed = lane3(velocity, lane) - pose.rotation * thrown / step;
+                        let slowed =
+                            lane3(velocity, lane) - pose.rotation * thrown / effective_step;
                         set_lane3(velocity, lane, slowed);
                     }
                 }

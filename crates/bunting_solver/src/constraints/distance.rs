@@ -1,7 +1,7 @@
 //! Distance: C = |x₂ − x₁| − l (thesis, eq. 4.15 to 4.18), along warp, weft and bias.
 
 use crate::constants::LEAST_LENGTH;
-use crate::fabric::Fabric;
+use crate::fabric::Link;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
 use crate::vector::{Pack3, V3};
@@ -9,8 +9,19 @@ use crate::vector::{Pack3, V3};
 impl<P: Pack> LaneBatch<P> {
     /// Projects every link once.
     pub fn solve_distance(&mut self, accumulate: bool) {
+        self.solve_links(self.fabric.links().len(), accumulate);
+    }
+
+    /// Projects warp and weft once more after the yarns.
+    pub fn polish(&mut self) {
+        self.solve_links(self.fabric.stretch_link_count(), true);
+    }
+
+    /// Projects the first `count` links once.
+    fn solve_links(&mut self, count: usize, accumulate: bool) {
         let solve = Distance {
-            fabric: &self.fabric,
+            links: &self.fabric.links()[..count],
+            weights: &self.weights,
             compliance: &self.parameters.link_compliance,
             multiplier: &mut self.link_multiplier,
             position: &mut self.position,
@@ -24,7 +35,8 @@ impl<P: Pack> LaneBatch<P> {
 }
 
 struct Distance<'a, P: Pack> {
-    fabric: &'a Fabric,
+    links: &'a [Link],
+    weights: &'a [f32],
     compliance: &'a [P],
     multiplier: &'a mut [P],
     position: &'a mut [Pack3<P>],
@@ -33,9 +45,9 @@ struct Distance<'a, P: Pack> {
 impl<P: Pack> Distance<'_, P> {
     #[inline(always)]
     fn solve<L: Lane<Pack = P>, const ACCUMULATE: bool>(self, token: L::Token) {
-        let weights = self.fabric.inverse_areas();
+        let weights = self.weights;
         let least = L::splat(token, LEAST_LENGTH);
-        for (link, multiplier) in self.fabric.links().iter().zip(self.multiplier) {
+        for (link, multiplier) in self.links.iter().zip(self.multiplier) {
             let [a, b] = link.particles.map(|particle| particle as usize);
             let (wa, wb) = (L::splat(token, weights[a]), L::splat(token, weights[b]));
             let compliance = L::load(token, &self.compliance[link.class as usize]);
@@ -45,13 +57,13 @@ impl<P: Pack> Distance<'_, P> {
             let length = along.dot(along).sqrt().max(least);
             let mut excess = length - L::splat(token, link.rest_length);
             if ACCUMULATE {
-                excess = excess - compliance * L::load(token, multiplier);
+                excess = excess + compliance * L::load(token, multiplier);
             }
             let stiffness = wa + wb + compliance;
-            // Δλ/|d| with one division: the gradient's length goes into the denominator.
+            // −Δλ/|d| with one division: the gradient's length goes into the denominator.
             let pull = excess / (stiffness * length);
             if ACCUMULATE {
-                (L::load(token, multiplier) + pull * length).store(multiplier);
+                (L::load(token, multiplier) - pull * length).store(multiplier);
             }
             (from + along * (pull * wa)).store(&mut self.position[a]);
             (to - along * (pull * wb)).store(&mut self.position[b]);

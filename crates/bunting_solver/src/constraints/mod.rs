@@ -6,26 +6,59 @@
 //! thesis's eq. 4.13 and 4.14). Inverse masses are w/σ with w one over the particle's area, so all
 //! of it is multiplied through by the density σ: the compliances here are σ/(k h²).
 
+mod anticipation;
+mod bending;
 mod contact;
 mod dihedral;
 mod distance;
+mod tether;
+mod yarn;
+
+pub(crate) use anticipation::anticipated;
+pub(crate) use yarn::Knot;
 
 use crate::lane_batch::LaneBatch;
 use crate::lanes::Pack;
+use crate::step::Scheme;
 
 impl<P: Pack> LaneBatch<P> {
     /// Projects all constraints, as many passes as the settings ask for.
     pub fn solve_constraints(&mut self) {
+        match self.clock.settings.scheme {
+            Scheme::GaussSeidel => self.sweep(self.clock.settings.passes),
+            Scheme::Yarns => self.solve_along_yarns(self.clock.settings.passes),
+        }
+    }
+
+    /// The thesis's relaxation: one constraint after the other, over and over.
+    fn sweep(&mut self, passes: u32) {
         // A multiplier is worth keeping only if another pass reads it.
-        let accumulate = self.clock.settings.passes > 1;
+        let accumulate = passes > 1;
         if accumulate {
             self.link_multiplier.fill(P::splat(0.0));
             self.hinge_multiplier.fill(P::splat(0.0));
         }
-        for _ in 0..self.clock.settings.passes {
+        for _ in 0..passes {
             self.solve_dihedral(accumulate);
             self.solve_distance(accumulate);
             self.solve_contacts();
         }
+    }
+
+    /// Bending first, for stretch is the stiffer; then yarns, tethers, and a sweep over warp and weft
+    /// for each pass, which takes off what the yarns' frozen directions overshoot.
+    fn solve_along_yarns(&mut self, passes: u32) {
+        if self.fabric.grid().is_some() {
+            self.solve_bending_with_anticipation();
+        } else {
+            self.solve_dihedral(false);
+        }
+        self.solve_yarns(passes);
+        self.solve_tethers();
+        for _ in 0..passes {
+            self.polish();
+        }
+        self.remember_stretch();
+        self.solve_contacts();
     }
 }

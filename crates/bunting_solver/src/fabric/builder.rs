@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use glam::{Vec2, Vec3};
 
 use super::links::{self, Sheet};
-use super::{Fabric, FabricError, Grid, hinges, topology, weld};
+use super::{Fabric, FabricError, Grid, bending, hinges, tethers, topology, weld, yarns};
 
 /// Default distance at which vertices are one particle, as a part of the mesh's extent: the
 /// rounding of 32-bit positions.
@@ -142,7 +142,7 @@ impl FabricBuilder {
         for &vertex in &self.pinned {
             pinned[particle(vertex) as usize] = true;
         }
-        let inverse_areas = areas
+        let inverse_areas: Vec<f32> = areas
             .iter()
             .zip(&pinned)
             .map(|(area, &pinned)| if pinned { 0.0 } else { 1.0 / area })
@@ -178,6 +178,11 @@ impl FabricBuilder {
         }
         let (links, link_classes, link_colours) =
             links::finish(&rest, &pinned, geometry.into_values());
+        let (yarns, yarn_colours) = yarns::yarns(&rest, &links);
+        let pins = tethers::pins(&edges, &pinned);
+        let tethers = tethers::tethers(&rest, &edges, &pins, self.grid.is_some());
+        let (bend_lines, bend_profiles) =
+            self.grid.map(|grid| bending::lines(&grid, &inverse_areas)).unwrap_or_default();
         let (hinges, hinge_classes, hinge_colours) = hinges::hinges(&rest, &edges, &pinned);
 
         Ok(Fabric {
@@ -192,9 +197,15 @@ impl FabricBuilder {
             links,
             link_classes,
             link_colours,
+            yarns,
+            yarn_colours,
             hinges,
             hinge_classes,
             hinge_colours,
+            bend_lines,
+            bend_profiles,
+            pins,
+            tethers,
             grid: self.grid,
         })
     }

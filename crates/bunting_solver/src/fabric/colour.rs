@@ -19,25 +19,24 @@ impl Colours {
 
 /// Sorts constraints by the smallest colour that no earlier one of their particles has, keeping the
 /// order within a colour. Constraints of a lower `rank` come first, whatever their colour.
-pub(crate) fn colour<C, const N: usize>(
+pub(crate) fn colour<C>(
     particle_count: usize,
     constraints: Vec<C>,
-    particles: impl Fn(&C) -> [u32; N],
+    particles: impl Fn(&C) -> &[u32],
     rank: impl Fn(&C) -> u32,
 ) -> (Vec<C>, Colours) {
     let mut taken: Vec<Vec<bool>> = vec![Vec::new(); particle_count];
     let mut keyed: Vec<((u32, usize), C)> = constraints
         .into_iter()
         .map(|constraint| {
-            let members = particles(&constraint).map(|particle| particle as usize);
+            let members = particles(&constraint);
             let is_free = |colour: usize| {
-                members
-                    .iter()
-                    .all(|&particle| !taken[particle].get(colour).copied().unwrap_or(false))
+                let has = |&particle: &u32| taken[particle as usize].get(colour) == Some(&true);
+                !members.iter().any(has)
             };
             let colour = (0..).find(|&colour| is_free(colour)).unwrap_or_default();
-            for particle in members {
-                let colours = &mut taken[particle];
+            for &particle in members {
+                let colours = &mut taken[particle as usize];
                 colours.resize(colours.len().max(colour + 1), false);
                 colours[colour] = true;
             }
@@ -66,6 +65,11 @@ pub(crate) struct Classes<const N: usize> {
 /// Bits of an f32 that a class ignores: values within 2⁻¹² of one another are one class.
 const CLASS_ROUNDING_BITS: u32 = 12;
 
+/// Bits of a value, equal for values of one class.
+pub(crate) fn rounded_bits(value: f32) -> u32 {
+    (value.to_bits() + (1 << (CLASS_ROUNDING_BITS - 1))) >> CLASS_ROUNDING_BITS
+}
+
 impl<const N: usize> Classes<N> {
     pub fn new() -> Self {
         Self { keys: std::collections::HashMap::new() }
@@ -73,11 +77,8 @@ impl<const N: usize> Classes<N> {
 
     /// The class of a value, and whether it is new: then it is the next in the table.
     pub fn class_of(&mut self, value: [f32; N]) -> (u32, bool) {
-        let round = |value: f32| {
-            (value.to_bits() + (1 << (CLASS_ROUNDING_BITS - 1))) >> CLASS_ROUNDING_BITS
-        };
         let next = self.keys.len() as u32;
-        let class = *self.keys.entry(value.map(round)).or_insert(next);
+        let class = *self.keys.entry(value.map(rounded_bits)).or_insert(next);
         (class, class == next)
     }
 }

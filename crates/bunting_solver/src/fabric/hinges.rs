@@ -71,7 +71,7 @@ pub(crate) fn hinges(
             Some(Hinge { particles, rest_angle: angle(corners), class })
         })
         .collect();
-    let (hinges, colours) = colour(rest.len(), hinges, |hinge: &Hinge| hinge.particles, |_| 0);
+    let (hinges, colours) = colour(rest.len(), hinges, |hinge: &Hinge| &hinge.particles, |_| 0);
     (hinges, table, colours)
 }
 

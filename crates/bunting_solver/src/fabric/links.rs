@@ -181,6 +181,6 @@ pub(crate) fn finish(
         })
         .collect();
     let (links, colours) =
-        colour(rest.len(), links, |link: &Link| link.particles, |link| link.family as u32);
+        colour(rest.len(), links, |link: &Link| &link.particles, |link| link.family as u32);
     (links, table, colours)
 }

@@ -4,6 +4,7 @@
 //! the material's density) and stiffnesses are weights of the material's moduli, so cloths of
 //! different [`FabricMaterial`]s share one fabric and ride in one batch.
 
+mod bending;
 mod builder;
 mod colour;
 mod error;
@@ -11,11 +12,16 @@ mod grid;
 mod hinges;
 mod links;
 mod material;
+mod tethers;
 mod topology;
 mod weld;
+mod yarns;
 
 use glam::{Vec2, Vec3};
 
+pub(crate) use tethers::Pin;
+
+pub use bending::{BendLine, BendProfile};
 pub use builder::FabricBuilder;
 pub use colour::Colours;
 pub use error::FabricError;
@@ -25,6 +31,8 @@ pub(crate) use hinges::angle as hinge_angle;
 pub use hinges::{Hinge, HingeClass};
 pub use links::{Link, LinkClass, LinkFamily};
 pub use material::FabricMaterial;
+pub use tethers::Tether;
+pub use yarns::{Yarn, YarnLink};
 
 /// A piece of cloth at rest, cut with its pins. Immutable; share it in an `Arc`.
 #[derive(Clone, Debug)]
@@ -40,9 +48,15 @@ pub struct Fabric {
     links: Vec<Link>,
     link_classes: Vec<LinkClass>,
     link_colours: Colours,
+    yarns: Vec<Yarn>,
+    yarn_colours: Colours,
     hinges: Vec<Hinge>,
     hinge_classes: Vec<HingeClass>,
     hinge_colours: Colours,
+    bend_lines: Vec<BendLine>,
+    bend_profiles: Vec<BendProfile>,
+    pins: Vec<Pin>,
+    tethers: Vec<Tether>,
     grid: Option<Grid>,
 }
 
@@ -106,7 +120,7 @@ impl Fabric {
     /// Whether any particle is pinned.
     #[must_use]
     pub fn has_pins(&self) -> bool {
-        self.inverse_areas.contains(&0.0)
+        !self.pins.is_empty()
     }
 
     /// Whether each particle lies on the border of the mesh.
@@ -121,6 +135,12 @@ impl Fabric {
         &self.links
     }
 
+    /// How many of the links are warp or weft: these come first.
+    #[must_use]
+    pub fn stretch_link_count(&self) -> usize {
+        self.links.partition_point(|link| link.family != LinkFamily::Bias)
+    }
+
     /// Stiffness classes that links refer to.
     #[must_use]
     pub fn link_classes(&self) -> &[LinkClass] {
@@ -131,6 +151,24 @@ impl Fabric {
     #[must_use]
     pub fn link_colours(&self) -> &Colours {
         &self.link_colours
+    }
+
+    /// The same links in straight paths, colour by colour.
+    #[must_use]
+    pub fn yarns(&self) -> &[Yarn] {
+        &self.yarns
+    }
+
+    /// The direction in which a yarn runs.
+    #[must_use]
+    pub fn yarn_family(&self, yarn: usize) -> LinkFamily {
+        self.links[self.yarns[yarn].links[0].link as usize].family
+    }
+
+    /// Runs of yarns that share no particle.
+    #[must_use]
+    pub fn yarn_colours(&self) -> &Colours {
+        &self.yarn_colours
     }
 
     /// Bending constraints, colour by colour.
@@ -149,6 +187,29 @@ impl Fabric {
     #[must_use]
     pub fn hinge_colours(&self) -> &Colours {
         &self.hinge_colours
+    }
+
+    /// Rows and columns along which a grid bends; none for other meshes, which bend at their
+    /// [`hinges`](Self::hinges).
+    #[must_use]
+    pub fn bend_lines(&self) -> &[BendLine] {
+        &self.bend_lines
+    }
+
+    /// Kinds of line that bend lines refer to.
+    #[must_use]
+    pub fn bend_profiles(&self) -> &[BendProfile] {
+        &self.bend_profiles
+    }
+
+    /// How far each particle may be from the nearest pin.
+    #[must_use]
+    pub fn tethers(&self) -> &[Tether] {
+        &self.tethers
+    }
+
+    pub(crate) fn pins(&self) -> &[Pin] {
+        &self.pins
     }
 
     /// The grid that the fabric was made from, if it was.

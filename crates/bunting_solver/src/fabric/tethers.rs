@@ -1,0 +1,144 @@
+//! How far each particle may be from the pin that is nearest to it.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use glam::Vec3;
+
+use super::topology::Edge;
+
+/// A particle and the pin that it must not stray from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tether {
+    /// The free particle.
+    pub particle: u32,
+    /// The pinned one.
+    pub pin: u32,
+    /// Greatest distance between the two, m.
+    pub length: f32,
+}
+
+/// Slack of a tether to a pin among pins, as a part of its length: more than a cloth's own strain.
+const LINE_SLACK: f32 = 0.005;
+
+/// Slack of a tether to a pin that stands alone: a cloth that hangs by points shears, and lies
+/// further from them than its rest shape says.
+const POINT_SLACK: f32 = 0.05;
+
+/// A pinned particle, and whether it stands alone: no edge joins it to another pinned one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pin {
+    pub particle: u32,
+    pub alone: bool,
+}
+
+/// All pins.
+pub(crate) fn pins(edges: &[Edge], pinned: &[bool]) -> Vec<Pin> {
+    let mut alone = pinned.to_vec();
+    for [a, b] in edges.iter().map(|edge| edge.ends.map(|end| end as usize)) {
+        if pinned[a] && pinned[b] {
+            (alone[a], alone[b]) = (false, false);
+        }
+    }
+    (0..)
+        .zip(pinned)
+        .filter(|(_, pinned)| **pinned)
+        .map(|(particle, _)| Pin { particle, alone: alone[particle as usize] })
+        .collect()
+}
+
+/// The tether of each free particle that a pin can be reached from. `flat` says that the shortest
+/// way between two particles at rest is straight.
+pub(crate) fn tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -> Vec<Tether> {
+    let nearest =
+        if flat { nearest_straight(rest, pins) } else { nearest_along(rest, edges, pins) };
+    (0..)
+        .zip(nearest)
+        .filter_map(|(particle, nearest)| {
+            let (length, pin) = nearest?;
+            let Pin { particle: pin, alone } = pins[pin];
+            let slack = if alone { POINT_SLACK } else { LINE_SLACK };
+            (pin != particle && length > 0.0).then_some(Tether {
+                particle,
+                pin,
+                length: length * (1.0 + slack),
+            })
+        })
+        .collect()
+}
+
+/// For each particle the distance to the nearest pin, and which it is.
+fn nearest_straight(rest: &[Vec3], pins: &[Pin]) -> Vec<Option<(f32, usize)>> {
+    let distance = |at: Vec3, pin: &Pin| at.distance(rest[pin.particle as usize]);
+    rest.iter()
+        .map(|&at| {
+            let distances = pins.iter().enumerate().map(|(index, pin)| (distance(at, pin), index));
+            distances.min_by(|one, other| one.0.total_cmp(&other.0))
+        })
+        .collect()
+}
+
+/// The same along the edges of the mesh (Dijkstra 1959): no shorter than the way across them.
+fn nearest_along(rest: &[Vec3], edges: &[Edge], pins: &[Pin]) -> Vec<Option<(f32, usize)>> {
+    let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); rest.len()];
+    for [a, b] in edges.iter().map(|edge| edge.ends) {
+        neighbours[a as usize].push(b);
+        neighbours[b as usize].push(a);
+    }
+    let mut nearest: Vec<Option<(f32, usize)>> = vec![None; rest.len()];
+    // Distances are not negative, so their bits are in their order.
+    let mut open: BinaryHeap<Reverse<(u32, usize, u32)>> =
+        pins.iter().enumerate().map(|(index, pin)| Reverse((0, index, pin.particle))).collect();
+    while let Some(Reverse((bits, pin, particle))) = open.pop() {
+        let reached = &mut nearest[particle as usize];
+        if reached.is_some() {
+            continue;
+        }
+        let distance = f32::from_bits(bits);
+        *reached = Some((distance, pin));
+        for &neighbour in &neighbours[particle as usize] {
+            if nearest[neighbour as usize].is_none() {
+                let edge = rest[particle as usize].distance(rest[neighbour as usize]);
+                open.push(Reverse(((distance + edge).to_bits(), pin, neighbour)));
+            }
+        }
+    }
+    nearest
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use crate::fabric::{FabricBuilder, Grid};
+
+    #[test]
+    fn a_flag_is_tethered_to_its_pole_and_a_hammock_to_its_corners() {
+        let grid = Grid::new(5, 4, 2.0, 1.5);
+        let flag = FabricBuilder::grid(grid).pin_where(|_, uv| uv.x == 0.0).build().expect("good");
+        assert_eq!(flag.tethers().len(), 16);
+        for tether in flag.tethers() {
+            let [at, pin] =
+                [tether.particle, tether.pin].map(|p| flag.rest_positions()[p as usize]);
+            assert_eq!((pin.x, pin.y), (0.0, at.y));
+            assert!((tether.length / at.x - 1.005).abs() < 1e-4);
+        }
+        let hung = FabricBuilder::grid(grid).pin([0, 4]).build().expect("good");
+        let lowest = hung.tethers().iter().find(|tether| tether.particle == 15).expect("tethered");
+        assert!((lowest.length / 1.5 - 1.05).abs() < 1e-4);
+        assert!(FabricBuilder::grid(grid).build().expect("good").tethers().is_empty());
+    }
+
+    #[test]
+    fn a_folded_mesh_is_measured_along_its_surface() {
+        // Two squares at a right angle, folded about x = 1.
+        let positions = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]
+            .into_iter()
+            .flat_map(|(x, z)| [Vec3::new(x, 0.0, z), Vec3::new(x, 1.0, z)])
+            .collect();
+        let indices = vec![0, 2, 1, 1, 2, 3, 2, 4, 3, 3, 4, 5];
+        let fabric = FabricBuilder::new(positions, indices).pin([0, 1]).build().expect("good");
+        let far = fabric.tethers().iter().find(|tether| tether.particle == 4).expect("tethered");
+        assert!((far.length / 2.0 - 1.005).abs() < 1e-4, "{}", far.length);
+    }
+}

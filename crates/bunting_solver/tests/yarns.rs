@@ -1,0 +1,108 @@
+//! The yarn scheme against closed forms.
+
+use std::sync::Arc;
+
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, Grid, LaneCount,
+    StepSettings,
+};
+use glam::Vec3;
+
+const TICK: f32 = 1.0 / 60.0;
+const GRAVITY: f32 = 9.81;
+
+const STANDARD: FabricMaterial = FabricMaterial {
+    area_density: 0.2,
+    warp_stiffness: 1e4,
+    weft_stiffness: 1e4,
+    shear_stiffness: 200.0,
+    bend_stiffness: 2e-5,
+    damping: 0.0,
+    internal_damping: 0.0,
+    pressure_coefficient: 0.0,
+    friction_coefficient: 0.0,
+    thickness: 0.0,
+    surface_friction: 0.0,
+};
+
+fn lone(fabric: &Arc<Fabric>, material: FabricMaterial, drive: Drive) -> ClothBatch {
+    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+    let lane = batch.insert(&ClothSnapshot::at_rest(fabric), material).expect("a free lane");
+    batch.drive(lane, drive);
+    batch
+}
+
+/// Free fall by BDF2 that starts with one step of backward Euler.
+#[test]
+fn free_fall_is_of_second_order() {
+    let grid = FabricBuilder::grid(Grid::new(5, 5, 1.0, 1.0));
+    let fabric = Arc::new(grid.build().expect("a good fabric"));
+    let mut batch = lone(&fabric, STANDARD, Drive::default());
+    for _ in 0..30 {
+        batch.step(TICK, StepSettings::yarns(2));
+    }
+    let h = f64::from(TICK) / 2.0;
+    let (mut x, mut v) = ([0.0, 0.0], [0.0, 0.0]);
+    for step in 0..60 {
+        let (gamma, beta) = if step == 0 { (0.0, 1.0) } else { (1.0 / 3.0, 2.0 / 3.0) };
+        let new_v = v[1] + gamma * (v[1] - v[0]) - beta * h * f64::from(GRAVITY);
+        let new_x = x[1] + gamma * (x[1] - x[0]) + beta * h * new_v;
+        (x, v) = ([x[1], new_x], [v[1], new_v]);
+    }
+    let fallen = batch.snapshot(0).positions[12].y + 0.5;
+    assert!((f64::from(fallen) / x[1] - 1.0).abs() < 1e-5, "{fallen} {}", x[1]);
+    // Only the first step's half g h² is missed, and carried along by the velocity.
+    assert!((x[1] + 0.5 * 9.81 * 0.25).abs() < 9.81 * h * h, "{}", x[1]);
+}
+
+#[test]
+fn a_hanging_sheet_has_its_materials_strain_at_every_size() {
+    for n in [9, 17, 33] {
+        let grid = FabricBuilder::grid(Grid::new(n, n, 1.0, 1.0));
+        let fabric = Arc::new(grid.pin_where(|_, uv| uv.y == 0.0).build().expect("a good fabric"));
+        let mut batch =
+            lone(&fabric, FabricMaterial { damping: 2.0, ..STANDARD }, Drive::default());
+        for _ in 0..240 {
+            batch.step(TICK, StepSettings::yarns(2));
+        }
+        let positions = batch.snapshot(0).positions;
+        let drop: f32 = (0..n)
+            .map(|column| {
+                -1.0 - positions[fabric.grid().expect("a grid").index(column, n - 1) as usize].y
+            })
+            .sum();
+        let stretch = drop / n as f32;
+        let expected = STANDARD.area_density * GRAVITY / (2.0 * STANDARD.weft_stiffness);
+        assert!((stretch / expected - 1.0).abs() < 0.01, "{n}: {stretch} {expected}");
+    }
+}
+
+/// Romero et al. 2021: a heavy strip clamped horizontally, Γ = σ g L³/B.
+#[test]
+fn a_heavy_cantilever_droops_as_its_closed_form() {
+    for (gamma, expected) in [(0.1, 0.012_50), (1.0, 0.124_56), (10.0, 1.066_80), (50.0, 3.705_56)]
+    {
+        let cells = 32;
+        let spacing = 1.0 / cells as f32;
+        // One cell lies in the clamp.
+        let grid = Grid::new(cells + 2, 5, 1.0 + spacing, 4.0 * spacing);
+        let builder = FabricBuilder::grid(grid).pin_where(|at, _| at.x < 1.5 * spacing);
+        let fabric = Arc::new(builder.build().expect("a good fabric"));
+        let bend_stiffness = STANDARD.area_density * GRAVITY / gamma;
+        let material = FabricMaterial { bend_stiffness, damping: 4.0, ..STANDARD };
+        let mut batch = lone(&fabric, material, Drive::default());
+        let ticks = 900;
+        for tick in 0..ticks {
+            // Loaded slowly, as other equilibria exist.
+            let load = (2.0 * tick as f32 / ticks as f32).min(1.0);
+            batch.drive(
+                0,
+                Drive { gravity: Vec3::new(0.0, 0.0, -GRAVITY * load), ..Drive::default() },
+            );
+            batch.step(TICK, StepSettings::yarns(3));
+        }
+        let tip = batch.snapshot(0).positions[grid.index(cells + 1, 2) as usize];
+        let found = -tip.z / (tip.x - spacing);
+        assert!((found / expected - 1.0).abs() < 0.01, "Γ = {gamma}: {found} {expected}");
+    }
+}
