@@ -15,3 +15,8 @@ pub(crate) const INERTIA_RIDGE: f32 = 1e-6;
 /// Distance that every particle keeps from a collider, m. Smaller: a cloth at rest on a shape
 /// crosses its surface in each substep and sticks as if it had been hit.
 pub(crate) const LEAST_CLEARANCE: f32 = 1e-4;
+
+/// Compliance that the stiffest link has, as a part of its particles' own. Smaller: a straight
+/// inextensible yarn between two pins has no solution and divides by nothing. Larger: inextensible
+/// cloth stretches.
+pub(crate) const LEAST_LINK_COMPLIANCE: f32 = 1e-6;

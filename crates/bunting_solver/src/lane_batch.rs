@@ -7,7 +7,7 @@ use glam::Vec3;
 use crate::added_mass;
 use crate::collision::Collider;
 use crate::constraints::Knot;
-use crate::fabric::{Fabric, FabricMaterial};
+use crate::fabric::{ABREAST, Fabric, FabricMaterial};
 use crate::lanes::Pack;
 use crate::parameters::{Formula, Parameters};
 use crate::snapshot::ClothSnapshot;
@@ -72,7 +72,7 @@ pub(crate) struct LaneBatch<P: Pack> {
     pub memory: Vec<Pack3<P>>,
     /// Room for the bending moments of a line.
     pub moments: Vec<Pack3<P>>,
-    /// Room for the links of two yarns side by side.
+    /// Room for the links of yarns side by side.
     pub knots: Vec<Knot<P>>,
 
     /// One over each particle's inertia, in units of the density, 1/m²; zero where it is pinned.
@@ -116,10 +116,11 @@ impl<P: Pack> LaneBatch<P> {
             velocity: zero.clone(),
             air_impulse: zero.clone(),
             normal: zero,
-            link_multiplier: vec![nothing; fabric.links().len()],
+            // One more for the links that only fill a strand.
+            link_multiplier: vec![nothing; fabric.links().len() + 1],
             hinge_multiplier: vec![nothing; fabric.hinges().len()],
             moments: vec![splat3(Vec3::ZERO); longest_line],
-            knots: vec![Knot::new(); 2 * longest_yarn],
+            knots: vec![Knot::new(); ABREAST * longest_yarn],
             weights: fabric.inverse_areas().to_vec(),
             weights_step: 0.0,
             parameters: Parameters::new(&fabric),

@@ -56,7 +56,7 @@ pub use batch::{BatchError, ClothBatch};
 pub use collision::Collider;
 pub use fabric::{
     BendLine, BendProfile, Colours, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid,
-    Hinge, HingeClass, Link, LinkClass, LinkFamily, Tether, Yarn, YarnLink,
+    Hinge, HingeClass, Link, LinkClass, LinkFamily, Tether, Yarn,
 };
 pub use frame::FrameMotion;
 pub use lanes::{LaneCount, instruction_set};

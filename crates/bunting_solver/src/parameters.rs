@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use crate::constants::LEAST_LINK_COMPLIANCE;
 use crate::constraints::anticipated;
 use crate::fabric::{BendProfile, Fabric};
 use crate::lane_batch::{Applied, Clock};
@@ -169,8 +170,9 @@ impl<P: Pack> Parameters<P> {
         // times it is still zero.
         let compliance =
             |stiffness: f32| (material.area_density / (stiffness * step * step)).min(f32::MAX);
+        let least = LEAST_LINK_COMPLIANCE / fabric.particle_areas()[0];
         for (pack, class) in self.link_compliance.iter_mut().zip(fabric.link_classes()) {
-            set(pack, compliance(class.stiffness(material)));
+            set(pack, compliance(class.stiffness(material)).max(least));
         }
         for (pack, class) in self.hinge_compliance.iter_mut().zip(fabric.hinge_classes()) {
             set(pack, compliance(class.stiffness(material)));

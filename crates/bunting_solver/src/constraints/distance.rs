@@ -9,18 +9,8 @@ use crate::vector::{Pack3, V3};
 impl<P: Pack> LaneBatch<P> {
     /// Projects every link once.
     pub fn solve_distance(&mut self, accumulate: bool) {
-        self.solve_links(self.fabric.links().len(), accumulate);
-    }
-
-    /// Projects warp and weft once more after the yarns.
-    pub fn polish(&mut self) {
-        self.solve_links(self.fabric.stretch_link_count(), true);
-    }
-
-    /// Projects the first `count` links once.
-    fn solve_links(&mut self, count: usize, accumulate: bool) {
         let solve = Distance {
-            links: &self.fabric.links()[..count],
+            links: self.fabric.links(),
             weights: &self.weights,
             compliance: &self.parameters.link_compliance,
             multiplier: &mut self.link_multiplier,

@@ -11,6 +11,7 @@ mod bending;
 mod contact;
 mod dihedral;
 mod distance;
+mod polish;
 mod tether;
 mod yarn;
 

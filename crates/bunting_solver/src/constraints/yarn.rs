@@ -1,35 +1,31 @@
 //! Yarns: the distance constraints along one path solved together, exactly.
 //!
 //! The XPBD system of a yarn, (J M⁻¹ Jᵀ + α̃) Δλ = −C − α̃ λ, is tridiagonal: with the links'
-//! directions nᵢ frozen its diagonal is wᵢ + wᵢ₊₁ + α̃ᵢ and its off-diagonal −wᵢ₊₁ nᵢ·nᵢ₊₁. One
-//! elimination down the yarn and one substitution back up solve it for about the price of a
-//! Gauss–Seidel sweep (Thomas's algorithm). What a sweep leaves behind, a hidden compliance of
-//! h²/(k m) that grows with the mesh, is gone: a hanging cloth has its material's own strain.
-//! Goldenthal 2007 constrains warp and weft, Deul 2018 solves rods so.
+//! directions frozen its diagonal is wᵢ + wᵢ₊₁ + α̃ᵢ and its off-diagonal −wᵢ₊₁ nᵢ·nᵢ₊₁. Each row is
+//! multiplied by its |d|, and the unknowns are λ/|d|: so d stands for n, and a link costs a single
+//! division. One elimination down the yarn and one substitution back up solve it for about the price
+//! of a Gauss–Seidel sweep (Thomas's algorithm).
+//! What a sweep leaves behind, a hidden compliance of h²/(k m) that grows with the mesh, is gone: a
+//! hanging cloth has its material's own strain. Goldenthal 2007 constrains warp and weft, Deul 2018
+//! solves rods so.
 
-use core::ops::Range;
-
-use crate::constants::LEAST_LENGTH;
-use crate::fabric::{LinkFamily, Yarn};
+use crate::fabric::{ABREAST, LinkFamily, Strand, StrandLink};
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
-use crate::vector::{Pack3, V3, splat3};
+use crate::vector::{Pack3, V3};
 
 /// What the elimination leaves for the substitution, for one link.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Knot<P: Pack> {
-    /// Unit vector along the link.
-    direction: Pack3<P>,
-    /// The next multiplier's share in this one.
+    /// This multiplier's share in the one before.
     share: P,
-    /// The change of the multiplier, but for that share, m·kg/m².
+    /// The change of this multiplier, but for the share of the next.
     change: P,
 }
 
 impl<P: Pack> Knot<P> {
     pub fn new() -> Self {
-        let zero = P::splat(0.0);
-        Self { direction: splat3(glam::Vec3::ZERO), share: zero, change: zero }
+        Self { share: P::splat(0.0), change: P::splat(0.0) }
     }
 }
 
@@ -38,60 +34,43 @@ impl<P: Pack> LaneBatch<P> {
     ///
     /// The bias must not come last: what it moves is large against the strain of warp and weft.
     pub fn solve_yarns(&mut self, passes: u32) {
-        self.solve_stretch(Visit::First);
-        self.solve_bias();
+        self.solve_families(Visit::First);
+        self.solve_families(Visit::Bias);
         for _ in 0..passes {
-            self.solve_stretch(Visit::Again);
+            self.solve_families(Visit::Again);
         }
     }
 
-    fn solve_stretch(&mut self, visit: Visit) {
-        for colour in 0..self.fabric.yarn_colours().ranges().len() {
-            let range = self.fabric.yarn_colours().ranges()[colour].clone();
-            if self.fabric.yarn_family(range.start) != LinkFamily::Bias {
-                self.solve_colour(range, visit);
+    fn solve_families(&mut self, visit: Visit) {
+        for colour in self.fabric.strand_colours() {
+            if (colour.family == LinkFamily::Bias) != (visit == Visit::Bias) {
+                continue;
             }
-        }
-    }
-
-    fn solve_bias(&mut self) {
-        for colour in 0..self.fabric.yarn_colours().ranges().len() {
-            let range = self.fabric.yarn_colours().ranges()[colour].clone();
-            if self.fabric.yarn_family(range.start) == LinkFamily::Bias {
-                self.solve_colour(range, Visit::Only);
-            }
-        }
-    }
-
-    fn solve_colour(&mut self, range: Range<usize>, visit: Visit) {
-        let colour = Colour {
-            yarns: &self.fabric.yarns()[range],
-            weights: &self.weights,
-            compliance: &self.parameters.link_compliance,
-            knots: &mut self.knots,
-            multiplier: &mut self.link_multiplier,
-            position: &mut self.position,
-        };
-        match visit {
-            Visit::First => P::run(First(colour)),
-            Visit::Again => P::run(Again(colour)),
-            Visit::Only => P::run(Only(colour)),
+            P::run(Yarns {
+                strands: &self.fabric.strands()[colour.strands.clone()],
+                visit,
+                weights: &self.weights,
+                compliance: &self.parameters.link_compliance,
+                knots: &mut self.knots,
+                multiplier: &mut self.link_multiplier,
+                position: &mut self.position,
+            });
         }
     }
 }
 
-/// Whether multipliers come from an earlier visit in the substep, and whether a later one wants
-/// them.
-#[derive(Clone, Copy)]
+/// When in a substep yarns are solved. Multipliers of warp and weft are kept from visit to visit.
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Visit {
     First,
+    Bias,
     Again,
-    Only,
 }
 
 /// The yarns of one colour.
-struct Colour<'a, P: Pack> {
-    yarns: &'a [Yarn],
+struct Yarns<'a, P: Pack> {
+    strands: &'a [Strand],
+    visit: Visit,
     weights: &'a [f32],
     compliance: &'a [P],
     knots: &'a mut [Knot<P>],
@@ -99,138 +78,117 @@ struct Colour<'a, P: Pack> {
     position: &'a mut [Pack3<P>],
 }
 
-struct First<'a, P: Pack>(Colour<'a, P>);
-struct Again<'a, P: Pack>(Colour<'a, P>);
-struct Only<'a, P: Pack>(Colour<'a, P>);
-
-impl<P: Pack> Kernel<P> for First<'_, P> {
+impl<P: Pack> Kernel<P> for Yarns<'_, P> {
     #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        self.0.solve_all::<L, false, true>(token);
+    fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
+        match self.visit {
+            Visit::First => self.solve_all::<L, false, true>(token),
+            Visit::Bias => self.solve_all::<L, false, false>(token),
+            Visit::Again => self.solve_all::<L, true, true>(token),
+        }
     }
 }
 
-impl<P: Pack> Kernel<P> for Again<'_, P> {
+impl<P: Pack> Yarns<'_, P> {
+    /// `HAS` multipliers of an earlier visit; `KEEP` them for a later one.
     #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        self.0.solve_all::<L, true, true>(token);
-    }
-}
-
-impl<P: Pack> Kernel<P> for Only<'_, P> {
-    #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        self.0.solve_all::<L, false, false>(token);
-    }
-}
-
-impl<P: Pack> Colour<'_, P> {
-    #[inline(always)]
-    fn solve_all<L: Lane<Pack = P>, const HAS: bool, const KEEP: bool>(mut self, token: L::Token) {
-        // Two yarns of one length side by side: each waits on a chain of divisions, and neither on
-        // the other's.
-        let mut yarns = self.yarns;
-        while let [first, rest @ ..] = yarns {
-            if let [second, rest @ ..] = rest
-                && first.links.len() == second.links.len()
-            {
-                self.solve::<L, 2, HAS, KEEP>(token, [first, second]);
-                yarns = rest;
-            } else {
-                self.solve::<L, 1, HAS, KEEP>(token, [first]);
-                yarns = rest;
+    fn solve_all<L: Lane<Pack = P>, const HAS: bool, const KEEP: bool>(&mut self, token: L::Token) {
+        for strand in self.strands {
+            let mut at = 0;
+            if P::WIDTH < 4 && strand.count == ABREAST {
+                self.solve::<L, ABREAST, HAS, KEEP>(token, strand, 0);
+                continue;
+            }
+            // A wide register file holds two yarns' worth.
+            while at + 2 <= strand.count {
+                self.solve::<L, 2, HAS, KEEP>(token, strand, at);
+                at += 2;
+            }
+            if at < strand.count {
+                self.solve::<L, 1, HAS, KEEP>(token, strand, at);
             }
         }
     }
 
+    /// Solves `SIDE` yarns of a strand from column `first` on.
     #[inline(always)]
     fn solve<L: Lane<Pack = P>, const SIDE: usize, const HAS: bool, const KEEP: bool>(
         &mut self,
         token: L::Token,
-        yarns: [&Yarn; SIDE],
+        strand: &Strand,
+        first: usize,
     ) {
-        let count = yarns[0].links.len();
         let weights = self.weights;
         let weight = |particle: u32| -> L { L::splat(token, weights[particle as usize]) };
+        let side =
+            |row: &[u32; ABREAST]| -> [u32; SIDE] { core::array::from_fn(|at| row[first + at]) };
         let zero = L::splat(token, 0.0);
         let one = L::splat(token, 1.0);
-        let least = L::splat(token, LEAST_LENGTH);
+        // A link without length has no direction: its row is 0 = 0, and its change none.
+        let least = L::splat(token, f32::MIN_POSITIVE);
+        let none = V3::<L>::splat(token, 0.0);
+        let (knots, _) = self.knots.as_chunks_mut::<SIDE>();
 
-        let mut last = [V3::<L>::splat(token, 0.0); SIDE];
-        let mut end: [V3<L>; SIDE] = core::array::from_fn(|yarn| {
-            V3::load(token, &self.position[yarns[yarn].particles[0] as usize])
-        });
-        let mut end_weight: [L; SIDE] =
-            core::array::from_fn(|yarn| weight(yarns[yarn].particles[0]));
+        let begin = side(&strand.particles[0]);
+        let mut end: [V3<L>; SIDE] =
+            begin.map(|particle| V3::load(token, &self.position[particle as usize]));
+        let mut end_weight = begin.map(weight);
+        let mut last = [none; SIDE];
         let mut inverse = [zero; SIDE];
         let mut change = [zero; SIDE];
-        for link in 0..count {
-            for yarn in 0..SIDE {
-                let path = yarns[yarn];
-                let joined = path.links[link];
-                let next_particle = path.particles[link + 1];
-                let next: V3<L> = V3::load(token, &self.position[next_particle as usize]);
-                let next_weight = weight(next_particle);
-                let along = next - end[yarn];
-                let length = along.dot(along).sqrt().max(least);
-                let direction = along * (one / length);
-                let compliance = L::load(token, &self.compliance[joined.class as usize]);
-                let mut excess = length - L::splat(token, joined.rest_length);
+        for ((links, particles), knots) in
+            strand.links.iter().zip(&strand.particles[1..]).zip(knots.iter_mut())
+        {
+            for (at, particle) in side(particles).into_iter().enumerate() {
+                let StrandLink { link, class, rest_length } = links[first + at];
+                let next: V3<L> = V3::load(token, &self.position[particle as usize]);
+                let next_weight = weight(particle);
+                let along = next - end[at];
+                let squared = along.dot(along);
+                let compliance = L::load(token, &self.compliance[class as usize]);
+                let rest_length = L::splat(token, rest_length);
+                let mut excess = squared - rest_length * squared.sqrt();
                 if HAS {
-                    let held = L::load(token, &self.multiplier[joined.link as usize]);
-                    excess = excess + compliance * held;
+                    excess = excess
+                        + compliance * squared * L::load(token, &self.multiplier[link as usize]);
                 }
-
-                let coupling = -(end_weight[yarn] * last[yarn].dot(direction));
-                let share = coupling * inverse[yarn];
-                if link > 0 {
-                    share.store(&mut self.knots[(link - 1) * SIDE + yarn].share);
-                }
-                let pivot = end_weight[yarn] + next_weight + compliance - coupling * share;
-                inverse[yarn] = one / pivot;
-                change[yarn] = -(excess + coupling * change[yarn]) * inverse[yarn];
-                let knot = &mut self.knots[link * SIDE + yarn];
-                direction.store(&mut knot.direction);
-                change[yarn].store(&mut knot.change);
-                last[yarn] = direction;
-                end[yarn] = next;
-                end_weight[yarn] = next_weight;
+                let coupling = -(end_weight[at] * last[at].dot(along));
+                let share = coupling * inverse[at];
+                let diagonal = (end_weight[at] + next_weight + compliance) * squared + least;
+                inverse[at] = one / (diagonal - coupling * share);
+                change[at] = -(excess + coupling * change[at]) * inverse[at];
+                share.store(&mut knots[at].share);
+                change[at].store(&mut knots[at].change);
+                (last[at], end[at], end_weight[at]) = (along, next, next_weight);
             }
         }
 
-        // Back up the yarn: Δλᵢ = changeᵢ − shareᵢ Δλᵢ₊₁, and each particle takes the pull of its
-        // two links at once.
+        // Back up the yarn, each particle taking the pull of its two links at once. What lies behind
+        // has not moved yet, so the links still are what they were on the way down.
+        let mut share = [zero; SIDE];
         let mut found = [zero; SIDE];
-        let mut pull = [V3::<L>::splat(token, 0.0); SIDE];
-        for link in (0..count).rev() {
-            for yarn in 0..SIDE {
-                let knot = &self.knots[link * SIDE + yarn];
-                let mut change = L::load(token, &knot.change);
-                if link + 1 < count {
-                    change = change - L::load(token, &knot.share) * found[yarn];
-                }
-                found[yarn] = change;
+        let mut pull = [none; SIDE];
+        let rows = strand.particles.windows(2).zip(&strand.links);
+        for ((particles, links), knots) in rows.zip(knots).rev() {
+            let (near, far) = (side(&particles[0]), side(&particles[1]));
+            for at in 0..SIDE {
+                let change = L::load(token, &knots[at].change) - share[at] * found[at];
+                (share[at], found[at]) = (L::load(token, &knots[at].share), change);
                 if KEEP {
-                    let multiplier = &mut self.multiplier[yarns[yarn].links[link].link as usize];
-                    if HAS {
-                        (L::load(token, multiplier) + change).store(multiplier);
-                    } else {
-                        change.store(multiplier);
-                    }
+                    let multiplier = &mut self.multiplier[links[first + at].link as usize];
+                    let held = if HAS { L::load(token, multiplier) + change } else { change };
+                    held.store(multiplier);
                 }
-                let tension = V3::<L>::load(token, &knot.direction) * change;
-                let particle = yarns[yarn].particles[link + 1];
-                let moved = (tension - pull[yarn]) * weight(particle);
-                let position = &mut self.position[particle as usize];
-                (V3::load(token, position) + moved).store(position);
-                pull[yarn] = tension;
+                let next: V3<L> = V3::load(token, &self.position[near[at] as usize]);
+                let tension = (end[at] - next) * change;
+                let moved = (tension - pull[at]) * weight(far[at]);
+                (end[at] + moved).store(&mut self.position[far[at] as usize]);
+                (pull[at], end[at]) = (tension, next);
             }
         }
-        for yarn in 0..SIDE {
-            let particle = yarns[yarn].particles[0];
-            let moved = pull[yarn] * -weight(particle);
-            let position = &mut self.position[particle as usize];
-            (V3::load(token, position) + moved).store(position);
+        for at in 0..SIDE {
+            let moved = pull[at] * weight(begin[at]);
+            (end[at] - moved).store(&mut self.position[begin[at] as usize]);
         }
     }
 }

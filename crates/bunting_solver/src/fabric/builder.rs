@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use glam::{Vec2, Vec3};
 
 use super::links::{self, Sheet};
-use super::{Fabric, FabricError, Grid, bending, hinges, tethers, topology, weld, yarns};
+use super::{Fabric, FabricError, Grid, bending, hinges, strands, tethers, topology, weld, yarns};
 
 /// Default distance at which vertices are one particle, as a part of the mesh's extent: the
 /// rounding of 32-bit positions.
@@ -183,6 +183,7 @@ impl FabricBuilder {
         let tethers = tethers::tethers(&rest, &edges, &pins, self.grid.is_some());
         let (bend_lines, bend_profiles) =
             self.grid.map(|grid| bending::lines(&grid, &inverse_areas)).unwrap_or_default();
+        let (strands, strand_colours) = strands::strands(&yarns, &yarn_colours, &links);
         let (hinges, hinge_classes, hinge_colours) = hinges::hinges(&rest, &edges, &pinned);
 
         Ok(Fabric {
@@ -199,6 +200,8 @@ impl FabricBuilder {
             link_colours,
             yarns,
             yarn_colours,
+            strands,
+            strand_colours,
             hinges,
             hinge_classes,
             hinge_colours,

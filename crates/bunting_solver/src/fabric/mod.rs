@@ -12,6 +12,7 @@ mod grid;
 mod hinges;
 mod links;
 mod material;
+mod strands;
 mod tethers;
 mod topology;
 mod weld;
@@ -19,6 +20,7 @@ mod yarns;
 
 use glam::{Vec2, Vec3};
 
+pub(crate) use strands::{ABREAST, Strand, StrandColour, StrandLink};
 pub(crate) use tethers::Pin;
 
 pub use bending::{BendLine, BendProfile};
@@ -32,7 +34,7 @@ pub use hinges::{Hinge, HingeClass};
 pub use links::{Link, LinkClass, LinkFamily};
 pub use material::FabricMaterial;
 pub use tethers::Tether;
-pub use yarns::{Yarn, YarnLink};
+pub use yarns::Yarn;
 
 /// A piece of cloth at rest, cut with its pins. Immutable; share it in an `Arc`.
 #[derive(Clone, Debug)]
@@ -50,6 +52,8 @@ pub struct Fabric {
     link_colours: Colours,
     yarns: Vec<Yarn>,
     yarn_colours: Colours,
+    strands: Vec<Strand>,
+    strand_colours: Vec<StrandColour>,
     hinges: Vec<Hinge>,
     hinge_classes: Vec<HingeClass>,
     hinge_colours: Colours,
@@ -159,10 +163,12 @@ impl Fabric {
         &self.yarns
     }
 
-    /// The direction in which a yarn runs.
-    #[must_use]
-    pub fn yarn_family(&self, yarn: usize) -> LinkFamily {
-        self.links[self.yarns[yarn].links[0].link as usize].family
+    pub(crate) fn strands(&self) -> &[Strand] {
+        &self.strands
+    }
+
+    pub(crate) fn strand_colours(&self) -> &[StrandColour] {
+        &self.strand_colours
     }
 
     /// Runs of yarns that share no particle.

@@ -15,26 +15,8 @@ use super::links::Link;
 pub struct Yarn {
     /// Particles along the path, one more than there are links.
     pub particles: Vec<u32>,
-    /// The [`Link`](super::Link)s along the path.
-    pub links: Vec<YarnLink>,
-}
-
-/// A link of a yarn.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct YarnLink {
-    /// Index into [`Fabric::links`](super::Fabric::links).
-    pub link: u32,
-    /// Distance at rest, m.
-    pub rest_length: f32,
-    /// Index into [`Fabric::link_classes`](super::Fabric::link_classes).
-    pub class: u32,
-}
-
-impl YarnLink {
-    fn new(links: &[Link], link: usize) -> Self {
-        let Link { rest_length, class, .. } = links[link];
-        Self { link: link as u32, rest_length, class }
-    }
+    /// Indices into [`Fabric::links`](super::Fabric::links), in the order of the path.
+    pub links: Vec<u32>,
 }
 
 /// Two links run on into one another if they bend by less than this: 30°.
@@ -67,13 +49,13 @@ pub(crate) fn yarns(rest: &[Vec3], links: &[Link]) -> (Vec<Yarn>, Colours) {
             }
             in_yarn[link] = true;
             let far = links[link].particles[1 - at];
-            yarn.links.push(YarnLink::new(links, link));
+            yarn.links.push(link as u32);
             // A ring is cut open: its last link, which would close it, is a yarn of its own.
             if yarn.particles.contains(&far) {
                 yarn.links.pop();
                 yarns.push(Yarn {
                     particles: links[link].particles.to_vec(),
-                    links: vec![YarnLink::new(links, link)],
+                    links: vec![link as u32],
                 });
                 break;
             }
@@ -131,7 +113,7 @@ fn continuations(rest: &[Vec3], links: &[Link]) -> Vec<[Option<End>; 2]> {
 
 /// Warp before weft before bias.
 fn family_rank(links: &[Link], yarn: &Yarn) -> u32 {
-    links[yarn.links[0].link as usize].family as u32
+    links[yarn.links[0] as usize].family as u32
 }
 
 #[cfg(test)]
@@ -144,9 +126,9 @@ mod tests {
         let mut seen = vec![0; fabric.links().len()];
         for yarn in fabric.yarns() {
             assert_eq!(yarn.particles.len(), yarn.links.len() + 1);
-            for (ends, link) in yarn.particles.windows(2).zip(&yarn.links) {
-                seen[link.link as usize] += 1;
-                let [a, b] = fabric.links()[link.link as usize].particles;
+            for (ends, &link) in yarn.particles.windows(2).zip(&yarn.links) {
+                seen[link as usize] += 1;
+                let [a, b] = fabric.links()[link as usize].particles;
                 assert!(ends == [a, b] || ends == [b, a]);
             }
         }
@@ -171,7 +153,7 @@ mod tests {
         covers_each_link_once(&fabric);
         let count = |family, length| {
             let is = |yarn: &&super::Yarn| {
-                fabric.links()[yarn.links[0].link as usize].family == family
+                fabric.links()[yarn.links[0] as usize].family == family
                     && yarn.links.len() == length
             };
             fabric.yarns().iter().filter(is).count()
