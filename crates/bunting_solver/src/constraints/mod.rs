@@ -46,8 +46,8 @@ impl<P: Pack> LaneBatch<P> {
         }
     }
 
-    /// Bending first, for stretch is the stiffer; then yarns, tethers, and a sweep over warp and weft
-    /// for each pass, which takes off what the yarns' frozen directions overshoot.
+    /// Bending first, for stretch is the stiffer; then yarns, tethers, and for every second pass a
+    /// sweep over warp and weft, which takes off what the yarns' frozen directions overshoot.
     fn solve_along_yarns(&mut self, passes: u32) {
         if self.fabric.grid().is_some() {
             self.solve_bending_with_anticipation();
@@ -56,7 +56,7 @@ impl<P: Pack> LaneBatch<P> {
         }
         self.solve_yarns(passes);
         self.solve_tethers();
-        for _ in 0..passes {
+        for _ in 0..passes.div_ceil(2) {
             self.polish();
         }
         self.remember_stretch();

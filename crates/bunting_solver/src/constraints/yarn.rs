@@ -94,34 +94,23 @@ impl<P: Pack> Yarns<'_, P> {
     #[inline(always)]
     fn solve_all<L: Lane<Pack = P>, const HAS: bool, const KEEP: bool>(&mut self, token: L::Token) {
         for strand in self.strands {
-            let mut at = 0;
-            if P::WIDTH < 4 && strand.count == ABREAST {
-                self.solve::<L, ABREAST, HAS, KEEP>(token, strand, 0);
-                continue;
-            }
-            // A wide register file holds two yarns' worth.
-            while at + 2 <= strand.count {
-                self.solve::<L, 2, HAS, KEEP>(token, strand, at);
-                at += 2;
-            }
-            if at < strand.count {
-                self.solve::<L, 1, HAS, KEEP>(token, strand, at);
+            match strand.count {
+                ABREAST => self.solve::<L, ABREAST, HAS, KEEP>(token, strand),
+                _ => self.solve::<L, 1, HAS, KEEP>(token, strand),
             }
         }
     }
 
-    /// Solves `SIDE` yarns of a strand from column `first` on.
+    /// Solves a strand of `SIDE` yarns.
     #[inline(always)]
     fn solve<L: Lane<Pack = P>, const SIDE: usize, const HAS: bool, const KEEP: bool>(
         &mut self,
         token: L::Token,
         strand: &Strand,
-        first: usize,
     ) {
         let weights = self.weights;
         let weight = |particle: u32| -> L { L::splat(token, weights[particle as usize]) };
-        let side =
-            |row: &[u32; ABREAST]| -> [u32; SIDE] { core::array::from_fn(|at| row[first + at]) };
+        let side = |row: &[u32; ABREAST]| -> [u32; SIDE] { core::array::from_fn(|at| row[at]) };
         let zero = L::splat(token, 0.0);
         let one = L::splat(token, 1.0);
         // A link without length has no direction: its row is 0 = 0, and its change none.
@@ -140,7 +129,7 @@ impl<P: Pack> Yarns<'_, P> {
             strand.links.iter().zip(&strand.particles[1..]).zip(knots.iter_mut())
         {
             for (at, particle) in side(particles).into_iter().enumerate() {
-                let StrandLink { link, class, rest_length } = links[first + at];
+                let StrandLink { link, class, rest_length } = links[at];
                 let next: V3<L> = V3::load(token, &self.position[particle as usize]);
                 let next_weight = weight(particle);
                 let along = next - end[at];
@@ -175,7 +164,7 @@ impl<P: Pack> Yarns<'_, P> {
                 let change = L::load(token, &knots[at].change) - share[at] * found[at];
                 (share[at], found[at]) = (L::load(token, &knots[at].share), change);
                 if KEEP {
-                    let multiplier = &mut self.multiplier[links[first + at].link as usize];
+                    let multiplier = &mut self.multiplier[links[at].link as usize];
                     let held = if HAS { L::load(token, multiplier) + change } else { change };
                     held.store(multiplier);
                 }

@@ -1,4 +1,4 @@
-//! Yarns laid out for the order in which they are solved: four abreast.
+//! Yarns laid out for the order in which they are solved: two abreast.
 //!
 //! Solving a yarn is one long chain of divisions, each waiting on the last; yarns of one colour do
 //! not wait on one another. So they are solved side by side, and stored interleaved. A shorter yarn
@@ -11,8 +11,9 @@ use super::colour::Colours;
 use super::links::{Link, LinkFamily};
 use super::yarns::Yarn;
 
-/// How many yarns lie side by side.
-pub(crate) const ABREAST: usize = 4;
+/// How many yarns lie side by side. Three or four no longer fit into the registers, and were slower
+/// at every width but one.
+pub(crate) const ABREAST: usize = 2;
 
 /// Yarns of one colour side by side.
 #[derive(Clone, Debug, PartialEq)]
