@@ -1,11 +1,13 @@
 //! Air: pressure and skin friction on each triangle (thesis, eq. 5.1 and 5.2 in one).
 //!
 //! With the air's velocity u relative to a triangle of area A and normal n, the pressure force is
-//! ½ρ C_n A |u·n| (u·n) n and the friction ½ρ C_t A |u| (u − (u·n) n). The thesis clamps a drag
-//! that would turn the motion round; here each is implicit in its own speed, so that it cannot: the
-//! velocity changes by u_n (1 − 1/(1 + ½ρ C_n |u_n| h/σ)). A third of a triangle's impulse goes to
-//! each corner. A particle's change is then a mean of its triangles' changes, none of which adds
-//! energy in still air, and neither does the mean.
+//! ½ρ C_n A |u·n| (u·n) n and the friction ½ρ C_t A |u| (u − (u·n) n). In a substep of h seconds the
+//! pressure would change the velocity by the part a = ½ρ C_n |u·n| h/σ of u·n: explicitly, which
+//! turns the motion round where a > 1 (the thesis then sets it to zero), or implicitly by a/(1 + a),
+//! which loses the part a of the force that a cloth at rest in the wind feels. Here it is
+//! a/√(1 + a²): right to second order, and never more than the whole. A third of a triangle's impulse
+//! goes to each corner. A particle's change is then a mean of its triangles' changes, none of which
+//! adds energy in still air, and neither does the mean.
 
 use crate::constants::LEAST_AREA_SQUARED;
 use crate::fabric::Fabric;
@@ -17,6 +19,10 @@ use crate::vector::{Pack3, V3, splat3};
 impl<P: Pack> LaneBatch<P> {
     /// Gathers what the air does to each particle in this substep.
     pub fn apply_air(&mut self) {
+        if !self.parameters.feels_air() && !self.felt_air {
+            return;
+        }
+        self.felt_air = self.parameters.feels_air();
         self.air_impulse.fill(splat3(glam::Vec3::ZERO));
         P::run(Air {
             fabric: &self.fabric,
@@ -54,15 +60,15 @@ impl<P: Pack> Kernel<P> for Air<'_, P> {
             let u = wind - (going[0] + going[1] + going[2]) * third;
             let normal = (at[1] - at[0]).cross(at[2] - at[0]);
             let squared = normal.dot(normal).max(least);
-            let length = squared.sqrt();
             let across = u.dot(normal);
             let braking = pressure * across.abs();
-            // u_n (1 − 1/(1 + β|u_n|)) n̂ with a single division.
-            let mut change = normal * (across * braking / (squared * (length + braking)));
+            // (u·n) a/√(1 + a²) n with n not normalised.
+            let root = (squared + braking * braking).sqrt();
+            let mut change = normal * (across * braking / (squared * root));
             if any_rubs {
                 let along = u - normal * (across / squared);
-                let rub = friction * u.dot(u).sqrt();
-                let rubbed = change + along * (rub / (one + rub));
+                let rub = friction * friction * u.dot(u);
+                let rubbed = change + along * (rub / (one + rub)).sqrt();
                 change = rubbed.or_where_not(rubs, change);
             }
             let share = change * L::splat(token, area / 3.0);

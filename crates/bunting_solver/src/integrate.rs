@@ -7,7 +7,6 @@
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
 use crate::parameters::Parameters;
-use crate::step::Scheme;
 use crate::vector::{Pack3, V3};
 
 impl<P: Pack> LaneBatch<P> {
@@ -25,7 +24,6 @@ impl<P: Pack> LaneBatch<P> {
                 displacement: &mut self.displacement,
                 velocity: &mut self.velocity,
                 older_velocity: &mut self.older_velocity,
-                air_impulse: &mut self.air_impulse,
                 memory: &mut self.memory,
             });
         }
@@ -37,10 +35,7 @@ impl<P: Pack> LaneBatch<P> {
             velocity: &mut self.velocity,
             older_velocity: &mut self.older_velocity,
         });
-        // Yarns take few substeps, each dear: the air of the whole tick is reckoned at its start.
-        if self.clock.settings.scheme == Scheme::GaussSeidel || self.clock.done == 0 {
-            self.apply_air();
-        }
+        self.apply_air();
         P::run(Predict {
             areas: self.fabric.particle_areas(),
             weights: &self.weights,
@@ -104,7 +99,6 @@ struct CarryState<'a, P: Pack> {
     displacement: &'a mut [Pack3<P>],
     velocity: &'a mut [Pack3<P>],
     older_velocity: &'a mut [Pack3<P>],
-    air_impulse: &'a mut [Pack3<P>],
     memory: &'a mut [Pack3<P>],
 }
 
@@ -114,10 +108,9 @@ impl<P: Pack> Kernel<P> for CarryState<'_, P> {
         let motion = Motion::<L>::load(token, self.parameters);
         let inverse_step = L::splat(token, self.inverse_step);
         let particles = self.position.iter_mut().zip(self.velocity);
-        let history = self.displacement.iter_mut().zip(self.older_velocity);
-        let forces = self.air_impulse.iter_mut().zip(self.memory);
-        for ((((position, velocity), (displacement, older)), (air, memory)), &inverse_area) in
-            particles.zip(history).zip(forces).zip(self.inverse_areas)
+        let history = self.displacement.iter_mut().zip(self.older_velocity).zip(self.memory);
+        for (((position, velocity), ((displacement, older), memory)), &inverse_area) in
+            particles.zip(history).zip(self.inverse_areas)
         {
             let x: V3<L> = V3::load(token, position);
             let carried = motion.apply(x, motion.moved(x));
@@ -126,7 +119,7 @@ impl<P: Pack> Kernel<P> for CarryState<'_, P> {
                 continue;
             }
             carried.store(position);
-            for direction in [displacement, velocity, older, air, memory] {
+            for direction in [displacement, velocity, older, memory] {
                 let d: V3<L> = V3::load(token, direction);
                 motion.apply(d, motion.turned(d)).store(direction);
             }
@@ -197,7 +190,6 @@ impl<P: Pack> Kernel<P> for Predict<'_, P> {
         let step = L::load(token, &self.parameters.step);
         let extrapolation = L::load(token, &self.parameters.extrapolation);
         let gravity: V3<L> = V3::load(token, &self.parameters.gravity_step);
-        let air_share = L::load(token, &self.parameters.air_share);
         let places = self.position.iter_mut().zip(self.predicted).zip(self.displacement);
         let speeds = self.velocity.iter_mut().zip(self.air_impulse);
         let inertia = self.weights.iter().zip(self.areas);
@@ -209,7 +201,7 @@ impl<P: Pack> Kernel<P> for Predict<'_, P> {
             }
             let air: V3<L> = V3::load(token, impulse);
             let v = V3::load(token, velocity)
-                + air * (air_share * L::splat(token, weight))
+                + air * L::splat(token, weight)
                 // Gravity acts on the true mass, whatever inertia is added to it.
                 + gravity * L::splat(token, weight * area);
             v.store(velocity);

@@ -37,8 +37,6 @@ pub(crate) struct Applied {
     /// Length of a substep, s.
     pub step: f32,
     pub formula: Formula,
-    /// For how long the air is reckoned to act at once, s.
-    pub air_step: f32,
 }
 
 /// Up to `P::WIDTH` cloths of one fabric.
@@ -61,6 +59,8 @@ pub(crate) struct LaneBatch<P: Pack> {
     pub normal: Vec<Pack3<P>>,
     /// Sum over a particle's triangles of area times change of velocity, m³/s.
     pub air_impulse: Vec<Pack3<P>>,
+    /// Whether the impulses may be other than zero.
+    pub felt_air: bool,
 
     /// Multipliers of links and hinges, kept from pass to pass of a substep.
     pub link_multiplier: Vec<P>,
@@ -88,8 +88,6 @@ pub(crate) struct LaneBatch<P: Pack> {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Clock {
     pub settings: StepSettings,
-    /// Length of a tick, s.
-    pub tick: f32,
     /// Length of a substep, s.
     pub step: f32,
     /// Substeps done in this tick.
@@ -115,6 +113,7 @@ impl<P: Pack> LaneBatch<P> {
             position: rest,
             velocity: zero.clone(),
             air_impulse: zero.clone(),
+            felt_air: false,
             normal: zero,
             // One more for the links that only fill a strand.
             link_multiplier: vec![nothing; fabric.links().len() + 1],
@@ -191,7 +190,7 @@ impl<P: Pack> LaneBatch<P> {
     /// Sets everything that is constant over the tick, and gathers contacts.
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
         let step = tick / settings.substeps as f32;
-        self.clock = Clock { settings, tick, step, done: 0 };
+        self.clock = Clock { settings, step, done: 0 };
         let weights_step = match settings.scheme {
             Scheme::GaussSeidel => 0.0,
             Scheme::Yarns => Formula::BDF2.weight * step,
@@ -206,7 +205,7 @@ impl<P: Pack> LaneBatch<P> {
     /// Sets everything that is constant over the substep.
     pub fn begin_substep(&mut self) {
         let moved = self.parameters.moves_any();
-        let Clock { settings, tick, step, .. } = self.clock;
+        let Clock { settings, step, .. } = self.clock;
         for (lane, slot) in self.slots.iter_mut().enumerate() {
             let Some(slot) = slot else {
                 self.parameters.set_empty(lane);
@@ -221,15 +220,12 @@ impl<P: Pack> LaneBatch<P> {
                 air_density: slot.drive.air_density,
                 step,
                 formula,
-                air_step: match settings.scheme {
-                    Scheme::GaussSeidel => formula.weight * step,
-                    Scheme::Yarns => tick,
-                },
             };
             if slot.applied.replace(applied) != Some(applied) {
                 self.parameters.apply(lane, &self.fabric, &applied);
             }
-            self.parameters.set_drive(lane, &slot.drive, &self.clock);
+            let reach = self.fabric.reach();
+            self.parameters.set_drive(lane, &slot.material, &slot.drive, reach, &self.clock);
         }
         // One substep more than the motion lasts, so that pinned particles come to rest.
         self.parameters.carries = moved || self.parameters.moves_any();

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use crate::constants::LEAST_LINK_COMPLIANCE;
 use crate::constraints::anticipated;
-use crate::fabric::{BendProfile, Fabric};
+use crate::fabric::{BendProfile, Fabric, FabricMaterial};
 use crate::lane_batch::{Applied, Clock};
 use crate::lanes::Pack;
 use crate::step::Drive;
@@ -103,17 +103,17 @@ pub(crate) struct Parameters<P: Pack> {
     pub gravity_step: Pack3<P>,
     /// Air velocity, m/s.
     pub wind: Pack3<P>,
-    /// Part of the air's impulse that falls to this substep.
-    pub air_share: P,
-    /// ½ ρ C_n h/σ with the time for which the air is reckoned at once, s/m.
+    /// ½ ρ C_n h/σ, s/m.
     pub pressure: P,
-    /// ½ ρ C_t h/σ with the same time, s/m.
+    /// ½ ρ C_t h/σ, s/m.
     pub friction: P,
     /// Part of the velocity relative to the frame that damping leaves in a substep.
     pub keep: P,
     /// Part of the non-rigid velocity that internal damping leaves in a substep, for cloth without
     /// pins.
     pub keep_internal: P,
+    /// Length that tethers have, in units of that at rest.
+    pub tether_stretch: P,
     /// The frame's motion in this substep, see [`Carry`](crate::frame::Carry).
     pub turn: [Pack3<P>; 3],
     pub shift: Pack3<P>,
@@ -136,11 +136,11 @@ impl<P: Pack> Parameters<P> {
             anticipated: nothing,
             gravity_step: splat3(Vec3::ZERO),
             wind: splat3(Vec3::ZERO),
-            air_share: nothing,
             pressure: nothing,
             friction: nothing,
             keep: P::splat(1.0),
             keep_internal: P::splat(1.0),
+            tether_stretch: P::splat(1.0),
             turn: [splat3(Vec3::ZERO); 3],
             shift: splat3(Vec3::ZERO),
             moves: nothing,
@@ -160,7 +160,7 @@ impl<P: Pack> Parameters<P> {
 
     /// Integration formula, compliances, air and damping.
     pub fn apply(&mut self, lane: usize, fabric: &Fabric, applied: &Applied) {
-        let Applied { material, air_density, step, formula, air_step } = applied;
+        let Applied { material, air_density, step, formula } = applied;
         let step = formula.weight * step;
         let set = |pack: &mut P, value: f32| pack.lanes_mut()[lane] = value;
         set(&mut self.extrapolation, formula.extrapolation);
@@ -185,8 +185,7 @@ impl<P: Pack> Parameters<P> {
         let stiffness_number =
             16.0 * step * step * material.bend_stiffness / material.area_density * finest.powi(4);
         set(&mut self.anticipated, anticipated(stiffness_number));
-        let air = 0.5 * air_density * air_step / material.area_density;
-        set(&mut self.air_share, step / air_step);
+        let air = 0.5 * air_density * step / material.area_density;
         set(&mut self.pressure, air * material.pressure_coefficient);
         set(&mut self.friction, air * material.friction_coefficient);
         // The rigid motion of a pinned cloth is its frame's.
@@ -199,12 +198,20 @@ impl<P: Pack> Parameters<P> {
         set(&mut self.keep_internal, libm::expf(-free * step));
     }
 
-    /// Gravity, wind and the frame's motion in the coming substep.
-    pub fn set_drive(&mut self, lane: usize, drive: &Drive, clock: &Clock) {
+    /// Gravity, wind, what they stretch the cloth by, and the frame's motion in the coming substep.
+    pub fn set_drive(
+        &mut self,
+        lane: usize,
+        material: &FabricMaterial,
+        drive: &Drive,
+        reach: f32,
+        clock: &Clock,
+    ) {
         let (index, count) = (clock.done, clock.settings.substeps);
         let turned = |direction| drive.motion.turn_back(direction, index, count);
         set_lane3(&mut self.gravity_step, lane, turned(drive.gravity) * self.step.lanes()[lane]);
         set_lane3(&mut self.wind, lane, turned(drive.wind));
+        self.tether_stretch.lanes_mut()[lane] = 1.0 + greatest_strain(material, drive, reach);
         let carry = drive.motion.carry(index, count);
         for (pack, row) in self.turn.iter_mut().zip(carry.turn.rows) {
             set_lane3(pack, lane, row);
@@ -213,8 +220,24 @@ impl<P: Pack> Parameters<P> {
         self.moves.lanes_mut()[lane] = if carry.moves { 1.0 } else { 0.0 };
     }
 
+    /// Whether the air acts on any lane.
+    pub fn feels_air(&self) -> bool {
+        let acts = |pack: &P| pack.lanes().iter().any(|&coefficient| coefficient != 0.0);
+        acts(&self.pressure) || acts(&self.friction)
+    }
+
     /// Whether the frame of any lane moves in this substep.
     pub fn moves_any(&self) -> bool {
         self.moves.lanes().contains(&1.0)
     }
+}
+
+/// How much gravity and wind together may stretch the top of a cloth that hangs by a length of
+/// `reach` metres, twice over: a bound for tethers, which must not hide what the material gives.
+fn greatest_strain(material: &FabricMaterial, drive: &Drive, reach: f32) -> f32 {
+    let softer = material.warp_stiffness.min(material.weft_stiffness);
+    let weight = material.area_density * drive.gravity.length();
+    let coefficients = material.pressure_coefficient + material.friction_coefficient;
+    let pressure = 0.5 * drive.air_density * coefficients * drive.wind.length_squared();
+    2.0 * (weight + pressure) * reach / softer
 }

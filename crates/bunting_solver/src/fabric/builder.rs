@@ -208,6 +208,7 @@ impl FabricBuilder {
             bend_lines,
             bend_profiles,
             pins,
+            reach: tethers.iter().map(|tether| tether.length).fold(0.0, f32::max),
             tethers,
             grid: self.grid,
         })

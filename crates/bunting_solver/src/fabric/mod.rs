@@ -61,6 +61,7 @@ pub struct Fabric {
     bend_profiles: Vec<BendProfile>,
     pins: Vec<Pin>,
     tethers: Vec<Tether>,
+    reach: f32,
     grid: Option<Grid>,
 }
 
@@ -212,6 +213,12 @@ impl Fabric {
     #[must_use]
     pub fn tethers(&self) -> &[Tether] {
         &self.tethers
+    }
+
+    /// Greatest distance of any particle from its nearest pin, m.
+    #[must_use]
+    pub fn reach(&self) -> f32 {
+        self.reach
     }
 
     pub(crate) fn pins(&self) -> &[Pin] {
