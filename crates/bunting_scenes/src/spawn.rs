@@ -1,0 +1,87 @@
+//! From a scene to entities.
+
+use std::collections::BTreeMap;
+
+use bevy_bunting::prelude::*;
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_transform::components::Transform;
+
+use crate::scene::{Flag, Footing, Scene};
+use crate::track::{LooksAt, Track};
+
+/// A flag pole. Its frame stands on its foot, y up; the flag is cut to fly along +x.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+pub struct Pole {
+    /// Height, m.
+    pub height: f32,
+}
+
+impl Pole {
+    /// Radius of every pole, m.
+    pub const RADIUS: f32 = 0.04;
+
+    /// How far below a pole's top its flag begins, m.
+    const FREE_TOP: f32 = 0.1;
+}
+
+/// Where the headwind of a vehicle blows to, in its frame.
+const ASTERN: Vec3 = Vec3::Z;
+
+/// The glTF file that an entity looks like, below `assets/`.
+#[derive(Component, Clone, Debug, PartialEq, Eq)]
+pub struct Model(pub String);
+
+/// Spawns everything that a scene names. Cloths need [`ClothPlugins`], vehicles and the viewer
+/// [`follow_tracks`](crate::follow_tracks) to move.
+pub fn spawn(commands: &mut Commands, scene: &Scene) {
+    for wind in &scene.winds {
+        let field = WindField::steady(wind.velocity);
+        commands.spawn(field.with_gusts(wind.gust_strength, wind.gust_frequency, wind.seed));
+    }
+    let track = Track::new(&scene.viewer.track);
+    commands.spawn((LodViewer, LooksAt(scene.viewer.looks_at), track.pose(0.0), track));
+    let vehicles: BTreeMap<&str, Entity> = scene
+        .vehicles
+        .iter()
+        .map(|(name, vehicle)| {
+            let track = Track::new(&vehicle.track);
+            let body =
+                (Name::new(name.clone()), Model(vehicle.model.clone()), track.pose(0.0), track);
+            (name.as_str(), commands.spawn(body).id())
+        })
+        .collect();
+    let wind: Vec3 = scene.winds.iter().map(|wind| wind.velocity).sum();
+    for flag in &scene.flags {
+        let pole = match &flag.on {
+            Footing::Ground { x, z } => {
+                let foot = foot(Vec3::new(*x, 0.0, *z), wind);
+                commands.spawn((Pole { height: flag.pole }, foot)).id()
+            }
+            Footing::Vehicle(name) => {
+                let foot = foot(scene.vehicles[name].socket, ASTERN);
+                commands
+                    .spawn((Pole { height: flag.pole }, foot, ChildOf(vehicles[name.as_str()])))
+                    .id()
+            }
+        };
+        commands.spawn(cloth(flag, pole, scene));
+    }
+}
+
+/// A pole's frame at a place, its flag to leeward.
+fn foot(place: Vec3, wind: Vec3) -> Transform {
+    Transform::from_translation(place).looking_to(Vec3::Y.cross(wind), Vec3::Y)
+}
+
+fn cloth(flag: &Flag, pole: Entity, scene: &Scene) -> impl Bundle {
+    let hoist = Transform::from_xyz(Pole::RADIUS, flag.pole - Pole::FREE_TOP, 0.0);
+    let particles = scene.levels.finest;
+    (
+        ClothMesh::grid(particles, particles, flag.size.x, flag.size.y),
+        ClothMaterial(scene.material(&flag.material).unwrap_or_default()),
+        LodSet::new(scene.levels.switch_distances.clone()),
+        Attachment::new(pole, ClothEdge::Left).with_offset(hoist),
+        flag.design.clone(),
+    )
+}

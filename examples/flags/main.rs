@@ -1,0 +1,72 @@
+//! Eight flags, two of them on driving vehicles, in gusty wind.
+//!
+//! `cargo run --release --example flags` shows them; drag to look around, scroll to come closer.
+//! Look at how no two flags fly alike, how the vehicles' flags stay on their poles, and at the
+//! shadows.
+//!
+//! `cargo run --release --example flags -- --headless` simulates 20 seconds as fast as it goes and
+//! prints where the time went. Look at the total beside its budget of one millisecond a tick, at
+//! how the levels of detail follow the viewer, and at the strain: cloth hardly stretches.
+
+mod durations;
+mod headless;
+mod orbit;
+mod pictures;
+mod print;
+mod record;
+mod road;
+mod stage;
+mod strain;
+mod surface;
+mod table;
+mod window;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::headless::Run;
+use crate::pictures::Album;
+
+/// Scenes and models.
+const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets");
+
+/// Exit code for a scene that cannot be read.
+const BAD_SCENE: u8 = 2;
+
+/// Flags in the wind.
+#[derive(Debug, Parser)]
+struct Arguments {
+    /// The scene to load instead of assets/scenes/flags.ron.
+    #[arg(long, value_name = "FILE")]
+    scene: Option<PathBuf>,
+    /// Simulate as fast as it goes, without a window, and print what was measured.
+    #[arg(long)]
+    headless: bool,
+    #[command(flatten)]
+    run: Run,
+    #[command(flatten)]
+    album: Album,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let file = arguments.scene.unwrap_or_else(|| PathBuf::from(ASSETS).join("scenes/flags.ron"));
+    let scene = match bunting_scenes::load(file) {
+        Ok(scene) => scene,
+        Err(error) => {
+            eprintln!("{error}");
+            return ExitCode::from(BAD_SCENE);
+        }
+    };
+    if arguments.headless {
+        headless::run(&scene, &arguments.run, &arguments.album);
+        ExitCode::SUCCESS
+    } else if window::any_display() {
+        window::run(&scene)
+    } else {
+        eprintln!("there is no display: use --headless");
+        ExitCode::FAILURE
+    }
+}

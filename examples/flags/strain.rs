@@ -1,0 +1,36 @@
+//! How far cloth is stretched.
+
+use bevy_bunting::prelude::*;
+use bunting_solver::LinkFamily;
+
+/// Magnitudes of the strain of many links.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Strain {
+    sum: f64,
+    count: u64,
+    greatest: f32,
+}
+
+impl Strain {
+    /// Adds all links of a cloth that run along the yarns of a family.
+    pub fn add(&mut self, cloth: &ClothState, family: LinkFamily) {
+        let Some(fabric) = cloth.fabric() else { return };
+        for link in fabric.links().iter().filter(|link| link.family == family) {
+            let [from, to] = link.particles.map(|particle| cloth.positions()[particle as usize]);
+            let strain = (from.distance(to) / link.rest_length - 1.0).abs();
+            self.sum += f64::from(strain);
+            self.count += 1;
+            self.greatest = self.greatest.max(strain);
+        }
+    }
+
+    /// The mean.
+    pub fn mean(&self) -> f64 {
+        self.sum / self.count.max(1) as f64
+    }
+
+    /// The greatest.
+    pub fn greatest(&self) -> f32 {
+        self.greatest
+    }
+}

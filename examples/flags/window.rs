@@ -1,0 +1,41 @@
+//! Shows a scene in a window.
+
+use std::env;
+use std::process::ExitCode;
+
+use bevy::prelude::*;
+use bevy_bunting::prelude::*;
+use bunting_scenes::{LooksAt, Scene, Track};
+
+use crate::orbit::{self, Orbit};
+use crate::{ASSETS, stage, surface};
+
+/// Whether a window could be opened.
+pub fn any_display() -> bool {
+    !cfg!(target_os = "linux") || env::var_os("DISPLAY").is_some()
+}
+
+/// Shows the scene until the window is closed.
+pub fn run(scene: &Scene) -> ExitCode {
+    let mut app = App::new();
+    let window = Window { title: "Flags".to_owned(), ..default() };
+    app.add_plugins((
+        DefaultPlugins
+            .set(WindowPlugin { primary_window: Some(window), ..default() })
+            .set(AssetPlugin { file_path: ASSETS.to_owned(), ..default() }),
+        ClothPlugins::default(),
+        stage::plugin,
+        surface::plugin,
+        orbit::plugin,
+    ))
+    .add_systems(Startup, raise_camera)
+    .add_systems(Update, bunting_scenes::follow_tracks);
+    bunting_scenes::spawn(&mut app.world_mut().commands(), scene);
+    if app.run().is_success() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Takes the viewer off its track and gives it a camera.
+fn raise_camera(mut commands: Commands, viewer: Single<(Entity, &LooksAt), With<LodViewer>>) {
+    let (viewer, looks_at) = *viewer;
+    commands.entity(viewer).remove::<Track>().insert((stage::camera(), Orbit::around(looks_at.0)));
+}

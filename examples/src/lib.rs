@@ -1,0 +1,1 @@
+//! Examples of bevy_bunting live beside this file, one folder each.
