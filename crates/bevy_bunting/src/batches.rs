@@ -1,0 +1,304 @@
+//! The batches that hold the state of all cloths, one lane a cloth.
+
+use std::sync::Arc;
+
+use bevy_ecs::prelude::*;
+use bevy_tasks::ComputeTaskPool;
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricMaterial, LaneCount, StepSettings,
+};
+
+/// Particles, counted in all lanes, from which a phase of a substep is worth the 30 µs that it
+/// takes to wake other threads.
+const PARALLEL_PARTICLES: usize = 64 * 1024;
+
+/// Where the state of a cloth is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Slot {
+    group: usize,
+    batch: usize,
+    lane: usize,
+}
+
+/// A cloth that takes a lane.
+#[derive(Debug)]
+pub(crate) struct Newcomer {
+    pub entity: Entity,
+    pub snapshot: ClothSnapshot,
+    pub material: FabricMaterial,
+}
+
+/// A batch, and whose lanes they are.
+#[derive(Debug)]
+struct Seats {
+    batch: ClothBatch,
+    entities: Vec<Option<(Entity, FabricMaterial)>>,
+    joins: bool,
+}
+
+/// Cloths that are stepped alike: of one fabric, with the same settings.
+#[derive(Debug)]
+struct Group {
+    fabric: Arc<Fabric>,
+    settings: StepSettings,
+    batches: Vec<Seats>,
+    newcomers: Vec<Newcomer>,
+    changed: bool,
+}
+
+/// All cloths that are simulated.
+#[derive(Resource, Debug, Default)]
+pub struct ClothBatches {
+    groups: Vec<Group>,
+}
+
+/// One cloth in its batch.
+pub(crate) struct LaneMut<'a> {
+    seats: &'a mut Seats,
+    lane: usize,
+}
+
+impl LaneMut<'_> {
+    pub fn drive(&mut self, drive: Drive) {
+        self.seats.batch.drive(self.lane, drive);
+    }
+
+    pub fn set_colliders(&mut self, colliders: impl IntoIterator<Item = Collider>) {
+        self.seats.batch.set_colliders(self.lane, colliders);
+    }
+
+    /// Changes the material, which must be valid.
+    pub fn set_material(&mut self, material: FabricMaterial) {
+        if self.seats.batch.set_material(self.lane, material).is_ok()
+            && let Some((_, kept)) = &mut self.seats.entities[self.lane]
+        {
+            *kept = material;
+        }
+    }
+
+    /// Puts the cloth back to rest.
+    pub fn rest(&mut self) {
+        let rest = ClothSnapshot::at_rest(self.seats.batch.fabric());
+        self.seats.batch.restore(self.lane, &rest).expect("a fabric's own rest fits it");
+    }
+}
+
+impl ClothBatches {
+    /// Number of batches in use.
+    #[must_use]
+    pub fn batch_count(&self) -> usize {
+        self.groups.iter().map(|group| group.batches.len()).sum()
+    }
+
+    /// Substeps of the finest group.
+    pub(crate) fn substeps(&self) -> u32 {
+        let substeps = self.groups.iter().filter(|group| !group.batches.is_empty());
+        substeps.map(|group| group.settings.substeps).max().unwrap_or(0)
+    }
+
+    /// Lets a cloth take a lane at the next [`settle`](Self::settle).
+    pub(crate) fn add(&mut self, fabric: &Arc<Fabric>, settings: StepSettings, newcomer: Newcomer) {
+        let same = |group: &Group| Arc::ptr_eq(&group.fabric, fabric) && group.settings == settings;
+        let found = self.groups.iter().position(same);
+        let index = found
+            .or_else(|| self.groups.iter().position(Group::is_empty))
+            .unwrap_or(self.groups.len());
+        if found.is_none() {
+            let group = Group {
+                fabric: Arc::clone(fabric),
+                settings,
+                batches: Vec::new(),
+                newcomers: Vec::new(),
+                changed: true,
+            };
+            if index == self.groups.len() {
+                self.groups.push(group);
+            } else {
+                self.groups[index] = group;
+            }
+        }
+        self.groups[index].changed = true;
+        self.groups[index].newcomers.push(newcomer);
+    }
+
+    /// Takes a cloth out of its lane.
+    pub(crate) fn take(&mut self, slot: Slot) -> ClothSnapshot {
+        let group = &mut self.groups[slot.group];
+        let seats = &mut group.batches[slot.batch];
+        group.changed = true;
+        let snapshot = seats.batch.snapshot(slot.lane);
+        seats.batch.remove(slot.lane);
+        seats.entities[slot.lane] = None;
+        snapshot
+    }
+
+    /// Seats newcomers and closes gaps; tells where every cloth of a changed group now is.
+    pub(crate) fn settle(&mut self, lanes: Option<LaneCount>, mut moved: impl FnMut(Entity, Slot)) {
+        for (index, group) in self.groups.iter_mut().enumerate().filter(|(_, group)| group.changed)
+        {
+            group.settle(lanes);
+            for (batch, seats) in group.batches.iter().enumerate() {
+                for (lane, seat) in seats.entities.iter().enumerate() {
+                    if let Some((entity, _)) = seat {
+                        moved(*entity, Slot { group: index, batch, lane });
+                    }
+                }
+            }
+        }
+    }
+
+    /// The batch and lane of a cloth.
+    pub(crate) fn at(&self, slot: Slot) -> (&ClothBatch, usize) {
+        (&self.groups[slot.group].batches[slot.batch].batch, slot.lane)
+    }
+
+    /// The lane of a cloth, to be written.
+    pub(crate) fn lane(&mut self, slot: Slot) -> LaneMut<'_> {
+        LaneMut { seats: &mut self.groups[slot.group].batches[slot.batch], lane: slot.lane }
+    }
+
+    /// Begins a tick of `tick` seconds in all batches.
+    pub(crate) fn begin_tick(&mut self, tick: f32) {
+        for group in &mut self.groups {
+            let settings = group.settings;
+            for seats in &mut group.batches {
+                seats.batch.begin_tick(tick, settings);
+            }
+        }
+    }
+
+    /// Begins substep `index` of `count`: a batch of fewer joins as often as it needs, evenly
+    /// spread.
+    pub(crate) fn begin_substep(&mut self, index: u32, count: u32) {
+        for group in &mut self.groups {
+            let done = |index: u32| index * group.settings.substeps / count;
+            let joins = done(index + 1) > done(index);
+            for seats in &mut group.batches {
+                seats.joins = joins;
+            }
+        }
+    }
+
+    /// Does the same with all batches that join in the substep.
+    pub(crate) fn for_each_joining(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
+        self.for_each_where(|seats| seats.joins, phase);
+    }
+
+    /// Does the same with all batches.
+    pub(crate) fn for_each(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
+        self.for_each_where(|_| true, phase);
+    }
+
+    /// On all threads if that pays. Batches share nothing that is written, so the order does not
+    /// matter.
+    fn for_each_where(
+        &mut self,
+        joins: impl Fn(&Seats) -> bool,
+        phase: impl Fn(&mut ClothBatch) + Sync,
+    ) {
+        let work: usize = self.joining(&joins).map(|seats| seats.particles()).sum();
+        let pool = ComputeTaskPool::try_get().filter(|pool| pool.thread_num() > 1);
+        match pool {
+            Some(pool) if work >= PARALLEL_PARTICLES => {
+                let phase = &phase;
+                pool.scope(|scope| {
+                    for seats in self.joining(&joins) {
+                        scope.spawn(async move { phase(&mut seats.batch) });
+                    }
+                });
+            }
+            _ => {
+                for seats in self.joining(&joins) {
+                    phase(&mut seats.batch);
+                }
+            }
+        }
+    }
+
+    fn joining(&mut self, joins: impl Fn(&Seats) -> bool) -> impl Iterator<Item = &mut Seats> {
+        self.groups
+            .iter_mut()
+            .flat_map(|group| &mut group.batches)
+            .filter(move |seats| joins(seats))
+    }
+}
+
+impl Seats {
+    fn new(fabric: &Arc<Fabric>, lanes: LaneCount) -> Self {
+        Self {
+            batch: ClothBatch::new(Arc::clone(fabric), lanes),
+            entities: vec![None; lanes.get()],
+            joins: true,
+        }
+    }
+
+    fn particles(&self) -> usize {
+        self.batch.fabric().particle_count() * self.batch.lane_count()
+    }
+
+    fn occupancy(&self) -> usize {
+        self.entities.iter().flatten().count()
+    }
+
+    fn seat(&mut self, newcomer: &Newcomer) {
+        let lane = self
+            .batch
+            .insert(&newcomer.snapshot, newcomer.material)
+            .expect("only valid cloths are seated, and only where there is room");
+        self.entities[lane] = Some((newcomer.entity, newcomer.material));
+    }
+
+    fn dissolve(self, into: &mut Vec<Newcomer>) {
+        let Self { batch, entities, .. } = self;
+        into.extend(entities.iter().enumerate().filter_map(|(lane, seat)| {
+            let (entity, material) = (*seat)?;
+            Some(Newcomer { entity, snapshot: batch.snapshot(lane), material })
+        }));
+    }
+}
+
+impl Group {
+    fn is_empty(&self) -> bool {
+        self.batches.is_empty() && self.newcomers.is_empty()
+    }
+
+    /// Full batches first: keeps those that fit, fullest first, dissolves the others, and seats
+    /// everyone.
+    fn settle(&mut self, lanes: Option<LaneCount>) {
+        let seated: usize = self.batches.iter().map(Seats::occupancy).sum();
+        let widths = widths(seated + self.newcomers.len(), lanes);
+        let mut old = core::mem::take(&mut self.batches);
+        old.sort_by_key(|seats| core::cmp::Reverse(seats.occupancy()));
+        for width in widths {
+            let fitting = old.iter().position(|seats| seats.batch.lane_count() == width.get());
+            self.batches.push(
+                fitting.map_or_else(|| Seats::new(&self.fabric, width), |index| old.remove(index)),
+            );
+        }
+        for seats in old {
+            seats.dissolve(&mut self.newcomers);
+        }
+        let mut newcomers = self.newcomers.drain(..).peekable();
+        for seats in &mut self.batches {
+            while !seats.batch.is_full()
+                && let Some(newcomer) = newcomers.next()
+            {
+                seats.seat(&newcomer);
+            }
+        }
+        debug_assert!(newcomers.peek().is_none(), "there is a lane for everyone");
+        drop(newcomers);
+        self.changed = false;
+    }
+}
+
+/// Widths of the batches for a number of cloths.
+fn widths(mut cloths: usize, lanes: Option<LaneCount>) -> Vec<LaneCount> {
+    let mut widths = Vec::new();
+    while cloths > 0 {
+        let width = lanes.unwrap_or(LaneCount::holding(cloths));
+        widths.push(width);
+        cloths = cloths.saturating_sub(width.get());
+    }
+    widths
+}

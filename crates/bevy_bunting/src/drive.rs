@@ -1,0 +1,48 @@
+//! What acts on each cloth in a tick: its frame's motion, gravity and air.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Quat, Vec3};
+use bunting_solver::{Drive, FrameMotion};
+
+use crate::batches::ClothBatches;
+use crate::instance::ClothInstance;
+use crate::pose::PoseHistory;
+use crate::schedule::{ClothSystems, ClothTick};
+use crate::settings::ClothSettings;
+use crate::wind::TickWind;
+
+/// Drives cloths.
+#[derive(Debug, Default)]
+pub struct DrivePlugin;
+
+impl Plugin for DrivePlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(ClothTick, drive_cloths.in_set(ClothSystems::Drive));
+    }
+}
+
+/// Gravity and wind are the world's; a batch takes them along the axes of the cloth's frame at the
+/// end of the tick.
+pub(crate) fn drive_cloths(
+    cloths: Query<(&ClothInstance, &PoseHistory)>,
+    settings: Res<ClothSettings>,
+    wind: Res<TickWind>,
+    mut batches: ResMut<ClothBatches>,
+) {
+    for (instance, frame) in &cloths {
+        let Some(slot) = instance.slot() else { continue };
+        let (start, end) = (frame.start(), frame.end());
+        let inverse = end.rotation.inverse();
+        batches.lane(slot).drive(Drive {
+            motion: FrameMotion::between(pose_parts(start), pose_parts(end)),
+            gravity: inverse * settings.gravity,
+            wind: inverse * wind.0,
+            air_density: settings.air_density,
+        });
+    }
+}
+
+pub(crate) fn pose_parts(pose: Isometry3d) -> (Vec3, Quat) {
+    (pose.translation.into(), pose.rotation)
+}

@@ -1,0 +1,119 @@
+//! What can be wrong with a cloth.
+
+use bevy_ecs::prelude::*;
+use bunting_solver::FabricError;
+
+/// Why a cloth is not simulated as asked. Other cloths go on undisturbed.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ClothError {
+    /// The mesh is no cloth. Simulated again when its `ClothMesh` is replaced.
+    #[error("the mesh of cloth {entity} cannot be simulated: {source}")]
+    Mesh {
+        /// The cloth.
+        entity: Entity,
+        /// What is wrong with it, and where.
+        source: FabricError,
+    },
+    /// The material cannot be simulated. The cloth keeps the last good one, if it had any.
+    #[error("the material of cloth {entity} cannot be simulated: {source}")]
+    Material {
+        /// The cloth.
+        entity: Entity,
+        /// What is wrong with it.
+        source: FabricError,
+    },
+    /// Switch distances must be positive and grow from level to level.
+    #[error(
+        "the LodSet of cloth {entity} must have finite distances that grow, and a hysteresis from 0 to 1"
+    )]
+    Distances {
+        /// The cloth.
+        entity: Entity,
+    },
+    /// Only grids have levels of detail.
+    #[error(
+        "cloth {entity} is no grid and so has one level: remove its LodSet, or make the mesh a grid"
+    )]
+    NotAGrid {
+        /// The cloth.
+        entity: Entity,
+    },
+    /// The grid cannot be halved as often as there are levels.
+    #[error(
+        "a grid of {columns} × {rows} particles cannot be halved {halvings} times as the LodSet of cloth {entity} asks: make columns − 1 and rows − 1 multiples of 2^{halvings}, or give fewer distances"
+    )]
+    NotNested {
+        /// The cloth.
+        entity: Entity,
+        /// Particles in a row.
+        columns: u32,
+        /// Particles in a column.
+        rows: u32,
+        /// Levels besides the finest.
+        halvings: usize,
+    },
+    /// The level that the `LodSet` pins does not exist.
+    #[error(
+        "cloth {entity} is pinned to level {level}, but has {levels}: pin a lower level, or give more distances"
+    )]
+    PinnedLevel {
+        /// The cloth.
+        entity: Entity,
+        /// The level that it is pinned to.
+        level: usize,
+        /// Number of levels.
+        levels: usize,
+    },
+    /// The attachment holds nothing.
+    #[error(
+        "the attachment of cloth {entity} holds no vertex at level {level}: choose vertices that the level has; an edge or a corner of a mesh without uv has none"
+    )]
+    NoVertices {
+        /// The cloth.
+        entity: Entity,
+        /// The level.
+        level: usize,
+    },
+    /// The target of the attachment is no entity with a transform.
+    #[error(
+        "cloth {entity} is attached to {target}, which does not exist or has no Transform: spawn it first"
+    )]
+    MissingTarget {
+        /// The cloth.
+        entity: Entity,
+        /// Its target.
+        target: Entity,
+    },
+    /// The pose that the cloth should take is not finite. It keeps the last that was.
+    #[error("the transform that cloth {entity} follows is not finite: check what moves it")]
+    Pose {
+        /// The cloth.
+        entity: Entity,
+    },
+    /// The state became infinite or not a number. The cloth was put back to rest.
+    #[error(
+        "cloth {entity} became infinite and was put back to rest: give it more substeps, or a softer material"
+    )]
+    Diverged {
+        /// The cloth.
+        entity: Entity,
+    },
+}
+
+/// A cloth is not simulated as asked. Logged once, too.
+#[derive(EntityEvent, Clone, Copy, Debug)]
+pub struct ClothFailed {
+    /// The cloth.
+    pub entity: Entity,
+    /// Why, and what to do.
+    pub error: ClothError,
+}
+
+impl ClothFailed {
+    /// Logs the error and triggers the event.
+    pub(crate) fn report(commands: &mut Commands, entity: Entity, error: ClothError) {
+        log::error!("{error}");
+        commands.trigger(Self { entity, error });
+    }
+}

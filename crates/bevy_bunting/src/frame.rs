@@ -1,0 +1,183 @@
+//! The frame that each cloth lives in: observed wherever it may be moved, and drawn where it is.
+
+use bevy_app::prelude::*;
+use bevy_app::{AnimationSystems, RunFixedMainLoop, RunFixedMainLoopSystems};
+use bevy_ecs::hierarchy::ChildOf;
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Vec3};
+use bevy_time::{Time, Virtual};
+use bevy_transform::TransformSystems;
+use bevy_transform::components::{GlobalTransform, Transform};
+use bevy_transform::helper::TransformHelper;
+
+use crate::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
+use crate::drive::drive_cloths;
+use crate::error::{ClothError, ClothFailed};
+use crate::instance::ClothInstance;
+use crate::mesh::ClothMesh;
+use crate::pose::PoseHistory;
+use crate::schedule::{ClothSystems, ClothTick};
+
+/// A collider that leaves its course by more than this was teleported, m.
+const COLLIDER_TELEPORT_DISTANCE: f32 = 2.0;
+
+/// Follows the targets of attachments, and places cloths on them.
+#[derive(Debug, Default)]
+pub struct AttachmentPlugin;
+
+impl Plugin for AttachmentPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<Attachment>()
+            .register_type::<AttachedVertices>()
+            .register_type::<ClothEdge>()
+            .register_type::<ClothCorner>()
+            .register_type::<TargetLost>()
+            .add_systems(
+                RunFixedMainLoop,
+                observe_frames::<true>.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+            )
+            .add_systems(
+                ClothTick,
+                (
+                    observe_ticks.in_set(ClothSystems::Drive).before(drive_cloths),
+                    place_cloths.in_set(ClothSystems::Publish),
+                ),
+            )
+            .add_systems(
+                PostUpdate,
+                (observe_frames::<false>, place_cloths)
+                    .chain()
+                    .after(AnimationSystems)
+                    .before(TransformSystems::Propagate),
+            );
+    }
+}
+
+type Followers<'w, 's> =
+    Query<'w, 's, (Entity, &'static mut PoseHistory, Option<&'static Attachment>)>;
+
+/// Notes where everything is in a frame; `EARLY`, before its ticks.
+fn observe_frames<const EARLY: bool>(
+    mut followers: Followers,
+    transforms: TransformHelper,
+    time: Res<Time<Virtual>>,
+) {
+    let now = time.elapsed_secs_f64();
+    for (entity, mut history, attachment) in &mut followers {
+        if let Some(pose) = frame_of(entity, attachment, &transforms).filter(is_finite) {
+            history.observe_frame(now, pose, teleport_distance(attachment), EARLY);
+        }
+    }
+}
+
+/// Notes where everything is in a tick, and so how it moves in it.
+fn observe_ticks(
+    mut followers: Followers,
+    mut instances: Query<&mut ClothInstance>,
+    transforms: TransformHelper,
+    time: Res<Time>,
+    frames: Res<Time<Virtual>>,
+    mut commands: Commands,
+) {
+    let (now, tick, frame) =
+        (time.elapsed_secs_f64(), time.delta_secs_f64(), frames.delta_secs_f64());
+    for (entity, mut history, attachment) in &mut followers {
+        let pose = frame_of(entity, attachment, &transforms);
+        match pose.filter(is_finite) {
+            Some(pose) => {
+                history.observe_tick(now, tick, frame, pose, teleport_distance(attachment))
+            }
+            None => history.stay(),
+        }
+        if let Ok(mut instance) = instances.get_mut(entity) {
+            let bad = pose.is_some_and(|pose| !is_finite(&pose));
+            if bad && !instance.pose_reported {
+                ClothFailed::report(&mut commands, entity, ClothError::Pose { entity });
+            }
+            if instance.pose_reported != bad {
+                instance.pose_reported = bad;
+            }
+        }
+    }
+}
+
+type Placed = (Entity, Option<&'static Attachment>, Option<&'static ChildOf>);
+
+/// Writes the transforms of attached cloths: where their targets are now, whatever the last tick
+/// saw.
+fn place_cloths(
+    cloths: Query<Placed, With<ClothMesh>>,
+    mut transforms: ParamSet<(TransformHelper, Query<(&mut Transform, &mut GlobalTransform)>)>,
+    mut placed: Local<Vec<(Entity, Option<Transform>, GlobalTransform)>>,
+) {
+    let current = transforms.p0();
+    placed.clear();
+    placed.extend(cloths.iter().filter_map(|(entity, attachment, parent)| {
+        let parent = parent.map(ChildOf::parent);
+        match attachment
+            .and_then(|attachment| Some((attachment, attachment.target_other_than(entity)?)))
+        {
+            Some((attachment, target)) => {
+                let target_pose = current.compute_global_transform(target).ok()?;
+                let frame = frame_on(&target_pose, &attachment.offset);
+                let global = GlobalTransform::from_isometry(frame);
+                let local = match parent {
+                    // Exactly the offset, whatever the target does.
+                    Some(parent) if parent == target => {
+                        Transform { scale: target_pose.scale().recip(), ..attachment.offset }
+                    }
+                    Some(parent) => {
+                        global.reparented_to(&current.compute_global_transform(parent).ok()?)
+                    }
+                    None => Transform::from_isometry(frame),
+                };
+                (local.is_finite() && global.affine().is_finite()).then_some((
+                    entity,
+                    Some(local),
+                    global,
+                ))
+            }
+            None => Some((entity, None, current.compute_global_transform(entity).ok()?)),
+        }
+    }));
+    let mut written = transforms.p1();
+    for (entity, local, global) in placed.drain(..) {
+        if let Ok((mut transform, mut global_transform)) = written.get_mut(entity) {
+            if let Some(local) = local {
+                transform.set_if_neq(local);
+            }
+            global_transform.set_if_neq(global);
+        }
+    }
+}
+
+/// The pose of a cloth's frame, or a collider's, as its entity or target stands now. None if the
+/// target is gone.
+fn frame_of(
+    entity: Entity,
+    attachment: Option<&Attachment>,
+    transforms: &TransformHelper,
+) -> Option<Isometry3d> {
+    let (followed, offset) = match attachment {
+        Some(attachment) => match attachment.target_other_than(entity) {
+            Some(target) => (target, attachment.offset),
+            None => (entity, Transform::IDENTITY),
+        },
+        None => (entity, Transform::IDENTITY),
+    };
+    Some(frame_on(&transforms.compute_global_transform(followed).ok()?, &offset))
+}
+
+/// A target's pose times the offset. The target's scale moves the offset only.
+fn frame_on(target: &GlobalTransform, offset: &Transform) -> Isometry3d {
+    let rotation = (target.rotation() * offset.rotation).normalize();
+    Isometry3d::new(target.transform_point(offset.translation), rotation)
+}
+
+fn teleport_distance(attachment: Option<&Attachment>) -> f32 {
+    attachment.map_or(COLLIDER_TELEPORT_DISTANCE, |attachment| attachment.teleport_distance)
+}
+
+fn is_finite(pose: &Isometry3d) -> bool {
+    Vec3::from(pose.translation).is_finite() && pose.rotation.is_finite()
+}

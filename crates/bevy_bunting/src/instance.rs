@@ -1,0 +1,109 @@
+//! A cloth as it is simulated: its fabrics, its level, and where its state is.
+
+use std::sync::Arc;
+
+use bevy_ecs::prelude::*;
+use bunting_solver::{ClothSnapshot, Fabric, FabricMaterial};
+
+use crate::batches::{ClothBatches, Slot};
+use crate::levels::{ClothLevels, hold_pins};
+
+/// Where the state of a cloth is.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum Place {
+    /// It has none: it cannot be simulated.
+    #[default]
+    Nowhere,
+    /// Outside of any batch: not yet seated, or paused.
+    Waiting(ClothSnapshot),
+    /// In a lane.
+    Seated(Slot),
+}
+
+/// The simulated side of a [`ClothMesh`](crate::ClothMesh).
+#[derive(Component, Clone, Debug, Default)]
+pub(crate) struct ClothInstance {
+    pub levels: Option<Arc<ClothLevels>>,
+    pub level: usize,
+    pub place: Place,
+    /// The last good material.
+    pub material: FabricMaterial,
+    /// The attachment's target that the levels were cut for; the cloth itself stands for its own
+    /// transform, none for no attachment.
+    pub target: Option<Entity>,
+    /// The target is gone, and that was dealt with.
+    pub target_lost: bool,
+    /// The pose to follow is not finite, and that was reported.
+    pub pose_reported: bool,
+}
+
+impl ClothInstance {
+    /// The lane of the cloth, if it has one.
+    pub fn slot(&self) -> Option<Slot> {
+        match self.place {
+            Place::Seated(slot) => Some(slot),
+            _ => None,
+        }
+    }
+
+    /// The state of a cloth that is in no lane.
+    pub fn waiting(&self) -> Option<&ClothSnapshot> {
+        match &self.place {
+            Place::Waiting(snapshot) => Some(snapshot),
+            _ => None,
+        }
+    }
+
+    /// The fabric of the cloth at its level.
+    pub fn fabric(&self) -> Option<&Arc<Fabric>> {
+        self.levels.as_ref().map(|levels| levels.fabric(self.level))
+    }
+
+    /// Takes the state out of its lane.
+    pub fn unseat(&mut self, batches: &mut ClothBatches) {
+        if let Place::Seated(slot) = self.place {
+            self.place = Place::Waiting(batches.take(slot));
+        }
+    }
+
+    /// Moves the state to another level.
+    pub fn change_level(&mut self, to: usize, batches: &mut ClothBatches) {
+        self.unseat(batches);
+        if let (Some(levels), Place::Waiting(snapshot)) = (&self.levels, &mut self.place) {
+            *snapshot = levels.transfer(core::mem::take(snapshot), self.level, to);
+        }
+        self.level = to;
+    }
+
+    /// Takes other fabrics. The state is kept if it fits, as when only the pins change; else the
+    /// cloth begins at rest.
+    pub fn recut(&mut self, levels: Arc<ClothLevels>, batches: &mut ClothBatches) {
+        self.unseat(batches);
+        let level = self.level.min(levels.count() - 1);
+        let fits = level == self.level
+            && self
+                .fabric()
+                .is_some_and(|old| old.rest_positions() == levels.fabric(level).rest_positions());
+        match &mut self.place {
+            Place::Waiting(snapshot) if fits => hold_pins(snapshot, levels.fabric(level)),
+            place => *place = Place::Waiting(ClothSnapshot::at_rest(levels.fabric(level))),
+        }
+        self.level = level;
+        self.levels = Some(levels);
+    }
+
+    /// Puts the cloth back to rest.
+    pub fn rest(&mut self, batches: &mut ClothBatches) {
+        if let Place::Seated(slot) = self.place {
+            batches.lane(slot).rest();
+        } else if let Some(fabric) = self.fabric() {
+            self.place = Place::Waiting(ClothSnapshot::at_rest(fabric));
+        }
+    }
+
+    /// Ends the simulation.
+    pub fn clear(&mut self, batches: &mut ClothBatches) {
+        self.unseat(batches);
+        *self = Self::default();
+    }
+}

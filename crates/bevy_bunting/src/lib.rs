@@ -1,0 +1,182 @@
+//! Real-time cloth for Bevy.
+//!
+//! Add [`ClothPlugins`], spawn an entity with a [`ClothMesh`], an [`Attachment`] to something that
+//! moves, and a [`WindField`] somewhere: it flies.
+//!
+//! ```
+//! use std::time::Duration;
+//!
+//! use bevy_app::prelude::*;
+//! use bevy_bunting::prelude::*;
+//! use bevy_math::Vec3;
+//! use bevy_time::{TimePlugin, TimeUpdateStrategy};
+//! use bevy_transform::prelude::*;
+//!
+//! let mut app = App::new();
+//! app.add_plugins((TimePlugin, TransformPlugin, ClothPlugins::default()))
+//!     .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_secs_f32(1.0 / 60.0)));
+//!
+//! app.world_mut().spawn(WindField::steady(Vec3::new(6.0, 0.0, 2.0)).with_gusts(1.5, 0.5, 1));
+//! let pole = app.world_mut().spawn(Transform::from_xyz(0.0, 3.0, 0.0)).id();
+//! let flag = app.world_mut().spawn((
+//!     ClothMesh::grid(33, 23, 1.5, 1.0),
+//!     ClothMaterial::FLAG_POLYESTER,
+//!     Attachment::new(pole, ClothEdge::Left),
+//! ));
+//! let flag = flag.id();
+//!
+//! (0..60).for_each(|_| app.update());
+//! let state = app.world().get::<ClothState>(flag).unwrap();
+//! assert_eq!(state.positions().len(), 33 * 23);
+//! ```
+//!
+//! # Components
+//!
+//! | Component | On | What it does |
+//! | --- | --- | --- |
+//! | [`ClothMesh`] | a cloth | its shape at rest; brings the rest along |
+//! | [`ClothMaterial`] | a cloth | what it is made of |
+//! | [`LodSet`] | a cloth | its levels of detail |
+//! | [`Attachment`] | a cloth | holds vertices on another entity |
+//! | [`ClothPaused`] | a cloth | stops it |
+//! | [`ClothState`] | a cloth | positions and normals after the last tick, to be read |
+//! | [`ClothSurface`] | a cloth | the same between two ticks, for display |
+//! | [`WindField`] | anything | moves the air |
+//! | [`ClothCollider`] | anything | a shape that cloth does not enter |
+//! | [`LodViewer`] | a camera | what levels of detail look to |
+//!
+//! [`ClothSettings`] holds gravity, the density of air and how finely each level is solved.
+//!
+//! # Sets
+//!
+//! A tick is one fixed step: the schedule [`ClothTick`], run in `FixedPostUpdate` unless
+//! [`ClothPlugins::new`] says otherwise.
+//!
+//! | [`ClothSystems`] | What happens |
+//! | --- | --- |
+//! | [`Prepare`](ClothSystems::Prepare) | new, changed and removed cloths; wind |
+//! | [`SelectLod`](ClothSystems::SelectLod) | levels of detail; every cloth takes its lane |
+//! | [`Drive`](ClothSystems::Drive) | how frames move, gravity, wind, colliders |
+//! | [`Step`](ClothSystems::Step) | runs [`ClothSubstep`], see below |
+//! | [`Normals`](ClothSystems::Normals) | normals, once |
+//! | [`Publish`](ClothSystems::Publish) | [`ClothState`], transforms of attached cloths |
+//!
+//! | [`ClothSubstepSystems`] | What happens |
+//! | --- | --- |
+//! | [`Integrate`](ClothSubstepSystems::Integrate) | frame motion, external forces, prediction |
+//! | [`SolveConstraints`](ClothSubstepSystems::SolveConstraints) | constraints and contacts |
+//! | [`UpdateVelocities`](ClothSubstepSystems::UpdateVelocities) | velocities from positions |
+//!
+//! # Events
+//!
+//! [`ClothFailed`], [`ClothLevelChanged`] and [`ClothTargetLost`] are triggered on the cloth;
+//! [`TeleportCloth`] is for you to trigger.
+//!
+//! # Determinism
+//!
+//! The same world, stepped alike, gives the same bits: they depend neither on what else is in the
+//! world, nor on the number of threads.
+
+mod attachment;
+mod batches;
+mod collider;
+mod diagnostics;
+mod drive;
+mod error;
+mod frame;
+mod instance;
+mod levels;
+mod lod;
+mod mesh;
+mod pose;
+mod prepare;
+mod publish;
+mod schedule;
+mod seat;
+mod settings;
+mod solver;
+mod state;
+mod surface;
+mod teleport;
+mod wind;
+
+use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
+use bevy_ecs::intern::Interned;
+use bevy_ecs::schedule::ScheduleLabel;
+
+pub use attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
+pub use batches::ClothBatches;
+pub use bunting_solver;
+pub use collider::{ClothCollider, ColliderPlugin};
+pub use diagnostics::{ClothCounts, ClothDiagnosticsPlugin, ClothTimings};
+pub use drive::DrivePlugin;
+pub use error::{ClothError, ClothFailed};
+pub use frame::AttachmentPlugin;
+pub use lod::{ClothLevelChanged, LodPlugin, LodSet, LodViewer};
+pub use mesh::{ClothMaterial, ClothMesh, ClothPaused};
+pub use parry3d;
+pub use prepare::{ClothTargetLost, PreparePlugin};
+pub use publish::PublishPlugin;
+pub use schedule::{
+    ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
+};
+pub use seat::SeatPlugin;
+pub use settings::ClothSettings;
+pub use solver::SolverPlugin;
+pub use state::ClothState;
+pub use surface::{ClothSurface, SurfacePlugin};
+pub use teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
+pub use wind::{TickWind, WindField, WindPlugin};
+
+/// Everything that one usually needs.
+pub mod prelude {
+    pub use crate::{
+        AttachedVertices, Attachment, ClothCollider, ClothCorner, ClothEdge, ClothError,
+        ClothFailed, ClothLevelChanged, ClothMaterial, ClothMesh, ClothPaused, ClothPlugins,
+        ClothSettings, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick, LodSet,
+        LodViewer, TargetLost, TeleportCloth, TeleportMode, WindField,
+    };
+    pub use bunting_solver::{FabricMaterial, StepSettings};
+}
+
+/// All plugins that cloth needs, one a concern.
+///
+/// Bevy's `TimePlugin` and `TransformPlugin` must be there, too, as they are in `DefaultPlugins`.
+#[derive(Debug)]
+pub struct ClothPlugins {
+    host: Interned<dyn ScheduleLabel>,
+}
+
+impl ClothPlugins {
+    /// Cloth that ticks in the given schedule.
+    #[must_use]
+    pub fn new(schedule: impl ScheduleLabel) -> Self {
+        Self { host: schedule.intern() }
+    }
+}
+
+impl Default for ClothPlugins {
+    /// Cloth that ticks in `FixedPostUpdate`.
+    fn default() -> Self {
+        Self::new(FixedPostUpdate)
+    }
+}
+
+impl PluginGroup for ClothPlugins {
+    fn build(self) -> PluginGroupBuilder {
+        PluginGroupBuilder::start::<Self>()
+            .add(SchedulePlugin::new(self.host))
+            .add(PreparePlugin)
+            .add(LodPlugin)
+            .add(SeatPlugin)
+            .add(WindPlugin)
+            .add(AttachmentPlugin)
+            .add(TeleportPlugin)
+            .add(DrivePlugin)
+            .add(ColliderPlugin)
+            .add(SolverPlugin)
+            .add(PublishPlugin)
+            .add(SurfacePlugin)
+            .add(ClothDiagnosticsPlugin)
+    }
+}

@@ -1,0 +1,102 @@
+//! Levels of detail, and what a change of level does to the state.
+
+use std::time::Duration;
+
+use bevy_app::App;
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_time::{TimePlugin, TimeUpdateStrategy};
+use bunting_solver::ClothSnapshot;
+
+use super::{LodSet, seat_cloths};
+use crate::attachment::{Attachment, ClothEdge};
+use crate::batches::ClothBatches;
+use crate::instance::ClothInstance;
+use crate::mesh::ClothMesh;
+use crate::schedule::{ClothSystems, ClothTick};
+use crate::{ClothPlugins, WindField};
+
+/// Rounding of a mean of velocities of some metres a second, m/s.
+const ROUNDING: f32 = 1e-6;
+
+#[test]
+fn levels_have_hysteresis() {
+    let lods = LodSet::new([10.0, 20.0, 40.0]);
+    assert_eq!(lods.level_at(5.0, 0), 0);
+    assert_eq!(lods.level_at(10.5, 0), 0);
+    assert_eq!(lods.level_at(10.5, 1), 1);
+    assert_eq!(lods.level_at(11.5, 0), 1);
+    assert_eq!(lods.level_at(100.0, 0), 3);
+    assert_eq!(lods.level_at(1.0, 3), 0);
+    assert_eq!(lods.pinned_to(2).level_at(1.0, 3), 2);
+}
+
+/// The state before the choice of levels, and after it.
+#[derive(Resource, Default)]
+struct Moved {
+    before: ClothSnapshot,
+    after: ClothSnapshot,
+}
+
+fn snapshot(cloths: &Query<&ClothInstance>, batches: &ClothBatches) -> ClothSnapshot {
+    let slot = cloths.single().ok().and_then(ClothInstance::slot);
+    slot.map(|slot| batches.at(slot))
+        .map_or_else(ClothSnapshot::default, |(batch, lane)| batch.snapshot(lane))
+}
+
+#[test]
+fn new_particles_move_as_the_mean_of_their_neighbours() {
+    let mut app = App::new();
+    app.add_plugins((TimePlugin, ClothPlugins::default()))
+        .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_micros(15_625)))
+        .init_resource::<Moved>()
+        .add_systems(
+            ClothTick,
+            (
+                (|cloths: Query<&ClothInstance>,
+                  batches: Res<ClothBatches>,
+                  mut moved: ResMut<Moved>| {
+                    moved.before = snapshot(&cloths, &batches);
+                })
+                .after(ClothSystems::Prepare)
+                .before(ClothSystems::SelectLod),
+                (|cloths: Query<&ClothInstance>,
+                  batches: Res<ClothBatches>,
+                  mut moved: ResMut<Moved>| {
+                    moved.after = snapshot(&cloths, &batches);
+                })
+                .after(seat_cloths)
+                .before(ClothSystems::Drive),
+            ),
+        );
+    app.world_mut().spawn(WindField::steady(Vec3::new(3.0, 0.0, 4.0)));
+    let levels = LodSet::new([10.0]).pinned_to(1);
+    let attachment = Attachment::in_place(ClothEdge::Left);
+    let cloth = app.world_mut().spawn((ClothMesh::grid(5, 5, 1.0, 1.0), levels, attachment)).id();
+    (0..20).for_each(|_| app.update());
+    app.world_mut().get_mut::<LodSet>(cloth).expect("levels").pinned = Some(0);
+    app.update();
+
+    let Moved { before, after } = app.world().resource::<Moved>();
+    assert_eq!((before.velocities.len(), after.velocities.len()), (9, 25));
+    assert!(before.velocities[8].length() > 0.1);
+    for row in 0..5_usize {
+        for column in 0..5_usize {
+            let mut parents = Vec::new();
+            for parent_row in row / 2..=row.div_ceil(2) {
+                for parent_column in column / 2..=column.div_ceil(2) {
+                    parents.push(3 * parent_row + parent_column);
+                }
+            }
+            let mean = |values: &[Vec3]| {
+                parents.iter().map(|&parent| values[parent]).sum::<Vec3>() / parents.len() as f32
+            };
+            let new = 5 * row + column;
+            let velocity = mean(&before.velocities);
+            // What is pinned does not move.
+            let velocity = if column == 0 { Vec3::ZERO } else { velocity };
+            assert!(after.velocities[new].distance(velocity) < ROUNDING, "{row}, {column}");
+            assert!(after.positions[new].distance(mean(&before.positions)) < ROUNDING);
+        }
+    }
+}

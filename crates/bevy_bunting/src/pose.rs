@@ -1,0 +1,210 @@
+//! Where something is at the time of a tick, whenever it is moved.
+
+use std::collections::VecDeque;
+
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Quat};
+
+/// Poses kept of one thing: at 250 frames a second, the longest delay that Bevy's clock allows.
+const MOST_SAMPLES: usize = 64;
+
+/// A turn between two observations of more than this is a teleport, rad.
+const TELEPORT_ANGLE: f32 = core::f32::consts::FRAC_PI_2;
+
+/// How far a course is followed past the last pose seen, s: Bevy's clock allows no longer frame.
+const LONGEST_COURSE: f64 = 0.25;
+
+/// How fast the delay may change, seconds a second: the motion seems that much faster or slower.
+const DELAY_RATE: f64 = 0.1;
+
+/// Ticks without a change between them after which what changes in frames is moved by frames.
+const QUIET_TICKS: u32 = 4;
+
+/// Poses of one thing at known times, on one clock.
+#[derive(Clone, Debug, Default)]
+struct Track {
+    samples: VecDeque<(f64, Isometry3d)>,
+    /// The next change is a teleport, however small.
+    jump_next: bool,
+}
+
+impl Track {
+    /// Adds a pose. If it is off the course by more than `limit` metres, the past is carried along,
+    /// as if it had been there all the time, and the change of coordinates returned.
+    fn push(&mut self, time: f64, pose: Isometry3d, limit: f32) -> Option<Isometry3d> {
+        let jump = self.jump(time, pose, limit);
+        if let Some(jump) = jump {
+            self.jump_next = false;
+            for (_, past) in &mut self.samples {
+                *past = jump * *past;
+            }
+        }
+        while self.samples.back().is_some_and(|&(newest, _)| newest >= time) {
+            self.samples.pop_back();
+        }
+        self.samples.push_back((time, pose));
+        if self.samples.len() > MOST_SAMPLES {
+            self.samples.pop_front();
+        }
+        jump
+    }
+
+    fn jump(&self, time: f64, pose: Isometry3d, limit: f32) -> Option<Isometry3d> {
+        let &(_, last) = self.samples.back()?;
+        let expected = self.pose_at(time)?;
+        let off = |from: Isometry3d| {
+            from.translation.distance(pose.translation) > limit
+                || from.rotation.angle_between(pose.rotation) > TELEPORT_ANGLE
+        };
+        let jumps = (self.jump_next && pose != last) || (off(last) && off(expected));
+        jumps.then(|| pose * expected.inverse())
+    }
+
+    /// The pose at a time: between two samples, or further along the course of the last two.
+    fn pose_at(&self, time: f64) -> Option<Isometry3d> {
+        let after = self
+            .samples
+            .partition_point(|&(sample, _)| sample < time)
+            .min(self.samples.len().saturating_sub(1));
+        let &(end, b) = self.samples.get(after)?;
+        let Some(&(start, a)) = after.checked_sub(1).and_then(|before| self.samples.get(before))
+        else {
+            return Some(b);
+        };
+        let part = (time.min(end + LONGEST_COURSE) - start) / (end - start);
+        Some(blend(a, b, part as f32))
+    }
+
+    /// Forgets what is not needed for any time from this one on.
+    fn forget_before(&mut self, time: f64) {
+        while self.samples.len() > 2 && self.samples[1].0 <= time {
+            self.samples.pop_front();
+        }
+    }
+}
+
+/// Exact where nothing moves, axis by axis, so that what rests feeds no motion.
+fn blend(a: Isometry3d, b: Isometry3d, part: f32) -> Isometry3d {
+    if a == b || part == 1.0 {
+        return b;
+    }
+    let translation = a.translation + (b.translation - a.translation) * part;
+    let rotation = if a.rotation == b.rotation {
+        b.rotation
+    } else {
+        a.rotation.slerp(b.rotation, part).normalize()
+    };
+    Isometry3d::new(translation, rotation)
+}
+
+/// Whether something is moved once a tick or once a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum MovedBy {
+    #[default]
+    Ticks,
+    Frames,
+}
+
+/// A short history of poses, resampled at the time of each tick.
+///
+/// What is moved in a fixed schedule has one pose a tick: that one is taken. What is moved in
+/// `Update` shows none or two changes between ticks: its poses, known at the times of frames, are
+/// resampled one frame's length ago, so that a steady motion stays steady.
+#[derive(Component, Clone, Debug, Default)]
+pub(crate) struct PoseHistory {
+    ticks: Track,
+    frames: Track,
+    moved_by: MovedBy,
+    /// Ticks until a change in a frame counts again.
+    ticks_to_quiet: u32,
+    /// How long ago the poses are resampled, s.
+    delay: f64,
+    seen: Option<Isometry3d>,
+    span: Option<(Isometry3d, Isometry3d)>,
+}
+
+impl PoseHistory {
+    /// The pose at the start of the tick.
+    pub fn start(&self) -> Isometry3d {
+        self.span.map_or(Isometry3d::IDENTITY, |(start, _)| start)
+    }
+
+    /// The pose at the end of the tick.
+    pub fn end(&self) -> Isometry3d {
+        self.span.map_or(Isometry3d::IDENTITY, |(_, end)| end)
+    }
+
+    /// The next change of the pose is a teleport: what follows it is carried along.
+    pub fn jump_next(&mut self) {
+        self.ticks.jump_next = true;
+        self.frames.jump_next = true;
+    }
+
+    /// The pose in a frame, at the frame's time. One seen `early`, before the frame's ticks, counts
+    /// only if it was moved since the last frame.
+    pub fn observe_frame(&mut self, time: f64, pose: Isometry3d, limit: f32, early: bool) {
+        let changed = self.seen.is_some_and(|seen| seen != pose);
+        if early && !changed {
+            return;
+        }
+        let jump = self.frames.push(time, pose, limit);
+        if changed && self.moved_by == MovedBy::Ticks && self.ticks_to_quiet == 0 {
+            self.moved_by = MovedBy::Frames;
+            // It has not moved for a while, so it was there a frame ago, too.
+            self.delay = f64::INFINITY;
+        }
+        if self.moved_by == MovedBy::Frames {
+            self.carry(jump);
+        }
+        self.seen = Some(pose);
+    }
+
+    /// The pose in a tick of `tick` seconds that ends at `time`; frames last `frame` seconds.
+    pub fn observe_tick(&mut self, time: f64, tick: f64, frame: f64, pose: Isometry3d, limit: f32) {
+        let jump = self.ticks.push(time, pose, limit);
+        if self.seen.is_some_and(|seen| seen != pose) {
+            self.moved_by = MovedBy::Ticks;
+            self.ticks_to_quiet = QUIET_TICKS;
+        } else {
+            self.ticks_to_quiet = self.ticks_to_quiet.saturating_sub(1);
+        }
+        self.seen = Some(pose);
+        let (track, delay) = match self.moved_by {
+            MovedBy::Ticks => {
+                self.carry(jump);
+                (&self.ticks, 0.0)
+            }
+            MovedBy::Frames => (&self.frames, frame),
+        };
+        self.delay = if self.delay.is_finite() {
+            self.delay + (delay - self.delay).clamp(-DELAY_RATE * tick, DELAY_RATE * tick)
+        } else {
+            delay
+        };
+        let sampled = time - self.delay;
+        let end = track.pose_at(sampled).unwrap_or(pose);
+        self.span = Some((self.end_or(end), end));
+        self.ticks.forget_before(sampled);
+        self.frames.forget_before(sampled);
+    }
+
+    /// Stays where it is, as what has no pose to be observed.
+    pub fn stay(&mut self) {
+        self.span = self.span.map(|(_, end)| (end, end));
+    }
+
+    fn end_or(&self, other: Isometry3d) -> Isometry3d {
+        self.span.map_or(other, |(_, end)| end)
+    }
+
+    fn carry(&mut self, jump: Option<Isometry3d>) {
+        if let (Some(jump), Some((_, end))) = (jump, &mut self.span) {
+            *end = jump * *end;
+            end.rotation = Quat::normalize(end.rotation);
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "pose_tests.rs"]
+mod tests;

@@ -1,0 +1,170 @@
+//! New, changed and removed cloths.
+
+use std::sync::Arc;
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_transform::components::Transform;
+
+use crate::attachment::{Attachment, TargetLost};
+use crate::batches::ClothBatches;
+use crate::error::{ClothError, ClothFailed};
+use crate::instance::ClothInstance;
+use crate::levels::FabricLibrary;
+use crate::lod::LodSet;
+use crate::mesh::{ClothMaterial, ClothMesh, ClothPaused};
+use crate::pose::PoseHistory;
+use crate::schedule::{ClothSystems, ClothTick};
+use crate::state::ClothState;
+
+/// The target of a cloth's attachment was despawned.
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClothTargetLost {
+    /// The cloth.
+    pub entity: Entity,
+    /// The target that is gone.
+    pub target: Entity,
+    /// What happens to the cloth.
+    pub outcome: TargetLost,
+}
+
+/// Cuts cloths when they are new or changed.
+#[derive(Debug, Default)]
+pub struct PreparePlugin;
+
+impl Plugin for PreparePlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<ClothMesh>()
+            .register_type::<ClothMaterial>()
+            .init_resource::<FabricLibrary>()
+            .add_observer(clear_removed)
+            .add_systems(
+                ClothTick,
+                (lose_targets, cut_cloths, change_materials).chain().in_set(ClothSystems::Prepare),
+            );
+    }
+}
+
+/// Frees the lane of a cloth that is despawned, or is one no more.
+fn clear_removed(
+    removed: On<Remove, ClothMesh>,
+    mut cloths: Query<(&mut ClothInstance, &mut ClothState)>,
+    mut batches: ResMut<ClothBatches>,
+) {
+    if let Ok((mut instance, mut state)) = cloths.get_mut(removed.entity) {
+        instance.clear(&mut batches);
+        *state = ClothState::default();
+    }
+}
+
+fn lose_targets(
+    mut cloths: Query<(Entity, &Attachment, &mut ClothInstance)>,
+    targets: Query<(), With<Transform>>,
+    mut commands: Commands,
+) {
+    for (entity, attachment, mut instance) in &mut cloths {
+        let Some(target) = attachment.target_other_than(entity) else { continue };
+        if instance.target_lost || instance.target != Some(target) || targets.contains(target) {
+            continue;
+        }
+        instance.target_lost = true;
+        match attachment.on_lost {
+            TargetLost::Freeze => commands.entity(entity).insert(ClothPaused),
+            TargetLost::Release => commands.entity(entity).remove::<Attachment>(),
+        };
+        commands.trigger(ClothTargetLost { entity, target, outcome: attachment.on_lost });
+    }
+}
+
+type Cloths<'w, 's> = Query<
+    'w,
+    's,
+    (
+        Entity,
+        Ref<'static, ClothMesh>,
+        Ref<'static, ClothMaterial>,
+        Ref<'static, LodSet>,
+        Option<Ref<'static, Attachment>>,
+        &'static mut ClothInstance,
+        &'static mut ClothState,
+        &'static mut PoseHistory,
+    ),
+>;
+
+/// Cuts the fabrics of cloths whose mesh, levels or attachment are new. A bad cloth is reported and
+/// not simulated until it changes again.
+fn cut_cloths(
+    mut cloths: Cloths,
+    targets: Query<(), With<Transform>>,
+    mut library: ResMut<FabricLibrary>,
+    mut batches: ResMut<ClothBatches>,
+    mut commands: Commands,
+) {
+    for (entity, mesh, material, lods, attachment, mut instance, mut state, mut history) in
+        &mut cloths
+    {
+        let target = attachment
+            .as_deref()
+            .map(|attachment| attachment.target_other_than(entity).unwrap_or(entity));
+        let changed = mesh.is_changed()
+            || lods.is_changed()
+            || attachment.as_ref().is_some_and(|attachment| attachment.is_changed())
+            || (instance.target != target && instance.levels.is_some())
+            || (material.is_changed() && instance.levels.is_none());
+        if !changed {
+            continue;
+        }
+        let missing = target.filter(|&target| !instance.target_lost && !targets.contains(target));
+        let levels = match (missing, material.0.validate()) {
+            (Some(target), _) => Err(ClothError::MissingTarget { entity, target }),
+            (_, Err(source)) if instance.levels.is_none() => {
+                Err(ClothError::Material { entity, source })
+            }
+            _ => library.levels(entity, &mesh, attachment.as_deref(), &lods),
+        };
+        match levels {
+            Ok(levels) => {
+                if instance.target != target {
+                    *history = PoseHistory::default();
+                    instance.target = target;
+                    instance.target_lost = false;
+                }
+                if instance.levels.as_ref().is_none_or(|old| !Arc::ptr_eq(old, &levels)) {
+                    if instance.levels.is_none() {
+                        instance.material = material.0;
+                    }
+                    instance.recut(levels, &mut batches);
+                    if let Some((fabric, snapshot)) = instance.fabric().zip(instance.waiting()) {
+                        state.begin(instance.level, fabric, &snapshot.positions);
+                    }
+                }
+            }
+            Err(error) => {
+                instance.clear(&mut batches);
+                *state = ClothState::default();
+                ClothFailed::report(&mut commands, entity, error);
+            }
+        }
+    }
+}
+
+/// Changes materials from this tick on. A bad one is reported, and the last good one kept.
+fn change_materials(
+    mut cloths: Query<(Entity, &ClothMaterial, &mut ClothInstance), Changed<ClothMaterial>>,
+    mut batches: ResMut<ClothBatches>,
+    mut commands: Commands,
+) {
+    for (entity, material, mut instance) in &mut cloths {
+        if instance.levels.is_none() || instance.material == material.0 {
+            continue;
+        }
+        if let Err(source) = material.0.validate() {
+            ClothFailed::report(&mut commands, entity, ClothError::Material { entity, source });
+            continue;
+        }
+        instance.material = material.0;
+        if let Some(slot) = instance.slot() {
+            batches.lane(slot).set_material(material.0);
+        }
+    }
+}

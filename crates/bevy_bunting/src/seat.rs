@@ -1,0 +1,51 @@
+//! Every cloth takes its lane.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+
+use crate::batches::{ClothBatches, Newcomer};
+use crate::instance::{ClothInstance, Place};
+use crate::mesh::ClothPaused;
+use crate::schedule::{ClothSystems, ClothTick};
+use crate::settings::ClothSettings;
+
+/// Seats cloths in batches.
+#[derive(Debug, Default)]
+pub struct SeatPlugin;
+
+impl Plugin for SeatPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<ClothSettings>()
+            .register_type::<ClothPaused>()
+            .init_resource::<ClothSettings>()
+            .init_resource::<ClothBatches>()
+            .add_systems(ClothTick, seat_cloths.in_set(ClothSystems::SelectLod));
+    }
+}
+
+/// Seats those that wait, takes out those that are paused, and everyone when the settings change.
+pub(crate) fn seat_cloths(
+    mut cloths: Query<(Entity, &mut ClothInstance, Has<ClothPaused>)>,
+    settings: Res<ClothSettings>,
+    mut batches: ResMut<ClothBatches>,
+) {
+    for (entity, mut instance, paused) in &mut cloths {
+        if instance.slot().is_some() && (paused || settings.is_changed()) {
+            instance.unseat(&mut batches);
+        }
+        if paused || instance.waiting().is_none() {
+            continue;
+        }
+        if let (Some(fabric), Place::Waiting(snapshot)) =
+            (instance.fabric().cloned(), core::mem::take(&mut instance.place))
+        {
+            let newcomer = Newcomer { entity, snapshot, material: instance.material };
+            batches.add(&fabric, settings.step(instance.level), newcomer);
+        }
+    }
+    batches.settle(settings.lanes, |entity, slot| {
+        if let Ok((_, mut instance, _)) = cloths.get_mut(entity) {
+            instance.place = Place::Seated(slot);
+        }
+    });
+}

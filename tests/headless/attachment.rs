@@ -1,0 +1,222 @@
+//! Attached vertices stay on their target, however it is moved.
+
+use std::time::Duration;
+
+use bevy_app::prelude::*;
+use bevy_bunting::prelude::*;
+use bevy_ecs::hierarchy::ChildOf;
+use bevy_ecs::prelude::*;
+use bevy_math::{Quat, Vec3};
+use bevy_time::Time;
+use bevy_transform::prelude::*;
+use bunting_tests::{
+    FLAG, Seen, TICK, app, app_at, assert_finite, bits, greatest_speed, run, state,
+};
+
+/// How far an attached vertex may be from where its target has it, m.
+const TOLERANCE: f32 = 1e-5;
+
+/// Speed of the target, m/s.
+const SPEED: f32 = 20.0;
+
+/// Where the flag is on the vehicle.
+const OFFSET: Transform = Transform::from_xyz(-0.3, 1.4, 0.2);
+
+#[derive(Component)]
+struct Vehicle;
+
+/// Drives a circle of 10 m and spins once a second about a tilted axis.
+fn drive(mut vehicles: Query<&mut Transform, With<Vehicle>>, time: Res<Time>) {
+    let radius = 10.0;
+    let seconds = time.elapsed_secs();
+    let angle = seconds * SPEED / radius;
+    for mut transform in &mut vehicles {
+        transform.translation = radius * Vec3::new(angle.cos(), 0.0, angle.sin());
+        let axis = Vec3::new(0.2, 1.0, -0.1).normalize();
+        transform.rotation = Quat::from_axis_angle(axis, core::f32::consts::TAU * seconds);
+    }
+}
+
+fn attached(app: &mut App, child: bool) -> (Entity, Entity) {
+    let vehicle = app.world_mut().spawn((Vehicle, Transform::default())).id();
+    let attachment = Attachment::new(vehicle, ClothEdge::Left).with_offset(OFFSET);
+    let cloth = app.world_mut().spawn((FLAG, attachment)).id();
+    if child {
+        app.world_mut().entity_mut(cloth).insert(ChildOf(vehicle));
+    }
+    (vehicle, cloth)
+}
+
+/// The greatest distance of an attached vertex from its place, m.
+fn error(app: &App, vehicle: Entity, cloth: Entity) -> f32 {
+    let global = |entity: Entity| app.world().get::<GlobalTransform>(entity).expect("a transform");
+    let state = state(app, cloth);
+    let fabric = state.fabric().expect("a fabric");
+    let pinned = (0..fabric.particle_count()).filter(|&particle| fabric.is_pinned(particle));
+    let errors = pinned.map(|particle| {
+        let drawn = global(cloth).transform_point(state.positions()[particle]);
+        let place = OFFSET.transform_point(fabric.rest_positions()[particle]);
+        drawn.distance(global(vehicle).transform_point(place))
+    });
+    errors.fold(0.0, f32::max)
+}
+
+#[test]
+fn attached_vertices_stay_on_a_fast_spinning_target() {
+    for rate in [30.0, 60.0, 144.0] {
+        for in_update in [true, false] {
+            for child in [true, false] {
+                let mut app = app_at(Duration::from_secs_f64(1.0 / rate));
+                if in_update {
+                    app.add_systems(Update, drive);
+                } else {
+                    app.add_systems(FixedUpdate, drive);
+                }
+                let (vehicle, cloth) = attached(&mut app, child);
+                run(&mut app, 10);
+                for _ in 0..(2.0 * rate) as usize {
+                    app.update();
+                    let error = error(&app, vehicle, cloth);
+                    assert!(error < TOLERANCE, "{error} m, {rate} Hz, {in_update}, {child}");
+                }
+                assert_finite(&app, cloth);
+            }
+        }
+    }
+}
+
+#[test]
+fn transforms_are_right_when_published() {
+    #[derive(Resource)]
+    struct Both(Entity, Entity);
+    let mut app = app();
+    app.add_systems(FixedUpdate, drive);
+    let (vehicle, cloth) = attached(&mut app, false);
+    app.insert_resource(Both(vehicle, cloth)).add_systems(
+        FixedLast,
+        |both: Res<Both>, transforms: Query<&Transform>, globals: Query<&GlobalTransform>| {
+            let vehicle = transforms.get(both.0).expect("a vehicle");
+            let cloth = globals.get(both.1).expect("a cloth").translation();
+            let error = cloth.distance(vehicle.transform_point(OFFSET.translation));
+            assert!(error < TOLERANCE, "{error} m");
+        },
+    );
+    run(&mut app, 60);
+}
+
+#[test]
+fn a_steady_ride_looks_alike_whoever_moves_the_target() {
+    fn straight(mut vehicles: Query<&mut Transform, With<Vehicle>>, time: Res<Time>) {
+        for mut transform in &mut vehicles {
+            transform.translation.x = -time.elapsed_secs();
+        }
+    }
+    let mut speeds = Vec::new();
+    for in_update in [true, false] {
+        let mut app = app_at(Duration::from_secs_f64(1.0 / 47.0));
+        if in_update {
+            app.add_systems(Update, straight);
+        } else {
+            app.add_systems(FixedUpdate, straight);
+        }
+        let (_, cloth) = attached(&mut app, false);
+        // So slow and damped that it does not flutter: what moves then is moved by the jerking of
+        // its frame.
+        let calm = FabricMaterial { damping: 5.0, ..FabricMaterial::FLAG_POLYESTER };
+        app.world_mut().entity_mut(cloth).insert(ClothMaterial(calm));
+        run(&mut app, 200);
+        let greatest = (0..40).map(|_| {
+            app.update();
+            greatest_speed(&app, cloth)
+        });
+        speeds.push(greatest.fold(0.0, f32::max));
+    }
+    assert!(speeds.iter().all(|&speed| speed < 0.02), "{speeds:?} m/s");
+}
+
+#[test]
+fn a_teleport_carries_the_cloth_along_without_a_velocity() {
+    let mut app = app();
+    let (vehicle, cloth) = attached(&mut app, false);
+    let (_, other) = attached(&mut app, false);
+    run(&mut app, 60);
+    let jump = Transform::from_xyz(100.0, 0.0, 0.0);
+    app.world_mut().entity_mut(vehicle).insert(jump);
+    for _ in 0..30 {
+        app.update();
+        assert_eq!(bits(&app, cloth), bits(&app, other), "the jump is not felt at all");
+    }
+    assert!(error(&app, vehicle, cloth) < TOLERANCE);
+}
+
+#[test]
+fn a_small_teleport_is_one_only_on_request() {
+    let moved = Transform::from_xyz(0.5, 0.0, 0.0);
+    let speed = |request: Option<TeleportMode>| {
+        let mut app = app();
+        let (vehicle, cloth) = attached(&mut app, false);
+        run(&mut app, 60);
+        let before = greatest_speed(&app, cloth);
+        app.world_mut().entity_mut(vehicle).insert(moved);
+        if let Some(mode) = request {
+            app.world_mut().trigger(TeleportCloth { entity: cloth, mode });
+        }
+        let greatest = (0..3).map(|_| {
+            app.update();
+            greatest_speed(&app, cloth)
+        });
+        (before, greatest.fold(0.0, f32::max))
+    };
+    let (before, after) = speed(Some(TeleportMode::Keep));
+    assert!(after < before + 1.0, "{after} m/s");
+    let (_, after) = speed(Some(TeleportMode::Reset));
+    assert!(after < 1.0, "{after} m/s");
+    let (_, after) = speed(None);
+    assert!(after > 5.0, "{after} m/s");
+}
+
+#[test]
+fn a_lost_target_freezes_or_releases() {
+    for on_lost in [TargetLost::Freeze, TargetLost::Release] {
+        let mut app = app();
+        let (vehicle, cloth) = attached(&mut app, false);
+        app.world_mut().get_mut::<Attachment>(cloth).expect("attached").on_lost = on_lost;
+        app.world_mut().get_mut::<Transform>(vehicle).expect("placed").translation.z = 7.0;
+        run(&mut app, 30);
+        let before = bits(&app, cloth);
+        app.world_mut().despawn(vehicle);
+        run(&mut app, 60);
+        let lost = &app.world().resource::<Seen<ClothTargetLost>>().0;
+        assert_eq!(*lost, [ClothTargetLost { entity: cloth, target: vehicle, outcome: on_lost }]);
+        assert_finite(&app, cloth);
+        let global = app.world().get::<GlobalTransform>(cloth).expect("a transform").translation();
+        assert!((global - Vec3::new(-0.3, 1.4, 7.2)).length() < TOLERANCE);
+        match on_lost {
+            TargetLost::Freeze => {
+                assert_eq!(bits(&app, cloth), before);
+                app.world_mut().entity_mut(cloth).remove::<ClothPaused>();
+                run(&mut app, 10);
+                assert_ne!(bits(&app, cloth), before);
+                assert_eq!(state(&app, cloth).positions()[0], Vec3::ZERO, "it hangs where it hung");
+            }
+            TargetLost::Release => {
+                assert!(state(&app, cloth).positions()[0].y < -1.0, "it falls");
+            }
+        }
+        assert!(app.world().resource::<Seen<ClothFailed>>().0.is_empty());
+    }
+}
+
+#[test]
+fn a_cloth_left_behind_is_pulled_along() {
+    let mut app = app();
+    app.add_systems(FixedUpdate, |mut vehicles: Query<&mut Transform, With<Vehicle>>| {
+        for mut transform in &mut vehicles {
+            transform.translation.z += 3.0 * TICK;
+        }
+    });
+    let (_, cloth) = attached(&mut app, false);
+    run(&mut app, 200);
+    let tip = state(&app, cloth).positions()[16];
+    assert!(tip.z < -0.3, "{tip}");
+}

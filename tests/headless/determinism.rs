@@ -1,0 +1,102 @@
+//! The same bits, whatever else goes on.
+
+use bevy_app::prelude::*;
+use bevy_bunting::bunting_solver::LaneCount;
+use bevy_bunting::prelude::*;
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_tasks::{ComputeTaskPool, TaskPoolBuilder};
+use bevy_transform::prelude::*;
+use bunting_tests::{FLAG, app, bits, run, spawn_flag};
+
+/// A world with a bit of everything.
+fn furnish(app: &mut App) -> Vec<Entity> {
+    let world = app.world_mut();
+    world.spawn(WindField::steady(Vec3::new(4.0, 0.0, 1.0)).with_gusts(3.0, 0.7, 5));
+    world.spawn((ClothCollider::ball(0.3), Transform::from_xyz(1.0, -0.6, 0.2)));
+    world.spawn((LodViewer, Transform::from_xyz(0.0, 0.0, 12.0)));
+    let mut cloths: Vec<Entity> = (0..11)
+        .map(|index| {
+            let levels = LodSet::new([8.0 + index as f32]);
+            let place = Transform::from_xyz(0.01 * index as f32, 0.0, 0.0);
+            world.spawn((FLAG, levels, Attachment::in_place(ClothEdge::Left), place)).id()
+        })
+        .collect();
+    cloths.push(world.spawn(ClothMesh::grid(9, 9, 1.0, 1.0)).id());
+    cloths
+}
+
+fn all_bits(app: &App, cloths: &[Entity]) -> Vec<Vec<[u32; 3]>> {
+    cloths.iter().map(|&cloth| bits(app, cloth)).collect()
+}
+
+#[test]
+fn two_worlds_give_the_same_bits() {
+    let run_one = || {
+        let mut app = app();
+        let cloths = furnish(&mut app);
+        run(&mut app, 120);
+        all_bits(&app, &cloths)
+    };
+    assert_eq!(run_one(), run_one());
+}
+
+#[test]
+fn the_width_of_the_lanes_changes_no_bit() {
+    let run_one = |lanes: Option<LaneCount>| {
+        let mut app = app();
+        app.world_mut().resource_mut::<ClothSettings>().lanes = lanes;
+        let cloths = furnish(&mut app);
+        run(&mut app, 120);
+        all_bits(&app, &cloths)
+    };
+    let scalar = run_one(Some(LaneCount::One));
+    for lanes in [None, Some(LaneCount::Eight), Some(LaneCount::Sixteen)] {
+        assert_eq!(run_one(lanes), scalar, "{lanes:?}");
+    }
+}
+
+#[test]
+fn a_lone_cloth_and_one_among_others_are_alike() {
+    let mut lone = app();
+    let one = spawn_flag(&mut lone, Vec3::ZERO);
+    let mut many = app();
+    let among = spawn_flag(&mut many, Vec3::ZERO);
+    let mut others = Vec::new();
+    for tick in 0..100 {
+        // Company comes and goes, so the cloth is moved from batch to batch.
+        match tick % 10 {
+            0..=4 => others.push(spawn_flag(&mut many, Vec3::X * tick as f32)),
+            7 => (0..4).for_each(|_| {
+                many.world_mut().despawn(others.remove(0));
+            }),
+            _ => {}
+        }
+        run(&mut lone, 1);
+        run(&mut many, 1);
+        assert_eq!(bits(&lone, one), bits(&many, among), "tick {tick}");
+    }
+}
+
+#[test]
+fn threads_change_no_bit() {
+    // More particles than are stepped on one thread.
+    const CLOTHS: usize = 66;
+    const MESH: ClothMesh = ClothMesh::grid(33, 33, 1.0, 1.0);
+    let spawn = |app: &mut App, count: usize| {
+        app.world_mut().resource_mut::<ClothSettings>().lanes = Some(LaneCount::One);
+        let held = || Attachment::in_place(ClothEdge::Top);
+        let cloths = (0..count).map(|_| app.world_mut().spawn((MESH, held())).id());
+        cloths.collect::<Vec<Entity>>()
+    };
+    let mut lone = app();
+    let one = spawn(&mut lone, 1);
+    run(&mut lone, 6);
+    ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(3).build());
+    let mut many = app();
+    let cloths = spawn(&mut many, CLOTHS);
+    run(&mut many, 6);
+    for cloth in cloths {
+        assert_eq!(bits(&many, cloth), bits(&lone, one[0]));
+    }
+}

@@ -1,0 +1,9 @@
+//! The plugin in an app with manual time: no window, no renderer, no GPU.
+
+mod attachment;
+mod determinism;
+mod errors;
+mod levels;
+mod lifecycle;
+mod order;
+mod surroundings;

@@ -1,0 +1,89 @@
+//! The sets run in the order that the documentation says.
+
+use bevy_app::prelude::*;
+use bevy_bunting::prelude::{ClothMesh, LodSet, StepSettings};
+use bevy_bunting::{ClothSettings, ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick};
+use bevy_ecs::prelude::*;
+use bevy_ecs::schedule::{IntoScheduleConfigs, ScheduleLabel, SystemSet};
+use bevy_math::Vec3;
+use bunting_tests::{app, run, spawn_flag};
+
+#[derive(Resource, Default)]
+struct Log(Vec<String>);
+
+/// A system in the set that notes its name; ordered against nothing but the sets.
+fn probe(app: &mut App, schedule: impl ScheduleLabel, set: impl SystemSet + Clone) {
+    let name = format!("{set:?}");
+    app.add_systems(schedule, (move |mut log: ResMut<Log>| log.0.push(name.clone())).in_set(set));
+}
+
+fn probed() -> App {
+    let mut app = app();
+    app.init_resource::<Log>();
+    for set in ClothSystems::ORDER {
+        probe(&mut app, ClothTick, set);
+    }
+    for set in [
+        ClothSubstepSystems::UpdateVelocities,
+        ClothSubstepSystems::Integrate,
+        ClothSubstepSystems::SolveConstraints,
+    ] {
+        probe(&mut app, ClothSubstep, set);
+    }
+    app
+}
+
+#[test]
+fn sets_run_in_order() {
+    let mut app = probed();
+    spawn_flag(&mut app, Vec3::ZERO);
+    app.world_mut().resource_mut::<ClothSettings>().steps =
+        vec![StepSettings { substeps: 3, ..StepSettings::default() }];
+    run(&mut app, 2);
+    let log = core::mem::take(&mut app.world_mut().resource_mut::<Log>().0);
+
+    let tick: Vec<&str> = log.iter().map(String::as_str).filter(|set| !is_substep(set)).collect();
+    assert_eq!(tick.len() % 6, 0);
+    assert!(!tick.is_empty());
+    for sets in tick.chunks(6) {
+        assert_eq!(sets, ["Prepare", "SelectLod", "Drive", "Step", "Normals", "Publish"]);
+    }
+    let substeps: Vec<&str> =
+        log.iter().map(String::as_str).filter(|set| is_substep(set)).collect();
+    assert_eq!(substeps.len() / 3, 3 * tick.len() / 6, "three substeps a tick");
+    for sets in substeps.chunks(3) {
+        assert_eq!(sets, ["Integrate", "SolveConstraints", "UpdateVelocities"]);
+    }
+    // Substeps lie within Step: between Drive and Normals.
+    let first = log.iter().position(|set| is_substep(set)).expect("substeps");
+    let drive = log.iter().position(|set| set == "Drive").expect("a tick");
+    let normals = log.iter().position(|set| set == "Normals").expect("a tick");
+    assert!(drive < first && first < normals);
+}
+
+#[test]
+fn the_finest_level_sets_the_number_of_substeps() {
+    let mut app = probed();
+    app.world_mut().resource_mut::<ClothSettings>().steps = vec![
+        StepSettings { substeps: 6, ..StepSettings::default() },
+        StepSettings { substeps: 2, ..StepSettings::default() },
+    ];
+    let coarse = (ClothMesh::grid(5, 5, 1.0, 1.0), LodSet::new([10.0]).pinned_to(1));
+    app.world_mut().spawn(coarse);
+    run(&mut app, 2);
+    assert_eq!(substeps(&mut app), 2);
+    spawn_flag(&mut app, Vec3::ZERO);
+    run(&mut app, 1);
+    assert_eq!(substeps(&mut app), 6);
+}
+
+/// Substeps since last asked.
+fn substeps(app: &mut App) -> usize {
+    let log = core::mem::take(&mut app.world_mut().resource_mut::<Log>().0);
+    let ticks = log.iter().filter(|set| *set == "Step").count();
+    log.iter().filter(|set| *set == "Integrate").count() / ticks
+}
+
+fn is_substep(set: &str) -> bool {
+    ["Integrate", "SolveConstraints", "UpdateVelocities"].contains(&set)
+}
