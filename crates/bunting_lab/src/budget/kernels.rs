@@ -1,0 +1,106 @@
+//! Time of one constraint and of one triangle in the wind, by differences.
+//!
+//! The solver's phases can be timed, its kernels cannot. So each figure is the difference of two runs
+//! of one phase that differ only in how often the kernel runs:
+//!
+//! - A **constraint** of Gauss–Seidel: `solve_constraints` with four passes less that with two, halved,
+//!   is one sweep over all hinges and links. A hinge costs more than a link: this is their mean.
+//! - A **constraint** of the yarns: the same difference is one more solution of the warp and weft yarns
+//!   and one more sweep over warp and weft, which is every such link twice.
+//! - A **triangle**: yarns reckon the air in the first substep of a tick only, so `integrate` in the
+//!   first substep less `integrate` in the second is the air.
+//!
+//! All are of a full batch of the widest lanes, per cloth.
+
+use bunting_solver::{LaneCount, Scheme, StepSettings};
+use serde::Serialize;
+
+use super::Effort;
+use crate::{
+    fleet::Fleet,
+    product::TICK,
+    scenes::Scene,
+    timing::Timing,
+};
+
+/// Vertices along each side of the flags.
+const SIZE: usize = 33;
+/// Passes that are compared. Both keep multipliers, which a single pass does not.
+const PASSES: [u32; 2] = [2, 4];
+
+/// Times of kernels, ns per cloth.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Kernels {
+    /// A link of the warp and weft yarns.
+    pub ns_per_constraint: f64,
+    /// A link or hinge of a Gauss–Seidel sweep.
+    pub ns_per_constraint_gauss_seidel: f64,
+    /// A triangle of the air.
+    pub ns_per_wind_triangle: f64,
+}
+
+/// Measures all.
+#[must_use]
+pub fn measure(effort: &Effort) -> Kernels {
+    let yarns = StepSettings::yarns(2);
+    let sweeps = StepSettings::gauss_seidel(2);
+    Kernels {
+        ns_per_constraint: ns_per_constraint(yarns, effort),
+        ns_per_constraint_gauss_seidel: ns_per_constraint(sweeps, effort),
+        ns_per_wind_triangle: ns_per_wind_triangle(yarns, effort),
+    }
+}
+
+fn flags(settings: StepSettings, effort: &Effort) -> Fleet {
+    let mut fleet = Fleet::new(Scene::flag(SIZE), lanes(), settings);
+    fleet.advance(effort.warm_up);
+    fleet
+}
+
+fn lanes() -> usize {
+    LaneCount::holding(usize::MAX).get()
+}
+
+fn ns_per_constraint(settings: StepSettings, effort: &Effort) -> f64 {
+    let mut fleet = flags(settings, effort);
+    let fabric = fleet.fabric();
+    let projections = match settings.scheme {
+        Scheme::GaussSeidel => fabric.links().len() + fabric.hinges().len(),
+        Scheme::Yarns => 2 * fabric.stretch_link_count(),
+    };
+    let mut times: [Timing; PASSES.len()] = Default::default();
+    // In turn, so that both see the same machine.
+    for _ in 0..effort.ticks(1e3) {
+        for (passes, time) in PASSES.into_iter().zip(&mut times) {
+            fleet.drive();
+            let batch = &mut fleet.batches_mut()[0];
+            batch.begin_tick(TICK, StepSettings { passes, ..settings });
+            for _ in 0..settings.substeps {
+                batch.integrate();
+                time.time(|| batch.solve_constraints());
+                batch.update_velocities();
+            }
+        }
+    }
+    let [few, many] = times.map(|time| time.median());
+    let pass = (many - few) / f64::from(PASSES[1] - PASSES[0]);
+    pass * 1e3 / (projections * lanes()) as f64
+}
+
+fn ns_per_wind_triangle(settings: StepSettings, effort: &Effort) -> f64 {
+    let mut fleet = flags(settings, effort);
+    let triangles = fleet.fabric().triangles().len();
+    let mut times: [Timing; 2] = Default::default();
+    for _ in 0..effort.ticks(1e3) {
+        fleet.drive();
+        let batch = &mut fleet.batches_mut()[0];
+        batch.begin_tick(TICK, settings);
+        for time in &mut times {
+            time.time(|| batch.integrate());
+            batch.solve_constraints();
+            batch.update_velocities();
+        }
+    }
+    let [with_air, without] = times.map(|time| time.median());
+    (with_air - without) * 1e3 / (triangles * lanes()) as f64
+}

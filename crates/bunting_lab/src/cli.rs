@@ -1,0 +1,100 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use anyhow::{Result, bail};
+use clap::{Parser, Subcommand};
+
+use crate::output::Outcome;
+use crate::commands::{budget, lod, oracles, pareto};
+
+/// Measures the cloth against references.
+#[derive(Debug, Parser)]
+#[command(version)]
+pub struct Arguments {
+    /// What to measure.
+    #[command(subcommand)]
+    command: Command,
+    /// Print one JSON object on standard output and nothing else.
+    #[arg(long, global = true)]
+    json: bool,
+    /// Also write CSV files and SVG plots into this folder.
+    #[arg(long, global = true, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Measure less, in under 20 seconds.
+    #[arg(long, global = true)]
+    quick: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Closed forms against what is measured.
+    Oracles,
+    /// Error over time of every method.
+    Pareto(pareto::Selection),
+    /// Cloths in a budget of time.
+    Budget,
+    /// Agreement of the levels of detail, and the jumps between them.
+    Lod,
+    /// The hard cases.
+    Stability,
+    /// Cost of the schedule over plain calls.
+    Schedule,
+    /// Other engines on the same scenes.
+    Peers,
+    /// All of it, as one HTML page.
+    Report,
+}
+
+impl Arguments {
+    /// Runs the command and presents what it measured.
+    ///
+    /// # Errors
+    ///
+    /// When a command cannot run or its files cannot be written.
+    pub fn run(self) -> Result<()> {
+        let outcome = match self.command {
+            Command::Pareto(selection) => pareto::run(&selection, self.quick),
+            Command::Lod => lod::run(self.quick),
+            Command::Peers => peers(self.quick)?,
+            Command::Budget => budget::run(self.quick),
+            Command::Oracles => oracles::run(),
+            Command::Stability
+            | Command::Schedule
+            | Command::Report => bail!("needs the solver, not wired yet"),
+        };
+        outcome.present(self.json, self.out.as_deref())
+    }
+}
+
+#[cfg(feature = "peers")]
+fn peers(quick: bool) -> Result<Outcome> {
+    Ok(crate::commands::peers::run(quick))
+}
+
+#[cfg(not(feature = "peers"))]
+fn peers(_quick: bool) -> Result<Outcome> {
+    bail!("peers are not built in: run with --features peers")
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Arguments::command().debug_assert();
+    }
+
+    #[test]
+    fn bad_arguments_exit_with_two() {
+        for arguments in
+            [&["bunting_lab", "nonsense"][..], &["bunting_lab", "pareto", "--sizes", "two"]]
+        {
+            let error = Arguments::try_parse_from(arguments).unwrap_err();
+            assert_eq!(error.exit_code(), 2, "{arguments:?}");
+        }
+    }
+}

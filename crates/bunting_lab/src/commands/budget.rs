@@ -1,0 +1,148 @@
+//! How much cloth fits in a budget of time.
+
+use bunting_solver::instruction_set;
+use serde_json::json;
+
+use super::progress;
+use crate::{
+    budget::{
+        Effort, LEVELS,
+        kernels::{self, Kernels},
+        phases::{self, PHASES, Phase},
+        scheme_name, schemes,
+        sheets::{self, Sheet},
+    },
+    output::{
+        Outcome,
+        plot::{Mark, Plot, Series},
+        table::{Table, figure},
+    },
+};
+
+/// Measures sheets, phases, kernels and the thousand flags.
+#[must_use]
+pub fn run(quick: bool) -> Outcome {
+    let effort = Effort::of(quick);
+    let bar = progress(sheets::count(&effort) + 2);
+    bar.set_message("sheets");
+    let sheets = sheets::measure(&effort, || bar.inc(1));
+    bar.set_message("phases");
+    let phases = phases::measure(&effort);
+    bar.inc(1);
+    bar.set_message("kernels");
+    let kernels = kernels::measure(&effort);
+    bar.finish_and_clear();
+    Outcome {
+        json: json!({
+            "instruction_set": instruction_set(),
+            "sheets": sheets,
+            "phases": phases,
+            "kernels": kernels,
+        }),
+        tables: vec![sheet_table(&sheets), phase_table(&phases), kernel_table(&kernels)],
+        plots: schemes()
+            .into_iter()
+            .map(scheme_name)
+            .flat_map(|scheme| [sheet_plot(&sheets, scheme), phase_plot(&phases, scheme)])
+            .collect(),
+    }
+}
+
+fn sheet_table(sheets: &[Sheet]) -> Table {
+    let cells = |sheet: &Sheet| {
+        vec![
+            sheet.scheme.into(),
+            sheet.n.to_string(),
+            sheet.cloths.to_string(),
+            sheet.cores.to_string(),
+            figure(sheet.ms_per_tick),
+            figure(sheet.ms_min),
+            figure(sheet.ms_per_tick * 1e3 / sheet.cloths as f64),
+        ]
+    };
+    Table {
+        name: "budget_sheets".into(),
+        title: format!("Flags in the wind, {}", instruction_set()),
+        headers: vec!["scheme", "n", "cloths", "cores", "ms/tick", "ms min", "µs/cloth"],
+        rows: sheets.iter().map(cells).collect(),
+    }
+}
+
+fn phase_table(phases: &[Phase]) -> Table {
+    let cells = |phase: &Phase| {
+        vec![
+            phase.scheme.into(),
+            phase.n.to_string(),
+            phase.phase.into(),
+            format!("{:.1} %", 100.0 * phase.share),
+            figure(phase.us),
+        ]
+    };
+    Table {
+        name: "budget_phases".into(),
+        title: "Share of each phase in the tick of a full batch".into(),
+        headers: vec!["scheme", "n", "phase", "share", "µs/tick"],
+        rows: phases.iter().map(cells).collect(),
+    }
+}
+
+fn kernel_table(kernels: &Kernels) -> Table {
+    Table {
+        name: "budget_kernels".into(),
+        title: "Kernels, of a full batch of 33 × 33".into(),
+        headers: vec!["kernel", "ns per cloth"],
+        rows: vec![
+            vec!["link of the yarns".into(), figure(kernels.ns_per_constraint)],
+            vec![
+                "link or hinge of Gauss–Seidel".into(),
+                figure(kernels.ns_per_constraint_gauss_seidel),
+            ],
+            vec!["triangle in the wind".into(), figure(kernels.ns_per_wind_triangle)],
+        ],
+    }
+}
+
+/// Figure 6.2: one line a level and number of cores.
+fn sheet_plot(sheets: &[Sheet], scheme: &str) -> Plot {
+    let mut series: Vec<Series> = Vec::new();
+    for sheet in sheets.iter().filter(|sheet| sheet.scheme == scheme) {
+        let name = format!("{n} × {n}, {} cores", sheet.cores, n = sheet.n);
+        let point = (sheet.cloths as f64, sheet.ms_per_tick);
+        match series.iter_mut().find(|series| series.name == name) {
+            Some(found) => found.points.push(point),
+            None => series.push(Series { name, points: vec![point], mark: Mark::Line }),
+        }
+    }
+    Plot {
+        name: format!("budget_sheets_{scheme}"),
+        title: format!("Time of a tick, wind on, {scheme} (thesis, fig. 6.2)"),
+        axes: ["flags".into(), "ms".into()],
+        logarithmic: true,
+        series,
+    }
+}
+
+/// Figure B.1: a stacked bar a level.
+fn phase_plot(phases: &[Phase], scheme: &str) -> Plot {
+    let up_to = |n: u32, last: usize| {
+        let below = PHASES[..=last].iter();
+        below
+            .filter_map(|name| {
+                phases.iter().find(|p| p.scheme == scheme && p.n == n && p.phase == *name)
+            })
+            .map(|phase| phase.share)
+            .sum::<f64>()
+    };
+    let series = (0..PHASES.len()).rev().map(|last| Series {
+        name: PHASES[last].into(),
+        points: (0..).zip(LEVELS).map(|(level, n)| (f64::from(level), up_to(n, last))).collect(),
+        mark: Mark::Bars,
+    });
+    Plot {
+        name: format!("budget_phases_{scheme}"),
+        title: format!("Share of each phase, {scheme} (thesis, fig. B.1)"),
+        axes: [format!("level: {LEVELS:?} vertices a side"), "share of the tick".into()],
+        logarithmic: false,
+        series: series.collect(),
+    }
+}

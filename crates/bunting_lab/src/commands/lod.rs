@@ -1,0 +1,115 @@
+//! Agreement of the levels of detail, and the jumps between them.
+
+use bunting_solver::instruction_set;
+use serde_json::json;
+
+use super::progress;
+use crate::{
+    budget::schemes,
+    levels::{agreement::Agreement, switches::Switch},
+    output::{
+        Outcome,
+        table::{Table, figure},
+    },
+};
+
+/// Vertices along each side of the levels that are compared, the finest first.
+const SIZES: [usize; 3] = [33, 17, 9];
+/// Moments at which each pair of levels is changed.
+const MOMENTS: usize = 20;
+/// The same where it is to be quick.
+const QUICK_MOMENTS: usize = 3;
+
+/// Compares the levels, and changes between neighbours both ways.
+#[must_use]
+pub fn run(quick: bool) -> Outcome {
+    let pairs = SIZES.windows(2).flat_map(|pair| [(pair[0], pair[1]), (pair[1], pair[0])]);
+    let pairs: Vec<(usize, usize)> = pairs.collect();
+    let bar = progress(schemes().len() * (SIZES.len() + pairs.len()));
+    let moments = if quick { QUICK_MOMENTS } else { MOMENTS };
+    let (mut levels, mut switches) = (Vec::new(), Vec::new());
+    for settings in schemes() {
+        for n in SIZES {
+            levels.push(Agreement::of(n, settings, quick));
+            bar.inc(1);
+        }
+        for &(from, to) in &pairs {
+            switches.push(Switch::of(from, to, settings, moments));
+            bar.inc(1);
+        }
+    }
+    bar.finish_and_clear();
+    Outcome {
+        json: json!({
+            "instruction_set": instruction_set(),
+            "levels": levels,
+            "switches": switches,
+        }),
+        tables: vec![level_table(&levels), switch_table(&switches)],
+        plots: Vec::new(),
+    }
+}
+
+fn level_table(levels: &[Agreement]) -> Table {
+    let cells = |level: &Agreement| {
+        let finest = levels.iter().find(|other| other.scheme == level.scheme).unwrap_or(level);
+        vec![
+            level.scheme.into(),
+            level.n.to_string(),
+            figure(level.droop_m),
+            figure(level.swing_period_s),
+            figure(level.tip_m.x),
+            figure(level.tip_m.y),
+            figure(level.tip_m.distance(finest.tip_m)),
+            figure(level.tip_spread_m),
+            figure(level.flutter_hz),
+        ]
+    };
+    Table {
+        name: "lod_levels".into(),
+        title: "The same cloth at each level".into(),
+        headers: vec![
+            "scheme",
+            "n",
+            "droop m",
+            "swing period s",
+            "tip x m",
+            "tip y m",
+            "tip off the finest m",
+            "tip spread m",
+            "flutter Hz",
+        ],
+        rows: levels.iter().map(cells).collect(),
+    }
+}
+
+fn switch_table(switches: &[Switch]) -> Table {
+    let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+    let cells = |switch: &Switch| {
+        vec![
+            switch.scheme.into(),
+            format!("{} → {}", switch.from, switch.to),
+            figure(switch.pop_rms_m),
+            figure(switch.pop_max_m),
+            figure(switch.invisible_from_m),
+            percent(switch.momentum_jump),
+            percent(switch.kinetic_jump),
+            percent(switch.energy_jump),
+        ]
+    };
+    Table {
+        name: "lod_switches".into(),
+        title: "Changes of level of a flag in the wind".into(),
+        headers: vec![
+            "scheme",
+            "levels",
+            "pop RMS m",
+            "pop max m",
+            "< 1 px from m",
+            "momentum",
+            "kinetic energy",
+            "total energy",
+        ],
+        rows: switches.iter().map(cells).collect(),
+    }
+}

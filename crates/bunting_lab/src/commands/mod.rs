@@ -1,0 +1,18 @@
+//! What the command line runs.
+
+pub mod budget;
+pub mod lod;
+pub mod oracles;
+pub mod pareto;
+#[cfg(feature = "peers")]
+pub mod peers;
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+/// A bar on standard error over `length` pieces of work; nothing where that is not a terminal.
+#[must_use]
+pub fn progress(length: usize) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {msg}")
+        .expect("a constant template");
+    ProgressBar::new(length as u64).with_style(style)
+}

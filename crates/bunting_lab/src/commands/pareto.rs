@@ -1,0 +1,265 @@
+//! Speed against error: every method on the standard scenes.
+
+use clap::Args;
+use serde::Serialize;
+use serde_json::json;
+
+use super::progress;
+use crate::{
+    baselines::Baseline,
+    contender::Contender,
+    observation::{COMPARED_TICKS, Observation, Observer},
+    output::{
+        Outcome,
+        plot::{Mark, Plot, Series, pareto_front},
+        table::{Table, figure, figure_or_dash},
+    },
+    reference::{Reference, grid::Grid},
+    scenes::{Measure, Scene},
+    timing::Timing,
+};
+
+/// Entry of `COMPARED_TICKS` that a row's position error is taken at: 0.4 s.
+const COMPARED: usize = 1;
+/// Part of a position error that the reference's own may be; beyond it no error is reported.
+const KNOWN: f64 = 0.1;
+/// Ticks before time is taken.
+const WARM_UP: usize = 3;
+/// Largest n of the flag, whose reference takes minutes beyond it.
+const LARGEST_FLAG: usize = 33;
+/// What to compare.
+#[derive(Clone, Debug, Args)]
+pub struct Selection {
+    /// Scenes, of hang_top, hang_side, hang_corners, swing and flag.
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_parser = ["hang_top", "hang_side", "hang_corners", "swing", "flag"],
+        default_values = ["hang_top", "hang_side", "hang_corners", "swing", "flag"]
+    )]
+    scenes: Vec<String>,
+    /// Vertices along each side.
+    #[arg(long, value_delimiter = ',', default_values_t = [9, 17, 33, 65], value_parser = parse_size)]
+    sizes: Vec<usize>,
+}
+
+fn parse_size(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(n) if (2..=129).contains(&n) => Ok(n),
+        _ => Err("a size is a whole number from 2 to 129".into()),
+    }
+}
+
+/// One method on one scene.
+#[derive(Clone, Debug, Serialize)]
+struct Row {
+    scene: &'static str,
+    n: usize,
+    method: String,
+    substeps: usize,
+    passes: usize,
+    lanes: usize,
+    us_per_cloth_tick: f64,
+    us_min: f64,
+    rms_error_m: Option<f64>,
+    mean_stretch: f64,
+    max_stretch: f64,
+    /// Distance of the mean strain from the reference's.
+    strain_error: f64,
+    tip_error_m: f64,
+    stable: bool,
+}
+
+impl Row {
+    fn new(
+        scene: &Scene,
+        contender: &Contender,
+        seen: &Observation,
+        time: &Timing,
+        reference: &Reference,
+    ) -> Self {
+        let target = &reference.observation;
+        Self {
+            scene: scene.name,
+            n: scene.columns,
+            method: contender.method.clone(),
+            substeps: contender.substeps,
+            passes: contender.passes,
+            lanes: contender.lanes,
+            us_per_cloth_tick: time.median() / contender.lanes as f64,
+            us_min: time.min() / contender.lanes as f64,
+            rms_error_m: seen
+                .rms_error(target, COMPARED)
+                .filter(|error| reference.step_errors[COMPARED] < KNOWN * error),
+            mean_stretch: seen.strain.mean,
+            max_stretch: seen.strain.max,
+            strain_error: (seen.strain.mean - target.strain.mean).abs(),
+            tip_error_m: seen.tip.distance(target.tip),
+            stable: seen.stable,
+        }
+    }
+
+    /// The error that the scene is measured for, and what it is called.
+    fn error(&self, measure: Measure) -> Option<f64> {
+        match measure {
+            Measure::Positions => self.rms_error_m,
+            Measure::Rest | Measure::Statistics => Some(self.strain_error),
+        }
+        .filter(|error| self.stable && *error > 0.0)
+    }
+
+    fn cells(&self) -> Vec<String> {
+        vec![
+            self.method.clone(),
+            self.substeps.to_string(),
+            self.passes.to_string(),
+            figure(self.us_per_cloth_tick),
+            figure_or_dash(self.rms_error_m),
+            figure(self.mean_stretch),
+            figure(self.max_stretch),
+            figure(self.strain_error),
+            figure(self.tip_error_m),
+            if self.stable { "yes" } else { "no" }.into(),
+        ]
+    }
+}
+
+/// Runs every method on the selected scenes.
+#[must_use]
+pub fn run(selection: &Selection, quick: bool) -> Outcome {
+    let contenders: Vec<Contender> =
+        Baseline::catalogue().into_iter().map(Contender::from).collect();
+    let scenes = selected(selection, quick);
+    let bar = progress(scenes.len() * contenders.len());
+    let mut outcome = Outcome { json: json!(null), tables: Vec::new(), plots: Vec::new() };
+    let (mut all, mut references) = (Vec::new(), Vec::new());
+    for scene in &scenes {
+        bar.set_message(format!("reference of {} {}", scene.name, scene.columns));
+        let reference = Reference::of(scene);
+        let mut rows = Vec::new();
+        for contender in &contenders {
+            bar.set_message(format!("{} {} {}", scene.name, scene.columns, contender.method));
+            if let Some((seen, time)) = measure(scene, contender) {
+                rows.push(Row::new(scene, contender, &seen, &time, &reference));
+            }
+            bar.inc(1);
+        }
+        outcome.tables.push(table(scene, &rows, &reference));
+        outcome.plots.extend(plot(scene, &rows));
+        references.push(json!({
+            "scene": scene.name,
+            "n": scene.columns,
+            "steps": reference.steps,
+            "residual_n": reference.residual,
+            "step_error_m": reference.step_errors[COMPARED],
+            "mean_stretch": reference.observation.strain.mean,
+            "max_stretch": reference.observation.strain.max,
+        }));
+        all.extend(rows);
+    }
+    bar.finish_and_clear();
+    outcome.json = json!({ "rows": all, "references": references });
+    outcome
+}
+
+fn selected(selection: &Selection, quick: bool) -> Vec<Scene> {
+    let sizes: Vec<usize> = if quick { vec![9] } else { selection.sizes.clone() };
+    sizes
+        .into_iter()
+        .flat_map(Scene::standard)
+        .filter(|scene| selection.scenes.iter().any(|name| name == scene.name))
+        .filter(|scene| {
+            scene.measure != Measure::Statistics || (!quick && scene.columns <= LARGEST_FLAG)
+        })
+        .collect()
+}
+
+/// Runs a contender through the scene; none where the scene is beyond it.
+fn measure(scene: &Scene, contender: &Contender) -> Option<(Observation, Timing)> {
+    let grid = Grid::new(scene);
+    let mut observer = Observer::new(scene, &grid);
+    let mut simulation = (contender.start)(scene)?;
+    let mut time = Timing::default();
+    for tick in 0..scene.ticks() {
+        if tick < WARM_UP {
+            simulation.tick();
+        } else {
+            time.time(|| simulation.tick());
+        }
+        let positions: Vec<_> = simulation.positions().iter().map(|x| x.as_dvec3()).collect();
+        let velocities: Vec<_> = simulation.velocities().iter().map(|v| v.as_dvec3()).collect();
+        if !observer.observe(&positions, &velocities) {
+            break;
+        }
+    }
+    Some((observer.finish(), time))
+}
+
+fn table(scene: &Scene, rows: &[Row], reference: &Reference) -> Table {
+    let strain = reference.observation.strain;
+    let residual =
+        reference.residual.map_or_else(String::new, |force| format!(", residual {force:.0e} N"));
+    Table {
+        name: format!("pareto_{}_{}", scene.name, scene.columns),
+        title: format!(
+            "{} {n} × {n}; reference: strain mean {} max {}, {} steps a tick{residual}",
+            scene.name,
+            figure(strain.mean),
+            figure(strain.max),
+            reference.steps,
+            n = scene.columns,
+        ),
+        headers: vec![
+            "method",
+            "substeps",
+            "passes",
+            "µs/tick",
+            "RMS error m",
+            "mean strain",
+            "max strain",
+            "strain error",
+            "tip error m",
+            "stable",
+        ],
+        rows: rows.iter().map(Row::cells).collect(),
+    }
+}
+
+/// Error over time, one colour a method, and the front of what no other setting beats.
+fn plot(scene: &Scene, rows: &[Row]) -> Option<Plot> {
+    let mut series: Vec<Series> = Vec::new();
+    for row in rows {
+        let Some(error) = row.error(scene.measure) else { continue };
+        let point = (row.us_per_cloth_tick, error);
+        match series.iter_mut().find(|s| s.name == row.method) {
+            Some(found) => found.points.push(point),
+            None => series.push(Series {
+                name: row.method.clone(),
+                points: vec![point],
+                mark: Mark::Dots,
+            }),
+        }
+    }
+    let points: Vec<(f64, f64)> = series.iter().flat_map(|s| s.points.clone()).collect();
+    if points.is_empty() {
+        return None;
+    }
+    series.push(Series {
+        name: "Pareto front".into(),
+        points: pareto_front(&points),
+        mark: Mark::Line,
+    });
+    let error = match scene.measure {
+        Measure::Positions => {
+            format!("RMS position error at {:.1} s, m", COMPARED_TICKS[COMPARED] as f64 / 60.0)
+        }
+        Measure::Rest | Measure::Statistics => "error of the mean strain".into(),
+    };
+    Some(Plot {
+        name: format!("pareto_{}_{}", scene.name, scene.columns),
+        title: format!("{} {n} × {n}", scene.name, n = scene.columns),
+        axes: ["time of a tick, µs".into(), error],
+        logarithmic: true,
+        series,
+    })
+}

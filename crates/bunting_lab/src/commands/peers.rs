@@ -1,0 +1,116 @@
+//! This project beside other engines, in the same run on the same scenes.
+
+use bunting_solver::instruction_set;
+use serde_json::json;
+
+use super::progress;
+use crate::{
+    output::{
+        Outcome,
+        table::{Table, figure, figure_or_dash},
+    },
+    peers::{
+        Engine,
+        measurement::{self, Row, Shock},
+    },
+    scenes::Scene,
+};
+
+/// Vertices along each side.
+const SIZE: usize = 33;
+/// The same where it is to be quick.
+const QUICK_SIZE: usize = 9;
+
+/// Hangs a cloth by its top, its side and its corners in every engine, and shocks it.
+#[must_use]
+pub fn run(quick: bool) -> Outcome {
+    let n = if quick { QUICK_SIZE } else { SIZE };
+    let scenes = [Scene::hang_top(n), Scene::hang_side(n), Scene::hang_corners(n)];
+    let engines = Engine::all();
+    let bar = progress(engines.len() * (scenes.len() + 1));
+    let (mut rows, mut shocks) = (Vec::new(), Vec::new());
+    for scene in &scenes {
+        for engine in &engines {
+            bar.set_message(format!("{} {}", scene.name, engine.name));
+            rows.push(measurement::hang(engine, scene));
+            bar.inc(1);
+        }
+    }
+    for engine in engines.iter().filter(|engine| engine.lanes == 1) {
+        bar.set_message(format!("shocks {}", engine.name));
+        shocks.extend(measurement::shocks(engine, &scenes[1]));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Outcome {
+        json: json!({
+            "instruction_set": instruction_set(),
+            "rows": rows,
+            "shocks": shocks,
+        }),
+        tables: vec![row_table(&rows, n), shock_table(&shocks, n)],
+        plots: Vec::new(),
+    }
+}
+
+fn row_table(rows: &[Row], n: usize) -> Table {
+    let cells = |row: &Row| {
+        vec![
+            row.scene.into(),
+            row.engine.into(),
+            row.substeps.to_string(),
+            row.lanes.to_string(),
+            figure(row.ms_per_tick),
+            figure(row.ms_min),
+            figure_or_dash(row.mean_stretch),
+            figure_or_dash(row.max_stretch),
+            figure_or_dash(row.final_speed),
+            row.constraints.into(),
+        ]
+    };
+    Table {
+        name: "peers".into(),
+        title: format!("At rest after 6 s, {n} × {n}, no wind, one core, times of one cloth"),
+        headers: vec![
+            "scene",
+            "engine",
+            "substeps",
+            "lanes",
+            "ms/tick",
+            "ms min",
+            "mean strain",
+            "max strain",
+            "RMS speed m/s",
+            "constraints",
+        ],
+        rows: rows.iter().map(cells).collect(),
+    }
+}
+
+fn shock_table(shocks: &[Shock], n: usize) -> Table {
+    let cells = |shock: &Shock| {
+        vec![
+            shock.shock.into(),
+            shock.engine.into(),
+            shock.substeps.to_string(),
+            if shock.finite { "yes" } else { "no" }.into(),
+            figure(shock.ms),
+            figure_or_dash(shock.worst_stretch),
+            shock.recovery_s.map_or_else(|| "not within 5 s".into(), figure),
+        ]
+    };
+    Table {
+        name: "peers_shocks".into(),
+        title: format!("Shocks of a cloth hung by its side, {n} × {n}"),
+        headers: vec![
+            "shock",
+            "engine",
+            "substeps",
+            "finite",
+            "ms of that tick",
+            "worst strain",
+            "recovered after s",
+        ],
+        rows: shocks.iter().map(cells).collect(),
+    }
+}

@@ -1,0 +1,4 @@
+//! How alike the levels of detail are, and what changing between them does.
+
+pub mod agreement;
+pub mod switches;

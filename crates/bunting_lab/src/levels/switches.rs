@@ -1,0 +1,153 @@
+//! What a change of level does to a flag in the wind.
+//!
+//! Flags fly on at one level while copies of them change to the next, tick after tick. Momentum and
+//! energy are compared before and after the transfer alone; the pop is what can be seen: the distance
+//! between the two surfaces one tick later, at the finer level's vertices.
+
+use bunting_solver::{ClothSnapshot, LevelTransfer, StepSettings};
+use glam::DVec3;
+use serde::Serialize;
+
+use crate::{
+    budget::scheme_name,
+    fleet::Fleet,
+    product,
+    reference::grid::Grid,
+    scenes::{Scene, TICK_RATE},
+    stats,
+};
+
+/// Flags flown at once.
+const FLAGS: usize = 8;
+/// Time that flags fly before the first change, s.
+const SETTLING: f64 = 3.0;
+/// Time between changes, s; no part of a gust's period.
+const INTERVAL: f64 = 0.37;
+/// Pixels that a metre takes at a distance of one metre: 1080 lines over a field of view of 45°.
+pub const PIXELS: f64 = 1303.7;
+
+/// Jumps of one change of level, over many moments of a flight.
+#[derive(Clone, Debug, Serialize)]
+pub struct Switch {
+    /// Scheme.
+    pub scheme: &'static str,
+    /// Vertices along each side before.
+    pub from: usize,
+    /// Vertices along each side after.
+    pub to: usize,
+    /// Root mean square pop, m.
+    pub pop_rms_m: f64,
+    /// Largest pop of a vertex, m, averaged over the moments.
+    pub pop_max_m: f64,
+    /// Distance in metres from which the largest pop is less than a pixel.
+    pub invisible_from_m: f64,
+    /// Change of the momentum over the sum of all its sizes: mean.
+    pub momentum_jump: f64,
+    /// Change of kinetic energy, over the kinetic energy: mean, signed.
+    pub kinetic_jump: f64,
+    /// Change of kinetic, elastic and potential energy over the kinetic energy: mean, signed.
+    pub energy_jump: f64,
+}
+
+/// One change of one flag.
+struct Jump {
+    pop_rms: f64,
+    pop_max: f64,
+    momentum: f64,
+    kinetic: f64,
+    energy: f64,
+}
+
+impl Switch {
+    /// Flags of `from` vertices a side change to `to`, the next level, at `moments` moments.
+    ///
+    /// # Panics
+    ///
+    /// When the two are not neighbours.
+    #[must_use]
+    pub fn of(from: usize, to: usize, settings: StepSettings, moments: usize) -> Self {
+        let mut flying = Fleet::new(Scene::flag(from), FLAGS, settings);
+        let mut changed = Fleet::new(Scene::flag(to), FLAGS, settings);
+        let [fine, coarse] = [from.max(to), from.min(to)].map(|n| product::fabric(&Scene::flag(n)));
+        let transfer = LevelTransfer::between(&fine, &coarse).expect("neighbours");
+        let change = |state: &ClothSnapshot| {
+            if to < from { transfer.restrict(state) } else { transfer.prolong(state) }
+        };
+        // Both surfaces at the finer level's vertices.
+        let refined = |state: ClothSnapshot| {
+            let is_coarse = state.positions.len() == coarse.particle_count();
+            if is_coarse { transfer.prolong(&state) } else { state }
+        };
+        let grids = [from, to].map(|n| Grid::new(&Scene::flag(n)));
+        let ticks = |seconds: f64| (seconds * f64::from(TICK_RATE)) as usize;
+        flying.advance(ticks(SETTLING));
+        let mut jumps = Vec::new();
+        for _ in 0..moments {
+            flying.advance(ticks(INTERVAL));
+            let before: Vec<_> = flying.snapshots().collect();
+            changed.take_over(&flying, change);
+            let after: Vec<_> = changed.snapshots().collect();
+            flying.advance(1);
+            changed.advance(1);
+            let surfaces = flying.snapshots().zip(changed.snapshots());
+            for ((before, after), (stayed, changed)) in before.iter().zip(&after).zip(surfaces) {
+                let moved = distances(&refined(stayed), &refined(changed));
+                let [old, new] = [(&grids[0], before), (&grids[1], after)].map(Motion::of);
+                jumps.push(Jump {
+                    pop_rms: stats::mean(&moved.iter().map(|d| d * d).collect::<Vec<_>>()).sqrt(),
+                    pop_max: moved.into_iter().fold(0.0, f64::max),
+                    momentum: (new.momentum - old.momentum).length() / old.throng,
+                    kinetic: (new.kinetic - old.kinetic) / old.kinetic,
+                    energy: (new.total - old.total) / old.kinetic,
+                });
+            }
+        }
+        let average = |figure: fn(&Jump) -> f64| {
+            stats::mean(&jumps.iter().map(figure).collect::<Vec<f64>>())
+        };
+        let pop_max_m = average(|jump| jump.pop_max);
+        Self {
+            scheme: scheme_name(settings),
+            from,
+            to,
+            pop_rms_m: average(|jump| jump.pop_rms),
+            pop_max_m,
+            invisible_from_m: pop_max_m * PIXELS,
+            momentum_jump: average(|jump| jump.momentum),
+            kinetic_jump: average(|jump| jump.kinetic),
+            energy_jump: average(|jump| jump.energy),
+        }
+    }
+}
+
+fn distances(a: &ClothSnapshot, b: &ClothSnapshot) -> Vec<f64> {
+    a.positions.iter().zip(&b.positions).map(|(a, b)| f64::from(a.distance(*b))).collect()
+}
+
+/// Momentum and energy of a cloth, as the reference reckons them.
+struct Motion {
+    /// Momentum, kg·m/s.
+    momentum: DVec3,
+    /// Sum of the sizes of all particles' momenta, kg·m/s.
+    throng: f64,
+    /// Kinetic energy, J.
+    kinetic: f64,
+    /// Kinetic, elastic and potential energy, J.
+    total: f64,
+}
+
+impl Motion {
+    fn of((grid, state): (&Grid, &ClothSnapshot)) -> Self {
+        let positions: Vec<DVec3> = state.positions.iter().map(|x| x.as_dvec3()).collect();
+        let velocities: Vec<DVec3> = state.velocities.iter().map(|v| v.as_dvec3()).collect();
+        let momenta = || velocities.iter().zip(&grid.masses).map(|(&v, &mass)| v * mass);
+        let kinetic = grid.kinetic_energy(&velocities);
+        let height = grid.gravity_energy(crate::scenes::GRAVITY, &positions);
+        Self {
+            momentum: momenta().sum(),
+            throng: momenta().map(DVec3::length).sum(),
+            kinetic,
+            total: kinetic + grid.elastic_energy(&positions) + height,
+        }
+    }
+}

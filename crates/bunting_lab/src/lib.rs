@@ -1,0 +1,25 @@
+//! The measuring bench of `bevy_bunting`: what the cloth does, set beside what it should do.
+//!
+//! Nothing in [`scenes`], [`mod@reference`], [`baselines`] or [`oracles`] shares code with the product, so
+//! that agreement between them means something. Lengths are in metres, times in seconds, masses in
+//! kilograms unless said otherwise.
+
+pub mod baselines;
+pub mod budget;
+pub mod cli;
+pub mod commands;
+pub mod contender;
+pub mod fleet;
+pub mod levels;
+pub mod observation;
+pub mod oracles;
+pub mod output;
+#[cfg(feature = "peers")]
+pub mod peers;
+pub mod product;
+pub mod reference;
+pub mod scenes;
+pub mod simulation;
+pub mod stability;
+pub mod stats;
+pub mod timing;

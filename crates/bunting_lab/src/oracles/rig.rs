@@ -1,0 +1,83 @@
+//! What the trials have in common: strips, and how they are read.
+
+use bunting_solver::{Scheme, StepSettings};
+use glam::DVec3;
+
+use super::{Case, specimen::Specimen};
+use crate::{
+    reference::grid::Grid,
+    scenes::{Fabric, Pins, Pose, Scene, TICK_RATE},
+};
+
+/// The scheme under trial as users meet it.
+pub const YARNS: StepSettings = StepSettings::yarns(3);
+/// The thesis's scheme, with enough substeps to be compared.
+pub const GAUSS_SEIDEL: StepSettings = StepSettings::gauss_seidel(20);
+/// Distance of an observed order of convergence from the expected.
+const ORDER: f64 = 0.3;
+
+/// A fabric whose columns hang each for itself: no shear, no bending, next to no warp.
+#[must_use]
+pub fn chains(stiffness: f64) -> Fabric {
+    Fabric { stretch: [1e-2, stiffness], shear: 0.0, bending: 0.0, ..Fabric::STANDARD }
+}
+
+/// A strip of two columns with `segments` square cells over `length` metres.
+#[must_use]
+pub fn strip(segments: usize, length: f64, pins: Pins, pose: Pose, fabric: Fabric) -> Scene {
+    Scene {
+        columns: 2,
+        rows: segments + 1,
+        width: length / segments as f64,
+        height: length,
+        pins,
+        pose,
+        fabric,
+        ..Scene::swing(segments + 1)
+    }
+}
+
+/// Mean position of row `j` of a scene, m.
+#[must_use]
+pub fn row(scene: &Scene, specimen: &dyn Specimen, j: usize) -> DVec3 {
+    let row = &specimen.positions()[j * scene.columns..(j + 1) * scene.columns];
+    row.iter().map(|x| x.as_dvec3()).sum::<DVec3>() / scene.columns as f64
+}
+
+/// Masses of the first column of a strip from row 1 on, kg. Thirds of alternating triangles make them
+/// alternate, so that each column is a chain of its own.
+#[must_use]
+pub fn column_masses(scene: &Scene) -> Vec<f64> {
+    Grid::new(scene).masses.into_iter().step_by(scene.columns).skip(1).collect()
+}
+
+/// Advances by `seconds`.
+pub fn run(specimen: &mut dyn Specimen, seconds: f64) {
+    for _ in 0..(seconds * f64::from(TICK_RATE)).round() as usize {
+        specimen.tick();
+    }
+}
+
+/// Length of a substep, s.
+#[must_use]
+pub fn substep(settings: StepSettings) -> f64 {
+    1.0 / (f64::from(TICK_RATE) * f64::from(settings.substeps))
+}
+
+/// Scheme and substeps, for names of cases.
+#[must_use]
+pub fn label(settings: StepSettings) -> String {
+    let scheme = match settings.scheme {
+        Scheme::GaussSeidel => "Gauss–Seidel",
+        Scheme::Yarns => "yarns",
+    };
+    format!("{scheme} {}", settings.substeps)
+}
+
+/// The order of convergence that errors show of which each is at half the size of the one before.
+#[must_use]
+pub fn order(name: impl Into<String>, expected: f64, errors: &[f64]) -> Case {
+    let halvings = errors.len() - 1;
+    let observed = (errors[0] / errors[halvings]).abs().log2() / halvings as f64;
+    Case::new(name, expected, observed, ORDER / expected)
+}

@@ -1,0 +1,96 @@
+//! A sheet that falls or flies broadside on through still air.
+
+use bunting_solver::StepSettings;
+use glam::DVec3;
+
+use crate::{
+    oracles::{
+        Case,
+        drag::BroadsideFall,
+        rig::{YARNS, label, order, run, substep},
+        specimen::{Mount, Specimen},
+    },
+    scenes::{Air, Fabric, GRAVITY, Pins, Scene},
+};
+
+/// σ = 0.1 kg/m², C_d = 1.2, ρ = 1.225 kg/m³.
+const FALL: BroadsideFall = BroadsideFall { gravity: GRAVITY, density: 0.1, drag: 1.2 * 1.225 };
+/// Speed at which explicit drag turns round within 7 ms, m/s.
+const FAST: f64 = 20.0;
+/// Time for which the fast sheet is dragged, s.
+const DRAGGED: f64 = 0.1;
+/// The implicit update is exact for drag alone: what is left is rounding, in single precision.
+const EXACT: f64 = 1e-4;
+/// Gauss–Seidel with few substeps: its air is cheap.
+const GAUSS_SEIDEL: StepSettings = StepSettings::gauss_seidel(10);
+
+/// Fall from rest, and drag alone.
+pub fn cases(mount: &Mount) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for settings in [YARNS, GAUSS_SEIDEL] {
+        let fall = |seconds: f64| {
+            let mut specimen = start(mount, GRAVITY, 0.0, settings);
+            run(specimen.as_mut(), seconds);
+            specimen
+        };
+        // Gravity and drag in turn are of first order: the terminal speed is too high by gh/2v_t, and
+        // a fall from rest misses up to twice as much.
+        let tolerance = GRAVITY * substep(settings) / FALL.terminal_speed();
+        let label = label(settings);
+        cases.push(Case::new(
+            format!("broadside fall v(0.1), N = 4, {label}, m/s"),
+            FALL.speed(0.1),
+            -mean(fall(0.1).velocities()).y,
+            tolerance,
+        ));
+        for seconds in [0.5, 1.0] {
+            cases.push(Case::new(
+                format!("broadside fall y({seconds}), N = 4, {label}, m"),
+                FALL.depth(seconds),
+                -mean(fall(seconds).positions()).y,
+                tolerance,
+            ));
+        }
+        cases.push(Case::new(
+            format!("drag alone from {FAST} m/s, N = 4, {label}, m/s"),
+            FALL.dragged(FAST, DRAGGED),
+            dragged(mount, settings),
+            EXACT,
+        ));
+    }
+    for scheme in [StepSettings::yarns as fn(u32) -> StepSettings, StepSettings::gauss_seidel] {
+        let errors = [2, 4, 8].map(|substeps| {
+            let mut specimen = start(mount, GRAVITY, 0.0, scheme(substeps));
+            run(specimen.as_mut(), 1.0);
+            -mean(specimen.positions()).y - FALL.depth(1.0)
+        });
+        let name = format!("broadside fall y(1), order in the step, {}", label(scheme(8)));
+        cases.push(order(name, 1.0, &errors));
+    }
+    cases
+}
+
+/// Speed left of the fast sheet, m/s.
+fn dragged(mount: &Mount, settings: StepSettings) -> f64 {
+    let mut specimen = start(mount, 0.0, FAST, settings);
+    run(specimen.as_mut(), DRAGGED);
+    mean(specimen.velocities()).y
+}
+
+/// A free level sheet that rises at `speed` m/s.
+fn start(mount: &Mount, gravity: f64, speed: f64, settings: StepSettings) -> Box<dyn Specimen> {
+    let scene = Scene {
+        fabric: Fabric { density: FALL.density, ..Fabric::STANDARD },
+        air: Air { pressure: FALL.drag, ..Air::VACUUM },
+        pins: Pins::Free,
+        gravity,
+        ..Scene::swing(5)
+    };
+    let mut specimen = mount(&scene, settings);
+    specimen.place(&scene.positions(), &vec![DVec3::Y * speed; scene.vertices()]);
+    specimen
+}
+
+fn mean(vectors: &[glam::Vec3]) -> DVec3 {
+    vectors.iter().map(|v| v.as_dvec3()).sum::<DVec3>() / vectors.len() as f64
+}

@@ -1,0 +1,43 @@
+//! Each closed form put to a cloth.
+//!
+//! A tolerance is what the discretisation is known to miss, plus what single precision rounds; where
+//! it comes from is said beside it.
+
+mod cantilever;
+mod catenary;
+mod drag;
+mod fall;
+mod modes;
+mod momentum;
+mod pendulum;
+mod spin;
+mod stretch;
+
+use super::{Case, specimen::Mount};
+
+/// A family of cases of one closed form.
+pub type Trial = fn(&Mount) -> Vec<Case>;
+
+/// Every trial with its name.
+pub const ALL: [(&str, Trial); 9] = [
+    ("free fall", fall::cases),
+    ("static stretch", stretch::cases),
+    ("catenary", catenary::cases),
+    ("cantilever", cantilever::cases),
+    ("hanging modes", modes::cases),
+    ("stiff pendulum", pendulum::cases),
+    ("drag", drag::cases),
+    ("momentum", momentum::cases),
+    ("spin", spin::cases),
+];
+
+/// Cases of the trial of this name.
+///
+/// # Panics
+///
+/// When there is none.
+#[must_use]
+pub fn named(name: &str, mount: &Mount) -> Vec<Case> {
+    let (_, trial) = ALL.iter().find(|(known, _)| *known == name).expect("a known trial");
+    trial(mount)
+}

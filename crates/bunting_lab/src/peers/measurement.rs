@@ -1,0 +1,160 @@
+//! What is measured of each engine.
+
+use glam::DVec3;
+use serde::Serialize;
+
+use super::{Engine, Peer};
+use crate::{
+    reference::grid::Grid,
+    scenes::{Scene, TICK_RATE},
+    stats::{self, Strain},
+    timing::Timing,
+};
+
+/// Ticks before time is taken.
+const WARM_UP: usize = 3;
+/// Sideways jump of what holds the cloth, m.
+const TELEPORT: f32 = 10.0;
+/// Length of a tick that took too long, s.
+const HITCH: f32 = 0.5;
+/// Time to recover, s.
+const PATIENCE: f64 = 5.0;
+/// A cloth has recovered when no link is longer by more than this than before the shock.
+const RECOVERED: f64 = 0.02;
+
+/// One engine on one scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// Engine.
+    pub engine: &'static str,
+    /// What its constraints are.
+    pub constraints: &'static str,
+    /// Scene.
+    pub scene: &'static str,
+    /// Vertices along each side.
+    pub n: usize,
+    /// Substeps a tick.
+    pub substeps: u32,
+    /// Cloths advanced at once.
+    pub lanes: usize,
+    /// Median time of a tick of one cloth, ms.
+    pub ms_per_tick: f64,
+    /// Shortest time of a tick of one cloth, ms.
+    pub ms_min: f64,
+    /// Mean of |ε| over warp and weft at rest.
+    pub mean_stretch: Option<f64>,
+    /// Its maximum.
+    pub max_stretch: Option<f64>,
+    /// Root mean square velocity at the end, m/s.
+    pub final_speed: Option<f64>,
+}
+
+/// What a shock does to one engine.
+#[derive(Clone, Debug, Serialize)]
+pub struct Shock {
+    /// Engine.
+    pub engine: &'static str,
+    /// Substeps a tick.
+    pub substeps: u32,
+    /// Name of the shock.
+    pub shock: &'static str,
+    /// Whether all positions stayed finite.
+    pub finite: bool,
+    /// Time of the tick in which it happens, ms, of all lanes.
+    pub ms: f64,
+    /// Largest |ε| over warp and weft from then on.
+    pub worst_stretch: Option<f64>,
+    /// Time until no link is much longer than before, s; none within 5 s.
+    pub recovery_s: Option<f64>,
+}
+
+/// Runs the scene to its end.
+#[must_use]
+pub fn hang(engine: &Engine, scene: &Scene) -> Row {
+    let grid = Grid::new(scene);
+    let mut cloth = (engine.start)(scene);
+    let mut time = Timing::default();
+    let (mut means, mut largest) = (Vec::new(), 0.0_f64);
+    for tick in 0..scene.ticks() {
+        if tick < WARM_UP {
+            cloth.tick();
+        } else {
+            time.time(|| cloth.tick());
+        }
+        if tick >= scene.window_start() {
+            let strain = strain(&grid, cloth.as_ref());
+            means.push(strain.mean);
+            largest = largest.max(strain.max);
+        }
+    }
+    let speeds: Vec<DVec3> = cloth.velocities().iter().map(|v| v.as_dvec3()).collect();
+    Row {
+        engine: engine.name,
+        constraints: engine.constraints,
+        scene: scene.name,
+        n: scene.columns,
+        substeps: engine.substeps,
+        lanes: engine.lanes,
+        ms_per_tick: time.median() * 1e-3 / engine.lanes as f64,
+        ms_min: time.min() * 1e-3 / engine.lanes as f64,
+        mean_stretch: finite(stats::mean(&means)),
+        max_stretch: finite(largest),
+        final_speed: finite(stats::rms_length(&speeds)),
+    }
+}
+
+/// Teleports the cloth at rest, and another time lets one tick take half a second.
+#[must_use]
+pub fn shocks(engine: &Engine, scene: &Scene) -> Vec<Shock> {
+    let teleport = |cloth: &mut dyn Peer| cloth.teleport(TELEPORT);
+    let hitch = |cloth: &mut dyn Peer| cloth.hitch(HITCH);
+    vec![
+        shock(engine, scene, "teleport by 10 m", teleport),
+        shock(engine, scene, "hitch of 0.5 s", hitch),
+    ]
+}
+
+fn shock(
+    engine: &Engine,
+    scene: &Scene,
+    name: &'static str,
+    happen: impl Fn(&mut dyn Peer),
+) -> Shock {
+    let grid = Grid::new(scene);
+    let mut cloth = (engine.start)(scene);
+    (0..scene.ticks()).for_each(|_| cloth.tick());
+    let calm = strain(&grid, cloth.as_ref()).max + RECOVERED;
+    let mut time = Timing::default();
+    time.time(|| happen(cloth.as_mut()));
+    let mut worst = 0.0_f64;
+    let mut recovery = None;
+    for tick in 0..(PATIENCE * f64::from(TICK_RATE)) as usize {
+        let strain = strain(&grid, cloth.as_ref()).max;
+        // A maximum would pass over what is not a number.
+        worst = if strain.is_finite() { worst.max(strain) } else { f64::INFINITY };
+        if strain > calm || !strain.is_finite() {
+            recovery = None;
+        } else if recovery.is_none() {
+            recovery = Some(tick as f64 / f64::from(TICK_RATE));
+        }
+        cloth.tick();
+    }
+    Shock {
+        engine: engine.name,
+        substeps: engine.substeps,
+        shock: name,
+        finite: cloth.positions().iter().all(|x| x.is_finite()),
+        ms: time.median() * 1e-3,
+        worst_stretch: finite(worst),
+        recovery_s: recovery,
+    }
+}
+
+fn strain(grid: &Grid, cloth: &dyn Peer) -> Strain {
+    let positions: Vec<DVec3> = cloth.positions().iter().map(|x| x.as_dvec3()).collect();
+    Strain::of(grid.strains(&positions))
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

@@ -1,0 +1,71 @@
+//! Other engines on the same scenes, with the same particles and as nearly the same constraints as
+//! their interfaces allow.
+
+mod bunting;
+pub mod measurement;
+pub mod rapier;
+
+use crate::{product::Product, scenes::Scene, simulation::Simulation};
+use bunting_solver::{LaneCount, StepSettings};
+use rapier::{Elasticity, Rapier};
+
+/// A cloth that can be treated badly.
+pub trait Peer: Simulation {
+    /// Moves what holds the cloth sideways by some metres within the next tick, and ticks.
+    fn teleport(&mut self, metres: f32);
+    /// Advances by one tick of some seconds.
+    fn hitch(&mut self, seconds: f32);
+}
+
+/// An engine with its settings.
+pub struct Engine {
+    /// Name.
+    pub name: &'static str,
+    /// Substeps a tick.
+    pub substeps: u32,
+    /// Cloths advanced at once.
+    pub lanes: usize,
+    /// What its constraints are.
+    pub constraints: &'static str,
+    /// Starts it on a scene.
+    pub start: Box<dyn Fn(&Scene) -> Box<dyn Peer>>,
+}
+
+/// Rapier's substeps by default.
+const RAPIER_SUBSTEPS: usize = 4;
+/// Substeps that bring rapier's stretch near what its solver can do.
+const RAPIER_MANY_SUBSTEPS: usize = 20;
+
+impl Engine {
+    /// Everything that is compared.
+    #[must_use]
+    pub fn all() -> Vec<Self> {
+        let rapier = |name, elasticity: Elasticity, substeps: usize| Self {
+            name,
+            substeps: substeps as u32,
+            lanes: 1,
+            constraints: elasticity.description(),
+            start: Box::new(move |scene| Box::new(Rapier::new(scene, elasticity, substeps))),
+        };
+        vec![
+            Self::product("bunting yarns", StepSettings::yarns(3), LaneCount::One),
+            Self::product("bunting yarns", StepSettings::yarns(3), LaneCount::Eight),
+            Self::product("bunting Gauss–Seidel", StepSettings::gauss_seidel(10), LaneCount::One),
+            Self::product("bunting Gauss–Seidel", StepSettings::gauss_seidel(10), LaneCount::Eight),
+            rapier("rapier 0.36", Elasticity::Constraints, RAPIER_SUBSTEPS),
+            rapier("rapier 0.36", Elasticity::Constraints, RAPIER_MANY_SUBSTEPS),
+            rapier("rapier 0.36 FEM", Elasticity::Fem, RAPIER_SUBSTEPS),
+        ]
+    }
+
+    fn product(name: &'static str, settings: StepSettings, lanes: LaneCount) -> Self {
+        let product = Product { settings, lanes };
+        Self {
+            name,
+            substeps: settings.substeps,
+            lanes: lanes.get(),
+            constraints: "links of the material's stiffness, bending 2e-5 N·m",
+            start: Box::new(move |scene| Box::new(product.start(scene))),
+        }
+    }
+}

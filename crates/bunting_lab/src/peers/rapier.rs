@@ -1,0 +1,136 @@
+//! Rapier's soft bodies.
+//!
+//! Particles, masses and links are this project's. A link's spring is given by a natural frequency, and
+//! √(k (w₁ + w₂))/2π makes its stiffness the material's; its damping ratio is rapier's own default, 1.
+//! Bending is rapier's dihedral angle of its default softness, 10 Hz, which at 33 × 33 is near the
+//! 2·10⁻⁵ N·m of the scenes. There is no wind.
+
+use std::f32::consts::TAU;
+
+use glam::Vec3;
+use rapier3d::prelude::*;
+
+use super::Peer;
+use crate::{product, scenes::Scene, simulation::Simulation};
+
+/// Damping ratio of rapier's default material.
+const DAMPING_RATIO: f32 = 1.0;
+
+/// Which of its solvers rapier uses.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Elasticity {
+    /// Constraints, projected in substeps.
+    Constraints,
+    /// Implicit, by conjugate gradients.
+    Fem,
+}
+
+impl Elasticity {
+    /// What the constraints are, for a table.
+    #[must_use]
+    pub const fn description(self) -> &'static str {
+        match self {
+            Self::Constraints => "springs of the same stiffness, damping ratio 1, dihedrals 10 Hz",
+            Self::Fem => "the same springs and dihedrals, solved implicitly",
+        }
+    }
+}
+
+/// A scene in a world of its own.
+pub struct Rapier {
+    world: PhysicsWorld,
+    cloth: SoftBodyHandle,
+    pinned: Vec<usize>,
+    positions: Vec<Vec3>,
+    velocities: Vec<Vec3>,
+}
+
+impl Rapier {
+    /// The scene at its start.
+    #[must_use]
+    pub fn new(scene: &Scene, elasticity: Elasticity, substeps: usize) -> Self {
+        let fabric = product::fabric(scene);
+        let material = product::material(scene);
+        let masses: Vec<f32> =
+            fabric.particle_areas().iter().map(|area| area * material.area_density).collect();
+        let inverse = |particle: u32| {
+            let particle = particle as usize;
+            if fabric.is_pinned(particle) { 0.0 } else { masses[particle].recip() }
+        };
+        let softness = |link: &bunting_solver::Link| {
+            let stiffness = fabric.link_classes()[link.class as usize].stiffness(&material);
+            let [a, b] = link.particles;
+            let rate = (stiffness * (inverse(a) + inverse(b))).sqrt();
+            SpringCoefficients::new(rate / TAU, DAMPING_RATIO)
+        };
+        let positions = scene.positions().iter().map(|x| vector(x.as_vec3())).collect();
+        let pinned: Vec<usize> = (0..scene.vertices()).filter(|&i| scene.is_pinned(i)).collect();
+        let mut cloth = SoftBodyBuilder::new(positions)
+            .edges(fabric.links().iter().map(|link| link.particles).collect())
+            .surface(fabric.triangles().to_vec())
+            .masses(masses.clone())
+            .pinned_particles(pinned.iter().map(|&particle| particle as u32))
+            .linear_damping(scene.damping as f32)
+            .can_sleep(false)
+            .no_surface_collider()
+            .solver(match elasticity {
+                Elasticity::Constraints => SoftBodySolver::Constraints,
+                Elasticity::Fem => SoftBodySolver::Fem,
+            });
+        cloth.edge_softness = (0..).zip(fabric.links().iter().map(softness)).collect();
+        let dihedrals = cloth.surface_dihedrals();
+        let mut world = PhysicsWorld::new();
+        world.gravity = Vector::new(0.0, -scene.gravity as f32, 0.0);
+        world.integration_parameters.num_solver_iterations = substeps;
+        let cloth = world.insert_soft_body(cloth.dihedrals(dihedrals));
+        let mut rapier =
+            Self { world, cloth, pinned, positions: Vec::new(), velocities: Vec::new() };
+        rapier.look();
+        rapier
+    }
+
+    fn look(&mut self) {
+        let cloth = &self.world.soft_bodies[self.cloth];
+        let plain = |v: Vector| Vec3::new(v.x, v.y, v.z);
+        self.positions = cloth.particle_positions().map(plain).collect();
+        self.velocities = cloth.particle_velocities().map(plain).collect();
+    }
+}
+
+/// Rapier has another version of glam.
+fn vector(v: Vec3) -> Vector {
+    Vector::new(v.x, v.y, v.z)
+}
+
+impl Simulation for Rapier {
+    fn tick(&mut self) {
+        self.world.step();
+        self.look();
+    }
+
+    fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    fn velocities(&self) -> &[Vec3] {
+        &self.velocities
+    }
+}
+
+impl Peer for Rapier {
+    fn teleport(&mut self, metres: f32) {
+        let cloth = &mut self.world.soft_bodies[self.cloth];
+        for &particle in &self.pinned {
+            let target = cloth.particle_position(particle) + Vector::new(metres, 0.0, 0.0);
+            cloth.set_particle_kinematic_target(particle, target);
+        }
+        self.tick();
+    }
+
+    fn hitch(&mut self, seconds: f32) {
+        let tick = self.world.integration_parameters.dt;
+        self.world.integration_parameters.dt = seconds;
+        self.tick();
+        self.world.integration_parameters.dt = tick;
+    }
+}

@@ -1,0 +1,47 @@
+//! The binary as a user meets it.
+
+use std::process::{Command, Output};
+
+fn lab(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_bunting_lab"))
+        .args(arguments)
+        .output()
+        .expect("the binary runs")
+}
+
+#[test]
+fn bad_arguments_exit_with_two() {
+    for arguments in
+        [&["nonsense"][..], &[], &["pareto", "--sizes", "1"], &["pareto", "--scenes", "moon"]]
+    {
+        let output = lab(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(!output.stderr.is_empty() && output.stdout.is_empty(), "{arguments:?}");
+    }
+}
+
+#[test]
+fn pareto_prints_one_json_object_and_writes_files() {
+    let folder = std::env::temp_dir().join(format!("bunting-lab-pareto-{}", std::process::id()));
+    let out = folder.to_str().expect("a plain path");
+    let output = lab(&["pareto", "--quick", "--scenes", "swing", "--json", "--out", out]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    let rows = json["rows"].as_array().expect("rows");
+    assert!(rows.len() >= 10);
+    for row in rows {
+        for key in ["scene", "n", "method", "substeps", "passes", "lanes", "stable"] {
+            assert!(!row[key].is_null(), "{key} in {row}");
+        }
+        let stable = row["stable"].as_bool() == Some(true);
+        for key in
+            ["us_per_cloth_tick", "rms_error_m", "mean_stretch", "max_stretch", "strain_error"]
+        {
+            assert!(!stable || row[key].is_number(), "{key} in {row}");
+        }
+    }
+    assert!(
+        folder.join("pareto_swing_9.csv").exists() && folder.join("pareto_swing_9.svg").exists()
+    );
+    std::fs::remove_dir_all(folder).expect("the folder is ours");
+}
