@@ -10,7 +10,7 @@
 //! adds energy in still air, and neither does the mean.
 
 use crate::constants::LEAST_AREA_SQUARED;
-use crate::fabric::Fabric;
+use crate::fabric::{Fabric, Patch};
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
 use crate::parameters::Parameters;
@@ -45,37 +45,71 @@ struct Air<'a, P: Pack> {
 impl<P: Pack> Kernel<P> for Air<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let wind: V3<L> = V3::load(token, &self.parameters.wind);
-        let pressure = L::load(token, &self.parameters.pressure);
-        let friction = L::load(token, &self.parameters.friction);
-        let rubs = L::splat(token, 0.0).lt(friction);
-        let any_rubs = rubs.any();
-        let third = L::splat(token, 1.0 / 3.0);
-        let one = L::splat(token, 1.0);
-        let least = L::splat(token, LEAST_AREA_SQUARED);
-        for (corners, &area) in self.fabric.triangles().iter().zip(self.fabric.triangle_areas()) {
-            let [a, b, c] = corners.map(|corner| corner as usize);
-            let at: [V3<L>; 3] = [a, b, c].map(|corner| V3::load(token, &self.position[corner]));
-            let going: [V3<L>; 3] = [a, b, c].map(|corner| V3::load(token, &self.velocity[corner]));
-            let u = wind - (going[0] + going[1] + going[2]) * third;
-            let normal = (at[1] - at[0]).cross(at[2] - at[0]);
-            let squared = normal.dot(normal).max(least);
-            let across = u.dot(normal);
-            let braking = pressure * across.abs();
-            // (u·n) a/√(1 + a²) n with n not normalised.
-            let root = (squared + braking * braking).sqrt();
-            let mut change = normal * (across * braking / (squared * root));
-            if any_rubs {
-                let along = u - normal * (across / squared);
-                let rub = friction * friction * u.dot(u);
-                let rubbed = change + along * (rub / (one + rub)).sqrt();
-                change = rubbed.or_where_not(rubs, change);
-            }
-            let share = change * L::splat(token, area / 3.0);
-            for corner in [a, b, c] {
+        let air = Stream::<L>::load(token, self.parameters);
+        for Patch { corners, shares } in self.fabric.patches() {
+            let corners = corners.map(|corner| corner as usize);
+            let [a, b, c, d]: [V3<L>; 4] =
+                corners.map(|corner| V3::load(token, &self.position[corner]));
+            let [va, vb, vc, vd]: [V3<L>; 4] =
+                corners.map(|corner| V3::load(token, &self.velocity[corner]));
+            let (ab, ac, ad) = (b - a, c - a, d - a);
+            let shared = va + vc;
+            let first = air.change(ab.cross(ac), shared + vb) * L::splat(token, shares[0]);
+            let second = air.change(ac.cross(ad), shared + vd) * L::splat(token, shares[1]);
+            let both = first + second;
+            for (corner, impulse) in corners.into_iter().zip([both, first, both, second]) {
                 let sum: V3<L> = V3::load(token, &self.impulse[corner]);
-                (sum + share).store(&mut self.impulse[corner]);
+                (sum + impulse).store(&mut self.impulse[corner]);
             }
         }
+    }
+}
+
+/// The air as a triangle meets it.
+struct Stream<L: Lane> {
+    wind: V3<L>,
+    pressure: L,
+    friction: L,
+    rubs: L::Mask,
+    any_rubs: bool,
+    third: L,
+    one: L,
+    least: L,
+}
+
+impl<L: Lane> Stream<L> {
+    #[inline(always)]
+    fn load(token: L::Token, parameters: &Parameters<L::Pack>) -> Self {
+        let friction = L::load(token, &parameters.friction);
+        let rubs = L::splat(token, 0.0).lt(friction);
+        Self {
+            wind: V3::load(token, &parameters.wind),
+            pressure: L::load(token, &parameters.pressure),
+            friction,
+            rubs,
+            any_rubs: rubs.any(),
+            third: L::splat(token, 1.0 / 3.0),
+            one: L::splat(token, 1.0),
+            least: L::splat(token, LEAST_AREA_SQUARED),
+        }
+    }
+
+    /// Change of velocity of a triangle in this substep, given a normal of any length and the sum of
+    /// its corners' velocities.
+    #[inline(always)]
+    fn change(&self, normal: V3<L>, velocities: V3<L>) -> V3<L> {
+        let u = self.wind - velocities * self.third;
+        let squared = normal.dot(normal).max(self.least);
+        let across = u.dot(normal);
+        let braking = self.pressure * across.abs();
+        // (u·n) a/√(1 + a²) n with n not normalised.
+        let root = (squared + braking * braking).sqrt();
+        let pressed = normal * (across * braking / (squared * root));
+        if !self.any_rubs {
+            return pressed;
+        }
+        let along = u - normal * (across / squared);
+        let rub = self.friction * self.friction * u.dot(u);
+        (pressed + along * (rub / (self.one + rub)).sqrt()).or_where_not(self.rubs, pressed)
     }
 }

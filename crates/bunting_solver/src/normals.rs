@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::constants::LEAST_AREA_SQUARED;
+use crate::fabric::Patch;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
 use crate::vector::{Pack3, V3, splat3};
@@ -12,7 +13,7 @@ impl<P: Pack> LaneBatch<P> {
     pub fn compute_normals(&mut self) {
         self.normal.fill(splat3(Vec3::ZERO));
         P::run(Normals {
-            triangles: self.fabric.triangles(),
+            patches: self.fabric.patches(),
             position: &self.position,
             normal: &mut self.normal,
         });
@@ -20,7 +21,7 @@ impl<P: Pack> LaneBatch<P> {
 }
 
 struct Normals<'a, P: Pack> {
-    triangles: &'a [[u32; 3]],
+    patches: &'a [Patch],
     position: &'a [Pack3<P>],
     normal: &'a mut [Pack3<P>],
 }
@@ -28,11 +29,14 @@ struct Normals<'a, P: Pack> {
 impl<P: Pack> Kernel<P> for Normals<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        for corners in self.triangles {
-            let [a, b, c] = corners.map(|corner| corner as usize);
-            let at: [V3<L>; 3] = [a, b, c].map(|corner| V3::load(token, &self.position[corner]));
-            let doubled = (at[1] - at[0]).cross(at[2] - at[0]);
-            for corner in [a, b, c] {
+        for patch in self.patches {
+            let corners = patch.corners.map(|corner| corner as usize);
+            let [a, b, c, d]: [V3<L>; 4] =
+                corners.map(|corner| V3::load(token, &self.position[corner]));
+            let (ab, ac, ad) = (b - a, c - a, d - a);
+            let (first, second) = (ab.cross(ac), ac.cross(ad));
+            let both = first + second;
+            for (corner, doubled) in corners.into_iter().zip([both, first, both, second]) {
                 let sum: V3<L> = V3::load(token, &self.normal[corner]);
                 (sum + doubled).store(&mut self.normal[corner]);
             }

@@ -6,7 +6,9 @@ use std::collections::BTreeSet;
 use glam::{Vec2, Vec3};
 
 use super::links::{self, Sheet};
-use super::{Fabric, FabricError, Grid, bending, hinges, strands, tethers, topology, weld, yarns};
+use super::{
+    Fabric, FabricError, Grid, bending, hinges, patches, strands, tethers, topology, weld, yarns,
+};
 
 /// Default distance at which vertices are one particle, as a part of the mesh's extent: the
 /// rounding of 32-bit positions.
@@ -189,6 +191,7 @@ impl FabricBuilder {
         Ok(Fabric {
             rest,
             uv,
+            patches: patches::patches(&triangles, &triangle_areas),
             triangles,
             triangle_areas,
             particle_of_vertex: welded.particle_of_vertex,

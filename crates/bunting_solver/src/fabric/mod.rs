@@ -12,6 +12,7 @@ mod grid;
 mod hinges;
 mod links;
 mod material;
+mod patches;
 mod strands;
 mod tethers;
 mod topology;
@@ -20,6 +21,7 @@ mod yarns;
 
 use glam::{Vec2, Vec3};
 
+pub(crate) use patches::Patch;
 pub(crate) use strands::{ABREAST, Strand, StrandColour, StrandLink};
 pub(crate) use tethers::Pin;
 
@@ -43,6 +45,7 @@ pub struct Fabric {
     uv: Vec<Vec2>,
     triangles: Vec<[u32; 3]>,
     triangle_areas: Vec<f32>,
+    patches: Vec<Patch>,
     particle_of_vertex: Vec<u32>,
     areas: Vec<f32>,
     inverse_areas: Vec<f32>,
@@ -88,6 +91,10 @@ impl Fabric {
     #[must_use]
     pub fn triangle_areas(&self) -> &[f32] {
         &self.triangle_areas
+    }
+
+    pub(crate) fn patches(&self) -> &[Patch] {
+        &self.patches
     }
 
     /// The particle that each vertex of the source mesh was welded into.
