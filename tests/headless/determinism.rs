@@ -7,7 +7,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_tasks::{ComputeTaskPool, TaskPoolBuilder};
 use bevy_transform::prelude::*;
-use bunting_tests::{FLAG, app, bits, run, spawn_flag};
+use bunting_tests::{Bits, FLAG, app, bits, run, spawn_flag};
 
 /// A world with a bit of everything.
 fn furnish(app: &mut App) -> Vec<Entity> {
@@ -26,7 +26,7 @@ fn furnish(app: &mut App) -> Vec<Entity> {
     cloths
 }
 
-fn all_bits(app: &App, cloths: &[Entity]) -> Vec<Vec<[u32; 3]>> {
+fn all_bits(app: &App, cloths: &[Entity]) -> Vec<Bits> {
     cloths.iter().map(|&cloth| bits(app, cloth)).collect()
 }
 

@@ -4,14 +4,14 @@ use bevy_app::prelude::*;
 use bevy_bunting::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_transform::prelude::*;
-use bunting_tests::{FLAG, Seen, app, assert_finite, bits, run, spawn_flag, state};
+use bunting_tests::{Bits, FLAG, Seen, app, assert_finite, bits, run, spawn_flag, state};
 
 fn errors(app: &App) -> Vec<ClothError> {
     app.world().resource::<Seen<ClothFailed>>().0.iter().map(|failed| failed.error).collect()
 }
 
 /// The bits of a flag after `updates`, beside whatever else is spawned.
-fn beside(updates: usize, spawn: impl Fn(&mut App)) -> (App, Vec<[u32; 3]>) {
+fn beside(updates: usize, spawn: impl Fn(&mut App)) -> (App, Bits) {
     let mut app = app();
     let flag = spawn_flag(&mut app, Vec3::ZERO);
     run(&mut app, 5);

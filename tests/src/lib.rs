@@ -61,14 +61,23 @@ pub fn state(app: &App, cloth: Entity) -> &ClothState {
     app.world().get(cloth).expect("a cloth has a state")
 }
 
+/// Positions, bit for bit.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Bits(Vec<[u32; 3]>);
+
+impl core::fmt::Debug for Bits {
+    /// Short: a failed comparison would print thousands of numbers.
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let last = self.0.last().map(|bits| bits.map(f32::from_bits));
+        write!(formatter, "{} particles, the last at {last:?}", self.0.len())
+    }
+}
+
 /// The bits of a cloth's positions.
 #[must_use]
-pub fn bits(app: &App, cloth: Entity) -> Vec<[u32; 3]> {
-    state(app, cloth)
-        .positions()
-        .iter()
-        .map(|position| position.to_array().map(f32::to_bits))
-        .collect()
+pub fn bits(app: &App, cloth: Entity) -> Bits {
+    let positions = state(app, cloth).positions().iter();
+    Bits(positions.map(|position| position.to_array().map(f32::to_bits)).collect())
 }
 
 /// Velocity of each particle in the last tick, m/s, seen from the cloth's frame.

@@ -91,6 +91,30 @@ pub enum ClothError {
         /// The cloth.
         entity: Entity,
     },
+    /// The mesh to show the cloth with is the renderer's alone. The cloth is simulated, but not
+    /// drawn until its `Mesh3d` is replaced.
+    #[cfg(feature = "render")]
+    #[error(
+        "the mesh of cloth {entity} is not kept in the main world and cannot be written: make it with RenderAssetUsages::default(), or leave out the Mesh3d"
+    )]
+    MeshUnwritable {
+        /// The cloth.
+        entity: Entity,
+    },
+    /// The mesh to show the cloth with is not that of its `ClothMesh`. The cloth is simulated, but
+    /// not drawn until its `Mesh3d` is replaced.
+    #[cfg(feature = "render")]
+    #[error(
+        "the mesh of cloth {entity} has {given} vertices, its ClothMesh {expected}: give both the same vertices, or leave out the Mesh3d"
+    )]
+    MeshVertices {
+        /// The cloth.
+        entity: Entity,
+        /// Vertices of the mesh.
+        given: usize,
+        /// Vertices of the `ClothMesh`.
+        expected: usize,
+    },
     /// The state became infinite or not a number. The cloth was put back to rest.
     #[error(
         "cloth {entity} became infinite and was put back to rest: give it more substeps, or a softer material"

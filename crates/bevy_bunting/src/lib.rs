@@ -91,6 +91,8 @@ mod mesh;
 mod pose;
 mod prepare;
 mod publish;
+#[cfg(feature = "render")]
+mod render;
 mod schedule;
 mod seat;
 mod settings;
@@ -117,6 +119,8 @@ pub use mesh::{ClothMaterial, ClothMesh, ClothPaused};
 pub use parry3d;
 pub use prepare::{ClothTargetLost, PreparePlugin};
 pub use publish::PublishPlugin;
+#[cfg(feature = "render")]
+pub use render::{ClothDebugPlugin, ClothGizmos, ClothRenderPlugin, ClothRenderSystems};
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
@@ -164,7 +168,7 @@ impl Default for ClothPlugins {
 
 impl PluginGroup for ClothPlugins {
     fn build(self) -> PluginGroupBuilder {
-        PluginGroupBuilder::start::<Self>()
+        let group = PluginGroupBuilder::start::<Self>()
             .add(SchedulePlugin::new(self.host))
             .add(PreparePlugin)
             .add(LodPlugin)
@@ -177,6 +181,9 @@ impl PluginGroup for ClothPlugins {
             .add(SolverPlugin)
             .add(PublishPlugin)
             .add(SurfacePlugin)
-            .add(ClothDiagnosticsPlugin)
+            .add(ClothDiagnosticsPlugin);
+        #[cfg(feature = "render")]
+        let group = group.add(ClothRenderPlugin);
+        group
     }
 }

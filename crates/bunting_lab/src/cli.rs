@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::{Parser, Subcommand};
 
+use crate::commands::{budget, lod, oracles, pareto, report, schedule, stability};
 use crate::output::Outcome;
-use crate::commands::{budget, lod, oracles, pareto};
 
 /// Measures the cloth against references.
 #[derive(Debug, Parser)]
@@ -57,11 +57,11 @@ impl Arguments {
             Command::Pareto(selection) => pareto::run(&selection, self.quick),
             Command::Lod => lod::run(self.quick),
             Command::Peers => peers(self.quick)?,
+            Command::Schedule => schedule::run(self.quick),
             Command::Budget => budget::run(self.quick),
             Command::Oracles => oracles::run(),
-            Command::Stability
-            | Command::Schedule
-            | Command::Report => bail!("needs the solver, not wired yet"),
+            Command::Stability => stability::run(self.quick),
+            Command::Report => report::run(self.quick, self.out.as_deref())?,
         };
         outcome.present(self.json, self.out.as_deref())
     }
@@ -74,7 +74,7 @@ fn peers(quick: bool) -> Result<Outcome> {
 
 #[cfg(not(feature = "peers"))]
 fn peers(_quick: bool) -> Result<Outcome> {
-    bail!("peers are not built in: run with --features peers")
+    anyhow::bail!("peers are not built in: run with --features peers")
 }
 
 #[cfg(test)]

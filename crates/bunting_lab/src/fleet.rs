@@ -37,7 +37,7 @@ impl Fleet {
         let fabric = product::fabric(&scene);
         let positions: Vec<Vec3> = scene.positions().iter().map(|x| x.as_vec3()).collect();
         let velocities = vec![Vec3::ZERO; positions.len()];
-        let start = ClothSnapshot { positions, velocities };
+        let start = ClothSnapshot::new(positions, velocities);
         let mut batches = Vec::new();
         let mut left = cloths;
         while left > 0 {
@@ -63,11 +63,7 @@ impl Fleet {
     /// # Panics
     ///
     /// When the other fleet has fewer cloths, or `convert` makes a state of another fabric.
-    pub fn take_over(
-        &mut self,
-        other: &Self,
-        convert: impl Fn(&ClothSnapshot) -> ClothSnapshot,
-    ) {
+    pub fn take_over(&mut self, other: &Self, convert: impl Fn(&ClothSnapshot) -> ClothSnapshot) {
         self.ticks = other.ticks;
         let mut states = other.snapshots();
         for batch in &mut self.batches {

@@ -6,10 +6,10 @@
 use std::{fmt, sync::Arc};
 
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion,
-    Grid, LaneCount, Scheme, StepSettings,
+    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, Grid,
+    LaneCount, Scheme, StepSettings,
 };
-use glam::{DVec3, Quat, Vec3};
+use glam::{DVec3, Vec3};
 
 use crate::{
     contender::Contender,
@@ -99,12 +99,8 @@ impl From<Product> for Contender {
 /// When the scene has fewer than two rows or columns.
 #[must_use]
 pub fn fabric(scene: &Scene) -> Arc<Fabric> {
-    let grid = Grid::new(
-        scene.columns as u32,
-        scene.rows as u32,
-        scene.width as f32,
-        scene.height as f32,
-    );
+    let grid =
+        Grid::new(scene.columns as u32, scene.rows as u32, scene.width as f32, scene.height as f32);
     let pinned = (0..scene.vertices()).filter(|&vertex| scene.is_pinned(vertex));
     let builder = FabricBuilder::grid(grid).pin(pinned.map(|vertex| vertex as u32));
     Arc::new(builder.build().expect("a scene is a good grid"))
@@ -152,8 +148,7 @@ impl Cloth {
         let mut batch = ClothBatch::new(fabric.clone(), lanes);
         let positions: Vec<Vec3> = scene.positions().iter().map(|x| x.as_vec3()).collect();
         let velocities = vec![Vec3::ZERO; positions.len()];
-        let start =
-            ClothSnapshot { positions: positions.clone(), velocities: velocities.clone() };
+        let start = ClothSnapshot::new(positions.clone(), velocities.clone());
         for _ in 0..lanes.get() {
             batch.insert(&start, material(scene)).expect("a scene is a good cloth");
         }
@@ -237,18 +232,10 @@ impl Simulation for Cloth {
 impl Specimen for Cloth {
     fn place(&mut self, positions: &[DVec3], velocities: &[DVec3]) {
         let single = |vectors: &[DVec3]| vectors.iter().map(|v| v.as_vec3()).collect();
-        self.restore(&ClothSnapshot {
-            positions: single(positions),
-            velocities: single(velocities),
-        });
+        self.restore(&ClothSnapshot::new(single(positions), single(velocities)));
     }
 
     fn load(&mut self, gravity: f64) {
         self.drive.gravity = Vec3::new(0.0, -gravity as f32, 0.0);
-    }
-
-    fn spin(&mut self, rate: f64) {
-        let rotation = Quat::from_rotation_x(rate as f32 * TICK);
-        self.drive.motion = FrameMotion { rotation, translation: Vec3::ZERO };
     }
 }

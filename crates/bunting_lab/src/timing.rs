@@ -40,6 +40,13 @@ impl Timing {
         self.samples.iter().sum()
     }
 
+    /// Largest mean of so many durations in a row, µs; of all, if there are fewer.
+    #[must_use]
+    pub fn worst_mean(&self, window: usize) -> f64 {
+        let window = window.min(self.samples.len()).max(1);
+        self.samples.windows(window).map(crate::stats::mean).fold(f64::NAN, f64::max)
+    }
+
     /// Shortest duration, µs; NaN before the first sample.
     #[must_use]
     pub fn min(&self) -> f64 {

@@ -47,20 +47,21 @@ impl<P: Pack> Kernel<P> for Air<'_, P> {
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let air = Stream::<L>::load(token, self.parameters);
         for Patch { corners, shares } in self.fabric.patches() {
-            let corners = corners.map(|corner| corner as usize);
-            let [a, b, c, d]: [V3<L>; 4] =
-                corners.map(|corner| V3::load(token, &self.position[corner]));
-            let [va, vb, vc, vd]: [V3<L>; 4] =
-                corners.map(|corner| V3::load(token, &self.velocity[corner]));
-            let (ab, ac, ad) = (b - a, c - a, d - a);
-            let shared = va + vc;
-            let first = air.change(ab.cross(ac), shared + vb) * L::splat(token, shares[0]);
-            let second = air.change(ac.cross(ad), shared + vd) * L::splat(token, shares[1]);
+            let [a, b, c, d] = corners.map(|corner| corner as usize);
+            let at: V3<L> = V3::load(token, &self.position[a]);
+            let ab = V3::load(token, &self.position[b]) - at;
+            let ac = V3::load(token, &self.position[c]) - at;
+            let ad = V3::load(token, &self.position[d]) - at;
+            let shared = V3::load(token, &self.velocity[a]) + V3::load(token, &self.velocity[c]);
+            let of_first = shared + V3::load(token, &self.velocity[b]);
+            let of_second = shared + V3::load(token, &self.velocity[d]);
+            let first = air.change(ab.cross(ac), of_first) * L::splat(token, shares[0]);
+            let second = air.change(ac.cross(ad), of_second) * L::splat(token, shares[1]);
             let both = first + second;
-            for (corner, impulse) in corners.into_iter().zip([both, first, both, second]) {
-                let sum: V3<L> = V3::load(token, &self.impulse[corner]);
-                (sum + impulse).store(&mut self.impulse[corner]);
-            }
+            both.add_to(token, &mut self.impulse[a]);
+            first.add_to(token, &mut self.impulse[b]);
+            both.add_to(token, &mut self.impulse[c]);
+            second.add_to(token, &mut self.impulse[d]);
         }
     }
 }

@@ -132,7 +132,8 @@ impl ClothBatch {
         at_any_width!(&mut self.0, batch => batch.remove(lane));
     }
 
-    /// Overwrites the state of a lane.
+    /// Overwrites the state of a lane. A state without a past is continued by one substep of first
+    /// order.
     ///
     /// # Errors
     ///
@@ -244,13 +245,10 @@ impl ClothBatch {
         at_any_width!(&self.0, batch => batch.copy_normals(lane, into));
     }
 
-    /// The state of a lane.
+    /// The state of a lane, with what the integrator remembers.
     #[must_use]
     pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
-        let mut snapshot = ClothSnapshot::default();
-        self.copy_positions(lane, &mut snapshot.positions);
-        self.copy_velocities(lane, &mut snapshot.velocities);
-        snapshot
+        at_any_width!(&self.0, batch => batch.snapshot(lane))
     }
 
     /// Whether every number of a lane's state is finite.

@@ -10,7 +10,7 @@ use crate::constraints::Knot;
 use crate::fabric::{ABREAST, Fabric, FabricMaterial};
 use crate::lanes::Pack;
 use crate::parameters::{Formula, Parameters};
-use crate::snapshot::ClothSnapshot;
+use crate::snapshot::{ClothSnapshot, History};
 use crate::step::{Drive, Scheme, StepSettings};
 use crate::vector::{Pack3, lane3, set_lane3, splat3};
 
@@ -147,23 +147,44 @@ impl<P: Pack> LaneBatch<P> {
         self.restore(lane, &rest);
     }
 
+    /// Overwrites the state of a lane; without a history the next substep is of first order.
     pub fn restore(&mut self, lane: usize, snapshot: &ClothSnapshot) {
-        for (particle, (&position, &velocity)) in
-            snapshot.positions.iter().zip(&snapshot.velocities).enumerate()
-        {
-            set_lane3(&mut self.position[particle], lane, position);
-            set_lane3(&mut self.predicted[particle], lane, position);
-            let velocity = if self.fabric.is_pinned(particle) { Vec3::ZERO } else { velocity };
-            set_lane3(&mut self.velocity[particle], lane, velocity);
-            set_lane3(&mut self.memory[particle], lane, Vec3::ZERO);
+        write(&mut self.position, lane, &snapshot.positions);
+        write(&mut self.predicted, lane, &snapshot.positions);
+        write(&mut self.velocity, lane, &snapshot.velocities);
+        let history = snapshot.history.as_ref();
+        let past = [
+            (&mut self.displacement, history.map(|history| &history.displacements)),
+            (&mut self.older_velocity, history.map(|history| &history.older_velocities)),
+            (&mut self.memory, history.map(|history| &history.memory)),
+        ];
+        for (packs, values) in past {
+            match values {
+                Some(values) => write(packs, lane, values),
+                None => packs.iter_mut().for_each(|pack| set_lane3(pack, lane, Vec3::ZERO)),
+            }
         }
-        self.restart(lane);
+        for pin in self.fabric.pins() {
+            set_lane3(&mut self.velocity[pin.particle as usize], lane, Vec3::ZERO);
+        }
+        if let Some(slot) = &mut self.slots[lane] {
+            slot.history_step = history.map_or(0.0, |history| history.step);
+        }
     }
 
-    /// Forgets a lane's history: the next substep is one of backward Euler.
-    pub fn restart(&mut self, lane: usize) {
-        if let Some(slot) = &mut self.slots[lane] {
-            slot.history_step = 0.0;
+    /// The state of a lane, past and all.
+    pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
+        let read = |packs: &[Pack3<P>]| packs.iter().map(|pack| lane3(pack, lane)).collect();
+        let step = self.slots[lane].as_ref().map_or(0.0, |slot| slot.history_step);
+        ClothSnapshot {
+            positions: read(&self.position),
+            velocities: read(&self.velocity),
+            history: (step > 0.0).then(|| History {
+                step,
+                displacements: read(&self.displacement),
+                older_velocities: read(&self.older_velocity),
+                memory: read(&self.memory),
+            }),
         }
     }
 
@@ -229,5 +250,12 @@ impl<P: Pack> LaneBatch<P> {
         }
         // One substep more than the motion lasts, so that pinned particles come to rest.
         self.parameters.carries = moved || self.parameters.moves_any();
+    }
+}
+
+/// Overwrites one lane of a vector for each particle.
+fn write<P: Pack>(packs: &mut [Pack3<P>], lane: usize, values: &[Vec3]) {
+    for (pack, &value) in packs.iter_mut().zip(values) {
+        set_lane3(pack, lane, value);
     }
 }

@@ -30,16 +30,17 @@ impl<P: Pack> Kernel<P> for Normals<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         for patch in self.patches {
-            let corners = patch.corners.map(|corner| corner as usize);
-            let [a, b, c, d]: [V3<L>; 4] =
-                corners.map(|corner| V3::load(token, &self.position[corner]));
-            let (ab, ac, ad) = (b - a, c - a, d - a);
+            let [a, b, c, d] = patch.corners.map(|corner| corner as usize);
+            let at: V3<L> = V3::load(token, &self.position[a]);
+            let ab = V3::load(token, &self.position[b]) - at;
+            let ac = V3::load(token, &self.position[c]) - at;
+            let ad = V3::load(token, &self.position[d]) - at;
             let (first, second) = (ab.cross(ac), ac.cross(ad));
             let both = first + second;
-            for (corner, doubled) in corners.into_iter().zip([both, first, both, second]) {
-                let sum: V3<L> = V3::load(token, &self.normal[corner]);
-                (sum + doubled).store(&mut self.normal[corner]);
-            }
+            both.add_to(token, &mut self.normal[a]);
+            first.add_to(token, &mut self.normal[b]);
+            both.add_to(token, &mut self.normal[c]);
+            second.add_to(token, &mut self.normal[d]);
         }
         let least = L::splat(token, LEAST_AREA_SQUARED);
         let one = L::splat(token, 1.0);

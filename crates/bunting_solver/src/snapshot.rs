@@ -5,22 +5,48 @@ use glam::Vec3;
 use crate::fabric::Fabric;
 
 /// Positions and velocities of a cloth's particles, in its frame.
+///
+/// One that was taken from a batch also holds what the integrator remembers, so that a cloth that is
+/// moved to another batch goes on bit for bit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClothSnapshot {
     /// Positions in the cloth's frame, m.
     pub positions: Vec<Vec3>,
     /// Velocities relative to the world along the axes of the cloth's frame, m/s.
     pub velocities: Vec<Vec3>,
+    pub(crate) history: Option<History>,
+}
+
+/// What second order and stiff bending remember of earlier substeps.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct History {
+    /// Length of the substep that it was made with, s.
+    pub step: f32,
+    /// Change of position in the last substep, m.
+    pub displacements: Vec<Vec3>,
+    /// Velocities a substep earlier, m/s.
+    pub older_velocities: Vec<Vec3>,
+    /// What stretch does to each particle, m/s².
+    pub memory: Vec<Vec3>,
 }
 
 impl ClothSnapshot {
+    /// A state without a past: the next substep is of first order.
+    #[must_use]
+    pub const fn new(positions: Vec<Vec3>, velocities: Vec<Vec3>) -> Self {
+        Self { positions, velocities, history: None }
+    }
+
     /// The fabric as it was cut, at rest.
     #[must_use]
     pub fn at_rest(fabric: &Fabric) -> Self {
-        Self {
-            positions: fabric.rest_positions().to_vec(),
-            velocities: vec![Vec3::ZERO; fabric.particle_count()],
-        }
+        Self::new(fabric.rest_positions().to_vec(), vec![Vec3::ZERO; fabric.particle_count()])
+    }
+
+    /// The same positions and velocities, without a past.
+    #[must_use]
+    pub fn forgetful(self) -> Self {
+        Self { history: None, ..self }
     }
 
     /// Whether every number is finite.

@@ -92,7 +92,7 @@ impl LevelTransfer {
     pub fn prolong(&self, coarse: &ClothSnapshot) -> ClothSnapshot {
         let mean =
             |values: &[Vec3]| self.parents.iter().map(|parents| parents.mean(values)).collect();
-        ClothSnapshot { positions: mean(&coarse.positions), velocities: mean(&coarse.velocities) }
+        ClothSnapshot::new(mean(&coarse.positions), mean(&coarse.velocities))
     }
 
     /// Fine to coarse: shared particles keep position and velocity (thesis, 5.1.3).
@@ -101,6 +101,6 @@ impl LevelTransfer {
         let shared = |values: &[Vec3]| {
             self.shared.iter().map(|&particle| values[particle as usize]).collect()
         };
-        ClothSnapshot { positions: shared(&fine.positions), velocities: shared(&fine.velocities) }
+        ClothSnapshot::new(shared(&fine.positions), shared(&fine.velocities))
     }
 }

@@ -53,6 +53,12 @@ impl<L: Lane> V3<L> {
         self.z.store(&mut pack[2]);
     }
 
+    /// Adds itself to a vector in memory.
+    #[inline(always)]
+    pub fn add_to(self, token: L::Token, pack: &mut Pack3<L::Pack>) {
+        (Self::load(token, pack) + self).store(pack);
+    }
+
     #[inline(always)]
     pub fn splat(token: L::Token, value: f32) -> Self {
         let value = L::splat(token, value);

@@ -118,3 +118,42 @@ fn a_neighbour_that_goes_wild_is_not_felt() {
         assert_eq!(bits(calm), bits(&batch.snapshot(lane)));
     }
 }
+
+#[test]
+fn a_cloth_moved_between_batches_goes_on_as_if_it_had_not() {
+    let fabric = flag();
+    for settings in EVERY_SCHEME {
+        let stayed = fly(&fabric, LaneCount::One, &[1], settings).remove(0);
+        let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+        let mut lane =
+            batch.insert(&ClothSnapshot::at_rest(&fabric), material(1)).expect("a free lane");
+        for tick in 0..60 {
+            if tick == 30 {
+                let moving = batch.snapshot(lane);
+                batch = ClothBatch::new(fabric.clone(), LaneCount::Eight);
+                batch.insert(&ClothSnapshot::at_rest(&fabric), material(0)).expect("a free lane");
+                lane = batch.insert(&moving, material(1)).expect("a free lane");
+            }
+            batch.drive(lane, drive(1, tick));
+            batch.step(TICK, settings);
+        }
+        assert_eq!(bits(&stayed), bits(&batch.snapshot(lane)));
+    }
+}
+
+#[test]
+fn a_lane_that_went_wild_can_be_used_again() {
+    let fabric = flag();
+    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::Eight);
+    let rest = ClothSnapshot::at_rest(&fabric);
+    let lane = batch.insert(&rest, material(1)).expect("a free lane");
+    batch.drive(lane, Drive { wind: Vec3::splat(f32::NAN), ..Drive::default() });
+    batch.step(TICK, StepSettings::default());
+    assert!(!batch.is_finite(lane));
+    batch.remove(lane);
+    assert_eq!(batch.insert(&rest, material(1)), Ok(lane));
+    for _ in 0..10 {
+        batch.step(TICK, StepSettings::default());
+    }
+    assert!(batch.is_finite(lane));
+}

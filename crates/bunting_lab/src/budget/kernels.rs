@@ -16,12 +16,7 @@ use bunting_solver::{LaneCount, Scheme, StepSettings};
 use serde::Serialize;
 
 use super::Effort;
-use crate::{
-    fleet::Fleet,
-    product::TICK,
-    scenes::Scene,
-    timing::Timing,
-};
+use crate::{fleet::Fleet, product::TICK, scenes::Scene, timing::Timing};
 
 /// Vertices along each side of the flags.
 const SIZE: usize = 33;

@@ -4,6 +4,7 @@
 pub mod kernels;
 pub mod phases;
 pub mod sheets;
+pub mod thousand;
 
 use bunting_solver::{Scheme, StepSettings};
 

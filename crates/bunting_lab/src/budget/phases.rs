@@ -4,12 +4,7 @@ use bunting_solver::{ClothBatch, LaneCount, StepSettings};
 use serde::Serialize;
 
 use super::{Effort, LEVELS, scheme_name, schemes};
-use crate::{
-    fleet::Fleet,
-    product::TICK,
-    scenes::Scene,
-    timing::Timing,
-};
+use crate::{fleet::Fleet, product::TICK, scenes::Scene, timing::Timing};
 
 /// The phases of a tick, in the order in which they run.
 pub const PHASES: [&str; 5] = ["begin", "integrate", "constraints", "velocities", "normals"];
@@ -54,13 +49,7 @@ fn split(n: u32, settings: StepSettings, effort: &Effort) -> Vec<Phase> {
     PHASES
         .into_iter()
         .zip(medians)
-        .map(|(phase, us)| Phase {
-            n,
-            phase,
-            scheme: scheme_name(settings),
-            share: us / total,
-            us,
-        })
+        .map(|(phase, us)| Phase { n, phase, scheme: scheme_name(settings), share: us / total, us })
         .collect()
 }
 

@@ -1,5 +1,6 @@
 //! How much cloth fits in a budget of time.
 
+use bevy_bunting::ClothSystems;
 use bunting_solver::instruction_set;
 use serde_json::json;
 
@@ -11,6 +12,7 @@ use crate::{
         phases::{self, PHASES, Phase},
         scheme_name, schemes,
         sheets::{self, Sheet},
+        thousand::{self, Thousand},
     },
     output::{
         Outcome,
@@ -23,7 +25,7 @@ use crate::{
 #[must_use]
 pub fn run(quick: bool) -> Outcome {
     let effort = Effort::of(quick);
-    let bar = progress(sheets::count(&effort) + 2);
+    let bar = progress(sheets::count(&effort) + 3);
     bar.set_message("sheets");
     let sheets = sheets::measure(&effort, || bar.inc(1));
     bar.set_message("phases");
@@ -31,6 +33,9 @@ pub fn run(quick: bool) -> Outcome {
     bar.inc(1);
     bar.set_message("kernels");
     let kernels = kernels::measure(&effort);
+    bar.inc(1);
+    bar.set_message("a thousand flags");
+    let thousand = thousand::measure(schemes()[0], quick);
     bar.finish_and_clear();
     Outcome {
         json: json!({
@@ -38,8 +43,14 @@ pub fn run(quick: bool) -> Outcome {
             "sheets": sheets,
             "phases": phases,
             "kernels": kernels,
+            "thousand": thousand,
         }),
-        tables: vec![sheet_table(&sheets), phase_table(&phases), kernel_table(&kernels)],
+        tables: vec![
+            thousand_table(&thousand),
+            sheet_table(&sheets),
+            phase_table(&phases),
+            kernel_table(&kernels),
+        ],
         plots: schemes()
             .into_iter()
             .map(scheme_name)
@@ -99,6 +110,28 @@ fn kernel_table(kernels: &Kernels) -> Table {
             ],
             vec!["triangle in the wind".into(), figure(kernels.ns_per_wind_triangle)],
         ],
+    }
+}
+
+fn thousand_table(thousand: &Thousand) -> Table {
+    let levels = thousand.per_level.iter().zip(LEVELS);
+    let levels: Vec<String> = levels.map(|(flags, n)| format!("{flags:.0} of {n}²")).collect();
+    let sets = ClothSystems::ORDER.iter().zip(&thousand.ms_per_set);
+    let sets: Vec<String> = sets.map(|(set, ms)| format!("{set:?} {}", figure(*ms))).collect();
+    Table {
+        name: "budget_thousand".into(),
+        title: "1000 flags around a moving camera, through the plugin, one core, ms an update"
+            .into(),
+        headers: vec!["scheme", "median", "95 %", "worst second", "changes/tick", "levels", "sets"],
+        rows: vec![vec![
+            thousand.scheme.into(),
+            figure(thousand.ms_median),
+            figure(thousand.ms_p95),
+            figure(thousand.ms_worst_second),
+            figure(thousand.changes_per_tick),
+            levels.join(", "),
+            sets.join(", "),
+        ]],
     }
 }
 

@@ -15,6 +15,8 @@ use crate::{
 
 /// Vertices along each side of the levels that are compared, the finest first.
 const SIZES: [usize; 3] = [33, 17, 9];
+/// The same where it is to be quick.
+const QUICK_SIZES: [usize; 3] = [17, 9, 5];
 /// Moments at which each pair of levels is changed.
 const MOMENTS: usize = 20;
 /// The same where it is to be quick.
@@ -23,13 +25,14 @@ const QUICK_MOMENTS: usize = 3;
 /// Compares the levels, and changes between neighbours both ways.
 #[must_use]
 pub fn run(quick: bool) -> Outcome {
-    let pairs = SIZES.windows(2).flat_map(|pair| [(pair[0], pair[1]), (pair[1], pair[0])]);
+    let sizes = if quick { QUICK_SIZES } else { SIZES };
+    let pairs = sizes.windows(2).flat_map(|pair| [(pair[0], pair[1]), (pair[1], pair[0])]);
     let pairs: Vec<(usize, usize)> = pairs.collect();
-    let bar = progress(schemes().len() * (SIZES.len() + pairs.len()));
+    let bar = progress(schemes().len() * (sizes.len() + pairs.len()));
     let moments = if quick { QUICK_MOMENTS } else { MOMENTS };
     let (mut levels, mut switches) = (Vec::new(), Vec::new());
     for settings in schemes() {
-        for n in SIZES {
+        for n in sizes {
             levels.push(Agreement::of(n, settings, quick));
             bar.inc(1);
         }
@@ -94,7 +97,7 @@ fn switch_table(switches: &[Switch]) -> Table {
             figure(switch.invisible_from_m),
             percent(switch.momentum_jump),
             percent(switch.kinetic_jump),
-            percent(switch.energy_jump),
+            format!("{} ×", figure(switch.energy_jump)),
         ]
     };
     Table {
@@ -108,7 +111,7 @@ fn switch_table(switches: &[Switch]) -> Table {
             "< 1 px from m",
             "momentum",
             "kinetic energy",
-            "total energy",
+            "total energy over kinetic",
         ],
         rows: switches.iter().map(cells).collect(),
     }

@@ -6,6 +6,9 @@ pub mod oracles;
 pub mod pareto;
 #[cfg(feature = "peers")]
 pub mod peers;
+pub mod report;
+pub mod schedule;
+pub mod stability;
 
 use indicatif::{ProgressBar, ProgressStyle};
 

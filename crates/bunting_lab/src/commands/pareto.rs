@@ -43,6 +43,15 @@ pub struct Selection {
     sizes: Vec<usize>,
 }
 
+impl Selection {
+    /// All scenes at these sizes.
+    #[must_use]
+    pub fn of_sizes(sizes: Vec<usize>) -> Self {
+        let scenes = Scene::standard(2).map(|scene| scene.name.to_owned()).to_vec();
+        Self { scenes, sizes }
+    }
+}
+
 fn parse_size(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(n) if (2..=129).contains(&n) => Ok(n),

@@ -72,7 +72,7 @@ fn swing_period(n: usize, settings: StepSettings) -> f64 {
     let tilted = |x: &Vec3| Vec3::new(x.x, x.y * cosine, -x.y * sine);
     let positions: Vec<Vec3> = cloth.positions().iter().map(tilted).collect();
     let velocities = vec![Vec3::ZERO; positions.len()];
-    cloth.restore(&ClothSnapshot { positions, velocities });
+    cloth.restore(&ClothSnapshot::new(positions, velocities));
     let ticks = (SWING_SECONDS * f64::from(TICK_RATE)) as usize;
     let tip: Vec<f64> = (0..ticks)
         .map(|_| {

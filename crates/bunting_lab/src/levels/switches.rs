@@ -102,9 +102,8 @@ impl Switch {
                 });
             }
         }
-        let average = |figure: fn(&Jump) -> f64| {
-            stats::mean(&jumps.iter().map(figure).collect::<Vec<f64>>())
-        };
+        let average =
+            |figure: fn(&Jump) -> f64| stats::mean(&jumps.iter().map(figure).collect::<Vec<f64>>());
         let pop_max_m = average(|jump| jump.pop_max);
         Self {
             scheme: scheme_name(settings),

@@ -5,15 +5,12 @@ use glam::DVec3;
 
 use crate::{scenes::Scene, simulation::Simulation};
 
-/// A cloth that can be laid out, loaded and spun.
+/// A cloth that can be laid out and loaded.
 pub trait Specimen: Simulation {
     /// Overwrites positions in metres and velocities in metres a second, of pinned vertices too.
     fn place(&mut self, positions: &[DVec3], velocities: &[DVec3]);
     /// Sets the gravitational acceleration along −y, m/s².
     fn load(&mut self, gravity: f64);
-    /// Turns the frame that holds the pins, and that damping is relative to, about the x axis at this
-    /// many radians a second. Positions and velocities are along the turning axes.
-    fn spin(&mut self, rate: f64);
 }
 
 /// Starts the method under trial on a scene.

@@ -1,1 +1,92 @@
-//! The hard cases.
+//! The hard cases: what breaks cloth in games, and how badly.
+//!
+//! Every case runs the product as users meet it and reduces to one figure, its worst, that must not
+//! pass a limit.
+
+mod crumple;
+mod levels;
+mod motion;
+mod rig;
+mod sweeps;
+mod touch;
+mod weather;
+
+use serde::Serialize;
+
+/// Whether the feature that a case is about exists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// It was run.
+    Built,
+    /// The feature is a later issue's.
+    NotBuilt,
+}
+
+/// A hard case and how it went.
+#[derive(Clone, Debug, Serialize)]
+pub struct HardCase {
+    /// Name.
+    pub name: String,
+    /// Vertices along each side; zero where the case has no one size.
+    pub n: usize,
+    /// What the figure is, with its unit.
+    pub figure: &'static str,
+    /// The worst that was measured; none where nothing was, or it was not a number.
+    pub worst: Option<f64>,
+    /// The worst that passes.
+    pub limit: f64,
+    /// Whether it passed.
+    pub pass: bool,
+    /// Whether it was run.
+    pub status: Status,
+}
+
+impl HardCase {
+    /// A case that was run.
+    #[must_use]
+    pub fn new(
+        name: impl Into<String>,
+        n: usize,
+        figure: &'static str,
+        worst: f64,
+        limit: f64,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            n,
+            figure,
+            worst: worst.is_finite().then_some(worst),
+            limit,
+            pass: worst <= limit,
+            status: Status::Built,
+        }
+    }
+
+    /// A case whose feature does not exist yet.
+    #[must_use]
+    pub fn not_built(name: impl Into<String>, figure: &'static str, limit: f64) -> Self {
+        Self {
+            name: name.into(),
+            n: 0,
+            figure,
+            worst: None,
+            limit,
+            pass: false,
+            status: Status::NotBuilt,
+        }
+    }
+}
+
+/// Runs one family of cases; shorter and smaller where `quick`.
+pub type Family = fn(quick: bool) -> Vec<HardCase>;
+
+/// Every family with its name.
+pub const ALL: [(&str, Family); 6] = [
+    ("sweeps of size, passes and rate", sweeps::cases),
+    ("motion of pins and frames", motion::cases),
+    ("wind and weight", weather::cases),
+    ("crumpled and degenerate", crumple::cases),
+    ("levels, lanes and input", levels::cases),
+    ("colliders", touch::cases),
+];

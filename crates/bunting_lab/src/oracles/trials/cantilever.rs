@@ -36,7 +36,11 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
     let sizes = [8, 16, 32].map(|segments| case(mount, OBSERVED, segments, YARNS));
     let errors = sizes.each_ref().map(|case| case.measured - case.expected);
     cases.extend(sizes.into_iter().take(2));
-    cases.push(order(format!("cantilever, Γ = {OBSERVED}, order in N, {}", label(YARNS)), 2.0, &errors));
+    cases.push(order(
+        format!("cantilever, Γ = {OBSERVED}, order in N, {}", label(YARNS)),
+        2.0,
+        &errors,
+    ));
     cases.push(case(mount, OBSERVED, 8, StepSettings::gauss_seidel(50)));
     cases
 }

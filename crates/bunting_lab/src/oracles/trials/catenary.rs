@@ -6,10 +6,10 @@ use crate::{
     oracles::{
         Case,
         catenary::{Catenary, sag_of_chain},
-        rig::{YARNS, chains, column_masses, label, order, row, run, strip},
+        rig::{YARNS, chains, column_masses, label, order, row, run, strip, substep},
         specimen::{Mount, Specimen},
     },
-    scenes::{Pins, Pose, Scene},
+    scenes::{GRAVITY, Pins, Pose, Scene},
 };
 
 /// Stiffness of a strip as good as inextensible, N/m: it strains by 4e-6.
@@ -18,33 +18,40 @@ const STIFF: f64 = 1e6;
 const SETTLING: f64 = 12.0;
 /// Damping, 1/s.
 const DAMPING: f64 = 3.0;
-/// Relative error of the sag: its share of the strain is up to threefold, and the length of a chain
-/// of 32 links is rounded 32 times.
+/// What strain and rounding do to the sag, relative.
 const SAG: f64 = 5e-5;
+/// Sizes over which the order is observed, the first of all: beyond them the step's error shows.
+const ORDERED: usize = 3;
 
 /// The sag of chains of N links at three spans, and the order at which it nears the continuum's.
 pub fn cases(mount: &Mount) -> Vec<Case> {
     let mut cases = Vec::new();
     for span in [0.5, 0.8, 0.9] {
         let mut errors = Vec::new();
-        for segments in [8, 16, 32] {
+        for segments in [4, 8, 16, 32] {
             let scene = scene(segments);
             let specimen = hang(mount, &scene, span);
             let mut masses = column_masses(&scene);
             masses.pop();
+            let sag = sag_of_chain(&masses, span, 1.0);
             cases.push(Case::new(
                 format!("catenary, S = {span} m, N = {segments}, {}, m", label(YARNS)),
-                sag_of_chain(&masses, span, 1.0),
+                sag,
                 -f64::from(specimen.positions()[segments].y),
-                SAG,
+                SAG + frozen() / sag,
             ));
             let middle = -row(&scene, specimen.as_ref(), segments / 2).y;
             errors.push(middle - Catenary::new(span, 1.0).sag);
         }
         let name = format!("catenary, S = {span} m, order in N, {}", label(YARNS));
-        cases.push(order(name, 2.0, &errors));
+        cases.push(order(name, 2.0, &errors[..ORDERED]));
     }
     cases
+}
+
+/// How far gravity moves the predicted positions, m, of whose links the directions are frozen: g(2h/3)².
+fn frozen() -> f64 {
+    GRAVITY * (2.0 / 3.0 * substep(YARNS)).powi(2)
 }
 
 fn scene(segments: usize) -> Scene {

@@ -18,8 +18,10 @@ const ROUNDING: f64 = 3e-5;
 
 /// The fall that each integrator sums, and the order at which it nears ½gt².
 pub fn cases(mount: &Mount) -> Vec<Case> {
-    let schemes: [(fn(u32) -> StepSettings, fn(f64, f64, u32) -> f64, f64); 2] =
-        [(StepSettings::yarns, free_fall::bdf2, 2.0), (StepSettings::gauss_seidel, free_fall::symplectic_euler, 1.0)];
+    let schemes: [(fn(u32) -> StepSettings, fn(f64, f64, u32) -> f64, f64); 2] = [
+        (StepSettings::yarns, free_fall::bdf2, 2.0),
+        (StepSettings::gauss_seidel, free_fall::symplectic_euler, 1.0),
+    ];
     let mut cases = Vec::new();
     for (scheme, sum, expected_order) in schemes {
         let mut errors = Vec::new();

@@ -110,7 +110,5 @@ fn angular_momentum(specimen: &dyn Specimen, masses: &[f64]) -> f64 {
     };
     let (centre, drift) = (mean(specimen.positions()), mean(specimen.velocities()));
     let moving = specimen.positions().iter().zip(specimen.velocities()).zip(masses);
-    moving
-        .map(|((x, v), m)| m * (x.as_dvec3() - centre).cross(v.as_dvec3() - drift).z)
-        .sum()
+    moving.map(|((x, v), m)| m * (x.as_dvec3() - centre).cross(v.as_dvec3() - drift).z).sum()
 }

@@ -16,7 +16,7 @@ use crate::{
 const SETTLING: f64 = 8.0;
 /// Damping, 1/s.
 const DAMPING: f64 = 5.0;
-/// Unit in the last place of a length just below a metre, m: each row may be off by as much.
+/// Unit in the last place of a length just below a metre, m.
 const ULP: f64 = 6e-8;
 /// Stiffness of a strip that stretches by 0.1 %, N/m, so that rounding is small against it.
 const SOFT: f64 = 1e3;
@@ -47,7 +47,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
         let hidden = 9.0 / 8.0 * steps * steps * ELASTIC / Fabric::STANDARD.density;
         cases.push(soft(mount, segments, ELASTIC, GAUSS_SEIDEL, hidden));
     }
-    for segments in [8, 32] {
+    for segments in [8, 16] {
         let fabric = Fabric::STANDARD;
         cases.push(sheared(mount, "standard fabric", segments, fabric));
     }
@@ -67,12 +67,11 @@ fn soft(
 ) -> Case {
     let fabric = chains(stiffness);
     let expected = hung_strip(fabric.density, GRAVITY, 1.0, stiffness);
-    let rounding = segments as f64 * ULP / expected;
     Case::new(
         format!("stretch, Y = {stiffness} N/m, N = {segments}, {}", label(settings)),
         expected,
         stretch(mount, segments, fabric, settings),
-        rounding + hidden,
+        rounding(segments, expected, settings) + hidden,
     )
 }
 
@@ -83,13 +82,19 @@ fn sheared(mount: &Mount, name: &str, segments: usize, fabric: Fabric) -> Case {
     let [warp, weft] = fabric.stretch;
     let expected = hung_strip(fabric.density, GRAVITY, 1.0, weft);
     let clamped = (fabric.shear * fabric.shear / (warp * weft)).min(1.0) / segments as f64;
-    let rounding = segments as f64 * ULP / expected;
     Case::new(
         format!("stretch, {name}, N = {segments}, {}", label(YARNS)),
         expected,
         stretch(mount, segments, fabric, YARNS),
-        2.0 * expected + clamped + rounding,
+        2.0 * expected + clamped + rounding(segments, expected, YARNS),
     )
+}
+
+/// What single precision does to a stretch: each row is off by a unit in the last place, and the
+/// effective step of 2h/3 cannot tell a force from its rounding, ulp/(2h/3)².
+fn rounding(segments: usize, expected: f64, settings: StepSettings) -> f64 {
+    let step = 2.0 / 3.0 * substep(settings);
+    segments as f64 * ULP / expected + ULP / (GRAVITY * step * step)
 }
 
 /// Measured δ/L.

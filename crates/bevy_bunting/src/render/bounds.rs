@@ -1,0 +1,31 @@
+//! Keeps cloth from being culled while it could be seen.
+
+use bevy_camera::primitives::Aabb;
+use bevy_camera::visibility::NoAutoAabb;
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3A;
+
+use super::dress::LevelMeshes;
+use crate::state::ClothState;
+
+/// Bounds everything between the last two ticks, for cloths that are visible and for those that
+/// may come into view.
+pub fn bound_cloths(
+    mut cloths: Query<
+        (&ClothState, &mut Aabb),
+        (With<NoAutoAabb>, Or<(Changed<ClothState>, Changed<LevelMeshes>)>),
+    >,
+) {
+    for (state, mut bounds) in &mut cloths {
+        let particles = state.previous_positions().iter().chain(state.positions());
+        let (low, high) = particles
+            .map(|&position| Vec3A::from(position))
+            .fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), position| {
+                (low.min(position), high.max(position))
+            });
+        if low.cmple(high).all() {
+            let bound = Aabb { center: 0.5 * (low + high), half_extents: 0.5 * (high - low) };
+            bounds.set_if_neq(bound);
+        }
+    }
+}

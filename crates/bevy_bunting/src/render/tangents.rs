@@ -1,0 +1,67 @@
+//! Tangents: where u grows on the surface, for normal maps.
+
+use bevy_math::{Vec2, Vec3, Vec4};
+use bevy_mesh::{Mesh, VertexAttributeValues};
+
+/// Where tangents are added up, kept from frame to frame.
+#[derive(Debug, Default)]
+pub struct TangentScratch {
+    sums: Vec<Vec3>,
+}
+
+impl TangentScratch {
+    /// Writes the tangents of a mesh that has any, from its positions, normals and texture
+    /// coordinates. The side of the bitangent, which no fold changes, stays as it is.
+    pub fn write_tangents(&mut self, mesh: &mut Mesh) {
+        if mesh.contains_attribute(Mesh::ATTRIBUTE_TANGENT) && self.add_up(mesh).is_some() {
+            self.write_sums(mesh);
+        }
+    }
+
+    /// Adds each triangle's tangent to its corners, weighted by its area in the texture.
+    fn add_up(&mut self, mesh: &Mesh) -> Option<()> {
+        use VertexAttributeValues::{Float32x2, Float32x3};
+
+        let Float32x3(positions) = mesh.attribute(Mesh::ATTRIBUTE_POSITION)? else { return None };
+        let Float32x2(uvs) = mesh.attribute(Mesh::ATTRIBUTE_UV_0)? else { return None };
+        self.sums.clear();
+        self.sums.resize(positions.len(), Vec3::ZERO);
+        let mut indices = mesh.indices()?.iter();
+        while let (Some(a), Some(b), Some(c)) = (indices.next(), indices.next(), indices.next()) {
+            let position = |vertex: usize| Vec3::from(positions[vertex]);
+            let uv = |vertex: usize| Vec2::from(uvs[vertex]);
+            let (ab, ac) = (position(b) - position(a), position(c) - position(a));
+            let (along_ab, along_ac) = (uv(b) - uv(a), uv(c) - uv(a));
+            let along_u =
+                (ab * along_ac.y - ac * along_ab.y) * along_ab.perp_dot(along_ac).signum();
+            for vertex in [a, b, c] {
+                self.sums[vertex] += along_u;
+            }
+        }
+        Some(())
+    }
+
+    /// Writes what was added up, at right angles to the normals.
+    fn write_sums(&self, mesh: &mut Mesh) {
+        use VertexAttributeValues::{Float32x3, Float32x4};
+
+        let (mut normals, mut tangents) = (None, None);
+        for (attribute, values) in mesh.attributes_mut() {
+            match values {
+                Float32x3(values) if attribute.id == Mesh::ATTRIBUTE_NORMAL.id => {
+                    normals = Some(values);
+                }
+                Float32x4(values) if attribute.id == Mesh::ATTRIBUTE_TANGENT.id => {
+                    tangents = Some(values);
+                }
+                _ => {}
+            }
+        }
+        let (Some(normals), Some(tangents)) = (normals, tangents) else { return };
+        for ((tangent, normal), sum) in tangents.iter_mut().zip(normals).zip(&self.sums) {
+            let [.., side] = *tangent;
+            let across = sum.reject_from_normalized(Vec3::from(*normal));
+            *tangent = Vec4::from((across.normalize_or_zero(), side)).to_array();
+        }
+    }
+}

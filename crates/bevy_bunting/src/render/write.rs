@@ -1,0 +1,118 @@
+//! Writes surfaces into meshes, in place.
+
+use bevy_asset::{AssetEvent, Assets};
+use bevy_camera::visibility::ViewVisibility;
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
+use bunting_solver::Fabric;
+
+use super::dress::{LevelMeshes, MeshOrigin, check};
+use super::tangents::TangentScratch;
+use crate::error::{ClothError, ClothFailed};
+use crate::state::ClothState;
+use crate::surface::ClothSurface;
+
+type Shown = (
+    Entity,
+    &'static ClothState,
+    &'static ClothSurface,
+    &'static ViewVisibility,
+    &'static mut LevelMeshes,
+    &'static mut Mesh3d,
+);
+
+/// Writes the meshes of cloths that were visible in the last frame, in time for Bevy to note it.
+pub fn write_visible(
+    mut cloths: Query<Shown>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut scratch: Local<TangentScratch>,
+    mut commands: Commands,
+) {
+    for (entity, state, surface, visibility, mut dress, worn) in &mut cloths {
+        let Some(fabric) = shows(state, surface, visibility, &dress) else { continue };
+        let Some(mut mesh) = meshes.get_mut(worn.id()) else { continue };
+        match write(entity, mesh.bypass_change_detection(), fabric, surface, &mut scratch) {
+            Ok(true) => {
+                mesh.into_inner();
+            }
+            Ok(false) => {}
+            Err(error) => refuse(&mut dress, error, &mut commands, entity),
+        }
+    }
+}
+
+/// Writes the meshes of cloths that come into view in this frame. Bevy has looked for changed
+/// assets by then, and is told here.
+pub fn write_revealed(
+    mut cloths: Query<Shown, Changed<ViewVisibility>>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut events: MessageWriter<AssetEvent<Mesh>>,
+    mut scratch: Local<TangentScratch>,
+    mut commands: Commands,
+) {
+    for (entity, state, surface, visibility, mut dress, mut worn) in &mut cloths {
+        let Some(fabric) = shows(state, surface, visibility, &dress) else { continue };
+        let Some(mesh) = meshes.get_mut_untracked(worn.id()) else { continue };
+        match write(entity, mesh, fabric, surface, &mut scratch) {
+            Ok(true) => {
+                events.write(AssetEvent::Modified { id: worn.id() });
+                worn.set_changed();
+            }
+            Ok(false) => {}
+            Err(error) => refuse(&mut dress, error, &mut commands, entity),
+        }
+    }
+}
+
+/// The fabric of a cloth that is to be seen, with a surface and a mesh that fit.
+fn shows<'a>(
+    state: &'a ClothState,
+    surface: &ClothSurface,
+    visibility: &ViewVisibility,
+    dress: &LevelMeshes,
+) -> Option<&'a Fabric> {
+    let fabric = state.fabric()?;
+    let fits = surface.positions.len() == fabric.particle_count();
+    (visibility.get() && fits && dress.origin != MeshOrigin::Refused).then_some(fabric)
+}
+
+fn refuse(dress: &mut LevelMeshes, error: ClothError, commands: &mut Commands, entity: Entity) {
+    dress.origin = MeshOrigin::Refused;
+    ClothFailed::report(commands, entity, error);
+}
+
+/// Writes a surface into a mesh. Whether the mesh has changed.
+fn write(
+    entity: Entity,
+    mesh: &mut Mesh,
+    fabric: &Fabric,
+    surface: &ClothSurface,
+    scratch: &mut TangentScratch,
+) -> Result<bool, ClothError> {
+    let particles = fabric.particle_of_vertex();
+    check(entity, mesh, particles.len())?;
+    let mut changed = false;
+    for (attribute, source) in
+        [(Mesh::ATTRIBUTE_POSITION, &surface.positions), (Mesh::ATTRIBUTE_NORMAL, &surface.normals)]
+    {
+        if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(attribute) {
+            changed |= spread(source, particles, values);
+        }
+    }
+    if changed {
+        scratch.write_tangents(mesh);
+    }
+    Ok(changed)
+}
+
+/// Gives each vertex the value of its particle. Whether any has changed.
+fn spread(source: &[Vec3], particles: &[u32], values: &mut [[f32; 3]]) -> bool {
+    let mut changed = false;
+    for (value, &particle) in values.iter_mut().zip(particles) {
+        let new = source[particle as usize].to_array();
+        changed |= *value != new;
+        *value = new;
+    }
+    changed
+}

@@ -1,0 +1,53 @@
+//! The hard cases.
+
+use serde_json::json;
+
+use super::progress;
+use crate::{
+    output::{
+        Outcome,
+        table::{Table, figure, figure_or_dash},
+    },
+    stability::{self, HardCase, Status},
+};
+
+/// Runs every family of hard cases.
+#[must_use]
+pub fn run(quick: bool) -> Outcome {
+    let bar = progress(stability::ALL.len());
+    let mut cases = Vec::new();
+    for (name, family) in stability::ALL {
+        bar.set_message(name);
+        cases.extend(family(quick));
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Outcome { json: json!({ "cases": cases }), tables: vec![table(&cases)], plots: Vec::new() }
+}
+
+fn table(cases: &[HardCase]) -> Table {
+    let built = cases.iter().filter(|case| case.status == Status::Built).count();
+    let passed = cases.iter().filter(|case| case.pass).count();
+    Table {
+        name: "stability".into(),
+        title: format!("{passed} of {built} hard cases held, {} not built", cases.len() - built),
+        headers: vec!["case", "n", "figure", "worst", "limit", "pass"],
+        rows: cases.iter().map(cells).collect(),
+    }
+}
+
+fn cells(case: &HardCase) -> Vec<String> {
+    let verdict = match (case.status, case.pass) {
+        (Status::NotBuilt, _) => "not built",
+        (Status::Built, true) => "yes",
+        (Status::Built, false) => "NO",
+    };
+    vec![
+        case.name.clone(),
+        if case.n == 0 { "–".into() } else { case.n.to_string() },
+        case.figure.into(),
+        figure_or_dash(case.worst),
+        figure(case.limit),
+        verdict.into(),
+    ]
+}

@@ -1,0 +1,55 @@
+//! A Bevy app with nothing but cloth in it, as a game would have it.
+
+use std::time::Duration;
+
+use bevy_app::{App, TaskPoolPlugin};
+use bevy_bunting::{
+    Attachment, ClothEdge, ClothMaterial, ClothMesh, ClothPlugins, ClothSettings, LodSet,
+    WindField, bunting_solver::StepSettings,
+};
+use bevy_ecs::entity::Entity;
+use bevy_tasks::{ComputeTaskPool, TaskPoolBuilder};
+use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
+use bevy_transform::{TransformPlugin, components::Transform};
+use glam::Vec3;
+
+use crate::{product, scenes::Scene};
+
+/// Strength of the gusts, m/s.
+const GUST: f32 = 1.0;
+/// How often gusts come, 1/s.
+const GUST_RATE: f32 = 0.3;
+
+/// An app on one core whose every update is one tick of the standard flag's wind.
+#[must_use]
+pub fn app(settings: StepSettings) -> App {
+    // Batches keep to the thread that ticks them when the pool has only one.
+    ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
+    let tick = Duration::from_secs_f32(product::TICK);
+    let mut app = App::new();
+    app.add_plugins((
+        TaskPoolPlugin::default(),
+        TimePlugin,
+        TransformPlugin,
+        ClothPlugins::default(),
+    ))
+    .insert_resource(Time::<Fixed>::from_duration(tick))
+    .insert_resource(TimeUpdateStrategy::ManualDuration(tick))
+    .insert_resource(ClothSettings { steps: vec![settings], ..ClothSettings::default() });
+    let wind = Vec3::from_array(Scene::flag(2).air.wind.map(|speed| speed as f32));
+    app.world_mut().spawn(WindField::steady(wind).with_gusts(GUST, GUST_RATE, 1));
+    app
+}
+
+/// Spawns the standard flag of n × n on a pole of its own.
+pub fn spawn_flag(app: &mut App, n: u32, at: Vec3, lods: LodSet) -> Entity {
+    let scene = Scene::flag(n as usize);
+    let pole = app.world_mut().spawn(Transform::from_translation(at)).id();
+    let flag = (
+        ClothMesh::grid(n, n, scene.width as f32, scene.height as f32),
+        ClothMaterial(product::material(&scene)),
+        Attachment::new(pole, ClothEdge::Left),
+        lods,
+    );
+    app.world_mut().spawn(flag).id()
+}

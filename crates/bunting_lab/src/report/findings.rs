@@ -1,0 +1,255 @@
+//! What the figures say, drawn from each command's JSON.
+
+use serde_json::Value;
+
+use crate::output::table::figure;
+
+/// Time that cloth may take of a frame, ms.
+const BUDGET: f64 = 1.0;
+/// Part of a length or a frequency by which levels may differ before anybody sees it.
+const LEVELS_AGREE: f64 = 0.05;
+/// Largest pop that is not seen from 10 m away, m: a pixel of 1080 lines over 45°.
+const POP: f64 = 10.0 / crate::levels::switches::PIXELS;
+/// Part of the kinetic energy that a change of level may add.
+const ENERGY: f64 = 0.01;
+/// Part by which the schedule may exceed plain calls.
+const SCHEDULE: f64 = 0.1;
+/// Failing cases that are named.
+const NAMED: usize = 3;
+
+/// One sentence, good or bad news.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// Whether it is good.
+    pub good: bool,
+    /// The sentence.
+    pub text: String,
+}
+
+impl Finding {
+    fn new(good: bool, text: String) -> Self {
+        Self { good, text }
+    }
+}
+
+/// What a command's figures say.
+#[must_use]
+pub fn of(command: &str, json: &Value) -> Vec<Finding> {
+    match command {
+        "oracles" => cases(json, "closed forms are met", oracle_gap),
+        "stability" => cases(json, "hard cases hold", stability_gap),
+        "pareto" => pareto(json),
+        "budget" => budget(json),
+        "lod" => lod(json),
+        "schedule" => schedule(json),
+        "peers" => peers(json),
+        _ => Vec::new(),
+    }
+}
+
+fn rows<'a>(json: &'a Value, key: &str) -> &'a [Value] {
+    json[key].as_array().map_or(&[], Vec::as_slice)
+}
+
+fn number(row: &Value, key: &str) -> f64 {
+    row[key].as_f64().unwrap_or(f64::NAN)
+}
+
+fn text<'a>(row: &'a Value, key: &str) -> &'a str {
+    row[key].as_str().unwrap_or("?")
+}
+
+fn oracle_gap(case: &Value) -> f64 {
+    number(case, "relative_error") / number(case, "tolerance")
+}
+
+fn stability_gap(case: &Value) -> f64 {
+    number(case, "worst") / number(case, "limit")
+}
+
+/// How many cases pass, and the worst that do not, by how many times they miss.
+fn cases(json: &Value, what: &str, gap: fn(&Value) -> f64) -> Vec<Finding> {
+    let built = rows(json, "cases").iter().filter(|case| text(case, "status") != "not_built");
+    let (passed, mut failed): (Vec<&Value>, Vec<&Value>) =
+        built.partition(|case| case["pass"].as_bool() == Some(true));
+    let total = passed.len() + failed.len();
+    let mut findings = Vec::new();
+    if !passed.is_empty() {
+        findings.push(Finding::new(true, format!("{} of {total} {what}", passed.len())));
+    }
+    // What is not a number is the worst of all.
+    failed.sort_by(|a, b| gap(b).abs().total_cmp(&gap(a).abs()));
+    if !failed.is_empty() {
+        let name = |case: &&Value| match gap(case) {
+            gap if gap.is_finite() => format!("{} (by {} ×)", text(case, "name"), figure(gap)),
+            _ => text(case, "name").to_owned(),
+        };
+        let named: Vec<String> = failed.iter().take(NAMED).map(name).collect();
+        let sentence = format!("{} of {total} fail, most: {}", failed.len(), named.join("; "));
+        findings.push(Finding::new(false, sentence));
+    }
+    findings
+}
+
+/// How much faster this project is than every other method that errs no more, by scene.
+fn pareto(json: &Value) -> Vec<Finding> {
+    let mut scenes: Vec<(&str, u64)> = Vec::new();
+    for row in rows(json, "rows") {
+        let scene = (text(row, "scene"), row["n"].as_u64().unwrap_or(0));
+        if !scenes.contains(&scene) {
+            scenes.push(scene);
+        }
+    }
+    scenes.into_iter().filter_map(|(scene, n)| fastest(json, scene, n)).collect()
+}
+
+fn fastest(json: &Value, scene: &str, n: u64) -> Option<Finding> {
+    let error = |row: &Value| match scene {
+        "swing" => number(row, "rms_error_m"),
+        _ => number(row, "strain_error"),
+    };
+    let time = |row: &Value| number(row, "us_per_cloth_tick");
+    let (ours, others): (Vec<&Value>, Vec<&Value>) = rows(json, "rows")
+        .iter()
+        .filter(|row| text(row, "scene") == scene && row["n"].as_u64() == Some(n))
+        .filter(|row| row["stable"].as_bool() == Some(true) && error(row).is_finite())
+        .partition(|row| text(row, "method").starts_with("bunting"));
+    let best = ours.into_iter().min_by(|a, b| error(a).total_cmp(&error(b)))?;
+    let rivals = others.into_iter().filter(|row| error(row) <= error(best));
+    let rival = rivals.min_by(|a, b| time(a).total_cmp(&time(b)));
+    let found = format!("{scene} {n}²: error {} in {} µs", figure(error(best)), figure(time(best)));
+    Some(match rival {
+        None => Finding::new(true, format!("{found}; no other method errs as little")),
+        Some(rival) => {
+            let ratio = time(rival) / time(best);
+            let (method, ratio_text) = (text(rival, "method"), figure(ratio));
+            Finding::new(
+                ratio > 1.0,
+                format!("{found}; the next as exact, {method}, takes {ratio_text} × that"),
+            )
+        }
+    })
+}
+
+fn budget(json: &Value) -> Vec<Finding> {
+    let thousand = &json["thousand"];
+    let [median, worst] = ["ms_median", "ms_worst_second"].map(|key| number(thousand, key));
+    let mut findings = vec![Finding::new(
+        worst <= BUDGET,
+        format!(
+            "1000 flags around a moving camera take {} ms a tick on one core, {} ms in the worst \
+             second; the budget is {BUDGET} ms",
+            figure(median),
+            figure(worst),
+        ),
+    )];
+    let within = rows(json, "sheets")
+        .iter()
+        .filter(|sheet| sheet["n"] == 33 && sheet["cores"] == 1)
+        .map(|sheet| (BUDGET / number(sheet, "ms_per_tick") * number(sheet, "cloths"), sheet))
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    if let Some((flags, sheet)) = within {
+        let scheme = text(sheet, "scheme");
+        let sentence = format!("{BUDGET} ms of one core holds {flags:.0} flags of 33² ({scheme})");
+        findings.push(Finding::new(true, sentence));
+    }
+    findings
+}
+
+fn lod(json: &Value) -> Vec<Finding> {
+    let levels = rows(json, "levels");
+    let mut findings = Vec::new();
+    for (key, what) in [
+        ("droop_m", "droop"),
+        ("swing_period_s", "swing period"),
+        ("flutter_hz", "flutter frequency"),
+    ] {
+        let off = levels.iter().filter_map(|level| {
+            let finest = levels.iter().find(|other| other["scheme"] == level["scheme"])?;
+            Some((number(level, key) / number(finest, key) - 1.0).abs())
+        });
+        let worst = off.fold(0.0, f64::max);
+        let sentence = format!("the levels' {what} differs by up to {:.1} %", 100.0 * worst);
+        findings.push(Finding::new(worst <= LEVELS_AGREE, sentence));
+    }
+    let worst = |key: &str| {
+        rows(json, "switches").iter().map(|switch| number(switch, key)).fold(0.0, f64::max)
+    };
+    let (pop, energy) = (worst("pop_max_m"), worst("energy_jump"));
+    let sentence = format!("a change of level pops by {} m at most", figure(pop));
+    findings.push(Finding::new(pop <= POP, sentence));
+    let sentence = format!("a change of level adds up to {} × the kinetic energy", figure(energy));
+    findings.push(Finding::new(energy <= ENERGY, sentence));
+    findings
+}
+
+fn schedule(json: &Value) -> Vec<Finding> {
+    let finest = rows(json, "rows").iter().filter(|row| row["n"] == 33);
+    let worst = finest.map(|row| number(row, "ratio")).fold(0.0, f64::max);
+    let sentence =
+        format!("the plugin takes {} × the time of plain calls, eight flags of 33²", figure(worst));
+    vec![Finding::new(worst <= 1.0 + SCHEDULE, sentence)]
+}
+
+/// The fastest of this project's settings for a single cloth against every other engine's.
+fn peers(json: &Value) -> Vec<Finding> {
+    let is_ours = |row: &&Value| text(row, "engine").starts_with("bunting");
+    let on = |scene: &'static str| {
+        let rows = rows(json, "rows").iter();
+        rows.filter(move |row| text(row, "scene") == scene && row["lanes"] == 1)
+    };
+    let mut findings = Vec::new();
+    for scene in ["hang_top", "hang_side", "hang_corners"] {
+        let time = |row: &&Value| number(row, "ms_per_tick");
+        let ours = on(scene).filter(is_ours).min_by(|a, b| time(a).total_cmp(&time(b)));
+        let theirs = on(scene).filter(|row| !is_ours(row));
+        let theirs = theirs.min_by(|a, b| time(a).total_cmp(&time(b)));
+        let Some((ours, theirs)) = ours.zip(theirs) else { continue };
+        let ratio = time(&theirs) / time(&ours);
+        let [strain, other] = [ours, theirs].map(|row| figure(number(row, "max_stretch")));
+        let sentence = format!(
+            "{scene}: one cloth {} × as fast as {} at {} substeps, largest strain {strain} against \
+             {other}",
+            figure(ratio),
+            text(theirs, "engine"),
+            theirs["substeps"],
+        );
+        findings.push(Finding::new(ratio > 1.0, sentence));
+    }
+    findings
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+
+    #[test]
+    fn failing_cases_are_named_worst_first() {
+        let case = |name, error, pass| json!({ "name": name, "relative_error": error, "tolerance": 1.0, "pass": pass });
+        let json = json!({ "cases": [case("a", 0.1, true), case("b", 2.0, false), case("c", 9.0, false)] });
+        let findings = of("oracles", &json);
+        assert!(findings[0].good && findings[0].text.starts_with("1 of 3"));
+        assert_eq!(findings[1].text, "2 of 3 fail, most: c (by 9.000 ×); b (by 2.000 ×)");
+    }
+
+    #[test]
+    fn cases_not_built_count_for_nothing() {
+        let json =
+            json!({ "cases": [{ "name": "tearing", "pass": false, "status": "not_built" }] });
+        assert!(of("stability", &json).is_empty());
+    }
+
+    #[test]
+    fn a_rival_as_exact_is_compared_by_time() {
+        let row = |method: &str, time: f64, error: f64| {
+            json!({ "scene": "swing", "n": 9, "method": method, "stable": true,
+                "us_per_cloth_tick": time, "rms_error_m": error })
+        };
+        let rows =
+            [row("bunting yarns", 10.0, 1e-3), row("xpbd", 50.0, 1e-3), row("pbd", 5.0, 0.1)];
+        let findings = of("pareto", &json!({ "rows": rows }));
+        assert!(findings[0].good && findings[0].text.contains("xpbd, takes 5.000 ×"));
+    }
+}

@@ -1,0 +1,134 @@
+//! Switching levels, riding in lanes and threads, and bad input.
+
+use std::thread;
+
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, FabricBuilder, FabricMaterial, Grid as RestGrid, LaneCount,
+    LevelTransfer,
+};
+use glam::{DVec3, Vec3};
+
+use super::{
+    HardCase,
+    rig::{SETTINGS, energy, start, ticks},
+};
+use crate::{
+    product::{Product, fabric, material},
+    reference::grid::Grid,
+    scenes::Scene,
+    simulation::Simulation,
+};
+
+/// All cases.
+pub fn cases(quick: bool) -> Vec<HardCase> {
+    let mut cases = thrash(17, if quick { 2.0 } else { 10.0 }).to_vec();
+    cases.push(HardCase::not_built("LOD thrash: pop", "pixels", 1.0));
+    cases.push(determinism(9, if quick { 500 } else { 10_000 }));
+    cases.push(HardCase::not_built(
+        "determinism across instruction sets",
+        "numbers that differ",
+        0.0,
+    ));
+    cases.push(bad_input());
+    cases.push(bad_neighbour());
+    cases
+}
+
+/// A swing that changes its level every tick.
+fn thrash(n: usize, seconds: f64) -> [HardCase; 2] {
+    let scenes = [Scene::swing(n), Scene::swing(n / 2 + 1)];
+    let grids = scenes.each_ref().map(Grid::new);
+    let fabrics = scenes.each_ref().map(fabric);
+    let transfer = LevelTransfer::between(&fabrics[0], &fabrics[1]).expect("nested levels");
+    let mut cloths = scenes.each_ref().map(start);
+    let momentum = |level: usize, state: &ClothSnapshot| -> DVec3 {
+        let moving = state.velocities.iter().zip(&grids[level].masses);
+        moving.map(|(v, m)| v.as_dvec3() * *m).sum()
+    };
+    let (mut kicked, mut highest, mut level) = (0.0_f64, 0.0_f64, 0);
+    for _ in 0..ticks(seconds) {
+        cloths[level].tick();
+        let state = cloths[level].batch.snapshot(0);
+        let next = 1 - level;
+        let switched =
+            if level == 0 { transfer.restrict(&state) } else { transfer.prolong(&state) };
+        let (before, after) = (momentum(level, &state), momentum(next, &switched));
+        if before.length() > 1e-3 {
+            kicked = kicked.max((after - before).length() / before.length());
+        }
+        cloths[next].restore(&switched);
+        level = next;
+        highest = highest.max(energy(&scenes[level], &grids[level], &cloths[level]));
+    }
+    [
+        HardCase::new("LOD thrash: momentum", n, "change in a switch, of one", kicked, 1e-5),
+        HardCase::new("LOD thrash: energy", n, "over the start, of the fall", highest, 0.01),
+    ]
+}
+
+/// A flag alone, among eight and among sixteen, on this thread and on others, to the bit.
+fn determinism(n: usize, ticks: usize) -> HardCase {
+    let fly = move |lanes: LaneCount| {
+        let mut cloth = Product { settings: SETTINGS, lanes }.start(&Scene::flag(n));
+        (0..ticks).for_each(|_| cloth.tick());
+        cloth.batch.snapshot(0)
+    };
+    let runs: Vec<ClothSnapshot> = thread::scope(|scope| {
+        let lanes = [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen, LaneCount::One];
+        let threads = lanes.map(|lanes| scope.spawn(move || fly(lanes)));
+        threads.into_iter().map(|run| run.join().expect("a run")).collect()
+    });
+    let differing = |other: &ClothSnapshot| {
+        let pairs = other.positions.iter().zip(&runs[0].positions);
+        pairs
+            .filter(|(one, two)| {
+                one.to_array().map(f32::to_bits) != two.to_array().map(f32::to_bits)
+            })
+            .count()
+    };
+    let worst = runs.iter().map(differing).max().unwrap_or_default();
+    HardCase::new("determinism: lanes and threads", n, "vertices that differ", worst as f64, 0.0)
+}
+
+/// Everything that must be refused with a typed error.
+fn bad_input() -> HardCase {
+    let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+    let mut infinite = corners.clone();
+    infinite[1].x = f32::NAN;
+    let meshes = [
+        FabricBuilder::new(infinite, vec![0, 1, 2]),
+        FabricBuilder::new(Vec::new(), Vec::new()),
+        FabricBuilder::new(corners.clone(), vec![0, 1, 3]),
+        FabricBuilder::new(corners.clone(), vec![0, 1]),
+        FabricBuilder::new(corners.clone(), vec![0, 1, 1]),
+        FabricBuilder::new(corners, vec![0, 1, 2]).pin([7]),
+        FabricBuilder::grid(RestGrid::new(1, 9, 1.0, 1.0)),
+        FabricBuilder::grid(RestGrid::new(9, 9, f32::INFINITY, 1.0)),
+    ];
+    let accepted_meshes = meshes.into_iter().filter(|mesh| mesh.clone().build().is_ok()).count();
+    let silk = FabricMaterial::SILK;
+    let materials = [
+        FabricMaterial { area_density: -1.0, ..silk },
+        FabricMaterial { area_density: 0.0, ..silk },
+        FabricMaterial { warp_stiffness: f32::NAN, ..silk },
+        FabricMaterial { damping: f32::INFINITY, ..silk },
+    ];
+    let accepted_materials = materials.iter().filter(|bad| bad.validate().is_ok()).count();
+    let worst = (accepted_meshes + accepted_materials) as f64;
+    HardCase::new("bad input", 0, "bad inputs accepted", worst, 0.0)
+}
+
+/// A cloth that is refused leaves the others in the batch as they were.
+fn bad_neighbour() -> HardCase {
+    let scene = Scene::swing(5);
+    let fabric = fabric(&scene);
+    let good = ClothSnapshot::at_rest(&fabric);
+    let mut bad = good.clone();
+    bad.positions[3].y = f32::INFINITY;
+    let mut batch = ClothBatch::new(fabric, LaneCount::Eight);
+    batch.insert(&good, material(&scene)).expect("a good cloth");
+    let accepted = f64::from(u8::from(batch.insert(&bad, material(&scene)).is_ok()));
+    batch.step(crate::product::TICK, SETTINGS);
+    let broken = f64::from(u8::from(!batch.is_finite(0)));
+    HardCase::new("bad cloth beside a good one", 5, "accepted or spread", accepted + broken, 0.0)
+}

@@ -1,0 +1,147 @@
+//! Frames that move, pins that are too far apart, and ticks of odd lengths.
+
+use std::f32::consts::{PI, TAU};
+
+use bunting_solver::{ClothSnapshot, FrameMotion};
+use glam::{DVec3, Quat, Vec3};
+
+use super::{
+    HardCase,
+    rig::{positions, reach, run, speed, start, strain, ticks},
+};
+use crate::{
+    oracles::specimen::Specimen,
+    product::{Cloth, TICK, fabric},
+    scenes::{Pins, Pose, Scene},
+    simulation::Simulation,
+    stats::rms_distance,
+};
+
+/// How far a metre of cloth may be from the pin at its frame's origin, m.
+const REACH: f64 = 1.6;
+/// Largest 95th percentile of strain of a cloth that has recovered, %.
+const RECOVERED: f64 = 1.0;
+
+/// All cases.
+pub fn cases(quick: bool) -> Vec<HardCase> {
+    let n = if quick { 9 } else { 17 };
+    let mut cases: Vec<HardCase> = [1e3, 1e4].into_iter().map(|offset| far(n, offset)).collect();
+    cases.push(teleport_kept(n));
+    cases.push(teleport_reset(n));
+    let shake = |time: f32| (Vec3::X * (0.5 * (10.0 * TAU * time).sin()), Quat::IDENTITY);
+    cases.extend(shaken("pin shake ±0.5 m at 10 Hz", n, shake));
+    let spin = |time: f32| (Vec3::ZERO, Quat::from_rotation_y(20.0 * time));
+    cases.extend(shaken("spin at 20 rad/s", n, spin));
+    cases.extend([0.0, 1e-6, 0.5, 5.0].map(|tick| hitch(n, tick)));
+    cases.push(overstretched(n));
+    cases
+}
+
+/// Advances a cloth while its frame goes from pose to pose, gravity staying the world's.
+fn carry(cloth: &mut Cloth, from: (Vec3, Quat), to: (Vec3, Quat)) {
+    cloth.drive.motion = FrameMotion::between(from, to);
+    cloth.drive.gravity = to.1.inverse() * Vec3::new(0.0, -9.81, 0.0);
+    cloth.tick();
+}
+
+/// The same swaying ride near the origin and far away, where poses are rounded.
+fn far(n: usize, offset: f32) -> HardCase {
+    let scene = Scene { damping: 2.0, ..Scene::swing(n) };
+    let pose = |offset: f32, tick: usize| {
+        let sway = Vec3::new((tick as f32 * TICK * 3.0).sin(), 0.0, tick as f32 * TICK);
+        (Vec3::splat(offset) + sway, Quat::IDENTITY)
+    };
+    let mut cloths = [0.0, offset].map(|offset| (offset, start(&scene)));
+    for tick in 0..ticks(1.0) {
+        for (offset, cloth) in &mut cloths {
+            carry(cloth, pose(*offset, tick), pose(*offset, tick + 1));
+        }
+    }
+    let apart = rms_distance(&positions(&cloths[0].1), &positions(&cloths[1].1));
+    // A pose that is rounded to a unit in the last place of the offset shakes the pins by as much.
+    let limit = f64::from(offset * f32::EPSILON) + 1e-4;
+    HardCase::new(format!("{offset:e} m from the origin"), n, "RMS distance, m", apart, limit)
+}
+
+/// A cloth put down elsewhere with its state kept must go on as if nothing had happened.
+fn teleport_kept(n: usize) -> HardCase {
+    let scene = Scene::swing(n);
+    let mut stays = start(&scene);
+    run(&mut stays, 0.3);
+    let mut moved = stays.clone();
+    moved.restore(&moved.batch.snapshot(0));
+    let worst = (0..ticks(0.3)).fold(0.0, |worst: f64, _| {
+        stays.tick();
+        moved.tick();
+        worst.max(speed(&moved) / speed(&stays))
+    });
+    HardCase::new("teleport, state kept", n, "speed over that of none", worst, 1.05)
+}
+
+/// A cloth reset elsewhere, turned by 180°, starts from rest.
+fn teleport_reset(n: usize) -> HardCase {
+    let scene = Scene::swing(n);
+    let mut cloth = start(&scene);
+    run(&mut cloth, 0.3);
+    cloth.drive.gravity = Quat::from_rotation_z(PI) * cloth.drive.gravity;
+    cloth.restore(&ClothSnapshot::at_rest(&fabric(&scene)));
+    cloth.tick();
+    let free_fall = scene.gravity * f64::from(TICK);
+    HardCase::new(
+        "teleport, state reset",
+        n,
+        "speed over free fall's",
+        speed(&cloth) / free_fall,
+        1.05,
+    )
+}
+
+/// Two seconds of violence, then two of rest.
+fn shaken(name: &str, n: usize, path: impl Fn(f32) -> (Vec3, Quat)) -> [HardCase; 2] {
+    let scene = Scene::hang_side(n);
+    let mut cloth = start(&scene);
+    let mut worst = 0.0_f64;
+    for tick in 0..ticks(2.0) {
+        let [from, to] = [tick, tick + 1].map(|tick| path(tick as f32 * TICK));
+        carry(&mut cloth, from, to);
+        worst = worst.max(reach(&cloth));
+    }
+    cloth.drive.motion = FrameMotion::NONE;
+    run(&mut cloth, 2.0);
+    let left = 100.0 * strain(&scene, &cloth).p95;
+    [
+        HardCase::new(format!("{name}: bounded"), n, "reach, m", worst, REACH),
+        HardCase::new(
+            format!("{name}: recovers"),
+            n,
+            "95th percentile of strain, %",
+            left,
+            RECOVERED,
+        ),
+    ]
+}
+
+/// One tick of an odd length amid a swing.
+fn hitch(n: usize, tick: f32) -> HardCase {
+    let mut cloth = start(&Scene::swing(n));
+    run(&mut cloth, 0.2);
+    cloth.advance(tick);
+    let mut worst = reach(&cloth);
+    for _ in 0..30 {
+        cloth.tick();
+        worst = worst.max(reach(&cloth));
+    }
+    HardCase::new(format!("hitch of {tick} s, not capped"), n, "reach, m", worst, REACH)
+}
+
+/// Two opposite edges held 10 % too far apart.
+fn overstretched(n: usize) -> HardCase {
+    let swing = Scene::swing(n);
+    let scene = Scene { pins: Pins::TopAndBottom, pose: Pose::Vertical, damping: 2.0, ..swing };
+    let mut cloth = start(&scene);
+    let apart: Vec<DVec3> =
+        scene.positions().iter().map(|x| *x * DVec3::new(1.0, 1.1, 1.0)).collect();
+    cloth.place(&apart, &vec![DVec3::ZERO; apart.len()]);
+    run(&mut cloth, 5.0);
+    HardCase::new("pins at 110 %", n, "RMS speed, m/s", speed(&cloth), 1e-3)
+}

@@ -1,0 +1,222 @@
+//! The same cloth at other sizes, passes, rates and step lengths.
+
+use bunting_solver::StepSettings;
+
+use super::{
+    HardCase,
+    rig::{SETTINGS, energy, run, speed, start, strain, ticks},
+};
+use crate::{
+    oracles::{rig::strip, specimen::Specimen, trials},
+    product::{Cloth, Product},
+    reference::grid::Grid,
+    scenes::{Fabric, Pins, Pose, Scene},
+    simulation::Simulation,
+    stats::{crossing_frequency, rms_distance},
+};
+
+/// Largest difference of mean strains, percentage points.
+const STRAIN: f64 = 0.2;
+/// Largest difference of periods, of one.
+const PERIOD: f64 = 0.01;
+/// Largest rise of the energy over its start, of the sheet's fall.
+const ENERGY: f64 = 0.01;
+/// Fastest that a cloth at rest may move, m/s RMS.
+const REST_SPEED: f64 = 1e-3;
+/// Largest 95th percentile of strain at rest, %.
+const REST_STRAIN: f64 = 1.0;
+
+/// All sweeps.
+pub fn cases(quick: bool) -> Vec<HardCase> {
+    let sizes: &[usize] = if quick { &[9, 17] } else { &[9, 17, 33, 65] };
+    let mut cases = vec![resolution(sizes), passes_and_rates_strain(), passes_and_rates_period()];
+    for &n in if quick { &[17][..] } else { &[17, 33, 65] } {
+        cases.push(whip(n));
+    }
+    for &n in sizes {
+        cases.extend(rest("two-corner pin", Scene::hang_corners(n)));
+        cases.extend(rest("one-side pin", Scene::hang_side(n)));
+    }
+    cases.extend(tiny_steps(if quick { 9 } else { 17 }));
+    cases.push(resting(quick));
+    cases.push(HardCase::not_built("rest: sleeps", "s until asleep", 10.0));
+    cases.push(stiff_bending());
+    cases
+}
+
+fn resolution(sizes: &[usize]) -> HardCase {
+    let strains: Vec<f64> = sizes
+        .iter()
+        .map(|&n| {
+            let scene = Scene::hang_top(n);
+            let mut cloth = start(&scene);
+            run(&mut cloth, scene.seconds);
+            100.0 * strain(&scene, &cloth).mean
+        })
+        .collect();
+    HardCase::new(
+        "resolution sweep",
+        0,
+        "difference of mean strain, points",
+        spread(&strains),
+        STRAIN,
+    )
+}
+
+/// Lengths of ticks in seconds at a rate in hertz; a rate of zero jitters by half about 60 Hz.
+fn tick_lengths(rate: u32) -> impl Iterator<Item = f32> {
+    let mean = if rate == 0 { 60.0 } else { rate as f32 };
+    (0..).map(move |k: u32| {
+        let jitter = if rate == 0 { (k as f32 * 2.4).sin() * 0.5 } else { 0.0 };
+        (1.0 + jitter) / mean
+    })
+}
+
+/// Every setting of the sweep: passes at 60 Hz, then rates with one pass.
+fn sweep() -> impl Iterator<Item = (StepSettings, u32)> {
+    let passes = [1, 2, 4, 8].map(|passes| (StepSettings { passes, ..SETTINGS }, 60));
+    let rates = [30, 144, 240, 0].map(|rate| (SETTINGS, rate));
+    passes.into_iter().chain(rates)
+}
+
+fn passes_and_rates_strain() -> HardCase {
+    let scene = Scene::hang_top(17);
+    let strains: Vec<f64> = sweep()
+        .map(|(settings, rate)| {
+            let mut cloth = Product::lone(settings).start(&scene);
+            follow(&mut cloth, rate, scene.seconds, |_, _| ());
+            100.0 * strain(&scene, &cloth).mean
+        })
+        .collect();
+    let worst = spread(&strains);
+    HardCase::new("passes 1–8, 30–240 Hz, jitter: strain", 17, "difference, points", worst, STRAIN)
+}
+
+fn passes_and_rates_period() -> HardCase {
+    let fabric = Fabric { bending: 100.0, ..Fabric::STANDARD };
+    let scene = strip(8, 1.0, Pins::Top, Pose::Vertical, fabric);
+    let tilted: Vec<_> =
+        scene.positions().iter().map(|x| glam::dvec3(x.x, x.y, -0.05 * x.y)).collect();
+    let still = vec![glam::DVec3::ZERO; tilted.len()];
+    let periods: Vec<f64> = sweep()
+        .map(|(settings, rate)| {
+            let mut cloth = Product::lone(settings).start(&scene);
+            cloth.place(&tilted, &still);
+            period(&mut cloth, rate)
+        })
+        .collect();
+    let worst = spread(&periods) / periods[0];
+    HardCase::new("passes 1–8, 30–240 Hz, jitter: period", 8, "difference, of one", worst, PERIOD)
+}
+
+/// Period in seconds of a pendulum, from its tip resampled evenly.
+fn period(cloth: &mut Cloth, rate: u32) -> f64 {
+    const SAMPLE: f64 = 1.0 / 240.0;
+    let (mut samples, mut last) = (Vec::new(), None);
+    follow(cloth, rate, 8.0, |cloth, time| {
+        let tip = f64::from(cloth.positions()[cloth.positions().len() - 1].z);
+        if let Some((before, was)) = last {
+            while (samples.len() as f64) * SAMPLE <= time {
+                let part = (samples.len() as f64 * SAMPLE - before) / (time - before);
+                samples.push(was + (tip - was) * part);
+            }
+        }
+        last = Some((time, tip));
+    });
+    crossing_frequency(&samples, 1.0 / SAMPLE).map_or(f64::NAN, f64::recip)
+}
+
+/// Runs for some seconds at a rate, showing the cloth with the time after each tick.
+fn follow(cloth: &mut Cloth, rate: u32, seconds: f64, mut see: impl FnMut(&Cloth, f64)) {
+    let mut time = 0.0;
+    for tick in tick_lengths(rate) {
+        if time >= seconds {
+            break;
+        }
+        cloth.advance(tick);
+        time += f64::from(tick);
+        see(cloth, time);
+    }
+}
+
+fn whip(n: usize) -> HardCase {
+    let scene = Scene::swing(n);
+    let grid = Grid::new(&scene);
+    let mut worst = 0.0_f64;
+    for substeps in [1, 2, 4] {
+        let mut cloth = Product::lone(StepSettings::yarns(substeps)).start(&scene);
+        for _ in 0..ticks(3.0) {
+            cloth.tick();
+            let now = energy(&scene, &grid, &cloth);
+            worst = if now.is_nan() { f64::NAN } else { worst.max(now) };
+        }
+    }
+    HardCase::new(
+        "90° whip, 1, 2 and 4 substeps",
+        n,
+        "energy over the start, of the fall",
+        worst,
+        ENERGY,
+    )
+}
+
+fn rest(name: &str, scene: Scene) -> [HardCase; 2] {
+    let mut cloth = start(&scene);
+    run(&mut cloth, scene.seconds);
+    let n = scene.columns;
+    let stretched = 100.0 * strain(&scene, &cloth).p95;
+    [
+        HardCase::new(format!("{name}: at rest"), n, "RMS speed, m/s", speed(&cloth), REST_SPEED),
+        HardCase::new(format!("{name}: strain"), n, "95th percentile, %", stretched, REST_STRAIN),
+    ]
+}
+
+fn tiny_steps(n: usize) -> [HardCase; 2] {
+    const WINDOW: usize = 60;
+    let scene = Scene::hang_side(n);
+    let settled = |substeps| {
+        let mut cloth = Product::lone(StepSettings::yarns(substeps)).start(&scene);
+        run(&mut cloth, scene.seconds);
+        cloth
+    };
+    let (coarse, mut fine) = (settled(8), settled(64));
+    let shape = rms_distance(&super::rig::positions(&coarse), &super::rig::positions(&fine));
+    let seen: Vec<_> = (0..WINDOW)
+        .map(|_| {
+            fine.tick();
+            super::rig::positions(&fine)
+        })
+        .collect();
+    let mean: Vec<_> = (0..scene.vertices())
+        .map(|vertex| seen.iter().map(|x| x[vertex]).sum::<glam::DVec3>() / WINDOW as f64)
+        .collect();
+    let jitter = seen.iter().map(|x| rms_distance(x, &mean)).fold(0.0, f64::max);
+    [
+        HardCase::new("64 substeps: jitter", n, "RMS, m", jitter, 1e-4),
+        HardCase::new("64 substeps: shape of 8", n, "RMS distance, m", shape, 1e-3),
+    ]
+}
+
+fn resting(quick: bool) -> HardCase {
+    let scene = Scene::hang_top(17);
+    let mut cloth = start(&scene);
+    run(&mut cloth, 10.0);
+    let settled = super::rig::positions(&cloth);
+    run(&mut cloth, if quick { 20.0 } else { 600.0 });
+    let drift = rms_distance(&settled, &super::rig::positions(&cloth));
+    HardCase::new("rest: 10 min hanging", 17, "drift, m", drift, 1e-4)
+}
+
+fn stiff_bending() -> HardCase {
+    let aspect = trials::stiffest_cantilever(&|scene, settings| {
+        Box::new(Product::lone(settings).start(scene))
+    });
+    HardCase::new("stiff bending, Γ = 0.01", 32, "error of H/W = Γ/8, of one", aspect, 0.02)
+}
+
+/// Distance between the largest and the smallest.
+fn spread(values: &[f64]) -> f64 {
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    if values.iter().any(|value| value.is_nan()) { f64::NAN } else { high - low }
+}

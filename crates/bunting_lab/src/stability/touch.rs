@@ -1,0 +1,89 @@
+//! Fast colliders.
+
+use bunting_solver::Collider;
+use glam::{Quat, Vec3};
+use parry3d::shape::SharedShape;
+
+use super::{
+    HardCase,
+    rig::{run, start},
+};
+use crate::{
+    product::TICK,
+    scenes::{Pose, Scene},
+    simulation::Simulation,
+};
+
+/// Speed of the collider along z, m/s.
+const SPEED: f32 = 20.0;
+/// Radius of its swept cross-section, m.
+const RADIUS: f32 = 0.05;
+/// Where it starts, m from the cloth.
+const START: f32 = -0.5;
+/// Ticks of its flight.
+const TICKS: usize = 4;
+/// Deepest that a vertex may be inside, m.
+const DEPTH: f64 = 1e-3;
+
+/// A ball, a capsule and a box's edge through a hanging cloth.
+pub fn cases(quick: bool) -> Vec<HardCase> {
+    let n = if quick { 17 } else { 65 };
+    let ball = SharedShape::ball(RADIUS);
+    let capsule = SharedShape::capsule_x(0.2, RADIUS);
+    let edge = SharedShape::cuboid(0.2, RADIUS, RADIUS);
+    let turned = Quat::from_rotation_x(std::f32::consts::FRAC_PI_4);
+    [
+        ("ball", ball, Quat::IDENTITY),
+        ("capsule", capsule, Quat::IDENTITY),
+        ("edge of a box", edge, turned),
+    ]
+    .into_iter()
+    .flat_map(|(name, shape, turn)| shot(name, n, &shape, turn))
+    .collect()
+}
+
+/// The shape flies through the cloth's middle; what it meets must be pushed ahead of it.
+fn shot(name: &str, n: usize, shape: &SharedShape, turn: Quat) -> [HardCase; 2] {
+    let scene = Scene { pose: Pose::Vertical, ..Scene::hang_top(n) };
+    let mut cloth = start(&scene);
+    run(&mut cloth, 0.5);
+    let centre = Vec3::new(0.5, -0.5, START);
+    let hit: Vec<usize> = (0..scene.vertices())
+        .filter(|&vertex| {
+            let from = cloth.positions()[vertex] - centre;
+            from.truncate().length() < 0.5 * RADIUS
+        })
+        .collect();
+    let at = |tick: usize| (centre + Vec3::Z * (SPEED * TICK * tick as f32), turn);
+    let (mut deepest, mut behind) = (0.0_f32, 0.0_f32);
+    for tick in 0..TICKS {
+        let collider = Collider {
+            from: at(tick),
+            to: at(tick + 1),
+            ..Collider::fixed(shape.clone(), Vec3::ZERO, turn)
+        };
+        cloth.touch(&[collider]);
+        cloth.tick();
+        let (now, turned) = at(tick + 1);
+        for x in cloth.positions() {
+            let local = turned.inverse() * (*x - now);
+            let nearest = shape.project_local_point(local, false);
+            if nearest.is_inside {
+                deepest = deepest.max(nearest.point.distance(local));
+            }
+        }
+        for &vertex in &hit {
+            behind = behind.max(now.z - cloth.positions()[vertex].z);
+        }
+    }
+    [
+        HardCase::new(format!("20 m/s {name}: inside"), n, "deepest, m", deepest.into(), DEPTH),
+        HardCase::new(
+            format!("20 m/s {name}: behind"),
+            n,
+            "farthest behind its middle, m",
+            behind.into(),
+            DEPTH,
+        ),
+    ]
+}
