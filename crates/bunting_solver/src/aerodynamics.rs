@@ -14,7 +14,7 @@ use crate::fabric::{Fabric, Patch};
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
 use crate::parameters::Parameters;
-use crate::vector::{Pack3, V3, splat3};
+use crate::vector::{Pack3, V3};
 
 impl<P: Pack> LaneBatch<P> {
     /// Gathers what the air does to each particle in this substep.
@@ -23,7 +23,6 @@ impl<P: Pack> LaneBatch<P> {
             return;
         }
         self.felt_air = self.parameters.feels_air();
-        self.air_impulse.fill(splat3(glam::Vec3::ZERO));
         P::run(Air {
             fabric: &self.fabric,
             parameters: &self.parameters,
@@ -46,6 +45,9 @@ impl<P: Pack> Kernel<P> for Air<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let air = Stream::<L>::load(token, self.parameters);
+        for sum in self.impulse.iter_mut() {
+            V3::<L>::splat(token, 0.0).store(sum);
+        }
         for Patch { corners, shares } in self.fabric.patches() {
             let [a, b, c, d] = corners.map(|corner| corner as usize);
             let at: V3<L> = V3::load(token, &self.position[a]);

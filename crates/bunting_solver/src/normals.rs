@@ -1,17 +1,14 @@
 //! Normals of the surface: each particle's is the area-weighted mean of its triangles'.
 
-use glam::Vec3;
-
 use crate::constants::LEAST_AREA_SQUARED;
 use crate::fabric::Patch;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
-use crate::vector::{Pack3, V3, splat3};
+use crate::vector::{Pack3, V3};
 
 impl<P: Pack> LaneBatch<P> {
     /// Recomputes all normals.
     pub fn compute_normals(&mut self) {
-        self.normal.fill(splat3(Vec3::ZERO));
         P::run(Normals {
             patches: self.fabric.patches(),
             position: &self.position,
@@ -29,6 +26,9 @@ struct Normals<'a, P: Pack> {
 impl<P: Pack> Kernel<P> for Normals<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        for sum in self.normal.iter_mut() {
+            V3::<L>::splat(token, 0.0).store(sum);
+        }
         for patch in self.patches {
             let [a, b, c, d] = patch.corners.map(|corner| corner as usize);
             let at: V3<L> = V3::load(token, &self.position[a]);
