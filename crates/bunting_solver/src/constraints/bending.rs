@@ -102,3 +102,68 @@ fn shift<L: Lane>(
     let weight = L::splat(token, profile.inverse_areas[at] * profile.inverse_spacing);
     (V3::load(token, position) + moments * weight).store(position);
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use crate::constraints::bench::{cloth_at, positions, soft_step};
+    use crate::fabric::{BendLine, Fabric, FabricBuilder, FabricMaterial, Grid};
+
+    /// ½ B Σ width/l |C|² over some lines.
+    fn energy(fabric: &Fabric, lines: &[BendLine], bend_stiffness: f32, at: &[Vec3]) -> f64 {
+        let of_line = |line: &BendLine| -> f64 {
+            let profile = &fabric.bend_profiles()[line.profile as usize];
+            let bends = line.particles.windows(3).zip(&profile.weights);
+            bends
+                .map(|(three, &weight)| {
+                    let [a, b, c] = [0, 1, 2].map(|i| at[three[i] as usize].as_dvec3());
+                    let bend = (a - 2.0 * b + c) * f64::from(profile.inverse_spacing);
+                    0.5 * f64::from(weight * bend_stiffness) * bend.length_squared()
+                })
+                .sum()
+        };
+        lines.iter().map(of_line).sum()
+    }
+
+    fn wavy(fabric: &Fabric) -> Vec<Vec3> {
+        let wave = |at: &Vec3| *at + Vec3::Z * 0.05 * libm::sinf(5.0 * at.x + 3.0 * at.y);
+        fabric.rest_positions().iter().map(wave).collect()
+    }
+
+    #[test]
+    fn a_soft_step_follows_the_gradient() {
+        let grid = FabricBuilder::grid(Grid::new(6, 5, 1.0, 0.8));
+        let fabric = grid.pin([0, 6]).build().expect("good");
+        let material = FabricMaterial { bend_stiffness: 1e-5, ..FabricMaterial::COTTON };
+        let start = wavy(&fabric);
+        let expected = soft_step(&fabric, &material, &start, |at| {
+            energy(&fabric, fabric.bend_lines(), material.bend_stiffness, at)
+        });
+        let mut batch = cloth_at(&fabric, material, &start);
+        batch.solve_bending();
+        let largest = expected.iter().map(|step| step.length()).fold(0.0, f32::max);
+        for ((end, start), expected) in positions(&batch).iter().zip(&start).zip(&expected) {
+            let moved = *end - *start;
+            assert!(moved.distance(*expected) < 0.03 * largest, "{moved} {expected}");
+        }
+    }
+
+    #[test]
+    fn a_stiff_line_becomes_straight_and_keeps_its_momentum() {
+        let fabric = FabricBuilder::grid(Grid::new(8, 3, 1.0, 0.3)).build().expect("good");
+        let material = FabricMaterial { bend_stiffness: 1e3, ..FabricMaterial::COTTON };
+        let start = wavy(&fabric);
+        let mut batch = cloth_at(&fabric, material, &start);
+        batch.solve_bending();
+        let end = positions(&batch);
+        // Columns are solved last, and bend the rows again.
+        let columns = &fabric.bend_lines()[3..];
+        let ratio = energy(&fabric, columns, 1.0, &end) / energy(&fabric, columns, 1.0, &start);
+        assert!(ratio < 1e-4, "{ratio}");
+        let centre = |at: &[Vec3]| -> Vec3 {
+            at.iter().zip(fabric.particle_areas()).map(|(at, &area)| *at * area).sum()
+        };
+        assert!(centre(&end).distance(centre(&start)) < 1e-6);
+    }
+}

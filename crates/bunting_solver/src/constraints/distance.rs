@@ -77,3 +77,42 @@ impl<P: Pack> Kernel<P> for Accumulating<Distance<'_, P>> {
         self.0.solve::<L, true>(token);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use crate::constraints::bench::{cloth_at, positions, soft_step};
+    use crate::fabric::{FabricBuilder, FabricMaterial, Grid};
+
+    #[test]
+    fn a_soft_step_follows_the_gradient() {
+        let fabric = FabricBuilder::grid(Grid::new(4, 3, 1.0, 0.7)).pin([0]).build().expect("good");
+        let material = FabricMaterial {
+            warp_stiffness: 0.02,
+            weft_stiffness: 0.03,
+            shear_stiffness: 0.004,
+            ..FabricMaterial::COTTON
+        };
+        let start: Vec<Vec3> = fabric
+            .rest_positions()
+            .iter()
+            .map(|at| *at * 1.05 + Vec3::Z * 0.1 * libm::sinf(4.0 * at.x + 7.0 * at.y))
+            .collect();
+        let expected = soft_step(&fabric, &material, &start, |at| {
+            let of_link = |link: &crate::fabric::Link| {
+                let [a, b] = link.particles.map(|particle| at[particle as usize].as_dvec3());
+                let stiffness = fabric.link_classes()[link.class as usize].stiffness(&material);
+                0.5 * f64::from(stiffness) * (a.distance(b) - f64::from(link.rest_length)).powi(2)
+            };
+            fabric.links().iter().map(of_link).sum()
+        });
+        let mut batch = cloth_at(&fabric, material, &start);
+        batch.solve_distance(false);
+        let largest = expected.iter().map(|step| step.length()).fold(0.0, f32::max);
+        for ((end, start), expected) in positions(&batch).iter().zip(&start).zip(&expected) {
+            let moved = *end - *start;
+            assert!(moved.distance(*expected) < 0.03 * largest, "{moved} {expected}");
+        }
+    }
+}

@@ -7,6 +7,8 @@
 //! of it is multiplied through by the density σ: the compliances here are σ/(k h²).
 
 mod anticipation;
+#[cfg(test)]
+mod bench;
 mod bending;
 mod contact;
 mod dihedral;

@@ -181,3 +181,75 @@ impl<P: Pack> Yarns<'_, P> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use crate::constraints::bench::{cloth_at, positions};
+    use crate::fabric::{FabricBuilder, FabricMaterial, Grid};
+
+    /// A narrow strip, stretched evenly: the links' directions do not change, so that the linear
+    /// system is the whole truth, and one solve is exact.
+    #[test]
+    fn a_straight_yarn_is_solved_at_once() {
+        let fabric = FabricBuilder::grid(Grid::new(33, 2, 1.0, 0.03))
+            .pin_where(|_, uv| uv.x == 0.0)
+            .build()
+            .expect("good");
+        let material = FabricMaterial {
+            warp_stiffness: f32::INFINITY,
+            weft_stiffness: f32::INFINITY,
+            ..FabricMaterial::COTTON
+        };
+        let stretched: Vec<Vec3> =
+            fabric.rest_positions().iter().map(|at| *at * Vec3::new(1.2, 1.0, 1.0)).collect();
+        let mut batch = cloth_at(&fabric, material, &stretched);
+        batch.solve_yarns(1);
+        for (end, rest) in positions(&batch).iter().zip(fabric.rest_positions()) {
+            assert!((end.x - rest.x).abs() < 1e-4, "{end} {rest}");
+        }
+    }
+
+    #[test]
+    fn a_yarn_pulls_as_much_as_it_is_pulled() {
+        let fabric = FabricBuilder::grid(Grid::new(9, 7, 1.0, 0.7)).build().expect("good");
+        let crumpled: Vec<Vec3> = fabric
+            .rest_positions()
+            .iter()
+            .map(|at| *at * 1.1 + Vec3::Z * 0.1 * libm::sinf(9.0 * at.x + 5.0 * at.y))
+            .collect();
+        let mut batch = cloth_at(&fabric, FabricMaterial::SILK, &crumpled);
+        batch.solve_yarns(2);
+        let areas = fabric.particle_areas();
+        let centre = |at: &[Vec3]| -> Vec3 {
+            at.iter().zip(areas).map(|(at, &area)| *at * area).sum::<Vec3>() / fabric.area()
+        };
+        let end = positions(&batch);
+        assert!(centre(&end).distance(centre(&crumpled)) < 1e-6);
+        let turn: Vec3 = end
+            .iter()
+            .zip(&crumpled)
+            .zip(areas)
+            .map(|((end, start), &area)| start.cross(*end - *start) * area)
+            .sum();
+        let moved: f32 =
+            end.iter().zip(&crumpled).zip(areas).map(|((e, s), &a)| e.distance(*s) * a).sum();
+        // Directions are those of when each yarn is solved, so only nearly.
+        assert!(turn.length() < 0.02 * moved, "{turn} {moved}");
+    }
+
+    #[test]
+    fn collapsed_and_inextensible_yarns_stay_finite() {
+        let grid = FabricBuilder::grid(Grid::new(5, 5, 1.0, 1.0));
+        let fabric = grid.pin_where(|_, uv| uv.x == 0.0 || uv.x == 1.0).build().expect("good");
+        let stiff = FabricMaterial { warp_stiffness: f32::INFINITY, ..FabricMaterial::SILK };
+        let point = vec![Vec3::splat(0.3); 25];
+        for start in [point, fabric.rest_positions().to_vec()] {
+            let mut batch = cloth_at(&fabric, stiff, &start);
+            batch.solve_yarns(2);
+            batch.polish();
+            assert!(positions(&batch).iter().all(|position| position.is_finite()));
+        }
+    }
+}
