@@ -5,9 +5,10 @@
 //! pressure would change the velocity by the part a = ½ρ C_n |u·n| h/σ of u·n: explicitly, which
 //! turns the motion round where a > 1 (the thesis then sets it to zero), or implicitly by a/(1 + a),
 //! which loses the part a of the force that a cloth at rest in the wind feels. Here it is
-//! a/√(1 + a²): right to second order, and never more than the whole. A third of a triangle's impulse
-//! goes to each corner. A particle's change is then a mean of its triangles' changes, none of which
-//! adds energy in still air, and neither does the mean.
+//! a/(1 + a min(a, 1)): right to second order where the air is weak, implicit where it is strong, and
+//! never the whole. A third of a triangle's impulse goes to each corner. A particle's change is then
+//! a mean of its triangles' changes, none of which adds energy in still air, and neither does the
+//! mean.
 
 use crate::constants::LEAST_AREA_SQUARED;
 use crate::fabric::{Fabric, Patch};
@@ -105,14 +106,18 @@ impl<L: Lane> Stream<L> {
         let squared = normal.dot(normal).max(self.least);
         let across = u.dot(normal);
         let braking = self.pressure * across.abs();
-        // (u·n) a/√(1 + a²) n with n not normalised.
-        let root = (squared + braking * braking).sqrt();
-        let pressed = normal * (across * braking / (squared * root));
+        // (u·n) a/(1 + a min(a, 1)) n with n not normalised and a = braking/length.
+        let length = squared.sqrt();
+        let limited = braking.or_where_not(braking.lt(length), length);
+        let part = braking * length / (squared * (squared + braking * limited));
+        let pressed = normal * (across * part);
         if !self.any_rubs {
             return pressed;
         }
         let along = u - normal * (across / squared);
-        let rub = self.friction * self.friction * u.dot(u);
-        (pressed + along * (rub / (self.one + rub)).sqrt()).or_where_not(self.rubs, pressed)
+        let rub = self.friction * u.dot(u).sqrt();
+        let limited = rub.or_where_not(rub.lt(self.one), self.one);
+        let rubbed = pressed + along * (rub / (self.one + rub * limited));
+        rubbed.or_where_not(self.rubs, pressed)
     }
 }

@@ -112,7 +112,7 @@ fn broadside_fall_reaches_terminal_speed() {
         batch.step(TICK, StepSettings::gauss_seidel(20));
     }
     let velocity = batch.snapshot(0).velocities[12].z;
-    // Each substep slows v by av/√(1 + a²) with a = gh v/v_t², and adds gh: v is v_t but for a²/2.
+    // Each substep slows v by av/(1 + a²) with a = gh v/v_t², and adds gh: v is v_t but for a²/2.
     let expected = 1.155_29_f32;
     assert!((velocity / -expected - 1.0).abs() < 1e-4, "{velocity} {expected}");
 }
