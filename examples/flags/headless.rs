@@ -55,7 +55,7 @@ pub fn run(scene: &Scene, run: &Run, album: &Album) {
 
     let ticks_a_second =
         app.world().resource::<Time<Fixed>>().timestep().as_secs_f64().recip().round();
-    let ticks = (run.seconds * ticks_a_second).round() as usize;
+    let ticks = (run.seconds * ticks_a_second).ceil() as usize;
     let progress = ProgressBar::new(ticks as u64).with_style(style());
     let mut record = Record::new(scene);
     for tick in 1..=ticks {

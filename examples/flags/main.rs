@@ -2,7 +2,15 @@
 //!
 //! `cargo run --release --example flags` shows them; drag to look around, scroll to come closer.
 //! Look at how no two flags fly alike, how the vehicles' flags stay on their poles, and at the
-//! shadows.
+//! shadows. The title of the window tells what it costs, and these keys:
+//!
+//! | Key | |
+//! | --- | --- |
+//! | ↑ ↓ | stronger and weaker wind |
+//! | W | wind off and on |
+//! | L | levels of detail: green is the finest, then yellow, orange and red |
+//! | D | attachments (crosses), strain (red is long, blue is short), wind (arrows) |
+//! | P | pause |
 //!
 //! `cargo run --release --example flags -- --headless` simulates 20 seconds as fast as it goes and
 //! prints where the time went. Look at the total beside its budget of one millisecond a tick, at
@@ -10,15 +18,19 @@
 
 mod durations;
 mod headless;
+mod keys;
+mod material;
 mod orbit;
 mod pictures;
 mod print;
 mod record;
 mod road;
+mod sky;
 mod stage;
 mod strain;
-mod surface;
 mod table;
+mod title;
+mod weather;
 mod window;
 
 use std::path::PathBuf;
@@ -66,7 +78,7 @@ fn main() -> ExitCode {
     } else if window::any_display() {
         window::run(&scene)
     } else {
-        eprintln!("there is no display: use --headless");
+        eprintln!("no display can be opened: use --headless");
         ExitCode::FAILURE
     }
 }

@@ -21,7 +21,7 @@ use bunting_scenes::Model;
 use clap::Args;
 
 use crate::headless::ONE_TICK;
-use crate::{ASSETS, stage, surface};
+use crate::{ASSETS, material, stage};
 
 /// Frames after which a model or a picture that has not come will never come.
 const PATIENCE: u32 = 10_000;
@@ -93,7 +93,7 @@ pub fn windowless() -> PluginGroupBuilder {
 
 /// Shows the scene to whoever gets a camera.
 pub fn plugin(app: &mut App) {
-    app.add_plugins((stage::plugin, surface::plugin)).init_resource::<LoadedModels>();
+    app.add_plugins((stage::plugin, material::plugin)).init_resource::<LoadedModels>();
     app.add_observer(|_: On<WorldInstanceReady>, mut loaded: ResMut<LoadedModels>| loaded.0 += 1);
 }
 

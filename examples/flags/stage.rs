@@ -1,4 +1,4 @@
-//! What surrounds the flags: ground, roads, light, poles and vehicles.
+//! What surrounds the flags: sky, ground, roads, light, poles and vehicles.
 
 use bevy::camera::primitives::Aabb;
 use bevy::camera::visibility::VisibilityClass;
@@ -9,15 +9,19 @@ use bevy::prelude::*;
 use bevy::transform::components::TransformTreeChanged;
 use bunting_scenes::{Model, Pole, Track};
 
-use crate::road;
+use crate::{road, sky};
 
-/// Colour of the sky and of what is far away.
-const SKY: Color = Color::srgb(0.60, 0.75, 0.90);
+/// Light from the whole sky, on both sides of everything, cd/m².
+const SKYLIGHT: f32 = 1_500.0;
+
+/// Light of the sun, lx.
+const SUNLIGHT: f32 = 5_000.0;
 
 /// Shows the surroundings of a scene's entities.
 pub fn plugin(app: &mut App) {
-    app.insert_resource(ClearColor(SKY))
-        .insert_resource(GlobalAmbientLight { color: SKY, brightness: 1_800.0, ..default() })
+    let skylight = Color::srgb(0.80, 0.90, 0.96);
+    app.add_plugins(sky::plugin)
+        .insert_resource(GlobalAmbientLight { color: skylight, brightness: SKYLIGHT, ..default() })
         // What glTF scenes are made of; Bevy's feature `reflect_auto_register` would do it, too.
         .register_type::<Name>()
         .register_type::<ChildOf>()
@@ -40,13 +44,13 @@ pub fn plugin(app: &mut App) {
 
 /// What a camera needs to show the scene well.
 pub fn camera() -> impl Bundle {
-    // The ground ends in a horizon of the sky's colour.
+    // The ground ends where the sky begins.
     let haze = DistanceFog {
-        color: SKY,
+        color: sky::HORIZON,
         falloff: FogFalloff::Linear { start: 100.0, end: 700.0 },
         ..default()
     };
-    (Camera3d::default(), Tonemapping::AcesFitted, haze)
+    (Camera3d::default(), Tonemapping::None, haze)
 }
 
 fn lay_ground(
@@ -69,7 +73,7 @@ fn lay_ground(
 fn light(mut commands: Commands) {
     commands.spawn((
         DirectionalLight {
-            illuminance: 8_000.0,
+            illuminance: SUNLIGHT,
             color: Color::srgb(1.0, 0.95, 0.86),
             shadow_maps_enabled: true,
             ..default()
@@ -81,7 +85,7 @@ fn light(mut commands: Commands) {
             ..default()
         }
         .build(),
-        Transform::from_xyz(-0.6, 1.0, 0.75).looking_at(Vec3::ZERO, Vec3::Y),
+        Transform::from_xyz(-1.0, 1.0, 0.55).looking_at(Vec3::ZERO, Vec3::Y),
     ));
 }
 

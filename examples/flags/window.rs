@@ -1,6 +1,5 @@
 //! Shows a scene in a window.
 
-use std::env;
 use std::process::ExitCode;
 
 use bevy::prelude::*;
@@ -8,11 +7,11 @@ use bevy_bunting::prelude::*;
 use bunting_scenes::{LooksAt, Scene, Track};
 
 use crate::orbit::{self, Orbit};
-use crate::{ASSETS, stage, surface};
+use crate::{ASSETS, keys, material, stage, title, weather};
 
-/// Whether a window could be opened.
+/// Whether a window could be opened: winit panics where none can.
 pub fn any_display() -> bool {
-    !cfg!(target_os = "linux") || env::var_os("DISPLAY").is_some()
+    !cfg!(target_os = "linux") || x11rb::connect(None).is_ok()
 }
 
 /// Shows the scene until the window is closed.
@@ -24,9 +23,8 @@ pub fn run(scene: &Scene) -> ExitCode {
             .set(WindowPlugin { primary_window: Some(window), ..default() })
             .set(AssetPlugin { file_path: ASSETS.to_owned(), ..default() }),
         ClothPlugins::default(),
-        stage::plugin,
-        surface::plugin,
-        orbit::plugin,
+        (stage::plugin, material::plugin, orbit::plugin),
+        (weather::plugin, keys::plugin, title::plugin),
     ))
     .add_systems(Startup, raise_camera)
     .add_systems(Update, bunting_scenes::follow_tracks);

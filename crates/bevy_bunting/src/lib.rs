@@ -72,6 +72,12 @@
 //! [`ClothFailed`], [`ClothLevelChanged`] and [`ClothTargetLost`] are triggered on the cloth;
 //! [`TeleportCloth`] is for you to trigger.
 //!
+//! # Drawing
+//!
+//! With the feature `render`, a cloth with a material is drawn: `ClothRenderPlugin` gives it a mesh
+//! for each level, keeps its bounds, and puts a [`LodViewer`] on cameras. Its documentation tells
+//! what the material should be like. `ClothDebugPlugin`, to be added, draws gizmos.
+//!
 //! # Determinism
 //!
 //! The same world, stepped alike, gives the same bits: they depend neither on what else is in the

@@ -21,7 +21,6 @@ const GUST: f32 = 1.0;
 const GUST_RATE: f32 = 0.3;
 
 /// An app on one core whose every update is one tick of the standard flag's wind.
-#[must_use]
 pub fn app(settings: StepSettings) -> App {
     // Batches keep to the thread that ticks them when the pool has only one.
     ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());

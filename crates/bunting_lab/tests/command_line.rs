@@ -29,6 +29,10 @@ fn pareto_prints_one_json_object_and_writes_files() {
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
     let rows = json["rows"].as_array().expect("rows");
     assert!(rows.len() >= 10);
+    assert!(json["instruction_set"].is_string());
+    for part in json["ablation"].as_array().expect("ablation") {
+        assert!(part["part"].is_string() && part["us_ratio"].is_number(), "{part}");
+    }
     for row in rows {
         for key in ["scene", "n", "method", "substeps", "passes", "lanes", "stable"] {
             assert!(!row[key].is_null(), "{key} in {row}");
@@ -44,4 +48,37 @@ fn pareto_prints_one_json_object_and_writes_files() {
         folder.join("pareto_swing_9.csv").exists() && folder.join("pareto_swing_9.svg").exists()
     );
     std::fs::remove_dir_all(folder).expect("the folder is ours");
+}
+
+/// The cases that a command prints as JSON.
+fn cases(arguments: &[&str]) -> Vec<serde_json::Value> {
+    let output = lab(arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    json["cases"].as_array().expect("cases").clone()
+}
+
+#[test]
+fn oracles_print_their_cases() {
+    let cases = cases(&["oracles", "--json"]);
+    assert!(cases.len() >= 40);
+    for case in cases {
+        assert!(case["name"].is_string() && case["pass"].is_boolean(), "{case}");
+        for key in ["expected", "measured", "relative_error", "tolerance"] {
+            assert!(case[key].is_number(), "{key} in {case}");
+        }
+        let met = case["relative_error"].as_f64() <= case["tolerance"].as_f64();
+        assert_eq!(case["pass"].as_bool(), Some(met), "{case}");
+    }
+}
+
+#[test]
+fn stability_prints_its_cases() {
+    for case in cases(&["stability", "--quick", "--json"]) {
+        assert!(case["name"].is_string() && case["n"].is_u64(), "{case}");
+        assert!(case["limit"].is_number() && case["pass"].is_boolean(), "{case}");
+        assert!(case["worst"].is_number() || case["worst"].is_null(), "{case}");
+        let built = case["status"] == "built";
+        assert!(built || (case["status"] == "not_built" && case["pass"] == false), "{case}");
+    }
 }

@@ -193,7 +193,8 @@ impl ClothBatch {
         });
     }
 
-    /// Begins a tick of `tick` seconds: compliances for its substeps, contact candidates.
+    /// Begins a tick of `tick` seconds: compliances for its substeps, contact candidates. In a tick of
+    /// no time nothing moves.
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
         at_any_width!(&mut self.0, batch => batch.begin_tick(tick, settings));
     }

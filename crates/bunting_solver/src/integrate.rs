@@ -13,6 +13,9 @@ impl<P: Pack> LaneBatch<P> {
     /// Begins a substep: carries the state into the moved frame, applies gravity and the air, damps,
     /// and predicts positions.
     pub fn integrate(&mut self) {
+        if self.clock.stands_still() {
+            return;
+        }
         self.begin_substep();
         let inverse_areas = self.fabric.inverse_areas();
         if self.parameters.carries {
@@ -79,6 +82,15 @@ impl<L: Lane> Motion<L> {
     #[inline(always)]
     fn moved(&self, point: V3<L>) -> V3<L> {
         self.turned(point) + self.shift
+    }
+
+    /// What the frame sweeps past a point in the substep, along the tangent: the chord of a turn
+    /// points outwards, and damping towards it would throw the cloth that way.
+    #[inline(always)]
+    fn swept(&self, point: V3<L>, half: L) -> V3<L> {
+        let [x, y, z] = &self.turn;
+        let transposed = *x * point.x + *y * point.y + *z * point.z;
+        (self.turned(point) - transposed) * half + self.shift
     }
 
     /// The changed vector in lanes whose frame moves; a lane at rest keeps its bits, whatever its
@@ -148,6 +160,7 @@ impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
         let any_moves = motion.moves.any();
         let frame_rate = L::splat(token, self.frame_rate);
         let zero = V3::splat(token, 0.0);
+        let half = L::splat(token, 0.5);
         let speeds = self.velocity.iter_mut().zip(self.older_velocity);
         for (((velocity, older), position), &inverse_area) in
             speeds.zip(self.position).zip(self.inverse_areas)
@@ -162,7 +175,7 @@ impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
             // Damping acts on the motion relative to the frame, whose point at x has this velocity.
             let damped = if any_moves {
                 let x = V3::load(token, position);
-                let frame = (motion.moved(x) * frame_rate).or_where_not(motion.moves, zero);
+                let frame = (motion.swept(x, half) * frame_rate).or_where_not(motion.moves, zero);
                 (frame + (v - frame) * keep).or_where_not(motion.moves, v * keep)
             } else {
                 v * keep

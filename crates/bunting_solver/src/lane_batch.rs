@@ -94,6 +94,13 @@ pub(crate) struct Clock {
     pub done: u32,
 }
 
+impl Clock {
+    /// Whether no time passes in this tick, or none that can be reckoned with.
+    pub fn stands_still(&self) -> bool {
+        !(self.step > 0.0 && self.step.is_finite())
+    }
+}
+
 impl<P: Pack> LaneBatch<P> {
     pub fn new(fabric: Arc<Fabric>) -> Self {
         let rest: Vec<Pack3<P>> =
@@ -212,6 +219,9 @@ impl<P: Pack> LaneBatch<P> {
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
         let step = tick / settings.substeps as f32;
         self.clock = Clock { settings, step, done: 0 };
+        if self.clock.stands_still() {
+            return;
+        }
         let weights_step = match settings.scheme {
             Scheme::GaussSeidel => 0.0,
             Scheme::Yarns => Formula::BDF2.weight * step,

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::constants::LEAST_LINK_COMPLIANCE;
+use crate::constants::{GREATEST_COMPLIANCE, LEAST_LINK_COMPLIANCE};
 use crate::constraints::anticipated;
 use crate::fabric::{BendProfile, Fabric, FabricMaterial};
 use crate::lane_batch::{Applied, Clock};
@@ -166,10 +166,9 @@ impl<P: Pack> Parameters<P> {
         set(&mut self.extrapolation, formula.extrapolation);
         set(&mut self.step, step);
         set(&mut self.inverse_step, 1.0 / step);
-        // A stiffness of zero has an infinite compliance; the largest number is as soft, and zero
-        // times it is still zero.
-        let compliance =
-            |stiffness: f32| (material.area_density / (stiffness * step * step)).min(f32::MAX);
+        let compliance = |stiffness: f32| {
+            (material.area_density / (stiffness * step * step)).min(GREATEST_COMPLIANCE)
+        };
         let least = LEAST_LINK_COMPLIANCE / fabric.particle_areas()[0];
         for (pack, class) in self.link_compliance.iter_mut().zip(fabric.link_classes()) {
             set(pack, compliance(class.stiffness(material)).max(least));

@@ -11,6 +11,9 @@ use crate::vector::{Pack3, V3};
 impl<P: Pack> LaneBatch<P> {
     /// Ends a substep.
     pub fn update_velocities(&mut self) {
+        if self.clock.stands_still() {
+            return;
+        }
         P::run(UpdateVelocities {
             inverse_areas: self.fabric.inverse_areas(),
             inverse_step: &self.parameters.inverse_step,

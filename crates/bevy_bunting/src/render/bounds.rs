@@ -8,14 +8,11 @@ use bevy_math::Vec3A;
 use super::dress::LevelMeshes;
 use crate::state::ClothState;
 
+type IsStale = Or<(Changed<ClothState>, Changed<LevelMeshes>)>;
+
 /// Bounds everything between the last two ticks, for cloths that are visible and for those that
 /// may come into view.
-pub fn bound_cloths(
-    mut cloths: Query<
-        (&ClothState, &mut Aabb),
-        (With<NoAutoAabb>, Or<(Changed<ClothState>, Changed<LevelMeshes>)>),
-    >,
-) {
+pub fn bound_cloths(mut cloths: Query<(&ClothState, &mut Aabb), (With<NoAutoAabb>, IsStale)>) {
     for (state, mut bounds) in &mut cloths {
         let particles = state.previous_positions().iter().chain(state.positions());
         let (low, high) = particles

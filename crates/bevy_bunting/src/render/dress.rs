@@ -44,9 +44,17 @@ impl LevelMeshes {
     }
 }
 
+type Cloth = (
+    Entity,
+    &'static ClothMesh,
+    &'static ClothInstance,
+    Option<&'static Mesh3d>,
+    Option<&'static LevelMeshes>,
+);
+
 /// Makes the meshes of cloths that are new, cut anew or have another `Mesh3d`.
 pub fn dress_cloths(
-    cloths: Query<(Entity, &ClothMesh, &ClothInstance, Option<&Mesh3d>, Option<&LevelMeshes>)>,
+    cloths: Query<Cloth>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut owners: Local<HashMap<AssetId<Mesh>, Entity>>,
     mut commands: Commands,
@@ -68,30 +76,30 @@ pub fn dress_cloths(
                 // What is not yet loaded is asked for again.
                 let Some(mesh) = meshes.get(given) else { continue };
                 let vertices = levels.fabric(0).particle_of_vertex().len();
-                if let Err(error) = check(entity, mesh, vertices) {
-                    ClothFailed::report(&mut commands, entity, error);
-                    (given.clone(), MeshOrigin::Refused)
-                } else {
-                    owners.retain(|_, owner| cloths.contains(*owner));
-                    let shared = *owners.entry(given.id()).or_insert(entity) != entity;
-                    let copy = shared.then(|| mesh.clone());
-                    (copy.map_or(given.clone(), |copy| meshes.add(copy)), MeshOrigin::Given)
+                match check(entity, mesh, vertices) {
+                    Ok(()) => {
+                        owners.retain(|_, owner| cloths.contains(*owner));
+                        let owner = *owners.entry(given.id()).or_insert(entity);
+                        let copy = (owner != entity).then(|| mesh.clone());
+                        let finest = copy.map_or(given.clone(), |copy| meshes.add(copy));
+                        (finest, MeshOrigin::Given)
+                    }
+                    Err(error) => {
+                        ClothFailed::report(&mut commands, entity, error);
+                        (given.clone(), MeshOrigin::Refused)
+                    }
                 }
             }
         };
-        let mut dress = vec![finest];
-        if let (Some(grid), true) = (shape.as_grid(), origin != MeshOrigin::Refused) {
-            for level in 1..levels.count() {
-                let finest = meshes.get(&dress[0]).expect("it was found or made above");
-                let coarser = level_mesh::coarser(finest, grid, 1 << level, levels.fabric(level));
-                dress.push(meshes.add(coarser));
-            }
+        let mut all = vec![finest];
+        if origin != MeshOrigin::Refused {
+            add_coarser(&mut all, shape, levels, &mut meshes);
         }
-        let shown = dress.get(instance.level).unwrap_or(&dress[0]).clone();
+        let shown = all.get(instance.level).unwrap_or(&all[0]).clone();
         let mut cloth = commands.entity(entity);
         cloth.insert((
             Mesh3d(shown),
-            LevelMeshes { levels: Arc::clone(levels), meshes: dress, origin },
+            LevelMeshes { levels: Arc::clone(levels), meshes: all, origin },
         ));
         if origin != MeshOrigin::Refused {
             cloth.insert(NoAutoAabb).insert_if_new((
@@ -100,6 +108,21 @@ pub fn dress_cloths(
                 Visibility::default(),
             ));
         }
+    }
+}
+
+/// Adds the meshes of all levels but the finest, which is there; only grids have more.
+fn add_coarser(
+    all: &mut Vec<Handle<Mesh>>,
+    shape: &ClothMesh,
+    levels: &ClothLevels,
+    meshes: &mut Assets<Mesh>,
+) {
+    let Some(grid) = shape.as_grid() else { return };
+    for level in 1..levels.count() {
+        let finest = meshes.get(&all[0]).expect("it was found or made before");
+        let coarser = level_mesh::coarser(finest, grid, 1 << level, levels.fabric(level));
+        all.push(meshes.add(coarser));
     }
 }
 

@@ -42,8 +42,8 @@ pub struct Effort {
 impl Effort {
     /// A few seconds in all.
     pub const QUICK: Self = Self { warm_up: 10, least_ticks: 10, seconds: 0.02, most_cloths: 64 };
-    /// Half a minute in all.
-    pub const FULL: Self = Self { warm_up: 30, least_ticks: 20, seconds: 0.25, most_cloths: 1000 };
+    /// About a minute in all.
+    pub const FULL: Self = Self { warm_up: 10, least_ticks: 8, seconds: 0.25, most_cloths: 1000 };
 
     /// The one asked for.
     #[must_use]

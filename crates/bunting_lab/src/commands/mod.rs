@@ -1,5 +1,6 @@
 //! What the command line runs.
 
+pub mod ablation;
 pub mod budget;
 pub mod lod;
 pub mod oracles;

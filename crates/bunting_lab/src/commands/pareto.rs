@@ -1,10 +1,11 @@
 //! Speed against error: every method on the standard scenes.
 
+use bunting_solver::instruction_set;
 use clap::Args;
 use serde::Serialize;
 use serde_json::json;
 
-use super::progress;
+use super::{ablation, progress};
 use crate::{
     baselines::Baseline,
     contender::Contender,
@@ -14,6 +15,7 @@ use crate::{
         plot::{Mark, Plot, Series, pareto_front},
         table::{Table, figure, figure_or_dash},
     },
+    product::Product,
     reference::{Reference, grid::Grid},
     scenes::{Measure, Scene},
     timing::Timing,
@@ -27,6 +29,9 @@ const KNOWN: f64 = 0.1;
 const WARM_UP: usize = 3;
 /// Largest n of the flag, whose reference takes minutes beyond it.
 const LARGEST_FLAG: usize = 33;
+/// Vertices along each side of the cloth whose parts are left out one by one; the second where quick.
+const ABLATED: [usize; 2] = [33, 9];
+
 /// What to compare.
 #[derive(Clone, Debug, Args)]
 pub struct Selection {
@@ -122,6 +127,7 @@ impl Row {
             self.method.clone(),
             self.substeps.to_string(),
             self.passes.to_string(),
+            self.lanes.to_string(),
             figure(self.us_per_cloth_tick),
             figure_or_dash(self.rms_error_m),
             figure(self.mean_stretch),
@@ -136,8 +142,7 @@ impl Row {
 /// Runs every method on the selected scenes.
 #[must_use]
 pub fn run(selection: &Selection, quick: bool) -> Outcome {
-    let contenders: Vec<Contender> =
-        Baseline::catalogue().into_iter().map(Contender::from).collect();
+    let contenders = contenders(quick);
     let scenes = selected(selection, quick);
     let bar = progress(scenes.len() * contenders.len());
     let mut outcome = Outcome { json: json!(null), tables: Vec::new(), plots: Vec::new() };
@@ -166,9 +171,25 @@ pub fn run(selection: &Selection, quick: bool) -> Outcome {
         }));
         all.extend(rows);
     }
+    bar.set_message("ablation");
+    let n = ABLATED[usize::from(quick)];
+    let parts = ablation::rows(n);
+    outcome.tables.push(ablation::table(n, &parts));
     bar.finish_and_clear();
-    outcome.json = json!({ "rows": all, "references": references });
+    outcome.json = json!({
+        "instruction_set": instruction_set(),
+        "rows": all,
+        "references": references,
+        "ablation": parts,
+    });
     outcome
+}
+
+/// The methods of the thesis, then every option of the product; of those, one pass where quick.
+fn contenders(quick: bool) -> Vec<Contender> {
+    let baselines = Baseline::catalogue().into_iter().map(Contender::from);
+    let products = Product::catalogue().into_iter().filter(|it| !quick || it.settings.passes == 1);
+    baselines.chain(products.map(Contender::from)).collect()
 }
 
 fn selected(selection: &Selection, quick: bool) -> Vec<Scene> {
@@ -222,6 +243,7 @@ fn table(scene: &Scene, rows: &[Row], reference: &Reference) -> Table {
             "method",
             "substeps",
             "passes",
+            "lanes",
             "µs/tick",
             "RMS error m",
             "mean strain",

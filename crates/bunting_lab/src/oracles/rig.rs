@@ -13,6 +13,9 @@ use crate::{
 pub const YARNS: StepSettings = StepSettings::yarns(3);
 /// The thesis's scheme, with enough substeps to be compared.
 pub const GAUSS_SEIDEL: StepSettings = StepSettings::gauss_seidel(20);
+/// A scheme at any number of substeps.
+pub type Substeps = fn(u32) -> StepSettings;
+
 /// Distance of an observed order of convergence from the expected.
 const ORDER: f64 = 0.3;
 

@@ -17,6 +17,9 @@ pub trait Peer: Simulation {
     fn hitch(&mut self, seconds: f32);
 }
 
+/// Starts an engine on a scene.
+pub type Start = dyn Fn(&Scene) -> Box<dyn Peer>;
+
 /// An engine with its settings.
 pub struct Engine {
     /// Name.
@@ -28,7 +31,7 @@ pub struct Engine {
     /// What its constraints are.
     pub constraints: &'static str,
     /// Starts it on a scene.
-    pub start: Box<dyn Fn(&Scene) -> Box<dyn Peer>>,
+    pub start: Box<Start>,
 }
 
 /// Rapier's substeps by default.

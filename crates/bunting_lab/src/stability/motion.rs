@@ -46,9 +46,9 @@ fn carry(cloth: &mut Cloth, from: (Vec3, Quat), to: (Vec3, Quat)) {
 
 /// The same swaying ride near the origin and far away, where poses are rounded.
 fn far(n: usize, offset: f32) -> HardCase {
-    let scene = Scene { damping: 2.0, ..Scene::swing(n) };
+    let scene = Scene::hang_top(n);
     let pose = |offset: f32, tick: usize| {
-        let sway = Vec3::new((tick as f32 * TICK * 3.0).sin(), 0.0, tick as f32 * TICK);
+        let sway = Vec3::Z * (0.5 * (3.0 * TICK * tick as f32).sin());
         (Vec3::splat(offset) + sway, Quat::IDENTITY)
     };
     let mut cloths = [0.0, offset].map(|offset| (offset, start(&scene)));

@@ -27,6 +27,9 @@ use crate::step::Scheme;
 impl<P: Pack> LaneBatch<P> {
     /// Projects all constraints, as many passes as the settings ask for.
     pub fn solve_constraints(&mut self) {
+        if self.clock.stands_still() {
+            return;
+        }
         match self.clock.settings.scheme {
             Scheme::GaussSeidel => self.sweep(self.clock.settings.passes),
             Scheme::Yarns => self.solve_along_yarns(self.clock.settings.passes),

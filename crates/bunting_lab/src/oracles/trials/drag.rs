@@ -7,7 +7,7 @@ use crate::{
     oracles::{
         Case,
         drag::BroadsideFall,
-        rig::{YARNS, label, order, run, substep},
+        rig::{Substeps, YARNS, label, order, run, substep},
         specimen::{Mount, Specimen},
     },
     scenes::{Air, Fabric, GRAVITY, Pins, Scene},
@@ -58,7 +58,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
             EXACT,
         ));
     }
-    for scheme in [StepSettings::yarns as fn(u32) -> StepSettings, StepSettings::gauss_seidel] {
+    for scheme in [StepSettings::yarns as Substeps, StepSettings::gauss_seidel] {
         let errors = [2, 4, 8].map(|substeps| {
             let mut specimen = start(mount, GRAVITY, 0.0, scheme(substeps));
             run(specimen.as_mut(), 1.0);

@@ -5,7 +5,7 @@ use bunting_solver::StepSettings;
 use crate::{
     oracles::{
         Case, free_fall,
-        rig::{label, order, run, substep},
+        rig::{Substeps, label, order, run, substep},
         specimen::Mount,
     },
     scenes::{GRAVITY, Pins, Scene, TICK_RATE},
@@ -16,9 +16,12 @@ const SECONDS: f64 = 0.5;
 /// Each of up to 600 additions rounds at most half a unit in the last place of 1.2 m, 6e-8 m.
 const ROUNDING: f64 = 3e-5;
 
+/// Height in metres after a number of steps, by gravity and step.
+type Sum = fn(f64, f64, u32) -> f64;
+
 /// The fall that each integrator sums, and the order at which it nears ½gt².
 pub fn cases(mount: &Mount) -> Vec<Case> {
-    let schemes: [(fn(u32) -> StepSettings, fn(f64, f64, u32) -> f64, f64); 2] = [
+    let schemes: [(Substeps, Sum, f64); 2] = [
         (StepSettings::yarns, free_fall::bdf2, 2.0),
         (StepSettings::gauss_seidel, free_fall::symplectic_euler, 1.0),
     ];

@@ -7,7 +7,7 @@ use crate::{
     oracles::{
         Case,
         dumbbell::{Formula, spin_left},
-        rig::{GAUSS_SEIDEL, YARNS, label, order, run, substep},
+        rig::{GAUSS_SEIDEL, Substeps, YARNS, label, order, run, substep},
         specimen::{Mount, Specimen},
     },
     reference::grid::Grid,
@@ -36,7 +36,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
             ROUNDING,
         ));
     }
-    let schemes: [(Formula, fn(u32) -> StepSettings, [u32; 3], f64); 2] = [
+    let schemes: [(Formula, Substeps, [u32; 3], f64); 2] = [
         (Formula::BDF2, StepSettings::yarns, [3, 6, 12], 2.0),
         (Formula::BACKWARD_EULER, StepSettings::gauss_seidel, [10, 20, 40], 1.0),
     ];

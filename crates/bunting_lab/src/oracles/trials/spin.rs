@@ -23,9 +23,12 @@ const STIFF: f64 = 1e4;
 /// Ticks over which the start's oscillation is left to die away, and then over which it is read.
 const TICKS: [u32; 2] = [TICK_RATE, TICK_RATE];
 
+/// Elongation in metres by density, rate, length and stiffness.
+type Elongation = fn(f64, f64, f64, f64) -> f64;
+
 /// Held at its end, and free about its middle.
 pub fn cases(mount: &Mount) -> Vec<Case> {
-    let forms: [(&str, Pins, f64, fn(f64, f64, f64, f64) -> f64); 2] = [
+    let forms: [(&str, Pins, f64, Elongation); 2] = [
         ("held at its axis", Pins::Top, 0.0, spinning_strip),
         ("free about its middle", Pins::Free, 0.5, free_spinning_strip),
     ];

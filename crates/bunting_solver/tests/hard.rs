@@ -1,0 +1,97 @@
+//! Hard cases: what must not break, whatever comes.
+
+use std::sync::Arc;
+
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion, Grid,
+    LaneCount, StepSettings,
+};
+use glam::{Quat, Vec3};
+
+const TICK: f32 = 1.0 / 60.0;
+
+const SCHEMES: [StepSettings; 3] =
+    [StepSettings::gauss_seidel(8), StepSettings::yarns(3), StepSettings::yarns(1)];
+
+fn hung(n: u32) -> Arc<Fabric> {
+    let builder = FabricBuilder::grid(Grid::new(n, n, 1.0, 1.0)).pin_where(|_, uv| uv.y == 0.0);
+    Arc::new(builder.build().expect("a good fabric"))
+}
+
+fn cloth(fabric: &Arc<Fabric>, place: impl Fn(Vec3) -> Vec3) -> ClothBatch {
+    let mut start = ClothSnapshot::at_rest(fabric);
+    for (particle, position) in start.positions.iter_mut().enumerate() {
+        if !fabric.is_pinned(particle) {
+            *position = place(*position);
+        }
+    }
+    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+    batch.insert(&start, FabricMaterial::FLAG_POLYESTER).expect("a free lane");
+    batch
+}
+
+#[test]
+fn collapsed_starts_stay_finite() {
+    let fabric = hung(9);
+    let places: [fn(Vec3) -> Vec3; 3] = [
+        |_| Vec3::ZERO,
+        |at| Vec3::new(0.0, at.y, at.z),
+        |at| if at.x >= 0.5 { Vec3::new(0.5, at.y, at.z) } else { at },
+    ];
+    for settings in SCHEMES {
+        for (index, place) in places.into_iter().enumerate() {
+            for wind in [Vec3::ZERO, Vec3::new(5.0, 0.0, 3.0)] {
+                let mut batch = cloth(&fabric, place);
+                batch.drive(0, Drive { wind, ..Drive::default() });
+                for tick in 0..60 {
+                    batch.step(TICK, settings);
+                    assert!(batch.is_finite(0), "{settings:?}, start {index}, {wind}, tick {tick}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn odd_ticks_stay_finite_and_none_moves_nothing() {
+    let fabric = hung(5);
+    for settings in SCHEMES {
+        let mut batch = cloth(&fabric, |at| at);
+        for tick in [TICK, 1e-6, TICK, 0.5, TICK, 5.0, TICK] {
+            batch.step(tick, settings);
+            assert!(batch.is_finite(0), "{settings:?}: {tick} s");
+        }
+        let before = batch.snapshot(0);
+        for tick in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            batch.step(tick, settings);
+            assert_eq!(batch.snapshot(0), before, "{tick} s");
+        }
+    }
+}
+
+/// Damping pulls towards the frame's own motion, which does not lead outwards.
+#[test]
+fn damping_in_a_spinning_frame_throws_nothing() {
+    let grid = FabricBuilder::grid(Grid::new(5, 3, 1.0, 0.5)).pin_where(|at, _| at.x == 0.0);
+    let fabric = Arc::new(grid.build().expect("a good fabric"));
+    let material = FabricMaterial { damping: 2.0, ..FabricMaterial::COTTON };
+    for settings in [StepSettings::gauss_seidel(3), StepSettings::yarns(3)] {
+        let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+        let mut start = ClothSnapshot::at_rest(&fabric);
+        for (position, velocity) in start.positions.iter().zip(&mut start.velocities) {
+            *velocity = (Vec3::Z * 20.0).cross(*position);
+        }
+        batch.insert(&start, material).expect("a free lane");
+        let motion =
+            FrameMotion { rotation: Quat::from_rotation_z(20.0 * TICK), translation: Vec3::ZERO };
+        batch.drive(0, Drive { motion, ..Drive::NONE });
+        for _ in 0..120 {
+            batch.step(TICK, settings);
+        }
+        for (now, rest) in batch.snapshot(0).positions.iter().zip(fabric.rest_positions()) {
+            // It stretches, and turns a little behind its hub.
+            let (far, near) = (now.length(), rest.length());
+            assert!(far < near + 0.2, "{settings:?}: {now} {rest}");
+        }
+    }
+}
