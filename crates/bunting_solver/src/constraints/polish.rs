@@ -44,11 +44,10 @@ impl<P: Pack> Kernel<P> for Polish<'_, P> {
             let squared = along.dot(along);
             let held = L::load(token, multiplier);
             let length = squared.sqrt();
-            let slack = length * L::splat(token, 1.0 / link.rest_length);
             let rest_length = L::splat(token, link.rest_length);
-            let excess = squared - rest_length * length + compliance * held * slack;
+            let excess = squared - rest_length * length + compliance * held * length;
             let change = -excess / ((wa + wb + compliance) * squared + least);
-            (held + change * squared).store(multiplier);
+            (held + change * length).store(multiplier);
             let pull = along * change;
             (from - pull * wa).store(&mut self.position[a]);
             (to + pull * wb).store(&mut self.position[b]);

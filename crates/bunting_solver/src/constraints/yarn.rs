@@ -3,8 +3,7 @@
 //! The XPBD system of a yarn, (J M⁻¹ Jᵀ + α̃) Δλ = −C − α̃ λ, is tridiagonal: with the links'
 //! directions frozen its diagonal is wᵢ + wᵢ₊₁ + α̃ᵢ and its off-diagonal −wᵢ₊₁ nᵢ·nᵢ₊₁. Each row is
 //! multiplied by its |d|, and the unknowns are λ/|d|: so d stands for n, and a link costs a single
-//! division. Kept from visit to visit is λ|d|, from which λ is found with the rest length, so that a
-//! link which was collapsed does not remember a force without bounds. One elimination down the yarn and one substitution back up solve it for about the price
+//! division. One elimination down the yarn and one substitution back up solve it for about the price
 //! of a Gauss–Seidel sweep (Thomas's algorithm).
 //! What a sweep leaves behind, a hidden compliance of h²/(k m) that grows with the mesh, is gone: a
 //! hanging cloth has its material's own strain. Goldenthal 2007 constrains warp and weft, Deul 2018
@@ -130,7 +129,7 @@ impl<P: Pack> Yarns<'_, P> {
             strand.links.iter().zip(&strand.particles[1..]).zip(knots.iter_mut())
         {
             for (at, particle) in side(particles).into_iter().enumerate() {
-                let StrandLink { link, class, rest_length, inverse_length } = links[at];
+                let StrandLink { link, class, rest_length } = links[at];
                 let next: V3<L> = V3::load(token, &self.position[particle as usize]);
                 let next_weight = weight(particle);
                 let along = next - end[at];
@@ -140,8 +139,7 @@ impl<P: Pack> Yarns<'_, P> {
                 let mut excess = squared - L::splat(token, rest_length) * length;
                 if HAS {
                     let held = L::load(token, &self.multiplier[link as usize]);
-                    let slack = length * L::splat(token, inverse_length);
-                    excess = excess + compliance * held * slack;
+                    excess = excess + compliance * held * length;
                 }
                 let coupling = -(end_weight[at] * last[at].dot(along));
                 let share = coupling * inverse[at];
@@ -170,7 +168,7 @@ impl<P: Pack> Yarns<'_, P> {
                 let tension = along * change;
                 if KEEP {
                     let multiplier = &mut self.multiplier[links[at].link as usize];
-                    let gained = along.dot(tension);
+                    let gained = along.dot(along).sqrt() * change;
                     let held = if HAS { L::load(token, multiplier) + gained } else { gained };
                     held.store(multiplier);
                 }

@@ -35,8 +35,6 @@ pub(crate) struct StrandLink {
     pub class: u32,
     /// Distance at rest, m.
     pub rest_length: f32,
-    /// One over it, 1/m; zero for a link that only fills.
-    pub inverse_length: f32,
 }
 
 /// Strands of one colour.
@@ -79,14 +77,8 @@ impl Strand {
                     link,
                     class: links[link as usize].class,
                     rest_length: links[link as usize].rest_length,
-                    inverse_length: 1.0 / links[link as usize].rest_length,
                 },
-                None => StrandLink {
-                    link: links.len() as u32,
-                    class: 0,
-                    rest_length: 0.0,
-                    inverse_length: 0.0,
-                },
+                None => StrandLink { link: links.len() as u32, class: 0, rest_length: 0.0 },
             })
         });
         Self { count: yarns.len(), particles: particles.collect(), links: links.collect() }
