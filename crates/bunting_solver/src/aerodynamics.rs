@@ -102,22 +102,22 @@ impl<L: Lane> Stream<L> {
     /// its corners' velocities.
     #[inline(always)]
     fn change(&self, normal: V3<L>, velocities: V3<L>) -> V3<L> {
-        let u = self.wind - velocities * self.third;
+        let u = self.wind.minus_scaled(velocities, self.third);
         let squared = normal.dot(normal).max(self.least);
         let across = u.dot(normal);
         let braking = self.pressure * across.abs();
         // (u·n) a/(1 + a min(a, 1)) n with n not normalised and a = braking/length.
         let length = squared.sqrt();
         let limited = braking.or_where_not(braking.lt(length), length);
-        let part = braking * length / (squared * (squared + braking * limited));
+        let part = braking * length / (squared * squared.plus_product(braking, limited));
         let pressed = normal * (across * part);
         if !self.any_rubs {
             return pressed;
         }
-        let along = u - normal * (across / squared);
+        let along = u.minus_scaled(normal, across / squared);
         let rub = self.friction * u.dot(u).sqrt();
         let limited = rub.or_where_not(rub.lt(self.one), self.one);
-        let rubbed = pressed + along * (rub / (self.one + rub * limited));
+        let rubbed = pressed.plus_scaled(along, rub / self.one.plus_product(rub, limited));
         rubbed.or_where_not(self.rubs, pressed)
     }
 }

@@ -89,8 +89,8 @@ impl<L: Lane> Motion<L> {
     #[inline(always)]
     fn swept(&self, point: V3<L>, half: L) -> V3<L> {
         let [x, y, z] = &self.turn;
-        let transposed = *x * point.x + *y * point.y + *z * point.z;
-        (self.turned(point) - transposed) * half + self.shift
+        let transposed = (*x * point.x).plus_scaled(*y, point.y).plus_scaled(*z, point.z);
+        self.shift.plus_scaled(self.turned(point) - transposed, half)
     }
 
     /// The changed vector in lanes whose frame moves; a lane at rest keeps its bits, whatever its
@@ -171,12 +171,12 @@ impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
             let v: V3<L> = V3::load(token, velocity);
             let before: V3<L> = V3::load(token, older);
             v.store(older);
-            let v = v + (v - before) * extrapolation;
+            let v = v.plus_scaled(v - before, extrapolation);
             // Damping acts on the motion relative to the frame, whose point at x has this velocity.
             let damped = if any_moves {
                 let x = V3::load(token, position);
                 let frame = (motion.swept(x, half) * frame_rate).or_where_not(motion.moves, zero);
-                (frame + (v - frame) * keep).or_where_not(motion.moves, v * keep)
+                frame.plus_scaled(v - frame, keep).or_where_not(motion.moves, v * keep)
             } else {
                 v * keep
             };
@@ -213,12 +213,12 @@ impl<P: Pack> Kernel<P> for Predict<'_, P> {
                 continue;
             }
             let air: V3<L> = V3::load(token, impulse);
+            // Gravity acts on the true mass, whatever inertia is added to it.
             let v = V3::load(token, velocity)
-                + air * L::splat(token, weight)
-                // Gravity acts on the true mass, whatever inertia is added to it.
-                + gravity * L::splat(token, weight * area);
+                .plus_scaled(air, L::splat(token, weight))
+                .plus_scaled(gravity, L::splat(token, weight * area));
             v.store(velocity);
-            let change = V3::load(token, displacement) * extrapolation + v * step;
+            let change = (v * step).plus_scaled(V3::load(token, displacement), extrapolation);
             change.store(displacement);
             let x = V3::load(token, position) + change;
             x.store(predicted);

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use crate::added_mass;
 use crate::collision::Collider;
-use crate::constraints::Knot;
+use crate::constraints::{Knot, Pole};
 use crate::fabric::{ABREAST, Fabric, FabricMaterial};
 use crate::lanes::Pack;
 use crate::parameters::{Formula, Parameters};
@@ -62,8 +62,10 @@ pub(crate) struct LaneBatch<P: Pack> {
     /// Whether the impulses may be other than zero.
     pub felt_air: bool,
 
-    /// Multipliers of links and hinges, kept from pass to pass of a substep.
-    pub link_multiplier: Vec<P>,
+    /// The length that each link has under the tension found so far in a substep, l − α̃ λ, m. In the
+    /// order in which the scheme solves links.
+    pub link_target: Vec<P>,
+    /// Multipliers of hinges, kept from pass to pass of a substep.
     pub hinge_multiplier: Vec<P>,
 
     /// Positions after bending, before stretch, m.
@@ -80,6 +82,8 @@ pub(crate) struct LaneBatch<P: Pack> {
     /// The effective substep that the weights are for, s; zero with the fabric's own.
     weights_step: f32,
 
+    /// The line about which the cloth is free to turn.
+    pub pole: Option<Pole>,
     pub parameters: Parameters<P>,
     pub clock: Clock,
 }
@@ -122,13 +126,13 @@ impl<P: Pack> LaneBatch<P> {
             air_impulse: zero.clone(),
             felt_air: false,
             normal: zero,
-            // One more for the links that only fill a strand.
-            link_multiplier: vec![nothing; fabric.links().len() + 1],
+            link_target: vec![nothing; fabric.strands().target_count()],
             hinge_multiplier: vec![nothing; fabric.hinges().len()],
             moments: vec![splat3(Vec3::ZERO); longest_line],
             knots: vec![Knot::new(); ABREAST * longest_yarn],
             weights: fabric.inverse_areas().to_vec(),
             weights_step: 0.0,
+            pole: Pole::of(&fabric),
             parameters: Parameters::new(&fabric),
             clock: Clock::default(),
             fabric,

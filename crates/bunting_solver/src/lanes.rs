@@ -4,13 +4,14 @@
 //! as there are lanes. A kernel is written once over a [`Lane`], the register that holds a pack,
 //! and runs at every width through [`Pack::run`].
 //!
-//! Only `+ − × ÷ √`, comparisons and selects exist here, each correctly rounded by IEEE 754, and
-//! nothing is fused or estimated. So a lane's bits depend neither on the width, nor on the
+//! Only `+ − × ÷ √`, a sum with a product, comparisons and selects exist here, each correctly rounded
+//! by IEEE 754, and nothing is estimated. A sum with a product is rounded once, in software where
+//! there is no instruction for it. So a lane's bits depend neither on the width, nor on the
 //! instruction set, nor on what rides in the other lanes.
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f32x8, f32x16};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f32x4, f32x8, f32x16};
 
 /// One float for each lane of a batch, in memory.
 pub(crate) trait Pack: Copy + Send + Sync + 'static {
@@ -64,6 +65,10 @@ pub(crate) trait Lane:
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
     fn lt(self, other: Self) -> Self::Mask;
+    /// `self` + `a` × `b`, rounded once.
+    fn plus_product(self, a: Self, b: Self) -> Self;
+    /// `self` − `a` × `b`, rounded once.
+    fn minus_product(self, a: Self, b: Self) -> Self;
     /// `self` where the mask is true, `other` elsewhere.
     fn or_where_not(self, mask: Self::Mask, other: Self) -> Self;
 
@@ -114,7 +119,11 @@ impl Pack for Pack1 {
     pack_memory!(1);
 
     fn run<K: Kernel<Self>>(kernel: K) {
-        kernel.run::<f32>(());
+        #[inline(always)]
+        fn with_token<S: Simd, K: Kernel<Pack1>>(token: S, kernel: K) {
+            kernel.run::<Single<S>>(token);
+        }
+        dispatch!(Level::new(), token => with_token(token, kernel));
     }
 }
 
@@ -168,6 +177,16 @@ macro_rules! wide {
             }
 
             #[inline(always)]
+            fn plus_product(self, a: Self, b: Self) -> Self {
+                a.mul_add_precise(b, self)
+            }
+
+            #[inline(always)]
+            fn minus_product(self, a: Self, b: Self) -> Self {
+                (-a).mul_add_precise(b, self)
+            }
+
+            #[inline(always)]
             fn or_where_not(self, mask: Self::Mask, other: Self) -> Self {
                 mask.select(self, other)
             }
@@ -199,40 +218,91 @@ impl Mask for bool {
     }
 }
 
-impl Lane for f32 {
+/// A single float in a register, with proof of the instructions in use: a product and a sum rounded
+/// once are one instruction only where the token says so.
+#[derive(Clone, Copy)]
+struct Single<S> {
+    value: f32,
+    token: S,
+}
+
+impl<S: Simd> Single<S> {
+    #[inline(always)]
+    fn with(self, value: f32) -> Self {
+        Self { value, ..self }
+    }
+}
+
+macro_rules! single_operator {
+    ($($operator:ident :: $method:ident),*) => {
+        $(impl<S: Simd> $operator for Single<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.with($operator::$method(self.value, other.value))
+            }
+        })*
+    };
+}
+
+single_operator!(Add::add, Sub::sub, Mul::mul, Div::div);
+
+impl<S: Simd> Neg for Single<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.with(-self.value)
+    }
+}
+
+impl<S: Simd> Lane for Single<S> {
     type Pack = Pack1;
-    type Token = ();
+    type Token = S;
     type Mask = bool;
 
     #[inline(always)]
-    fn splat((): (), value: f32) -> Self {
-        value
+    fn splat(token: S, value: f32) -> Self {
+        Self { value, token }
     }
 
     #[inline(always)]
-    fn load((): (), pack: &Pack1) -> Self {
-        pack.0[0]
+    fn load(token: S, pack: &Pack1) -> Self {
+        Self { value: pack.0[0], token }
     }
 
     #[inline(always)]
     fn store(self, pack: &mut Pack1) {
-        pack.0[0] = self;
+        pack.0[0] = self.value;
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
         // Correctly rounded by IEEE 754 on every target.
-        f32::sqrt(self)
+        self.with(f32::sqrt(self.value))
     }
 
     #[inline(always)]
     fn abs(self) -> Self {
-        f32::abs(self)
+        self.with(f32::abs(self.value))
     }
 
     #[inline(always)]
     fn lt(self, other: Self) -> bool {
-        self < other
+        self.value < other.value
+    }
+
+    #[inline(always)]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        let wide = |value: f32| <f32x4<S> as SimdBase<S>>::splat(self.token, value);
+        let sum = wide(a.value).mul_add_precise(wide(b.value), wide(self.value));
+        self.with(sum.as_slice()[0])
+    }
+
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        self.plus_product(-a, b)
     }
 
     #[inline(always)]

@@ -76,20 +76,38 @@ impl<L: Lane> V3<L> {
     }
 }
 
-impl<L: Copy + Add<Output = L> + Mul<Output = L>> V3<L> {
+impl<L: Lane> V3<L> {
     #[inline(always)]
     pub fn dot(self, other: Self) -> L {
-        self.x * other.x + self.y * other.y + self.z * other.z
+        (self.x * other.x).plus_product(self.y, other.y).plus_product(self.z, other.z)
     }
-}
 
-impl<L: Copy + Sub<Output = L> + Mul<Output = L>> V3<L> {
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self {
-            x: self.y * other.z - self.z * other.y,
-            y: self.z * other.x - self.x * other.z,
-            z: self.x * other.y - self.y * other.x,
+            x: (self.y * other.z).minus_product(self.z, other.y),
+            y: (self.z * other.x).minus_product(self.x, other.z),
+            z: (self.x * other.y).minus_product(self.y, other.x),
+        }
+    }
+
+    /// `self` + `direction` × `scale`.
+    #[inline(always)]
+    pub fn plus_scaled(self, direction: Self, scale: L) -> Self {
+        Self {
+            x: self.x.plus_product(direction.x, scale),
+            y: self.y.plus_product(direction.y, scale),
+            z: self.z.plus_product(direction.z, scale),
+        }
+    }
+
+    /// `self` − `direction` × `scale`.
+    #[inline(always)]
+    pub fn minus_scaled(self, direction: Self, scale: L) -> Self {
+        Self {
+            x: self.x.minus_product(direction.x, scale),
+            y: self.y.minus_product(direction.y, scale),
+            z: self.z.minus_product(direction.z, scale),
         }
     }
 }

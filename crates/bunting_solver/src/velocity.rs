@@ -51,7 +51,7 @@ impl<P: Pack> Kernel<P> for UpdateVelocities<'_, P> {
             let correction = x - V3::load(token, predicted);
             (V3::load(token, displacement) + correction).store(displacement);
             let v: V3<L> = V3::load(token, velocity);
-            (v + correction * inverse_step).store(velocity);
+            v.plus_scaled(correction, inverse_step).store(velocity);
         }
     }
 }

@@ -61,9 +61,9 @@ fn solve_line<L: Lane>(
     for (row, (factor, &next)) in factors.rows.iter().zip(&particles[2..]).enumerate() {
         let next: V3<L> = V3::load(token, &position[next as usize]);
         let next_edge = next - at;
-        let y = (edge - next_edge) * inverse_spacing
-            - last * L::load(token, &factor.near)
-            - before_last * L::load(token, &factor.far);
+        let y = ((edge - next_edge) * inverse_spacing)
+            .minus_scaled(last, L::load(token, &factor.near))
+            .minus_scaled(before_last, L::load(token, &factor.far));
         y.store(&mut moments[row]);
         (before_last, last) = (last, y);
         (at, edge) = (next, next_edge);
@@ -77,7 +77,9 @@ fn solve_line<L: Lane>(
     for row in (0..inner).rev() {
         let factor = &factors.rows[row];
         let y: V3<L> = V3::load(token, &moments[row]);
-        let moment = y * L::load(token, &factor.inverse) - above * near - above_that * far;
+        let moment = (y * L::load(token, &factor.inverse))
+            .minus_scaled(above, near)
+            .minus_scaled(above_that, far);
         let moved = moment - above - above + above_that;
         shift::<L>(token, &mut position[particles[row + 2] as usize], moved, profile, row + 2);
         (above_that, above) = (above, moment);
@@ -100,7 +102,7 @@ fn shift<L: Lane>(
     at: usize,
 ) {
     let weight = L::splat(token, profile.inverse_areas[at] * profile.inverse_spacing);
-    (V3::load(token, position) + moments * weight).store(position);
+    V3::load(token, position).plus_scaled(moments, weight).store(position);
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ impl<P: Pack> LaneBatch<P> {
             links: self.fabric.links(),
             weights: &self.weights,
             compliance: &self.parameters.link_compliance,
-            multiplier: &mut self.link_multiplier,
+            target: &mut self.link_target,
             position: &mut self.position,
         };
         if accumulate {
@@ -28,7 +28,7 @@ struct Distance<'a, P: Pack> {
     links: &'a [Link],
     weights: &'a [f32],
     compliance: &'a [P],
-    multiplier: &'a mut [P],
+    target: &'a mut [P],
     position: &'a mut [Pack3<P>],
 }
 
@@ -37,7 +37,7 @@ impl<P: Pack> Distance<'_, P> {
     fn solve<L: Lane<Pack = P>, const ACCUMULATE: bool>(self, token: L::Token) {
         let weights = self.weights;
         let least = L::splat(token, LEAST_LENGTH);
-        for (link, multiplier) in self.links.iter().zip(self.multiplier) {
+        for (link, target) in self.links.iter().zip(self.target) {
             let [a, b] = link.particles.map(|particle| particle as usize);
             let (wa, wb) = (L::splat(token, weights[a]), L::splat(token, weights[b]));
             let compliance = L::load(token, &self.compliance[link.class as usize]);
@@ -45,18 +45,15 @@ impl<P: Pack> Distance<'_, P> {
             let to: V3<L> = V3::load(token, &self.position[b]);
             let along = to - from;
             let length = along.dot(along).sqrt().max(least);
-            let mut excess = length - L::splat(token, link.rest_length);
-            if ACCUMULATE {
-                excess = excess + compliance * L::load(token, multiplier);
-            }
-            let stiffness = wa + wb + compliance;
+            let held =
+                if ACCUMULATE { L::load(token, target) } else { L::splat(token, link.rest_length) };
             // −Δλ/|d| with one division: the gradient's length goes into the denominator.
-            let pull = excess / (stiffness * length);
+            let pull = (length - held) / ((wa + wb + compliance) * length);
             if ACCUMULATE {
-                (L::load(token, multiplier) - pull * length).store(multiplier);
+                held.plus_product(compliance * length, pull).store(target);
             }
-            (from + along * (pull * wa)).store(&mut self.position[a]);
-            (to - along * (pull * wb)).store(&mut self.position[b]);
+            from.plus_scaled(along, pull * wa).store(&mut self.position[a]);
+            to.minus_scaled(along, pull * wb).store(&mut self.position[b]);
         }
     }
 }
@@ -68,7 +65,7 @@ impl<P: Pack> Kernel<P> for Distance<'_, P> {
     }
 }
 
-/// The same with a multiplier that is kept from pass to pass.
+/// The same with targets that are kept from pass to pass.
 struct Accumulating<K>(K);
 
 impl<P: Pack> Kernel<P> for Accumulating<Distance<'_, P>> {

@@ -13,11 +13,13 @@ mod bending;
 mod contact;
 mod dihedral;
 mod distance;
+mod pole;
 mod polish;
 mod tether;
 mod yarn;
 
 pub(crate) use anticipation::anticipated;
+pub(crate) use pole::Pole;
 pub(crate) use yarn::Knot;
 
 use crate::lane_batch::LaneBatch;
@@ -38,10 +40,12 @@ impl<P: Pack> LaneBatch<P> {
 
     /// The thesis's relaxation: one constraint after the other, over and over.
     fn sweep(&mut self, passes: u32) {
-        // A multiplier is worth keeping only if another pass reads it.
+        // What a pass has found is worth keeping only if another reads it.
         let accumulate = passes > 1;
         if accumulate {
-            self.link_multiplier.fill(P::splat(0.0));
+            for (target, link) in self.link_target.iter_mut().zip(self.fabric.links()) {
+                *target = P::splat(link.rest_length);
+            }
             self.hinge_multiplier.fill(P::splat(0.0));
         }
         for _ in 0..passes {
@@ -64,6 +68,7 @@ impl<P: Pack> LaneBatch<P> {
         for _ in 0..passes.div_ceil(2) {
             self.polish();
         }
+        self.still_turn();
         self.remember_stretch();
         self.solve_contacts();
     }

@@ -1,32 +1,32 @@
 //! Polish: one sweep over warp and weft after the yarns, link by link.
 //!
 //! Where a flag cracks like a whip, the frozen directions of a yarn overshoot at its free end; a
-//! sweep takes off what single links are then too long by. The constraint and its multipliers are
+//! sweep takes off what single links are then too long by. The constraint and its targets are
 //! those of the yarns.
 
-use crate::fabric::Link;
+use crate::fabric::PolishLink;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
 use crate::vector::{Pack3, V3};
 
 impl<P: Pack> LaneBatch<P> {
-    /// Sweeps over warp and weft once, colour by colour.
+    /// Sweeps over warp and weft once, yarn by yarn.
     pub fn polish(&mut self) {
         P::run(Polish {
-            links: &self.fabric.links()[..self.fabric.stretch_link_count()],
+            links: &self.fabric.strands().polish,
             weights: &self.weights,
             compliance: &self.parameters.link_compliance,
-            multiplier: &mut self.link_multiplier,
+            target: &mut self.link_target,
             position: &mut self.position,
         });
     }
 }
 
 struct Polish<'a, P: Pack> {
-    links: &'a [Link],
+    links: &'a [PolishLink],
     weights: &'a [f32],
     compliance: &'a [P],
-    multiplier: &'a mut [P],
+    target: &'a mut [P],
     position: &'a mut [Pack3<P>],
 }
 
@@ -34,7 +34,9 @@ impl<P: Pack> Kernel<P> for Polish<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let least = L::splat(token, f32::MIN_POSITIVE);
-        for (link, multiplier) in self.links.iter().zip(self.multiplier) {
+        let one = L::splat(token, 1.0);
+        for link in self.links {
+            let target = &mut self.target[link.target as usize];
             let [a, b] = link.particles.map(|particle| particle as usize);
             let (wa, wb) = (L::splat(token, self.weights[a]), L::splat(token, self.weights[b]));
             let compliance = L::load(token, &self.compliance[link.class as usize]);
@@ -42,15 +44,16 @@ impl<P: Pack> Kernel<P> for Polish<'_, P> {
             let to: V3<L> = V3::load(token, &self.position[b]);
             let along = to - from;
             let squared = along.dot(along);
-            let held = L::load(token, multiplier);
             let length = squared.sqrt();
-            let rest_length = L::splat(token, link.rest_length);
-            let excess = squared - rest_length * length + compliance * held * length;
-            let change = -excess / ((wa + wb + compliance) * squared + least);
-            (held + change * length).store(multiplier);
+            let held = L::load(token, target);
+            let lack = (-squared).plus_product(held, length);
+            // Multiplied, not divided by: the division need not wait for the root.
+            let inverse = one / least.plus_product(wa + wb + compliance, squared);
+            let change = lack * inverse;
+            held.minus_product(compliance * length, change).store(target);
             let pull = along * change;
-            (from - pull * wa).store(&mut self.position[a]);
-            (to + pull * wb).store(&mut self.position[b]);
+            from.minus_scaled(pull, wa).store(&mut self.position[a]);
+            to.plus_scaled(pull, wb).store(&mut self.position[b]);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Yarns: the distance constraints along one path solved together, exactly.
 //!
-//! The XPBD system of a yarn, (J M⁻¹ Jᵀ + α̃) Δλ = −C − α̃ λ, is tridiagonal: with the links'
+//! The XPBD system of a yarn, (J M⁻¹ Jᵀ + α̃) Δλ = −C − α̃ λ, is tridiagonal. What stands for λ here
+//! is a link's target, the length that it has under the tension found so far, l − α̃ λ. With the links'
 //! directions frozen its diagonal is wᵢ + wᵢ₊₁ + α̃ᵢ and its off-diagonal −wᵢ₊₁ nᵢ·nᵢ₊₁. Each row is
 //! multiplied by its |d|, and the unknowns are λ/|d|: so d stands for n, and a link costs a single
 //! division. One elimination down the yarn and one substitution back up solve it for about the price
@@ -9,7 +10,7 @@
 //! hanging cloth has its material's own strain. Goldenthal 2007 constrains warp and weft, Deul 2018
 //! solves rods so.
 
-use crate::fabric::{ABREAST, LinkFamily, Strand, StrandLink};
+use crate::fabric::{ABREAST, LinkFamily, Strand, StrandLink, Strands};
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
 use crate::vector::{Pack3, V3};
@@ -17,15 +18,20 @@ use crate::vector::{Pack3, V3};
 /// What the elimination leaves for the substitution, for one link.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Knot<P: Pack> {
+    /// d, m.
+    along: Pack3<P>,
     /// This multiplier's share in the one before.
     share: P,
     /// The change of this multiplier, but for the share of the next.
     change: P,
+    /// What the link's target gives way by for a unit change of the multiplier, m.
+    give: P,
 }
 
 impl<P: Pack> Knot<P> {
     pub fn new() -> Self {
-        Self { share: P::splat(0.0), change: P::splat(0.0) }
+        let nothing = P::splat(0.0);
+        Self { along: [nothing; 3], share: nothing, change: nothing, give: nothing }
     }
 }
 
@@ -34,152 +40,160 @@ impl<P: Pack> LaneBatch<P> {
     ///
     /// The bias must not come last: what it moves is large against the strain of warp and weft.
     pub fn solve_yarns(&mut self, passes: u32) {
-        self.solve_families(Visit::First);
-        self.solve_families(Visit::Bias);
+        let at_rest = self.fabric.strands().rest_lengths();
+        for (target, rest_length) in self.link_target.iter_mut().zip(at_rest) {
+            *target = P::splat(rest_length);
+        }
+        self.solve_families(Families::Stretch);
+        self.solve_families(Families::Bias);
         for _ in 0..passes {
-            self.solve_families(Visit::Again);
+            self.solve_families(Families::Stretch);
         }
     }
 
-    fn solve_families(&mut self, visit: Visit) {
-        for colour in self.fabric.strand_colours() {
-            if (colour.family == LinkFamily::Bias) != (visit == Visit::Bias) {
+    fn solve_families(&mut self, families: Families) {
+        let Strands { strands, colours, .. } = self.fabric.strands();
+        for colour in colours {
+            if (colour.family == LinkFamily::Bias) != (families == Families::Bias) {
                 continue;
             }
             P::run(Yarns {
-                strands: &self.fabric.strands()[colour.strands.clone()],
-                visit,
+                strands: &strands[colour.strands.clone()],
+                // The bias is solved once a substep.
+                keep: families == Families::Stretch,
                 weights: &self.weights,
                 compliance: &self.parameters.link_compliance,
                 knots: &mut self.knots,
-                multiplier: &mut self.link_multiplier,
+                target: &mut self.link_target,
                 position: &mut self.position,
             });
         }
     }
 }
 
-/// When in a substep yarns are solved. Multipliers of warp and weft are kept from visit to visit.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Visit {
-    First,
+enum Families {
+    /// Warp and weft.
+    Stretch,
     Bias,
-    Again,
 }
 
 /// The yarns of one colour.
 struct Yarns<'a, P: Pack> {
     strands: &'a [Strand],
-    visit: Visit,
+    /// Whether targets are kept from visit to visit.
+    keep: bool,
     weights: &'a [f32],
     compliance: &'a [P],
     knots: &'a mut [Knot<P>],
-    multiplier: &'a mut [P],
+    target: &'a mut [P],
     position: &'a mut [Pack3<P>],
 }
 
 impl<P: Pack> Kernel<P> for Yarns<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
-        match self.visit {
-            Visit::First => self.solve_all::<L, false, true>(token),
-            Visit::Bias => self.solve_all::<L, false, false>(token),
-            Visit::Again => self.solve_all::<L, true, true>(token),
+        if self.keep {
+            self.solve_all::<L, true>(token);
+        } else {
+            self.solve_all::<L, false>(token);
         }
     }
 }
 
 impl<P: Pack> Yarns<'_, P> {
-    /// `HAS` multipliers of an earlier visit; `KEEP` them for a later one.
+    /// `KEEP` targets from visit to visit.
     #[inline(always)]
-    fn solve_all<L: Lane<Pack = P>, const HAS: bool, const KEEP: bool>(&mut self, token: L::Token) {
+    fn solve_all<L: Lane<Pack = P>, const KEEP: bool>(&mut self, token: L::Token) {
         for strand in self.strands {
             match strand.count {
-                ABREAST => self.solve::<L, ABREAST, HAS, KEEP>(token, strand),
-                _ => self.solve::<L, 1, HAS, KEEP>(token, strand),
+                ABREAST => self.solve::<L, ABREAST, KEEP>(token, strand),
+                _ => self.solve::<L, 1, KEEP>(token, strand),
             }
         }
     }
 
     /// Solves a strand of `SIDE` yarns.
     #[inline(always)]
-    fn solve<L: Lane<Pack = P>, const SIDE: usize, const HAS: bool, const KEEP: bool>(
+    fn solve<L: Lane<Pack = P>, const SIDE: usize, const KEEP: bool>(
         &mut self,
         token: L::Token,
         strand: &Strand,
     ) {
-        let weights = self.weights;
+        let position = &mut *self.position;
+        let weights = &self.weights[..position.len()];
         let weight = |particle: u32| -> L { L::splat(token, weights[particle as usize]) };
         let side = |row: &[u32; ABREAST]| -> [u32; SIDE] { core::array::from_fn(|at| row[at]) };
+        let (knots, _) = self.knots.as_chunks_mut::<SIDE>();
+        let (targets, _) = self.target[strand.targets.clone()].as_chunks_mut::<SIDE>();
         let zero = L::splat(token, 0.0);
         let one = L::splat(token, 1.0);
         // A link without length has no direction: its row is 0 = 0, and its change none.
         let least = L::splat(token, f32::MIN_POSITIVE);
         let none = V3::<L>::splat(token, 0.0);
-        let (knots, _) = self.knots.as_chunks_mut::<SIDE>();
 
         let begin = side(&strand.particles[0]);
         let mut end: [V3<L>; SIDE] =
-            begin.map(|particle| V3::load(token, &self.position[particle as usize]));
+            begin.map(|particle| V3::load(token, &position[particle as usize]));
         let mut end_weight = begin.map(weight);
         let mut last = [none; SIDE];
         let mut inverse = [zero; SIDE];
         let mut change = [zero; SIDE];
-        for ((links, particles), knots) in
-            strand.links.iter().zip(&strand.particles[1..]).zip(knots.iter_mut())
-        {
+        let rows = strand.links.iter().zip(&strand.particles[1..]);
+        for (((links, particles), targets), knots) in rows.zip(&*targets).zip(knots.iter_mut()) {
             for (at, particle) in side(particles).into_iter().enumerate() {
-                let StrandLink { link, class, rest_length } = links[at];
-                let next: V3<L> = V3::load(token, &self.position[particle as usize]);
+                let StrandLink { class, rest_length } = links[at];
+                let compliance = L::load(token, &self.compliance[class as usize]);
+                let target =
+                    if KEEP { L::load(token, &targets[at]) } else { L::splat(token, rest_length) };
+                let next: V3<L> = V3::load(token, &position[particle as usize]);
                 let next_weight = weight(particle);
                 let along = next - end[at];
                 let squared = along.dot(along);
-                let compliance = L::load(token, &self.compliance[class as usize]);
                 let length = squared.sqrt();
-                let mut excess = squared - L::splat(token, rest_length) * length;
-                if HAS {
-                    let held = L::load(token, &self.multiplier[link as usize]);
-                    excess = excess + compliance * held * length;
-                }
-                let coupling = -(end_weight[at] * last[at].dot(along));
+                // −C |d|, C being the excess of length over the target.
+                let lack = (-squared).plus_product(target, length);
+                let coupling = end_weight[at] * last[at].dot(along);
                 let share = coupling * inverse[at];
-                let diagonal = (end_weight[at] + next_weight + compliance) * squared + least;
-                inverse[at] = one / (diagonal - coupling * share);
-                change[at] = -(excess + coupling * change[at]) * inverse[at];
+                let diagonal =
+                    least.plus_product(end_weight[at] + next_weight + compliance, squared);
+                inverse[at] = one / diagonal.minus_product(coupling, share);
+                change[at] = lack.plus_product(coupling, change[at]) * inverse[at];
+                along.store(&mut knots[at].along);
                 share.store(&mut knots[at].share);
                 change[at].store(&mut knots[at].change);
+                if KEEP {
+                    (compliance * length).store(&mut knots[at].give);
+                }
                 (last[at], end[at], end_weight[at]) = (along, next, next_weight);
             }
         }
 
-        // Back up the yarn, each particle taking the pull of its two links at once. What lies behind
-        // has not moved yet, so the links still are what they were on the way down.
+        // Back up the yarn, each particle taking the pull of its two links at once.
         let mut share = [zero; SIDE];
         let mut found = [zero; SIDE];
         let mut pull = [none; SIDE];
-        let rows = strand.particles.windows(2).zip(&strand.links);
-        for ((particles, links), knots) in rows.zip(knots).rev() {
-            let (near, far) = (side(&particles[0]), side(&particles[1]));
-            for at in 0..SIDE {
-                let change = L::load(token, &knots[at].change) - share[at] * found[at];
+        let rows = strand.particles[1..].iter().zip(targets).zip(knots);
+        for ((particles, targets), knots) in rows.rev() {
+            for (at, particle) in side(particles).into_iter().enumerate() {
+                let change = L::load(token, &knots[at].change).plus_product(share[at], found[at]);
                 (share[at], found[at]) = (L::load(token, &knots[at].share), change);
-                let next: V3<L> = V3::load(token, &self.position[near[at] as usize]);
-                let along = end[at] - next;
-                let tension = along * change;
                 if KEEP {
-                    let multiplier = &mut self.multiplier[links[at].link as usize];
-                    let gained = along.dot(along).sqrt() * change;
-                    let held = if HAS { L::load(token, multiplier) + gained } else { gained };
-                    held.store(multiplier);
+                    let give = L::load(token, &knots[at].give);
+                    let target = &mut targets[at];
+                    L::load(token, target).minus_product(give, change).store(target);
                 }
-                let moved = (tension - pull[at]) * weight(far[at]);
-                (end[at] + moved).store(&mut self.position[far[at] as usize]);
-                (pull[at], end[at]) = (tension, next);
+                let tension = V3::load(token, &knots[at].along) * change;
+                let place = &mut position[particle as usize];
+                V3::load(token, place)
+                    .plus_scaled(tension - pull[at], weight(particle))
+                    .store(place);
+                pull[at] = tension;
             }
         }
-        for at in 0..SIDE {
-            let moved = pull[at] * weight(begin[at]);
-            (end[at] - moved).store(&mut self.position[begin[at] as usize]);
+        for (at, particle) in begin.into_iter().enumerate() {
+            let place = &mut position[particle as usize];
+            V3::load(token, place).minus_scaled(pull[at], weight(particle)).store(place);
         }
     }
 }

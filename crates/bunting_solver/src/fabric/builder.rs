@@ -7,7 +7,8 @@ use glam::{Vec2, Vec3};
 
 use super::links::{self, Sheet};
 use super::{
-    Fabric, FabricError, Grid, bending, hinges, patches, strands, tethers, topology, weld, yarns,
+    Fabric, FabricError, Grid, bending, hinges, patches, strands::Strands, tethers, topology, weld,
+    yarns,
 };
 
 /// Default distance at which vertices are one particle, as a part of the mesh's extent: the
@@ -185,7 +186,7 @@ impl FabricBuilder {
         let tethers = tethers::tethers(&rest, &edges, &pins, self.grid.is_some());
         let (bend_lines, bend_profiles) =
             self.grid.map(|grid| bending::lines(&grid, &inverse_areas)).unwrap_or_default();
-        let (strands, strand_colours) = strands::strands(&yarns, &yarn_colours, &links);
+        let strands = Strands::new(&yarns, &yarn_colours, &links);
         let (hinges, hinge_classes, hinge_colours) = hinges::hinges(&rest, &edges, &pinned);
 
         Ok(Fabric {
@@ -204,7 +205,6 @@ impl FabricBuilder {
             yarns,
             yarn_colours,
             strands,
-            strand_colours,
             hinges,
             hinge_classes,
             hinge_colours,

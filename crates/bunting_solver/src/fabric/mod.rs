@@ -22,7 +22,7 @@ mod yarns;
 use glam::{Vec2, Vec3};
 
 pub(crate) use patches::Patch;
-pub(crate) use strands::{ABREAST, Strand, StrandColour, StrandLink};
+pub(crate) use strands::{ABREAST, PolishLink, Strand, StrandLink, Strands};
 pub(crate) use tethers::Pin;
 
 pub use bending::{BendLine, BendProfile};
@@ -55,8 +55,7 @@ pub struct Fabric {
     link_colours: Colours,
     yarns: Vec<Yarn>,
     yarn_colours: Colours,
-    strands: Vec<Strand>,
-    strand_colours: Vec<StrandColour>,
+    strands: Strands,
     hinges: Vec<Hinge>,
     hinge_classes: Vec<HingeClass>,
     hinge_colours: Colours,
@@ -171,12 +170,8 @@ impl Fabric {
         &self.yarns
     }
 
-    pub(crate) fn strands(&self) -> &[Strand] {
+    pub(crate) fn strands(&self) -> &Strands {
         &self.strands
-    }
-
-    pub(crate) fn strand_colours(&self) -> &[StrandColour] {
-        &self.strand_colours
     }
 
     /// Runs of yarns that share no particle.

@@ -3,7 +3,7 @@
 //! Solving a yarn is one long chain of divisions, each waiting on the last; yarns of one colour do
 //! not wait on one another. So they are solved side by side, and stored interleaved. A shorter yarn
 //! is drawn out to the length of its neighbours by links from its last particle to itself, which
-//! pull nothing.
+//! have no direction and pull nothing.
 
 use core::ops::Range;
 
@@ -24,13 +24,13 @@ pub(crate) struct Strand {
     pub particles: Vec<[u32; ABREAST]>,
     /// Rows of links.
     pub links: Vec<[StrandLink; ABREAST]>,
+    /// Where among all targets those of its links are: row by row, `count` a row.
+    pub targets: Range<usize>,
 }
 
 /// A link as it is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct StrandLink {
-    /// Index into the fabric's links; one past the last for a link that only fills.
-    pub link: u32,
     /// Index into the fabric's link classes.
     pub class: u32,
     /// Distance at rest, m.
@@ -44,25 +44,72 @@ pub(crate) struct StrandColour {
     pub strands: Range<usize>,
 }
 
-/// Lays yarns side by side, colour by colour.
-pub(crate) fn strands(
-    yarns: &[Yarn],
-    colours: &Colours,
-    links: &[Link],
-) -> (Vec<Strand>, Vec<StrandColour>) {
-    let mut strands: Vec<Strand> = Vec::new();
-    let mut coloured = Vec::new();
-    for range in colours.ranges() {
-        let first = strands.len();
-        let family = links[yarns[range.start].links[0] as usize].family;
-        strands.extend(yarns[range.clone()].chunks(ABREAST).map(|side| Strand::new(side, links)));
-        coloured.push(StrandColour { family, strands: first..strands.len() });
+/// All yarns of a fabric, laid side by side.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Strands {
+    /// Colour by colour.
+    pub strands: Vec<Strand>,
+    pub colours: Vec<StrandColour>,
+    /// Warp and weft link by link, yarn after yarn: in each, every second link and then the others,
+    /// so that neighbours in the list share no particle.
+    pub polish: Vec<PolishLink>,
+}
+
+/// A link as it is polished.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PolishLink {
+    /// The two particles.
+    pub particles: [u32; 2],
+    /// Index into the fabric's link classes.
+    pub class: u32,
+    /// Index of its target.
+    pub target: u32,
+}
+
+impl Strands {
+    /// Lays yarns side by side, colour by colour.
+    pub fn new(yarns: &[Yarn], colours: &Colours, links: &[Link]) -> Self {
+        let mut strands: Vec<Strand> = Vec::new();
+        let mut coloured = Vec::new();
+        let mut polish = Vec::new();
+        for range in colours.ranges() {
+            let first = strands.len();
+            let family = links[yarns[range.start].links[0] as usize].family;
+            for side in yarns[range.clone()].chunks(ABREAST) {
+                let targets = strands.last().map_or(0, |strand| strand.targets.end);
+                strands.push(Strand::new(side, links, targets));
+                if family == LinkFamily::Bias {
+                    continue;
+                }
+                for (at, yarn) in side.iter().enumerate() {
+                    let count = yarn.links.len();
+                    polish.extend((0..count).step_by(2).chain((1..count).step_by(2)).map(|row| {
+                        let Link { particles, class, .. } = links[yarn.links[row] as usize];
+                        let target = (targets + row * side.len() + at) as u32;
+                        PolishLink { particles, class, target }
+                    }));
+                }
+            }
+            coloured.push(StrandColour { family, strands: first..strands.len() });
+        }
+        Self { strands, colours: coloured, polish }
     }
-    (strands, coloured)
+
+    /// Number of targets, those of links that only fill included.
+    pub fn target_count(&self) -> usize {
+        self.strands.last().map_or(0, |strand| strand.targets.end)
+    }
+
+    /// The targets at rest, m.
+    pub fn rest_lengths(&self) -> impl Iterator<Item = f32> {
+        self.strands.iter().flat_map(|strand| {
+            strand.links.iter().flat_map(|row| row[..strand.count].iter().map(|l| l.rest_length))
+        })
+    }
 }
 
 impl Strand {
-    fn new(yarns: &[Yarn], links: &[Link]) -> Self {
+    fn new(yarns: &[Yarn], links: &[Link], first_target: usize) -> Self {
         let rows = yarns.iter().map(|yarn| yarn.links.len()).max().unwrap_or(0);
         let column = |at: usize| &yarns[at.min(yarns.len() - 1)];
         let particles = (0..=rows).map(|row| {
@@ -71,16 +118,20 @@ impl Strand {
                 path[row.min(path.len() - 1)]
             })
         });
-        let links = (0..rows).map(|row| {
-            core::array::from_fn(|at| match column(at).links.get(row) {
-                Some(&link) => StrandLink {
-                    link,
-                    class: links[link as usize].class,
-                    rest_length: links[link as usize].rest_length,
-                },
-                None => StrandLink { link: links.len() as u32, class: 0, rest_length: 0.0 },
+        let link_rows = (0..rows).map(|row| {
+            core::array::from_fn(|at| {
+                let path = &column(at).links;
+                let Link { class, rest_length, .. } = links[path[row.min(path.len() - 1)] as usize];
+                StrandLink { class, rest_length }
             })
         });
-        Self { count: yarns.len(), particles: particles.collect(), links: links.collect() }
+        let particles = particles.collect();
+        let links: Vec<[StrandLink; ABREAST]> = link_rows.collect();
+        Self {
+            count: yarns.len(),
+            particles,
+            links,
+            targets: first_target..first_target + rows * yarns.len(),
+        }
     }
 }

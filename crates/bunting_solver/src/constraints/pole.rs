@@ -1,0 +1,90 @@
+//! The turn about a pole: a cloth whose pins lie on a line may turn about it, and nothing within the
+//! cloth can make it.
+//!
+//! Each solve of a substep pulls particles along the directions in which it finds them, so each by
+//! itself has no moment; but those that come later find particles moved by those that came before,
+//! and of two pulls the cross product is left. It is small and always of one sign: a flag that hangs
+//! from its pole in folds goes round it for ever. So the moment of all corrections about the pole is
+//! taken out again, by a turn as of a rigid body.
+
+use glam::Vec3;
+
+use crate::fabric::Fabric;
+use crate::lane_batch::LaneBatch;
+use crate::lanes::{Kernel, Lane, Pack};
+use crate::vector::{Pack3, V3, splat3};
+
+/// How far pins may lie off the line through them, as a part of its length.
+const STRAIGHT: f32 = 1e-3;
+
+/// The line through all pins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pole {
+    /// A point of it, m.
+    at: Vec3,
+    /// Its direction, of unit length.
+    along: Vec3,
+}
+
+impl Pole {
+    /// The line through a fabric's pins, if there are two or more and they lie on one.
+    pub fn of(fabric: &Fabric) -> Option<Self> {
+        let pins: Vec<Vec3> = fabric
+            .pins()
+            .iter()
+            .map(|pin| fabric.rest_positions()[pin.particle as usize])
+            .collect();
+        let at = *pins.first()?;
+        let far = pins.iter().max_by(|a, b| at.distance(**a).total_cmp(&at.distance(**b)))?;
+        let along = (*far - at).try_normalize()?;
+        let off = |pin: &Vec3| (*pin - at).reject_from_normalized(along).length();
+        let straight = pins.iter().all(|pin| off(pin) <= STRAIGHT * at.distance(*far));
+        straight.then_some(Self { at, along })
+    }
+}
+
+impl<P: Pack> LaneBatch<P> {
+    /// Takes the moment about the pole out of what this substep has corrected.
+    pub fn still_turn(&mut self) {
+        let Some(pole) = self.pole else { return };
+        P::run(StillTurn {
+            pole,
+            weights: &self.weights,
+            predicted: &self.predicted,
+            position: &mut self.position,
+        });
+    }
+}
+
+struct StillTurn<'a, P: Pack> {
+    pole: Pole,
+    weights: &'a [f32],
+    predicted: &'a [Pack3<P>],
+    position: &'a mut [Pack3<P>],
+}
+
+impl<P: Pack> Kernel<P> for StillTurn<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let at: V3<L> = V3::load(token, &splat3(self.pole.at));
+        let along: V3<L> = V3::load(token, &splat3(self.pole.along));
+        let free = |weight: &&f32| **weight > 0.0;
+
+        let mut moment = L::splat(token, 0.0);
+        let mut inertia = L::splat(token, f32::MIN_POSITIVE);
+        let places = self.position.iter().zip(self.predicted).zip(self.weights);
+        for ((position, predicted), weight) in places.filter(|(_, weight)| free(weight)) {
+            let x: V3<L> = V3::load(token, position);
+            let mass = L::splat(token, 1.0 / weight);
+            // How fast the particle would go round at a radian per second.
+            let round = along.cross(x - at);
+            moment = moment.plus_product(mass, round.dot(x - V3::load(token, predicted)));
+            inertia = inertia.plus_product(mass, round.dot(round));
+        }
+        let turn = moment / inertia;
+        for (position, _) in self.position.iter_mut().zip(self.weights).filter(|(_, w)| free(w)) {
+            let x: V3<L> = V3::load(token, position);
+            x.minus_scaled(along.cross(x - at), turn).store(position);
+        }
+    }
+}
