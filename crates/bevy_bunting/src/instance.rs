@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
 use bunting_solver::{ClothSnapshot, Fabric, FabricMaterial};
 
 use crate::batches::{ClothBatches, Slot};
@@ -28,6 +29,8 @@ pub(crate) struct ClothInstance {
     pub place: Place,
     /// The last good material.
     pub material: FabricMaterial,
+    /// Gravity in the last tick, along the axes of the cloth's frame, m/s².
+    pub gravity: Vec3,
     /// The attachment's target that the levels were cut for; the cloth itself stands for its own
     /// transform, none for no attachment.
     pub target: Option<Entity>,
@@ -70,7 +73,8 @@ impl ClothInstance {
     pub fn change_level(&mut self, to: usize, batches: &mut ClothBatches) {
         self.unseat(batches);
         if let (Some(levels), Place::Waiting(snapshot)) = (&self.levels, &mut self.place) {
-            *snapshot = levels.transfer(core::mem::take(snapshot), self.level, to);
+            let state = core::mem::take(snapshot);
+            *snapshot = levels.transfer(state, (self.level, to), &self.material, self.gravity);
         }
         self.level = to;
     }

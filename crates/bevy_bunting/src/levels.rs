@@ -4,7 +4,8 @@ use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
 use bevy_ecs::prelude::*;
-use bunting_solver::{ClothSnapshot, Fabric, FabricBuilder, LevelTransfer};
+use bevy_math::Vec3;
+use bunting_solver::{ClothSnapshot, Fabric, FabricBuilder, FabricMaterial, LevelTransfer};
 
 use crate::attachment::Attachment;
 use crate::error::ClothError;
@@ -29,15 +30,21 @@ impl ClothLevels {
         self.fabrics.len()
     }
 
-    /// The state at one level, moved to another.
-    pub fn transfer(&self, mut snapshot: ClothSnapshot, from: usize, to: usize) -> ClothSnapshot {
+    /// The state at one level, moved to another, for a cloth of a material under a gravity along
+    /// the axes of its frame, m/s².
+    pub fn transfer(
+        &self,
+        mut snapshot: ClothSnapshot,
+        (from, to): (usize, usize),
+        material: &FabricMaterial,
+        gravity: Vec3,
+    ) -> ClothSnapshot {
         for level in from..to {
-            snapshot = self.transfers[level].restrict(&snapshot);
+            snapshot = self.transfers[level].restrict(&snapshot, material, gravity);
         }
         for level in (to..from).rev() {
-            snapshot = self.transfers[level].prolong(&snapshot);
+            snapshot = self.transfers[level].prolong(&snapshot, material, gravity);
         }
-        hold_pins(&mut snapshot, self.fabric(to));
         snapshot
     }
 

@@ -39,6 +39,7 @@ mod collision;
 mod constants;
 mod constraints;
 mod damping;
+mod energy;
 mod fabric;
 mod frame;
 mod integrate;

@@ -41,6 +41,7 @@ fn thrash(n: usize, seconds: f64) -> [HardCase; 2] {
     let fabrics = scenes.each_ref().map(fabric);
     let transfer = LevelTransfer::between(&fabrics[0], &fabrics[1]).expect("nested levels");
     let mut cloths = scenes.each_ref().map(start);
+    let gravity = Vec3::NEG_Y * scenes[0].gravity as f32;
     let momentum = |level: usize, state: &ClothSnapshot| -> DVec3 {
         let moving = state.velocities.iter().zip(&grids[level].masses);
         moving.map(|(v, m)| v.as_dvec3() * *m).sum()
@@ -50,8 +51,12 @@ fn thrash(n: usize, seconds: f64) -> [HardCase; 2] {
         cloths[level].tick();
         let state = cloths[level].batch.snapshot(0);
         let next = 1 - level;
-        let switched =
-            if level == 0 { transfer.restrict(&state) } else { transfer.prolong(&state) };
+        let material = material(&scenes[level]);
+        let switched = if level == 0 {
+            transfer.restrict(&state, &material, gravity)
+        } else {
+            transfer.prolong(&state, &material, gravity)
+        };
         let (before, after) = (momentum(level, &state), momentum(next, &switched));
         if before.length() > 1e-3 {
             kicked = kicked.max((after - before).length() / before.length());

@@ -30,7 +30,6 @@ pub use builder::FabricBuilder;
 pub use colour::Colours;
 pub use error::FabricError;
 pub use grid::Grid;
-#[cfg(test)]
 pub(crate) use hinges::angle as hinge_angle;
 pub use hinges::{Hinge, HingeClass};
 pub use links::{Link, LinkClass, LinkFamily};
