@@ -83,7 +83,7 @@ fn thrashing_is_harmless() {
 
 /// The state between the choice of levels and the step: the one that was moved.
 #[test]
-fn shared_particles_keep_their_place() {
+fn shared_particles_stay_near_their_place() {
     #[derive(Resource, Default)]
     struct Moved(Vec<Vec3>);
     let mut app = app();
@@ -108,7 +108,9 @@ fn shared_particles_keep_their_place() {
             for column in 0..17 {
                 let stride = |count: usize| if count == 33 { 2 } else { 1 };
                 let at = |count: usize| stride(count) * (row * count + column);
-                assert_eq!(before[at(from)], moved[at(to)], "row {row}, column {column}");
+                // But for the strain that is taken off.
+                let apart = before[at(from)].distance(moved[at(to)]);
+                assert!(apart < 0.02, "row {row}, column {column}: {apart}");
             }
         }
     }

@@ -25,6 +25,11 @@ impl ClothLevels {
         &self.fabrics[level]
     }
 
+    /// The fabric of a level, if there is one.
+    pub fn get(&self, level: usize) -> Option<&Arc<Fabric>> {
+        self.fabrics.get(level)
+    }
+
     /// Number of levels.
     pub fn count(&self) -> usize {
         self.fabrics.len()
@@ -46,6 +51,14 @@ impl ClothLevels {
             snapshot = self.transfers[level].prolong(&snapshot, material, gravity);
         }
         snapshot
+    }
+
+    /// Values at the particles of a level, spread over its triangles to those of a finer level.
+    pub fn spread(&self, mut values: Vec<Vec3>, from: usize, to: usize) -> Vec<Vec3> {
+        for level in (to..from).rev() {
+            values = self.transfers[level].spread(&values).collect();
+        }
+        values
     }
 
     fn cut(

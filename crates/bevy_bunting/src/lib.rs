@@ -88,6 +88,7 @@ mod batches;
 mod collider;
 mod diagnostics;
 mod drive;
+mod easing;
 mod error;
 mod frame;
 mod instance;
@@ -118,6 +119,7 @@ pub use bunting_solver;
 pub use collider::{ClothCollider, ColliderPlugin};
 pub use diagnostics::{ClothCounts, ClothDiagnosticsPlugin, ClothTimings};
 pub use drive::DrivePlugin;
+pub use easing::EasingPlugin;
 pub use error::{ClothError, ClothFailed};
 pub use frame::AttachmentPlugin;
 pub use lod::{ClothLevelChanged, LodPlugin, LodSet, LodViewer};
@@ -186,6 +188,7 @@ impl PluginGroup for ClothPlugins {
             .add(ColliderPlugin)
             .add(SolverPlugin)
             .add(PublishPlugin)
+            .add(EasingPlugin)
             .add(SurfacePlugin)
             .add(ClothDiagnosticsPlugin);
         #[cfg(feature = "render")]

@@ -135,7 +135,7 @@ fn cut_cloths(
                     }
                     instance.recut(levels, &mut batches);
                     if let Some((fabric, snapshot)) = instance.fabric().zip(instance.waiting()) {
-                        state.begin(instance.level, fabric, &snapshot.positions);
+                        state.begin_anew(instance.level, fabric, &snapshot.positions);
                     }
                 }
             }

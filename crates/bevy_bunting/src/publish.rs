@@ -20,7 +20,7 @@ impl Plugin for PublishPlugin {
     }
 }
 
-fn publish_states(
+pub(crate) fn publish_states(
     mut cloths: Query<(Entity, &ClothInstance, &mut ClothState)>,
     mut batches: ResMut<ClothBatches>,
     mut commands: Commands,
@@ -45,7 +45,7 @@ fn publish_states(
         if !is_finite(positions) {
             batches.lane(slot).rest();
             let fabric = instance.fabric().expect("a cloth in a lane has a fabric");
-            state.begin(instance.level, fabric, fabric.rest_positions());
+            state.begin_anew(instance.level, fabric, fabric.rest_positions());
             ClothFailed::report(&mut commands, entity, ClothError::Diverged { entity });
         }
     }

@@ -25,6 +25,17 @@ pub struct ClothState {
     pub(crate) previous_normals: Vec<Vec3>,
     pub(crate) level: usize,
     pub(crate) fabric: Option<Arc<Fabric>>,
+    /// What was shown before a change of level, until it is eased.
+    pub(crate) left: Option<Left>,
+}
+
+/// The surface that a change of level left behind.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Left {
+    pub level: usize,
+    pub positions: Vec<Vec3>,
+    pub previous_positions: Vec<Vec3>,
+    pub normals: Vec<Vec3>,
 }
 
 impl ClothState {
@@ -66,12 +77,24 @@ impl ClothState {
         self.fabric.as_ref()
     }
 
-    /// Starts anew on a fabric, as after a change of level.
+    /// Starts anew on a fabric, where nothing that was shown goes on.
+    pub(crate) fn begin_anew(&mut self, level: usize, fabric: &Arc<Fabric>, positions: &[Vec3]) {
+        self.begin(level, fabric, positions);
+        self.left = None;
+    }
+
+    /// Starts on the fabric of another level.
     pub(crate) fn begin(&mut self, level: usize, fabric: &Arc<Fabric>, positions: &[Vec3]) {
+        let left = Left {
+            level: self.level,
+            positions: core::mem::replace(&mut self.positions, positions.to_vec()),
+            previous_positions: core::mem::take(&mut self.previous_positions),
+            normals: core::mem::take(&mut self.normals),
+        };
+        // Of several changes before a tick ends the first is what was seen.
+        self.left.get_or_insert(left);
         self.level = level;
         self.fabric = Some(Arc::clone(fabric));
-        self.positions.clear();
-        self.positions.extend_from_slice(positions);
         self.previous_positions.clone_from(&self.positions);
         self.normals = normals(fabric, positions);
         self.previous_normals.clone_from(&self.normals);

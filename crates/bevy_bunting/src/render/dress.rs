@@ -14,14 +14,13 @@ use crate::error::{ClothError, ClothFailed};
 use crate::instance::ClothInstance;
 use crate::levels::ClothLevels;
 use crate::mesh::ClothMesh;
-use crate::state::ClothState;
 use crate::surface::ClothSurface;
 
 /// The meshes that show a cloth.
 #[derive(Component, Debug)]
 pub struct LevelMeshes {
     /// What they were made for.
-    levels: Arc<ClothLevels>,
+    pub levels: Arc<ClothLevels>,
     /// One a level, the finest first.
     meshes: Vec<Handle<Mesh>>,
     pub origin: MeshOrigin,
@@ -142,10 +141,10 @@ pub fn check(entity: Entity, mesh: &Mesh, expected: usize) -> Result<(), ClothEr
     }
 }
 
-/// Shows each cloth with the mesh of its level.
-pub fn switch_levels(mut cloths: Query<(&ClothState, &LevelMeshes, &mut Mesh3d)>) {
-    for (state, dress, mut worn) in &mut cloths {
-        if let Some(mesh) = dress.meshes.get(state.level())
+/// Shows each cloth with the mesh of its surface.
+pub fn switch_levels(mut cloths: Query<(&ClothSurface, &LevelMeshes, &mut Mesh3d)>) {
+    for (surface, dress, mut worn) in &mut cloths {
+        if let Some(mesh) = dress.meshes.get(surface.level())
             && worn.0 != *mesh
             && dress.contains(worn.id())
         {

@@ -26,7 +26,7 @@ pub(super) fn flat(fine: &Grid, coarse: &Grid) -> Rows {
             let (left, top) = (column / 2, row / 2);
             let (right, bottom) = (column.div_ceil(2), row.div_ceil(2));
             // Amid a cell passes its diagonal, which alternates.
-            let ends = if (left + top) % 2 == 0 || left == right || top == bottom {
+            let ends = if (left + top).is_multiple_of(2) || left == right || top == bottom {
                 [(left, top), (right, bottom)]
             } else {
                 [(right, top), (left, bottom)]
@@ -50,7 +50,7 @@ fn four_point(at: u32, coarse: u32) -> Vec<(u32, f32)> {
         (first..).zip(weights.iter().copied()).collect()
     };
     match left {
-        left if at % 2 == 0 => vec![(left, 1.0)],
+        left if at.is_multiple_of(2) => vec![(left, 1.0)],
         _ if coarse == 2 => weighted(&[0.5, 0.5], 0),
         0 => weighted(&[0.375, 0.75, -0.125], 0),
         left if left + 1 == last => weighted(&[-0.125, 0.75, 0.375], left - 1),
