@@ -25,11 +25,6 @@ impl ClothLevels {
         &self.fabrics[level]
     }
 
-    /// The fabric of a level, if there is one.
-    pub fn get(&self, level: usize) -> Option<&Arc<Fabric>> {
-        self.fabrics.get(level)
-    }
-
     /// Number of levels.
     pub fn count(&self) -> usize {
         self.fabrics.len()

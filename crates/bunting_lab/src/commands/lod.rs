@@ -6,7 +6,7 @@ use serde_json::json;
 use super::progress;
 use crate::{
     budget::schemes,
-    levels::{agreement::Agreement, switches::Switch},
+    levels::{agreement::Agreement, pops::Pop, switches::Switch},
     output::{
         Outcome,
         table::{Table, figure},
@@ -28,9 +28,9 @@ pub fn run(quick: bool) -> Outcome {
     let sizes = if quick { QUICK_SIZES } else { SIZES };
     let pairs = sizes.windows(2).flat_map(|pair| [(pair[0], pair[1]), (pair[1], pair[0])]);
     let pairs: Vec<(usize, usize)> = pairs.collect();
-    let bar = progress(schemes().len() * (sizes.len() + pairs.len()));
+    let bar = progress(schemes().len() * (sizes.len() + 2 * pairs.len()));
     let moments = if quick { QUICK_MOMENTS } else { MOMENTS };
-    let (mut levels, mut switches) = (Vec::new(), Vec::new());
+    let (mut levels, mut switches, mut pops) = (Vec::new(), Vec::new(), Vec::new());
     for settings in schemes() {
         for n in sizes {
             levels.push(Agreement::of(n, settings, quick));
@@ -38,6 +38,8 @@ pub fn run(quick: bool) -> Outcome {
         }
         for &(from, to) in &pairs {
             switches.push(Switch::of(from, to, settings, moments));
+            bar.inc(1);
+            pops.push(Pop::of(from, to, settings, moments));
             bar.inc(1);
         }
     }
@@ -47,8 +49,9 @@ pub fn run(quick: bool) -> Outcome {
             "instruction_set": instruction_set(),
             "levels": levels,
             "switches": switches,
+            "pops": pops,
         }),
-        tables: vec![level_table(&levels), switch_table(&switches)],
+        tables: vec![level_table(&levels), switch_table(&switches), pop_table(&pops)],
         plots: Vec::new(),
     }
 }
@@ -96,8 +99,10 @@ fn switch_table(switches: &[Switch]) -> Table {
             figure(switch.pop_max_m),
             figure(switch.invisible_from_m),
             percent(switch.momentum_jump),
+            figure(switch.momentum_worst),
             percent(switch.kinetic_jump),
             format!("{} ×", figure(switch.energy_jump)),
+            format!("{} ×", figure(switch.energy_worst)),
         ]
     };
     Table {
@@ -110,9 +115,41 @@ fn switch_table(switches: &[Switch]) -> Table {
             "pop max m",
             "< 1 px from m",
             "momentum",
+            "worst, of its sum",
             "kinetic energy",
             "total energy over kinetic",
+            "worst",
         ],
         rows: switches.iter().map(cells).collect(),
+    }
+}
+
+fn pop_table(pops: &[Pop]) -> Table {
+    let cells = |pop: &Pop| {
+        vec![
+            pop.scheme.into(),
+            format!("{} → {}", pop.from, pop.to),
+            figure(pop.distance_m),
+            figure(pop.mean_px),
+            figure(pop.worst_px),
+            figure(pop.after_px),
+            figure(pop.own_px),
+            figure(pop.twin_px),
+        ]
+    };
+    Table {
+        name: "lod_pops".into(),
+        title: "What is seen of a change of level, in pixels of 1080 lines over 60°".into(),
+        headers: vec![
+            "scheme",
+            "levels",
+            "from m",
+            "off its motion",
+            "worst",
+            "in the frames after",
+            "by flapping",
+            "off a twin",
+        ],
+        rows: pops.iter().map(cells).collect(),
     }
 }

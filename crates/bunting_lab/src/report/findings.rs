@@ -8,8 +8,8 @@ use crate::output::table::figure;
 const BUDGET: f64 = 1.0;
 /// Part of a length or a frequency by which levels may differ before anybody sees it.
 const LEVELS_AGREE: f64 = 0.05;
-/// Largest pop that is not seen from 10 m away, m: a pixel of 1080 lines over 45°.
-const POP: f64 = 10.0 / crate::levels::switches::PIXELS;
+/// Largest pop that is not seen from 10 m away, m: a pixel of 1080 lines over 60°.
+const POP: f64 = 10.0 / crate::levels::pops::PIXELS;
 /// Part of the kinetic energy that a change of level may add.
 const ENERGY: f64 = 0.01;
 /// Part by which the schedule may exceed plain calls.

@@ -13,6 +13,7 @@ use super::{
     rig::{SETTINGS, energy, start, ticks},
 };
 use crate::{
+    levels::pops,
     product::{Product, fabric, material},
     reference::grid::Grid,
     scenes::Scene,
@@ -22,7 +23,8 @@ use crate::{
 /// All cases.
 pub fn cases(quick: bool) -> Vec<HardCase> {
     let mut cases = thrash(17, if quick { 2.0 } else { 10.0 }).to_vec();
-    cases.push(HardCase::not_built("LOD thrash: pop", "pixels", 1.0));
+    let pop = pops::thrash(17, SETTINGS, if quick { 2.0 } else { 10.0 });
+    cases.push(HardCase::new("LOD thrash: pop", 17, "pixels from 20 m", pop, 1.0));
     cases.push(determinism(9, if quick { 500 } else { 10_000 }));
     cases.push(HardCase::not_built(
         "determinism across instruction sets",

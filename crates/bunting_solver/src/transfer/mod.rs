@@ -110,10 +110,15 @@ impl LevelTransfer {
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
-        let positions = self.shared.iter().map(|&particle| fine.positions[particle as usize]);
+        let positions = self.pick(&fine.positions).collect();
         let velocities = self.gather_velocities(&fine.velocities);
         let before = Side { fabric: &self.fine, state: fine };
-        before.arrive(&self.coarse, positions.collect(), velocities, material, gravity)
+        before.arrive(&self.coarse, positions, velocities, material, gravity)
+    }
+
+    /// Values at the fine particles, of those that are shared: one a coarse particle.
+    pub fn pick<'a>(&'a self, fine: &'a [Vec3]) -> impl Iterator<Item = Vec3> + 'a {
+        self.shared.iter().map(|&particle| fine[particle as usize])
     }
 
     /// Values at the coarse particles, spread over the coarse triangles as these are drawn: what each

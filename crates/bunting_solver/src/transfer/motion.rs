@@ -10,8 +10,7 @@ impl LevelTransfer {
     /// What shared particles have, and the mean of what the fine ones about them have beyond that, by
     /// their masses: nothing is lost on the way up and down again.
     pub(super) fn gather_velocities(&self, fine: &[Vec3]) -> Vec<Vec3> {
-        let mut coarse: Vec<Vec3> =
-            self.shared.iter().map(|&particle| fine[particle as usize]).collect();
+        let mut coarse: Vec<Vec3> = self.pick(fine).collect();
         let weights = || {
             let free = |&inverse: &f32| if inverse > 0.0 { 1.0 / inverse } else { 0.0 };
             self.fine.inverse_areas().iter().map(free)

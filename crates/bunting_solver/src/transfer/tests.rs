@@ -137,8 +137,7 @@ fn no_strain_is_left_that_kicks() {
         up < 1.02 * stored(&coarse, &below) && up < 0.1 * elastic(&fine, &MATERIAL, &bare),
         "{up}"
     );
-    let bare: Vec<Vec3> =
-        transfer.shared.iter().map(|&particle| above.positions[particle as usize]).collect();
+    let bare: Vec<Vec3> = transfer.pick(&above.positions).collect();
     let down = stored(&coarse, &transfer.restrict(&above, &MATERIAL, GRAVITY));
     assert!(down < 0.1 * elastic(&coarse, &MATERIAL, &bare), "{down}");
 }
