@@ -56,8 +56,8 @@ mod velocity;
 pub use batch::{BatchError, ClothBatch};
 pub use collision::Collider;
 pub use fabric::{
-    BendLine, BendProfile, Colours, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid,
-    Hinge, HingeClass, Link, LinkClass, LinkFamily, Tether, Yarn,
+    BendLine, BendProfile, Coarser, Colours, Fabric, FabricBuilder, FabricError, FabricMaterial,
+    Grid, Hinge, HingeClass, Link, LinkClass, LinkFamily, Tether, Yarn,
 };
 pub use frame::FrameMotion;
 pub use lanes::{LaneCount, instruction_set};

@@ -1,5 +1,8 @@
 //! From triangles to a fabric.
 
+mod coarser;
+mod slivers;
+
 use std::collections::BTreeMap;
 use std::collections::BTreeSet;
 
@@ -9,6 +12,8 @@ use super::links::{self, Sheet};
 use super::{
     Fabric, FabricError, Grid, bending, hinges, patches, strands, tethers, topology, weld, yarns,
 };
+
+pub use coarser::Coarser;
 
 /// Default distance at which vertices are one particle, as a part of the mesh's extent: the
 /// rounding of 32-bit positions.

@@ -26,7 +26,7 @@ pub(crate) use strands::{ABREAST, Strand, StrandColour, StrandLink};
 pub(crate) use tethers::Pin;
 
 pub use bending::{BendLine, BendProfile};
-pub use builder::FabricBuilder;
+pub use builder::{Coarser, FabricBuilder};
 pub use colour::Colours;
 pub use error::FabricError;
 pub use grid::Grid;

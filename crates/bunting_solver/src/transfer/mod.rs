@@ -9,6 +9,7 @@
 //! The integrator begins anew.
 
 mod grid;
+mod mesh;
 mod motion;
 mod rows;
 mod settle;
@@ -20,6 +21,7 @@ use glam::Vec3;
 use crate::energy::{elastic, moment};
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::snapshot::ClothSnapshot;
+use mesh::Relief;
 use rows::Rows;
 
 /// Part of the elastic and the kinetic energy that may be added as strain, and is taken from the motion.
@@ -30,9 +32,19 @@ const PAID: f64 = 0.01;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TransferError {
-    /// Only grids know their neighbours.
-    #[error("a level of detail must be a grid")]
+    /// Only grids know their neighbours by themselves.
+    #[error("the fabrics are no grids: say which vertices they share")]
     NotAGrid,
+    /// The coarser fabric must have some of the finer one's vertices.
+    #[error(
+        "{given} shared vertices do not fit a fabric of {expected}, or are not the finer one's"
+    )]
+    NotShared {
+        /// Vertices that are said to be shared.
+        given: usize,
+        /// Vertices of the coarser fabric.
+        expected: usize,
+    },
     /// The finer grid must have a particle halfway between any two of the coarser.
     #[error(
         "{fine:?} particles do not halve to {coarse:?}: use 2ⁿ + 1 columns and rows, or any that halve"
@@ -54,6 +66,8 @@ pub struct LevelTransfer {
     smooth: Rows,
     /// Where they lie on the coarse triangles.
     flat: Rows,
+    /// What stands out from them at rest.
+    relief: Relief,
     /// For each coarse particle the fine one that it is.
     shared: Vec<u32>,
 }
@@ -84,6 +98,43 @@ impl LevelTransfer {
             coarse: Arc::clone(coarse),
             smooth: grid::smooth(fine_grid, coarse_grid),
             flat: grid::flat(fine_grid, coarse_grid),
+            relief: Relief::default(),
+            shared,
+        })
+    }
+
+    /// The correspondence of a fabric and one whose mesh has some of its mesh's vertices, as
+    /// [`FabricBuilder::coarser`](crate::FabricBuilder::coarser) tells them: grids as in
+    /// [`between`](Self::between), other meshes by where they lie at rest.
+    ///
+    /// # Errors
+    ///
+    /// The vertices are not those of the coarser fabric, or a grid is not half of the other.
+    pub fn nested(
+        fine: &Arc<Fabric>,
+        coarse: &Arc<Fabric>,
+        vertices: &[u32],
+    ) -> Result<Self, TransferError> {
+        if fine.grid().is_some() && coarse.grid().is_some() {
+            return Self::between(fine, coarse);
+        }
+        let expected = coarse.particle_of_vertex().len();
+        let wrong = TransferError::NotShared { given: vertices.len(), expected };
+        if vertices.len() != expected {
+            return Err(wrong);
+        }
+        let mut shared = vec![0; coarse.particle_count()];
+        for (&particle, &vertex) in coarse.particle_of_vertex().iter().zip(vertices) {
+            shared[particle as usize] =
+                *fine.particle_of_vertex().get(vertex as usize).ok_or(wrong)?;
+        }
+        let (rows, relief) = mesh::nearest(fine, coarse, &shared).ok_or(wrong)?;
+        Ok(Self {
+            fine: Arc::clone(fine),
+            coarse: Arc::clone(coarse),
+            smooth: rows.clone(),
+            flat: rows,
+            relief,
             shared,
         })
     }
@@ -96,7 +147,8 @@ impl LevelTransfer {
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
-        let positions = self.smooth.interpolate(&coarse.positions).collect();
+        let mut positions: Vec<Vec3> = self.smooth.interpolate(&coarse.positions).collect();
+        self.relief.add(&coarse.positions, &mut positions);
         let velocities = self.smooth.interpolate(&coarse.velocities).collect();
         let before = Side { fabric: &self.coarse, state: coarse };
         before.arrive(&self.fine, positions, velocities, material, gravity)
