@@ -27,6 +27,8 @@ pub(crate) struct ClothInstance {
     pub levels: Option<Arc<ClothLevels>>,
     pub level: usize,
     pub place: Place,
+    /// Its fabrics are being cut.
+    pub cutting: bool,
     /// The last good material.
     pub material: FabricMaterial,
     /// Gravity in the last tick, along the axes of the cloth's frame, m/s².

@@ -71,6 +71,14 @@ impl ClothMesh {
         }
     }
 
+    /// Number of vertices.
+    pub(crate) fn vertex_count(&self) -> usize {
+        match self {
+            Self::Grid { columns, rows, .. } => *columns as usize * *rows as usize,
+            Self::Triangles { positions, .. } => positions.len(),
+        }
+    }
+
     /// Texture coordinates of all vertices; none for triangles without.
     pub(crate) fn uvs(&self) -> Vec<Vec2> {
         match self {

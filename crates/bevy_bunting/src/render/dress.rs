@@ -92,7 +92,7 @@ pub fn dress_cloths(
         };
         let mut all = vec![finest];
         if origin != MeshOrigin::Refused {
-            add_coarser(&mut all, shape, levels, &mut meshes);
+            add_coarser(&mut all, levels, &mut meshes);
         }
         let shown = all.get(instance.level).unwrap_or(&all[0]).clone();
         let mut cloth = commands.entity(entity);
@@ -110,17 +110,12 @@ pub fn dress_cloths(
     }
 }
 
-/// Adds the meshes of all levels but the finest, which is there; only grids have more.
-fn add_coarser(
-    all: &mut Vec<Handle<Mesh>>,
-    shape: &ClothMesh,
-    levels: &ClothLevels,
-    meshes: &mut Assets<Mesh>,
-) {
-    let Some(grid) = shape.as_grid() else { return };
+/// Adds the meshes of all levels but the finest, which is there.
+fn add_coarser(all: &mut Vec<Handle<Mesh>>, levels: &ClothLevels, meshes: &mut Assets<Mesh>) {
     for level in 1..levels.count() {
         let finest = meshes.get(&all[0]).expect("it was found or made before");
-        let coarser = level_mesh::coarser(finest, grid, 1 << level, levels.fabric(level));
+        let (vertices, indices) = levels.mesh(level);
+        let coarser = level_mesh::coarser(finest, vertices, indices, levels.fabric(level));
         all.push(meshes.add(coarser));
     }
 }

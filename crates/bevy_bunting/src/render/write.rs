@@ -75,7 +75,7 @@ fn shows(
     dress: &LevelMeshes,
 ) -> Option<Arc<Fabric>> {
     state.fabric()?;
-    let fabric = dress.levels.get(surface.level())?;
+    let fabric = dress.levels.fabric(surface.level());
     let fits = surface.positions.len() == fabric.particle_count();
     (visibility.get() && fits && dress.origin != MeshOrigin::Refused).then(|| Arc::clone(fabric))
 }
