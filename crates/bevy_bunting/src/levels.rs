@@ -36,7 +36,20 @@ struct Level {
     /// The vertices of the finest mesh that it has.
     vertices: Vec<u32>,
     /// Three of its own vertices a triangle.
+    #[cfg(feature = "render")]
     indices: Vec<u32>,
+}
+
+impl Level {
+    #[cfg_attr(not(feature = "render"), expect(unused_variables, reason = "drawn only"))]
+    fn new(fabric: Arc<Fabric>, vertices: Vec<u32>, builder: &FabricBuilder) -> Self {
+        Self {
+            fabric,
+            vertices,
+            #[cfg(feature = "render")]
+            indices: builder.indices().to_vec(),
+        }
+    }
 }
 
 /// Why a level cannot be cut.
@@ -126,7 +139,7 @@ impl ClothLevels {
         let fabric = Arc::new(builder.clone().build()?);
         let held = fabric.has_pins();
         let all = (0..fabric.particle_of_vertex().len() as u32).collect();
-        let finest = Level { fabric, vertices: all, indices: builder.indices().to_vec() };
+        let finest = Level::new(fabric, all, &builder);
         let mut cut = Self { levels: vec![finest], transfers: Vec::new(), asked, lack: None };
         while cut.levels.len() < asked {
             let finer = cut.level(usize::MAX);
@@ -147,8 +160,7 @@ impl ClothLevels {
             let of_finest = |&vertex: &u32| finer.vertices[vertex as usize];
             let vertices = coarser.vertices.iter().map(of_finest).collect();
             builder = coarser.builder;
-            let indices = builder.indices().to_vec();
-            cut.levels.push(Level { fabric, vertices, indices });
+            cut.levels.push(Level::new(fabric, vertices, &builder));
             cut.transfers.push(transfer);
         }
         Ok(cut)
