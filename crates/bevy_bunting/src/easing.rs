@@ -136,7 +136,7 @@ impl ClothEasing {
 
     /// The surface at the end of a tick of `tick` seconds.
     fn advance(&mut self, levels: &ClothLevels, state: &ClothState, tick: f32) {
-        if self.age >= DURATION {
+        if self.age + tick > DURATION {
             self.levels = None;
             return;
         }

@@ -65,6 +65,14 @@ fn lod_compares_levels_and_changes_them() {
     }
 }
 
+#[test]
+fn no_change_of_level_is_seen() {
+    for pop in rows(&lod::run(true).json, "pops") {
+        assert_positive(pop, &["from", "to", "distance_m", "mean_px", "own_px", "twin_px"]);
+        assert!(pop["worst_px"].as_f64().is_some_and(|pixels| pixels < 1.0), "{pop}");
+    }
+}
+
 #[cfg(feature = "peers")]
 #[test]
 fn every_engine_hangs_a_cloth() {

@@ -149,7 +149,8 @@ fn change(from: usize, to: usize, settings: StepSettings, moment: usize) -> Vec<
 }
 
 /// The most pixels by which the displayed surface of a swing of n × n vertices strays from its
-/// predicted motion, while it changes its level in every tick for so many seconds.
+/// predicted motion, while it changes its level in every tick for so many seconds. Without any change
+/// a swing of 17 × 17 strays by 5.6 pixels, as its lower edge whips.
 ///
 /// # Panics
 ///

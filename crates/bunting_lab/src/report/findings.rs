@@ -8,8 +8,8 @@ use crate::output::table::figure;
 const BUDGET: f64 = 1.0;
 /// Part of a length or a frequency by which levels may differ before anybody sees it.
 const LEVELS_AGREE: f64 = 0.05;
-/// Largest pop that is not seen from 10 m away, m: a pixel of 1080 lines over 60°.
-const POP: f64 = 10.0 / crate::levels::pops::PIXELS;
+/// Largest pop that is not seen, pixels.
+const POP: f64 = 1.0;
 /// Part of the kinetic energy that a change of level may add.
 const ENERGY: f64 = 0.01;
 /// Part by which the schedule may exceed plain calls.
@@ -172,11 +172,11 @@ fn lod(json: &Value) -> Vec<Finding> {
         let sentence = format!("the levels' {what} differs by up to {:.1} %", 100.0 * worst);
         findings.push(Finding::new(worst <= LEVELS_AGREE, sentence));
     }
-    let worst = |key: &str| {
-        rows(json, "switches").iter().map(|switch| number(switch, key)).fold(0.0, f64::max)
+    let worst = |list: &str, key: &str| {
+        rows(json, list).iter().map(|change| number(change, key)).fold(0.0, f64::max)
     };
-    let (pop, energy) = (worst("pop_max_m"), worst("energy_jump"));
-    let sentence = format!("a change of level pops by {} m at most", figure(pop));
+    let (pop, energy) = (worst("pops", "worst_px"), worst("switches", "energy_jump"));
+    let sentence = format!("a change of level pops by {} pixels at most", figure(pop));
     findings.push(Finding::new(pop <= POP, sentence));
     let sentence = format!("a change of level adds up to {} × the kinetic energy", figure(energy));
     findings.push(Finding::new(energy <= ENERGY, sentence));

@@ -23,7 +23,8 @@ use crate::{
 /// All cases.
 pub fn cases(quick: bool) -> Vec<HardCase> {
     let mut cases = thrash(17, if quick { 2.0 } else { 10.0 }).to_vec();
-    let pop = pops::thrash(17, SETTINGS, if quick { 2.0 } else { 10.0 });
+    let seconds = if quick { 2.0 } else { 10.0 };
+    let pop = pops::thrash(17, SETTINGS, seconds);
     cases.push(HardCase::new("LOD thrash: pop", 17, "pixels from 20 m", pop, 1.0));
     cases.push(determinism(9, if quick { 500 } else { 10_000 }));
     cases.push(HardCase::not_built(
