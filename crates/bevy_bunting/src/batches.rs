@@ -1,12 +1,15 @@
 //! The batches that hold the state of all cloths, one lane a cloth.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use bevy_ecs::prelude::*;
 use bevy_tasks::ComputeTaskPool;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricMaterial, LaneCount, StepSettings,
 };
+
+use crate::lod::Measured;
 
 /// Particles, counted in all lanes, from which a phase of a substep is worth the 30 µs that it
 /// takes to wake other threads.
@@ -33,7 +36,10 @@ pub(crate) struct Newcomer {
 struct Seats {
     batch: ClothBatch,
     entities: Vec<Option<(Entity, FabricMaterial)>>,
+    lanes: LaneCount,
     joins: bool,
+    /// Time that its phases have taken in this tick, where that is measured.
+    time: Duration,
 }
 
 /// Cloths that are stepped alike: of one fabric, with the same settings.
@@ -50,6 +56,8 @@ struct Group {
 #[derive(Resource, Debug, Default)]
 pub struct ClothBatches {
     groups: Vec<Group>,
+    /// Whether the time of each batch is measured in this tick.
+    pub(crate) measures: bool,
 }
 
 /// One cloth in its batch.
@@ -157,11 +165,24 @@ impl ClothBatches {
         LaneMut { seats: &mut self.groups[slot.group].batches[slot.batch], lane: slot.lane }
     }
 
+    /// What every batch cost in the last tick, if it was measured.
+    pub(crate) fn measured(&self) -> impl Iterator<Item = Measured> + '_ {
+        self.groups.iter().flat_map(|group| {
+            group.batches.iter().map(|seats| Measured {
+                particles: group.fabric.particle_count(),
+                settings: group.settings,
+                lanes: seats.lanes,
+                time: seats.time.as_secs_f32() * 1e6,
+            })
+        })
+    }
+
     /// Begins a tick of `tick` seconds in all batches.
     pub(crate) fn begin_tick(&mut self, tick: f32) {
         for group in &mut self.groups {
             let settings = group.settings;
             for seats in &mut group.batches {
+                seats.time = Duration::ZERO;
                 seats.batch.begin_tick(tick, settings);
             }
         }
@@ -196,6 +217,16 @@ impl ClothBatches {
         joins: impl Fn(&Seats) -> bool,
         phase: impl Fn(&mut ClothBatch) + Sync,
     ) {
+        let measures = self.measures;
+        let phase = |seats: &mut Seats| {
+            if measures {
+                let began = Instant::now();
+                phase(&mut seats.batch);
+                seats.time += began.elapsed();
+            } else {
+                phase(&mut seats.batch);
+            }
+        };
         let work: usize = self.joining(&joins).map(|seats| seats.particles()).sum();
         let pool = ComputeTaskPool::try_get().filter(|pool| pool.thread_num() > 1);
         match pool {
@@ -203,14 +234,12 @@ impl ClothBatches {
                 let phase = &phase;
                 pool.scope(|scope| {
                     for seats in self.joining(&joins) {
-                        scope.spawn(async move { phase(&mut seats.batch) });
+                        scope.spawn(async move { phase(seats) });
                     }
                 });
             }
             _ => {
-                for seats in self.joining(&joins) {
-                    phase(&mut seats.batch);
-                }
+                self.joining(&joins).for_each(phase);
             }
         }
     }
@@ -228,7 +257,9 @@ impl Seats {
         Self {
             batch: ClothBatch::new(Arc::clone(fabric), lanes),
             entities: vec![None; lanes.get()],
+            lanes,
             joins: true,
+            time: Duration::ZERO,
         }
     }
 

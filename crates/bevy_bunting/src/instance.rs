@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bevy_ecs::prelude::*;
 use bunting_solver::{ClothSnapshot, Fabric, FabricMaterial};
 
+use crate::activity::ClothActivity;
 use crate::batches::{ClothBatches, Slot};
 use crate::levels::{ClothLevels, hold_pins};
 
@@ -26,6 +27,7 @@ pub(crate) struct ClothInstance {
     pub levels: Option<Arc<ClothLevels>>,
     pub level: usize,
     pub place: Place,
+    pub activity: ClothActivity,
     /// The last good material.
     pub material: FabricMaterial,
     /// The attachment's target that the levels were cut for; the cloth itself stands for its own
@@ -59,6 +61,13 @@ impl ClothInstance {
         self.levels.as_ref().map(|levels| levels.fabric(self.level))
     }
 
+    /// Ends a rest: what acts on the cloth has changed.
+    pub fn wake(&mut self) {
+        if self.activity == ClothActivity::AtRest {
+            self.activity = ClothActivity::Ticking;
+        }
+    }
+
     /// Takes the state out of its lane.
     pub fn unseat(&mut self, batches: &mut ClothBatches) {
         if let Place::Seated(slot) = self.place {
@@ -78,6 +87,7 @@ impl ClothInstance {
     /// Takes other fabrics. The state is kept if it fits, as when only the pins change; else the
     /// cloth begins at rest.
     pub fn recut(&mut self, levels: Arc<ClothLevels>, batches: &mut ClothBatches) {
+        self.wake();
         self.unseat(batches);
         let level = self.level.min(levels.count() - 1);
         let fits = level == self.level
@@ -94,6 +104,7 @@ impl ClothInstance {
 
     /// Puts the cloth back to rest.
     pub fn rest(&mut self, batches: &mut ClothBatches) {
+        self.wake();
         if let Place::Seated(slot) = self.place {
             batches.lane(slot).rest();
         } else if let Some(fabric) = self.fabric() {

@@ -83,6 +83,7 @@
 //! The same world, stepped alike, gives the same bits: they depend neither on what else is in the
 //! world, nor on the number of threads.
 
+mod activity;
 mod attachment;
 mod batches;
 mod collider;
@@ -99,6 +100,7 @@ mod prepare;
 mod publish;
 #[cfg(feature = "render")]
 mod render;
+mod rest;
 mod schedule;
 mod seat;
 mod settings;
@@ -112,6 +114,7 @@ use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::intern::Interned;
 use bevy_ecs::schedule::ScheduleLabel;
 
+pub use activity::ClothActivity;
 pub use attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
 pub use batches::ClothBatches;
 pub use bunting_solver;
@@ -120,13 +123,17 @@ pub use diagnostics::{ClothCounts, ClothDiagnosticsPlugin, ClothTimings};
 pub use drive::DrivePlugin;
 pub use error::{ClothError, ClothFailed};
 pub use frame::AttachmentPlugin;
-pub use lod::{ClothLevelChanged, LodPlugin, LodSet, LodViewer};
+pub use lod::{
+    ClothBudget, ClothLevelChanged, CostTable, Lens, LodChoice, LodCosts, LodPlugin, LodReport,
+    LodSet, LodViewer,
+};
 pub use mesh::{ClothMaterial, ClothMesh, ClothPaused};
 pub use parry3d;
 pub use prepare::{ClothTargetLost, PreparePlugin};
 pub use publish::PublishPlugin;
 #[cfg(feature = "render")]
 pub use render::{ClothDebugPlugin, ClothGizmos, ClothRenderPlugin, ClothRenderSystems};
+pub use rest::RestPlugin;
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
@@ -141,10 +148,11 @@ pub use wind::{TickWind, WindField, WindPlugin};
 /// Everything that one usually needs.
 pub mod prelude {
     pub use crate::{
-        AttachedVertices, Attachment, ClothCollider, ClothCorner, ClothEdge, ClothError,
-        ClothFailed, ClothLevelChanged, ClothMaterial, ClothMesh, ClothPaused, ClothPlugins,
-        ClothSettings, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick, LodSet,
-        LodViewer, TargetLost, TeleportCloth, TeleportMode, WindField,
+        AttachedVertices, Attachment, ClothActivity, ClothBudget, ClothCollider, ClothCorner,
+        ClothEdge, ClothError, ClothFailed, ClothLevelChanged, ClothMaterial, ClothMesh,
+        ClothPaused, ClothPlugins, ClothSettings, ClothState, ClothSurface, ClothSystems,
+        ClothTargetLost, ClothTick, LodSet, LodViewer, TargetLost, TeleportCloth, TeleportMode,
+        WindField,
     };
     pub use bunting_solver::{FabricMaterial, StepSettings};
 }
@@ -178,6 +186,7 @@ impl PluginGroup for ClothPlugins {
             .add(SchedulePlugin::new(self.host))
             .add(PreparePlugin)
             .add(LodPlugin)
+            .add(RestPlugin)
             .add(SeatPlugin)
             .add(WindPlugin)
             .add(AttachmentPlugin)

@@ -20,24 +20,29 @@ impl Plugin for PublishPlugin {
     }
 }
 
-fn publish_states(
+pub(crate) fn publish_states(
     mut cloths: Query<(Entity, &ClothInstance, &mut ClothState)>,
     mut batches: ResMut<ClothBatches>,
     mut commands: Commands,
 ) {
     for (entity, instance, mut state) in &mut cloths {
+        if state.activity != instance.activity {
+            state.activity = instance.activity;
+        }
         let Some(slot) = instance.slot() else {
             // What stands still is not between two places.
-            if state.previous_positions != state.positions {
+            if state.moved {
                 let state = &mut *state;
+                state.moved = false;
                 state.previous_positions.clone_from(&state.positions);
                 state.previous_normals.clone_from(&state.normals);
             }
             continue;
         };
         let (batch, lane) = batches.at(slot);
-        let ClothState { positions, previous_positions, normals, previous_normals, .. } =
+        let ClothState { positions, previous_positions, normals, previous_normals, moved, .. } =
             &mut *state;
+        *moved = true;
         core::mem::swap(positions, previous_positions);
         core::mem::swap(normals, previous_normals);
         batch.copy_positions(lane, positions);

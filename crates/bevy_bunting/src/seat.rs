@@ -3,6 +3,7 @@
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
+use crate::activity::ClothActivity;
 use crate::batches::{ClothBatches, Newcomer};
 use crate::instance::{ClothInstance, Place};
 use crate::mesh::ClothPaused;
@@ -23,17 +24,19 @@ impl Plugin for SeatPlugin {
     }
 }
 
-/// Seats those that wait, takes out those that are paused, and everyone when the settings change.
+/// Seats those that wait, takes out those that are paused or asleep, and everyone when the settings
+/// change.
 pub(crate) fn seat_cloths(
     mut cloths: Query<(Entity, &mut ClothInstance, Has<ClothPaused>)>,
     settings: Res<ClothSettings>,
     mut batches: ResMut<ClothBatches>,
 ) {
     for (entity, mut instance, paused) in &mut cloths {
-        if instance.slot().is_some() && (paused || settings.is_changed()) {
+        let still = paused || instance.activity != ClothActivity::Ticking;
+        if instance.slot().is_some() && (still || settings.is_changed()) {
             instance.unseat(&mut batches);
         }
-        if paused || instance.waiting().is_none() {
+        if still || instance.waiting().is_none() {
             continue;
         }
         if let (Some(fabric), Place::Waiting(snapshot)) =

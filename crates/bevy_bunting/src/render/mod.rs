@@ -94,7 +94,7 @@ impl Plugin for ClothRenderPlugin {
 }
 
 fn view_levels(added: On<Add, Camera3d>, mut commands: Commands) {
-    commands.entity(added.entity).try_insert_if_new(LodViewer);
+    commands.entity(added.entity).try_insert_if_new(LodViewer::default());
 }
 
 #[cfg(test)]

@@ -1,0 +1,134 @@
+//! Cloth that has come to rest falls asleep.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::entity::EntityHashMap;
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Vec3};
+use bevy_time::Time;
+
+use crate::activity::{ClothActivity, ClothWatch};
+use crate::collider::ClothCollider;
+use crate::instance::ClothInstance;
+use crate::lod::choose_levels;
+use crate::pose::PoseHistory;
+use crate::publish::publish_states;
+use crate::schedule::{ClothSystems, ClothTick};
+use crate::settings::ClothSettings;
+use crate::state::ClothState;
+use crate::wind::TickWind;
+
+/// Root mean square speed of a cloth at rest, m/s: a millimetre in a second is seen by no one.
+const REST_SPEED: f32 = 1e-3;
+
+/// How long it must be as slow, s: longer than a pendulum stands at its turning points.
+const REST_TIME: f32 = 0.5;
+
+/// Distance between a cloth and a collider at which the one does not wake the other, m.
+const CLEARANCE: f32 = 0.5;
+
+/// Sends cloths at rest to sleep, and wakes them.
+#[derive(Debug, Default)]
+pub struct RestPlugin;
+
+impl Plugin for RestPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Changes>().add_systems(
+            ClothTick,
+            (
+                (note_changes, wake_cloths)
+                    .chain()
+                    .in_set(ClothSystems::SelectLod)
+                    .before(choose_levels),
+                rest_cloths.in_set(ClothSystems::Publish).after(publish_states),
+            ),
+        );
+    }
+}
+
+/// What has changed since the last tick that acts on cloths.
+#[derive(Resource, Debug, Default)]
+struct Changes {
+    /// Wind, gravity, settings, or which colliders there are.
+    everywhere: bool,
+    /// Balls around colliders that move, centres and radii, m.
+    colliders: Vec<(Vec3, f32)>,
+    wind: TickWind,
+    collider_poses: EntityHashMap<Isometry3d>,
+}
+
+impl Changes {
+    /// Whether anything has changed for a cloth.
+    fn reach(&self, state: &ClothState, frame: Isometry3d, watch: &ClothWatch) -> bool {
+        let middle = state.positions().get(state.positions().len() / 2);
+        let middle = frame * middle.copied().unwrap_or_default();
+        let near = |&(centre, radius): &(Vec3, f32)| {
+            middle.distance(centre) < watch.radius + radius + CLEARANCE
+        };
+        self.everywhere || watch.pose != Some(frame) || self.colliders.iter().any(near)
+    }
+}
+
+fn note_changes(
+    colliders: Query<(Entity, Ref<ClothCollider>, &PoseHistory)>,
+    mut removed: RemovedComponents<ClothCollider>,
+    settings: Res<ClothSettings>,
+    wind: Res<TickWind>,
+    mut changes: ResMut<Changes>,
+) {
+    let changes = &mut *changes;
+    changes.everywhere = settings.is_changed() || changes.wind != *wind;
+    changes.wind = *wind;
+    for entity in removed.read() {
+        changes.collider_poses.remove(&entity);
+        changes.everywhere = true;
+    }
+    changes.colliders.clear();
+    for (entity, collider, history) in &colliders {
+        changes.everywhere |= collider.is_changed();
+        let pose = history.end();
+        if changes.collider_poses.insert(entity, pose) != Some(pose) {
+            let ball = collider.shape.compute_local_bounding_sphere();
+            changes.colliders.push((pose * ball.center, ball.radius + collider.margin));
+        }
+    }
+}
+
+fn wake_cloths(
+    mut cloths: Query<(&mut ClothInstance, &ClothState, &PoseHistory, &ClothWatch)>,
+    changes: Res<Changes>,
+) {
+    for (mut instance, state, frame, watch) in &mut cloths {
+        if instance.activity == ClothActivity::AtRest && changes.reach(state, frame.end(), watch) {
+            instance.wake();
+        }
+    }
+}
+
+fn rest_cloths(
+    mut cloths: Query<(&mut ClothInstance, &ClothState, &PoseHistory, &mut ClothWatch)>,
+    changes: Res<Changes>,
+    time: Res<Time>,
+) {
+    let tick = time.delta_secs();
+    for (mut instance, state, frame, mut watch) in &mut cloths {
+        if instance.slot().is_none() {
+            continue;
+        }
+        let pose = frame.end();
+        let disturbed = changes.reach(state, pose, &watch);
+        watch.pose = Some(pose);
+        watch.still =
+            if disturbed || speed(state, tick) > REST_SPEED { 0 } else { watch.still + 1 };
+        if watch.still as f32 * tick > REST_TIME {
+            watch.still = 0;
+            instance.activity = ClothActivity::AtRest;
+        }
+    }
+}
+
+/// Root mean square speed in the last tick, m/s.
+fn speed(state: &ClothState, tick: f32) -> f32 {
+    let pairs = state.positions().iter().zip(state.previous_positions());
+    let squares: f32 = pairs.map(|(now, before)| now.distance_squared(*before)).sum();
+    (squares / state.positions().len().max(1) as f32).sqrt() / tick
+}
