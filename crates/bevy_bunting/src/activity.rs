@@ -8,6 +8,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
 use crate::levels::ClothLevels;
+use crate::lod::Candidate;
 
 /// Whether a cloth is simulated or asleep. A sleeping cloth keeps its shape, goes with its frame, and
 /// costs nothing.
@@ -26,18 +27,26 @@ pub enum ClothActivity {
     AtRest,
 }
 
-/// What is remembered of a cloth from tick to tick.
+/// What the choice of levels remembers of a cloth.
 #[derive(Component, Clone, Debug, Default)]
 pub(crate) struct ClothWatch {
-    /// Where the levels are that `kind` and `radius` are of: for comparison only.
+    /// Where the levels are that it is of: for comparison only.
     levels: usize,
-    pub kind: u32,
+    /// What the governor was last told, where the cloth is simulated.
+    pub candidate: Option<Candidate>,
     /// No particle is farther from the one in the middle than this, m.
     pub radius: f32,
-    /// Ticks since the last change of level.
-    pub since_change: u32,
-    /// Ticks in nobody's picture.
-    pub unseen: u32,
+    /// Chooses the ticks in which it is looked at.
+    pub turn: u32,
+    /// Tick of the last change of level.
+    pub changed: u32,
+    /// Tick in which it was last seen.
+    pub seen: u32,
+}
+
+/// What the watch over what comes to rest remembers of a cloth.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub(crate) struct ClothRest {
     /// Ticks at rest.
     pub still: u32,
     /// The frame's pose at the end of the last tick.
@@ -45,11 +54,10 @@ pub(crate) struct ClothWatch {
 }
 
 impl ClothWatch {
-    /// Of a cloth that is new. It need not wait for its first change.
-    pub fn new(levels: &Arc<ClothLevels>, kind: usize, radius: f32) -> Self {
+    /// Of a cloth that is new.
+    pub fn new(levels: &Arc<ClothLevels>, radius: f32, turn: u32, now: u32) -> Self {
         let levels = Arc::as_ptr(levels).addr();
-        let (kind, since_change) = (kind as u32, u32::MAX);
-        Self { levels, kind, radius, since_change, ..Self::default() }
+        Self { levels, candidate: None, radius, turn, changed: now, seen: now }
     }
 
     /// Whether it is of a cloth with these levels.

@@ -6,8 +6,6 @@ use bevy_app::{App, Plugin};
 use bevy_diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic};
 use bevy_ecs::prelude::*;
 
-use crate::activity::ClothActivity;
-use crate::instance::ClothInstance;
 use crate::lod::LodReport;
 use crate::schedule::{ClothSystems, ClothTick};
 
@@ -36,8 +34,17 @@ impl ClothTimings {
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub struct ClothCounts(pub Vec<usize>);
 
-/// Measures the sets of [`ClothTick`] and counts cloths, for [`ClothTimings`], [`ClothCounts`] and
-/// Bevy's diagnostics.
+impl ClothCounts {
+    /// Counts a cloth at a level.
+    pub(crate) fn add(&mut self, level: usize) {
+        if self.0.len() <= level {
+            self.0.resize(level + 1, 0);
+        }
+        self.0[level] += 1;
+    }
+}
+
+/// Measures the sets of [`ClothTick`] for [`ClothTimings`], and tells Bevy's diagnostics.
 #[derive(Debug, Default)]
 pub struct ClothDiagnosticsPlugin;
 
@@ -83,7 +90,6 @@ struct SetBegan(Instant);
 impl Plugin for ClothDiagnosticsPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<ClothTimings>()
-            .init_resource::<ClothCounts>()
             .insert_resource(SetBegan(Instant::now()))
             .register_diagnostic(Diagnostic::new(Self::TICK).with_suffix("ms"))
             .register_diagnostic(Diagnostic::new(Self::EXPECTED).with_suffix("ms"))
@@ -106,7 +112,7 @@ impl Plugin for ClothDiagnosticsPlugin {
                 end::<2>.after(drive).before(step),
                 end::<3>.after(step).before(normals),
                 end::<4>.after(normals).before(publish),
-                (end::<5>, count_cloths, report, report_choice).chain().after(publish),
+                (end::<5>, report, report_choice).chain().after(publish),
             ),
         );
     }
@@ -120,19 +126,6 @@ fn end<const SET: usize>(mut began: ResMut<SetBegan>, mut timings: ResMut<ClothT
     let now = Instant::now();
     timings.sets[SET] = now - began.0;
     began.0 = now;
-}
-
-fn count_cloths(cloths: Query<&ClothInstance>, mut counts: ResMut<ClothCounts>) {
-    counts.0.fill(0);
-    for instance in cloths
-        .iter()
-        .filter(|instance| instance.levels.is_some() && instance.activity == ClothActivity::Ticking)
-    {
-        if counts.0.len() <= instance.level {
-            counts.0.resize(instance.level + 1, 0);
-        }
-        counts.0[instance.level] += 1;
-    }
 }
 
 fn report(mut diagnostics: Diagnostics, timings: Res<ClothTimings>, counts: Res<ClothCounts>) {

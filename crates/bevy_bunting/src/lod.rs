@@ -13,6 +13,7 @@ use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
+use crate::diagnostics::ClothCounts;
 use crate::error::ClothError;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::seat::seat_cloths;
@@ -21,6 +22,7 @@ pub use budget::{ClothBudget, LodCosts, LodReport};
 pub(crate) use choose::choose_levels;
 pub use costs::CostTable;
 pub(crate) use costs::Measured;
+pub(crate) use governor::Candidate;
 pub use viewer::{Lens, LodViewer};
 
 /// Default of [`LodSet::hysteresis`].
@@ -171,6 +173,7 @@ impl Plugin for LodPlugin {
             .register_type::<LodReport>()
             .init_resource::<ClothBudget>()
             .init_resource::<LodReport>()
+            .init_resource::<ClothCounts>()
             .init_resource::<choose::Chooser>()
             .add_systems(
                 ClothTick,

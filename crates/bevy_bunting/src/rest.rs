@@ -6,7 +6,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_time::Time;
 
-use crate::activity::{ClothActivity, ClothWatch};
+use crate::activity::{ClothActivity, ClothRest, ClothWatch};
 use crate::collider::ClothCollider;
 use crate::instance::ClothInstance;
 use crate::lod::choose_levels;
@@ -50,21 +50,24 @@ impl Plugin for RestPlugin {
 struct Changes {
     /// Wind, gravity, settings, or which colliders there are.
     everywhere: bool,
+    /// Ticks since then.
+    calm: u32,
     /// Balls around colliders that move, centres and radii, m.
     colliders: Vec<(Vec3, f32)>,
+    /// Most cloths that may be at rest.
+    resting: usize,
     wind: TickWind,
     collider_poses: EntityHashMap<Isometry3d>,
 }
 
 impl Changes {
-    /// Whether anything has changed for a cloth.
-    fn reach(&self, state: &ClothState, frame: Isometry3d, watch: &ClothWatch) -> bool {
+    /// Whether anything near a cloth has changed, or its frame.
+    fn reach(&self, state: &ClothState, frame: Isometry3d, rest: &ClothRest, radius: f32) -> bool {
         let middle = state.positions().get(state.positions().len() / 2);
         let middle = frame * middle.copied().unwrap_or_default();
-        let near = |&(centre, radius): &(Vec3, f32)| {
-            middle.distance(centre) < watch.radius + radius + CLEARANCE
-        };
-        self.everywhere || watch.pose != Some(frame) || self.colliders.iter().any(near)
+        let near =
+            |&(centre, other): &(Vec3, f32)| middle.distance(centre) < radius + other + CLEARANCE;
+        rest.pose != Some(frame) || self.colliders.iter().any(near)
     }
 }
 
@@ -91,37 +94,52 @@ fn note_changes(
             changes.colliders.push((pose * ball.center, ball.radius + collider.margin));
         }
     }
+    changes.calm = if changes.everywhere { 0 } else { changes.calm.saturating_add(1) };
 }
 
-fn wake_cloths(
-    mut cloths: Query<(&mut ClothInstance, &ClothState, &PoseHistory, &ClothWatch)>,
-    changes: Res<Changes>,
-) {
-    for (mut instance, state, frame, watch) in &mut cloths {
-        if instance.activity == ClothActivity::AtRest && changes.reach(state, frame.end(), watch) {
+type Watched = (
+    &'static mut ClothInstance,
+    &'static ClothState,
+    &'static PoseHistory,
+    &'static mut ClothRest,
+    &'static ClothWatch,
+);
+
+fn wake_cloths(mut cloths: Query<Watched>, mut changes: ResMut<Changes>) {
+    if changes.resting == 0 {
+        return;
+    }
+    changes.resting = 0;
+    for (mut instance, state, frame, rest, watch) in &mut cloths {
+        if instance.activity != ClothActivity::AtRest {
+            continue;
+        }
+        if changes.everywhere || changes.reach(state, frame.end(), &rest, watch.radius) {
             instance.wake();
+        } else {
+            changes.resting += 1;
         }
     }
 }
 
-fn rest_cloths(
-    mut cloths: Query<(&mut ClothInstance, &ClothState, &PoseHistory, &mut ClothWatch)>,
-    changes: Res<Changes>,
-    time: Res<Time>,
-) {
+fn rest_cloths(mut cloths: Query<Watched>, mut changes: ResMut<Changes>, time: Res<Time>) {
+    // In gusts nothing comes to rest: not worth a look.
+    if changes.everywhere {
+        return;
+    }
     let tick = time.delta_secs();
-    for (mut instance, state, frame, mut watch) in &mut cloths {
+    for (mut instance, state, frame, mut rest, watch) in &mut cloths {
         if instance.slot().is_none() {
             continue;
         }
         let pose = frame.end();
-        let disturbed = changes.reach(state, pose, &watch);
-        watch.pose = Some(pose);
-        watch.still =
-            if disturbed || speed(state, tick) > REST_SPEED { 0 } else { watch.still + 1 };
-        if watch.still as f32 * tick > REST_TIME {
-            watch.still = 0;
+        let disturbed = changes.reach(state, pose, &rest, watch.radius);
+        rest.pose = Some(pose);
+        rest.still = if disturbed || speed(state, tick) > REST_SPEED { 0 } else { rest.still + 1 };
+        if rest.still.min(changes.calm) as f32 * tick > REST_TIME {
+            rest.still = 0;
             instance.activity = ClothActivity::AtRest;
+            changes.resting += 1;
         }
     }
 }

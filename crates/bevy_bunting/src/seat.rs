@@ -20,7 +20,21 @@ impl Plugin for SeatPlugin {
             .register_type::<ClothPaused>()
             .init_resource::<ClothSettings>()
             .init_resource::<ClothBatches>()
+            .add_observer(note_pause)
+            .add_observer(note_end_of_pause)
             .add_systems(ClothTick, seat_cloths.in_set(ClothSystems::SelectLod));
+    }
+}
+
+fn note_pause(paused: On<Insert, ClothPaused>, mut cloths: Query<&mut ClothInstance>) {
+    if let Ok(mut instance) = cloths.get_mut(paused.entity) {
+        instance.set_changed();
+    }
+}
+
+fn note_end_of_pause(goes_on: On<Remove, ClothPaused>, mut cloths: Query<&mut ClothInstance>) {
+    if let Ok(mut instance) = cloths.get_mut(goes_on.entity) {
+        instance.set_changed();
     }
 }
 
@@ -32,6 +46,10 @@ pub(crate) fn seat_cloths(
     mut batches: ResMut<ClothBatches>,
 ) {
     for (entity, mut instance, paused) in &mut cloths {
+        // Most stay where they are.
+        if !instance.is_changed() && !settings.is_changed() {
+            continue;
+        }
         let still = paused || instance.activity != ClothActivity::Ticking;
         if instance.slot().is_some() && (still || settings.is_changed()) {
             instance.unseat(&mut batches);

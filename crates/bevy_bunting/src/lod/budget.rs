@@ -7,6 +7,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
 use super::costs::CostTable;
+use crate::activity::ClothActivity;
 
 /// What all cloths together may cost, for those whose levels are chosen automatically; see
 /// [`LodSet::automatic`](crate::LodSet::automatic). It may be changed at any time.
@@ -21,8 +22,7 @@ pub struct ClothBudget {
     pub refine_above: f32,
     /// Error that a coarser level may have to be enough, px.
     pub coarsen_below: f32,
-    /// Ticks between two changes of one cloth's level, unless there is no time to wait for them; and
-    /// ticks after which a cloth off the screen falls asleep.
+    /// Ticks between two changes of one cloth's level, unless there is no time to wait for them.
     pub dwell: u32,
     /// Most changes of level in a tick.
     pub switches: usize,
@@ -39,7 +39,7 @@ impl Default for ClothBudget {
             coarsen_below: 0.5,
             dwell: 30,
             switches: 4,
-            margin: 0.1,
+            margin: 0.05,
         }
     }
 }
@@ -81,5 +81,14 @@ impl LodReport {
     #[must_use]
     pub fn asleep(&self) -> usize {
         self.off_screen + self.out_of_range + self.at_rest
+    }
+
+    pub(crate) fn count(&mut self, activity: ClothActivity) {
+        match activity {
+            ClothActivity::Ticking => {}
+            ClothActivity::OffScreen => self.off_screen += 1,
+            ClothActivity::OutOfRange => self.out_of_range += 1,
+            ClothActivity::AtRest => self.at_rest += 1,
+        }
     }
 }

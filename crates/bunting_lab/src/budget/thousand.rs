@@ -42,7 +42,7 @@ const QUICK_SECONDS: usize = 2;
 #[must_use]
 pub fn steps() -> Vec<StepSettings> {
     let step = |substeps, passes| StepSettings { passes, ..StepSettings::yarns(substeps) };
-    vec![step(2, 2), step(2, 1), step(2, 1), step(2, 1)]
+    vec![step(2, 2), step(1, 2), step(1, 2), step(1, 2)]
 }
 
 /// What was measured in each tick.
