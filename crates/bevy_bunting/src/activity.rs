@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
-use bevy_math::Isometry3d;
+use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
@@ -34,7 +34,11 @@ pub(crate) struct ClothWatch {
     levels: usize,
     /// What the governor was last told, where the cloth is simulated.
     pub candidate: Option<Candidate>,
-    /// No particle is farther from the one in the middle than this, m.
+    /// What the cloth did when it was last looked at.
+    pub activity: ClothActivity,
+    /// Where the particle in the middle then was, in the cloth's frame, m.
+    pub middle: Vec3,
+    /// No particle is farther from it than this, m.
     pub radius: f32,
     /// Chooses the ticks in which it is looked at.
     pub turn: u32,
@@ -57,7 +61,7 @@ impl ClothWatch {
     /// Of a cloth that is new.
     pub fn new(levels: &Arc<ClothLevels>, radius: f32, turn: u32, now: u32) -> Self {
         let levels = Arc::as_ptr(levels).addr();
-        Self { levels, candidate: None, radius, turn, changed: now, seen: now }
+        Self { levels, radius, turn, changed: now, seen: now, ..Self::default() }
     }
 
     /// Whether it is of a cloth with these levels.

@@ -109,7 +109,8 @@ pub(crate) fn choose_levels(
     chooser.now = chooser.now.wrapping_add(1);
     for mut cloth in &mut cloths {
         let turn = cloth.watch.turn.wrapping_add(chooser.now).is_multiple_of(LOOKED_AT_EVERY);
-        if turn || cloth.instance.is_changed() || cloth.lods.is_changed() {
+        let changed = cloth.instance.is_changed() || cloth.lods.is_changed();
+        if changed || (turn && !cloth.sleeps_on(&views)) {
             chooser.look_at(&mut cloth, &views, &budget, &limits, &mut batches, &mut commands);
         }
         if let Some(candidate) = cloth.watch.candidate {
@@ -119,8 +120,8 @@ pub(crate) fn choose_levels(
             });
             chooser.entities.push(cloth.entity);
             counts.add(candidate.level as usize);
-        } else if cloth.instance.activity != ClothActivity::Ticking {
-            report.count(cloth.instance.activity);
+        } else if cloth.watch.activity != ClothActivity::Ticking {
+            report.count(cloth.watch.activity);
         } else if cloth.paused && cloth.instance.levels.is_some() {
             counts.add(cloth.instance.level);
         }
@@ -179,7 +180,7 @@ impl Chooser {
             *cloth.watch = ClothWatch::new(levels, radius, self.cloths, long_ago);
             self.cloths = self.cloths.wrapping_add(1);
         }
-        let centre = cloth.middle();
+        let centre = cloth.find_middle();
         let mut look = None;
         let to = if matches!(cloth.lods.choice, LodChoice::Automatic { .. }) {
             look = Some(Look::of(views, centre, cloth.watch.radius));
@@ -210,6 +211,7 @@ impl Chooser {
                 candidate.level = to as u32;
             }
         }
+        cloth.watch.activity = cloth.instance.activity;
         let simulated = cloth.instance.activity == ClothActivity::Ticking && !cloth.paused;
         cloth.watch.candidate = simulated.then_some(candidate);
     }
@@ -240,9 +242,17 @@ impl ChosenItem<'_, '_> {
     }
 
     /// Near the middle of a grid, in the world; no pass over all particles.
-    fn middle(&self) -> Vec3 {
+    fn find_middle(&mut self) -> Vec3 {
         let positions = self.state.positions();
-        self.frame.end() * positions.get(positions.len() / 2).copied().unwrap_or_default()
+        self.watch.middle = positions.get(positions.len() / 2).copied().unwrap_or_default();
+        self.frame.end() * self.watch.middle
+    }
+
+    /// Whether the cloth sleeps, and is still out of everybody's picture. Most do.
+    fn sleeps_on(&self, views: &[View]) -> bool {
+        self.watch.activity == ClothActivity::OffScreen
+            && Look::of(views, self.frame.end() * self.watch.middle, self.watch.radius).sight
+                == Sight::OffScreen
     }
 
     /// Sends a cloth to sleep that nobody sees, and wakes it when somebody does. Whether it comes
