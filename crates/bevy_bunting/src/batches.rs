@@ -40,6 +40,8 @@ struct Seats {
     batch: ClothBatch,
     entities: Vec<Option<Seat>>,
     lanes: LaneCount,
+    /// Substeps in this tick.
+    substeps: u32,
     joins: bool,
     /// Time that its phases have taken in this tick, where that is measured.
     time: Duration,
@@ -189,6 +191,7 @@ impl ClothBatches {
             let settings = group.settings;
             for seats in &mut group.batches {
                 seats.time = Duration::ZERO;
+                seats.substeps = settings.substeps;
                 seats.batch.begin_tick(tick, settings);
             }
         }
@@ -208,12 +211,18 @@ impl ClothBatches {
 
     /// Does the same with all batches that join in the substep.
     pub(crate) fn for_each_joining(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
-        self.for_each_where(|seats| seats.joins, phase);
+        self.for_each_where(|seats| seats.joins, |seats| phase(&mut seats.batch));
     }
 
     /// Does the same with all batches.
     pub(crate) fn for_each(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
-        self.for_each_where(|_| true, phase);
+        self.for_each_where(|_| true, |seats| phase(&mut seats.batch));
+    }
+
+    /// Does the same as often as each batch has substeps.
+    pub(crate) fn for_each_substep(&mut self, substep: impl Fn(&mut ClothBatch) + Sync) {
+        let all = |seats: &mut Seats| (0..seats.substeps).for_each(|_| substep(&mut seats.batch));
+        self.for_each_where(|_| true, all);
     }
 
     /// On all threads if that pays. Batches share nothing that is written, so the order does not
@@ -221,16 +230,16 @@ impl ClothBatches {
     fn for_each_where(
         &mut self,
         joins: impl Fn(&Seats) -> bool,
-        phase: impl Fn(&mut ClothBatch) + Sync,
+        phase: impl Fn(&mut Seats) + Sync,
     ) {
         let measures = self.measures;
         let phase = |seats: &mut Seats| {
             if measures {
                 let began = Instant::now();
-                phase(&mut seats.batch);
+                phase(seats);
                 seats.time += began.elapsed();
             } else {
-                phase(&mut seats.batch);
+                phase(seats);
             }
         };
         let work: usize = self.joining(&joins).map(|seats| seats.particles()).sum();
@@ -264,6 +273,7 @@ impl Seats {
             batch: ClothBatch::new(Arc::clone(fabric), lanes),
             entities: vec![None; lanes.get()],
             lanes,
+            substeps: 0,
             joins: true,
             time: Duration::ZERO,
         }

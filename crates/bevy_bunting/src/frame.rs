@@ -152,14 +152,15 @@ fn observe_ticks(
 
 type Placed = (Entity, Option<Ref<'static, Attachment>>, Option<&'static ChildOf>);
 
+type Standing<'w, 's> = (TransformHelper<'w, 's>, Stillness<'w, 's>);
+
+type Written<'w, 's> = Query<'w, 's, (&'static mut Transform, &'static mut GlobalTransform)>;
+
 /// Writes the transforms of attached cloths: where their targets are now, whatever the last tick
 /// saw.
 fn place_cloths(
     cloths: Query<Placed, With<ClothMesh>>,
-    mut transforms: ParamSet<(
-        (TransformHelper, Stillness),
-        Query<(&mut Transform, &mut GlobalTransform)>,
-    )>,
+    mut transforms: ParamSet<(Standing, Written)>,
     mut placed: Local<Vec<(Entity, Option<Transform>, GlobalTransform)>>,
 ) {
     let (current, mut stillness) = transforms.p0();

@@ -45,7 +45,12 @@
 //! | [`ClothCollider`] | anything | a shape that cloth does not enter |
 //! | [`LodViewer`] | a camera | what levels of detail look to |
 //!
-//! [`ClothSettings`] holds gravity, the density of air and how finely each level is solved.
+//! [`ClothSettings`] holds gravity, the density of air and how finely each level is solved;
+//! [`ClothBudget`] how much time cloths with [`LodSet::automatic`] may take, and [`LodReport`] what
+//! was made of it.
+//!
+//! A cloth at rest is asleep, and so is one with [`LodSet::automatic`] that no [`LodViewer`] sees:
+//! [`ClothState::activity`] tells.
 //!
 //! # Sets
 //!
@@ -81,7 +86,9 @@
 //! # Determinism
 //!
 //! The same world, stepped alike, gives the same bits: they depend neither on what else is in the
-//! world, nor on the number of threads.
+//! world, nor on the number of threads. Only [`LodSet::automatic`] shares a budget among all cloths,
+//! and by default measures what they cost; with [`LodCosts::Fixed`] it, too, chooses alike on every
+//! machine.
 
 mod activity;
 mod attachment;

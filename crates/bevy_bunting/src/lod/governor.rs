@@ -181,7 +181,7 @@ impl Governor {
                 self.chosen.push(cloth.level);
                 continue;
             }
-            let wanted = wanted_level(errors, cloth, limits) as u32;
+            let wanted = wanted_level(errors, cloth, limits);
             let coarsest = errors.len() as u32 - 1;
             self.wanted.push(wanted);
             self.chosen.push(coarsest);
