@@ -24,7 +24,7 @@ fn levels_follow_the_viewer_and_stay_finite() {
     app.world_mut().spawn(WindField::steady(Vec3::new(5.0, 0.0, 2.0)));
     run(&mut app, 10);
     assert_eq!(state(&app, cloth).level(), 0, "without a viewer the finest");
-    let viewer = app.world_mut().spawn((LodViewer, Transform::default())).id();
+    let viewer = app.world_mut().spawn((LodViewer::default(), Transform::default())).id();
     let away = |app: &mut App, distance: f32| {
         app.world_mut().entity_mut(viewer).insert(Transform::from_xyz(0.0, 0.0, distance));
         run(app, 10);
@@ -62,8 +62,8 @@ fn levels_follow_the_viewer_and_stay_finite() {
 fn the_nearest_viewer_counts() {
     let mut app = app();
     let cloth = flag(&mut app);
-    app.world_mut().spawn((LodViewer, Transform::from_xyz(0.0, 0.0, 100.0)));
-    app.world_mut().spawn((LodViewer, Transform::from_xyz(0.0, 0.0, -15.0)));
+    app.world_mut().spawn((LodViewer::default(), Transform::from_xyz(0.0, 0.0, 100.0)));
+    app.world_mut().spawn((LodViewer::default(), Transform::from_xyz(0.0, 0.0, -15.0)));
     run(&mut app, 3);
     assert_eq!(state(&app, cloth).level(), 1);
 }

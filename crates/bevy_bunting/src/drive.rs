@@ -35,7 +35,8 @@ pub(crate) fn drive_cloths(
         let (start, end) = (frame.start(), frame.end());
         let inverse = end.rotation.inverse();
         let gravity = inverse * settings.gravity;
-        instance.gravity = gravity;
+        // No change that anyone should look at: it is noted in every tick.
+        instance.bypass_change_detection().gravity = gravity;
         batches.lane(slot).drive(Drive {
             motion: FrameMotion::between(pose_parts(start), pose_parts(end)),
             gravity,

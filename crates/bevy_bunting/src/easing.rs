@@ -55,7 +55,7 @@ impl Plugin for EasingPlugin {
     }
 }
 
-fn ease_surfaces(
+pub(crate) fn ease_surfaces(
     mut cloths: Query<(&ClothInstance, &mut ClothState, &mut ClothEasing), With<ClothSurface>>,
     time: Res<Time>,
 ) {

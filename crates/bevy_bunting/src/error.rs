@@ -23,11 +23,11 @@ pub enum ClothError {
         /// What is wrong with it.
         source: FabricError,
     },
-    /// Switch distances must be positive and grow from level to level.
+    /// Switch distances must be positive and grow from level to level, or there must be a level.
     #[error(
-        "the LodSet of cloth {entity} must have finite distances that grow, and a hysteresis from 0 to 1"
+        "the LodSet of cloth {entity} must have finite distances that grow or at least one level, a hysteresis from 0 to 1, and a positive bias"
     )]
-    Distances {
+    Levels {
         /// The cloth.
         entity: Entity,
     },
@@ -47,7 +47,7 @@ pub enum ClothError {
     /// The grid cannot be halved as often as there are levels. The cloth goes on with those that it
     /// has.
     #[error(
-        "a grid of {columns} × {rows} particles cannot be halved {halvings} times as the LodSet of cloth {entity} asks: make columns − 1 and rows − 1 multiples of 2^{halvings}, or give fewer distances"
+        "a grid of {columns} × {rows} particles cannot be halved {halvings} times as the LodSet of cloth {entity} asks: make columns − 1 and rows − 1 multiples of 2^{halvings}, or give fewer levels"
     )]
     NotNested {
         /// The cloth.
@@ -61,7 +61,7 @@ pub enum ClothError {
     },
     /// The level that the `LodSet` pins does not exist.
     #[error(
-        "cloth {entity} is pinned to level {level}, but has {levels}: pin a lower level, or give more distances"
+        "cloth {entity} is pinned to level {level}, but has {levels}: pin a lower level, or give more levels"
     )]
     PinnedLevel {
         /// The cloth.

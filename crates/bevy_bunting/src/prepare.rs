@@ -169,6 +169,7 @@ fn change_materials(
             continue;
         }
         instance.material = material.0;
+        instance.wake();
         if let Some(slot) = instance.slot() {
             batches.lane(slot).set_material(material.0);
         }

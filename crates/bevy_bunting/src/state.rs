@@ -6,6 +6,8 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bunting_solver::Fabric;
 
+use crate::activity::ClothActivity;
+
 /// The simulated surface of a cloth, as of the last tick; read only.
 ///
 /// Everything is in the cloth's frame, whose pose in the world is the entity's `GlobalTransform`:
@@ -24,6 +26,9 @@ pub struct ClothState {
     pub(crate) normals: Vec<Vec3>,
     pub(crate) previous_normals: Vec<Vec3>,
     pub(crate) level: usize,
+    pub(crate) activity: ClothActivity,
+    /// Whether it has moved in the last tick.
+    pub(crate) moved: bool,
     pub(crate) fabric: Option<Arc<Fabric>>,
     /// What was shown before a change of level, until it is eased.
     pub(crate) left: Option<Left>,
@@ -68,6 +73,12 @@ impl ClothState {
     #[must_use]
     pub fn level(&self) -> usize {
         self.level
+    }
+
+    /// Whether the cloth is simulated or asleep.
+    #[must_use]
+    pub fn activity(&self) -> ClothActivity {
+        self.activity
     }
 
     /// The fabric that the cloth is cut from at its level: triangles, texture coordinates, pins.

@@ -53,7 +53,7 @@ mod transfer;
 mod vector;
 mod velocity;
 
-pub use batch::{BatchError, ClothBatch};
+pub use batch::{BatchError, ClothBatch, LaneSurface};
 pub use collision::Collider;
 pub use fabric::{
     BendLine, BendProfile, Coarser, Colours, Fabric, FabricBuilder, FabricError, FabricMaterial,

@@ -10,7 +10,7 @@ use crate::easing::ClothEasing;
 use crate::state::ClothState;
 
 type Bounded = (&'static ClothState, Option<&'static ClothEasing>, &'static mut Aabb);
-type IsStale = Or<(Changed<ClothState>, Changed<LevelMeshes>)>;
+type IsStale = Or<(Changed<ClothState>, Changed<ClothEasing>, Changed<LevelMeshes>)>;
 
 /// Bounds everything between the last two ticks, for cloths that are visible and for those that
 /// may come into view.

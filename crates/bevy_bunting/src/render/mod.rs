@@ -5,9 +5,10 @@ mod debug;
 mod dress;
 mod level_mesh;
 mod tangents;
+mod view;
 mod write;
 
-use bevy_app::{App, Plugin, PostUpdate};
+use bevy_app::{App, Plugin, PostUpdate, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_asset::{AssetEventSystems, Assets};
 use bevy_camera::Camera3d;
 use bevy_camera::visibility::VisibilitySystems;
@@ -57,14 +58,18 @@ pub enum ClothRenderSystems {
 ///
 /// # Levels of detail
 ///
-/// Every `Camera3d` becomes a [`LodViewer`] when it is spawned. Remove it from cameras that levels
-/// should not look to.
+/// Every `Camera3d` becomes a [`LodViewer`] when it is spawned, which is kept like its projection and
+/// its picture. Remove it from cameras that levels should not look to.
 #[derive(Debug, Default)]
 pub struct ClothRenderPlugin;
 
 impl Plugin for ClothRenderPlugin {
     fn build(&self, app: &mut App) {
         app.add_observer(view_levels)
+            .add_systems(
+                RunFixedMainLoop,
+                view::view_through_cameras.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+            )
             .configure_sets(
                 PostUpdate,
                 (
@@ -94,7 +99,7 @@ impl Plugin for ClothRenderPlugin {
 }
 
 fn view_levels(added: On<Add, Camera3d>, mut commands: Commands) {
-    commands.entity(added.entity).try_insert_if_new(LodViewer);
+    commands.entity(added.entity).try_insert_if_new(LodViewer::default());
 }
 
 #[cfg(test)]

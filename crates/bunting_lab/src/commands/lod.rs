@@ -6,7 +6,7 @@ use serde_json::json;
 use super::progress;
 use crate::{
     budget::schemes,
-    levels::{agreement::Agreement, pops::Pop, switches::Switch},
+    levels::{agreement::Agreement, pops::Pop, resolution::Resolution, switches::Switch},
     output::{
         Outcome,
         table::{Table, figure},
@@ -28,14 +28,17 @@ pub fn run(quick: bool) -> Outcome {
     let sizes = if quick { QUICK_SIZES } else { SIZES };
     let pairs = sizes.windows(2).flat_map(|pair| [(pair[0], pair[1]), (pair[1], pair[0])]);
     let pairs: Vec<(usize, usize)> = pairs.collect();
-    let bar = progress(schemes().len() * (sizes.len() + 2 * pairs.len()));
+    let bar = progress(schemes().len() * (sizes.len() + 1 + 2 * pairs.len()));
     let moments = if quick { QUICK_MOMENTS } else { MOMENTS };
-    let (mut levels, mut switches, mut pops) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut levels, mut resolutions) = (Vec::new(), Vec::new());
+    let (mut switches, mut pops) = (Vec::new(), Vec::new());
     for settings in schemes() {
         for n in sizes {
             levels.push(Agreement::of(n, settings, quick));
             bar.inc(1);
         }
+        resolutions.extend(Resolution::of(sizes[0], settings, moments));
+        bar.inc(1);
         for &(from, to) in &pairs {
             switches.push(Switch::of(from, to, settings, moments));
             bar.inc(1);
@@ -48,10 +51,16 @@ pub fn run(quick: bool) -> Outcome {
         json: json!({
             "instruction_set": instruction_set(),
             "levels": levels,
+            "resolutions": resolutions,
             "switches": switches,
             "pops": pops,
         }),
-        tables: vec![level_table(&levels), switch_table(&switches), pop_table(&pops)],
+        tables: vec![
+            level_table(&levels),
+            resolution_table(&resolutions),
+            switch_table(&switches),
+            pop_table(&pops),
+        ],
         plots: Vec::new(),
     }
 }
@@ -86,6 +95,24 @@ fn level_table(levels: &[Agreement]) -> Table {
             "flutter Hz",
         ],
         rows: levels.iter().map(cells).collect(),
+    }
+}
+
+fn resolution_table(resolutions: &[Resolution]) -> Table {
+    let cells = |resolution: &Resolution| {
+        vec![
+            resolution.scheme.into(),
+            format!("{} by {}", resolution.fine, resolution.coarse),
+            figure(resolution.rms_m),
+            figure(resolution.p95_m),
+            figure(resolution.p95_of_cell),
+        ]
+    };
+    Table {
+        name: "lod_resolution".into(),
+        title: "A flag's surface shown by the vertices of a coarser level".into(),
+        headers: vec!["scheme", "levels", "RMS m", "95 % m", "95 % over the cell"],
+        rows: resolutions.iter().map(cells).collect(),
     }
 }
 

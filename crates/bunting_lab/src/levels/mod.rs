@@ -2,4 +2,5 @@
 
 pub mod agreement;
 pub mod pops;
+pub mod resolution;
 pub mod switches;

@@ -41,7 +41,6 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     }
     cases.extend(tiny_steps(if quick { 9 } else { 17 }));
     cases.push(resting(quick));
-    cases.push(HardCase::not_built("rest: sleeps", "s until asleep", 10.0));
     cases.push(stiff_bending());
     cases
 }
