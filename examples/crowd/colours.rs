@@ -60,21 +60,23 @@ fn mix(
 }
 
 fn designs() -> [Design; 6] {
-    let [red, white, blue, gold, green, black] = [
-        [190, 40, 45],
-        [235, 232, 222],
-        [30, 60, 130],
-        [225, 170, 45],
-        [35, 110, 70],
-        [35, 35, 40],
+    let [orange, cream, slate, plum, gold, teal, lilac] = [
+        [225, 95, 45],
+        [245, 240, 225],
+        [35, 75, 90],
+        [85, 45, 100],
+        [235, 180, 60],
+        [20, 105, 110],
+        [200, 180, 220],
     ];
+    // Of no country.
     [
-        Design::Pales(vec![blue, white, red]),
-        Design::Bars(vec![red, white, green]),
-        Design::Cross { field: blue, cross: gold },
-        Design::Pales(vec![green, gold]),
-        Design::Bars(vec![black, red, gold]),
-        Design::Cross { field: red, cross: white },
+        Design::Pales(vec![orange, cream, slate, cream, orange]),
+        Design::Bars(vec![plum, lilac, plum, lilac]),
+        Design::Cross { field: teal, cross: cream },
+        Design::Disc { field: gold, disc: plum },
+        Design::Chequers { colours: [orange, cream], rows: 4 },
+        Design::Pales(vec![slate, gold]),
     ]
 }
 
