@@ -5,7 +5,11 @@ mod bunting;
 pub mod measurement;
 pub mod rapier;
 
-use crate::{product::Product, scenes::Scene, simulation::Simulation};
+use crate::{
+    product::{DEFAULT, Product},
+    scenes::Scene,
+    simulation::Simulation,
+};
 use bunting_solver::{LaneCount, StepSettings};
 use rapier::{Elasticity, Rapier};
 
@@ -51,8 +55,8 @@ impl Engine {
             start: Box::new(move |scene| Box::new(Rapier::new(scene, elasticity, substeps))),
         };
         vec![
-            Self::product("bunting yarns", StepSettings::yarns(3), LaneCount::One),
-            Self::product("bunting yarns", StepSettings::yarns(3), LaneCount::Eight),
+            Self::product("bunting yarns", DEFAULT, LaneCount::One),
+            Self::product("bunting yarns", DEFAULT, LaneCount::Eight),
             Self::product("bunting Gauss–Seidel", StepSettings::gauss_seidel(10), LaneCount::One),
             Self::product("bunting Gauss–Seidel", StepSettings::gauss_seidel(10), LaneCount::Eight),
             rapier("rapier 0.36", Elasticity::Constraints, RAPIER_SUBSTEPS),
