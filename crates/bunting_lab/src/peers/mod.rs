@@ -13,6 +13,8 @@ use crate::{
 use bunting_solver::{LaneCount, StepSettings};
 use rapier::{Elasticity, Rapier};
 
+use crate::contender::Contender;
+
 /// A cloth that can be treated badly.
 pub trait Peer: Simulation {
     /// Moves what holds the cloth sideways by some metres within the next tick, and ticks.
@@ -36,6 +38,25 @@ pub struct Engine {
     pub constraints: &'static str,
     /// Starts it on a scene.
     pub start: Box<Start>,
+}
+
+/// Rapier's substeps beside the methods of the thesis.
+const RAPIER_CONTENDS: [usize; 4] = [4, 10, 20, 40];
+
+/// Other engines beside the methods of the thesis, on scenes without air.
+#[must_use]
+pub fn contenders() -> Vec<Contender> {
+    let rapier = |substeps| Contender {
+        method: "rapier 0.36".into(),
+        substeps,
+        passes: 1,
+        lanes: 1,
+        start: Box::new(move |scene: &Scene| {
+            let start = || Box::new(Rapier::new(scene, Elasticity::Constraints, substeps));
+            scene.air.is_vacuum().then(|| start() as Box<dyn Simulation>)
+        }),
+    };
+    RAPIER_CONTENDS.map(rapier).into()
 }
 
 /// Rapier's substeps by default.

@@ -44,6 +44,12 @@ pub fn named(name: &str, mount: &Mount) -> Vec<Case> {
     trial(mount)
 }
 
+/// Γ of a case of the cantilevers of most links, which are named by it.
+#[must_use]
+pub fn gamma_of(case: &Case) -> Option<f64> {
+    cantilever::gamma_of(case)
+}
+
 /// Relative error of a cantilever that hardly bends, Γ = 0.01, whose H/W is Γ/8.
 #[must_use]
 pub fn stiffest_cantilever(mount: &Mount) -> f64 {
