@@ -214,7 +214,9 @@ pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
         }));
         all.push(rows);
     }
-    if let (Some(path), Some((scene, rows))) = (&selection.figure, scenes.iter().zip(&all).last()) {
+    if let (Some(path), Some((scene, rows))) =
+        (&selection.figure, scenes.iter().zip(&all).next_back())
+    {
         write_figure(path, scene, rows)?;
     }
     bar.set_message("ablation");

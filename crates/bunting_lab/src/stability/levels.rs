@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 
 use super::{
     HardCase,
-    rig::{SETTINGS, energy, start, ticks},
+    rig::{SETTINGS, energy, start, ticks, worse},
 };
 use crate::{
     product::{Product, fabric, material},
@@ -54,11 +54,11 @@ fn thrash(n: usize, seconds: f64) -> [HardCase; 2] {
             if level == 0 { transfer.restrict(&state) } else { transfer.prolong(&state) };
         let (before, after) = (momentum(level, &state), momentum(next, &switched));
         if before.length() > 1e-3 {
-            kicked = kicked.max((after - before).length() / before.length());
+            kicked = worse(kicked, (after - before).length() / before.length());
         }
         cloths[next].restore(&switched);
         level = next;
-        highest = highest.max(energy(&scenes[level], &grids[level], &cloths[level]));
+        highest = worse(highest, energy(&scenes[level], &grids[level], &cloths[level]));
     }
     [
         HardCase::new("LOD thrash: momentum", n, "change in a switch, of one", kicked, 1e-5),

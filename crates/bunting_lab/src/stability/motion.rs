@@ -7,7 +7,7 @@ use glam::{DVec3, Quat, Vec3};
 
 use super::{
     HardCase,
-    rig::{positions, reach, run, speed, start, strain, ticks},
+    rig::{positions, reach, run, speed, start, strain, ticks, worse},
 };
 use crate::{
     oracles::specimen::Specimen,
@@ -73,7 +73,7 @@ fn teleport_kept(n: usize) -> HardCase {
     let worst = (0..ticks(0.3)).fold(0.0, |worst: f64, _| {
         stays.tick();
         moved.tick();
-        worst.max(speed(&moved) / speed(&stays))
+        worse(worst, speed(&moved) / speed(&stays))
     });
     HardCase::new("teleport, state kept", n, "speed over that of none", worst, 1.05)
 }

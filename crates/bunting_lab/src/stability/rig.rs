@@ -52,6 +52,11 @@ pub fn reach(cloth: &Cloth) -> f64 {
     cloth.positions().iter().fold(0.0, longest)
 }
 
+/// The larger of two figures, and not a number where either is none: `max` would pass over it.
+pub fn worse(one: f64, other: f64) -> f64 {
+    if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
+}
+
 /// Kinetic, gravitational and elastic energy over what the sheet would lose by falling its own
 /// height.
 pub fn energy(scene: &Scene, grid: &Grid, cloth: &Cloth) -> f64 {

@@ -154,7 +154,7 @@ fn grows(mount: &Mount, form: &Form, segments: usize, settings: StepSettings, lo
         specimen.tick();
         let tip = row(&scene, specimen.as_ref(), segments + 1).dot(form.sideways).abs();
         // What is no longer a number has grown too.
-        !(tip < GROWN * TOUCH)
+        tip.is_nan() || tip >= GROWN * TOUCH
     })
 }
 
