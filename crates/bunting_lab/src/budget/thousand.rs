@@ -18,7 +18,7 @@ const SPACING: f32 = 2.5;
 /// Turn from one flag to the next as a part of a full one: the golden section's.
 const GOLDEN: f32 = 0.381_966;
 /// Distances from each level to the next coarser one, m.
-const DISTANCES: [f32; 3] = [8.0, 16.0, 32.0];
+pub const DISTANCES: [f32; 3] = [8.0, 16.0, 32.0];
 /// Radius of the camera's path, m.
 const PATH: f32 = 40.0;
 /// Height of the camera above the poles' tops, m.

@@ -13,6 +13,8 @@ use super::{
     rig::{SETTINGS, energy, start, ticks, worse},
 };
 use crate::{
+    budget::{LEVELS, thousand::DISTANCES},
+    levels::switches::{PIXELS, Switch},
     product::{Product, fabric, material},
     reference::grid::Grid,
     scenes::Scene,
@@ -22,7 +24,7 @@ use crate::{
 /// All cases.
 pub fn cases(quick: bool) -> Vec<HardCase> {
     let mut cases = thrash(17, if quick { 2.0 } else { 10.0 }).to_vec();
-    cases.push(HardCase::not_built("LOD thrash: pop", "pixels", 1.0));
+    cases.extend(pops(if quick { 3 } else { 20 }));
     cases.push(determinism(9, if quick { 500 } else { 10_000 }));
     cases.push(HardCase::not_built(
         "determinism across instruction sets",
@@ -64,6 +66,21 @@ fn thrash(n: usize, seconds: f64) -> [HardCase; 2] {
         HardCase::new("LOD thrash: momentum", n, "change in a switch, of one", kicked, 1e-5),
         HardCase::new("LOD thrash: energy", n, "over the start, of the fall", highest, 0.01),
     ]
+}
+
+/// What is seen of changes to the next coarser level and back, at the distances at which a field of
+/// flags changes, pixels of 1080 lines over 45°.
+fn pops(moments: usize) -> impl Iterator<Item = HardCase> {
+    let steps = LEVELS.windows(2).zip(DISTANCES);
+    steps.map(move |(sizes, distance)| {
+        let [fine, coarse] = [sizes[0] as usize, sizes[1] as usize];
+        let pop = [(fine, coarse), (coarse, fine)]
+            .map(|(from, to)| Switch::of(from, to, SETTINGS, moments).pop_max_m)
+            .into_iter()
+            .fold(0.0, worse);
+        let name = format!("LOD thrash: pop to {coarse}² and back at {distance} m");
+        HardCase::new(name, fine, "pixels", pop * PIXELS / f64::from(distance), 1.0)
+    })
 }
 
 /// A flag alone, among eight and among sixteen, on this thread and on others, to the bit.
