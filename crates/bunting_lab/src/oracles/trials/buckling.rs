@@ -16,10 +16,9 @@ use crate::{
     scenes::{Fabric, GRAVITY, Pins, Pose, Scene, TICK_RATE},
 };
 
-/// Links along the free metre of a column, and how many of these sizes, the first of all, show the
-/// order: beyond them the step's error does.
+/// Links along the free metre of a column.
 const COLUMNS: [usize; 5] = [2, 4, 8, 16, 32];
-/// How many of them are observed.
+/// Sizes over which the order is observed, the first of all: beyond them the step's error shows.
 const ORDERED: usize = 3;
 /// Links along the free metre on edge.
 const ON_EDGE: [usize; 3] = [8, 16, 32];
