@@ -3,7 +3,6 @@
 use std::{
     fs,
     path::{Path, PathBuf},
-    time::{Duration, Instant},
 };
 
 use anyhow::{Context, Result};
@@ -187,7 +186,7 @@ pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
         let mut rows = Vec::new();
         for contender in &contenders {
             bar.set_message(format!("{} {} {}", scene.name, scene.columns, contender.method));
-            match measure(scene, contender, Duration::from_secs_f64(selection.patience)) {
+            match measure(scene, contender, selection.patience) {
                 Some((seen, time)) => {
                     rows.push(Row::new(scene, contender, &seen, &time, &reference));
                 }
@@ -268,25 +267,18 @@ fn selected(selection: &Selection, quick: bool) -> Vec<Scene> {
 }
 
 /// Runs a contender through the scene; none where the scene is beyond it or it would take too long.
-fn measure(
-    scene: &Scene,
-    contender: &Contender,
-    patience: Duration,
-) -> Option<(Observation, Timing)> {
+fn measure(scene: &Scene, contender: &Contender, patience: f64) -> Option<(Observation, Timing)> {
     let grid = Grid::new(scene);
     let mut observer = Observer::new(scene, &grid);
     let mut simulation = (contender.start)(scene)?;
-    let mut time = Timing::default();
-    let begun = Instant::now();
+    let (mut warm_up, mut time) = (Timing::default(), Timing::default());
     for tick in 0..scene.ticks() {
-        if tick == WARM_UP && begun.elapsed() * scene.ticks() as u32 > patience * WARM_UP as u32 {
+        // The shortest tick, since others may have had to wait for the processor.
+        if tick == WARM_UP && warm_up.min() * scene.ticks() as f64 > patience * 1e6 {
             return None;
         }
-        if tick < WARM_UP {
-            simulation.tick();
-        } else {
-            time.time(|| simulation.tick());
-        }
+        let timing = if tick < WARM_UP { &mut warm_up } else { &mut time };
+        timing.time(|| simulation.tick());
         let positions: Vec<_> = simulation.positions().iter().map(|x| x.as_dvec3()).collect();
         let velocities: Vec<_> = simulation.velocities().iter().map(|v| v.as_dvec3()).collect();
         if !observer.observe(&positions, &velocities) {

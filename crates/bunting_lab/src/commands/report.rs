@@ -24,7 +24,7 @@ const SCENES: [&str; 5] = ["swing", "hang_top", "hang_side", "hang_corners", "fl
 /// The same where it is to be quick.
 const QUICK_SCENES: [&str; 2] = ["swing", "hang_corners"];
 /// Time after which a method that would take longer on a scene is left out, s.
-const PATIENCE: f64 = 10.0;
+const PATIENCE: f64 = 5.0;
 
 /// Runs every command and writes `index.html`.
 ///
