@@ -52,6 +52,12 @@ fn pareto_prints_one_json_object_and_writes_files() {
             assert!(part[key].is_number(), "{key} in {part}");
         }
     }
+    let error_without = |name: &str| {
+        let parts = json["ablation"].as_array().expect("ablation");
+        let part = parts.iter().find(|part| part["part"] == name).expect("a part");
+        part["rms_error_m"].as_f64().expect("an error")
+    };
+    assert!(error_without("no air") > 10.0 * error_without("whole model"));
     assert!(json["left_out"].is_array());
     for row in rows {
         for key in ["scene", "n", "method", "substeps", "passes", "lanes", "stable"] {

@@ -201,7 +201,7 @@ pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
             bar.inc(1);
         }
         outcome.tables.push(table(scene, &rows, &reference));
-        outcome.plots.extend(speed_error::plot(scene, &rows));
+        outcome.plots.extend(speed_error::plot(scene, &rows, &contenders));
         references.push(json!({
             "scene": scene.name,
             "n": scene.columns,

@@ -2,6 +2,7 @@
 
 use super::pareto::Row;
 use crate::{
+    contender::Contender,
     observation::COMPARED_TICKS,
     output::plot::{Axes, Mark, Plot, Series, pareto_front},
     scenes::{Measure, Scene, TICK_RATE},
@@ -20,23 +21,28 @@ const FIGURE: [(&str, Option<usize>, &str); 7] = [
 ];
 
 /// Error over time of every method on a scene, one colour a method, of one cloth alone and of as many
-/// as can be had at once, and the front of what no other setting beats. None where no method has an error.
-pub fn plot(scene: &Scene, rows: &[Row]) -> Option<Plot> {
-    let mut series: Vec<Series> = Vec::new();
-    let widest = rows.iter().map(|row| row.lanes).max();
-    for row in rows.iter().filter(|row| row.lanes == 1 || Some(row.lanes) == widest) {
-        let name = match row.lanes {
-            1 => row.method.clone(),
-            lanes => format!("{}, of {lanes}", row.method),
-        };
-        let Some(point) = point(scene, row) else { continue };
-        match series.iter_mut().find(|known| known.name == name) {
-            Some(known) => known.points.push(point),
-            None => series.push(Series { name, points: vec![point], mark: Mark::Dots }),
+/// as can be had at once, and the front of what no other setting beats. A contender has its colour on
+/// every scene. None where no method has an error.
+pub fn plot(scene: &Scene, rows: &[Row], contenders: &[Contender]) -> Option<Plot> {
+    let widest = contenders.iter().map(|it| it.lanes).max()?;
+    let mut kinds: Vec<(&str, usize)> = Vec::new();
+    for kind in contenders.iter().map(|it| (it.method.as_str(), it.lanes)) {
+        if (kind.1 == 1 || kind.1 == widest) && !kinds.contains(&kind) {
+            kinds.push(kind);
         }
     }
+    let series: Vec<Series> = kinds
+        .into_iter()
+        .map(|(method, lanes)| {
+            let of_kind = rows.iter().filter(|row| row.method == method && row.lanes == lanes);
+            let points = of_kind.filter_map(|row| point(scene, row)).collect();
+            let name = if lanes == 1 { method.to_owned() } else { format!("{method}, of {lanes}") };
+            Series { name, points, mark: Mark::Dots }
+        })
+        .collect();
     let title = format!("{} {n} × {n}", scene.name, n = scene.columns);
-    (!series.is_empty()).then(|| with_front(scene, title, series))
+    let has_points = series.iter().any(|series| !series.points.is_empty());
+    has_points.then(|| with_front(scene, title, series))
 }
 
 /// Error over time of the position-based methods on a scene.

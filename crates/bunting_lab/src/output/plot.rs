@@ -52,7 +52,8 @@ pub enum Mark {
 pub struct Series {
     /// Name in the legend.
     pub name: String,
-    /// Points, all positive where the axes are logarithmic.
+    /// Points, all positive where the axes are logarithmic. A series of none keeps its colour from
+    /// the next and is not named.
     pub points: Vec<(f64, f64)>,
     /// How they are drawn.
     pub mark: Mark,
@@ -191,7 +192,8 @@ impl Plot {
     }
 
     fn draw_legend(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<()> {
-        for (line, (series, colour)) in (2..).zip(self.coloured()) {
+        let shown = self.coloured().filter(|(series, _)| !series.points.is_empty());
+        for (line, (series, colour)) in (2..).zip(shown) {
             let middle = line * LINE;
             match series.mark {
                 Mark::Dots => area.draw(&Circle::new((12, middle), 5, colour.filled()))?,

@@ -131,7 +131,7 @@ fn fastest(json: &Value, scene: &str, n: u64) -> Option<Finding> {
         best["lanes"]
     );
     Some(match rival {
-        None => Finding::new(true, format!("{found}; no other method errs as little")),
+        None => Finding::new(true, format!("{found}; none of the others run errs as little")),
         Some(rival) => {
             let ratio = time(rival) / time(best);
             let (method, ratio_text) = (text(rival, "method"), figure(ratio));
