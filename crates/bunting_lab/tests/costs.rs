@@ -47,7 +47,9 @@ fn budget_has_its_schema() {
 
 #[test]
 fn schedule_compares_app_and_plain_calls() {
-    for row in rows(&schedule::run(true).json, "rows") {
+    let json = schedule::run(true).json;
+    assert!(json["instruction_set"].is_string());
+    for row in rows(&json, "rows") {
         assert_positive(row, &["n", "cloths", "us_app", "us_cloth_tick", "us_plain", "ratio"]);
     }
 }
@@ -55,6 +57,7 @@ fn schedule_compares_app_and_plain_calls() {
 #[test]
 fn lod_compares_levels_and_changes_them() {
     let json = lod::run(true).json;
+    assert!(json["instruction_set"].is_string());
     for level in rows(&json, "levels") {
         assert_positive(level, &["n", "droop_m", "swing_period_s", "tip_spread_m", "flutter_hz"]);
     }

@@ -13,7 +13,7 @@ use glam::{Quat, Vec3};
 use serde::Serialize;
 
 use super::LEVELS;
-use crate::{game, scenes::TICK_RATE, stats, timing::Timing};
+use crate::{game, product::DEFAULT, scenes::TICK_RATE, stats, timing::Timing};
 
 /// Flags in the field.
 const FLAGS: usize = 1000;
@@ -41,8 +41,8 @@ const QUICK_SECONDS: usize = 2;
 /// How finely each level is solved, the finest first: what flies far away is solved more coarsely.
 #[must_use]
 pub fn steps() -> Vec<StepSettings> {
-    let step = |substeps, passes| StepSettings { passes, ..StepSettings::yarns(substeps) };
-    vec![step(2, 2), step(1, 2), step(1, 2), step(1, 2)]
+    let coarse = StepSettings { substeps: 1, ..DEFAULT };
+    vec![DEFAULT, coarse, coarse, coarse]
 }
 
 /// What was measured in each tick.

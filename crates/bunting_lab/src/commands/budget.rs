@@ -16,7 +16,7 @@ use crate::{
     },
     output::{
         Outcome,
-        plot::{Mark, Plot, Series},
+        plot::{Axes, Mark, Plot, Series},
         table::{Table, figure},
     },
 };
@@ -164,8 +164,8 @@ fn sheet_plot(sheets: &[Sheet], scheme: &str) -> Plot {
     Plot {
         name: format!("budget_sheets_{scheme}"),
         title: format!("Time of a tick, wind on, {scheme} (thesis, fig. 6.2)"),
-        axes: ["flags".into(), "ms".into()],
-        logarithmic: true,
+        labels: ["flags".into(), "ms".into()],
+        axes: Axes::Logarithmic,
         series,
     }
 }
@@ -189,8 +189,8 @@ fn phase_plot(phases: &[Phase], scheme: &str) -> Plot {
     Plot {
         name: format!("budget_phases_{scheme}"),
         title: format!("Share of each phase, {scheme} (thesis, fig. B.1)"),
-        axes: [format!("level: {LEVELS:?} vertices a side"), "share of the tick".into()],
-        logarithmic: false,
+        labels: ["level".into(), "share of the tick".into()],
+        axes: Axes::Named(LEVELS.map(|n| format!("{n} × {n}")).to_vec()),
         series: series.collect(),
     }
 }

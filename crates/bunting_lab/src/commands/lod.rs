@@ -5,10 +5,11 @@ use serde_json::json;
 
 use super::progress;
 use crate::{
-    budget::schemes,
+    budget::{scheme_name, schemes},
     levels::{agreement::Agreement, pops::Pop, resolution::Resolution, switches::Switch},
     output::{
         Outcome,
+        plot::{Axes, Mark, Plot, Series},
         table::{Table, figure},
     },
 };
@@ -61,7 +62,32 @@ pub fn run(quick: bool) -> Outcome {
             switch_table(&switches),
             pop_table(&pops),
         ],
-        plots: Vec::new(),
+        plots: schemes().into_iter().map(|scheme| plot(&levels, scheme_name(scheme))).collect(),
+    }
+}
+
+/// Each figure of the levels over that of the finest.
+fn plot(levels: &[Agreement], scheme: &str) -> Plot {
+    let of_scheme: Vec<&Agreement> = levels.iter().filter(|it| it.scheme == scheme).collect();
+    let line = |name: &str, value: fn(&Agreement) -> f64| Series {
+        name: name.into(),
+        points: of_scheme
+            .iter()
+            .map(|level| (level.n as f64, value(level) / value(of_scheme[0])))
+            .collect(),
+        mark: Mark::Line,
+    };
+    Plot {
+        name: format!("lod_levels_{scheme}"),
+        title: format!("Agreement of the levels, {scheme}"),
+        labels: ["vertices along a side".into(), "over that of the finest".into()],
+        axes: Axes::Logarithmic,
+        series: vec![
+            line("droop", |level| level.droop_m),
+            line("swing period", |level| level.swing_period_s),
+            line("tip spread", |level| level.tip_spread_m),
+            line("flutter frequency", |level| level.flutter_hz),
+        ],
     }
 }
 

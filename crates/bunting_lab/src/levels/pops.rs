@@ -17,7 +17,7 @@ use crate::{
     game,
     product::{self, material},
     scenes::{Scene, TICK_RATE},
-    stats,
+    stats::{self, worse},
 };
 
 /// Pixels that a metre takes at a distance of one metre: 1080 lines over a field of view of 60°.
@@ -90,7 +90,7 @@ impl Pop {
             to,
             distance_m,
             mean_px: stats::mean(&pixels(|stray| stray.change)),
-            worst_px: pixels(|stray| stray.change).into_iter().fold(0.0, f64::max),
+            worst_px: pixels(|stray| stray.change).into_iter().fold(0.0, worse),
             after_px: stats::mean(&pixels(|stray| stray.after)),
             own_px: stats::mean(&pixels(|stray| stray.own)),
             twin_px: stats::mean(&pixels(|stray| stray.twin)),
@@ -132,7 +132,7 @@ fn change(from: usize, to: usize, settings: StepSettings, moment: usize) -> Vec<
             frames.push(view.of(&app, flag));
         }
     }
-    let most = |strays: &[f64]| strays.iter().copied().fold(0.0, f64::max);
+    let most = |strays: &[f64]| strays.iter().copied().fold(0.0, worse);
     frames
         .iter()
         .zip(&twin)
@@ -181,7 +181,7 @@ pub fn thrash(n: usize, settings: StepSettings, seconds: f64) -> f64 {
             frames.remove(0);
         }
         if frames.len() == 3 {
-            most = most.max(stray(&frames));
+            most = worse(most, stray(&frames));
         }
     }
     most * PIXELS / distance(n)
@@ -217,5 +217,5 @@ fn stray(frames: &[Vec<Vec3>]) -> f64 {
 
 fn farthest(one: &[Vec3], other: &[Vec3]) -> f64 {
     let distances = one.iter().zip(other).map(|(a, b)| f64::from(a.distance(*b)));
-    distances.fold(0.0, f64::max)
+    distances.fold(0.0, worse)
 }

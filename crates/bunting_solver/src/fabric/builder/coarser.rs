@@ -50,7 +50,8 @@ impl FabricBuilder {
             .map(|(column, row)| grid.index(2 * column, 2 * row))
             .collect();
         let pins = self.pins_among(&vertices);
-        Some(Coarser { builder: Self::grid(halved).pin(pins), vertices })
+        let builder = Self::grid(halved).pin(pins).tethered(self.tethered);
+        Some(Coarser { builder, vertices })
     }
 
     fn simplified(&self) -> Option<Coarser> {
@@ -93,6 +94,7 @@ impl FabricBuilder {
             uv: vertices.iter().map(pick).filter_map(|at| self.uv.get(at).copied()).collect(),
             pinned: self.pins_among(&vertices).collect(),
             weld_distance: Some(self.weld_distance.unwrap_or_else(|| self.default_weld())),
+            tethered: self.tethered,
             grid: None,
         };
         Some(Coarser { builder, vertices })
@@ -165,6 +167,16 @@ mod tests {
         assert_eq!(builder.pinned.len(), fine.pinned.len());
         let area = |builder: &FabricBuilder| builder.clone().build().expect("a cloth").area();
         assert!((area(&builder) / area(&fine) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn what_has_no_tethers_has_none_at_any_level() {
+        let grid = FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0)).pin([0, 8]);
+        for builder in [grid, curtain()] {
+            let coarser = builder.tethered(false).coarser().expect("a level").builder;
+            let fabric = coarser.build().expect("a cloth");
+            assert!(fabric.has_pins() && fabric.tethers().is_empty());
+        }
     }
 
     #[test]
