@@ -1,5 +1,5 @@
 //! What a level cannot show: how far the surface of a flag lies from the same surface at a coarser
-//! level's vertices, with straight lines between them. The plugin's estimate of a level's error is
+//! level's vertices, with the triangles between them. The plugin's estimate of a level's error is
 //! drawn from this table.
 
 use bunting_solver::{LevelTransfer, StepSettings};
