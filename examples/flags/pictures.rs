@@ -135,7 +135,7 @@ impl Pictures {
     pub fn take_due(&mut self, app: &mut App, now: f64) {
         while let Some(time) = self.times.pop_if(|time| *time <= now) {
             let target = self.open_shutter(app.world_mut(), true);
-            let file = self.directory.join(format!("flags_{time:05.2}_s.png"));
+            let file = self.directory.join(format!("{}_{time:05.2}_s.png", env!("CARGO_BIN_NAME")));
             let shot = app.world_mut().spawn(Screenshot(target)).observe(save_to_disk(file)).id();
             draw_until(app, |world| world.get_entity(shot).is_err());
             self.open_shutter(app.world_mut(), false);

@@ -3,6 +3,7 @@
 use bevy_app::prelude::*;
 use bevy_bunting::bunting_solver::LaneCount;
 use bevy_bunting::prelude::*;
+use bevy_bunting::{ClothSubstep, ClothSubstepSystems};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_tasks::{ComputeTaskPool, TaskPoolBuilder};
@@ -14,7 +15,7 @@ fn furnish(app: &mut App) -> Vec<Entity> {
     let world = app.world_mut();
     world.spawn(WindField::steady(Vec3::new(4.0, 0.0, 1.0)).with_gusts(3.0, 0.7, 5));
     world.spawn((ClothCollider::ball(0.3), Transform::from_xyz(1.0, -0.6, 0.2)));
-    world.spawn((LodViewer, Transform::from_xyz(0.0, 0.0, 12.0)));
+    world.spawn((LodViewer::default(), Transform::from_xyz(0.0, 0.0, 12.0)));
     let mut cloths: Vec<Entity> = (0..11)
         .map(|index| {
             let levels = LodSet::new([8.0 + index as f32]);
@@ -54,6 +55,24 @@ fn the_width_of_the_lanes_changes_no_bit() {
     for lanes in [None, Some(LaneCount::Eight), Some(LaneCount::Sixteen)] {
         assert_eq!(run_one(lanes), scalar, "{lanes:?}");
     }
+}
+
+/// With a system of the user's in the substep, all batches go through it together; else one by one.
+#[test]
+fn who_looks_on_changes_no_bit() {
+    let run_one = |watched: bool| {
+        let mut app = app();
+        if watched {
+            app.add_systems(ClothSubstep, (|| {}).in_set(ClothSubstepSystems::Integrate));
+        }
+        let coarse = StepSettings { substeps: 1, ..StepSettings::default() };
+        app.world_mut().resource_mut::<ClothSettings>().steps =
+            vec![StepSettings::default(), coarse];
+        let cloths = furnish(&mut app);
+        run(&mut app, 120);
+        all_bits(&app, &cloths)
+    };
+    assert_eq!(run_one(true), run_one(false));
 }
 
 #[test]

@@ -95,7 +95,7 @@ fn bad_levels_and_attachments_are_named() {
     assert_eq!(errors.len(), 6, "{errors:?}");
     let has = |test: &dyn Fn(&ClothError) -> bool| assert!(errors.iter().any(test), "{errors:?}");
     has(&|error| matches!(error, ClothError::NotNested { entity, .. } if *entity == not_nested));
-    has(&|error| matches!(error, ClothError::Distances { entity } if *entity == unordered));
+    has(&|error| matches!(error, ClothError::Levels { entity } if *entity == unordered));
     has(&|error| matches!(error, ClothError::PinnedLevel { entity, .. } if *entity == pinned));
     has(
         &|error| matches!(error, ClothError::NoVertices { entity, level: 0 } if *entity == nothing),

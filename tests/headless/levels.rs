@@ -3,9 +3,9 @@
 use bevy_app::prelude::*;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{Vec2, Vec3};
 use bevy_transform::prelude::*;
-use bunting_tests::{Seen, app, assert_finite, run, state};
+use bunting_tests::{FLAG, Seen, app, assert_finite, run, state};
 
 fn flag(app: &mut App) -> Entity {
     app.world_mut()
@@ -24,7 +24,7 @@ fn levels_follow_the_viewer_and_stay_finite() {
     app.world_mut().spawn(WindField::steady(Vec3::new(5.0, 0.0, 2.0)));
     run(&mut app, 10);
     assert_eq!(state(&app, cloth).level(), 0, "without a viewer the finest");
-    let viewer = app.world_mut().spawn((LodViewer, Transform::default())).id();
+    let viewer = app.world_mut().spawn((LodViewer::default(), Transform::default())).id();
     let away = |app: &mut App, distance: f32| {
         app.world_mut().entity_mut(viewer).insert(Transform::from_xyz(0.0, 0.0, distance));
         run(app, 10);
@@ -62,8 +62,8 @@ fn levels_follow_the_viewer_and_stay_finite() {
 fn the_nearest_viewer_counts() {
     let mut app = app();
     let cloth = flag(&mut app);
-    app.world_mut().spawn((LodViewer, Transform::from_xyz(0.0, 0.0, 100.0)));
-    app.world_mut().spawn((LodViewer, Transform::from_xyz(0.0, 0.0, -15.0)));
+    app.world_mut().spawn((LodViewer::default(), Transform::from_xyz(0.0, 0.0, 100.0)));
+    app.world_mut().spawn((LodViewer::default(), Transform::from_xyz(0.0, 0.0, -15.0)));
     run(&mut app, 3);
     assert_eq!(state(&app, cloth).level(), 1);
 }
@@ -83,7 +83,7 @@ fn thrashing_is_harmless() {
 
 /// The state between the choice of levels and the step: the one that was moved.
 #[test]
-fn shared_particles_keep_their_place() {
+fn shared_particles_stay_near_their_place() {
     #[derive(Resource, Default)]
     struct Moved(Vec<Vec3>);
     let mut app = app();
@@ -108,8 +108,91 @@ fn shared_particles_keep_their_place() {
             for column in 0..17 {
                 let stride = |count: usize| if count == 33 { 2 } else { 1 };
                 let at = |count: usize| stride(count) * (row * count + column);
-                assert_eq!(before[at(from)], moved[at(to)], "row {row}, column {column}");
+                // But for the strain that is taken off.
+                let apart = before[at(from)].distance(moved[at(to)]);
+                assert!(apart < 0.02, "row {row}, column {column}: {apart}");
             }
         }
     }
+}
+
+/// A curtain with a hole, as plain triangles.
+fn curtain(cells: u32) -> ClothMesh {
+    let corners = cells + 1;
+    let index = |column: u32, row: u32| row * corners + column;
+    let in_hole = |at: u32| (cells / 3..cells - cells / 3).contains(&at);
+    let mut triangles = Vec::new();
+    for row in 0..cells {
+        for column in 0..cells {
+            if !(in_hole(row) && in_hole(column)) {
+                let [a, b] = [index(column, row), index(column + 1, row)];
+                let [c, d] = [index(column, row + 1), index(column + 1, row + 1)];
+                triangles.extend([a, c, d, a, d, b]);
+            }
+        }
+    }
+    let mut used = triangles.clone();
+    used.sort_unstable();
+    used.dedup();
+    let indices = triangles.iter().map(|at| used.binary_search(at).expect("it is used") as u32);
+    let uv = |&at: &u32| Vec2::new((at % corners) as f32, (at / corners) as f32) / cells as f32;
+    let uvs: Vec<Vec2> = used.iter().map(uv).collect();
+    let positions = uvs.iter().map(|uv| Vec3::new(uv.x, -uv.y, 0.0)).collect();
+    ClothMesh::triangles(positions, indices.collect(), uvs)
+}
+
+#[test]
+fn a_curtain_with_a_hole_has_levels() {
+    let mut app = app();
+    let levels = LodSet::new([5.0, 10.0, 20.0, 40.0]);
+    let curtain = (curtain(18), Attachment::in_place(ClothEdge::Top), levels);
+    let cloth = app.world_mut().spawn(curtain).id();
+    app.world_mut().spawn(WindField::steady(Vec3::new(0.5, 0.0, 1.0)));
+    run(&mut app, 60);
+    let counts: Vec<usize> = (0..5)
+        .map(|level| {
+            app.world_mut().get_mut::<LodSet>(cloth).expect("levels").pinned = Some(level);
+            run(&mut app, 30);
+            assert_finite(&app, cloth);
+            state(&app, cloth).positions().len()
+        })
+        .collect();
+    assert!(counts[1] < counts[0] * 2 / 3, "{counts:?}");
+    // Its border is all there; in the end nothing more can go, and it goes on.
+    assert_eq!(counts[3], counts[4], "{counts:?}");
+    let errors = &app.world().resource::<Seen<ClothFailed>>().0;
+    assert!(
+        matches!(errors[..], [ClothFailed { entity, error: ClothError::TooFewLevels { asked: 5, .. } }] if entity == cloth),
+        "{errors:?}"
+    );
+    app.world_mut().get_mut::<LodSet>(cloth).expect("levels").pinned = Some(0);
+    run(&mut app, 60);
+    let state = state(&app, cloth);
+    for link in state.fabric().expect("a fabric").links() {
+        let [a, b] = link.particles.map(|end| state.positions()[end as usize]);
+        let stretch = a.distance(b) / link.rest_length;
+        assert!((0.8..1.1).contains(&stretch), "stretched by {stretch}");
+    }
+}
+
+/// Beside the main thread it takes some updates; then it is as any other.
+#[test]
+fn a_large_cloth_is_cut_beside_the_main_thread() {
+    let mut app = app();
+    app.add_plugins(TaskPoolPlugin::default());
+    let large = ClothMesh::grid(97, 97, 1.0, 1.0);
+    let cloth = app.world_mut().spawn((large, Attachment::in_place(ClothEdge::Left))).id();
+    let small = app.world_mut().spawn((FLAG, Attachment::in_place(ClothEdge::Left))).id();
+    run(&mut app, 3);
+    assert_finite(&app, small);
+    for _ in 0..1000 {
+        if !state(&app, cloth).positions().is_empty() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(10));
+        run(&mut app, 1);
+    }
+    assert_finite(&app, cloth);
+    assert_eq!(state(&app, cloth).positions().len(), 97 * 97);
+    assert!(app.world().resource::<Seen<ClothFailed>>().0.is_empty());
 }

@@ -3,7 +3,9 @@
 mod attachment;
 mod determinism;
 mod errors;
+mod governor;
 mod levels;
 mod lifecycle;
 mod order;
+mod rest;
 mod surroundings;

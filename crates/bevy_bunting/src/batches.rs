@@ -1,12 +1,15 @@
 //! The batches that hold the state of all cloths, one lane a cloth.
 
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use bevy_ecs::prelude::*;
 use bevy_tasks::ComputeTaskPool;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricMaterial, LaneCount, StepSettings,
 };
+
+use crate::lod::Measured;
 
 /// Particles, counted in all lanes, from which a phase of a substep is worth the 30 µs that it
 /// takes to wake other threads.
@@ -28,12 +31,20 @@ pub(crate) struct Newcomer {
     pub material: FabricMaterial,
 }
 
+/// Who sits in a lane, and what they are made of.
+pub(crate) type Seat = (Entity, FabricMaterial);
+
 /// A batch, and whose lanes they are.
 #[derive(Debug)]
 struct Seats {
     batch: ClothBatch,
-    entities: Vec<Option<(Entity, FabricMaterial)>>,
+    entities: Vec<Option<Seat>>,
+    lanes: LaneCount,
+    /// Substeps in this tick.
+    substeps: u32,
     joins: bool,
+    /// Time that its phases have taken in this tick, where that is measured.
+    time: Duration,
 }
 
 /// Cloths that are stepped alike: of one fabric, with the same settings.
@@ -42,6 +53,8 @@ struct Group {
     fabric: Arc<Fabric>,
     settings: StepSettings,
     batches: Vec<Seats>,
+    /// Empty batches, at most one of each width.
+    spare: Vec<Seats>,
     newcomers: Vec<Newcomer>,
     changed: bool,
 }
@@ -50,6 +63,8 @@ struct Group {
 #[derive(Resource, Debug, Default)]
 pub struct ClothBatches {
     groups: Vec<Group>,
+    /// Whether the time of each batch is measured in this tick.
+    pub(crate) measures: bool,
 }
 
 /// One cloth in its batch.
@@ -108,6 +123,7 @@ impl ClothBatches {
                 fabric: Arc::clone(fabric),
                 settings,
                 batches: Vec::new(),
+                spare: Vec::new(),
                 newcomers: Vec::new(),
                 changed: true,
             };
@@ -126,28 +142,28 @@ impl ClothBatches {
         let group = &mut self.groups[slot.group];
         let seats = &mut group.batches[slot.batch];
         group.changed = true;
-        let snapshot = seats.batch.snapshot(slot.lane);
-        seats.batch.remove(slot.lane);
         seats.entities[slot.lane] = None;
-        snapshot
+        seats.batch.snapshot(slot.lane)
     }
 
-    /// Seats newcomers and closes gaps; tells where every cloth of a changed group now is.
+    /// Seats newcomers and closes gaps; tells where every cloth is that has taken another lane.
     pub(crate) fn settle(&mut self, lanes: Option<LaneCount>, mut moved: impl FnMut(Entity, Slot)) {
         for (index, group) in self.groups.iter_mut().enumerate().filter(|(_, group)| group.changed)
         {
-            group.settle(lanes);
-            for (batch, seats) in group.batches.iter().enumerate() {
-                for (lane, seat) in seats.entities.iter().enumerate() {
-                    if let Some((entity, _)) = seat {
-                        moved(*entity, Slot { group: index, batch, lane });
-                    }
-                }
-            }
+            group.settle(lanes, |entity, batch, lane| {
+                moved(entity, Slot { group: index, batch, lane });
+            });
         }
     }
 
+    /// All batches, each with those that sit in its lanes.
+    pub(crate) fn all(&self) -> impl Iterator<Item = (&ClothBatch, &[Option<Seat>])> {
+        let batches = self.groups.iter().flat_map(|group| &group.batches);
+        batches.map(|seats| (&seats.batch, seats.entities.as_slice()))
+    }
+
     /// The batch and lane of a cloth.
+    #[cfg(test)]
     pub(crate) fn at(&self, slot: Slot) -> (&ClothBatch, usize) {
         (&self.groups[slot.group].batches[slot.batch].batch, slot.lane)
     }
@@ -157,11 +173,25 @@ impl ClothBatches {
         LaneMut { seats: &mut self.groups[slot.group].batches[slot.batch], lane: slot.lane }
     }
 
+    /// What every batch cost in the last tick, if it was measured.
+    pub(crate) fn measured(&self) -> impl Iterator<Item = Measured> + '_ {
+        self.groups.iter().flat_map(|group| {
+            group.batches.iter().map(|seats| Measured {
+                particles: group.fabric.particle_count(),
+                settings: group.settings,
+                lanes: seats.lanes,
+                time: seats.time.as_secs_f32() * 1e6,
+            })
+        })
+    }
+
     /// Begins a tick of `tick` seconds in all batches.
     pub(crate) fn begin_tick(&mut self, tick: f32) {
         for group in &mut self.groups {
             let settings = group.settings;
             for seats in &mut group.batches {
+                seats.time = Duration::ZERO;
+                seats.substeps = settings.substeps;
                 seats.batch.begin_tick(tick, settings);
             }
         }
@@ -181,12 +211,18 @@ impl ClothBatches {
 
     /// Does the same with all batches that join in the substep.
     pub(crate) fn for_each_joining(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
-        self.for_each_where(|seats| seats.joins, phase);
+        self.for_each_where(|seats| seats.joins, |seats| phase(&mut seats.batch));
     }
 
     /// Does the same with all batches.
     pub(crate) fn for_each(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
-        self.for_each_where(|_| true, phase);
+        self.for_each_where(|_| true, |seats| phase(&mut seats.batch));
+    }
+
+    /// Does the same as often as each batch has substeps.
+    pub(crate) fn for_each_substep(&mut self, substep: impl Fn(&mut ClothBatch) + Sync) {
+        let all = |seats: &mut Seats| (0..seats.substeps).for_each(|_| substep(&mut seats.batch));
+        self.for_each_where(|_| true, all);
     }
 
     /// On all threads if that pays. Batches share nothing that is written, so the order does not
@@ -194,8 +230,18 @@ impl ClothBatches {
     fn for_each_where(
         &mut self,
         joins: impl Fn(&Seats) -> bool,
-        phase: impl Fn(&mut ClothBatch) + Sync,
+        phase: impl Fn(&mut Seats) + Sync,
     ) {
+        let measures = self.measures;
+        let phase = |seats: &mut Seats| {
+            if measures {
+                let began = Instant::now();
+                phase(seats);
+                seats.time += began.elapsed();
+            } else {
+                phase(seats);
+            }
+        };
         let work: usize = self.joining(&joins).map(|seats| seats.particles()).sum();
         let pool = ComputeTaskPool::try_get().filter(|pool| pool.thread_num() > 1);
         match pool {
@@ -203,14 +249,12 @@ impl ClothBatches {
                 let phase = &phase;
                 pool.scope(|scope| {
                     for seats in self.joining(&joins) {
-                        scope.spawn(async move { phase(&mut seats.batch) });
+                        scope.spawn(async move { phase(seats) });
                     }
                 });
             }
             _ => {
-                for seats in self.joining(&joins) {
-                    phase(&mut seats.batch);
-                }
+                self.joining(&joins).for_each(phase);
             }
         }
     }
@@ -228,7 +272,10 @@ impl Seats {
         Self {
             batch: ClothBatch::new(Arc::clone(fabric), lanes),
             entities: vec![None; lanes.get()],
+            lanes,
+            substeps: 0,
             joins: true,
+            time: Duration::ZERO,
         }
     }
 
@@ -236,24 +283,43 @@ impl Seats {
         self.batch.fabric().particle_count() * self.batch.lane_count()
     }
 
+    /// The lanes that are taken, and by whom.
+    fn taken(&self) -> impl Iterator<Item = (usize, Seat)> + '_ {
+        self.entities.iter().enumerate().filter_map(|(lane, seat)| Some((lane, (*seat)?)))
+    }
+
     fn occupancy(&self) -> usize {
         self.entities.iter().flatten().count()
     }
 
-    fn seat(&mut self, newcomer: &Newcomer) {
-        let lane = self
-            .batch
-            .insert(&newcomer.snapshot, newcomer.material)
-            .expect("only valid cloths are seated, and only where there is room");
+    /// Seats a cloth, and returns its lane.
+    fn seat(&mut self, newcomer: &Newcomer) -> usize {
+        let free = self.entities.iter().position(Option::is_none);
+        let lane = free.expect("cloths are seated only where there is room");
+        self.batch
+            .replace(lane, &newcomer.snapshot, newcomer.material)
+            .expect("only valid cloths are seated");
         self.entities[lane] = Some((newcomer.entity, newcomer.material));
+        lane
     }
 
-    fn dissolve(self, into: &mut Vec<Newcomer>) {
-        let Self { batch, entities, .. } = self;
-        into.extend(entities.iter().enumerate().filter_map(|(lane, seat)| {
-            let (entity, material) = (*seat)?;
-            Some(Newcomer { entity, snapshot: batch.snapshot(lane), material })
-        }));
+    /// Takes everyone out.
+    fn dissolve(&mut self, into: &mut Vec<Newcomer>) {
+        for (lane, seat) in self.entities.iter_mut().enumerate() {
+            if let Some((entity, material)) = seat.take() {
+                into.push(Newcomer { entity, snapshot: self.batch.snapshot(lane), material });
+            }
+        }
+        self.clear_free_lanes();
+    }
+
+    /// Lets no one ride on in a lane whose cloth was taken out.
+    fn clear_free_lanes(&mut self) {
+        for (lane, seat) in self.entities.iter().enumerate() {
+            if seat.is_none() && self.batch.is_occupied(lane) {
+                self.batch.remove(lane);
+            }
+        }
     }
 }
 
@@ -263,28 +329,44 @@ impl Group {
     }
 
     /// Full batches first: keeps those that fit, fullest first, dissolves the others, and seats
-    /// everyone.
-    fn settle(&mut self, lanes: Option<LaneCount>) {
+    /// everyone. Tells who sits in which lane of which batch, of all that did not before.
+    fn settle(&mut self, lanes: Option<LaneCount>, mut moved: impl FnMut(Entity, usize, usize)) {
         let seated: usize = self.batches.iter().map(Seats::occupancy).sum();
-        let widths = widths(seated + self.newcomers.len(), lanes);
-        let mut old = core::mem::take(&mut self.batches);
-        old.sort_by_key(|seats| core::cmp::Reverse(seats.occupancy()));
-        for width in widths {
-            let fitting = old.iter().position(|seats| seats.batch.lane_count() == width.get());
-            self.batches.push(
-                fitting.map_or_else(|| Seats::new(&self.fabric, width), |index| old.remove(index)),
-            );
-        }
-        for seats in old {
+        let mut missing = widths(seated + self.newcomers.len(), lanes);
+        let mut fullest: Vec<usize> = (0..self.batches.len()).collect();
+        fullest.sort_by_key(|&batch| core::cmp::Reverse(self.batches[batch].occupancy()));
+        let mut dissolved = fullest;
+        dissolved.retain(|&batch| {
+            let fitting = missing.iter().position(|&width| width == self.batches[batch].lanes);
+            fitting.map(|index| missing.swap_remove(index)).is_none()
+        });
+        dissolved.sort_unstable();
+        for batch in dissolved.into_iter().rev() {
+            let mut seats = self.batches.swap_remove(batch);
             seats.dissolve(&mut self.newcomers);
+            // One of each width is kept: making one takes longer than a tick.
+            if self.spare.iter().all(|spare| spare.lanes != seats.lanes) {
+                self.spare.push(seats);
+            }
+            for (lane, (entity, _)) in self.batches.get(batch).into_iter().flat_map(Seats::taken) {
+                moved(entity, batch, lane);
+            }
+        }
+        for width in missing {
+            let spare = self.spare.iter().position(|spare| spare.lanes == width);
+            self.batches.push(match spare {
+                Some(index) => self.spare.swap_remove(index),
+                None => Seats::new(&self.fabric, width),
+            });
         }
         let mut newcomers = self.newcomers.drain(..).peekable();
-        for seats in &mut self.batches {
-            while !seats.batch.is_full()
+        for (batch, seats) in self.batches.iter_mut().enumerate() {
+            while seats.occupancy() < seats.entities.len()
                 && let Some(newcomer) = newcomers.next()
             {
-                seats.seat(&newcomer);
+                moved(newcomer.entity, batch, seats.seat(&newcomer));
             }
+            seats.clear_free_lanes();
         }
         debug_assert!(newcomers.peek().is_none(), "there is a lane for everyone");
         drop(newcomers);

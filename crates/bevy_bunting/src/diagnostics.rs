@@ -6,7 +6,7 @@ use bevy_app::{App, Plugin};
 use bevy_diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic};
 use bevy_ecs::prelude::*;
 
-use crate::instance::ClothInstance;
+use crate::lod::LodReport;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// Time that each set of the last [`ClothTick`] took, systems of others in it included.
@@ -29,12 +29,22 @@ impl ClothTimings {
     }
 }
 
-/// Number of cloths at each level of detail in the last tick, the finest first; paused ones count.
+/// Number of cloths that are simulated at each level of detail in the last tick, the finest first;
+/// those that are asleep are told in the [`LodReport`], paused ones count.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub struct ClothCounts(pub Vec<usize>);
 
-/// Measures the sets of [`ClothTick`] and counts cloths, for [`ClothTimings`], [`ClothCounts`] and
-/// Bevy's diagnostics.
+impl ClothCounts {
+    /// Counts a cloth at a level.
+    pub(crate) fn add(&mut self, level: usize) {
+        if self.0.len() <= level {
+            self.0.resize(level + 1, 0);
+        }
+        self.0[level] += 1;
+    }
+}
+
+/// Measures the sets of [`ClothTick`] for [`ClothTimings`], and tells Bevy's diagnostics.
 #[derive(Debug, Default)]
 pub struct ClothDiagnosticsPlugin;
 
@@ -59,6 +69,18 @@ impl ClothDiagnosticsPlugin {
         DiagnosticPath::const_new("cloth/level_2"),
         DiagnosticPath::const_new("cloth/level_3"),
     ];
+
+    /// What the tick was expected to cost, ms.
+    pub const EXPECTED: DiagnosticPath = DiagnosticPath::const_new("cloth/expected");
+
+    /// Number of cloths that changed their level.
+    pub const SWITCHES: DiagnosticPath = DiagnosticPath::const_new("cloth/switches");
+
+    /// Number of cloths that are coarser than they should be, for want of time.
+    pub const HELD_BACK: DiagnosticPath = DiagnosticPath::const_new("cloth/held_back");
+
+    /// Number of cloths that are asleep.
+    pub const ASLEEP: DiagnosticPath = DiagnosticPath::const_new("cloth/asleep");
 }
 
 /// When the set that now runs began.
@@ -68,9 +90,12 @@ struct SetBegan(Instant);
 impl Plugin for ClothDiagnosticsPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<ClothTimings>()
-            .init_resource::<ClothCounts>()
             .insert_resource(SetBegan(Instant::now()))
-            .register_diagnostic(Diagnostic::new(Self::TICK).with_suffix("ms"));
+            .register_diagnostic(Diagnostic::new(Self::TICK).with_suffix("ms"))
+            .register_diagnostic(Diagnostic::new(Self::EXPECTED).with_suffix("ms"))
+            .register_diagnostic(Diagnostic::new(Self::SWITCHES))
+            .register_diagnostic(Diagnostic::new(Self::HELD_BACK))
+            .register_diagnostic(Diagnostic::new(Self::ASLEEP));
         for path in Self::SETS {
             app.register_diagnostic(Diagnostic::new(path).with_suffix("ms"));
         }
@@ -87,7 +112,7 @@ impl Plugin for ClothDiagnosticsPlugin {
                 end::<2>.after(drive).before(step),
                 end::<3>.after(step).before(normals),
                 end::<4>.after(normals).before(publish),
-                (end::<5>, count_cloths, report).chain().after(publish),
+                (end::<5>, report, report_choice).chain().after(publish),
             ),
         );
     }
@@ -103,16 +128,6 @@ fn end<const SET: usize>(mut began: ResMut<SetBegan>, mut timings: ResMut<ClothT
     began.0 = now;
 }
 
-fn count_cloths(cloths: Query<&ClothInstance>, mut counts: ResMut<ClothCounts>) {
-    counts.0.fill(0);
-    for instance in cloths.iter().filter(|instance| instance.levels.is_some()) {
-        if counts.0.len() <= instance.level {
-            counts.0.resize(instance.level + 1, 0);
-        }
-        counts.0[instance.level] += 1;
-    }
-}
-
 fn report(mut diagnostics: Diagnostics, timings: Res<ClothTimings>, counts: Res<ClothCounts>) {
     let milliseconds = |time: Duration| time.as_secs_f64() * 1e3;
     for (path, &time) in ClothDiagnosticsPlugin::SETS.iter().zip(&timings.sets) {
@@ -126,4 +141,12 @@ fn report(mut diagnostics: Diagnostics, timings: Res<ClothTimings>, counts: Res<
     }
     let coarser: usize = counts.0.iter().skip(last).sum();
     diagnostics.add_measurement(&paths[last], || coarser as f64);
+}
+
+fn report_choice(mut diagnostics: Diagnostics, report: Res<LodReport>) {
+    type Paths = ClothDiagnosticsPlugin;
+    diagnostics.add_measurement(&Paths::EXPECTED, || report.expected.as_secs_f64() * 1e3);
+    diagnostics.add_measurement(&Paths::SWITCHES, || report.switches as f64);
+    diagnostics.add_measurement(&Paths::HELD_BACK, || report.held_back as f64);
+    diagnostics.add_measurement(&Paths::ASLEEP, || report.asleep() as f64);
 }

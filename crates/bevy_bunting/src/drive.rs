@@ -25,18 +25,21 @@ impl Plugin for DrivePlugin {
 /// Gravity and wind are the world's; a batch takes them along the axes of the cloth's frame at the
 /// end of the tick.
 pub(crate) fn drive_cloths(
-    cloths: Query<(&ClothInstance, &PoseHistory)>,
+    mut cloths: Query<(&mut ClothInstance, &PoseHistory)>,
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
     mut batches: ResMut<ClothBatches>,
 ) {
-    for (instance, frame) in &cloths {
+    for (mut instance, frame) in &mut cloths {
         let Some(slot) = instance.slot() else { continue };
         let (start, end) = (frame.start(), frame.end());
         let inverse = end.rotation.inverse();
+        let gravity = inverse * settings.gravity;
+        // No change that anyone should look at: it is noted in every tick.
+        instance.bypass_change_detection().gravity = gravity;
         batches.lane(slot).drive(Drive {
             motion: FrameMotion::between(pose_parts(start), pose_parts(end)),
-            gravity: inverse * settings.gravity,
+            gravity,
             wind: inverse * wind.0,
             air_density: settings.air_density,
         });

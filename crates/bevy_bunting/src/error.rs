@@ -23,25 +23,31 @@ pub enum ClothError {
         /// What is wrong with it.
         source: FabricError,
     },
-    /// Switch distances must be positive and grow from level to level.
+    /// Switch distances must be positive and grow from level to level, or there must be a level.
     #[error(
-        "the LodSet of cloth {entity} must have finite distances that grow, and a hysteresis from 0 to 1"
+        "the LodSet of cloth {entity} must have finite distances that grow or at least one level, a hysteresis from 0 to 1, and a positive bias"
     )]
-    Distances {
+    Levels {
         /// The cloth.
         entity: Entity,
     },
-    /// Only grids have levels of detail.
+    /// So many levels cannot be made of the mesh: all of its border and what is attached stays. The
+    /// cloth goes on with those that it has.
     #[error(
-        "cloth {entity} is no grid and so has one level: remove its LodSet, or make the mesh a grid"
+        "cloth {entity} has {built} levels, not {asked}: hardly a triangle more can go; give its LodSet fewer"
     )]
-    NotAGrid {
+    TooFewLevels {
         /// The cloth.
         entity: Entity,
+        /// Levels that it has.
+        built: usize,
+        /// Levels that its `LodSet` asks for.
+        asked: usize,
     },
-    /// The grid cannot be halved as often as there are levels.
+    /// The grid cannot be halved as often as there are levels. The cloth goes on with those that it
+    /// has.
     #[error(
-        "a grid of {columns} × {rows} particles cannot be halved {halvings} times as the LodSet of cloth {entity} asks: make columns − 1 and rows − 1 multiples of 2^{halvings}, or give fewer distances"
+        "a grid of {columns} × {rows} particles cannot be halved {halvings} times as the LodSet of cloth {entity} asks: make columns − 1 and rows − 1 multiples of 2^{halvings}, or give fewer levels"
     )]
     NotNested {
         /// The cloth.
@@ -55,7 +61,7 @@ pub enum ClothError {
     },
     /// The level that the `LodSet` pins does not exist.
     #[error(
-        "cloth {entity} is pinned to level {level}, but has {levels}: pin a lower level, or give more distances"
+        "cloth {entity} is pinned to level {level}, but has {levels}: pin a lower level, or give more levels"
     )]
     PinnedLevel {
         /// The cloth.
@@ -65,7 +71,8 @@ pub enum ClothError {
         /// Number of levels.
         levels: usize,
     },
-    /// The attachment holds nothing.
+    /// The attachment holds nothing. At a coarser level than the finest, the cloth goes on with the
+    /// levels that are held.
     #[error(
         "the attachment of cloth {entity} holds no vertex at level {level}: choose vertices that the level has; an edge or a corner of a mesh without uv has none"
     )]

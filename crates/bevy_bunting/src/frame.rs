@@ -2,8 +2,10 @@
 
 use bevy_app::prelude::*;
 use bevy_app::{AnimationSystems, RunFixedMainLoop, RunFixedMainLoopSystems};
-use bevy_ecs::hierarchy::ChildOf;
+use bevy_ecs::entity::EntityHashSet;
+use bevy_ecs::hierarchy::{ChildOf, Children};
 use bevy_ecs::prelude::*;
+use bevy_ecs::system::SystemParam;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_time::{Time, Virtual};
 use bevy_transform::TransformSystems;
@@ -54,17 +56,56 @@ impl Plugin for AttachmentPlugin {
 }
 
 type Followers<'w, 's> =
-    Query<'w, 's, (Entity, &'static mut PoseHistory, Option<&'static Attachment>)>;
+    Query<'w, 's, (Entity, &'static mut PoseHistory, Option<Ref<'static, Attachment>>)>;
+
+type MayHaveMoved = Or<(Changed<Transform>, Changed<ChildOf>)>;
+
+/// Tells what stands where it stood when the system last ran: much less work than to ask where.
+#[derive(SystemParam)]
+struct Stillness<'w, 's> {
+    changed: Query<'w, 's, Entity, MayHaveMoved>,
+    orphans: RemovedComponents<'w, 's, ChildOf>,
+    children: Query<'w, 's, &'static Children>,
+    /// What has moved, and all that hangs on it.
+    moved: Local<'s, EntityHashSet>,
+    open: Local<'s, Vec<Entity>>,
+}
+
+impl Stillness<'_, '_> {
+    /// Finds out what has moved; to be called once, before anything is asked.
+    fn note(&mut self) {
+        self.moved.clear();
+        self.open.extend(self.changed.iter());
+        self.open.extend(self.orphans.read());
+        while let Some(entity) = self.open.pop() {
+            if self.moved.insert(entity)
+                && let Ok(children) = self.children.get(entity)
+            {
+                self.open.extend(children.iter());
+            }
+        }
+    }
+
+    /// Whether neither the entity nor any that it hangs on was moved.
+    fn of(&self, entity: Entity) -> bool {
+        !self.moved.contains(&entity)
+    }
+}
 
 /// Notes where everything is in a frame; `EARLY`, before its ticks.
 fn observe_frames<const EARLY: bool>(
     mut followers: Followers,
     transforms: TransformHelper,
+    mut stillness: Stillness,
     time: Res<Time<Virtual>>,
 ) {
+    stillness.note();
     let now = time.elapsed_secs_f64();
     for (entity, mut history, attachment) in &mut followers {
-        if let Some(pose) = frame_of(entity, attachment, &transforms).filter(is_finite) {
+        let pose = rest_of(entity, &history, attachment.as_ref(), &stillness);
+        let attachment = attachment.as_deref();
+        let pose = pose.or_else(|| frame_of(entity, attachment, &transforms).filter(is_finite));
+        if let Some(pose) = pose {
             history.observe_frame(now, pose, teleport_distance(attachment), EARLY);
         }
     }
@@ -75,13 +116,21 @@ fn observe_ticks(
     mut followers: Followers,
     mut instances: Query<&mut ClothInstance>,
     transforms: TransformHelper,
+    mut stillness: Stillness,
     time: Res<Time>,
     frames: Res<Time<Virtual>>,
     mut commands: Commands,
 ) {
+    stillness.note();
     let (now, tick, frame) =
         (time.elapsed_secs_f64(), time.delta_secs_f64(), frames.delta_secs_f64());
     for (entity, mut history, attachment) in &mut followers {
+        let rest = rest_of(entity, &history, attachment.as_ref(), &stillness);
+        let attachment = attachment.as_deref();
+        if let Some(pose) = rest {
+            history.observe_tick(now, tick, frame, pose, teleport_distance(attachment));
+            continue;
+        }
         let pose = frame_of(entity, attachment, &transforms);
         match pose.filter(is_finite) {
             Some(pose) => {
@@ -101,20 +150,31 @@ fn observe_ticks(
     }
 }
 
-type Placed = (Entity, Option<&'static Attachment>, Option<&'static ChildOf>);
+type Placed = (Entity, Option<Ref<'static, Attachment>>, Option<&'static ChildOf>);
+
+type Standing<'w, 's> = (TransformHelper<'w, 's>, Stillness<'w, 's>);
+
+type Written<'w, 's> = Query<'w, 's, (&'static mut Transform, &'static mut GlobalTransform)>;
 
 /// Writes the transforms of attached cloths: where their targets are now, whatever the last tick
 /// saw.
 fn place_cloths(
     cloths: Query<Placed, With<ClothMesh>>,
-    mut transforms: ParamSet<(TransformHelper, Query<(&mut Transform, &mut GlobalTransform)>)>,
+    mut transforms: ParamSet<(Standing, Written)>,
     mut placed: Local<Vec<(Entity, Option<Transform>, GlobalTransform)>>,
 ) {
-    let current = transforms.p0();
+    let (current, mut stillness) = transforms.p0();
+    stillness.note();
     placed.clear();
     placed.extend(cloths.iter().filter_map(|(entity, attachment, parent)| {
         let parent = parent.map(ChildOf::parent);
+        let target = attachment.as_ref().and_then(|it| it.target_other_than(entity));
+        let unchanged = attachment.as_ref().is_none_or(|attachment| !attachment.is_changed());
+        if unchanged && stillness.of(entity) && target.is_none_or(|target| stillness.of(target)) {
+            return None;
+        }
         match attachment
+            .as_deref()
             .and_then(|attachment| Some((attachment, attachment.target_other_than(entity)?)))
         {
             Some((attachment, target)) => {
@@ -149,6 +209,19 @@ fn place_cloths(
             global_transform.set_if_neq(global);
         }
     }
+}
+
+/// The pose of a cloth's frame, or a collider's, if it rests and nothing has moved it.
+fn rest_of(
+    entity: Entity,
+    history: &PoseHistory,
+    attachment: Option<&Ref<Attachment>>,
+    stillness: &Stillness,
+) -> Option<Isometry3d> {
+    let rest = history.rest()?;
+    let followed = attachment.and_then(|attachment| attachment.target_other_than(entity));
+    let attached = attachment.is_none_or(|attachment| !attachment.is_changed());
+    (attached && stillness.of(followed.unwrap_or(entity))).then_some(rest)
 }
 
 /// The pose of a cloth's frame, or a collider's, as its entity or target stands now. None if the

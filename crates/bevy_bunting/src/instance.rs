@@ -3,8 +3,10 @@
 use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
 use bunting_solver::{ClothSnapshot, Fabric, FabricMaterial};
 
+use crate::activity::ClothActivity;
 use crate::batches::{ClothBatches, Slot};
 use crate::levels::{ClothLevels, hold_pins};
 
@@ -26,8 +28,13 @@ pub(crate) struct ClothInstance {
     pub levels: Option<Arc<ClothLevels>>,
     pub level: usize,
     pub place: Place,
+    /// Its fabrics are being cut.
+    pub cutting: bool,
+    pub activity: ClothActivity,
     /// The last good material.
     pub material: FabricMaterial,
+    /// Gravity in the last tick, along the axes of the cloth's frame, m/s².
+    pub gravity: Vec3,
     /// The attachment's target that the levels were cut for; the cloth itself stands for its own
     /// transform, none for no attachment.
     pub target: Option<Entity>,
@@ -59,6 +66,13 @@ impl ClothInstance {
         self.levels.as_ref().map(|levels| levels.fabric(self.level))
     }
 
+    /// Ends a rest: what acts on the cloth has changed.
+    pub fn wake(&mut self) {
+        if self.activity == ClothActivity::AtRest {
+            self.activity = ClothActivity::Ticking;
+        }
+    }
+
     /// Takes the state out of its lane.
     pub fn unseat(&mut self, batches: &mut ClothBatches) {
         if let Place::Seated(slot) = self.place {
@@ -70,7 +84,8 @@ impl ClothInstance {
     pub fn change_level(&mut self, to: usize, batches: &mut ClothBatches) {
         self.unseat(batches);
         if let (Some(levels), Place::Waiting(snapshot)) = (&self.levels, &mut self.place) {
-            *snapshot = levels.transfer(core::mem::take(snapshot), self.level, to);
+            let state = core::mem::take(snapshot);
+            *snapshot = levels.transfer(state, (self.level, to), &self.material, self.gravity);
         }
         self.level = to;
     }
@@ -78,6 +93,7 @@ impl ClothInstance {
     /// Takes other fabrics. The state is kept if it fits, as when only the pins change; else the
     /// cloth begins at rest.
     pub fn recut(&mut self, levels: Arc<ClothLevels>, batches: &mut ClothBatches) {
+        self.wake();
         self.unseat(batches);
         let level = self.level.min(levels.count() - 1);
         let fits = level == self.level
@@ -94,6 +110,7 @@ impl ClothInstance {
 
     /// Puts the cloth back to rest.
     pub fn rest(&mut self, batches: &mut ClothBatches) {
+        self.wake();
         if let Place::Seated(slot) = self.place {
             batches.lane(slot).rest();
         } else if let Some(fabric) = self.fabric() {

@@ -4,85 +4,166 @@ use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
 use bevy_ecs::prelude::*;
-use bunting_solver::{ClothSnapshot, Fabric, FabricBuilder, LevelTransfer};
+use bevy_math::Vec3;
+use bevy_tasks::{AsyncComputeTaskPool, Task, futures::check_ready};
+use bunting_solver::{
+    ClothSnapshot, Fabric, FabricBuilder, FabricError, FabricMaterial, LevelTransfer,
+};
 
 use crate::attachment::Attachment;
 use crate::error::ClothError;
 use crate::lod::LodSet;
 use crate::mesh::ClothMesh;
 
+/// Vertices from which a cloth is cut beside the main thread, where there are threads: it takes
+/// some ticks then.
+const LARGE: usize = 8192;
+
 /// The fabrics of one cloth, the finest first, and how state moves between neighbours.
 #[derive(Debug)]
 pub(crate) struct ClothLevels {
-    fabrics: Vec<Arc<Fabric>>,
+    levels: Vec<Level>,
     transfers: Vec<LevelTransfer>,
+    /// Number of levels that were asked for.
+    asked: usize,
+    /// Why there are fewer.
+    lack: Option<Lack>,
+}
+
+#[derive(Debug)]
+struct Level {
+    fabric: Arc<Fabric>,
+    /// The vertices of the finest mesh that it has.
+    vertices: Vec<u32>,
+    /// Three of its own vertices a triangle.
+    #[cfg(feature = "render")]
+    indices: Vec<u32>,
+}
+
+impl Level {
+    #[cfg_attr(not(feature = "render"), expect(unused_variables, reason = "drawn only"))]
+    fn new(fabric: Arc<Fabric>, vertices: Vec<u32>, builder: &FabricBuilder) -> Self {
+        Self {
+            fabric,
+            vertices,
+            #[cfg(feature = "render")]
+            indices: builder.indices().to_vec(),
+        }
+    }
+}
+
+/// Why a level cannot be cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Lack {
+    /// The grid cannot be halved, or the mesh has nothing to leave out.
+    Particles,
+    /// Nothing would hold it.
+    Pins,
 }
 
 impl ClothLevels {
-    /// The fabric of a level.
+    /// The fabric of a level. Levels that could not be cut have that of the coarsest that could.
     pub fn fabric(&self, level: usize) -> &Arc<Fabric> {
-        &self.fabrics[level]
+        &self.level(level).fabric
     }
 
-    /// Number of levels.
+    /// Number of levels that were asked for.
     pub fn count(&self) -> usize {
-        self.fabrics.len()
+        self.asked
     }
 
-    /// The state at one level, moved to another.
-    pub fn transfer(&self, mut snapshot: ClothSnapshot, from: usize, to: usize) -> ClothSnapshot {
-        for level in from..to {
-            snapshot = self.transfers[level].restrict(&snapshot);
+    /// The finest mesh's vertices that a level has, and its triangles as indices into them.
+    #[cfg(feature = "render")]
+    pub fn mesh(&self, level: usize) -> (&[u32], &[u32]) {
+        let level = self.level(level);
+        (&level.vertices, &level.indices)
+    }
+
+    fn level(&self, level: usize) -> &Level {
+        &self.levels[level.min(self.levels.len() - 1)]
+    }
+
+    /// What a cloth of this mesh is to be told about levels that could not be cut.
+    pub fn lack(&self, entity: Entity, mesh: &ClothMesh) -> Option<ClothError> {
+        let (built, asked) = (self.levels.len(), self.asked);
+        Some(match (self.lack?, mesh.as_grid()) {
+            (Lack::Pins, _) => ClothError::NoVertices { entity, level: built },
+            (Lack::Particles, Some(grid)) => ClothError::NotNested {
+                entity,
+                columns: grid.columns,
+                rows: grid.rows,
+                halvings: asked - 1,
+            },
+            (Lack::Particles, None) => ClothError::TooFewLevels { entity, built, asked },
+        })
+    }
+
+    /// The state at one level, moved to another, for a cloth of a material under a gravity along
+    /// the axes of its frame, m/s².
+    pub fn transfer(
+        &self,
+        mut snapshot: ClothSnapshot,
+        (from, to): (usize, usize),
+        material: &FabricMaterial,
+        gravity: Vec3,
+    ) -> ClothSnapshot {
+        for transfer in self.between(from, to) {
+            snapshot = transfer.restrict(&snapshot, material, gravity);
         }
-        for level in (to..from).rev() {
-            snapshot = self.transfers[level].prolong(&snapshot);
+        for transfer in self.between(to, from).rev() {
+            snapshot = transfer.prolong(&snapshot, material, gravity);
         }
-        hold_pins(&mut snapshot, self.fabric(to));
         snapshot
     }
 
-    fn cut(
-        entity: Entity,
-        mesh: &ClothMesh,
-        pinned: Option<&[u32]>,
-        lods: &LodSet,
-    ) -> Result<Self, ClothError> {
-        let build = |builder: FabricBuilder, pins: &[u32]| {
-            let fabric = builder.pin(pins.iter().copied()).build();
-            fabric.map(Arc::new).map_err(|source| ClothError::Mesh { entity, source })
-        };
-        let mut fabrics = vec![build(mesh.builder(), pinned.unwrap_or_default())?];
-        let mut transfers = Vec::new();
-        for level in 1..lods.levels() {
-            let mut grid = mesh.as_grid().ok_or(ClothError::NotAGrid { entity })?;
-            let halvings = lods.levels() - 1;
-            let (columns, rows) = (grid.columns, grid.rows);
-            for _ in 0..level {
-                grid = grid.halved().ok_or(ClothError::NotNested {
-                    entity,
-                    columns,
-                    rows,
-                    halvings,
-                })?;
-            }
-            let stride = 1 << level;
-            let pins: Vec<u32> = (0..grid.rows)
-                .flat_map(|row| (0..grid.columns).map(move |column| (column, row)))
-                .filter(|&(column, row)| {
-                    fabrics[0].is_pinned((row * stride * columns + column * stride) as usize)
-                })
-                .map(|(column, row)| grid.index(column, row))
-                .collect();
-            if pinned.is_some() && pins.is_empty() {
-                return Err(ClothError::NoVertices { entity, level });
-            }
-            let fabric = build(FabricBuilder::grid(grid), &pins)?;
-            let transfer = LevelTransfer::between(&fabrics[level - 1], &fabric)
-                .map_err(|_| ClothError::NotNested { entity, columns, rows, halvings })?;
-            transfers.push(transfer);
-            fabrics.push(fabric);
+    /// Values at the particles of a level, spread over its triangles to those of a finer level.
+    pub fn spread(&self, mut values: Vec<Vec3>, from: usize, to: usize) -> Vec<Vec3> {
+        for transfer in self.between(to, from).rev() {
+            values = transfer.spread(&values).collect();
         }
-        Ok(Self { fabrics, transfers })
+        values
+    }
+
+    /// What lies between a level and a coarser one.
+    fn between(
+        &self,
+        fine: usize,
+        coarse: usize,
+    ) -> impl DoubleEndedIterator<Item = &LevelTransfer> {
+        let end = coarse.min(self.transfers.len());
+        self.transfers[fine.min(end)..end].iter()
+    }
+
+    /// Cuts as many levels as are asked for, or as can be.
+    fn cut(mut builder: FabricBuilder, asked: usize) -> Result<Self, FabricError> {
+        let fabric = Arc::new(builder.clone().build()?);
+        let held = fabric.has_pins();
+        let all = (0..fabric.particle_of_vertex().len() as u32).collect();
+        let finest = Level::new(fabric, all, &builder);
+        let mut cut = Self { levels: vec![finest], transfers: Vec::new(), asked, lack: None };
+        while cut.levels.len() < asked {
+            let finer = cut.level(usize::MAX);
+            let next = builder.coarser().and_then(|coarser| {
+                let fabric = Arc::new(coarser.builder.clone().build().ok()?);
+                let transfer =
+                    LevelTransfer::nested(&finer.fabric, &fabric, &coarser.vertices).ok()?;
+                Some((coarser, fabric, transfer))
+            });
+            let Some((coarser, fabric, transfer)) = next else {
+                cut.lack = Some(Lack::Particles);
+                break;
+            };
+            if held && !fabric.has_pins() {
+                cut.lack = Some(Lack::Pins);
+                break;
+            }
+            let of_finest = |&vertex: &u32| finer.vertices[vertex as usize];
+            let vertices = coarser.vertices.iter().map(of_finest).collect();
+            builder = coarser.builder;
+            cut.levels.push(Level::new(fabric, vertices, &builder));
+            cut.transfers.push(transfer);
+        }
+        Ok(cut)
     }
 }
 
@@ -99,10 +180,12 @@ pub(crate) fn hold_pins(snapshot: &mut ClothSnapshot, fabric: &Fabric) {
 #[derive(Resource, Debug, Default)]
 pub(crate) struct FabricLibrary {
     cut: HashMap<Vec<u32>, Weak<ClothLevels>>,
+    /// What is being cut beside the main thread.
+    cutting: HashMap<Vec<u32>, Task<Result<ClothLevels, FabricError>>>,
 }
 
 impl FabricLibrary {
-    /// The fabrics of a cloth, cut now or before.
+    /// The fabrics of a cloth, cut now or before; none while they are being cut: ask again.
     ///
     /// # Errors
     ///
@@ -113,7 +196,7 @@ impl FabricLibrary {
         mesh: &ClothMesh,
         attachment: Option<&Attachment>,
         lods: &LodSet,
-    ) -> Result<Arc<ClothLevels>, ClothError> {
+    ) -> Result<Option<Arc<ClothLevels>>, ClothError> {
         lods.validate(entity)?;
         let pinned = attachment.map(|attachment| attachment.vertices.choose(&mesh.uvs()));
         if pinned.as_ref().is_some_and(Vec::is_empty) {
@@ -121,12 +204,26 @@ impl FabricLibrary {
         }
         let key = key(mesh, pinned.as_deref(), lods);
         if let Some(levels) = self.cut.get(&key).and_then(Weak::upgrade) {
-            return Ok(levels);
+            return Ok(Some(levels));
         }
-        let levels = Arc::new(ClothLevels::cut(entity, mesh, pinned.as_deref(), lods)?);
+        let asked = lods.levels();
+        let builder = || mesh.builder().pin(pinned.iter().flatten().copied());
+        let cut = match (self.cutting.get_mut(&key), AsyncComputeTaskPool::try_get()) {
+            (Some(task), _) => check_ready(task),
+            (None, Some(pool)) if mesh.vertex_count() >= LARGE => {
+                let builder = builder();
+                let task = pool.spawn(async move { ClothLevels::cut(builder, asked) });
+                self.cutting.insert(key.clone(), task);
+                None
+            }
+            _ => Some(ClothLevels::cut(builder(), asked)),
+        };
+        let Some(cut) = cut else { return Ok(None) };
+        self.cutting.remove(&key);
+        let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
         self.cut.retain(|_, levels| levels.strong_count() > 0);
         self.cut.insert(key, Arc::downgrade(&levels));
-        Ok(levels)
+        Ok(Some(levels))
     }
 }
 
@@ -161,7 +258,8 @@ mod tests {
         lods: LodSet,
     ) -> Result<Arc<ClothLevels>, ClothError> {
         let attachment = Attachment::in_place(edge);
-        library.levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods)
+        let levels = library.levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods);
+        levels.map(|levels| levels.expect("small cloths are cut at once"))
     }
 
     #[test]
@@ -191,12 +289,42 @@ mod tests {
     }
 
     #[test]
-    fn too_many_levels_are_an_error() {
-        let result =
-            levels(&mut FabricLibrary::default(), ClothEdge::Left, LodSet::new([1.0, 2.0, 3.0]));
+    fn levels_that_cannot_be_cut_are_told_of_and_repeat_the_coarsest() {
+        let lods = LodSet::new([1.0, 2.0, 3.0]);
+        let levels = levels(&mut FabricLibrary::default(), ClothEdge::Left, lods).expect("a flag");
         assert!(matches!(
-            result,
-            Err(ClothError::NotNested { columns: 9, rows: 5, halvings: 3, .. })
+            levels.lack(Entity::PLACEHOLDER, &FLAG),
+            Some(ClothError::NotNested { columns: 9, rows: 5, halvings: 3, .. })
         ));
+        assert_eq!(levels.count(), 4);
+        assert!(Arc::ptr_eq(levels.fabric(2), levels.fabric(3)));
+        let state = ClothSnapshot::at_rest(levels.fabric(3));
+        let moved = levels.transfer(state.clone(), (3, 2), &FabricMaterial::SILK, Vec3::ZERO);
+        assert_eq!(moved, state);
+        assert_eq!(levels.spread(state.positions, 3, 0).len(), 45);
+    }
+
+    /// The flag as plain triangles.
+    fn triangles() -> ClothMesh {
+        let flag = FLAG.builder().build().expect("a flag");
+        let indices = flag.triangles().as_flattened().to_vec();
+        ClothMesh::triangles(flag.rest_positions().to_vec(), indices, FLAG.uvs())
+    }
+
+    #[test]
+    fn any_mesh_has_levels_that_keep_what_is_attached() {
+        let mesh = triangles();
+        let attachment = Attachment::in_place(ClothEdge::Left);
+        let lods = LodSet::new([5.0, 10.0, 20.0]);
+        let levels = FabricLibrary::default()
+            .levels(Entity::PLACEHOLDER, &mesh, Some(&attachment), &lods)
+            .expect("a cloth")
+            .expect("at once");
+        let fabric = levels.fabric(1);
+        assert!(fabric.particle_count() < 45);
+        let pinned = (0..fabric.particle_count()).filter(|&particle| fabric.is_pinned(particle));
+        assert_eq!(pinned.count(), 5);
+        let lack = levels.lack(Entity::PLACEHOLDER, &mesh);
+        assert!(matches!(lack, Some(ClothError::TooFewLevels { asked: 4, .. })), "{lack:?}");
     }
 }

@@ -45,7 +45,12 @@
 //! | [`ClothCollider`] | anything | a shape that cloth does not enter |
 //! | [`LodViewer`] | a camera | what levels of detail look to |
 //!
-//! [`ClothSettings`] holds gravity, the density of air and how finely each level is solved.
+//! [`ClothSettings`] holds gravity, the density of air and how finely each level is solved;
+//! [`ClothBudget`] how much time cloths with [`LodSet::automatic`] may take, and [`LodReport`] what
+//! was made of it.
+//!
+//! A cloth at rest is asleep, and so is one with [`LodSet::automatic`] that no [`LodViewer`] sees:
+//! [`ClothState::activity`] tells.
 //!
 //! # Sets
 //!
@@ -81,13 +86,17 @@
 //! # Determinism
 //!
 //! The same world, stepped alike, gives the same bits: they depend neither on what else is in the
-//! world, nor on the number of threads.
+//! world, nor on the number of threads. Only [`LodSet::automatic`] shares a budget among all cloths,
+//! and by default measures what they cost; with [`LodCosts::Fixed`] it, too, chooses alike on every
+//! machine.
 
+mod activity;
 mod attachment;
 mod batches;
 mod collider;
 mod diagnostics;
 mod drive;
+mod easing;
 mod error;
 mod frame;
 mod instance;
@@ -99,6 +108,7 @@ mod prepare;
 mod publish;
 #[cfg(feature = "render")]
 mod render;
+mod rest;
 mod schedule;
 mod seat;
 mod settings;
@@ -112,21 +122,27 @@ use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::intern::Interned;
 use bevy_ecs::schedule::ScheduleLabel;
 
+pub use activity::ClothActivity;
 pub use attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
 pub use batches::ClothBatches;
 pub use bunting_solver;
 pub use collider::{ClothCollider, ColliderPlugin};
 pub use diagnostics::{ClothCounts, ClothDiagnosticsPlugin, ClothTimings};
 pub use drive::DrivePlugin;
+pub use easing::EasingPlugin;
 pub use error::{ClothError, ClothFailed};
 pub use frame::AttachmentPlugin;
-pub use lod::{ClothLevelChanged, LodPlugin, LodSet, LodViewer};
+pub use lod::{
+    ClothBudget, ClothLevelChanged, CostTable, Lens, LodChoice, LodCosts, LodPlugin, LodReport,
+    LodSet, LodViewer,
+};
 pub use mesh::{ClothMaterial, ClothMesh, ClothPaused};
 pub use parry3d;
 pub use prepare::{ClothTargetLost, PreparePlugin};
 pub use publish::PublishPlugin;
 #[cfg(feature = "render")]
 pub use render::{ClothDebugPlugin, ClothGizmos, ClothRenderPlugin, ClothRenderSystems};
+pub use rest::RestPlugin;
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
@@ -141,10 +157,11 @@ pub use wind::{TickWind, WindField, WindPlugin};
 /// Everything that one usually needs.
 pub mod prelude {
     pub use crate::{
-        AttachedVertices, Attachment, ClothCollider, ClothCorner, ClothEdge, ClothError,
-        ClothFailed, ClothLevelChanged, ClothMaterial, ClothMesh, ClothPaused, ClothPlugins,
-        ClothSettings, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick, LodSet,
-        LodViewer, TargetLost, TeleportCloth, TeleportMode, WindField,
+        AttachedVertices, Attachment, ClothActivity, ClothBudget, ClothCollider, ClothCorner,
+        ClothEdge, ClothError, ClothFailed, ClothLevelChanged, ClothMaterial, ClothMesh,
+        ClothPaused, ClothPlugins, ClothSettings, ClothState, ClothSurface, ClothSystems,
+        ClothTargetLost, ClothTick, LodSet, LodViewer, TargetLost, TeleportCloth, TeleportMode,
+        WindField,
     };
     pub use bunting_solver::{FabricMaterial, StepSettings};
 }
@@ -178,6 +195,7 @@ impl PluginGroup for ClothPlugins {
             .add(SchedulePlugin::new(self.host))
             .add(PreparePlugin)
             .add(LodPlugin)
+            .add(RestPlugin)
             .add(SeatPlugin)
             .add(WindPlugin)
             .add(AttachmentPlugin)
@@ -186,6 +204,7 @@ impl PluginGroup for ClothPlugins {
             .add(ColliderPlugin)
             .add(SolverPlugin)
             .add(PublishPlugin)
+            .add(EasingPlugin)
             .add(SurfacePlugin)
             .add(ClothDiagnosticsPlugin);
         #[cfg(feature = "render")]

@@ -1,48 +1,86 @@
 //! Level of detail: how finely each cloth is simulated.
 
-use std::sync::Arc;
+mod budget;
+mod choose;
+mod costs;
+mod error;
+mod governor;
+mod kinds;
+mod viewer;
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
-use bevy_transform::helper::TransformHelper;
 
-use crate::batches::ClothBatches;
+use crate::diagnostics::ClothCounts;
 use crate::error::ClothError;
-use crate::instance::ClothInstance;
-use crate::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::seat::seat_cloths;
-use crate::state::ClothState;
+
+pub use budget::{ClothBudget, LodCosts, LodReport};
+pub(crate) use choose::choose_levels;
+pub use costs::CostTable;
+pub(crate) use costs::Measured;
+pub(crate) use governor::Candidate;
+pub use viewer::{Lens, LodViewer};
 
 /// Default of [`LodSet::hysteresis`].
 const HYSTERESIS: f32 = 0.1;
 
-/// The levels of detail of a cloth: a dyadic chain, level 0 the mesh itself, each further one every
-/// second column and row of the one before. A grid of 33 × 33 particles with three distances has
-/// levels of 33, 17, 9 and 5.
+/// The levels of detail of a cloth: level 0 is the mesh itself, and each further one has some of the
+/// vertices of the one before: of a grid every second column and row, of any other mesh what
+/// [`FabricBuilder::coarser`](bunting_solver::FabricBuilder::coarser) leaves. A grid of 33 × 33
+/// particles with four levels has 33, 17, 9 and 5. By default there is one level.
 ///
-/// The level is chosen before each tick by the distance to the nearest [`LodViewer`]. Without a
-/// viewer it is the finest. By default there is one level.
+/// The level is chosen before each tick by what the [`LodViewer`]s see. Without a viewer everything
+/// is as near as can be.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct LodSet {
-    /// Distance from each level to the next coarser one, m. One level more than distances.
-    pub distances: Vec<f32>,
-    /// Part of a distance by which it must be passed before the level changes, so that none
-    /// flickers at its border.
+    /// How many levels there are, and how one is chosen.
+    pub choice: LodChoice,
+    /// Part of a switch distance by which it must be passed before the level changes, so that none
+    /// flickers at its border. Of no use to an automatic choice.
     pub hysteresis: f32,
-    /// Keeps this level whatever the distance.
+    /// Keeps this level whatever is seen.
     pub pinned: Option<usize>,
+    /// How many times as large as it is the cloth counts in an automatic choice: above 1 for what the
+    /// player looks at, below for what no one minds.
+    pub bias: f32,
+}
+
+/// How the level of a cloth is chosen.
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[reflect(Debug, PartialEq, Clone)]
+pub enum LodChoice {
+    /// By the distance to the nearest viewer, whatever it costs. Distances from each level to the
+    /// next coarser one, m; one level more than distances.
+    Distances(Vec<f32>),
+    /// By the error in pixels, within the [`ClothBudget`]. Out of everybody's picture the cloth is
+    /// asleep.
+    Automatic {
+        /// Number of levels, at least 1.
+        levels: usize,
+    },
 }
 
 impl LodSet {
     /// Levels that switch at these distances, m.
     #[must_use]
     pub fn new(distances: impl Into<Vec<f32>>) -> Self {
-        Self { distances: distances.into(), hysteresis: HYSTERESIS, pinned: None }
+        Self::chosen(LodChoice::Distances(distances.into()))
+    }
+
+    /// So many levels, chosen by the error in pixels that each has in the viewers' pictures, as far
+    /// as the [`ClothBudget`] goes.
+    #[must_use]
+    pub fn automatic(levels: usize) -> Self {
+        Self::chosen(LodChoice::Automatic { levels })
+    }
+
+    fn chosen(choice: LodChoice) -> Self {
+        Self { choice, hysteresis: HYSTERESIS, pinned: None, bias: 1.0 }
     }
 
     /// The same, kept at a level.
@@ -52,36 +90,51 @@ impl LodSet {
         self
     }
 
+    /// The same, with the cloth counting as so many times as large as it is.
+    #[must_use]
+    pub fn with_bias(mut self, bias: f32) -> Self {
+        self.bias = bias;
+        self
+    }
+
     /// Number of levels.
     #[must_use]
     pub fn levels(&self) -> usize {
-        self.distances.len() + 1
+        match &self.choice {
+            LodChoice::Distances(distances) => distances.len() + 1,
+            LodChoice::Automatic { levels } => *levels,
+        }
     }
 
-    /// The level at a distance in metres from the viewer, coming from level `now`.
+    /// The level at a distance in metres from the viewer, coming from level `now`; where the choice
+    /// is automatic, `now`.
     #[must_use]
     pub fn level_at(&self, distance: f32, now: usize) -> usize {
         if let Some(level) = self.pinned {
             return level;
         }
-        let mut level = now.min(self.distances.len());
-        while level < self.distances.len()
-            && distance > self.distances[level] * (1.0 + self.hysteresis)
-        {
+        let LodChoice::Distances(distances) = &self.choice else { return now };
+        let mut level = now.min(distances.len());
+        while level < distances.len() && distance > distances[level] * (1.0 + self.hysteresis) {
             level += 1;
         }
-        while level > 0 && distance < self.distances[level - 1] * (1.0 - self.hysteresis) {
+        while level > 0 && distance < distances[level - 1] * (1.0 - self.hysteresis) {
             level -= 1;
         }
         level
     }
 
     pub(crate) fn validate(&self, entity: Entity) -> Result<(), ClothError> {
-        let grow = self.distances.windows(2).all(|pair| pair[0] < pair[1]);
-        let positive =
-            self.distances.iter().all(|&distance| distance > 0.0 && distance.is_finite());
-        if !grow || !positive || !(0.0..1.0).contains(&self.hysteresis) {
-            return Err(ClothError::Distances { entity });
+        let good = match &self.choice {
+            LodChoice::Distances(distances) => {
+                let grow = distances.windows(2).all(|pair| pair[0] < pair[1]);
+                grow && distances.iter().all(|&distance| distance > 0.0 && distance.is_finite())
+            }
+            LodChoice::Automatic { levels } => *levels > 0,
+        };
+        let biased = self.bias > 0.0 && self.bias.is_finite();
+        if !good || !biased || !(0.0..1.0).contains(&self.hysteresis) {
+            return Err(ClothError::Levels { entity });
         }
         match self.pinned {
             Some(level) if level >= self.levels() => {
@@ -97,12 +150,6 @@ impl Default for LodSet {
         Self::new([])
     }
 }
-
-/// Levels of detail are chosen by the distance to the nearest of these; put it on the camera.
-#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
-#[reflect(Component, Default, Debug, PartialEq, Clone)]
-#[require(bevy_transform::components::Transform)]
-pub struct LodViewer;
 
 /// A cloth has changed its level of detail.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
@@ -121,43 +168,18 @@ pub struct LodPlugin;
 
 impl Plugin for LodPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<LodSet>().register_type::<LodViewer>().add_systems(
-            ClothTick,
-            select_levels.in_set(ClothSystems::SelectLod).before(seat_cloths),
-        );
-    }
-}
-
-fn select_levels(
-    mut cloths: Query<(Entity, &LodSet, &PoseHistory, &mut ClothInstance, &mut ClothState)>,
-    viewers: Query<Entity, With<LodViewer>>,
-    transforms: TransformHelper,
-    mut batches: ResMut<ClothBatches>,
-    mut commands: Commands,
-) {
-    let viewers: Vec<Vec3> = viewers
-        .iter()
-        .filter_map(|viewer| Some(transforms.compute_global_transform(viewer).ok()?.translation()))
-        .collect();
-    for (entity, lods, frame, mut instance, mut state) in &mut cloths {
-        if lods.distances.is_empty() || instance.levels.is_none() {
-            continue;
-        }
-        // Near the middle of a grid; no pass over all particles.
-        let middle = state.positions.get(state.positions.len() / 2).copied().unwrap_or_default();
-        let middle = frame.end() * middle;
-        let distance = viewers.iter().map(|viewer| viewer.distance(middle)).reduce(f32::min);
-        let from = instance.level;
-        // Without a viewer all is as near as can be.
-        let to = lods.level_at(distance.unwrap_or(0.0), from);
-        if to == from {
-            continue;
-        }
-        instance.change_level(to, &mut batches);
-        if let Some((fabric, snapshot)) = instance.fabric().zip(instance.waiting()) {
-            state.begin(to, &Arc::clone(fabric), &snapshot.positions);
-        }
-        commands.trigger(ClothLevelChanged { entity, from, to });
+        app.register_type::<LodSet>()
+            .register_type::<LodViewer>()
+            .register_type::<ClothBudget>()
+            .register_type::<LodReport>()
+            .init_resource::<ClothBudget>()
+            .init_resource::<LodReport>()
+            .init_resource::<ClothCounts>()
+            .init_resource::<choose::Chooser>()
+            .add_systems(
+                ClothTick,
+                choose_levels.in_set(ClothSystems::SelectLod).before(seat_cloths),
+            );
     }
 }
 

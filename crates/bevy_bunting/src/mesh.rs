@@ -7,6 +7,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
 use bunting_solver::{FabricBuilder, FabricMaterial, Grid};
 
+use crate::activity::{ClothRest, ClothWatch};
 use crate::instance::ClothInstance;
 use crate::lod::LodSet;
 use crate::pose::PoseHistory;
@@ -22,7 +23,16 @@ use crate::state::ClothState;
 /// What cannot be simulated is reported in a [`ClothFailed`](crate::ClothFailed) event.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Debug, PartialEq, Clone)]
-#[require(Transform, ClothMaterial, LodSet, ClothState, ClothInstance, PoseHistory)]
+#[require(
+    Transform,
+    ClothMaterial,
+    LodSet,
+    ClothState,
+    ClothInstance,
+    ClothWatch,
+    ClothRest,
+    PoseHistory
+)]
 pub enum ClothMesh {
     /// A rectangle of particles. The origin is its top left corner, the front faces +z; u grows
     /// along +x, v along −y.
@@ -68,6 +78,14 @@ impl ClothMesh {
                 Some(Grid::new(columns, rows, width, height))
             }
             Self::Triangles { .. } => None,
+        }
+    }
+
+    /// Number of vertices.
+    pub(crate) fn vertex_count(&self) -> usize {
+        match self {
+            Self::Grid { columns, rows, .. } => *columns as usize * *rows as usize,
+            Self::Triangles { positions, .. } => positions.len(),
         }
     }
 

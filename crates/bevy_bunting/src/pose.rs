@@ -75,6 +75,18 @@ impl Track {
         Some(blend(a, b, part as f32))
     }
 
+    /// What [`push`](Self::push) does with the pose that all samples have: stretches their time.
+    fn extend(&mut self, time: f64) {
+        if let Some((newest, _)) = self.samples.back_mut() {
+            *newest = newest.max(time);
+        }
+    }
+
+    /// Whether this is the only pose.
+    fn rests_at(&self, pose: Isometry3d) -> bool {
+        !self.jump_next && self.samples.iter().all(|&(_, sample)| sample == pose)
+    }
+
     /// Forgets what is not needed for any time from this one on.
     fn forget_before(&mut self, time: f64) {
         while self.samples.len() > 2 && self.samples[1].0 <= time {
@@ -121,6 +133,16 @@ pub(crate) struct PoseHistory {
     delay: f64,
     seen: Option<Isometry3d>,
     span: Option<(Isometry3d, Isometry3d)>,
+    /// Where it rests, if all samples say so: most things do, and then samples need not be touched.
+    rest: Option<Rest>,
+}
+
+/// Something that rests, last seen to do so in a frame and in a tick at these times, s.
+#[derive(Clone, Copy, Debug)]
+struct Rest {
+    pose: Isometry3d,
+    frame: f64,
+    tick: f64,
 }
 
 impl PoseHistory {
@@ -134,8 +156,14 @@ impl PoseHistory {
         self.span.map_or(Isometry3d::IDENTITY, |(_, end)| end)
     }
 
+    /// The pose of what has not moved lately: it need not be looked up if nothing moves it.
+    pub fn rest(&self) -> Option<Isometry3d> {
+        self.rest.map(|rest| rest.pose)
+    }
+
     /// The next change of the pose is a teleport: what follows it is carried along.
     pub fn jump_next(&mut self) {
+        self.end_rest();
         self.ticks.jump_next = true;
         self.frames.jump_next = true;
     }
@@ -143,6 +171,11 @@ impl PoseHistory {
     /// The pose in a frame, at the frame's time. One seen `early`, before the frame's ticks, counts
     /// only if it was moved since the last frame.
     pub fn observe_frame(&mut self, time: f64, pose: Isometry3d, limit: f32, early: bool) {
+        if let Some(rest) = self.rest.as_mut().filter(|rest| rest.pose == pose) {
+            rest.frame = if early { rest.frame } else { time };
+            return;
+        }
+        self.end_rest();
         let changed = self.seen.is_some_and(|seen| seen != pose);
         if early && !changed {
             return;
@@ -161,6 +194,13 @@ impl PoseHistory {
 
     /// The pose in a tick of `tick` seconds that ends at `time`; frames last `frame` seconds.
     pub fn observe_tick(&mut self, time: f64, tick: f64, frame: f64, pose: Isometry3d, limit: f32) {
+        if let Some(rest) = self.rest.as_mut().filter(|rest| rest.pose == pose) {
+            rest.tick = time;
+            self.ticks_to_quiet = self.ticks_to_quiet.saturating_sub(1);
+            self.change_delay(tick, frame);
+            return;
+        }
+        self.end_rest();
         let jump = self.ticks.push(time, pose, limit);
         if self.seen.is_some_and(|seen| seen != pose) {
             self.moved_by = MovedBy::Ticks;
@@ -169,23 +209,45 @@ impl PoseHistory {
             self.ticks_to_quiet = self.ticks_to_quiet.saturating_sub(1);
         }
         self.seen = Some(pose);
-        let (track, delay) = match self.moved_by {
+        self.change_delay(tick, frame);
+        let track = match self.moved_by {
             MovedBy::Ticks => {
                 self.carry(jump);
-                (&self.ticks, 0.0)
+                &self.ticks
             }
-            MovedBy::Frames => (&self.frames, frame),
-        };
-        self.delay = if self.delay.is_finite() {
-            self.delay + (delay - self.delay).clamp(-DELAY_RATE * tick, DELAY_RATE * tick)
-        } else {
-            delay
+            MovedBy::Frames => &self.frames,
         };
         let sampled = time - self.delay;
         let end = track.pose_at(sampled).unwrap_or(pose);
         self.span = Some((self.end_or(end), end));
         self.ticks.forget_before(sampled);
         self.frames.forget_before(sampled);
+        let rests = self.span == Some((pose, pose))
+            && [&self.ticks, &self.frames].iter().all(|track| track.rests_at(pose));
+        if let (true, Some(&(frame, _))) = (rests, self.frames.samples.back()) {
+            self.rest = Some(Rest { pose, frame, tick: time });
+        }
+    }
+
+    /// Lets the delay tend to what suits how the thing is moved.
+    fn change_delay(&mut self, tick: f64, frame: f64) {
+        let delay = match self.moved_by {
+            MovedBy::Ticks => 0.0,
+            MovedBy::Frames => frame,
+        };
+        self.delay = if self.delay.is_finite() {
+            self.delay + (delay - self.delay).clamp(-DELAY_RATE * tick, DELAY_RATE * tick)
+        } else {
+            delay
+        };
+    }
+
+    /// Brings the samples up to date, as if they had been taken all the time.
+    fn end_rest(&mut self) {
+        if let Some(rest) = self.rest.take() {
+            self.frames.extend(rest.frame);
+            self.ticks.extend(rest.tick);
+        }
     }
 
     /// Stays where it is, as what has no pose to be observed.

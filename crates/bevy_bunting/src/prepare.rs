@@ -106,7 +106,8 @@ fn cut_cloths(
         let target = attachment
             .as_deref()
             .map(|attachment| attachment.target_other_than(entity).unwrap_or(entity));
-        let changed = mesh.is_changed()
+        let changed = instance.cutting
+            || mesh.is_changed()
             || lods.is_changed()
             || attachment.as_ref().is_some_and(|attachment| attachment.is_changed())
             || (instance.target != target && instance.levels.is_some())
@@ -123,7 +124,9 @@ fn cut_cloths(
             _ => library.levels(entity, &mesh, attachment.as_deref(), &lods),
         };
         match levels {
-            Ok(levels) => {
+            Ok(None) => instance.cutting = true,
+            Ok(Some(levels)) => {
+                instance.cutting = false;
                 if instance.target != target {
                     *history = PoseHistory::default();
                     instance.target = target;
@@ -133,9 +136,12 @@ fn cut_cloths(
                     if instance.levels.is_none() {
                         instance.material = material.0;
                     }
+                    if let Some(lack) = levels.lack(entity, &mesh) {
+                        ClothFailed::report(&mut commands, entity, lack);
+                    }
                     instance.recut(levels, &mut batches);
                     if let Some((fabric, snapshot)) = instance.fabric().zip(instance.waiting()) {
-                        state.begin(instance.level, fabric, &snapshot.positions);
+                        state.begin_anew(instance.level, fabric, &snapshot.positions);
                     }
                 }
             }
@@ -163,6 +169,7 @@ fn change_materials(
             continue;
         }
         instance.material = material.0;
+        instance.wake();
         if let Some(slot) = instance.slot() {
             batches.lane(slot).set_material(material.0);
         }

@@ -3,6 +3,7 @@
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
+use crate::activity::ClothActivity;
 use crate::batches::{ClothBatches, Newcomer};
 use crate::instance::{ClothInstance, Place};
 use crate::mesh::ClothPaused;
@@ -19,21 +20,41 @@ impl Plugin for SeatPlugin {
             .register_type::<ClothPaused>()
             .init_resource::<ClothSettings>()
             .init_resource::<ClothBatches>()
+            .add_observer(note_pause)
+            .add_observer(note_end_of_pause)
             .add_systems(ClothTick, seat_cloths.in_set(ClothSystems::SelectLod));
     }
 }
 
-/// Seats those that wait, takes out those that are paused, and everyone when the settings change.
+fn note_pause(paused: On<Insert, ClothPaused>, mut cloths: Query<&mut ClothInstance>) {
+    if let Ok(mut instance) = cloths.get_mut(paused.entity) {
+        instance.set_changed();
+    }
+}
+
+fn note_end_of_pause(goes_on: On<Remove, ClothPaused>, mut cloths: Query<&mut ClothInstance>) {
+    if let Ok(mut instance) = cloths.get_mut(goes_on.entity) {
+        instance.set_changed();
+    }
+}
+
+/// Seats those that wait, takes out those that are paused or asleep, and everyone when the settings
+/// change.
 pub(crate) fn seat_cloths(
     mut cloths: Query<(Entity, &mut ClothInstance, Has<ClothPaused>)>,
     settings: Res<ClothSettings>,
     mut batches: ResMut<ClothBatches>,
 ) {
     for (entity, mut instance, paused) in &mut cloths {
-        if instance.slot().is_some() && (paused || settings.is_changed()) {
+        // Most stay where they are.
+        if !instance.is_changed() && !settings.is_changed() {
+            continue;
+        }
+        let still = paused || instance.activity != ClothActivity::Ticking;
+        if instance.slot().is_some() && (still || settings.is_changed()) {
             instance.unseat(&mut batches);
         }
-        if paused || instance.waiting().is_none() {
+        if still || instance.waiting().is_none() {
             continue;
         }
         if let (Some(fabric), Place::Waiting(snapshot)) =

@@ -6,6 +6,8 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bunting_solver::Fabric;
 
+use crate::activity::ClothActivity;
+
 /// The simulated surface of a cloth, as of the last tick; read only.
 ///
 /// Everything is in the cloth's frame, whose pose in the world is the entity's `GlobalTransform`:
@@ -24,7 +26,21 @@ pub struct ClothState {
     pub(crate) normals: Vec<Vec3>,
     pub(crate) previous_normals: Vec<Vec3>,
     pub(crate) level: usize,
+    pub(crate) activity: ClothActivity,
+    /// Whether it has moved in the last tick.
+    pub(crate) moved: bool,
     pub(crate) fabric: Option<Arc<Fabric>>,
+    /// What was shown before a change of level, until it is eased.
+    pub(crate) left: Option<Left>,
+}
+
+/// The surface that a change of level left behind.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Left {
+    pub level: usize,
+    pub positions: Vec<Vec3>,
+    pub previous_positions: Vec<Vec3>,
+    pub normals: Vec<Vec3>,
 }
 
 impl ClothState {
@@ -59,6 +75,12 @@ impl ClothState {
         self.level
     }
 
+    /// Whether the cloth is simulated or asleep.
+    #[must_use]
+    pub fn activity(&self) -> ClothActivity {
+        self.activity
+    }
+
     /// The fabric that the cloth is cut from at its level: triangles, texture coordinates, pins.
     /// None until the first tick, and while the cloth cannot be simulated.
     #[must_use]
@@ -66,12 +88,24 @@ impl ClothState {
         self.fabric.as_ref()
     }
 
-    /// Starts anew on a fabric, as after a change of level.
+    /// Starts anew on a fabric, where nothing that was shown goes on.
+    pub(crate) fn begin_anew(&mut self, level: usize, fabric: &Arc<Fabric>, positions: &[Vec3]) {
+        self.begin(level, fabric, positions);
+        self.left = None;
+    }
+
+    /// Starts on the fabric of another level.
     pub(crate) fn begin(&mut self, level: usize, fabric: &Arc<Fabric>, positions: &[Vec3]) {
+        let left = Left {
+            level: self.level,
+            positions: core::mem::replace(&mut self.positions, positions.to_vec()),
+            previous_positions: core::mem::take(&mut self.previous_positions),
+            normals: core::mem::take(&mut self.normals),
+        };
+        // Of several changes before a tick ends the first is what was seen.
+        self.left.get_or_insert(left);
         self.level = level;
         self.fabric = Some(Arc::clone(fabric));
-        self.positions.clear();
-        self.positions.extend_from_slice(positions);
         self.previous_positions.clone_from(&self.positions);
         self.normals = normals(fabric, positions);
         self.previous_normals.clone_from(&self.normals);

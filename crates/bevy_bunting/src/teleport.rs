@@ -54,7 +54,7 @@ fn teleport(
     if request.mode == TeleportMode::Reset {
         instance.rest(&mut batches);
         if let Some(fabric) = instance.fabric() {
-            state.begin(instance.level, fabric, fabric.rest_positions());
+            state.begin_anew(instance.level, fabric, fabric.rest_positions());
         }
     }
 }

@@ -54,7 +54,7 @@ impl Arguments {
     /// When a command cannot run or its files cannot be written.
     pub fn run(self) -> Result<()> {
         let outcome = match self.command {
-            Command::Pareto(selection) => pareto::run(&selection, self.quick),
+            Command::Pareto(selection) => pareto::run(&selection, self.quick)?,
             Command::Lod => lod::run(self.quick),
             Command::Peers => peers(self.quick)?,
             Command::Schedule => schedule::run(self.quick),

@@ -22,6 +22,14 @@ const GUST_RATE: f32 = 0.3;
 
 /// An app on one core whose every update is one tick of the standard flag's wind.
 pub fn app(settings: StepSettings) -> App {
+    let mut app = calm_app(settings);
+    let wind = Vec3::from_array(Scene::flag(2).air.wind.map(|speed| speed as f32));
+    app.world_mut().spawn(WindField::steady(wind).with_gusts(GUST, GUST_RATE, 1));
+    app
+}
+
+/// An app on one core whose every update is one tick in still air.
+pub fn calm_app(settings: StepSettings) -> App {
     // Batches keep to the thread that ticks them when the pool has only one.
     ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
     let tick = Duration::from_secs_f32(product::TICK);
@@ -35,8 +43,6 @@ pub fn app(settings: StepSettings) -> App {
     .insert_resource(Time::<Fixed>::from_duration(tick))
     .insert_resource(TimeUpdateStrategy::ManualDuration(tick))
     .insert_resource(ClothSettings { steps: vec![settings], ..ClothSettings::default() });
-    let wind = Vec3::from_array(Scene::flag(2).air.wind.map(|speed| speed as f32));
-    app.world_mut().spawn(WindField::steady(wind).with_gusts(GUST, GUST_RATE, 1));
     app
 }
 

@@ -23,6 +23,9 @@ const AIR_DENSITY: f32 = 1.225;
 /// Length of a tick, s.
 pub const TICK: f32 = 1.0 / TICK_RATE as f32;
 
+/// Scheme, substeps and passes as users meet them: `StepSettings::default()` as a constant.
+pub const DEFAULT: StepSettings = StepSettings { passes: 2, ..StepSettings::yarns(2) };
+
 /// The solver with its settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Product {
@@ -67,7 +70,17 @@ impl Product {
     /// When the scene is not a cloth.
     #[must_use]
     pub fn start(&self, scene: &Scene) -> Cloth {
-        Cloth::new(scene, self.settings, self.lanes)
+        self.start_cut(fabric(scene), scene)
+    }
+
+    /// The same of a fabric of the scene's that was cut otherwise.
+    ///
+    /// # Panics
+    ///
+    /// When the fabric has other particles than the scene.
+    #[must_use]
+    pub fn start_cut(&self, fabric: Arc<Fabric>, scene: &Scene) -> Cloth {
+        Cloth::new(fabric, scene, self.settings, self.lanes)
     }
 }
 
@@ -99,11 +112,16 @@ impl From<Product> for Contender {
 /// When the scene has fewer than two rows or columns.
 #[must_use]
 pub fn fabric(scene: &Scene) -> Arc<Fabric> {
+    Arc::new(pattern(scene).build().expect("a scene is a good grid"))
+}
+
+/// What that fabric is cut by.
+#[must_use]
+pub fn pattern(scene: &Scene) -> FabricBuilder {
     let grid =
         Grid::new(scene.columns as u32, scene.rows as u32, scene.width as f32, scene.height as f32);
     let pinned = (0..scene.vertices()).filter(|&vertex| scene.is_pinned(vertex));
-    let builder = FabricBuilder::grid(grid).pin(pinned.map(|vertex| vertex as u32));
-    Arc::new(builder.build().expect("a scene is a good grid"))
+    FabricBuilder::grid(grid).pin(pinned.map(|vertex| vertex as u32))
 }
 
 /// Material of a scene: its fabric and its damping, and the air's hold on it.
@@ -143,9 +161,8 @@ pub struct Cloth {
 }
 
 impl Cloth {
-    fn new(scene: &Scene, settings: StepSettings, lanes: LaneCount) -> Self {
-        let fabric = fabric(scene);
-        let mut batch = ClothBatch::new(fabric.clone(), lanes);
+    fn new(fabric: Arc<Fabric>, scene: &Scene, settings: StepSettings, lanes: LaneCount) -> Self {
+        let mut batch = ClothBatch::new(fabric, lanes);
         let positions: Vec<Vec3> = scene.positions().iter().map(|x| x.as_vec3()).collect();
         let velocities = vec![Vec3::ZERO; positions.len()];
         let start = ClothSnapshot::new(positions.clone(), velocities.clone());
@@ -237,5 +254,15 @@ impl Specimen for Cloth {
 
     fn load(&mut self, gravity: f64) {
         self.drive.gravity = Vec3::new(0.0, -gravity as f32, 0.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_measured_is_what_users_meet() {
+        assert_eq!(DEFAULT, StepSettings::default());
     }
 }

@@ -37,6 +37,12 @@ impl Strain {
     }
 }
 
+/// The larger of two figures, and not a number where either is none: `max` would pass over it.
+#[must_use]
+pub fn worse(one: f64, other: f64) -> f64 {
+    if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }
+}
+
 /// The value that a fraction `p` of the ascending samples does not exceed (nearest rank).
 #[must_use]
 pub fn percentile(ascending: &[f64], p: f64) -> f64 {

@@ -47,6 +47,15 @@ impl Timing {
         self.samples.windows(window).map(crate::stats::mean).fold(f64::NAN, f64::max)
     }
 
+    /// Largest percentile `p` of so many durations in a row, µs; of all, if there are fewer.
+    #[must_use]
+    pub fn worst_percentile(&self, window: usize, p: f64) -> f64 {
+        let window = window.min(self.samples.len()).max(1);
+        let parts = self.samples.windows(window);
+        let percentiles = parts.map(|part| Self { samples: part.to_vec() }.percentile(p));
+        percentiles.fold(f64::NAN, f64::max)
+    }
+
     /// Shortest duration, µs; NaN before the first sample.
     #[must_use]
     pub fn min(&self) -> f64 {

@@ -11,9 +11,13 @@ fn lab(arguments: &[&str]) -> Output {
 
 #[test]
 fn bad_arguments_exit_with_two() {
-    for arguments in
-        [&["nonsense"][..], &[], &["pareto", "--sizes", "1"], &["pareto", "--scenes", "moon"]]
-    {
+    for arguments in [
+        &["nonsense"][..],
+        &[],
+        &["pareto", "--sizes", "1"],
+        &["pareto", "--scenes", "moon"],
+        &["pareto", "--patience", "0"],
+    ] {
         let output = lab(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert!(!output.stderr.is_empty() && output.stdout.is_empty(), "{arguments:?}");
@@ -24,15 +28,37 @@ fn bad_arguments_exit_with_two() {
 fn pareto_prints_one_json_object_and_writes_files() {
     let folder = std::env::temp_dir().join(format!("bunting-lab-pareto-{}", std::process::id()));
     let out = folder.to_str().expect("a plain path");
-    let output = lab(&["pareto", "--quick", "--scenes", "swing", "--json", "--out", out]);
+    let figure = folder.join("figure.svg");
+    let figure_path = figure.to_str().expect("a plain path");
+    let output = lab(&[
+        "pareto",
+        "--quick",
+        "--scenes",
+        "swing",
+        "--json",
+        "--out",
+        out,
+        "--figure",
+        figure_path,
+    ]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
     let rows = json["rows"].as_array().expect("rows");
     assert!(rows.len() >= 10);
     assert!(json["instruction_set"].is_string());
     for part in json["ablation"].as_array().expect("ablation") {
-        assert!(part["part"].is_string() && part["us_ratio"].is_number(), "{part}");
+        assert!(part["part"].is_string(), "{part}");
+        for key in ["us_per_cloth_tick", "us_ratio", "strain_error", "flag_strain_p999"] {
+            assert!(part[key].is_number(), "{key} in {part}");
+        }
     }
+    let error_without = |name: &str| {
+        let parts = json["ablation"].as_array().expect("ablation");
+        let part = parts.iter().find(|part| part["part"] == name).expect("a part");
+        part["rms_error_m"].as_f64().expect("an error")
+    };
+    assert!(error_without("no air") > 10.0 * error_without("whole model"));
+    assert!(json["left_out"].is_array());
     for row in rows {
         for key in ["scene", "n", "method", "substeps", "passes", "lanes", "stable"] {
             assert!(!row[key].is_null(), "{key} in {row}");
@@ -44,9 +70,38 @@ fn pareto_prints_one_json_object_and_writes_files() {
             assert!(!stable || row[key].is_number(), "{key} in {row}");
         }
     }
-    assert!(
-        folder.join("pareto_swing_9.csv").exists() && folder.join("pareto_swing_9.svg").exists()
-    );
+    let table = std::fs::read_to_string(folder.join("pareto_swing_9.csv")).expect("a table");
+    assert_eq!(table.lines().count(), rows.len() + 1);
+    assert!(folder.join("pareto_swing_9.svg").exists());
+    let figure = std::fs::read_to_string(figure).expect("a figure");
+    for name in ["Pareto front", "this project, alone", "XPBD", "PBD"] {
+        assert!(figure.contains(name), "{name}");
+    }
+    std::fs::remove_dir_all(folder).expect("the folder is ours");
+}
+
+#[test]
+fn a_method_that_takes_too_long_is_left_out_and_named() {
+    let output =
+        lab(&["pareto", "--quick", "--scenes", "swing", "--json", "--patience", "0.000001"]);
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
+    assert_eq!(json["rows"].as_array().map(Vec::len), Some(0));
+    for left_out in json["left_out"].as_array().expect("all of them") {
+        assert!(left_out["method"].is_string() && left_out["n"] == 9, "{left_out}");
+    }
+}
+
+#[test]
+fn cases_are_plotted_and_tabulated() {
+    let folder = std::env::temp_dir().join(format!("bunting-lab-cases-{}", std::process::id()));
+    let out = folder.to_str().expect("a plain path");
+    for command in ["oracles", "stability"] {
+        let output = lab(&[command, "--quick", "--out", out]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let plot = std::fs::read_to_string(folder.join(format!("{command}.svg"))).expect("a plot");
+        assert!(plot.contains("passes") && plot.contains("<circle"), "{command}");
+        assert!(folder.join(format!("{command}.csv")).exists());
+    }
     std::fs::remove_dir_all(folder).expect("the folder is ours");
 }
 

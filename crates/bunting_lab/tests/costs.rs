@@ -40,13 +40,16 @@ fn budget_has_its_schema() {
     }
     let thousand = &json["thousand"];
     assert_positive(thousand, &["ms_median", "ms_p95", "ms_worst_second"]);
-    let flags: f64 = rows(thousand, "per_level").iter().filter_map(Value::as_f64).sum();
+    let ticking: f64 = rows(thousand, "per_level").iter().filter_map(Value::as_f64).sum();
+    let flags = ticking + thousand["asleep"].as_f64().expect("a number");
     assert!((flags - 1000.0).abs() < 1e-6, "{flags}");
 }
 
 #[test]
 fn schedule_compares_app_and_plain_calls() {
-    for row in rows(&schedule::run(true).json, "rows") {
+    let json = schedule::run(true).json;
+    assert!(json["instruction_set"].is_string());
+    for row in rows(&json, "rows") {
         assert_positive(row, &["n", "cloths", "us_app", "us_cloth_tick", "us_plain", "ratio"]);
     }
 }
@@ -54,6 +57,7 @@ fn schedule_compares_app_and_plain_calls() {
 #[test]
 fn lod_compares_levels_and_changes_them() {
     let json = lod::run(true).json;
+    assert!(json["instruction_set"].is_string());
     for level in rows(&json, "levels") {
         assert_positive(level, &["n", "droop_m", "swing_period_s", "tip_spread_m", "flutter_hz"]);
     }
@@ -62,6 +66,14 @@ fn lod_compares_levels_and_changes_them() {
         for key in ["momentum_jump", "kinetic_jump", "energy_jump"] {
             assert!(switch[key].is_number(), "{key} in {switch}");
         }
+    }
+}
+
+#[test]
+fn no_change_of_level_is_seen() {
+    for pop in rows(&lod::run(true).json, "pops") {
+        assert_positive(pop, &["from", "to", "distance_m", "mean_px", "own_px", "twin_px"]);
+        assert!(pop["worst_px"].as_f64().is_some_and(|pixels| pixels < 1.0), "{pop}");
     }
 }
 

@@ -40,7 +40,7 @@ pub fn spawn(commands: &mut Commands, scene: &Scene) {
         commands.spawn(field.with_gusts(wind.gust_strength, wind.gust_frequency, wind.seed));
     }
     let track = Track::new(&scene.viewer.track);
-    commands.spawn((LodViewer, LooksAt(scene.viewer.looks_at), track.pose(0.0), track));
+    commands.spawn((LodViewer::default(), LooksAt(scene.viewer.looks_at), track.pose(0.0), track));
     let vehicles: BTreeMap<&str, Entity> = scene
         .vehicles
         .iter()

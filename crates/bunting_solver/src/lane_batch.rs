@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::added_mass;
+use crate::batch::LaneSurface;
 use crate::collision::Collider;
 use crate::constraints::{Knot, Pole};
 use crate::fabric::{ABREAST, Fabric, FabricMaterial};
@@ -13,6 +14,9 @@ use crate::parameters::{Formula, Parameters};
 use crate::snapshot::{ClothSnapshot, History};
 use crate::step::{Drive, Scheme, StepSettings};
 use crate::vector::{Pack3, lane3, set_lane3, splat3};
+
+/// Particles whose positions and normals in all lanes fit into the nearest cache, at 384 bytes each.
+const BLOCK: usize = 32;
 
 /// One cloth's place in a batch: what the lanes do not hold.
 #[derive(Clone, Debug)]
@@ -214,6 +218,30 @@ impl<P: Pack> LaneBatch<P> {
         into.extend(self.normal.iter().map(|pack| lane3(pack, lane)));
     }
 
+    pub fn copy_surfaces(&self, into: &mut [LaneSurface]) {
+        let into = &mut into[..P::WIDTH];
+        let sums = sums(&self.position);
+        for (surface, (slot, sum)) in into.iter_mut().zip(self.slots.iter().zip(sums.lanes())) {
+            if slot.is_some() {
+                // What is not finite makes the sum so.
+                surface.is_finite = sum.is_finite();
+                surface.positions.resize(self.position.len(), Vec3::ZERO);
+                surface.normals.resize(self.normal.len(), Vec3::ZERO);
+            }
+        }
+        // Particles by the block, so that each is fetched once for all lanes.
+        let mut first = 0;
+        for (positions, normals) in self.position.chunks(BLOCK).zip(self.normal.chunks(BLOCK)) {
+            for (lane, surface) in into.iter_mut().enumerate() {
+                if self.slots[lane].is_some() {
+                    read(positions, lane, &mut surface.positions[first..]);
+                    read(normals, lane, &mut surface.normals[first..]);
+                }
+            }
+            first += positions.len();
+        }
+    }
+
     pub fn is_finite(&self, lane: usize) -> bool {
         let finite = |packs: &[Pack3<P>]| packs.iter().all(|pack| lane3(pack, lane).is_finite());
         finite(&self.position) && finite(&self.velocity)
@@ -264,6 +292,26 @@ impl<P: Pack> LaneBatch<P> {
         }
         // One substep more than the motion lasts, so that pinned particles come to rest.
         self.parameters.carries = moved || self.parameters.moves_any();
+    }
+}
+
+/// The sum of all coordinates, for each lane.
+fn sums<P: Pack>(packs: &[Pack3<P>]) -> P {
+    let mut sums = P::splat(0.0);
+    for coordinate in packs.iter().flatten() {
+        for (sum, value) in sums.lanes_mut().iter_mut().zip(coordinate.lanes()) {
+            *sum += value;
+        }
+    }
+    sums
+}
+
+/// Reads one lane of a vector for each particle.
+fn read<P: Pack>(packs: &[Pack3<P>], lane: usize, into: &mut [Vec3]) {
+    // Once, and not for every number.
+    assert!(lane < P::WIDTH, "a lane of the batch");
+    for (value, pack) in into.iter_mut().zip(packs) {
+        *value = lane3(pack, lane);
     }
 }
 

@@ -39,6 +39,7 @@ mod collision;
 mod constants;
 mod constraints;
 mod damping;
+mod energy;
 mod fabric;
 mod frame;
 mod integrate;
@@ -52,11 +53,11 @@ mod transfer;
 mod vector;
 mod velocity;
 
-pub use batch::{BatchError, ClothBatch};
+pub use batch::{BatchError, ClothBatch, LaneSurface};
 pub use collision::Collider;
 pub use fabric::{
-    BendLine, BendProfile, Colours, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid,
-    Hinge, HingeClass, Link, LinkClass, LinkFamily, Tether, Yarn,
+    BendLine, BendProfile, Coarser, Colours, Fabric, FabricBuilder, FabricError, FabricMaterial,
+    Grid, Hinge, HingeClass, Link, LinkClass, LinkFamily, Tether, Yarn,
 };
 pub use frame::FrameMotion;
 pub use lanes::{LaneCount, instruction_set};

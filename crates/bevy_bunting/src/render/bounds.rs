@@ -6,15 +6,23 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3A;
 
 use super::dress::LevelMeshes;
+use crate::easing::ClothEasing;
 use crate::state::ClothState;
 
-type IsStale = Or<(Changed<ClothState>, Changed<LevelMeshes>)>;
+type Bounded = (&'static ClothState, Option<&'static ClothEasing>, &'static mut Aabb);
+type IsStale = Or<(Changed<ClothState>, Changed<ClothEasing>, Changed<LevelMeshes>)>;
 
 /// Bounds everything between the last two ticks, for cloths that are visible and for those that
 /// may come into view.
-pub fn bound_cloths(mut cloths: Query<(&ClothState, &mut Aabb), (With<NoAutoAabb>, IsStale)>) {
-    for (state, mut bounds) in &mut cloths {
-        let particles = state.previous_positions().iter().chain(state.positions());
+pub fn bound_cloths(mut cloths: Query<Bounded, (With<NoAutoAabb>, IsStale)>) {
+    for (state, easing, mut bounds) in &mut cloths {
+        let [from, to] = match easing {
+            Some(easing) if easing.level().is_some() => {
+                [&*easing.previous_positions, &*easing.positions]
+            }
+            _ => [state.previous_positions(), state.positions()],
+        };
+        let particles = from.iter().chain(to);
         let (low, high) = particles
             .map(|&position| Vec3A::from(position))
             .fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), position| {

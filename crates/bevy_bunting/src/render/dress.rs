@@ -14,14 +14,13 @@ use crate::error::{ClothError, ClothFailed};
 use crate::instance::ClothInstance;
 use crate::levels::ClothLevels;
 use crate::mesh::ClothMesh;
-use crate::state::ClothState;
 use crate::surface::ClothSurface;
 
 /// The meshes that show a cloth.
 #[derive(Component, Debug)]
 pub struct LevelMeshes {
     /// What they were made for.
-    levels: Arc<ClothLevels>,
+    pub levels: Arc<ClothLevels>,
     /// One a level, the finest first.
     meshes: Vec<Handle<Mesh>>,
     pub origin: MeshOrigin,
@@ -93,7 +92,7 @@ pub fn dress_cloths(
         };
         let mut all = vec![finest];
         if origin != MeshOrigin::Refused {
-            add_coarser(&mut all, shape, levels, &mut meshes);
+            add_coarser(&mut all, levels, &mut meshes);
         }
         let shown = all.get(instance.level).unwrap_or(&all[0]).clone();
         let mut cloth = commands.entity(entity);
@@ -111,17 +110,12 @@ pub fn dress_cloths(
     }
 }
 
-/// Adds the meshes of all levels but the finest, which is there; only grids have more.
-fn add_coarser(
-    all: &mut Vec<Handle<Mesh>>,
-    shape: &ClothMesh,
-    levels: &ClothLevels,
-    meshes: &mut Assets<Mesh>,
-) {
-    let Some(grid) = shape.as_grid() else { return };
+/// Adds the meshes of all levels but the finest, which is there.
+fn add_coarser(all: &mut Vec<Handle<Mesh>>, levels: &ClothLevels, meshes: &mut Assets<Mesh>) {
     for level in 1..levels.count() {
         let finest = meshes.get(&all[0]).expect("it was found or made before");
-        let coarser = level_mesh::coarser(finest, grid, 1 << level, levels.fabric(level));
+        let (vertices, indices) = levels.mesh(level);
+        let coarser = level_mesh::coarser(finest, vertices, indices, levels.fabric(level));
         all.push(meshes.add(coarser));
     }
 }
@@ -142,10 +136,10 @@ pub fn check(entity: Entity, mesh: &Mesh, expected: usize) -> Result<(), ClothEr
     }
 }
 
-/// Shows each cloth with the mesh of its level.
-pub fn switch_levels(mut cloths: Query<(&ClothState, &LevelMeshes, &mut Mesh3d)>) {
-    for (state, dress, mut worn) in &mut cloths {
-        if let Some(mesh) = dress.meshes.get(state.level())
+/// Shows each cloth with the mesh of its surface.
+pub fn switch_levels(mut cloths: Query<(&ClothSurface, &LevelMeshes, &mut Mesh3d)>) {
+    for (surface, dress, mut worn) in &mut cloths {
+        if let Some(mesh) = dress.meshes.get(surface.level())
             && worn.0 != *mesh
             && dress.contains(worn.id())
         {

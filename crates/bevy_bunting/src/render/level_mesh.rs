@@ -3,7 +3,7 @@
 use bevy_asset::RenderAssetUsages;
 use bevy_math::{Vec2, Vec3};
 use bevy_mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues};
-use bunting_solver::{Fabric, Grid};
+use bunting_solver::Fabric;
 
 use crate::mesh::ClothMesh;
 
@@ -21,19 +21,12 @@ pub fn finest(shape: &ClothMesh, fabric: &Fabric) -> Mesh {
     mesh
 }
 
-/// The mesh of a coarser level of a grid: every `stride`-th row and column of the finest.
-pub fn coarser(finest: &Mesh, grid: Grid, stride: u32, fabric: &Fabric) -> Mesh {
-    let mut mesh = at_rest(fabric, fabric.triangles().as_flattened().to_vec());
-    let kept: Vec<usize> = (0..grid.rows)
-        .step_by(stride as usize)
-        .flat_map(|row| {
-            let columns = (0..grid.columns).step_by(stride as usize);
-            columns.map(move |column| grid.index(column, row) as usize)
-        })
-        .collect();
+/// The mesh of a coarser level, of some of the finest one's vertices.
+pub fn coarser(finest: &Mesh, vertices: &[u32], indices: &[u32], fabric: &Fabric) -> Mesh {
+    let mut mesh = at_rest(fabric, indices.to_vec());
     for (attribute, values) in finest.try_attributes().into_iter().flatten() {
         if !mesh.contains_attribute(attribute.id)
-            && let Some(values) = pick(values, &kept)
+            && let Some(values) = pick(values, vertices)
         {
             mesh.insert_attribute(*attribute, values);
         }
@@ -55,7 +48,7 @@ fn at_rest(fabric: &Fabric, indices: Vec<u32>) -> Mesh {
 }
 
 /// The values of some vertices, of the formats that Bevy's own attributes have.
-fn pick(values: &VertexAttributeValues, vertices: &[usize]) -> Option<VertexAttributeValues> {
+fn pick(values: &VertexAttributeValues, vertices: &[u32]) -> Option<VertexAttributeValues> {
     use VertexAttributeValues::{Float32x2, Float32x3, Float32x4};
 
     match values {
@@ -66,6 +59,6 @@ fn pick(values: &VertexAttributeValues, vertices: &[usize]) -> Option<VertexAttr
     }
 }
 
-fn pick_each<T: Copy>(values: &[T], vertices: &[usize]) -> Vec<T> {
-    vertices.iter().map(|&vertex| values[vertex]).collect()
+fn pick_each<T: Copy>(values: &[T], vertices: &[u32]) -> Vec<T> {
+    vertices.iter().map(|&vertex| values[vertex as usize]).collect()
 }

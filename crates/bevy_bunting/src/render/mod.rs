@@ -5,9 +5,10 @@ mod debug;
 mod dress;
 mod level_mesh;
 mod tangents;
+mod view;
 mod write;
 
-use bevy_app::{App, Plugin, PostUpdate};
+use bevy_app::{App, Plugin, PostUpdate, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_asset::{AssetEventSystems, Assets};
 use bevy_camera::Camera3d;
 use bevy_camera::visibility::VisibilitySystems;
@@ -41,8 +42,8 @@ pub enum ClothRenderSystems {
 /// mesh that cannot be written is reported in a [`ClothFailed`](crate::ClothFailed) event and left
 /// alone until another takes its place.
 ///
-/// Meshes are made when a cloth is new. After that, neither a frame nor a change of level allocates,
-/// and only cloths that are visible, to a camera or to a light, and move are written. Their `Aabb`
+/// Meshes are made when a cloth is new. After that no frame allocates, but for cloths that change
+/// their level, whose surface is eased with the mesh of the finer level; and only cloths that are visible, to a camera or to a light, and move are written. Their `Aabb`
 /// is kept right whether they are visible or not.
 ///
 /// # Materials
@@ -57,14 +58,18 @@ pub enum ClothRenderSystems {
 ///
 /// # Levels of detail
 ///
-/// Every `Camera3d` becomes a [`LodViewer`] when it is spawned. Remove it from cameras that levels
-/// should not look to.
+/// Every `Camera3d` becomes a [`LodViewer`] when it is spawned, which is kept like its projection and
+/// its picture. Remove it from cameras that levels should not look to.
 #[derive(Debug, Default)]
 pub struct ClothRenderPlugin;
 
 impl Plugin for ClothRenderPlugin {
     fn build(&self, app: &mut App) {
         app.add_observer(view_levels)
+            .add_systems(
+                RunFixedMainLoop,
+                view::view_through_cameras.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+            )
             .configure_sets(
                 PostUpdate,
                 (
@@ -94,7 +99,7 @@ impl Plugin for ClothRenderPlugin {
 }
 
 fn view_levels(added: On<Add, Camera3d>, mut commands: Commands) {
-    commands.entity(added.entity).try_insert_if_new(LodViewer);
+    commands.entity(added.entity).try_insert_if_new(LodViewer::default());
 }
 
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! Writes surfaces into meshes, in place.
 
+use std::sync::Arc;
+
 use bevy_asset::{AssetEvent, Assets};
 use bevy_camera::visibility::ViewVisibility;
 use bevy_ecs::prelude::*;
@@ -32,7 +34,7 @@ pub fn write_visible(
     for (entity, state, surface, visibility, mut dress, worn) in &mut cloths {
         let Some(fabric) = shows(state, surface, visibility, &dress) else { continue };
         let Some(mut mesh) = meshes.get_mut(worn.id()) else { continue };
-        match write(entity, mesh.bypass_change_detection(), fabric, surface, &mut scratch) {
+        match write(entity, mesh.bypass_change_detection(), &fabric, surface, &mut scratch) {
             Ok(true) => {
                 mesh.into_inner();
             }
@@ -54,7 +56,7 @@ pub fn write_revealed(
     for (entity, state, surface, visibility, mut dress, mut worn) in &mut cloths {
         let Some(fabric) = shows(state, surface, visibility, &dress) else { continue };
         let Some(mesh) = meshes.get_mut_untracked(worn.id()) else { continue };
-        match write(entity, mesh, fabric, surface, &mut scratch) {
+        match write(entity, mesh, &fabric, surface, &mut scratch) {
             Ok(true) => {
                 events.write(AssetEvent::Modified { id: worn.id() });
                 worn.set_changed();
@@ -66,15 +68,16 @@ pub fn write_revealed(
 }
 
 /// The fabric of a cloth that is to be seen, with a surface and a mesh that fit.
-fn shows<'a>(
-    state: &'a ClothState,
+fn shows(
+    state: &ClothState,
     surface: &ClothSurface,
     visibility: &ViewVisibility,
     dress: &LevelMeshes,
-) -> Option<&'a Fabric> {
-    let fabric = state.fabric()?;
+) -> Option<Arc<Fabric>> {
+    state.fabric()?;
+    let fabric = dress.levels.fabric(surface.level());
     let fits = surface.positions.len() == fabric.particle_count();
-    (visibility.get() && fits && dress.origin != MeshOrigin::Refused).then_some(fabric)
+    (visibility.get() && fits && dress.origin != MeshOrigin::Refused).then(|| Arc::clone(fabric))
 }
 
 fn refuse(dress: &mut LevelMeshes, error: ClothError, commands: &mut Commands, entity: Entity) {

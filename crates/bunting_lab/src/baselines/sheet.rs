@@ -154,7 +154,7 @@ impl Sheet {
         }
     }
 
-    /// Pressure and skin friction of the air, explicitly (thesis, equations 5.1 and 5.2).
+    /// Pressure and skin friction of the air, explicitly and triangle after triangle (thesis, equations 5.1 and 5.2).
     fn apply_air(&mut self, h: f32) {
         let wind = self.air.wind_at(self.time).as_vec3();
         let (pressure, friction) = (self.air.pressure as f32, self.air.friction as f32);

@@ -8,13 +8,15 @@ pub mod thousand;
 
 use bunting_solver::{Scheme, StepSettings};
 
+use crate::product::DEFAULT;
+
 /// Vertices along each side of a flag, at each level of detail.
 pub const LEVELS: [u32; 4] = [33, 17, 9, 5];
 
 /// How finely each scheme is solved where time is measured: the settings that the solver proposes.
 #[must_use]
 pub fn schemes() -> [StepSettings; 2] {
-    [StepSettings::yarns(3), StepSettings::gauss_seidel(10)]
+    [DEFAULT, StepSettings::gauss_seidel(10)]
 }
 
 /// Name of a scheme in tables and in JSON.

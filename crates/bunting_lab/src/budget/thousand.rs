@@ -1,106 +1,202 @@
-//! A thousand flags around a moving camera, through the plugin and its levels of detail, on one core.
+//! A thousand flags around a moving camera, in wind, through the plugin and its governor, on one core.
 
 use std::f32::consts::TAU;
 
-use bevy_bunting::{ClothCounts, ClothSystems, ClothTimings, LodSet, LodViewer};
+use bevy_app::App;
+use bevy_bunting::{
+    ClothCounts, ClothSettings, ClothSystems, ClothTimings, LodReport, LodSet, LodViewer,
+};
+use bevy_ecs::entity::Entity;
 use bevy_transform::components::Transform;
 use bunting_solver::StepSettings;
-use glam::Vec3;
+use glam::{Quat, Vec3};
 use serde::Serialize;
 
-use super::{LEVELS, scheme_name};
-use crate::{game, scenes::TICK_RATE, stats, timing::Timing};
+use super::LEVELS;
+use crate::{game, product::DEFAULT, scenes::TICK_RATE, stats, timing::Timing};
 
 /// Flags in the field.
 const FLAGS: usize = 1000;
-/// Flags stand on a sunflower's spiral, k-th at this times √k from its middle, m: one on 20 m².
-const SPACING: f32 = 2.5;
+/// Flags stand on a sunflower's spiral, k-th at this times √k from its middle, m: one on 10 m².
+const SPACING: f32 = 1.8;
 /// Turn from one flag to the next as a part of a full one: the golden section's.
 const GOLDEN: f32 = 0.381_966;
-/// Distances from each level to the next coarser one, m.
-const DISTANCES: [f32; 3] = [8.0, 16.0, 32.0];
-/// Radius of the camera's path, m.
+/// Radius of the camera's path, m: of the field's 57.
 const PATH: f32 = 40.0;
 /// Height of the camera above the poles' tops, m.
 const HEIGHT: f32 = 1.0;
 /// Speed of the camera, m/s.
 const SPEED: f32 = 10.0;
-/// Ticks before time is taken.
-const WARM_UP: usize = 30;
+/// The camera looks by this much inwards from where it flies, rad.
+const INWARDS: f32 = 0.4;
+/// Half of the picture's width over its distance, and of its height: 60°, 16:9.
+const SLOPES: [f32; 2] = [1.026_4, 0.577_35];
+/// Time before anything is measured, s: flags fly, and levels are found.
+const WARM_UP: usize = 3;
 /// Length of the flight, s: once round the path.
 const SECONDS: usize = 25;
 /// The same where it is to be quick.
 const QUICK_SECONDS: usize = 2;
 
-/// Times of an update of the app.
+/// How finely each level is solved, the finest first: what flies far away is solved more coarsely.
+#[must_use]
+pub fn steps() -> Vec<StepSettings> {
+    let coarse = StepSettings { substeps: 1, ..DEFAULT };
+    vec![DEFAULT, coarse, coarse, coarse]
+}
+
+/// What was measured in each tick.
+#[derive(Default)]
+struct Log {
+    update: Timing,
+    tick: Timing,
+    choice: Timing,
+    sets: [Timing; ClothSystems::ORDER.len()],
+    ticking: Vec<Vec<f64>>,
+    in_view: Vec<f64>,
+    asleep: Vec<f64>,
+    held_back: Vec<f64>,
+    switches: Vec<f64>,
+    expected: Vec<f64>,
+}
+
+/// What a thousand flags cost, and how they were simulated.
 #[derive(Clone, Debug, Serialize)]
 pub struct Thousand {
-    /// Scheme.
-    pub scheme: &'static str,
-    /// Substeps a tick.
-    pub substeps: u32,
-    /// Median, ms.
+    /// Substeps and passes of each level, the finest first.
+    pub steps: Vec<(u32, u32)>,
+    /// An update of the whole app, ms: median.
     pub ms_median: f64,
     /// 95th percentile, ms.
     pub ms_p95: f64,
     /// Mean over the slowest second, ms.
     pub ms_worst_second: f64,
-    /// Mean number of flags at each level, the finest first.
-    pub per_level: Vec<f64>,
+    /// 95th percentile in the second in which that is greatest, ms.
+    pub ms_p95_worst_second: f64,
+    /// A tick of the plugin alone, ms: median.
+    pub ms_tick_median: f64,
+    /// 95th percentile, ms.
+    pub ms_tick_p95: f64,
+    /// The governor alone, part of the tick, ms: median.
+    pub ms_choice_median: f64,
+    /// 95th percentile, ms.
+    pub ms_choice_p95: f64,
+    /// Mean of what the governor expected of a tick, ms.
+    pub ms_expected: f64,
     /// Median time of each of the plugin's sets, in their order, ms.
     pub ms_per_set: Vec<f64>,
-    /// Changes of level a tick, at least: by the change of the numbers.
+    /// Mean number of flags that are simulated at each level, the finest first.
+    pub per_level: Vec<f64>,
+    /// The least number in any tick.
+    pub per_level_least: Vec<f64>,
+    /// Least number of flags in view; all of them are simulated.
+    pub in_view_least: f64,
+    /// Mean number of flags that are asleep.
+    pub asleep: f64,
+    /// Mean number of flags that are coarser than they should be for want of time.
+    pub held_back: f64,
+    /// Changes of level a tick.
     pub changes_per_tick: f64,
 }
 
 /// Flies the camera once round.
 #[must_use]
-pub fn measure(settings: StepSettings, quick: bool) -> Thousand {
-    let mut app = game::app(settings);
-    for flag in 0..FLAGS {
-        let (angle, radius) = (TAU * GOLDEN * flag as f32, SPACING * (flag as f32).sqrt());
-        let at = Vec3::new(radius * angle.cos(), 0.0, radius * angle.sin());
-        game::spawn_flag(&mut app, LEVELS[0], at, LodSet::new(DISTANCES));
+pub fn measure(quick: bool) -> Thousand {
+    let steps = steps();
+    let mut app = game::app(steps[0]);
+    app.world_mut().resource_mut::<ClothSettings>().steps = steps.clone();
+    let places: Vec<Vec3> = (0..FLAGS).map(place).collect();
+    for &at in &places {
+        game::spawn_flag(&mut app, LEVELS[0], at, LodSet::automatic(LEVELS.len()));
     }
-    let camera = app.world_mut().spawn((LodViewer, Transform::default())).id();
+    let camera = app.world_mut().spawn((LodViewer::default(), Transform::default())).id();
     let seconds = if quick { QUICK_SECONDS } else { SECONDS };
-    let mut time = Timing::default();
-    let mut sets: [Timing; ClothSystems::ORDER.len()] = Default::default();
-    let mut counts: Vec<Vec<usize>> = Vec::new();
-    for tick in 0..WARM_UP + seconds * TICK_RATE as usize {
-        let angle = SPEED / PATH * tick as f32 / TICK_RATE as f32;
-        let place = Vec3::new(PATH * angle.cos(), HEIGHT, PATH * angle.sin());
-        *app.world_mut().get_mut::<Transform>(camera).expect("the camera stays") =
-            Transform::from_translation(place);
-        if tick < WARM_UP {
+    let rate = TICK_RATE as usize;
+    let mut log = Log::default();
+    for tick in 0..(WARM_UP + seconds) * rate {
+        let pose = camera_pose(tick);
+        if tick < WARM_UP * rate {
+            fly(&mut app, camera, pose);
             app.update();
         } else {
-            time.time(|| app.update());
-            let timings = app.world().resource::<ClothTimings>();
-            for (time, set) in sets.iter_mut().zip(ClothSystems::ORDER) {
-                time.push(timings.of(set).as_secs_f64() * 1e6);
-            }
-            counts.push(app.world().resource::<ClothCounts>().0.clone());
+            fly(&mut app, camera, pose);
+            log.update.time(|| app.update());
+            log.take(&app, &pose, &places);
         }
     }
-    let at_level = |count: &Vec<usize>, level: usize| count.get(level).copied().unwrap_or(0);
-    let per_level = (0..LEVELS.len()).map(|level| {
-        let flags: Vec<f64> = counts.iter().map(|count| at_level(count, level) as f64).collect();
-        stats::mean(&flags)
-    });
-    let changed = |pair: &[Vec<usize>]| {
-        let moved = |level| at_level(&pair[0], level).abs_diff(at_level(&pair[1], level));
-        (0..LEVELS.len()).map(moved).sum::<usize>() as f64 / 2.0
-    };
-    let changes: Vec<f64> = counts.windows(2).map(changed).collect();
-    Thousand {
-        scheme: scheme_name(settings),
-        substeps: settings.substeps,
-        ms_median: time.median() * 1e-3,
-        ms_p95: time.percentile(0.95) * 1e-3,
-        ms_worst_second: time.worst_mean(TICK_RATE as usize) * 1e-3,
-        per_level: per_level.collect(),
-        ms_per_set: sets.iter().map(|time| time.median() * 1e-3).collect(),
-        changes_per_tick: stats::mean(&changes),
+    log.sum_up(&steps)
+}
+
+fn place(flag: usize) -> Vec3 {
+    let (angle, radius) = (TAU * GOLDEN * flag as f32, SPACING * (flag as f32).sqrt());
+    Vec3::new(radius * angle.cos(), 0.0, radius * angle.sin())
+}
+
+/// On a circle, looking ahead and inwards.
+fn camera_pose(tick: usize) -> Transform {
+    let angle = SPEED / PATH * tick as f32 / TICK_RATE as f32;
+    let at = Vec3::new(PATH * angle.cos(), HEIGHT, PATH * angle.sin());
+    let course = Vec3::new(-angle.sin(), 0.0, angle.cos());
+    Transform::from_translation(at).looking_to(Quat::from_rotation_y(-INWARDS) * course, Vec3::Y)
+}
+
+fn fly(app: &mut App, camera: Entity, pose: Transform) {
+    *app.world_mut().get_mut::<Transform>(camera).expect("the camera stays") = pose;
+}
+
+/// Whether the middle of a flag is in the picture.
+fn is_in_view(camera: &Transform, flag: Vec3) -> bool {
+    let middle = flag + Vec3::new(0.5, -0.5, 0.0);
+    let seen = camera.rotation.inverse() * (middle - camera.translation);
+    seen.z < 0.0 && seen.x.abs() < -SLOPES[0] * seen.z && seen.y.abs() < -SLOPES[1] * seen.z
+}
+
+impl Log {
+    fn take(&mut self, app: &App, camera: &Transform, places: &[Vec3]) {
+        let timings = app.world().resource::<ClothTimings>();
+        let report = app.world().resource::<LodReport>();
+        let counts = app.world().resource::<ClothCounts>();
+        self.tick.push(timings.total().as_secs_f64() * 1e6);
+        self.choice.push(report.choice.as_secs_f64() * 1e6);
+        for (time, set) in self.sets.iter_mut().zip(ClothSystems::ORDER) {
+            time.push(timings.of(set).as_secs_f64() * 1e6);
+        }
+        let ticking = (0..LEVELS.len()).map(|level| counts.0.get(level).copied().unwrap_or(0));
+        self.ticking.push(ticking.map(|count| count as f64).collect());
+        let in_view = places.iter().filter(|&&flag| is_in_view(camera, flag)).count();
+        self.in_view.push(in_view as f64);
+        self.asleep.push(report.asleep() as f64);
+        self.held_back.push(report.held_back as f64);
+        self.switches.push(report.switches as f64);
+        self.expected.push(report.expected.as_secs_f64() * 1e3);
+    }
+
+    fn sum_up(self, steps: &[StepSettings]) -> Thousand {
+        let rate = TICK_RATE as usize;
+        let at_level = |level: usize| self.ticking.iter().map(move |counts| counts[level]);
+        let least = |values: &mut dyn Iterator<Item = f64>| values.fold(f64::INFINITY, f64::min);
+        let levels = 0..LEVELS.len();
+        Thousand {
+            steps: steps.iter().map(|step| (step.substeps, step.passes)).collect(),
+            ms_median: self.update.median() * 1e-3,
+            ms_p95: self.update.percentile(0.95) * 1e-3,
+            ms_worst_second: self.update.worst_mean(rate) * 1e-3,
+            ms_p95_worst_second: self.update.worst_percentile(rate, 0.95) * 1e-3,
+            ms_tick_median: self.tick.median() * 1e-3,
+            ms_tick_p95: self.tick.percentile(0.95) * 1e-3,
+            ms_choice_median: self.choice.median() * 1e-3,
+            ms_choice_p95: self.choice.percentile(0.95) * 1e-3,
+            ms_expected: stats::mean(&self.expected),
+            ms_per_set: self.sets.iter().map(|time| time.median() * 1e-3).collect(),
+            per_level: levels
+                .clone()
+                .map(|level| stats::mean(&at_level(level).collect::<Vec<_>>()))
+                .collect(),
+            per_level_least: levels.map(|level| least(&mut at_level(level))).collect(),
+            in_view_least: least(&mut self.in_view.iter().copied()),
+            asleep: stats::mean(&self.asleep),
+            held_back: stats::mean(&self.held_back),
+            changes_per_tick: stats::mean(&self.switches),
+        }
     }
 }

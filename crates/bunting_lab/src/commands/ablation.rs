@@ -1,116 +1,156 @@
 //! What each part of the model costs and buys.
 
-use bunting_solver::{Collider, LaneCount, StepSettings};
+use std::sync::Arc;
+
+use bunting_solver::{Collider, FabricBuilder, LaneCount, StepSettings};
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
 use serde::Serialize;
 
 use crate::{
-    observation::{COMPARED_TICKS, Observer},
+    observation::{Observation, Observer},
     output::table::{Table, figure, figure_or_dash},
-    product::{Cloth, Product},
+    product::{self, Cloth, DEFAULT, Product},
     reference::{Reference, grid::Grid},
     scenes::{Air, Scene},
     simulation::Simulation,
     timing::Timing,
 };
 
-/// The product as users meet it, eight cloths at once.
-const WHOLE: Product = Product { settings: StepSettings::yarns(3), lanes: LaneCount::Eight };
-/// Runs of the same scene: time is their median over all ticks.
-const REPEATS: usize = 5;
+/// Cloths advanced at once.
+const LANES: LaneCount = LaneCount::Eight;
 /// Entry of `COMPARED_TICKS` that the error is taken at: 0.4 s.
 const COMPARED: usize = 1;
 /// A stiffness as good as none, N/m.
 const NEXT_TO_NONE: f64 = 1e-3;
+/// Skin friction of the air, ρ C_t, kg/m³.
+const FRICTION: f64 = 0.02;
 
 /// The model without one of its parts, or with one more.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
     /// What was left out or added.
     part: &'static str,
-    /// Microseconds a cloth and tick.
+    /// Microseconds a cloth and tick, of a flag in the wind.
     us_per_cloth_tick: f64,
     /// That over the whole model's.
     us_ratio: f64,
-    /// Distance at 0.4 s from the reference of the whole model, m RMS.
+    /// Distance of the swing in air at 0.4 s from the reference of the whole model, m RMS.
     rms_error_m: Option<f64>,
+    /// Distance of the mean strain of the cloth hung by its corners from that of the whole model's
+    /// reference.
+    strain_error: f64,
+    /// Strain that a thousandth of the flag's warp and weft exceeds.
+    flag_strain_p999: f64,
 }
 
-/// A change of the scene before the start, and one of the cloth after it.
+/// A change of the scene, of what is cut for it, of the settings, and of the cloth.
 struct Variant {
     part: &'static str,
     scene: fn(&mut Scene),
+    cut: fn(FabricBuilder) -> FabricBuilder,
+    settings: StepSettings,
     cloth: fn(&mut Cloth),
 }
 
-const VARIANTS: [Variant; 7] = [
-    Variant { part: "whole model", scene: |_| (), cloth: |_| () },
-    Variant { part: "no shear", scene: |scene| scene.fabric.shear = NEXT_TO_NONE, cloth: |_| () },
-    Variant { part: "no bending", scene: |scene| scene.fabric.bending = 0.0, cloth: |_| () },
-    Variant { part: "no skin friction", scene: |scene| scene.air.friction = 0.0, cloth: |_| () },
-    Variant { part: "no air", scene: |scene| scene.air = Air::VACUUM, cloth: |_| () },
-    Variant { part: "no normals", scene: |_| (), cloth: |cloth| cloth.normals = false },
-    Variant { part: "a ball nearby", scene: |_| (), cloth: near_a_ball },
+/// Nothing left out.
+const WHOLE: Variant = Variant {
+    part: "whole model",
+    scene: |_| (),
+    cut: |pattern| pattern,
+    settings: DEFAULT,
+    cloth: |_| (),
+};
+
+const VARIANTS: [Variant; 9] = [
+    WHOLE,
+    Variant { part: "limp shear", scene: |scene| scene.fabric.shear = NEXT_TO_NONE, ..WHOLE },
+    Variant { part: "limp bending", scene: |scene| scene.fabric.bending = 0.0, ..WHOLE },
+    Variant { part: "no skin friction", scene: |scene| scene.air.friction = 0.0, ..WHOLE },
+    Variant { part: "no air", scene: |scene| scene.air = Air::VACUUM, ..WHOLE },
+    Variant { part: "no tethers", cut: |pattern| pattern.tethered(false), ..WHOLE },
+    Variant { part: "one pass", settings: StepSettings { passes: 1, ..DEFAULT }, ..WHOLE },
+    Variant { part: "no normals", cloth: |cloth| cloth.normals = false, ..WHOLE },
+    Variant { part: "a ball nearby", cloth: near_a_ball, ..WHOLE },
 ];
 
-/// A ball that the cloth passes without touching it.
+/// A ball beside the cloth that few of its particles may touch.
 fn near_a_ball(cloth: &mut Cloth) {
     let ball = Collider::fixed(SharedShape::ball(0.1), Vec3::new(0.5, 0.2, 0.5), Quat::IDENTITY);
     cloth.touch(&[ball]);
 }
 
-/// The swing in air, n × n: every part of the model acts.
-fn scene(n: usize) -> Scene {
-    Scene { air: Air { pressure: 0.6, friction: 0.02, ..Air::VACUUM }, ..Scene::swing(n) }
+/// The swing and the flag, n × n, in air that also rubs: every part of the model acts.
+fn scenes(n: usize) -> [Scene; 2] {
+    let air = Air { pressure: 0.6, ..Air::VACUUM };
+    let swing = Scene { air, ..Scene::swing(n) };
+    [swing, Scene::flag(n)].map(|mut scene| {
+        scene.air.friction = FRICTION;
+        scene
+    })
 }
 
 /// Measures every variant.
 #[must_use]
 pub fn rows(n: usize) -> Vec<Row> {
-    let whole = scene(n);
-    let reference = Reference::of(&whole);
+    let [swing, flag] = scenes(n);
+    let corners = Scene::hang_corners(n);
+    let [swung, hung] = [&swing, &corners].map(|scene| Reference::of(scene).observation);
     let mut rows: Vec<Row> = Vec::new();
     for variant in &VARIANTS {
-        let (time, rms_error_m) = measure(&whole, variant, &reference);
-        let us_per_cloth_tick = time / WHOLE.lanes.get() as f64;
-        let base = rows.first().map_or(us_per_cloth_tick, |row| row.us_per_cloth_tick);
-        let us_ratio = us_per_cloth_tick / base;
-        rows.push(Row { part: variant.part, us_per_cloth_tick, us_ratio, rms_error_m });
+        let (flown, time) = run(&flag, variant);
+        let us_per_cloth_tick = time.median() / LANES.get() as f64;
+        let whole = rows.first().map_or(us_per_cloth_tick, |row| row.us_per_cloth_tick);
+        rows.push(Row {
+            part: variant.part,
+            us_per_cloth_tick,
+            us_ratio: us_per_cloth_tick / whole,
+            rms_error_m: run(&swing, variant).0.rms_error(&swung, COMPARED),
+            strain_error: (run(&corners, variant).0.strain.mean - hung.strain.mean).abs(),
+            flag_strain_p999: flown.strain.p999,
+        });
     }
     rows
 }
 
-/// Median time of a tick, µs, and the error at 0.4 s, m RMS.
-fn measure(whole: &Scene, variant: &Variant, reference: &Reference) -> (f64, Option<f64>) {
-    let mut changed = whole.clone();
+/// What is seen of a scene under a variant, and the time of its ticks, of all lanes.
+fn run(scene: &Scene, variant: &Variant) -> (Observation, Timing) {
+    let mut changed = scene.clone();
     (variant.scene)(&mut changed);
-    let grid = Grid::new(whole);
-    let (mut time, mut error) = (Timing::default(), None);
-    for _ in 0..REPEATS {
-        let mut cloth = WHOLE.start(&changed);
-        (variant.cloth)(&mut cloth);
-        let mut observer = Observer::new(whole, &grid);
-        for _ in 0..COMPARED_TICKS[COMPARED] {
-            time.time(|| cloth.tick());
-            let double =
-                |vectors: &[Vec3]| vectors.iter().map(|x| x.as_dvec3()).collect::<Vec<_>>();
-            observer.observe(&double(cloth.positions()), &double(cloth.velocities()));
-        }
-        error = observer.finish().rms_error(&reference.observation, COMPARED);
+    let fabric = (variant.cut)(product::pattern(&changed)).build().expect("a scene is a good grid");
+    let product = Product { settings: variant.settings, lanes: LANES };
+    let mut cloth = product.start_cut(Arc::new(fabric), &changed);
+    (variant.cloth)(&mut cloth);
+    let grid = Grid::new(scene);
+    let mut observer = Observer::new(scene, &grid);
+    let mut time = Timing::default();
+    for _ in 0..scene.ticks() {
+        time.time(|| cloth.tick());
+        let double = |vectors: &[Vec3]| vectors.iter().map(|x| x.as_dvec3()).collect::<Vec<_>>();
+        observer.observe(&double(cloth.positions()), &double(cloth.velocities()));
     }
-    (time.median(), error)
+    (observer.finish(), time)
 }
 
 /// The rows for reading.
 #[must_use]
 pub fn table(n: usize, rows: &[Row]) -> Table {
+    let StepSettings { substeps, passes, .. } = DEFAULT;
     Table {
         name: format!("ablation_{n}"),
         title: format!(
-            "Parts of the model on the swing in air, {n} × {n}, {WHOLE}, eight lanes; tethers and polish have no switch"
+            "Parts of the model, {n} × {n}, {}, {substeps} × {passes}, eight lanes: time of a flag \
+             in the wind, and errors against the whole model's references (shear and bending go limp, their time stays)",
+            Product { settings: DEFAULT, lanes: LANES }
         ),
-        headers: vec!["part", "µs/tick", "of the whole", "RMS error m"],
+        headers: vec![
+            "part",
+            "µs/tick",
+            "of the whole",
+            "swing: RMS error m",
+            "corners: strain error",
+            "flag: 99.9 % strain",
+        ],
         rows: rows
             .iter()
             .map(|row| {
@@ -119,6 +159,8 @@ pub fn table(n: usize, rows: &[Row]) -> Table {
                     figure(row.us_per_cloth_tick),
                     figure(row.us_ratio),
                     figure_or_dash(row.rms_error_m),
+                    figure(row.strain_error),
+                    figure(row.flag_strain_p999),
                 ]
             })
             .collect(),

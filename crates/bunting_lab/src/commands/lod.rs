@@ -5,10 +5,11 @@ use serde_json::json;
 
 use super::progress;
 use crate::{
-    budget::schemes,
-    levels::{agreement::Agreement, switches::Switch},
+    budget::{scheme_name, schemes},
+    levels::{agreement::Agreement, pops::Pop, resolution::Resolution, switches::Switch},
     output::{
         Outcome,
+        plot::{Axes, Mark, Plot, Series},
         table::{Table, figure},
     },
 };
@@ -28,16 +29,21 @@ pub fn run(quick: bool) -> Outcome {
     let sizes = if quick { QUICK_SIZES } else { SIZES };
     let pairs = sizes.windows(2).flat_map(|pair| [(pair[0], pair[1]), (pair[1], pair[0])]);
     let pairs: Vec<(usize, usize)> = pairs.collect();
-    let bar = progress(schemes().len() * (sizes.len() + pairs.len()));
+    let bar = progress(schemes().len() * (sizes.len() + 1 + 2 * pairs.len()));
     let moments = if quick { QUICK_MOMENTS } else { MOMENTS };
-    let (mut levels, mut switches) = (Vec::new(), Vec::new());
+    let (mut levels, mut resolutions) = (Vec::new(), Vec::new());
+    let (mut switches, mut pops) = (Vec::new(), Vec::new());
     for settings in schemes() {
         for n in sizes {
             levels.push(Agreement::of(n, settings, quick));
             bar.inc(1);
         }
+        resolutions.extend(Resolution::of(sizes[0], settings, moments));
+        bar.inc(1);
         for &(from, to) in &pairs {
             switches.push(Switch::of(from, to, settings, moments));
+            bar.inc(1);
+            pops.push(Pop::of(from, to, settings, moments));
             bar.inc(1);
         }
     }
@@ -46,10 +52,42 @@ pub fn run(quick: bool) -> Outcome {
         json: json!({
             "instruction_set": instruction_set(),
             "levels": levels,
+            "resolutions": resolutions,
             "switches": switches,
+            "pops": pops,
         }),
-        tables: vec![level_table(&levels), switch_table(&switches)],
-        plots: Vec::new(),
+        tables: vec![
+            level_table(&levels),
+            resolution_table(&resolutions),
+            switch_table(&switches),
+            pop_table(&pops),
+        ],
+        plots: schemes().into_iter().map(|scheme| plot(&levels, scheme_name(scheme))).collect(),
+    }
+}
+
+/// Each figure of the levels over that of the finest.
+fn plot(levels: &[Agreement], scheme: &str) -> Plot {
+    let of_scheme: Vec<&Agreement> = levels.iter().filter(|it| it.scheme == scheme).collect();
+    let line = |name: &str, value: fn(&Agreement) -> f64| Series {
+        name: name.into(),
+        points: of_scheme
+            .iter()
+            .map(|level| (level.n as f64, value(level) / value(of_scheme[0])))
+            .collect(),
+        mark: Mark::Line,
+    };
+    Plot {
+        name: format!("lod_levels_{scheme}"),
+        title: format!("Agreement of the levels, {scheme}"),
+        labels: ["vertices along a side".into(), "over that of the finest".into()],
+        axes: Axes::Logarithmic,
+        series: vec![
+            line("droop", |level| level.droop_m),
+            line("swing period", |level| level.swing_period_s),
+            line("tip spread", |level| level.tip_spread_m),
+            line("flutter frequency", |level| level.flutter_hz),
+        ],
     }
 }
 
@@ -86,6 +124,24 @@ fn level_table(levels: &[Agreement]) -> Table {
     }
 }
 
+fn resolution_table(resolutions: &[Resolution]) -> Table {
+    let cells = |resolution: &Resolution| {
+        vec![
+            resolution.scheme.into(),
+            format!("{} by {}", resolution.fine, resolution.coarse),
+            figure(resolution.rms_m),
+            figure(resolution.p95_m),
+            figure(resolution.p95_of_cell),
+        ]
+    };
+    Table {
+        name: "lod_resolution".into(),
+        title: "A flag's surface shown by the vertices of a coarser level".into(),
+        headers: vec!["scheme", "levels", "RMS m", "95 % m", "95 % over the cell"],
+        rows: resolutions.iter().map(cells).collect(),
+    }
+}
+
 fn switch_table(switches: &[Switch]) -> Table {
     let percent = |share: f64| format!("{:.2} %", 100.0 * share);
     let cells = |switch: &Switch| {
@@ -96,8 +152,10 @@ fn switch_table(switches: &[Switch]) -> Table {
             figure(switch.pop_max_m),
             figure(switch.invisible_from_m),
             percent(switch.momentum_jump),
+            figure(switch.momentum_worst),
             percent(switch.kinetic_jump),
             format!("{} ×", figure(switch.energy_jump)),
+            format!("{} ×", figure(switch.energy_worst)),
         ]
     };
     Table {
@@ -110,9 +168,41 @@ fn switch_table(switches: &[Switch]) -> Table {
             "pop max m",
             "< 1 px from m",
             "momentum",
+            "worst, of its sum",
             "kinetic energy",
             "total energy over kinetic",
+            "worst",
         ],
         rows: switches.iter().map(cells).collect(),
+    }
+}
+
+fn pop_table(pops: &[Pop]) -> Table {
+    let cells = |pop: &Pop| {
+        vec![
+            pop.scheme.into(),
+            format!("{} → {}", pop.from, pop.to),
+            figure(pop.distance_m),
+            figure(pop.mean_px),
+            figure(pop.worst_px),
+            figure(pop.after_px),
+            figure(pop.own_px),
+            figure(pop.twin_px),
+        ]
+    };
+    Table {
+        name: "lod_pops".into(),
+        title: "What is seen of a change of level, in pixels of 1080 lines over 60°".into(),
+        headers: vec![
+            "scheme",
+            "levels",
+            "from m",
+            "off its motion",
+            "worst",
+            "in the frames after",
+            "by flapping",
+            "off a twin",
+        ],
+        rows: pops.iter().map(cells).collect(),
     }
 }

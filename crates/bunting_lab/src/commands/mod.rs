@@ -9,6 +9,7 @@ pub mod pareto;
 pub mod peers;
 pub mod report;
 pub mod schedule;
+pub mod speed_error;
 pub mod stability;
 
 use indicatif::{ProgressBar, ProgressStyle};

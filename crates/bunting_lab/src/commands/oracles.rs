@@ -7,7 +7,9 @@ use crate::{
     oracles::{Case, trials},
     output::{
         Outcome,
+        plot::{Axes, Mark, Plot, Series},
         table::{Table, figure},
+        verdicts::{self, Verdict},
     },
     product::Product,
 };
@@ -23,7 +25,35 @@ pub fn run() -> Outcome {
         bar.inc(1);
     }
     bar.finish_and_clear();
-    Outcome { json: json!({ "cases": cases }), tables: vec![table(&cases)], plots: Vec::new() }
+    let plots = [plot(&cases), cantilevers(&cases)].into_iter().flatten().collect();
+    Outcome { json: json!({ "cases": cases }), tables: vec![table(&cases)], plots }
+}
+
+fn plot(cases: &[Case]) -> Option<Plot> {
+    let verdicts: Vec<Verdict> = cases
+        .iter()
+        .map(|it| Verdict { worst: it.relative_error, limit: it.tolerance, pass: it.pass })
+        .collect();
+    let labels = ["tolerance", "relative error"];
+    verdicts::plot("oracles", "Closed forms and what the cloth does", labels, &verdicts)
+}
+
+/// The drop of a heavy cantilever over its reach against Γ, as Romero et al. 2021 draw it.
+fn cantilevers(cases: &[Case]) -> Option<Plot> {
+    let drawn = cases.iter().filter_map(|case| Some((trials::gamma_of(case)?, case)));
+    let (expected, measured): (Vec<_>, Vec<_>) =
+        drawn.map(|(gamma, case)| ((gamma, case.expected), (gamma, case.measured))).unzip();
+    let series = vec![
+        Series { name: "elastica".into(), points: expected, mark: Mark::Guide },
+        Series { name: "cloth".into(), points: measured, mark: Mark::Dots },
+    ];
+    (!series[0].points.is_empty()).then(|| Plot {
+        name: "oracles_cantilever".into(),
+        title: "A strip bends under its own weight".into(),
+        labels: ["Γ = σgL³/B".into(), "drop over reach, H/W".into()],
+        axes: Axes::Logarithmic,
+        series,
+    })
 }
 
 fn table(cases: &[Case]) -> Table {
@@ -32,8 +62,10 @@ fn table(cases: &[Case]) -> Table {
         name: "oracles".into(),
         title: format!("{passed} of {} closed forms met", cases.len()),
         headers: vec!["case", "expected", "measured", "relative error", "tolerance", "pass"],
-        rows: cases
-            .iter()
+        // What fails first.
+        rows: [false, true]
+            .into_iter()
+            .flat_map(|pass| cases.iter().filter(move |case| case.pass == pass))
             .map(|case| {
                 vec![
                     case.name.clone(),

@@ -1,18 +1,23 @@
 //! Speed against error: every method on the standard scenes.
 
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use anyhow::{Context, Result};
 use bunting_solver::instruction_set;
 use clap::Args;
 use serde::Serialize;
 use serde_json::json;
 
-use super::{ablation, progress};
+use super::{ablation, progress, speed_error};
 use crate::{
     baselines::Baseline,
     contender::Contender,
-    observation::{COMPARED_TICKS, Observation, Observer},
+    observation::{Observation, Observer},
     output::{
         Outcome,
-        plot::{Mark, Plot, Series, pareto_front},
         table::{Table, figure, figure_or_dash},
     },
     product::Product,
@@ -23,6 +28,8 @@ use crate::{
 
 /// Entry of `COMPARED_TICKS` that a row's position error is taken at: 0.4 s.
 const COMPARED: usize = 1;
+/// Time after which a method that would take longer on a scene is left out, s.
+const PATIENCE: f64 = 60.0;
 /// Part of a position error that the reference's own may be; beyond it no error is reported.
 const KNOWN: f64 = 0.1;
 /// Ticks before time is taken.
@@ -46,14 +53,27 @@ pub struct Selection {
     /// Vertices along each side.
     #[arg(long, value_delimiter = ',', default_values_t = [9, 17, 33, 65], value_parser = parse_size)]
     sizes: Vec<usize>,
+    /// Leave out a method that would take longer than this on a scene, s.
+    #[arg(long, default_value_t = PATIENCE, value_parser = parse_patience)]
+    patience: f64,
+    /// Also draw error over time of the position-based methods, on the last selected scene, as SVG.
+    #[arg(long, value_name = "FILE")]
+    figure: Option<PathBuf>,
 }
 
 impl Selection {
-    /// All scenes at these sizes.
+    /// These scenes at these sizes.
     #[must_use]
-    pub fn of_sizes(sizes: Vec<usize>) -> Self {
-        let scenes = Scene::standard(2).map(|scene| scene.name.to_owned()).to_vec();
-        Self { scenes, sizes }
+    pub fn new(scenes: &[&str], sizes: Vec<usize>, patience: f64) -> Self {
+        let scenes = scenes.iter().map(|&name| name.to_owned()).collect();
+        Self { scenes, sizes, patience, figure: None }
+    }
+}
+
+fn parse_patience(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(seconds) if seconds > 0.0 => Ok(seconds),
+        _ => Err("patience is a number of seconds above zero".into()),
     }
 }
 
@@ -66,14 +86,14 @@ fn parse_size(text: &str) -> Result<usize, String> {
 
 /// One method on one scene.
 #[derive(Clone, Debug, Serialize)]
-struct Row {
-    scene: &'static str,
-    n: usize,
-    method: String,
-    substeps: usize,
-    passes: usize,
-    lanes: usize,
-    us_per_cloth_tick: f64,
+pub struct Row {
+    pub(super) scene: &'static str,
+    pub(super) n: usize,
+    pub(super) method: String,
+    pub(super) substeps: usize,
+    pub(super) passes: usize,
+    pub(super) lanes: usize,
+    pub(super) us_per_cloth_tick: f64,
     us_min: f64,
     rms_error_m: Option<f64>,
     mean_stretch: f64,
@@ -114,7 +134,7 @@ impl Row {
     }
 
     /// The error that the scene is measured for, and what it is called.
-    fn error(&self, measure: Measure) -> Option<f64> {
+    pub(super) fn error(&self, measure: Measure) -> Option<f64> {
         match measure {
             Measure::Positions => self.rms_error_m,
             Measure::Rest | Measure::Statistics => Some(self.strain_error),
@@ -139,27 +159,49 @@ impl Row {
     }
 }
 
+/// A method that would have taken too long on a scene, or is not made for it.
+#[derive(Clone, Debug, Serialize)]
+struct LeftOut {
+    scene: &'static str,
+    n: usize,
+    method: String,
+    substeps: usize,
+    passes: usize,
+}
+
 /// Runs every method on the selected scenes.
-#[must_use]
-pub fn run(selection: &Selection, quick: bool) -> Outcome {
+///
+/// # Errors
+///
+/// When the figure asked for cannot be drawn or written.
+pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
     let contenders = contenders(quick);
     let scenes = selected(selection, quick);
     let bar = progress(scenes.len() * contenders.len());
     let mut outcome = Outcome { json: json!(null), tables: Vec::new(), plots: Vec::new() };
-    let (mut all, mut references) = (Vec::new(), Vec::new());
+    let (mut all, mut left_out, mut references) = (Vec::new(), Vec::new(), Vec::new());
     for scene in &scenes {
         bar.set_message(format!("reference of {} {}", scene.name, scene.columns));
         let reference = Reference::of(scene);
         let mut rows = Vec::new();
         for contender in &contenders {
             bar.set_message(format!("{} {} {}", scene.name, scene.columns, contender.method));
-            if let Some((seen, time)) = measure(scene, contender) {
-                rows.push(Row::new(scene, contender, &seen, &time, &reference));
+            match measure(scene, contender, selection.patience) {
+                Some((seen, time)) => {
+                    rows.push(Row::new(scene, contender, &seen, &time, &reference));
+                }
+                None => left_out.push(LeftOut {
+                    scene: scene.name,
+                    n: scene.columns,
+                    method: contender.method.clone(),
+                    substeps: contender.substeps,
+                    passes: contender.passes,
+                }),
             }
             bar.inc(1);
         }
         outcome.tables.push(table(scene, &rows, &reference));
-        outcome.plots.extend(plot(scene, &rows));
+        outcome.plots.extend(speed_error::plot(scene, &rows, &contenders));
         references.push(json!({
             "scene": scene.name,
             "n": scene.columns,
@@ -169,27 +211,47 @@ pub fn run(selection: &Selection, quick: bool) -> Outcome {
             "mean_stretch": reference.observation.strain.mean,
             "max_stretch": reference.observation.strain.max,
         }));
-        all.extend(rows);
+        all.push(rows);
+    }
+    if let (Some(path), Some((scene, rows))) =
+        (&selection.figure, scenes.iter().zip(&all).next_back())
+    {
+        write_figure(path, scene, rows)?;
     }
     bar.set_message("ablation");
     let n = ABLATED[usize::from(quick)];
     let parts = ablation::rows(n);
     outcome.tables.push(ablation::table(n, &parts));
+    outcome.tables.push(left_out_table(&left_out));
     bar.finish_and_clear();
     outcome.json = json!({
         "instruction_set": instruction_set(),
-        "rows": all,
+        "rows": all.concat(),
+        "left_out": left_out,
         "references": references,
         "ablation": parts,
     });
-    outcome
+    Ok(outcome)
 }
 
-/// The methods of the thesis, then every option of the product; of those, one pass where quick.
+fn write_figure(path: &Path, scene: &Scene, rows: &[Row]) -> Result<()> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)
+            .with_context(|| format!("cannot create {}", folder.display()))?;
+    }
+    fs::write(path, speed_error::figure(scene, rows).svg()?)
+        .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// The methods of the thesis, other engines where they are built in, then every option of the product;
+/// of those, one pass where quick.
 fn contenders(quick: bool) -> Vec<Contender> {
-    let baselines = Baseline::catalogue().into_iter().map(Contender::from);
+    let mut contenders: Vec<_> = Baseline::catalogue().into_iter().map(Contender::from).collect();
+    #[cfg(feature = "peers")]
+    contenders.extend(crate::peers::contenders());
     let products = Product::catalogue().into_iter().filter(|it| !quick || it.settings.passes == 1);
-    baselines.chain(products.map(Contender::from)).collect()
+    contenders.extend(products.map(Contender::from));
+    contenders
 }
 
 fn selected(selection: &Selection, quick: bool) -> Vec<Scene> {
@@ -204,18 +266,19 @@ fn selected(selection: &Selection, quick: bool) -> Vec<Scene> {
         .collect()
 }
 
-/// Runs a contender through the scene; none where the scene is beyond it.
-fn measure(scene: &Scene, contender: &Contender) -> Option<(Observation, Timing)> {
+/// Runs a contender through the scene; none where the scene is beyond it or it would take too long.
+fn measure(scene: &Scene, contender: &Contender, patience: f64) -> Option<(Observation, Timing)> {
     let grid = Grid::new(scene);
     let mut observer = Observer::new(scene, &grid);
     let mut simulation = (contender.start)(scene)?;
-    let mut time = Timing::default();
+    let (mut warm_up, mut time) = (Timing::default(), Timing::default());
     for tick in 0..scene.ticks() {
-        if tick < WARM_UP {
-            simulation.tick();
-        } else {
-            time.time(|| simulation.tick());
+        // The shortest tick, since others may have had to wait for the processor.
+        if tick == WARM_UP && warm_up.min() * scene.ticks() as f64 > patience * 1e6 {
+            return None;
         }
+        let timing = if tick < WARM_UP { &mut warm_up } else { &mut time };
+        timing.time(|| simulation.tick());
         let positions: Vec<_> = simulation.positions().iter().map(|x| x.as_dvec3()).collect();
         let velocities: Vec<_> = simulation.velocities().iter().map(|v| v.as_dvec3()).collect();
         if !observer.observe(&positions, &velocities) {
@@ -256,41 +319,18 @@ fn table(scene: &Scene, rows: &[Row], reference: &Reference) -> Table {
     }
 }
 
-/// Error over time, one colour a method, and the front of what no other setting beats.
-fn plot(scene: &Scene, rows: &[Row]) -> Option<Plot> {
-    let mut series: Vec<Series> = Vec::new();
-    for row in rows {
-        let Some(error) = row.error(scene.measure) else { continue };
-        let point = (row.us_per_cloth_tick, error);
-        match series.iter_mut().find(|s| s.name == row.method) {
-            Some(found) => found.points.push(point),
-            None => series.push(Series {
-                name: row.method.clone(),
-                points: vec![point],
-                mark: Mark::Dots,
-            }),
-        }
+fn left_out_table(left_out: &[LeftOut]) -> Table {
+    Table {
+        name: "pareto_left_out".into(),
+        title: "Left out: not made for the scene, or too long a run".into(),
+        headers: vec!["scene", "n", "method", "substeps", "passes"],
+        rows: left_out
+            .iter()
+            .map(|it| {
+                let settings = [it.n, it.substeps, it.passes].map(|number| number.to_string());
+                let [n, substeps, passes] = settings;
+                vec![it.scene.into(), n, it.method.clone(), substeps, passes]
+            })
+            .collect(),
     }
-    let points: Vec<(f64, f64)> = series.iter().flat_map(|s| s.points.clone()).collect();
-    if points.is_empty() {
-        return None;
-    }
-    series.push(Series {
-        name: "Pareto front".into(),
-        points: pareto_front(&points),
-        mark: Mark::Line,
-    });
-    let error = match scene.measure {
-        Measure::Positions => {
-            format!("RMS position error at {:.1} s, m", COMPARED_TICKS[COMPARED] as f64 / 60.0)
-        }
-        Measure::Rest | Measure::Statistics => "error of the mean strain".into(),
-    };
-    Some(Plot {
-        name: format!("pareto_{}_{}", scene.name, scene.columns),
-        title: format!("{} {n} × {n}", scene.name, n = scene.columns),
-        axes: ["time of a tick, µs".into(), error],
-        logarithmic: true,
-        series,
-    })
 }

@@ -7,6 +7,7 @@ use super::progress;
 use crate::{
     output::{
         Outcome,
+        plot::{Axes, Mark, Plot, Series},
         table::{Table, figure, figure_or_dash},
     },
     peers::{
@@ -49,8 +50,32 @@ pub fn run(quick: bool) -> Outcome {
             "shocks": shocks,
         }),
         tables: vec![row_table(&rows, n), shock_table(&shocks, n), constraint_table(&engines)],
-        plots: Vec::new(),
+        plots: scenes.iter().filter_map(|scene| plot(scene, &rows)).collect(),
     }
+}
+
+/// Largest strain over time of every engine on a scene.
+fn plot(scene: &Scene, rows: &[Row]) -> Option<Plot> {
+    let mut series: Vec<Series> = Vec::new();
+    for row in rows.iter().filter(|row| row.scene == scene.name) {
+        let name = match row.lanes {
+            1 => row.engine.to_owned(),
+            lanes => format!("{}, of {lanes}", row.engine),
+        };
+        let Some(strain) = row.max_stretch.filter(|strain| *strain > 0.0) else { continue };
+        let point = (row.ms_per_tick, strain);
+        match series.iter_mut().find(|known| known.name == name) {
+            Some(known) => known.points.push(point),
+            None => series.push(Series { name, points: vec![point], mark: Mark::Dots }),
+        }
+    }
+    (!series.is_empty()).then(|| Plot {
+        name: format!("peers_{}", scene.name),
+        title: format!("{} {n} × {n}", scene.name, n = scene.columns),
+        labels: ["time of one cloth's tick, ms".into(), "largest strain at rest".into()],
+        axes: Axes::Logarithmic,
+        series,
+    })
 }
 
 fn row_table(rows: &[Row], n: usize) -> Table {

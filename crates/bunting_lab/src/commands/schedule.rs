@@ -14,6 +14,7 @@ use crate::{
     game,
     output::{
         Outcome,
+        plot::{Axes, Mark, Plot, Series},
         table::{Table, figure},
     },
     scenes::Scene,
@@ -61,7 +62,25 @@ pub fn run(quick: bool) -> Outcome {
     Outcome {
         json: json!({ "instruction_set": instruction_set(), "rows": rows }),
         tables: vec![table(&rows)],
-        plots: Vec::new(),
+        plots: vec![plot(&rows)],
+    }
+}
+
+fn plot(rows: &[Row]) -> Plot {
+    let line = |scheme: &str, what: &str, time: fn(&Row) -> f64| {
+        let of_scheme = rows.iter().filter(|row| row.scheme == scheme);
+        let points = of_scheme.map(|row| (f64::from(row.n), time(row))).collect();
+        Series { name: format!("{scheme}, {what}"), points, mark: Mark::Line }
+    };
+    let of_scheme = |scheme| {
+        [line(scheme, "app", |row| row.us_app), line(scheme, "plain calls", |row| row.us_plain)]
+    };
+    Plot {
+        name: "schedule".into(),
+        title: format!("{FLAGS} flags in an app and by plain calls"),
+        labels: ["vertices along a side".into(), "µs a tick".into()],
+        axes: Axes::Logarithmic,
+        series: schemes().map(scheme_name).into_iter().flat_map(of_scheme).collect(),
     }
 }
 

@@ -6,7 +6,9 @@ use super::progress;
 use crate::{
     output::{
         Outcome,
+        plot::Plot,
         table::{Table, figure, figure_or_dash},
+        verdicts::{self, Verdict},
     },
     stability::{self, HardCase, Status},
 };
@@ -22,7 +24,16 @@ pub fn run(quick: bool) -> Outcome {
         bar.inc(1);
     }
     bar.finish_and_clear();
-    Outcome { json: json!({ "cases": cases }), tables: vec![table(&cases)], plots: Vec::new() }
+    let plots = plot(&cases).into_iter().collect();
+    Outcome { json: json!({ "cases": cases }), tables: vec![table(&cases)], plots }
+}
+
+fn plot(cases: &[HardCase]) -> Option<Plot> {
+    let built = cases.iter().filter(|case| case.status == Status::Built);
+    let verdicts: Vec<Verdict> = built
+        .map(|it| Verdict { worst: it.worst.unwrap_or(f64::NAN), limit: it.limit, pass: it.pass })
+        .collect();
+    verdicts::plot("stability", "Hard cases", ["limit", "worst figure"], &verdicts)
 }
 
 fn table(cases: &[HardCase]) -> Table {
@@ -32,7 +43,12 @@ fn table(cases: &[HardCase]) -> Table {
         name: "stability".into(),
         title: format!("{passed} of {built} hard cases held, {} not built", cases.len() - built),
         headers: vec!["case", "n", "figure", "worst", "limit", "pass"],
-        rows: cases.iter().map(cells).collect(),
+        // What fails first.
+        rows: [false, true]
+            .into_iter()
+            .flat_map(|pass| cases.iter().filter(move |case| case.pass == pass))
+            .map(cells)
+            .collect(),
     }
 }
 

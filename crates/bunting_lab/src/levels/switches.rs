@@ -1,16 +1,17 @@
 //! What a change of level does to a flag in the wind.
 //!
 //! Flags fly on at one level while copies of them change to the next, tick after tick. Momentum and
-//! energy are compared before and after the transfer alone; the pop is what can be seen: the distance
-//! between the two surfaces one tick later, at the finer level's vertices.
+//! energy are compared before and after the transfer alone; the pop is what could be seen if nothing
+//! were eased: the distance between the two surfaces one tick later, at the finer level's vertices.
 
 use bunting_solver::{ClothSnapshot, LevelTransfer, StepSettings};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use crate::{
     budget::scheme_name,
     fleet::Fleet,
+    levels::pops::PIXELS,
     product,
     reference::grid::Grid,
     scenes::{Scene, TICK_RATE},
@@ -23,8 +24,6 @@ const FLAGS: usize = 8;
 const SETTLING: f64 = 3.0;
 /// Time between changes, s; no part of a gust's period.
 const INTERVAL: f64 = 0.37;
-/// Pixels that a metre takes at a distance of one metre: 1080 lines over a field of view of 45°.
-pub const PIXELS: f64 = 1303.7;
 
 /// Jumps of one change of level, over many moments of a flight.
 #[derive(Clone, Debug, Serialize)]
@@ -43,10 +42,14 @@ pub struct Switch {
     pub invisible_from_m: f64,
     /// Change of the momentum over the sum of all its sizes: mean.
     pub momentum_jump: f64,
+    /// The greatest change of the momentum over the momentum.
+    pub momentum_worst: f64,
     /// Change of kinetic energy, over the kinetic energy: mean, signed.
     pub kinetic_jump: f64,
     /// Change of kinetic, elastic and potential energy over the kinetic energy: mean, signed.
     pub energy_jump: f64,
+    /// The greatest growth of the same.
+    pub energy_worst: f64,
 }
 
 /// One change of one flag.
@@ -54,6 +57,7 @@ struct Jump {
     pop_rms: f64,
     pop_max: f64,
     momentum: f64,
+    momentum_of_sum: f64,
     kinetic: f64,
     energy: f64,
 }
@@ -70,13 +74,19 @@ impl Switch {
         let mut changed = Fleet::new(Scene::flag(to), FLAGS, settings);
         let [fine, coarse] = [from.max(to), from.min(to)].map(|n| product::fabric(&Scene::flag(n)));
         let transfer = LevelTransfer::between(&fine, &coarse).expect("neighbours");
+        let material = product::material(&Scene::flag(from));
+        let gravity = Vec3::NEG_Y * Scene::flag(from).gravity as f32;
         let change = |state: &ClothSnapshot| {
-            if to < from { transfer.restrict(state) } else { transfer.prolong(state) }
+            if to < from {
+                transfer.restrict(state, &material, gravity)
+            } else {
+                transfer.prolong(state, &material, gravity)
+            }
         };
         // Both surfaces at the finer level's vertices.
-        let refined = |state: ClothSnapshot| {
+        let refined = |state: ClothSnapshot| -> Vec<Vec3> {
             let is_coarse = state.positions.len() == coarse.particle_count();
-            if is_coarse { transfer.prolong(&state) } else { state }
+            if is_coarse { transfer.spread(&state.positions).collect() } else { state.positions }
         };
         let grids = [from, to].map(|n| Grid::new(&Scene::flag(n)));
         let ticks = |seconds: f64| (seconds * f64::from(TICK_RATE)) as usize;
@@ -97,6 +107,7 @@ impl Switch {
                     pop_rms: stats::mean(&moved.iter().map(|d| d * d).collect::<Vec<_>>()).sqrt(),
                     pop_max: moved.into_iter().fold(0.0, f64::max),
                     momentum: (new.momentum - old.momentum).length() / old.throng,
+                    momentum_of_sum: (new.momentum - old.momentum).length() / old.momentum.length(),
                     kinetic: (new.kinetic - old.kinetic) / old.kinetic,
                     energy: (new.total - old.total) / old.kinetic,
                 });
@@ -104,6 +115,8 @@ impl Switch {
         }
         let average =
             |figure: fn(&Jump) -> f64| stats::mean(&jumps.iter().map(figure).collect::<Vec<f64>>());
+        let most =
+            |figure: fn(&Jump) -> f64| jumps.iter().map(figure).fold(f64::NEG_INFINITY, f64::max);
         let pop_max_m = average(|jump| jump.pop_max);
         Self {
             scheme: scheme_name(settings),
@@ -113,14 +126,16 @@ impl Switch {
             pop_max_m,
             invisible_from_m: pop_max_m * PIXELS,
             momentum_jump: average(|jump| jump.momentum),
+            momentum_worst: most(|jump| jump.momentum_of_sum),
             kinetic_jump: average(|jump| jump.kinetic),
             energy_jump: average(|jump| jump.energy),
+            energy_worst: most(|jump| jump.energy),
         }
     }
 }
 
-fn distances(a: &ClothSnapshot, b: &ClothSnapshot) -> Vec<f64> {
-    a.positions.iter().zip(&b.positions).map(|(a, b)| f64::from(a.distance(*b))).collect()
+fn distances(a: &[Vec3], b: &[Vec3]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| f64::from(a.distance(*b))).collect()
 }
 
 /// Momentum and energy of a cloth, as the reference reckons them.

@@ -2,6 +2,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use faer::{Mat, Side};
+
 use super::root::bisect;
 
 /// Lateral buckling of a narrow strip on edge: q L³/√(EI·C).
@@ -12,6 +14,33 @@ pub const SELF_WEIGHT_COLUMN: f64 = 7.837347;
 const STEPS: usize = 4000;
 /// Step of the logarithm of the tip's angle in the search for the first equilibrium.
 const SCAN: f64 = 0.25;
+
+/// Critical w L³/B of a column of rigid links, clamped in the middle of one below the first, joined by
+/// springs B/l and bearing these masses at their upper ends, in units of a whole link's.
+///
+/// A small tilt of link k stores ½ B/l (θₖ − θₖ₋₁)², twice that at the clamp, whose hinge covers half a
+/// link, and lowers what the link bears by ½ l θₖ²: the load is the least eigenvalue of one against the
+/// other.
+///
+/// # Panics
+///
+/// When a mass is not positive.
+#[must_use]
+pub fn column_of_links(masses: &[f64]) -> f64 {
+    let count = masses.len();
+    let borne = |link: usize| masses[link..].iter().sum::<f64>();
+    let spring = |joint: usize| if joint == 0 { 2.0 } else { f64::from(u8::from(joint < count)) };
+    let stiffness = |row: usize, column: usize| match row.abs_diff(column) {
+        0 => spring(row) + spring(row + 1),
+        1 => -1.0,
+        _ => 0.0,
+    };
+    let matrix = Mat::from_fn(count, count, |row, column| {
+        stiffness(row, column) / (borne(row) * borne(column)).sqrt()
+    });
+    let loads = matrix.self_adjoint_eigenvalues(Side::Lower).expect("a finite symmetric matrix");
+    loads[0] * (count as f64).powi(3)
+}
 
 /// A horizontally clamped strip under its own weight, over its length.
 #[derive(Clone, Copy, Debug, PartialEq)]

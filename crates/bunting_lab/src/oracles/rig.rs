@@ -5,12 +5,13 @@ use glam::DVec3;
 
 use super::{Case, specimen::Specimen};
 use crate::{
+    product::DEFAULT,
     reference::grid::Grid,
     scenes::{Fabric, Pins, Pose, Scene, TICK_RATE},
 };
 
 /// The scheme under trial as users meet it.
-pub const YARNS: StepSettings = StepSettings::yarns(3);
+pub const YARNS: StepSettings = DEFAULT;
 /// The thesis's scheme, with enough substeps to be compared.
 pub const GAUSS_SEIDEL: StepSettings = StepSettings::gauss_seidel(20);
 /// A scheme at any number of substeps.
@@ -21,7 +22,7 @@ const ORDER: f64 = 0.3;
 
 /// A fabric whose columns hang each for itself: no shear, no bending, next to no warp.
 #[must_use]
-pub fn chains(stiffness: f64) -> Fabric {
+pub const fn chains(stiffness: f64) -> Fabric {
     Fabric { stretch: [1e-2, stiffness], shear: 0.0, bending: 0.0, ..Fabric::STANDARD }
 }
 
@@ -74,7 +75,10 @@ pub fn label(settings: StepSettings) -> String {
         Scheme::GaussSeidel => "Gauss–Seidel",
         Scheme::Yarns => "yarns",
     };
-    format!("{scheme} {}", settings.substeps)
+    match settings.passes {
+        1 => format!("{scheme} {}", settings.substeps),
+        passes => format!("{scheme} {} × {passes}", settings.substeps),
+    }
 }
 
 /// The order of convergence that errors show of which each is at half the size of the one before.

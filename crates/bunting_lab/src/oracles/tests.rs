@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::{
     Case,
-    bending::Cantilever,
+    bending::{Cantilever, LATERAL_BUCKLING, SELF_WEIGHT_COLUMN, column_of_links},
     catenary::{Catenary, chain_sag},
     drag::BroadsideFall,
     dumbbell::{Formula, spin_left},
@@ -139,4 +139,27 @@ fn case_passes_within_its_tolerance() {
     assert!(Case::new("near", 2.0, 2.01, 0.01).pass);
     assert!(!Case::new("far", 2.0, 1.97, 0.01).pass);
     assert!(!Case::new("lost", 2.0, f64::NAN, 0.01).pass);
+}
+
+/// y of y'' + c sᵖ y = 0, y(0) = 1, y'(0) = 0, at s = 1, by its power series.
+fn tilt_at_clamp(c: f64, power: i32) -> f64 {
+    let (mut sum, mut term) = (1.0, 1.0);
+    for k in 1..40 {
+        let degree = f64::from(k * (power + 2));
+        term *= -c / (degree * (degree - 1.0));
+        sum += term;
+    }
+    sum
+}
+
+#[test]
+fn strips_buckle() {
+    // From the free end: θ'' + w s θ = 0 of the column, β'' + (q s²/2)²/(EI·C) β = 0 of the strip.
+    assert_near(tilt_at_clamp(SELF_WEIGHT_COLUMN, 1), 0.0, SIXTH_DECIMAL);
+    assert_near(tilt_at_clamp((0.5 * LATERAL_BUCKLING).powi(2), 4), 0.0, SIXTH_DECIMAL);
+    // A rigid link on one spring 2B/l that bears half a link: w l² (l/2) = 2B/l · l/l.
+    assert_near(column_of_links(&[0.5]), 4.0, SIXTH_DECIMAL);
+    let mut masses = vec![1.0; 64];
+    masses[63] = 0.5;
+    assert_near(column_of_links(&masses), SELF_WEIGHT_COLUMN, 0.001);
 }

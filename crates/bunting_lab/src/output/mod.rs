@@ -2,6 +2,7 @@
 
 pub mod plot;
 pub mod table;
+pub mod verdicts;
 
 use std::{fs, io::Write, path::Path};
 

@@ -6,11 +6,32 @@ use anyhow::{Context, Result, anyhow};
 use plotters::{coord::Shift, prelude::*};
 
 /// Width and height of a plot in pixels.
-const SIZE: (u32, u32) = (900, 600);
+const SIZE: (u32, u32) = (1000, 600);
+/// Width of the legend, which stands beside the chart so that it hides nothing.
+const LEGEND: u32 = 250;
+/// Height of a line of the legend.
+const LINE: i32 = 26;
+/// Sizes of letters of titles and labels.
+const LETTERS: (u32, u32) = (24, 17);
 /// Free space round the outermost points, as a factor on logarithmic axes.
 const MARGIN: f64 = 1.6;
 /// Width of a bar on the horizontal axis, whose bars stand at whole numbers.
 const BAR: f64 = 0.7;
+/// Colours of series in their order, told apart by colour-blind people too (Okabe and Ito 2008), and
+/// some more.
+const COLOURS: [RGBColor; 11] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(110, 80, 50),
+    RGBColor(150, 150, 150),
+    RGBColor(120, 60, 160),
+    RGBColor(0, 0, 0),
+    RGBColor(128, 128, 0),
+];
 
 /// How the points of a series are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,6 +40,8 @@ pub enum Mark {
     Dots,
     /// A line through the points in order.
     Line,
+    /// A grey line under everything else: a front or a limit.
+    Guide,
     /// Bars from zero to the points. A series covers those before it: stacked bars are cumulative
     /// sums, the largest first.
     Bars,
@@ -29,10 +52,20 @@ pub enum Mark {
 pub struct Series {
     /// Name in the legend.
     pub name: String,
-    /// Points, all positive where the axes are logarithmic.
+    /// Points, all positive where the axes are logarithmic. A series of none keeps its colour from
+    /// the next and is not named.
     pub points: Vec<(f64, f64)>,
     /// How they are drawn.
     pub mark: Mark,
+}
+
+/// What the axes measure.
+#[derive(Clone, Debug)]
+pub enum Axes {
+    /// Both logarithmic.
+    Logarithmic,
+    /// A name at each of 0, 1, 2 … along the horizontal axis; the vertical one is linear.
+    Named(Vec<String>),
 }
 
 /// A plot.
@@ -43,9 +76,9 @@ pub struct Plot {
     /// Heading.
     pub title: String,
     /// Names of the horizontal and vertical axis, with units.
-    pub axes: [String; 2],
-    /// Whether both axes are logarithmic.
-    pub logarithmic: bool,
+    pub labels: [String; 2],
+    /// What the axes measure.
+    pub axes: Axes,
     /// What is plotted.
     pub series: Vec<Series>,
 }
@@ -76,23 +109,57 @@ impl Plot {
     fn draw(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<()> {
         let [x, y] = self.ranges().ok_or_else(|| anyhow!("no points"))?;
         area.fill(&WHITE)?;
-        let mut chart = ChartBuilder::on(area);
+        let (left, right) = area.split_horizontally(SIZE.0 - LEGEND);
+        self.draw_legend(&right)?;
+        let mut chart = ChartBuilder::on(&left);
         chart
-            .caption(&self.title, ("sans-serif", 20))
+            .caption(&self.title, ("sans-serif", LETTERS.0))
             .margin(12)
-            .x_label_area_size(45)
-            .y_label_area_size(70);
-        if self.logarithmic {
-            let mut chart =
-                chart.build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())?;
-            chart.configure_mesh().x_desc(&self.axes[0]).y_desc(&self.axes[1]).draw()?;
-            self.draw_series(&mut chart)?;
-        } else {
-            let mut chart = chart.build_cartesian_2d(x.0..x.1, y.0..y.1)?;
-            chart.configure_mesh().x_desc(&self.axes[0]).y_desc(&self.axes[1]).draw()?;
-            self.draw_series(&mut chart)?;
-        }
+            .x_label_area_size(60)
+            .y_label_area_size(85);
+        match &self.axes {
+            Axes::Logarithmic => {
+                let mut chart =
+                    chart.build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())?;
+                chart
+                    .configure_mesh()
+                    .x_desc(&self.labels[0])
+                    .y_desc(&self.labels[1])
+                    .label_style(("sans-serif", LETTERS.1))
+                    .x_label_formatter(&power)
+                    .y_label_formatter(&power)
+                    .light_line_style(BLACK.mix(0.06))
+                    .draw()?;
+                self.draw_series(&mut chart)
+            }
+            Axes::Named(names) => {
+                let mut chart = chart.build_cartesian_2d(x.0..x.1, y.0..y.1)?;
+                let name = |at: &f64| {
+                    let whole = (at.fract() == 0.0).then_some(*at as usize);
+                    whole.and_then(|at| names.get(at)).cloned().unwrap_or_default()
+                };
+                chart
+                    .configure_mesh()
+                    .disable_x_mesh()
+                    .x_desc(&self.labels[0])
+                    .y_desc(&self.labels[1])
+                    .label_style(("sans-serif", LETTERS.1))
+                    .x_label_formatter(&name)
+                    .light_line_style(TRANSPARENT)
+                    .draw()?;
+                self.draw_series(&mut chart)
+            }
+        }?;
         Ok(area.present()?)
+    }
+
+    /// Every series with its colour; guides have none of their own.
+    fn coloured(&self) -> impl Iterator<Item = (&Series, RGBColor)> {
+        let mut colours = COLOURS.iter().cycle();
+        self.series.iter().map(move |series| match series.mark {
+            Mark::Guide => (series, RGBColor(90, 90, 90)),
+            _ => (series, *colours.next().expect("a cycle")),
+        })
     }
 
     fn draw_series<'a, 'b: 'a, X, Y>(
@@ -103,29 +170,46 @@ impl Plot {
         X: Ranged<ValueType = f64>,
         Y: Ranged<ValueType = f64>,
     {
-        for (k, series) in self.series.iter().enumerate() {
-            let colour = Palette99::pick(k).to_rgba();
+        let mut coloured: Vec<_> = self.coloured().collect();
+        coloured.sort_by_key(|(series, _)| series.mark != Mark::Guide);
+        for (series, colour) in coloured {
             let points = series.points.iter().copied();
-            let drawn = match series.mark {
+            match series.mark {
                 Mark::Dots => {
-                    chart.draw_series(points.map(|p| Circle::new(p, 4, colour.filled())))?
+                    chart.draw_series(points.map(|p| Circle::new(p, 5, colour.filled())))?
                 }
-                Mark::Line => chart.draw_series(LineSeries::new(points, colour.stroke_width(2)))?,
+                Mark::Line => chart.draw_series(LineSeries::new(points, colour.stroke_width(3)))?,
+                Mark::Guide => {
+                    chart.draw_series(LineSeries::new(points, colour.stroke_width(1)))?
+                }
                 Mark::Bars => chart.draw_series(points.map(|(x, y)| {
                     let corners = [(x - BAR / 2.0, 0.0), (x + BAR / 2.0, y)];
                     Rectangle::new(corners, colour.filled())
                 }))?,
             };
-            drawn
-                .label(&series.name)
-                .legend(move |(x, y)| Circle::new((x + 8, y), 4, colour.filled()));
         }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::LowerLeft)
-            .background_style(WHITE.mix(0.8))
-            .border_style(BLACK.mix(0.3))
-            .draw()?;
+        Ok(())
+    }
+
+    fn draw_legend(&self, area: &DrawingArea<SVGBackend<'_>, Shift>) -> Result<()> {
+        let shown = self.coloured().filter(|(series, _)| !series.points.is_empty());
+        for (line, (series, colour)) in (2..).zip(shown) {
+            let middle = line * LINE;
+            match series.mark {
+                Mark::Dots => area.draw(&Circle::new((12, middle), 5, colour.filled()))?,
+                Mark::Line | Mark::Guide => {
+                    let width = if series.mark == Mark::Line { 3 } else { 1 };
+                    let ends = vec![(3, middle), (21, middle)];
+                    area.draw(&PathElement::new(ends, colour.stroke_width(width)))?;
+                }
+                Mark::Bars => {
+                    let corners = [(5, middle - 7), (19, middle + 7)];
+                    area.draw(&Rectangle::new(corners, colour.filled()))?;
+                }
+            }
+            let style = ("sans-serif", LETTERS.1);
+            area.draw(&Text::new(series.name.clone(), (30, middle - 8), style))?;
+        }
         Ok(())
     }
 
@@ -134,16 +218,23 @@ impl Plot {
         let points = || self.series.iter().flat_map(|series| &series.points);
         points().next()?;
         let extent = |axis: fn(&(f64, f64)) -> f64| {
-            let (low, high) =
-                points().map(axis).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-                    (low.min(v), high.max(v))
-                });
-            if self.logarithmic { (low / MARGIN, high * MARGIN) } else { (low, high) }
+            points().map(axis).fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+                (low.min(v), high.max(v))
+            })
         };
         let (x, y) = (extent(|p| p.0), extent(|p| p.1));
-        let has_bars = self.series.iter().any(|series| series.mark == Mark::Bars);
-        Some(if has_bars { [(x.0 - BAR, x.1 + BAR), (0.0, y.1)] } else { [x, y] })
+        Some(match self.axes {
+            Axes::Logarithmic => [x, y].map(|(low, high)| (low / MARGIN, high * MARGIN)),
+            Axes::Named(_) => [(x.0 - BAR, x.1 + BAR), (0.0, y.1)],
+        })
     }
+}
+
+/// A label of a logarithmic axis, one digit times a power of ten: plain where that is short.
+fn power(value: &f64) -> String {
+    let text = format!("{value:.0e}");
+    let plain = text.parse().ok().filter(|digit: &f64| (1e-3..1e5).contains(digit));
+    plain.map_or(text, |digit| digit.to_string())
 }
 
 /// The points that no other point beats on both axes, from left to right.
@@ -171,6 +262,12 @@ mod tests {
     }
 
     #[test]
+    fn labels_are_short() {
+        let labels = [9.999_999_999e-6, 3.000_000_000_1e-2, 1e3, 2e5].map(|value| power(&value));
+        assert_eq!(labels, ["1e-5", "0.03", "1000", "2e5"]);
+    }
+
+    #[test]
     fn a_plot_becomes_svg() {
         let folder = std::env::temp_dir().join(format!("bunting-lab-plot-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
@@ -182,8 +279,8 @@ mod tests {
         let plot = Plot {
             name: "test".into(),
             title: "A test".into(),
-            axes: ["µs".into(), "m".into()],
-            logarithmic: true,
+            labels: ["µs".into(), "m".into()],
+            axes: Axes::Logarithmic,
             series,
         };
         plot.write_svg(&folder).unwrap();

@@ -5,9 +5,15 @@ mod bunting;
 pub mod measurement;
 pub mod rapier;
 
-use crate::{product::Product, scenes::Scene, simulation::Simulation};
+use crate::{
+    product::{DEFAULT, Product},
+    scenes::Scene,
+    simulation::Simulation,
+};
 use bunting_solver::{LaneCount, StepSettings};
 use rapier::{Elasticity, Rapier};
+
+use crate::contender::Contender;
 
 /// A cloth that can be treated badly.
 pub trait Peer: Simulation {
@@ -34,6 +40,25 @@ pub struct Engine {
     pub start: Box<Start>,
 }
 
+/// Rapier's substeps beside the methods of the thesis.
+const RAPIER_CONTENDS: [usize; 4] = [4, 10, 20, 40];
+
+/// Other engines beside the methods of the thesis, on scenes without air.
+#[must_use]
+pub fn contenders() -> Vec<Contender> {
+    let rapier = |substeps| Contender {
+        method: "rapier 0.36".into(),
+        substeps,
+        passes: 1,
+        lanes: 1,
+        start: Box::new(move |scene: &Scene| {
+            let start = || Box::new(Rapier::new(scene, Elasticity::Constraints, substeps));
+            scene.air.is_vacuum().then(|| start() as Box<dyn Simulation>)
+        }),
+    };
+    RAPIER_CONTENDS.map(rapier).into()
+}
+
 /// Rapier's substeps by default.
 const RAPIER_SUBSTEPS: usize = 4;
 /// Substeps that bring rapier's stretch near what its solver can do.
@@ -51,8 +76,8 @@ impl Engine {
             start: Box::new(move |scene| Box::new(Rapier::new(scene, elasticity, substeps))),
         };
         vec![
-            Self::product("bunting yarns", StepSettings::yarns(3), LaneCount::One),
-            Self::product("bunting yarns", StepSettings::yarns(3), LaneCount::Eight),
+            Self::product("bunting yarns", DEFAULT, LaneCount::One),
+            Self::product("bunting yarns", DEFAULT, LaneCount::Eight),
             Self::product("bunting Gauss–Seidel", StepSettings::gauss_seidel(10), LaneCount::One),
             Self::product("bunting Gauss–Seidel", StepSettings::gauss_seidel(10), LaneCount::Eight),
             rapier("rapier 0.36", Elasticity::Constraints, RAPIER_SUBSTEPS),

@@ -13,16 +13,22 @@ use super::{
     rig::{SETTINGS, energy, start, ticks},
 };
 use crate::{
+    budget::LEVELS,
+    levels::pops::{self, Pop},
     product::{Product, fabric, material},
     reference::grid::Grid,
     scenes::Scene,
     simulation::Simulation,
+    stats::worse,
 };
 
 /// All cases.
 pub fn cases(quick: bool) -> Vec<HardCase> {
-    let mut cases = thrash(17, if quick { 2.0 } else { 10.0 }).to_vec();
-    cases.push(HardCase::not_built("LOD thrash: pop", "pixels", 1.0));
+    let seconds = if quick { 2.0 } else { 10.0 };
+    let mut cases = thrash(17, seconds).to_vec();
+    let pop = pops::thrash(17, SETTINGS, seconds);
+    cases.push(HardCase::new("LOD thrash: pop", 17, "pixels from 20 m", pop, 1.0));
+    cases.extend(changes(if quick { 3 } else { 20 }));
     cases.push(determinism(9, if quick { 500 } else { 10_000 }));
     cases.push(HardCase::not_built(
         "determinism across instruction sets",
@@ -41,6 +47,7 @@ fn thrash(n: usize, seconds: f64) -> [HardCase; 2] {
     let fabrics = scenes.each_ref().map(fabric);
     let transfer = LevelTransfer::between(&fabrics[0], &fabrics[1]).expect("nested levels");
     let mut cloths = scenes.each_ref().map(start);
+    let gravity = Vec3::NEG_Y * scenes[0].gravity as f32;
     let momentum = |level: usize, state: &ClothSnapshot| -> DVec3 {
         let moving = state.velocities.iter().zip(&grids[level].masses);
         moving.map(|(v, m)| v.as_dvec3() * *m).sum()
@@ -50,20 +57,38 @@ fn thrash(n: usize, seconds: f64) -> [HardCase; 2] {
         cloths[level].tick();
         let state = cloths[level].batch.snapshot(0);
         let next = 1 - level;
-        let switched =
-            if level == 0 { transfer.restrict(&state) } else { transfer.prolong(&state) };
+        let material = material(&scenes[level]);
+        let switched = if level == 0 {
+            transfer.restrict(&state, &material, gravity)
+        } else {
+            transfer.prolong(&state, &material, gravity)
+        };
         let (before, after) = (momentum(level, &state), momentum(next, &switched));
         if before.length() > 1e-3 {
-            kicked = kicked.max((after - before).length() / before.length());
+            kicked = worse(kicked, (after - before).length() / before.length());
         }
         cloths[next].restore(&switched);
         level = next;
-        highest = highest.max(energy(&scenes[level], &grids[level], &cloths[level]));
+        highest = worse(highest, energy(&scenes[level], &grids[level], &cloths[level]));
     }
     [
         HardCase::new("LOD thrash: momentum", n, "change in a switch, of one", kicked, 1e-5),
         HardCase::new("LOD thrash: energy", n, "over the start, of the fall", highest, 0.01),
     ]
+}
+
+/// What is seen of a flag's change to the next coarser level and back, where such changes are looked
+/// at.
+fn changes(moments: usize) -> impl Iterator<Item = HardCase> {
+    LEVELS.windows(2).map(move |sizes| {
+        let [fine, coarse] = [sizes[0] as usize, sizes[1] as usize];
+        let pop = [(fine, coarse), (coarse, fine)]
+            .map(|(from, to)| Pop::of(from, to, SETTINGS, moments).worst_px)
+            .into_iter()
+            .fold(0.0, worse);
+        let name = format!("LOD: pop to {coarse}² and back from {} m", pops::distance(fine));
+        HardCase::new(name, fine, "pixels", pop, 1.0)
+    })
 }
 
 /// A flag alone, among eight and among sixteen, on this thread and on others, to the bit.

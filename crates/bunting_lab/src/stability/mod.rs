@@ -7,6 +7,7 @@ mod crumple;
 mod levels;
 mod motion;
 mod rig;
+mod sleep;
 mod sweeps;
 mod touch;
 mod weather;
@@ -82,11 +83,12 @@ impl HardCase {
 pub type Family = fn(quick: bool) -> Vec<HardCase>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 6] = [
+pub const ALL: [(&str, Family); 7] = [
     ("sweeps of size, passes and rate", sweeps::cases),
     ("motion of pins and frames", motion::cases),
     ("wind and weight", weather::cases),
     ("crumpled and degenerate", crumple::cases),
     ("levels, lanes and input", levels::cases),
     ("colliders", touch::cases),
+    ("sleep", sleep::cases),
 ];

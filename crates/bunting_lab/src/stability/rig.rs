@@ -4,7 +4,7 @@ use bunting_solver::StepSettings;
 use glam::DVec3;
 
 use crate::{
-    product::{Cloth, Product},
+    product::{Cloth, DEFAULT, Product},
     reference::grid::Grid,
     scenes::{Scene, TICK_RATE},
     simulation::Simulation,
@@ -12,7 +12,7 @@ use crate::{
 };
 
 /// The product as users meet it.
-pub const SETTINGS: StepSettings = StepSettings::yarns(3);
+pub const SETTINGS: StepSettings = DEFAULT;
 
 /// One cloth of the product on a scene.
 pub fn start(scene: &Scene) -> Cloth {

@@ -12,6 +12,7 @@ use crate::{
     product::TICK,
     scenes::{Pose, Scene},
     simulation::Simulation,
+    stats::worse,
 };
 
 /// Speed of the collider along z, m/s.
@@ -55,7 +56,7 @@ fn shot(name: &str, n: usize, shape: &SharedShape, turn: Quat) -> [HardCase; 2] 
         })
         .collect();
     let at = |tick: usize| (centre + Vec3::Z * (SPEED * TICK * tick as f32), turn);
-    let (mut deepest, mut behind) = (0.0_f32, 0.0_f32);
+    let (mut deepest, mut behind) = (0.0, 0.0);
     for tick in 0..TICKS {
         let collider = Collider {
             from: at(tick),
@@ -69,20 +70,20 @@ fn shot(name: &str, n: usize, shape: &SharedShape, turn: Quat) -> [HardCase; 2] 
             let local = turned.inverse() * (*x - now);
             let nearest = shape.project_local_point(local, false);
             if nearest.is_inside {
-                deepest = deepest.max(nearest.point.distance(local));
+                deepest = worse(deepest, nearest.point.distance(local).into());
             }
         }
         for &vertex in &hit {
-            behind = behind.max(now.z - cloth.positions()[vertex].z);
+            behind = worse(behind, (now.z - cloth.positions()[vertex].z).into());
         }
     }
     [
-        HardCase::new(format!("20 m/s {name}: inside"), n, "deepest, m", deepest.into(), DEPTH),
+        HardCase::new(format!("20 m/s {name}: inside"), n, "deepest, m", deepest, DEPTH),
         HardCase::new(
             format!("20 m/s {name}: behind"),
             n,
             "farthest behind its middle, m",
-            behind.into(),
+            behind,
             DEPTH,
         ),
     ]

@@ -9,6 +9,7 @@ use crate::{
     reference::grid::Grid,
     scenes::{Air, Fabric, Pins, Pose, Scene},
     simulation::Simulation,
+    stats::worse,
 };
 
 /// How far the farthest corner of a metre of cloth held by a side may be from the pin at the origin,
@@ -98,10 +99,10 @@ fn overtaken() -> HardCase {
         ..Scene::swing(5)
     };
     let mut cloth = start(&scene);
-    let worst = (0..30).fold(0.0, |worst: f64, _| {
+    let worst = (0..30).fold(0.0, |worst, _| {
         cloth.tick();
-        let fastest = cloth.velocities().iter().map(|v| v.y).fold(0.0, f32::max);
-        worst.max(f64::from(fastest) / WIND)
+        let speeds = cloth.velocities().iter().map(|v| f64::from(v.y));
+        worse(worst, speeds.fold(0.0, worse) / WIND)
     });
     HardCase::new("wind never overtaken", 5, "speed over the wind's", worst, 1.0)
 }
@@ -122,10 +123,10 @@ fn stiffened(n: usize) -> HardCase {
         ..scene
     });
     let stored = grid.elastic_energy(&positions(&cloth));
-    let worst = (0..60).fold(0.0, |worst: f64, _| {
+    let worst = (0..60).fold(0.0, |worst, _| {
         cloth.tick();
         let velocities: Vec<_> = cloth.velocities().iter().map(|v| v.as_dvec3()).collect();
-        worst.max(grid.kinetic_energy(&velocities) / stored)
+        worse(worst, grid.kinetic_energy(&velocities) / stored)
     });
     HardCase::new("stiffness × 100 in one frame", n, "kinetic over elastic energy", worst, 1.0)
 }

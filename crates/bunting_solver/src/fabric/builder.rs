@@ -1,5 +1,8 @@
 //! From triangles to a fabric.
 
+mod coarser;
+mod slivers;
+
 use std::collections::BTreeMap;
 use std::collections::BTreeSet;
 
@@ -10,6 +13,8 @@ use super::{
     Fabric, FabricError, Grid, bending, hinges, patches, strands::Strands, tethers, topology, weld,
     yarns,
 };
+
+pub use coarser::Coarser;
 
 /// Default distance at which vertices are one particle, as a part of the mesh's extent: the
 /// rounding of 32-bit positions.
@@ -36,6 +41,7 @@ pub struct FabricBuilder {
     uv: Vec<Vec2>,
     pinned: BTreeSet<u32>,
     weld_distance: Option<f32>,
+    tethered: bool,
     grid: Option<Grid>,
 }
 
@@ -50,6 +56,7 @@ impl FabricBuilder {
             uv: Vec::new(),
             pinned: BTreeSet::new(),
             weld_distance: None,
+            tethered: true,
             grid: None,
         }
     }
@@ -99,6 +106,14 @@ impl FabricBuilder {
     #[must_use]
     pub fn weld_distance(mut self, distance: f32) -> Self {
         self.weld_distance = Some(distance);
+        self
+    }
+
+    /// Whether free particles are tethered to their pins, as they are by default. Tethers catch what
+    /// overshoots in violent motion; without them a step costs a little less.
+    #[must_use]
+    pub fn tethered(mut self, tethered: bool) -> Self {
+        self.tethered = tethered;
         self
     }
 
@@ -212,7 +227,7 @@ impl FabricBuilder {
             bend_profiles,
             pins,
             reach: tethers.iter().map(|tether| tether.length).fold(0.0, f32::max),
-            tethers,
+            tethers: if self.tethered { tethers } else { Vec::new() },
             grid: self.grid,
         })
     }

@@ -26,11 +26,10 @@ pub(crate) use strands::{ABREAST, PolishLink, Strand, StrandLink, Strands};
 pub(crate) use tethers::Pin;
 
 pub use bending::{BendLine, BendProfile};
-pub use builder::FabricBuilder;
+pub use builder::{Coarser, FabricBuilder};
 pub use colour::Colours;
 pub use error::FabricError;
 pub use grid::Grid;
-#[cfg(test)]
 pub(crate) use hinges::angle as hinge_angle;
 pub use hinges::{Hinge, HingeClass};
 pub use links::{Link, LinkClass, LinkFamily};

@@ -127,6 +127,8 @@ mod tests {
         let lowest = hung.tethers().iter().find(|tether| tether.particle == 15).expect("tethered");
         assert!((lowest.length / 1.5 - 1.05).abs() < 1e-4);
         assert!(FabricBuilder::grid(grid).build().expect("good").tethers().is_empty());
+        let untethered = FabricBuilder::grid(grid).pin([0, 4]).tethered(false);
+        assert!(untethered.build().expect("good").tethers().is_empty());
     }
 
     #[test]

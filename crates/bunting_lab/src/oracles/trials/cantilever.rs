@@ -45,6 +45,12 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
     cases
 }
 
+/// Γ of the finest strip's cases.
+pub fn gamma_of(case: &Case) -> Option<f64> {
+    let (gamma, rest) = case.name.strip_prefix("cantilever, Γ = ")?.split_once(", ")?;
+    rest.starts_with(&format!("N = {SEGMENTS},")).then(|| gamma.parse().ok())?
+}
+
 /// The case of one Γ.
 pub fn case(mount: &Mount, gamma: f64, segments: usize, settings: StepSettings) -> Case {
     let stencil = STENCIL * 0.5 * (1.0 + gamma / OBSERVED) / (segments * segments) as f64;

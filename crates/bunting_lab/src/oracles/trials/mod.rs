@@ -3,6 +3,7 @@
 //! A tolerance is what the discretisation is known to miss, plus what single precision rounds; where
 //! it comes from is said beside it.
 
+mod buckling;
 mod cantilever;
 mod catenary;
 mod drag;
@@ -19,11 +20,12 @@ use super::{Case, specimen::Mount};
 pub type Trial = fn(&Mount) -> Vec<Case>;
 
 /// Every trial with its name.
-pub const ALL: [(&str, Trial); 9] = [
+pub const ALL: [(&str, Trial); 10] = [
     ("free fall", fall::cases),
     ("static stretch", stretch::cases),
     ("catenary", catenary::cases),
     ("cantilever", cantilever::cases),
+    ("buckling", buckling::cases),
     ("hanging modes", modes::cases),
     ("stiff pendulum", pendulum::cases),
     ("drag", drag::cases),
@@ -42,8 +44,21 @@ pub fn named(name: &str, mount: &Mount) -> Vec<Case> {
     trial(mount)
 }
 
+/// Γ of a case of the cantilevers of most links, which are named by it.
+#[must_use]
+pub fn gamma_of(case: &Case) -> Option<f64> {
+    cantilever::gamma_of(case)
+}
+
 /// Relative error of a cantilever that hardly bends, Γ = 0.01, whose H/W is Γ/8.
 #[must_use]
 pub fn stiffest_cantilever(mount: &Mount) -> f64 {
     cantilever::case(mount, 0.01, 32, super::rig::YARNS).relative_error
+}
+
+/// Whether a touch of a narrow strip on edge, of `segments` links, grows under a part of the load at
+/// which it should buckle.
+#[must_use]
+pub fn strip_on_edge_buckles(mount: &Mount, segments: usize, part: f64) -> bool {
+    buckling::on_edge_grows(mount, segments, part)
 }

@@ -16,7 +16,7 @@ use crate::{
 /// Rate at the start, rad/s.
 const RATE: f64 = 20.0;
 /// Links along the strip. The links' directions are frozen within a substep, which is stable up to
-/// h² T/(m l) of about 36/55: eight links are at 0.4, sixteen beyond it.
+/// h² T/(m l) of about 36/55: with three substeps eight links are at 0.4, sixteen beyond it.
 const SEGMENTS: usize = 8;
 /// Stiffness, N/m: a strain of 0.3 %.
 const STIFF: f64 = 1e4;

@@ -1,0 +1,148 @@
+//! The choice of levels, on invented cloths.
+
+use super::*;
+
+const LIMITS: Limits =
+    Limits { budget: 1000.0, refine_above: 1.0, coarsen_below: 0.5, switches: usize::MAX };
+
+/// Four levels, each four times the cost and half the error of the next coarser one.
+fn kind() -> Kind {
+    let costs = [400.0, 100.0, 25.0, 6.25].map(|sixteen: f32| BatchCosts {
+        one: 0.4 * sixteen,
+        eight: 0.6 * sixteen,
+        sixteen: Some(sixteen),
+        each: 0.0,
+    });
+    Kind { errors: vec![0.001, 0.01, 0.02, 0.04], costs: costs.to_vec() }
+}
+
+fn cloth(level: u32, scale: f32) -> Candidate {
+    Candidate { kind: 0, level, scale, weight: scale * scale, ready: true, fixed: false }
+}
+
+/// Chooses again and again, as the cloths follow; the levels in the end.
+fn settle(cloths: &mut [Candidate], limits: &Limits) -> Choice {
+    let mut governor = Governor::default();
+    let mut last = Choice::default();
+    for _ in 0..200 {
+        last = governor.choose(&[kind()], cloths, limits).clone();
+        assert!(last.switches.len() <= limits.switches);
+        for &(cloth, to) in &last.switches {
+            cloths[cloth].level = to as u32;
+        }
+    }
+    assert_eq!(last.switches, [], "it comes to rest");
+    last
+}
+
+fn levels(cloths: &[Candidate]) -> Vec<u32> {
+    cloths.iter().map(|cloth| cloth.level).collect()
+}
+
+#[test]
+fn a_part_filled_batch_costs_a_full_one() {
+    let costs = BatchCosts { one: 1.0, eight: 3.0, sixteen: Some(5.0), each: 0.5 };
+    let expected = [0.0, 1.5, 4.0, 7.0, 9.5, 13.0, 14.5];
+    assert_eq!([0, 1, 2, 8, 9, 16, 17].map(|count| costs.of(count)), expected);
+    let narrow = BatchCosts { sixteen: None, ..costs };
+    assert_eq!([8, 9, 16].map(|count| narrow.of(count)), [7.0, 8.5, 14.0]);
+}
+
+#[test]
+fn with_time_to_spare_each_gets_what_it_wants() {
+    // 0.02 m are 1.2 px, 0.01 m are 0.6 px: no coarser than the second level.
+    let mut cloths = [cloth(3, 60.0), cloth(3, 10.0), cloth(0, 10.0), cloth(3, 2000.0)];
+    let choice = settle(&mut cloths, &LIMITS);
+    assert_eq!(levels(&cloths), [1, 3, 3, 0]);
+    assert_eq!(choice.held_back, 0);
+}
+
+#[test]
+fn between_the_thresholds_nothing_changes() {
+    // The second level has 0.75 px, the third 1.5.
+    for level in [1, 2] {
+        let limits = Limits { refine_above: 2.0, ..LIMITS };
+        let mut cloths = [cloth(level, 75.0)];
+        settle(&mut cloths, &limits);
+        assert_eq!(levels(&cloths), [level]);
+    }
+}
+
+#[test]
+fn the_sum_of_costs_stays_within_the_budget_and_the_nearest_gain() {
+    let mut cloths: Vec<Candidate> = (0..300).map(|index| cloth(3, 900.0 - index as f32)).collect();
+    let mut before: Option<Vec<u32>> = None;
+    for budget in [150.0, 500.0, 1000.0, 4000.0, 9000.0] {
+        let limits = Limits { budget, ..LIMITS };
+        let choice = settle(&mut cloths, &limits);
+        assert!(choice.cost <= budget, "{} of {budget}", choice.cost);
+        assert_eq!(choice.held_back > 0, budget < 9000.0, "{budget}");
+        let now = levels(&cloths);
+        // Nearer first in the list, and never coarser than those behind.
+        assert!(now.is_sorted(), "{budget}: {now:?}");
+        // More time makes none coarser.
+        assert!(before.is_none_or(|before| now.iter().zip(before).all(|(now, then)| *now <= then)));
+        before = Some(now);
+    }
+}
+
+#[test]
+fn free_lanes_go_to_the_next_in_line() {
+    // Room for one batch of the finest, and all want it.
+    let mut cloths: Vec<Candidate> = (0..40).map(|index| cloth(3, 2000.0 - index as f32)).collect();
+    let limits = Limits { budget: 720.0, ..LIMITS };
+    settle(&mut cloths, &limits);
+    let finest = levels(&cloths).iter().filter(|level| **level == 0).count();
+    assert_eq!(finest, 16);
+}
+
+#[test]
+fn over_the_budget_cloths_become_coarser_at_once() {
+    let mut cloths = vec![cloth(0, 2000.0); 64];
+    cloths.iter_mut().for_each(|cloth| cloth.ready = false);
+    let limits = Limits { switches: 8, ..LIMITS };
+    let choice = settle(&mut cloths, &limits);
+    assert!(choice.cost <= limits.budget);
+    assert!(choice.held_back > 0);
+}
+
+#[test]
+fn within_the_budget_the_dwell_is_kept() {
+    for level in [0, 3] {
+        let scale = if level == 0 { 1.0 } else { 2000.0 };
+        let mut cloths = [Candidate { ready: false, ..cloth(level, scale) }];
+        assert_eq!(settle(&mut cloths, &LIMITS).switches, []);
+        assert_eq!(levels(&cloths), [level]);
+    }
+}
+
+#[test]
+fn cloths_at_levels_of_their_own_cost_but_do_not_move() {
+    let own = Candidate { fixed: true, ..cloth(0, 1.0) };
+    let mut cloths = vec![own; 32];
+    cloths.push(cloth(3, 2000.0));
+    let choice = settle(&mut cloths, &Limits { budget: 900.0, ..LIMITS });
+    assert_eq!(levels(&cloths)[..32], [0; 32]);
+    assert_eq!(cloths[32].level, 1, "what is left does not pay for more");
+    assert_eq!(choice.cost, 840.0);
+}
+
+#[test]
+fn costs_that_waver_change_nothing() {
+    let mut cloths: Vec<Candidate> = (0..100).map(|index| cloth(3, 900.0 - index as f32)).collect();
+    settle(&mut cloths, &LIMITS);
+    let mut governor = Governor::default();
+    for wave in [0.99, 1.01, 0.98, 1.0] {
+        let mut kind = kind();
+        kind.costs
+            .iter_mut()
+            .for_each(|costs| costs.sixteen = costs.sixteen.map(|cost| wave * cost));
+        assert_eq!(governor.choose(&[kind], &cloths, &LIMITS).switches, [], "{wave}");
+    }
+}
+
+#[test]
+fn no_cloths_cost_nothing() {
+    let choice = Governor::default().choose(&[], &[], &LIMITS).clone();
+    assert_eq!(choice, Choice::default());
+}

@@ -1,0 +1,93 @@
+//! What a level cannot show: how far the surface of a flag lies from the same surface at a coarser
+//! level's vertices, with the triangles between them. The plugin's estimate of a level's error is
+//! drawn from this table.
+
+use bunting_solver::{LevelTransfer, StepSettings};
+use serde::Serialize;
+
+use crate::{
+    budget::scheme_name,
+    fleet::Fleet,
+    product,
+    scenes::{Scene, TICK_RATE},
+    stats,
+};
+
+/// Flags flown at once.
+const FLAGS: usize = 8;
+/// Time that flags fly before the first look, s.
+const SETTLING: f64 = 3.0;
+/// Time between looks, s; no part of a gust's period.
+const INTERVAL: f64 = 0.37;
+
+/// Distances of a flag's surface from that of a coarser level.
+#[derive(Clone, Debug, Serialize)]
+pub struct Resolution {
+    /// Scheme.
+    pub scheme: &'static str,
+    /// Vertices along each side of the flag that flies.
+    pub fine: usize,
+    /// Vertices along each side of the level that shows it.
+    pub coarse: usize,
+    /// Root mean square, m.
+    pub rms_m: f64,
+    /// 95th percentile, m.
+    pub p95_m: f64,
+    /// The same over the distance between the coarser level's vertices.
+    pub p95_of_cell: f64,
+}
+
+impl Resolution {
+    /// A flag of `fine` vertices a side, shown by every level below, at many moments of its flight.
+    ///
+    /// # Panics
+    ///
+    /// Never: levels are halves of one another.
+    #[must_use]
+    pub fn of(fine: usize, settings: StepSettings, moments: usize) -> Vec<Self> {
+        let sizes: Vec<usize> =
+            std::iter::successors(Some(fine), |n| (*n > 5).then_some(n / 2 + 1)).collect();
+        let fabrics: Vec<_> = sizes.iter().map(|&n| product::fabric(&Scene::flag(n))).collect();
+        let transfers: Vec<LevelTransfer> = fabrics
+            .windows(2)
+            .map(|pair| LevelTransfer::between(&pair[0], &pair[1]).expect("neighbours"))
+            .collect();
+        let mut fleet = Fleet::new(Scene::flag(fine), FLAGS, settings);
+        let ticks = |seconds: f64| (seconds * f64::from(TICK_RATE)) as usize;
+        fleet.advance(ticks(SETTLING));
+        let mut distances = vec![Vec::new(); transfers.len()];
+        for _ in 0..moments {
+            fleet.advance(ticks(INTERVAL));
+            for flag in fleet.snapshots() {
+                for (depth, distances) in distances.iter_mut().enumerate() {
+                    let down = transfers[..=depth].iter();
+                    let coarse = down.fold(flag.positions.clone(), |fine, next| {
+                        next.pick(&fine).collect::<Vec<_>>()
+                    });
+                    let up = transfers[..=depth].iter().rev();
+                    let shown = up.fold(coarse, |coarse, next| next.spread(&coarse).collect());
+                    let pairs = flag.positions.iter().zip(&shown);
+                    distances.extend(pairs.map(|(a, b)| f64::from(a.distance(*b))));
+                }
+            }
+        }
+        sizes[1..]
+            .iter()
+            .zip(distances)
+            .map(|(&coarse, mut distances)| {
+                distances.sort_by(f64::total_cmp);
+                let squares: Vec<f64> = distances.iter().map(|d| d * d).collect();
+                let p95_m = stats::percentile(&distances, 0.95);
+                let cell = Scene::flag(coarse).width / (coarse - 1) as f64;
+                Self {
+                    scheme: scheme_name(settings),
+                    fine,
+                    coarse,
+                    rms_m: stats::mean(&squares).sqrt(),
+                    p95_m,
+                    p95_of_cell: p95_m / cell,
+                }
+            })
+            .collect()
+    }
+}

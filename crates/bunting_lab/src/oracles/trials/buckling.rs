@@ -1,0 +1,166 @@
+//! Strips that buckle under their own weight: the load beyond which a touch grows.
+
+use std::f64::consts::{FRAC_PI_2, SQRT_2};
+
+use bunting_solver::StepSettings;
+use glam::{DVec3, dvec3};
+
+use crate::{
+    oracles::{
+        Case,
+        bending::{LATERAL_BUCKLING, SELF_WEIGHT_COLUMN, column_of_links},
+        rig::{YARNS, chains, label, order, row, strip},
+        specimen::Mount,
+    },
+    reference::grid::Grid,
+    scenes::{Fabric, GRAVITY, Pins, Pose, Scene, TICK_RATE},
+};
+
+/// Links along the free metre of a column.
+const COLUMNS: [usize; 5] = [2, 4, 8, 16, 32];
+/// Sizes over which the order is observed, the first of all: beyond them the step's error shows.
+const ORDERED: usize = 3;
+/// Links along the free metre on edge.
+const ON_EDGE: [usize; 3] = [8, 16, 32];
+/// What warping gives a strip on edge of square cells, times N: at the clamp the hinges stiffen the
+/// first cell's twist by a quarter, and the load rises by three times a fifth of a cell. The stencil
+/// takes off 0.5/N².
+const WARPING: f64 = 0.6;
+/// How much more than that passes.
+const MARGIN: f64 = 1.5;
+/// What is missed by directions that are frozen where gravity predicts them, by the strain, and by a
+/// touch that grows too slowly to be seen, relative.
+const READING: f64 = 2e-3;
+/// Sideways displacement of the tip, m.
+const TOUCH: f64 = 1e-4;
+/// Displacement over the touch from which it has grown: a mode that swings never leaves its start
+/// behind.
+const GROWN: f64 = 2.0;
+/// Longest run, s: a load 0.1 ‰ beyond the critical one doubles the touch.
+const SECONDS: f64 = 40.0;
+/// Halvings of the interval of loads from none to twice the expected one.
+const HALVINGS: u32 = 16;
+/// Stiffness against stretch, N/m: the strip of N = 32 is 200 times as stiff in its plane as across.
+const STIFF: f64 = 1e5;
+
+/// How a strip is laid, and which way it gives.
+struct Form {
+    /// Critical σgL³/B of the continuum.
+    critical: f64,
+    /// All but the bending stiffness, by which it buckles.
+    fabric: Fabric,
+    /// From the scene's vertical sheet, whose upper end is clamped and whose gravity points down.
+    lay: fn(DVec3) -> DVec3,
+    /// Direction of the touch.
+    sideways: DVec3,
+    /// Sign of gravity: a column stands on its clamp.
+    upright: f64,
+}
+
+/// Clamped at its foot (Greenhill 1881).
+const COLUMN: Form = Form {
+    critical: SELF_WEIGHT_COLUMN,
+    fabric: chains(STIFF),
+    lay: |x| x,
+    sideways: DVec3::Z,
+    upright: -1.0,
+};
+
+/// On edge, its length level (Prandtl 1899): qL³/√(EI·C) with EI = Bb and, for a sheet that does not
+/// contract sideways, C = 2Bb.
+const STRIP_ON_EDGE: Form = Form {
+    critical: LATERAL_BUCKLING * SQRT_2,
+    fabric: Fabric { stretch: [STIFF, STIFF], shear: 0.1 * STIFF, ..Fabric::STANDARD },
+    lay: |x| dvec3(0.0, x.x, -x.y),
+    sideways: DVec3::X,
+    upright: 1.0,
+};
+
+/// Columns of N links and the order at which they near the continuum's, and strips on edge.
+pub fn cases(mount: &Mount) -> Vec<Case> {
+    let columns = COLUMNS.map(|segments| column(mount, segments));
+    let errors = columns.each_ref().map(|case| case.measured - COLUMN.critical);
+    let name = format!("Greenhill column, order in N, {}", label(YARNS));
+    let mut cases = columns.to_vec();
+    cases.push(order(name, 2.0, &errors[..ORDERED]));
+    cases.extend(ON_EDGE.map(|segments| on_edge(mount, segments)));
+    cases
+}
+
+/// Without twist each line of vertices is a column of its own, and since thirds of alternating triangles
+/// make their masses alternate, one is weaker and buckles.
+fn column(mount: &Mount, segments: usize) -> Case {
+    let masses = Grid::new(&scene(&COLUMN, segments)).masses;
+    let free = &masses[4..];
+    let lines = [0, 1].map(|line| free.iter().copied().skip(line).step_by(2).collect::<Vec<_>>());
+    // In masses of a whole link.
+    let link = masses[4..6].iter().sum::<f64>() / 2.0;
+    let loads = lines
+        .map(|line| column_of_links(&line.iter().map(|mass| mass / link).collect::<Vec<f64>>()));
+    Case::new(
+        format!("Greenhill column σgL³/B, N = {segments}, {}", label(YARNS)),
+        loads[0].min(loads[1]),
+        critical_load(mount, &COLUMN, segments, YARNS),
+        READING,
+    )
+}
+
+/// Lines of vertices that bend for themselves feel no twist: a solver of that kind cannot meet it.
+fn on_edge(mount: &Mount, segments: usize) -> Case {
+    Case::new(
+        format!("lateral buckling σgL³/B (twist), N = {segments}, {}", label(YARNS)),
+        STRIP_ON_EDGE.critical,
+        critical_load(mount, &STRIP_ON_EDGE, segments, YARNS),
+        MARGIN * WARPING / segments as f64 + READING,
+    )
+}
+
+/// Whether a touch of a strip on edge grows under a part of its critical load.
+pub fn on_edge_grows(mount: &Mount, segments: usize, part: f64) -> bool {
+    grows(mount, &STRIP_ON_EDGE, segments, YARNS, part * STRIP_ON_EDGE.critical)
+}
+
+/// The load σgL³/B between those under which a touch of the tip grows and does not, by bisection.
+fn critical_load(mount: &Mount, form: &Form, segments: usize, settings: StepSettings) -> f64 {
+    let (mut low, mut high) = (0.0, 2.0 * form.critical);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        if grows(mount, form, segments, settings, middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Whether a strip under a load σgL³/B leaves a touch behind that bends it as its first mode.
+fn grows(mount: &Mount, form: &Form, segments: usize, settings: StepSettings, load: f64) -> bool {
+    let scene = scene(form, segments);
+    let mut specimen = mount(&scene, settings);
+    let laid: Vec<DVec3> = scene
+        .positions()
+        .into_iter()
+        .map(|x| {
+            let along = (-x.y - 1.0 / segments as f64).max(0.0);
+            let bent = 1.0 - (FRAC_PI_2 * along).cos();
+            (form.lay)(x) + form.sideways * (TOUCH * bent)
+        })
+        .collect();
+    specimen.place(&laid, &vec![DVec3::ZERO; laid.len()]);
+    specimen.load(form.upright * GRAVITY * load / form.critical);
+    (0..(SECONDS * f64::from(TICK_RATE)) as usize).any(|_| {
+        specimen.tick();
+        let tip = row(&scene, specimen.as_ref(), segments + 1).dot(form.sideways).abs();
+        // What is no longer a number has grown too.
+        tip.is_nan() || tip >= GROWN * TOUCH
+    })
+}
+
+/// A strip that buckles at standard gravity. A metre is free, one cell more lies in the clamp.
+fn scene(form: &Form, segments: usize) -> Scene {
+    let bending = Fabric::STANDARD.density * GRAVITY / form.critical;
+    let length = 1.0 + 1.0 / segments as f64;
+    let fabric = Fabric { bending, ..form.fabric };
+    strip(segments + 1, length, Pins::TopClamp, Pose::Vertical, fabric)
+}

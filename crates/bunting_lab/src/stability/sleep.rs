@@ -1,0 +1,55 @@
+//! Cloth that comes to rest in an app falls asleep, and stays where it is.
+
+use bevy_app::App;
+use bevy_bunting::{
+    AttachedVertices, Attachment, ClothActivity, ClothCorner, ClothMaterial, ClothMesh, ClothState,
+};
+use bevy_ecs::entity::Entity;
+use bunting_solver::StepSettings;
+use glam::DVec3;
+
+use super::{HardCase, rig::ticks};
+use crate::{game, product, scenes::Scene, stats::rms_distance};
+
+/// Vertices along each side of the sheet.
+const SIZE: usize = 17;
+/// Longest time that a sheet damped by 2/s takes to fall asleep, s.
+const SLEEPY: f64 = 10.0;
+/// Time that it then hangs, s.
+const TEN_MINUTES: f64 = 600.0;
+/// Largest drift, of the sheet's metre.
+const DRIFT: f64 = 1e-4;
+
+/// A sheet hung by two corners: how soon it sleeps, and how far it then drifts.
+pub fn cases(_quick: bool) -> Vec<HardCase> {
+    let scene = Scene::hang_corners(SIZE);
+    let mut app = game::calm_app(StepSettings::default());
+    let corners = vec![ClothCorner::TopLeft, ClothCorner::TopRight];
+    let size = SIZE as u32;
+    let sheet = (
+        ClothMesh::grid(size, size, scene.width as f32, scene.height as f32),
+        ClothMaterial(product::material(&scene)),
+        Attachment::in_place(AttachedVertices::Corners(corners)),
+    );
+    let sheet = app.world_mut().spawn(sheet).id();
+    let asleep = (1..=ticks(2.0 * SLEEPY)).find(|_| {
+        app.update();
+        state(&app, sheet).activity() == ClothActivity::AtRest
+    });
+    let seconds = asleep.map_or(f64::INFINITY, |tick| tick as f64 / ticks(1.0) as f64);
+    let before = positions(&app, sheet);
+    (0..ticks(TEN_MINUTES)).for_each(|_| app.update());
+    let drift = rms_distance(&before, &positions(&app, sheet));
+    vec![
+        HardCase::new("rest: sleeps", SIZE, "s until asleep", seconds, SLEEPY),
+        HardCase::new("rest: 10 min in an app", SIZE, "drift, m", drift, DRIFT),
+    ]
+}
+
+fn state(app: &App, sheet: Entity) -> &ClothState {
+    app.world().get(sheet).expect("a cloth has a state")
+}
+
+fn positions(app: &App, sheet: Entity) -> Vec<DVec3> {
+    state(app, sheet).positions().iter().map(|x| x.as_dvec3()).collect()
+}

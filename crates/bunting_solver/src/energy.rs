@@ -1,0 +1,55 @@
+//! What a cloth's state weighs in joules.
+
+use glam::{DVec3, Vec3};
+
+use crate::fabric::{Fabric, FabricMaterial, hinge_angle};
+
+/// Elastic energy, J: of links and of bending, as the constraints have it. Links that cannot stretch
+/// store none.
+pub(crate) fn elastic(fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> f64 {
+    let at = |particle: u32| positions[particle as usize].as_dvec3();
+    let stiffnesses: Vec<f64> = fabric
+        .link_classes()
+        .iter()
+        .map(|class| f64::from(class.stiffness(material)))
+        .map(|stiffness| if stiffness.is_finite() { stiffness } else { 0.0 })
+        .collect();
+    let stretch = fabric.links().iter().map(|link| {
+        let [a, b] = link.particles.map(at);
+        stiffnesses[link.class as usize] * (a.distance(b) - f64::from(link.rest_length)).powi(2)
+    });
+    let stretch: f64 = stretch.sum();
+    let bending: f64 = if fabric.grid().is_some() {
+        let lines = fabric.bend_lines().iter();
+        lines.map(|line| along_line(fabric, line.profile, &line.particles, positions)).sum()
+    } else {
+        let hinges = fabric.hinges().iter();
+        hinges
+            .map(|hinge| {
+                let corners = hinge.particles.map(|particle| positions[particle as usize]);
+                let angle = f64::from(hinge_angle(corners) - hinge.rest_angle);
+                let weight = fabric.hinge_classes()[hinge.class as usize].weight;
+                f64::from(weight) * angle * angle
+            })
+            .filter(|energy| energy.is_finite())
+            .sum()
+    };
+    0.5 * (stretch + bending * f64::from(material.bend_stiffness))
+}
+
+/// Twice the energy of a line against unit bending stiffness.
+fn along_line(fabric: &Fabric, profile: u32, particles: &[u32], positions: &[Vec3]) -> f64 {
+    let profile = &fabric.bend_profiles()[profile as usize];
+    let at = |particle: u32| positions[particle as usize].as_dvec3();
+    let turns = particles.windows(3).map(|three| {
+        let second = at(three[0]) - 2.0 * at(three[1]) + at(three[2]);
+        second.length_squared() * f64::from(profile.inverse_spacing).powi(2)
+    });
+    turns.zip(&profile.weights).map(|(turn, &weight)| turn * f64::from(weight)).sum()
+}
+
+/// Sum of area times vector over all particles, pinned or not.
+pub(crate) fn moment(fabric: &Fabric, vectors: &[Vec3]) -> DVec3 {
+    let areas = fabric.particle_areas().iter().map(|&area| f64::from(area));
+    areas.zip(vectors).map(|(area, vector)| vector.as_dvec3() * area).sum()
+}

@@ -1,0 +1,189 @@
+//! The next coarser level of a mesh.
+
+use meshopt::{SimplifyOptions, VertexDataAdapter, typed_to_bytes};
+
+use super::{FabricBuilder, slivers};
+use crate::fabric::Grid;
+
+/// Part of the triangles that a coarser mesh should have.
+const SHARE: usize = 4;
+
+/// A mesh that keeps more than this part of the triangles is not worth a level.
+const WORTH: f32 = 0.75;
+
+/// How much a texture's distortion weighs against that of the shape, 1/m.
+const UV_WEIGHT: f32 = 1.0;
+
+/// A mesh with some of a finer one's vertices.
+#[derive(Clone, Debug)]
+pub struct Coarser {
+    /// The mesh, with those of the pins that are left.
+    pub builder: FabricBuilder,
+    /// The finer mesh's vertex that each of its vertices is.
+    pub vertices: Vec<u32>,
+}
+
+impl FabricBuilder {
+    /// The next coarser level: every second column and row of a grid; of other meshes about a fourth
+    /// of the triangles, with all vertices of the border and all that are pinned (`meshoptimizer`'s
+    /// simplification, which minds the texture, too).
+    ///
+    /// None where a grid cannot be halved, or hardly a triangle can go.
+    #[must_use]
+    pub fn coarser(&self) -> Option<Coarser> {
+        match &self.grid {
+            Some(grid) => self.every_second(grid),
+            None => self.simplified(),
+        }
+    }
+
+    /// Three vertices a triangle.
+    #[must_use]
+    pub fn indices(&self) -> &[u32] {
+        &self.indices
+    }
+
+    fn every_second(&self, grid: &Grid) -> Option<Coarser> {
+        let halved = grid.halved()?;
+        let vertices: Vec<u32> = (0..halved.rows)
+            .flat_map(|row| (0..halved.columns).map(move |column| (column, row)))
+            .map(|(column, row)| grid.index(2 * column, 2 * row))
+            .collect();
+        let pins = self.pins_among(&vertices);
+        let builder = Self::grid(halved).pin(pins).tethered(self.tethered);
+        Some(Coarser { builder, vertices })
+    }
+
+    fn simplified(&self) -> Option<Coarser> {
+        self.validate().ok()?;
+        let positions: Vec<[f32; 3]> = self.positions.iter().map(|at| at.to_array()).collect();
+        let adapter =
+            VertexDataAdapter::new(typed_to_bytes(&positions), size_of::<[f32; 3]>(), 0).ok()?;
+        let uv: Vec<f32> = self.uv.iter().flat_map(|uv| uv.to_array()).collect();
+        let weights = if uv.is_empty() { &[][..] } else { &[UV_WEIGHT; 2] };
+        let locked: Vec<bool> =
+            (0..positions.len()).map(|vertex| self.pinned.contains(&(vertex as u32))).collect();
+        let kept = meshopt::simplify_with_attributes_and_locks(
+            &self.indices,
+            &adapter,
+            &uv,
+            weights,
+            size_of_val(weights),
+            &locked,
+            self.indices.len() / SHARE,
+            f32::MAX,
+            SimplifyOptions::LockBorder | SimplifyOptions::Regularize,
+            None,
+        );
+        if kept.is_empty() || kept.len() as f32 > WORTH * self.indices.len() as f32 {
+            return None;
+        }
+        let mut triangles: Vec<[u32; 3]> =
+            kept.chunks_exact(3).map(|corners| [corners[0], corners[1], corners[2]]).collect();
+        slivers::mend(&self.positions, &mut triangles);
+        let kept = triangles.into_flattened();
+        let mut vertices = kept.clone();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let place = |vertex: &u32| vertices.binary_search(vertex).ok().map(|at| at as u32);
+        let indices = kept.iter().filter_map(place).collect();
+        let pick = |&vertex: &u32| vertex as usize;
+        let builder = Self {
+            positions: vertices.iter().map(pick).map(|vertex| self.positions[vertex]).collect(),
+            indices,
+            uv: vertices.iter().map(pick).filter_map(|at| self.uv.get(at).copied()).collect(),
+            pinned: self.pins_among(&vertices).collect(),
+            weld_distance: Some(self.weld_distance.unwrap_or_else(|| self.default_weld())),
+            tethered: self.tethered,
+            grid: None,
+        };
+        Some(Coarser { builder, vertices })
+    }
+
+    /// The places of pins in a list of vertices.
+    fn pins_among(&self, vertices: &[u32]) -> impl Iterator<Item = u32> {
+        (0..).zip(vertices).filter(|(_, vertex)| self.pinned.contains(vertex)).map(|(at, _)| at)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use glam::{Vec2, Vec3};
+
+    use super::*;
+
+    /// A curtain with a hole, as plain triangles.
+    fn curtain() -> FabricBuilder {
+        let grid = Grid::new(25, 21, 1.2, 1.0);
+        let hole = |at: &Vec3| at.distance(Vec3::new(0.6, -0.5, 0.0)) < 0.2;
+        let positions = grid.positions();
+        let all = grid.triangles(false);
+        let kept: Vec<u32> = all
+            .iter()
+            .filter(|triangle| !triangle.iter().any(|&corner| hole(&positions[corner as usize])))
+            .flatten()
+            .copied()
+            .collect();
+        let mut used = kept.clone();
+        used.sort_unstable();
+        used.dedup();
+        let place = |vertex: &u32| used.binary_search(vertex).expect("it is used") as u32;
+        let uv: Vec<Vec2> = grid.uvs();
+        FabricBuilder::new(
+            used.iter().map(|&vertex| positions[vertex as usize]).collect(),
+            kept.iter().map(place).collect(),
+        )
+        .uv(used.iter().map(|&vertex| uv[vertex as usize]).collect())
+        .pin_where(|_, uv| uv.y == 0.0)
+    }
+
+    fn border(indices: &[u32]) -> Vec<u32> {
+        let mut edges = BTreeMap::new();
+        for corners in indices.chunks_exact(3) {
+            for (a, b) in [(0, 1), (1, 2), (2, 0)] {
+                let (a, b) = (corners[a], corners[b]);
+                *edges.entry([a.min(b), a.max(b)]).or_insert(0) += 1;
+            }
+        }
+        let mut ends: Vec<u32> =
+            edges.into_iter().filter(|(_, uses)| *uses == 1).flat_map(|(ends, _)| ends).collect();
+        ends.sort_unstable();
+        ends.dedup();
+        ends
+    }
+
+    #[test]
+    fn a_mesh_keeps_its_border_and_its_pins() {
+        let fine = curtain();
+        let Coarser { builder, vertices } = fine.coarser().expect("a level");
+        assert!(builder.indices.len() < fine.indices.len() / 2);
+        for (vertex, &of) in vertices.iter().enumerate() {
+            assert_eq!(builder.positions[vertex], fine.positions[of as usize]);
+            assert_eq!(builder.uv[vertex], fine.uv[of as usize]);
+        }
+        assert!(border(&fine.indices).iter().all(|vertex| vertices.contains(vertex)));
+        assert_eq!(builder.pinned.len(), fine.pinned.len());
+        let area = |builder: &FabricBuilder| builder.clone().build().expect("a cloth").area();
+        assert!((area(&builder) / area(&fine) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn what_has_no_tethers_has_none_at_any_level() {
+        let grid = FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0)).pin([0, 8]);
+        for builder in [grid, curtain()] {
+            let coarser = builder.tethered(false).coarser().expect("a level").builder;
+            let fabric = coarser.build().expect("a cloth");
+            assert!(fabric.has_pins() && fabric.tethers().is_empty());
+        }
+    }
+
+    #[test]
+    fn what_is_all_border_has_no_coarser_level() {
+        let strip = Grid::new(9, 2, 1.0, 0.1);
+        let triangles = strip.triangles(false).into_iter().flatten().collect();
+        assert!(FabricBuilder::new(strip.positions(), triangles).coarser().is_none());
+        assert!(FabricBuilder::grid(Grid::new(4, 5, 1.0, 1.0)).coarser().is_none());
+    }
+}

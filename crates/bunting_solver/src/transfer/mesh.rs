@@ -1,0 +1,144 @@
+//! Rows between any mesh and one with some of its vertices.
+
+use glam::Vec3;
+use parry3d::query::PointQueryWithLocation;
+use parry3d::shape::TriMesh;
+
+use super::rows::Rows;
+use crate::fabric::Fabric;
+
+/// Height above the coarse triangles, as a part of the fabric's reach, below which a particle lies on
+/// them.
+const FLAT: f32 = 1e-4;
+
+/// Where each fine particle lies at rest: by barycentric coordinates on the nearest coarse triangle,
+/// and above it. None if the coarse mesh is none.
+pub(super) fn nearest(fine: &Fabric, coarse: &Fabric, shared: &[u32]) -> Option<(Rows, Relief)> {
+    let mesh = TriMesh::new(coarse.rest_positions().to_vec(), coarse.triangles().to_vec()).ok()?;
+    let mut rows = Rows::default();
+    let mut relief = Relief::default();
+    let mut coarse_of = vec![None; fine.particle_count()];
+    for (particle, &of) in shared.iter().enumerate() {
+        coarse_of[of as usize] = Some(particle as u32);
+    }
+    let extent = fine.area().sqrt();
+    for (particle, &rest) in fine.rest_positions().iter().enumerate() {
+        if let Some(itself) = coarse_of[particle] {
+            rows.push([(itself, 1.0)]);
+            continue;
+        }
+        let (point, (triangle, location)) = mesh.project_local_point_and_get_location(rest, false);
+        let corners = coarse.triangles()[triangle as usize];
+        let weights = location.barycentric_coordinates()?;
+        let row = corners.into_iter().zip(weights);
+        rows.push(row.filter(|(_, weight)| *weight != 0.0));
+        let above = rest - point.point;
+        if above.length() > FLAT * extent {
+            let axes = axes(corners, coarse.rest_positions());
+            let along = axes.map(|axis| axis.dot(above));
+            relief.bumps.push(Bump { particle: particle as u32, corners, along });
+        }
+    }
+    Some((rows, relief))
+}
+
+/// What fine particles stand out by from the coarse triangles at rest, which turns with these.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Relief {
+    bumps: Vec<Bump>,
+}
+
+#[derive(Clone, Debug)]
+struct Bump {
+    particle: u32,
+    corners: [u32; 3],
+    /// Along the triangle's axes, m.
+    along: [f32; 3],
+}
+
+impl Relief {
+    pub fn add(&self, coarse: &[Vec3], fine: &mut [Vec3]) {
+        for Bump { particle, corners, along } in &self.bumps {
+            let axes = axes(*corners, coarse).into_iter().zip(along);
+            fine[*particle as usize] += axes.map(|(axis, &along)| axis * along).sum::<Vec3>();
+        }
+    }
+}
+
+/// Along the first edge, across it in the plane, and normal.
+fn axes(corners: [u32; 3], positions: &[Vec3]) -> [Vec3; 3] {
+    let [a, b, c] = corners.map(|corner| positions[corner as usize]);
+    let along = (b - a).normalize_or_zero();
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    [along, normal.cross(along), normal]
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::{Quat, Vec3};
+
+    use crate::fabric::{Coarser, FabricBuilder, FabricMaterial, Grid};
+    use crate::snapshot::ClothSnapshot;
+    use crate::transfer::LevelTransfer;
+
+    /// A quarter of a tube, as plain triangles, held along one side, and its next level.
+    fn cape() -> (Arc<crate::Fabric>, Arc<crate::Fabric>, LevelTransfer) {
+        let grid = Grid::new(17, 17, 1.0, 1.0);
+        let bend = |at: &Vec3| {
+            let angle = 1.5 * at.x;
+            Vec3::new(libm::sinf(angle) / 1.5, at.y, (1.0 - libm::cosf(angle)) / 1.5)
+        };
+        let positions = grid.positions().iter().map(bend).collect();
+        let triangles = grid.triangles(false).into_iter().flatten().collect();
+        let fine = FabricBuilder::new(positions, triangles).uv(grid.uvs());
+        let fine = fine.pin_where(|_, uv| uv.y == 0.0);
+        let Coarser { builder, vertices } = fine.coarser().expect("a level");
+        let fine = Arc::new(fine.build().expect("a cape"));
+        let coarse = Arc::new(builder.build().expect("a cape"));
+        let transfer = LevelTransfer::nested(&fine, &coarse, &vertices).expect("nested");
+        (fine, coarse, transfer)
+    }
+
+    #[test]
+    fn a_bent_mesh_gets_its_shape_back_however_it_is_turned() {
+        let (fine, coarse, transfer) = cape();
+        let turn = Quat::from_rotation_y(2.0);
+        let turned: Vec<Vec3> = coarse.rest_positions().iter().map(|at| turn * *at).collect();
+        let mut up: Vec<Vec3> = transfer.smooth.interpolate(&turned).collect();
+        let error = |positions: &[Vec3]| {
+            let pairs = positions.iter().zip(fine.rest_positions());
+            pairs.map(|(at, rest)| at.distance(turn * *rest)).fold(0.0, f32::max)
+        };
+        assert!(error(&up) > 2e-3, "{}", error(&up));
+        transfer.relief.add(&turned, &mut up);
+        assert!(error(&up) < 2e-4, "{}", error(&up));
+    }
+
+    #[test]
+    fn a_mesh_at_rest_stays_where_it_is() {
+        let (fine, coarse, transfer) = cape();
+        let material = FabricMaterial::COTTON;
+        let rest = [&fine, &coarse].map(|fabric| ClothSnapshot::at_rest(fabric));
+        let moved = [
+            transfer.restrict(&rest[0], &material, Vec3::ZERO),
+            transfer.prolong(&rest[1], &material, Vec3::ZERO),
+        ];
+        for (moved, rest) in moved.iter().zip([&rest[1], &rest[0]]) {
+            for (at, rest) in moved.positions.iter().zip(&rest.positions) {
+                assert!(at.distance(*rest) < 3e-4, "{at} {rest}");
+            }
+        }
+    }
+
+    #[test]
+    fn rows_give_back_what_is_linear() {
+        let (fine, coarse, transfer) = cape();
+        let field = |at: &Vec3| Vec3::new(at.y, 2.0 * at.y + 1.0, 0.5);
+        let values: Vec<Vec3> = coarse.rest_positions().iter().map(field).collect();
+        for (value, rest) in transfer.spread(&values).zip(fine.rest_positions()) {
+            assert!(value.distance(field(rest)) < 2e-2, "{value} {}", field(rest));
+        }
+    }
+}

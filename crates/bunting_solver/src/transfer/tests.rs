@@ -1,0 +1,207 @@
+//! What a change of level keeps.
+
+use std::sync::Arc;
+
+use glam::{DVec3, Vec3};
+
+use super::LevelTransfer;
+use crate::batch::ClothBatch;
+use crate::energy::{elastic, moment};
+use crate::fabric::{Fabric, FabricBuilder, FabricMaterial, Grid};
+use crate::lanes::LaneCount;
+use crate::snapshot::ClothSnapshot;
+use crate::step::{Drive, StepSettings};
+
+const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
+const MATERIAL: FabricMaterial = FabricMaterial::FLAG_POLYESTER;
+const TICK: f32 = 1.0 / 60.0;
+
+fn fabric(columns: u32, rows: u32, pinned: bool) -> Arc<Fabric> {
+    let grid = FabricBuilder::grid(Grid::new(columns, rows, 1.2, 0.8));
+    Arc::new(grid.pin_where(|_, uv| pinned && uv.x == 0.0).build().expect("a good fabric"))
+}
+
+/// Two neighbours, and how they correspond.
+fn levels(pinned: bool) -> (Arc<Fabric>, Arc<Fabric>, LevelTransfer) {
+    let (fine, coarse) = (fabric(17, 9, pinned), fabric(9, 5, pinned));
+    let transfer = LevelTransfer::between(&fine, &coarse).expect("nested");
+    (fine, coarse, transfer)
+}
+
+fn batch_of(fabric: &Arc<Fabric>, state: &ClothSnapshot) -> ClothBatch {
+    let mut batch = ClothBatch::new(Arc::clone(fabric), LaneCount::One);
+    batch.insert(state, MATERIAL).expect("a good state");
+    batch
+}
+
+/// Mid-flight: a second of wind and gravity.
+fn flown(fabric: &Arc<Fabric>) -> ClothSnapshot {
+    let mut batch = batch_of(fabric, &ClothSnapshot::at_rest(fabric));
+    batch.drive(0, Drive { wind: Vec3::new(7.0, 0.0, 3.0), ..Drive::default() });
+    (0..60).for_each(|_| batch.step(TICK, StepSettings::default()));
+    batch.snapshot(0)
+}
+
+/// Kinetic, elastic and gravitational energy, J.
+fn energy(fabric: &Fabric, state: &ClothSnapshot) -> f64 {
+    let density = f64::from(MATERIAL.area_density);
+    let moving = fabric.particle_areas().iter().zip(&state.velocities);
+    let kinetic: f64 =
+        moving.map(|(&area, v)| f64::from(area) * v.as_dvec3().length_squared()).sum();
+    let height = -moment(fabric, &state.positions).dot(GRAVITY.as_dvec3());
+    density * (0.5 * kinetic + height) + elastic(fabric, &MATERIAL, &state.positions)
+}
+
+#[test]
+fn momentum_is_kept_and_energy_does_not_grow() {
+    for pinned in [true, false] {
+        let (fine, coarse, transfer) = levels(pinned);
+        let (above, below) = (flown(&fine), flown(&coarse));
+        for (from, before, to, after) in [
+            (&fine, &above, &coarse, transfer.restrict(&above, &MATERIAL, GRAVITY)),
+            (&coarse, &below, &fine, transfer.prolong(&below, &MATERIAL, GRAVITY)),
+        ] {
+            let momentum = |fabric, state: &ClothSnapshot| moment(fabric, &state.velocities);
+            let (had, has) = (momentum(from, before), momentum(to, &after));
+            assert!(had.distance(has) < 1e-5 * had.length(), "pinned {pinned}: {had} {has}");
+            let (had, has) = (energy(from, before), energy(to, &after));
+            assert!(has < had + 1e-6 * had.abs(), "pinned {pinned}: {had} {has}");
+        }
+    }
+}
+
+/// A frame in motion: all of the cloth, pins too, has its velocity, and keeps it.
+#[test]
+fn what_moves_as_one_goes_on_as_one() {
+    let (fine, coarse, transfer) = levels(true);
+    let speed = Vec3::new(20.0, -3.0, 5.0);
+    let moving = |fabric: &Fabric| {
+        let rest = ClothSnapshot::at_rest(fabric);
+        ClothSnapshot::new(rest.positions, vec![speed; fabric.particle_count()])
+    };
+    for state in [
+        transfer.restrict(&moving(&fine), &MATERIAL, GRAVITY),
+        transfer.prolong(&moving(&coarse), &MATERIAL, GRAVITY),
+    ] {
+        assert!(state.velocities.iter().all(|v| v.distance(speed) < 1e-4));
+    }
+}
+
+#[test]
+fn up_and_down_again_gives_back_the_velocities() {
+    let (_, coarse, transfer) = levels(true);
+    let state = flown(&coarse);
+    let up: Vec<Vec3> = transfer.smooth.interpolate(&state.velocities).collect();
+    for (down, before) in transfer.gather_velocities(&up).iter().zip(&state.velocities) {
+        assert!(down.distance(*before) < 1e-5, "{down} {before}");
+    }
+}
+
+/// What only the fine particles between the shared ones do is not lost.
+#[test]
+fn velocities_are_gathered_from_all() {
+    let (fine, _, transfer) = levels(false);
+    let is_shared = |particle: usize| transfer.shared.contains(&(particle as u32));
+    let velocities: Vec<Vec3> = (0..fine.particle_count())
+        .map(|particle| if is_shared(particle) { Vec3::ZERO } else { Vec3::X })
+        .collect();
+    let gathered = transfer.gather_velocities(&velocities);
+    assert!(gathered.iter().all(|v| (0.3..1.0).contains(&v.x)), "{gathered:?}");
+}
+
+/// A wave of eight coarse cells: straight lines between shared particles cut off 7 % of its height.
+#[test]
+fn folds_are_not_flattened() {
+    let (fine, coarse, transfer) = levels(false);
+    let wave = |rest: &Vec3| rest.with_z(0.1 * libm::sinf(core::f32::consts::TAU / 1.2 * rest.x));
+    let bent: Vec<Vec3> = coarse.rest_positions().iter().map(wave).collect();
+    let error = |positions: &mut dyn Iterator<Item = Vec3>| {
+        let exact = fine.rest_positions().iter().map(wave);
+        positions.zip(exact).map(|(at, exact)| at.distance(exact)).fold(0.0, f32::max)
+    };
+    let smooth = error(&mut transfer.smooth.interpolate(&bent));
+    let flat = error(&mut transfer.spread(&bent));
+    assert!(smooth < 0.4 * flat, "{smooth} {flat}");
+}
+
+/// New particles on a fold lie farther apart than the cloth is long. What would tear them together
+/// in the next substep is gone.
+#[test]
+fn no_strain_is_left_that_kicks() {
+    let (fine, coarse, transfer) = levels(true);
+    let (above, below) = (flown(&fine), flown(&coarse));
+    let stored = |fabric, state: &ClothSnapshot| elastic(fabric, &MATERIAL, &state.positions);
+    let bare: Vec<Vec3> = transfer.smooth.interpolate(&below.positions).collect();
+    let up = stored(&fine, &transfer.prolong(&below, &MATERIAL, GRAVITY));
+    assert!(
+        up < 1.02 * stored(&coarse, &below) && up < 0.1 * elastic(&fine, &MATERIAL, &bare),
+        "{up}"
+    );
+    let bare: Vec<Vec3> = transfer.pick(&above.positions).collect();
+    let down = stored(&coarse, &transfer.restrict(&above, &MATERIAL, GRAVITY));
+    assert!(down < 0.1 * elastic(&coarse, &MATERIAL, &bare), "{down}");
+}
+
+/// The weight of a stretchy cloth holds its stretch: a change of level must not let it go.
+#[test]
+fn stretch_by_weight_stays() {
+    let material = FabricMaterial {
+        warp_stiffness: 20.0,
+        weft_stiffness: 20.0,
+        shear_stiffness: 5.0,
+        ..MATERIAL
+    };
+    let hung = |columns: u32| {
+        let grid = FabricBuilder::grid(Grid::new(columns, columns, 1.0, 1.0));
+        Arc::new(grid.pin_where(|_, uv| uv.y == 0.0).build().expect("a good fabric"))
+    };
+    let (fine, coarse) = (hung(17), hung(9));
+    let transfer = LevelTransfer::between(&fine, &coarse).expect("nested");
+    let hang = |rest: &Vec3| {
+        let load = material.area_density * 9.81 / material.weft_stiffness;
+        rest.with_y(rest.y - load * (-rest.y - 0.5 * rest.y * rest.y))
+    };
+    let state = |fabric: &Fabric| {
+        let positions = fabric.rest_positions().iter().map(hang).collect();
+        ClothSnapshot::new(positions, vec![Vec3::ZERO; fabric.particle_count()])
+    };
+    let low = |state: &ClothSnapshot| state.positions.last().expect("a corner").y;
+    let hanging = low(&state(&fine));
+    assert!(hanging < -1.02, "{hanging}");
+    for moved in [
+        transfer.restrict(&state(&fine), &material, GRAVITY),
+        transfer.prolong(&state(&coarse), &material, GRAVITY),
+    ] {
+        assert!((low(&moved) - hanging).abs() < 1e-3, "{} {hanging}", low(&moved));
+    }
+}
+
+/// Ten seconds of a swing that changes its level in every tick.
+#[test]
+fn thrashing_is_harmless() {
+    let (fine, coarse, transfer) = levels(true);
+    let fabrics = [fine, coarse];
+    let mut batches =
+        fabrics.each_ref().map(|fabric| batch_of(fabric, &ClothSnapshot::at_rest(fabric)));
+    let mut level = 0;
+    let start = energy(&fabrics[0], &batches[0].snapshot(0));
+    let fall = 0.5 * 9.81 * f64::from(MATERIAL.area_density * fabrics[0].area()) * 1.2;
+    for tick in 0..600 {
+        batches[level].step(TICK, StepSettings::default());
+        let state = batches[level].snapshot(0);
+        let moved = if level == 0 {
+            transfer.restrict(&state, &MATERIAL, GRAVITY)
+        } else {
+            transfer.prolong(&state, &MATERIAL, GRAVITY)
+        };
+        let momentum = |level: usize, state: &ClothSnapshot| -> DVec3 {
+            moment(&fabrics[level], &state.velocities)
+        };
+        let (had, has) = (momentum(level, &state), momentum(1 - level, &moved));
+        assert!(had.distance(has) < 1e-5 * had.length().max(1e-2), "tick {tick}: {had} {has}");
+        level = 1 - level;
+        batches[level].restore(0, &moved).expect("a good state");
+        let now = energy(&fabrics[level], &moved);
+        assert!(now < start + 0.01 * fall, "tick {tick}: {now} {start}");
+    }
+}

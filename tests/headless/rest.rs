@@ -1,0 +1,158 @@
+//! Cloth at rest falls asleep, and wakes when anything changes.
+
+use bevy_app::prelude::*;
+use bevy_bunting::ClothBatches;
+use bevy_bunting::prelude::*;
+use bevy_ecs::prelude::*;
+use bevy_math::{Quat, Vec3};
+use bevy_transform::prelude::*;
+use bunting_tests::{app, bits, run, state};
+
+/// Ticks in which a damped cloth comes to rest.
+const SETTLING: usize = 64 * 20;
+
+/// A sheet on a pole of its own, hung from its top, asleep.
+struct Hung {
+    app: App,
+    pole: Entity,
+    sheet: Entity,
+    ball: Entity,
+}
+
+fn hung() -> Hung {
+    let mut app = app();
+    let world = app.world_mut();
+    let pole = world.spawn(Transform::from_xyz(0.0, 3.0, 0.0)).id();
+    let material = FabricMaterial { damping: 2.0, ..FabricMaterial::COTTON };
+    let held = Attachment::new(pole, ClothEdge::Top);
+    let sheet = world.spawn((ClothMesh::grid(9, 9, 1.0, 1.0), ClothMaterial(material), held)).id();
+    let ball = world.spawn((ClothCollider::ball(0.2), Transform::from_xyz(9.0, 3.0, 0.0))).id();
+    run(&mut app, SETTLING);
+    let hung = Hung { app, pole, sheet, ball };
+    assert_eq!(hung.activity(), ClothActivity::AtRest);
+    assert_eq!(hung.batches(), 0);
+    hung
+}
+
+impl Hung {
+    fn activity(&self) -> ClothActivity {
+        state(&self.app, self.sheet).activity()
+    }
+
+    fn batches(&self) -> usize {
+        self.app.world().resource::<ClothBatches>().batch_count()
+    }
+
+    fn entity(&mut self, entity: Entity) -> EntityWorldMut<'_> {
+        self.app.world_mut().entity_mut(entity)
+    }
+
+    /// Runs a few ticks.
+    fn go_on(&mut self) -> ClothActivity {
+        run(&mut self.app, 5);
+        self.activity()
+    }
+}
+
+#[test]
+fn it_sleeps_for_long_without_a_change() {
+    let mut hung = hung();
+    let shape = bits(&hung.app, hung.sheet);
+    run(&mut hung.app, 100);
+    assert_eq!(bits(&hung.app, hung.sheet), shape);
+    assert_eq!(hung.batches(), 0);
+}
+
+#[test]
+fn what_swings_does_not_sleep() {
+    let mut app = app();
+    let material = FabricMaterial { damping: 0.0, ..FabricMaterial::COTTON };
+    let held = Attachment::in_place(ClothEdge::Top);
+    let turned = Transform::from_rotation(Quat::from_rotation_x(0.3));
+    let sheet = (ClothMesh::grid(9, 9, 1.0, 1.0), ClothMaterial(material), held, turned);
+    let sheet = app.world_mut().spawn(sheet).id();
+    for _ in 0..300 {
+        run(&mut app, 1);
+        assert_eq!(state(&app, sheet).activity(), ClothActivity::Ticking);
+    }
+}
+
+#[test]
+fn wind_wakes_it() {
+    let mut hung = hung();
+    hung.app.world_mut().spawn(WindField::steady(Vec3::Z));
+    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+    assert_eq!(hung.batches(), 1);
+}
+
+#[test]
+fn gravity_wakes_it() {
+    let mut hung = hung();
+    hung.app.world_mut().resource_mut::<ClothSettings>().gravity *= 0.5;
+    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+}
+
+#[test]
+fn its_frame_wakes_it() {
+    let mut hung = hung();
+    let pole = hung.pole;
+    hung.entity(pole).get_mut::<Transform>().expect("a place").translation.x += 0.1;
+    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+}
+
+#[test]
+fn a_teleport_wakes_it() {
+    for mode in [TeleportMode::Keep, TeleportMode::Reset] {
+        let mut hung = hung();
+        let (pole, entity) = (hung.pole, hung.sheet);
+        hung.app.world_mut().trigger(TeleportCloth { entity, mode });
+        hung.entity(pole).insert(Transform::from_rotation(Quat::from_rotation_z(1.0)));
+        assert_eq!(hung.go_on(), ClothActivity::Ticking, "{mode:?}");
+    }
+}
+
+#[test]
+fn its_material_wakes_it() {
+    let mut hung = hung();
+    let sheet = hung.sheet;
+    hung.entity(sheet).insert(ClothMaterial::SILK);
+    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+}
+
+#[test]
+fn its_attachment_wakes_it() {
+    let mut hung = hung();
+    let sheet = hung.sheet;
+    hung.entity(sheet).remove::<Attachment>();
+    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+}
+
+#[test]
+fn only_a_near_collider_wakes_it() {
+    let mut hung = hung();
+    let ball = hung.ball;
+    hung.entity(ball).insert(Transform::from_xyz(8.0, 3.0, 0.0));
+    assert_eq!(hung.go_on(), ClothActivity::AtRest);
+    hung.entity(ball).insert(Transform::from_xyz(0.5, 2.5, 0.3));
+    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+}
+
+#[test]
+fn a_collider_that_goes_wakes_it() {
+    let mut hung = hung();
+    let ball = hung.ball;
+    hung.entity(ball).despawn();
+    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+}
+
+#[test]
+fn a_pause_keeps_it_asleep() {
+    let mut hung = hung();
+    let sheet = hung.sheet;
+    hung.entity(sheet).insert(ClothPaused);
+    hung.go_on();
+    hung.entity(sheet).remove::<ClothPaused>();
+    assert_eq!(hung.go_on(), ClothActivity::AtRest);
+    hung.app.world_mut().spawn(WindField::steady(Vec3::Z));
+    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+}
