@@ -127,6 +127,21 @@ impl Pack for Pack1 {
     }
 }
 
+/// Whether there is an instruction that rounds a sum with a product once. Where there is none it is
+/// done in software, which is too long to be inlined.
+#[inline(always)]
+fn fuses<S: Simd>(token: S) -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        matches!(token.level(), Level::Avx2(_) | Level::Avx512(_))
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    {
+        let _ = token;
+        cfg!(target_arch = "aarch64")
+    }
+}
+
 macro_rules! wide {
     ($pack:ident, $vector:ident, $width:literal) => {
         impl Pack for $pack {
@@ -178,12 +193,21 @@ macro_rules! wide {
 
             #[inline(always)]
             fn plus_product(self, a: Self, b: Self) -> Self {
-                a.mul_add_precise(b, self)
+                #[cold]
+                #[inline(never)]
+                fn in_software<S: Simd>(sum: $vector<S>, a: $vector<S>, b: $vector<S>) -> $vector<S> {
+                    a.mul_add_precise(b, sum)
+                }
+                if fuses(self.simd) {
+                    a.mul_add_precise(b, self)
+                } else {
+                    in_software(self, a, b)
+                }
             }
 
             #[inline(always)]
             fn minus_product(self, a: Self, b: Self) -> Self {
-                (-a).mul_add_precise(b, self)
+                self.plus_product(-a, b)
             }
 
             #[inline(always)]
@@ -295,9 +319,18 @@ impl<S: Simd> Lane for Single<S> {
 
     #[inline(always)]
     fn plus_product(self, a: Self, b: Self) -> Self {
-        let wide = |value: f32| <f32x4<S> as SimdBase<S>>::splat(self.token, value);
-        let sum = wide(a.value).mul_add_precise(wide(b.value), wide(self.value));
-        self.with(sum.as_slice()[0])
+        #[cold]
+        #[inline(never)]
+        fn in_software<S: Simd>(token: S, [sum, a, b]: [f32; 3]) -> f32 {
+            let [sum, a, b] =
+                [sum, a, b].map(|value| <f32x4<S> as SimdBase<S>>::splat(token, value));
+            a.mul_add_precise(b, sum).as_slice()[0]
+        }
+        self.with(if fuses(self.token) {
+            a.value.mul_add(b.value, self.value)
+        } else {
+            in_software(self.token, [self.value, a.value, b.value])
+        })
     }
 
     #[inline(always)]
