@@ -318,6 +318,7 @@ impl<S: Simd> Lane for Single<S> {
     }
 
     #[inline(always)]
+    #[expect(clippy::disallowed_methods, reason = "taken only where the level has the instruction")]
     fn plus_product(self, a: Self, b: Self) -> Self {
         #[cold]
         #[inline(never)]
