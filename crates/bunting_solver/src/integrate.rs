@@ -1,8 +1,10 @@
 //! External forces, damping and prediction: the thesis's `v += Δt w F`, `damp`, `p = x + Δt v`.
 //!
-//! Both orders are one formula (see [`Formula`](crate::parameters::Formula)): what has changed in
-//! the last substep is extrapolated by γ, and the new derivative counts for β h. Gauss–Seidel takes
-//! γ = 0 and β = 1, backward Euler; yarns take BDF2's γ = 1/3 and β = 2/3.
+//! All orders are one formula (see [`Formula`](crate::formula::Formula)): what has changed in the last
+//! two substeps is extrapolated by γ₁ and γ₂, and the new derivative counts for β h. What is older than
+//! that is overwritten by what is new, and the arrays change names.
+
+use core::mem::swap;
 
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
@@ -24,20 +26,30 @@ impl<P: Pack> LaneBatch<P> {
                 parameters: &self.parameters,
                 inverse_step: 1.0 / self.clock.step,
                 position: &mut self.position,
-                displacement: &mut self.displacement,
                 velocity: &mut self.velocity,
-                older_velocity: &mut self.older_velocity,
-                memory: &mut self.memory,
+                history: [
+                    &mut self.displacement,
+                    &mut self.older_displacement,
+                    &mut self.older_velocity,
+                    &mut self.oldest_velocity,
+                    &mut self.memory,
+                ],
             });
         }
+        let mut unrest = [P::splat(0.0); 2];
         P::run(Extrapolate {
             inverse_areas,
             parameters: &self.parameters,
             frame_rate: -1.0 / self.clock.step,
             position: &self.position,
-            velocity: &mut self.velocity,
-            older_velocity: &mut self.older_velocity,
+            velocity: &self.velocity,
+            older_velocity: &self.older_velocity,
+            oldest_velocity: &mut self.oldest_velocity,
+            unrest: &mut unrest,
         });
+        swap(&mut self.velocity, &mut self.oldest_velocity);
+        swap(&mut self.older_velocity, &mut self.oldest_velocity);
+        self.cool(&unrest);
         self.apply_air();
         P::run(Predict {
             areas: self.fabric.particle_areas(),
@@ -45,11 +57,23 @@ impl<P: Pack> LaneBatch<P> {
             parameters: &self.parameters,
             position: &mut self.position,
             predicted: &mut self.predicted,
-            displacement: &mut self.displacement,
+            displacement: &self.displacement,
+            older_displacement: &mut self.older_displacement,
             velocity: &mut self.velocity,
             air_impulse: &self.air_impulse,
         });
+        swap(&mut self.displacement, &mut self.older_displacement);
         self.clock.done += 1;
+    }
+
+    /// Takes lanes that boil down to first order.
+    fn cool(&mut self, unrest: &[P; 2]) {
+        let particles = self.position.len();
+        for (lane, slot) in self.slots.iter_mut().enumerate() {
+            if let Some(slot) = slot {
+                slot.past.cool(unrest.map(|sums| sums.lanes()[lane]), particles);
+            }
+        }
     }
 }
 
@@ -108,10 +132,9 @@ struct CarryState<'a, P: Pack> {
     parameters: &'a Parameters<P>,
     inverse_step: f32,
     position: &'a mut [Pack3<P>],
-    displacement: &'a mut [Pack3<P>],
     velocity: &'a mut [Pack3<P>],
-    older_velocity: &'a mut [Pack3<P>],
-    memory: &'a mut [Pack3<P>],
+    /// What else has a direction.
+    history: [&'a mut [Pack3<P>]; 5],
 }
 
 impl<P: Pack> Kernel<P> for CarryState<'_, P> {
@@ -119,11 +142,12 @@ impl<P: Pack> Kernel<P> for CarryState<'_, P> {
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let motion = Motion::<L>::load(token, self.parameters);
         let inverse_step = L::splat(token, self.inverse_step);
+        let turn = |direction: &mut Pack3<P>| {
+            let d: V3<L> = V3::load(token, direction);
+            motion.apply(d, motion.turned(d)).store(direction);
+        };
         let particles = self.position.iter_mut().zip(self.velocity);
-        let history = self.displacement.iter_mut().zip(self.older_velocity).zip(self.memory);
-        for (((position, velocity), ((displacement, older), memory)), &inverse_area) in
-            particles.zip(history).zip(self.inverse_areas)
-        {
+        for ((position, velocity), &inverse_area) in particles.zip(self.inverse_areas) {
             let x: V3<L> = V3::load(token, position);
             let carried = motion.apply(x, motion.moved(x));
             if inverse_area == 0.0 {
@@ -131,47 +155,56 @@ impl<P: Pack> Kernel<P> for CarryState<'_, P> {
                 continue;
             }
             carried.store(position);
-            for direction in [displacement, velocity, older, memory] {
-                let d: V3<L> = V3::load(token, direction);
-                motion.apply(d, motion.turned(d)).store(direction);
-            }
+            turn(velocity);
+        }
+        for directions in self.history {
+            directions.iter_mut().for_each(turn);
         }
     }
 }
 
-/// Extrapolates velocities and damps them. Gravity and air come after, undamped, so that rest states
-/// are exact.
+/// Extrapolates velocities and damps them, writing them over the oldest. Gravity and air come after,
+/// undamped, so that rest states are exact.
 struct Extrapolate<'a, P: Pack> {
     inverse_areas: &'a [f32],
     parameters: &'a Parameters<P>,
     /// −1/h, 1/s.
     frame_rate: f32,
     position: &'a [Pack3<P>],
-    velocity: &'a mut [Pack3<P>],
-    older_velocity: &'a mut [Pack3<P>],
+    velocity: &'a [Pack3<P>],
+    older_velocity: &'a [Pack3<P>],
+    oldest_velocity: &'a mut [Pack3<P>],
+    /// Sums of |Δ²v|² and of |v|² over the particles, (m/s)².
+    unrest: &'a mut [P; 2],
 }
 
 impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let extrapolation = L::load(token, &self.parameters.extrapolation);
+        let [last, before] = extrapolation::<L>(token, self.parameters);
         let keep = L::load(token, &self.parameters.keep);
         let motion = Motion::<L>::load(token, self.parameters);
         let any_moves = motion.moves.any();
         let frame_rate = L::splat(token, self.frame_rate);
         let zero = V3::splat(token, 0.0);
         let half = L::splat(token, 0.5);
-        let speeds = self.velocity.iter_mut().zip(self.older_velocity);
-        for (((velocity, older), position), &inverse_area) in
+        let mut unrest = [L::splat(token, 0.0); 2];
+        let speeds = self.velocity.iter().zip(self.older_velocity).zip(self.oldest_velocity);
+        for ((((velocity, older), oldest), position), &inverse_area) in
             speeds.zip(self.position).zip(self.inverse_areas)
         {
             if inverse_area == 0.0 {
+                *oldest = *velocity;
                 continue;
             }
             let v: V3<L> = V3::load(token, velocity);
-            let before: V3<L> = V3::load(token, older);
-            v.store(older);
-            let v = v.plus_scaled(v - before, extrapolation);
+            let older: V3<L> = V3::load(token, older);
+            let change = v - older;
+            let change_before = older - V3::load(token, oldest);
+            let second = change - change_before;
+            unrest[0] = unrest[0] + second.dot(second);
+            unrest[1] = unrest[1] + v.dot(v);
+            let v = v.plus_scaled(change, last).plus_scaled(change_before, before);
             // Damping acts on the motion relative to the frame, whose point at x has this velocity.
             let damped = if any_moves {
                 let x = V3::load(token, position);
@@ -180,9 +213,18 @@ impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
             } else {
                 v * keep
             };
-            damped.store(velocity);
+            damped.store(oldest);
+        }
+        for (sum, into) in unrest.into_iter().zip(self.unrest) {
+            sum.store(into);
         }
     }
+}
+
+/// γ₁ and γ₂.
+#[inline(always)]
+fn extrapolation<L: Lane>(token: L::Token, parameters: &Parameters<L::Pack>) -> [L; 2] {
+    parameters.extrapolation.each_ref().map(|part| L::load(token, part))
 }
 
 /// Adds what air and gravity do, and moves the particles to where they would go unconstrained.
@@ -192,7 +234,8 @@ struct Predict<'a, P: Pack> {
     parameters: &'a Parameters<P>,
     position: &'a mut [Pack3<P>],
     predicted: &'a mut [Pack3<P>],
-    displacement: &'a mut [Pack3<P>],
+    displacement: &'a [Pack3<P>],
+    older_displacement: &'a mut [Pack3<P>],
     velocity: &'a mut [Pack3<P>],
     air_impulse: &'a [Pack3<P>],
 }
@@ -201,13 +244,16 @@ impl<P: Pack> Kernel<P> for Predict<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let step = L::load(token, &self.parameters.step);
-        let extrapolation = L::load(token, &self.parameters.extrapolation);
+        let [last, before] = extrapolation::<L>(token, self.parameters);
         let gravity: V3<L> = V3::load(token, &self.parameters.gravity_step);
-        let places = self.position.iter_mut().zip(self.predicted).zip(self.displacement);
+        let places = self.position.iter_mut().zip(self.predicted);
+        let changes = self.displacement.iter().zip(self.older_displacement);
         let speeds = self.velocity.iter_mut().zip(self.air_impulse);
         let inertia = self.weights.iter().zip(self.areas);
-        for ((((position, predicted), displacement), (velocity, impulse)), (&weight, &area)) in
-            places.zip(speeds).zip(inertia)
+        for (
+            (((position, predicted), (displacement, older)), (velocity, impulse)),
+            (&weight, &area),
+        ) in places.zip(changes).zip(speeds).zip(inertia)
         {
             if weight == 0.0 {
                 continue;
@@ -218,8 +264,10 @@ impl<P: Pack> Kernel<P> for Predict<'_, P> {
                 .plus_scaled(air, L::splat(token, weight))
                 .plus_scaled(gravity, L::splat(token, weight * area));
             v.store(velocity);
-            let change = (v * step).plus_scaled(V3::load(token, displacement), extrapolation);
-            change.store(displacement);
+            let change = (v * step)
+                .plus_scaled(V3::load(token, displacement), last)
+                .plus_scaled(V3::load(token, older), before);
+            change.store(older);
             let x = V3::load(token, position) + change;
             x.store(predicted);
             x.store(position);

@@ -9,8 +9,9 @@ use crate::batch::LaneSurface;
 use crate::collision::Collider;
 use crate::constraints::{Knot, Pole};
 use crate::fabric::{ABREAST, Fabric, FabricMaterial};
+use crate::formula::{Formula, Past};
 use crate::lanes::Pack;
-use crate::parameters::{Formula, Parameters};
+use crate::parameters::Parameters;
 use crate::snapshot::{ClothSnapshot, History};
 use crate::step::{Drive, Scheme, StepSettings};
 use crate::vector::{Pack3, lane3, set_lane3, splat3};
@@ -24,9 +25,8 @@ pub(crate) struct Slot {
     pub material: FabricMaterial,
     pub drive: Drive,
     pub colliders: Vec<Collider>,
-    /// Length of the substep that the lane's history was made with, s; zero where there is none, and
-    /// the next substep is one of backward Euler.
-    pub history_step: f32,
+    /// What there is of the lane's history.
+    pub past: Past,
     /// What the lane's parameters were last computed from.
     pub applied: Option<Applied>,
     /// For each collider, the particles that may touch it in this tick.
@@ -57,8 +57,12 @@ pub(crate) struct LaneBatch<P: Pack> {
     pub velocity: Vec<Pack3<P>>,
     /// Change of position in the last substep, or so far in this one, m.
     pub displacement: Vec<Pack3<P>>,
+    /// Change of position in the substep before, m.
+    pub older_displacement: Vec<Pack3<P>>,
     /// Velocities a substep earlier, m/s.
     pub older_velocity: Vec<Pack3<P>>,
+    /// Velocities two substeps earlier, m/s.
+    pub oldest_velocity: Vec<Pack3<P>>,
     /// Unit normals.
     pub normal: Vec<Pack3<P>>,
     /// Sum over a particle's triangles of area times change of velocity, m³/s.
@@ -124,7 +128,9 @@ impl<P: Pack> LaneBatch<P> {
             displacement: zero.clone(),
             bent: zero.clone(),
             memory: zero.clone(),
+            older_displacement: zero.clone(),
             older_velocity: zero.clone(),
+            oldest_velocity: zero.clone(),
             position: rest,
             velocity: zero.clone(),
             air_impulse: zero.clone(),
@@ -148,7 +154,7 @@ impl<P: Pack> LaneBatch<P> {
             material,
             drive: Drive::default(),
             colliders: Vec::new(),
-            history_step: 0.0,
+            past: Past::default(),
             applied: None,
             contacts: Vec::new(),
         });
@@ -169,8 +175,10 @@ impl<P: Pack> LaneBatch<P> {
         write(&mut self.velocity, lane, &snapshot.velocities);
         let history = snapshot.history.as_ref();
         let past = [
-            (&mut self.displacement, history.map(|history| &history.displacements)),
-            (&mut self.older_velocity, history.map(|history| &history.older_velocities)),
+            (&mut self.displacement, history.map(|history| &history.displacements[0])),
+            (&mut self.older_displacement, history.map(|history| &history.displacements[1])),
+            (&mut self.older_velocity, history.map(|history| &history.older_velocities[0])),
+            (&mut self.oldest_velocity, history.map(|history| &history.older_velocities[1])),
             (&mut self.memory, history.map(|history| &history.memory)),
         ];
         for (packs, values) in past {
@@ -183,21 +191,21 @@ impl<P: Pack> LaneBatch<P> {
             set_lane3(&mut self.velocity[pin.particle as usize], lane, Vec3::ZERO);
         }
         if let Some(slot) = &mut self.slots[lane] {
-            slot.history_step = history.map_or(0.0, |history| history.step);
+            slot.past = history.map_or_else(Past::default, |history| history.past);
         }
     }
 
     /// The state of a lane, past and all.
     pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
         let read = |packs: &[Pack3<P>]| packs.iter().map(|pack| lane3(pack, lane)).collect();
-        let step = self.slots[lane].as_ref().map_or(0.0, |slot| slot.history_step);
+        let past = self.slots[lane].as_ref().map_or_else(Past::default, |slot| slot.past);
         ClothSnapshot {
             positions: read(&self.position),
             velocities: read(&self.velocity),
-            history: (step > 0.0).then(|| History {
-                step,
-                displacements: read(&self.displacement),
-                older_velocities: read(&self.older_velocity),
+            history: past.exists().then(|| History {
+                past,
+                displacements: [read(&self.displacement), read(&self.older_displacement)],
+                older_velocities: [read(&self.older_velocity), read(&self.oldest_velocity)],
                 memory: read(&self.memory),
             }),
         }
@@ -256,7 +264,7 @@ impl<P: Pack> LaneBatch<P> {
         }
         let weights_step = match settings.scheme {
             Scheme::GaussSeidel => 0.0,
-            Scheme::Yarns => Formula::BDF2.weight * step,
+            Scheme::Yarns => Formula::BDF2_OPT.weight * step,
         };
         if self.weights_step != weights_step {
             self.weights_step = weights_step;
@@ -274,10 +282,7 @@ impl<P: Pack> LaneBatch<P> {
                 self.parameters.set_empty(lane);
                 continue;
             };
-            // BDF2 needs a substep of the same length before it.
-            let second_order = settings.scheme == Scheme::Yarns && slot.history_step == step;
-            let formula = if second_order { Formula::BDF2 } else { Formula::BACKWARD_EULER };
-            slot.history_step = step;
+            let formula = slot.past.begin(step, settings.scheme);
             let applied = Applied {
                 material: slot.material,
                 air_density: slot.drive.air_density,

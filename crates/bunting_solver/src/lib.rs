@@ -41,6 +41,7 @@ mod constraints;
 mod damping;
 mod energy;
 mod fabric;
+mod formula;
 mod frame;
 mod integrate;
 mod lane_batch;

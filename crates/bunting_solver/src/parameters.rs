@@ -10,22 +10,6 @@ use crate::lanes::Pack;
 use crate::step::Drive;
 use crate::vector::{Pack3, set_lane3, splat3};
 
-/// A backward differentiation formula: x and v at the end of a substep of h seconds are
-/// x + extrapolation · (x − x₋₁) + weight · h v̇ and alike for v (of order two: Curtiss and
-/// Hirschfelder 1952). With ṽ the velocity so extrapolated, x̃ = x + γ (x − x₋₁) + β h ṽ.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Formula {
-    /// γ: how much of the last change is extrapolated.
-    pub extrapolation: f32,
-    /// β: what part of the substep the new derivative counts for.
-    pub weight: f32,
-}
-
-impl Formula {
-    pub const BACKWARD_EULER: Self = Self { extrapolation: 0.0, weight: 1.0 };
-    pub const BDF2: Self = Self { extrapolation: 1.0 / 3.0, weight: 2.0 / 3.0 };
-}
-
 /// Factors L and D of a bend profile's pentadiagonal system, for each inner particle.
 #[derive(Clone, Debug)]
 pub(crate) struct BendFactors<P: Pack> {
@@ -84,9 +68,9 @@ impl<P: Pack> BendFactors<P> {
 /// One value for each lane of everything that a kernel needs besides the particles.
 #[derive(Clone, Debug)]
 pub(crate) struct Parameters<P: Pack> {
-    /// γ of the [`Formula`].
-    pub extrapolation: P,
-    /// The effective substep β h of the [`Formula`], s. Everything below that is "in a substep" is in
+    /// γ₁ and γ₂ of the [`Formula`](crate::formula::Formula).
+    pub extrapolation: [P; 2],
+    /// The effective substep β h of the formula, s. Everything below that is "in a substep" is in
     /// this one.
     pub step: P,
     /// One over it, 1/s.
@@ -127,7 +111,7 @@ impl<P: Pack> Parameters<P> {
     pub fn new(fabric: &Fabric) -> Self {
         let nothing = P::splat(0.0);
         Self {
-            extrapolation: nothing,
+            extrapolation: [nothing; 2],
             step: nothing,
             inverse_step: nothing,
             link_compliance: vec![nothing; fabric.link_classes().len()],
@@ -163,7 +147,9 @@ impl<P: Pack> Parameters<P> {
         let Applied { material, air_density, step, formula } = applied;
         let step = formula.weight * step;
         let set = |pack: &mut P, value: f32| pack.lanes_mut()[lane] = value;
-        set(&mut self.extrapolation, formula.extrapolation);
+        for (pack, part) in self.extrapolation.iter_mut().zip(formula.extrapolation) {
+            set(pack, part);
+        }
         set(&mut self.step, step);
         set(&mut self.inverse_step, 1.0 / step);
         let compliance = |stiffness: f32| {

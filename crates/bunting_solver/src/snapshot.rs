@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use crate::fabric::Fabric;
+use crate::formula::Past;
 
 /// Positions and velocities of a cloth's particles, in its frame.
 ///
@@ -20,12 +21,12 @@ pub struct ClothSnapshot {
 /// What second order and stiff bending remember of earlier substeps.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct History {
-    /// Length of the substep that it was made with, s.
-    pub step: f32,
-    /// Change of position in the last substep, m.
-    pub displacements: Vec<Vec3>,
-    /// Velocities a substep earlier, m/s.
-    pub older_velocities: Vec<Vec3>,
+    /// How long it is, and of which substeps.
+    pub past: Past,
+    /// Changes of position in the last substep and in the one before, m.
+    pub displacements: [Vec<Vec3>; 2],
+    /// Velocities one and two substeps earlier, m/s.
+    pub older_velocities: [Vec<Vec3>; 2],
     /// What stretch does to each particle, m/s².
     pub memory: Vec<Vec3>,
 }

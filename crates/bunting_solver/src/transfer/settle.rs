@@ -11,6 +11,7 @@ use glam::Vec3;
 
 use crate::energy::elastic;
 use crate::fabric::{Fabric, FabricMaterial};
+use crate::formula::Past;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::Pack1;
 use crate::snapshot::ClothSnapshot;
@@ -51,7 +52,7 @@ pub(super) fn settle(
         }
         if let Some(slot) = &mut batch.slots[0] {
             // Each of first order: a second would foresee the push of the one before.
-            slot.history_step = 0.0;
+            slot.past = Past::default();
         }
         batch.integrate();
         batch.solve_constraints();
