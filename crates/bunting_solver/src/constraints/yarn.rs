@@ -40,27 +40,22 @@ impl<P: Pack> LaneBatch<P> {
     ///
     /// The bias must not come last: what it moves is large against the strain of warp and weft.
     pub fn solve_yarns(&mut self, passes: u32) {
-        let at_rest = self.fabric.strands().rest_lengths();
-        for (target, rest_length) in self.link_target.iter_mut().zip(at_rest) {
-            *target = P::splat(rest_length);
-        }
-        self.solve_families(Families::Stretch);
-        self.solve_families(Families::Bias);
+        self.visit_yarns(Visit::First);
+        self.visit_yarns(Visit::Only);
         for _ in 0..passes {
-            self.solve_families(Families::Stretch);
+            self.visit_yarns(Visit::Again);
         }
     }
 
-    fn solve_families(&mut self, families: Families) {
+    fn visit_yarns(&mut self, visit: Visit) {
         let Strands { strands, colours, .. } = self.fabric.strands();
         for colour in colours {
-            if (colour.family == LinkFamily::Bias) != (families == Families::Bias) {
+            if (colour.family == LinkFamily::Bias) != (visit == Visit::Only) {
                 continue;
             }
             P::run(Yarns {
                 strands: &strands[colour.strands.clone()],
-                // The bias is solved once a substep.
-                keep: families == Families::Stretch,
+                visit,
                 weights: &self.weights,
                 compliance: &self.parameters.link_compliance,
                 knots: &mut self.knots,
@@ -71,18 +66,21 @@ impl<P: Pack> LaneBatch<P> {
     }
 }
 
+/// Which visit to a yarn in a substep it is.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Families {
-    /// Warp and weft.
-    Stretch,
-    Bias,
+enum Visit {
+    /// To warp and weft, whose links are as long as at rest until their tension is known.
+    First,
+    /// To warp and weft.
+    Again,
+    /// To the bias. Nobody asks for its targets.
+    Only,
 }
 
 /// The yarns of one colour.
 struct Yarns<'a, P: Pack> {
     strands: &'a [Strand],
-    /// Whether targets are kept from visit to visit.
-    keep: bool,
+    visit: Visit,
     weights: &'a [f32],
     compliance: &'a [P],
     knots: &'a mut [Knot<P>],
@@ -93,29 +91,32 @@ struct Yarns<'a, P: Pack> {
 impl<P: Pack> Kernel<P> for Yarns<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
-        if self.keep {
-            self.solve_all::<L, true>(token);
-        } else {
-            self.solve_all::<L, false>(token);
+        match self.visit {
+            Visit::First => self.solve_all::<L, false, true>(token),
+            Visit::Again => self.solve_all::<L, true, true>(token),
+            Visit::Only => self.solve_all::<L, false, false>(token),
         }
     }
 }
 
 impl<P: Pack> Yarns<'_, P> {
-    /// `KEEP` targets from visit to visit.
+    /// `RECALL` the targets of the visit before, and `KEEP` them for the next.
     #[inline(always)]
-    fn solve_all<L: Lane<Pack = P>, const KEEP: bool>(&mut self, token: L::Token) {
+    fn solve_all<L: Lane<Pack = P>, const RECALL: bool, const KEEP: bool>(
+        &mut self,
+        token: L::Token,
+    ) {
         for strand in self.strands {
             match strand.count {
-                ABREAST => self.solve::<L, ABREAST, KEEP>(token, strand),
-                _ => self.solve::<L, 1, KEEP>(token, strand),
+                ABREAST => self.solve::<L, ABREAST, RECALL, KEEP>(token, strand),
+                _ => self.solve::<L, 1, RECALL, KEEP>(token, strand),
             }
         }
     }
 
     /// Solves a strand of `SIDE` yarns.
     #[inline(always)]
-    fn solve<L: Lane<Pack = P>, const SIDE: usize, const KEEP: bool>(
+    fn solve<L: Lane<Pack = P>, const SIDE: usize, const RECALL: bool, const KEEP: bool>(
         &mut self,
         token: L::Token,
         strand: &Strand,
@@ -144,8 +145,11 @@ impl<P: Pack> Yarns<'_, P> {
             for (at, particle) in side(particles).into_iter().enumerate() {
                 let StrandLink { class, rest_length } = links[at];
                 let compliance = L::load(token, &self.compliance[class as usize]);
-                let target =
-                    if KEEP { L::load(token, &targets[at]) } else { L::splat(token, rest_length) };
+                let target = if RECALL {
+                    L::load(token, &targets[at])
+                } else {
+                    L::splat(token, rest_length)
+                };
                 let next: V3<L> = V3::load(token, &position[particle as usize]);
                 let next_weight = weight(particle);
                 let along = next - end[at];
@@ -173,15 +177,19 @@ impl<P: Pack> Yarns<'_, P> {
         let mut share = [zero; SIDE];
         let mut found = [zero; SIDE];
         let mut pull = [none; SIDE];
-        let rows = strand.particles[1..].iter().zip(targets).zip(knots);
-        for ((particles, targets), knots) in rows.rev() {
+        let rows = strand.links.iter().zip(&strand.particles[1..]).zip(targets).zip(knots);
+        for (((links, particles), targets), knots) in rows.rev() {
             for (at, particle) in side(particles).into_iter().enumerate() {
                 let change = L::load(token, &knots[at].change).plus_product(share[at], found[at]);
                 (share[at], found[at]) = (L::load(token, &knots[at].share), change);
                 if KEEP {
                     let give = L::load(token, &knots[at].give);
-                    let target = &mut targets[at];
-                    L::load(token, target).minus_product(give, change).store(target);
+                    let target = if RECALL {
+                        L::load(token, &targets[at])
+                    } else {
+                        L::splat(token, links[at].rest_length)
+                    };
+                    target.minus_product(give, change).store(&mut targets[at]);
                 }
                 let tension = V3::load(token, &knots[at].along) * change;
                 let place = &mut position[particle as usize];

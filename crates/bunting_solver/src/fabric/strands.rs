@@ -99,13 +99,6 @@ impl Strands {
     pub fn target_count(&self) -> usize {
         self.strands.last().map_or(0, |strand| strand.targets.end)
     }
-
-    /// The targets at rest, m.
-    pub fn rest_lengths(&self) -> impl Iterator<Item = f32> {
-        self.strands.iter().flat_map(|strand| {
-            strand.links.iter().flat_map(|row| row[..strand.count].iter().map(|l| l.rest_length))
-        })
-    }
 }
 
 impl Strand {
