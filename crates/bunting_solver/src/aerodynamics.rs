@@ -19,17 +19,13 @@ use crate::vector::{Pack3, V3};
 
 impl<P: Pack> LaneBatch<P> {
     /// Gathers what the air does to each particle in this substep.
-    pub fn apply_air(&mut self) {
-        if !self.parameters.feels_air() && !self.felt_air {
-            return;
-        }
-        self.felt_air = self.parameters.feels_air();
+    pub fn gather_air(&mut self) {
         P::run(Air {
             fabric: &self.fabric,
             parameters: &self.parameters,
             position: &self.position,
             velocity: &self.velocity,
-            impulse: &mut self.air_impulse,
+            impulse: &mut self.predicted,
         });
     }
 }

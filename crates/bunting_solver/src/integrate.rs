@@ -50,7 +50,10 @@ impl<P: Pack> LaneBatch<P> {
         swap(&mut self.velocity, &mut self.oldest_velocity);
         swap(&mut self.older_velocity, &mut self.oldest_velocity);
         self.cool(&unrest);
-        self.apply_air();
+        let feels_air = self.parameters.feels_air();
+        if feels_air {
+            self.gather_air();
+        }
         P::run(Predict {
             areas: self.fabric.particle_areas(),
             weights: &self.weights,
@@ -60,7 +63,7 @@ impl<P: Pack> LaneBatch<P> {
             displacement: &self.displacement,
             older_displacement: &mut self.older_displacement,
             velocity: &mut self.velocity,
-            air_impulse: &self.air_impulse,
+            feels_air,
         });
         swap(&mut self.displacement, &mut self.older_displacement);
         self.clock.done += 1;
@@ -237,7 +240,8 @@ struct Predict<'a, P: Pack> {
     displacement: &'a [Pack3<P>],
     older_displacement: &'a mut [Pack3<P>],
     velocity: &'a mut [Pack3<P>],
-    air_impulse: &'a [Pack3<P>],
+    /// Whether there are impulses of the air where predicted positions will be.
+    feels_air: bool,
 }
 
 impl<P: Pack> Kernel<P> for Predict<'_, P> {
@@ -248,21 +252,22 @@ impl<P: Pack> Kernel<P> for Predict<'_, P> {
         let gravity: V3<L> = V3::load(token, &self.parameters.gravity_step);
         let places = self.position.iter_mut().zip(self.predicted);
         let changes = self.displacement.iter().zip(self.older_displacement);
-        let speeds = self.velocity.iter_mut().zip(self.air_impulse);
         let inertia = self.weights.iter().zip(self.areas);
-        for (
-            (((position, predicted), (displacement, older)), (velocity, impulse)),
-            (&weight, &area),
-        ) in places.zip(changes).zip(speeds).zip(inertia)
+        for ((((position, predicted), (displacement, older)), velocity), (&weight, &area)) in
+            places.zip(changes).zip(self.velocity).zip(inertia)
         {
             if weight == 0.0 {
+                *predicted = *position;
                 continue;
             }
-            let air: V3<L> = V3::load(token, impulse);
             // Gravity acts on the true mass, whatever inertia is added to it.
-            let v = V3::load(token, velocity)
-                .plus_scaled(air, L::splat(token, weight))
-                .plus_scaled(gravity, L::splat(token, weight * area));
+            let falling =
+                V3::load(token, velocity).plus_scaled(gravity, L::splat(token, weight * area));
+            let v = if self.feels_air {
+                falling.plus_scaled(V3::load(token, predicted), L::splat(token, weight))
+            } else {
+                falling
+            };
             v.store(velocity);
             let change = (v * step)
                 .plus_scaled(V3::load(token, displacement), last)

@@ -51,7 +51,9 @@ pub(crate) struct LaneBatch<P: Pack> {
 
     /// Positions in the cloth's frame, m.
     pub position: Vec<Pack3<P>>,
-    /// Positions as predicted at the start of the substep, before any correction, m.
+    /// Positions as predicted at the start of the substep, before any correction, m. Until then, for
+    /// each particle the sum over its triangles of area times what the air changes of their velocity,
+    /// m³/s: one array less to pass through the cache.
     pub predicted: Vec<Pack3<P>>,
     /// Velocities relative to the world along the frame's axes, m/s.
     pub velocity: Vec<Pack3<P>>,
@@ -65,10 +67,6 @@ pub(crate) struct LaneBatch<P: Pack> {
     pub oldest_velocity: Vec<Pack3<P>>,
     /// Unit normals.
     pub normal: Vec<Pack3<P>>,
-    /// Sum over a particle's triangles of area times change of velocity, m³/s.
-    pub air_impulse: Vec<Pack3<P>>,
-    /// Whether the impulses may be other than zero.
-    pub felt_air: bool,
 
     /// The length that each link has under the tension found so far in a substep, l − α̃ λ, m. In the
     /// order in which the scheme solves links.
@@ -87,6 +85,8 @@ pub(crate) struct LaneBatch<P: Pack> {
 
     /// One over each particle's inertia, in units of the density, 1/m²; zero where it is pinned.
     pub weights: Vec<f32>,
+    /// One over each weight, m²; zero where a particle is pinned.
+    pub inertias: Vec<f32>,
     /// The effective substep that the weights are for, s; zero with the fabric's own.
     weights_step: f32,
 
@@ -133,14 +133,13 @@ impl<P: Pack> LaneBatch<P> {
             oldest_velocity: zero.clone(),
             position: rest,
             velocity: zero.clone(),
-            air_impulse: zero.clone(),
-            felt_air: false,
             normal: zero,
             link_target: vec![nothing; fabric.strands().target_count()],
             hinge_multiplier: vec![nothing; fabric.hinges().len()],
             moments: vec![splat3(Vec3::ZERO); longest_line],
             knots: vec![Knot::new(); ABREAST * longest_yarn],
             weights: fabric.inverse_areas().to_vec(),
+            inertias: inverted(fabric.inverse_areas()),
             weights_step: 0.0,
             pole: Pole::of(&fabric),
             parameters: Parameters::new(&fabric),
@@ -269,6 +268,7 @@ impl<P: Pack> LaneBatch<P> {
         if self.weights_step != weights_step {
             self.weights_step = weights_step;
             self.weights = added_mass::weights(&self.fabric, weights_step);
+            self.inertias = inverted(&self.weights);
         }
         self.gather_contacts(tick);
     }
@@ -298,6 +298,11 @@ impl<P: Pack> LaneBatch<P> {
         // One substep more than the motion lasts, so that pinned particles come to rest.
         self.parameters.carries = moved || self.parameters.moves_any();
     }
+}
+
+/// One over each number, and zero for zero.
+fn inverted(values: &[f32]) -> Vec<f32> {
+    values.iter().map(|&value| if value == 0.0 { 0.0 } else { 1.0 / value }).collect()
 }
 
 /// The sum of all coordinates, for each lane.

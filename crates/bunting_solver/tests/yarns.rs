@@ -151,7 +151,7 @@ fn a_flag_does_not_boil() {
     for tick in 0..1500 {
         for &lane in &lanes {
             let phase = 1.7 * TICK * tick as f32 + 0.4 * lane as f32;
-            let wind = Vec3::new(6.0 + 0.12 * lane as f32, 0.0, 0.9 * phase.sin());
+            let wind = Vec3::new(6.0 + 0.12 * lane as f32, 0.0, 0.9 * libm::sinf(phase));
             batch.drive(lane, Drive { wind, ..Drive::default() });
         }
         batch.step(TICK, StepSettings { passes: 3, ..StepSettings::yarns(2) });

@@ -51,17 +51,17 @@ fn solve_line<L: Lane>(
     position: &mut [Pack3<L::Pack>],
 ) {
     let zero = V3::<L>::splat(token, 0.0);
-    let inverse_spacing = L::splat(token, profile.inverse_spacing);
+    let two = L::splat(token, 2.0);
     let inner = factors.rows.len();
 
-    // Down the line: L y = −C.
+    // Down the line: L y = −l C. What is left out is made up for when the moments act.
     let mut at: V3<L> = V3::load(token, &position[particles[1] as usize]);
     let mut edge = at - V3::load(token, &position[particles[0] as usize]);
     let (mut last, mut before_last) = (zero, zero);
     for (row, (factor, &next)) in factors.rows.iter().zip(&particles[2..]).enumerate() {
         let next: V3<L> = V3::load(token, &position[next as usize]);
         let next_edge = next - at;
-        let y = ((edge - next_edge) * inverse_spacing)
+        let y = (edge - next_edge)
             .minus_scaled(last, L::load(token, &factor.near))
             .minus_scaled(before_last, L::load(token, &factor.far));
         y.store(&mut moments[row]);
@@ -80,14 +80,14 @@ fn solve_line<L: Lane>(
         let moment = (y * L::load(token, &factor.inverse))
             .minus_scaled(above, near)
             .minus_scaled(above_that, far);
-        let moved = moment - above - above + above_that;
+        let moved = (moment + above_that).minus_scaled(above, two);
         shift::<L>(token, &mut position[particles[row + 2] as usize], moved, profile, row + 2);
         (above_that, above) = (above, moment);
         near = L::load(token, &factor.near);
         far = next_far;
         next_far = L::load(token, &factor.far);
     }
-    let moved = above_that - above - above;
+    let moved = above_that.minus_scaled(above, two);
     shift::<L>(token, &mut position[particles[1] as usize], moved, profile, 1);
     shift::<L>(token, &mut position[particles[0] as usize], above, profile, 0);
 }
@@ -101,7 +101,10 @@ fn shift<L: Lane>(
     profile: &BendProfile,
     at: usize,
 ) {
-    let weight = L::splat(token, profile.inverse_areas[at] * profile.inverse_spacing);
+    let weight = L::splat(
+        token,
+        profile.inverse_areas[at] * profile.inverse_spacing * profile.inverse_spacing,
+    );
     V3::load(token, position).plus_scaled(moments, weight).store(position);
 }
 

@@ -49,7 +49,7 @@ impl<P: Pack> LaneBatch<P> {
         let Some(pole) = self.pole else { return };
         P::run(StillTurn {
             pole,
-            weights: &self.weights,
+            inertias: &self.inertias,
             predicted: &self.predicted,
             position: &mut self.position,
         });
@@ -58,7 +58,8 @@ impl<P: Pack> LaneBatch<P> {
 
 struct StillTurn<'a, P: Pack> {
     pole: Pole,
-    weights: &'a [f32],
+    /// Each particle's inertia, in units of the density, m²; zero where it is pinned.
+    inertias: &'a [f32],
     predicted: &'a [Pack3<P>],
     position: &'a mut [Pack3<P>],
 }
@@ -68,23 +69,23 @@ impl<P: Pack> Kernel<P> for StillTurn<'_, P> {
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let at: V3<L> = V3::load(token, &splat3(self.pole.at));
         let along: V3<L> = V3::load(token, &splat3(self.pole.along));
-        let free = |weight: &&f32| **weight > 0.0;
-
         let mut moment = L::splat(token, 0.0);
         let mut inertia = L::splat(token, f32::MIN_POSITIVE);
-        let places = self.position.iter().zip(self.predicted).zip(self.weights);
-        for ((position, predicted), weight) in places.filter(|(_, weight)| free(weight)) {
+        let places = self.position.iter().zip(self.predicted).zip(self.inertias);
+        for ((position, predicted), &mass) in places {
             let x: V3<L> = V3::load(token, position);
-            let mass = L::splat(token, 1.0 / weight);
+            let mass = L::splat(token, mass);
             // How fast the particle would go round at a radian per second.
             let round = along.cross(x - at);
             moment = moment.plus_product(mass, round.dot(x - V3::load(token, predicted)));
             inertia = inertia.plus_product(mass, round.dot(round));
         }
         let turn = moment / inertia;
-        for (position, _) in self.position.iter_mut().zip(self.weights).filter(|(_, w)| free(w)) {
-            let x: V3<L> = V3::load(token, position);
-            x.minus_scaled(along.cross(x - at), turn).store(position);
+        for (position, &mass) in self.position.iter_mut().zip(self.inertias) {
+            if mass > 0.0 {
+                let x: V3<L> = V3::load(token, position);
+                x.minus_scaled(along.cross(x - at), turn).store(position);
+            }
         }
     }
 }
