@@ -6,7 +6,7 @@ use bevy_app::prelude::*;
 use bevy_bunting::TickWind;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
-use bevy_math::{Quat, Vec3};
+use bevy_math::{Quat, Vec2, Vec3};
 use bevy_time::{Fixed, Time};
 use bevy_transform::prelude::*;
 use bunting_tests::{FLAG, app, app_at, assert_finite, run, state};
