@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 use bevy_ecs::prelude::*;
 use bevy_tasks::ComputeTaskPool;
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricMaterial, LaneCount, StepSettings,
+    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricMaterial, LaneCount, LaneSurface,
+    StepSettings,
 };
 
 use crate::lod::Measured;
@@ -39,6 +40,8 @@ pub(crate) type Seat = (Entity, FabricMaterial);
 struct Seats {
     batch: ClothBatch,
     entities: Vec<Option<Seat>>,
+    /// What the lanes show, on its way to those who sit there.
+    surfaces: Vec<LaneSurface>,
     lanes: LaneCount,
     /// Substeps in this tick.
     substeps: u32,
@@ -156,10 +159,18 @@ impl ClothBatches {
         }
     }
 
-    /// All batches, each with those that sit in its lanes.
-    pub(crate) fn all(&self) -> impl Iterator<Item = (&ClothBatch, &[Option<Seat>])> {
-        let batches = self.groups.iter().flat_map(|group| &group.batches);
-        batches.map(|seats| (&seats.batch, seats.entities.as_slice()))
+    /// Everyone who sits in a lane, each with the surface that [`copy_surfaces`](Self::copy_surfaces)
+    /// writes.
+    pub(crate) fn surfaces(&mut self) -> impl Iterator<Item = (Entity, &mut LaneSurface)> {
+        self.joining(|_| true).flat_map(|seats| {
+            let lanes = seats.entities.iter().zip(&mut seats.surfaces);
+            lanes.filter_map(|(seat, surface)| Some((seat.as_ref()?.0, surface)))
+        })
+    }
+
+    /// Copies what every lane shows out of its batch.
+    pub(crate) fn copy_surfaces(&mut self) {
+        self.spread(|_| true, |seats| seats.batch.copy_surfaces(&mut seats.surfaces));
     }
 
     /// The batch and lane of a cloth.
@@ -225,15 +236,14 @@ impl ClothBatches {
         self.for_each_where(|_| true, all);
     }
 
-    /// On all threads if that pays. Batches share nothing that is written, so the order does not
-    /// matter.
+    /// Does a phase of the tick, and measures it where that is wanted.
     fn for_each_where(
         &mut self,
         joins: impl Fn(&Seats) -> bool,
         phase: impl Fn(&mut Seats) + Sync,
     ) {
         let measures = self.measures;
-        let phase = |seats: &mut Seats| {
+        self.spread(joins, |seats| {
             if measures {
                 let began = Instant::now();
                 phase(seats);
@@ -241,20 +251,25 @@ impl ClothBatches {
             } else {
                 phase(seats);
             }
-        };
-        let work: usize = self.joining(&joins).map(|seats| seats.particles()).sum();
+        });
+    }
+
+    /// On all threads if that pays. Batches share nothing that is written, so the order does not
+    /// matter.
+    fn spread(&mut self, joins: impl Fn(&Seats) -> bool, work: impl Fn(&mut Seats) + Sync) {
+        let particles: usize = self.joining(&joins).map(|seats| seats.particles()).sum();
         let pool = ComputeTaskPool::try_get().filter(|pool| pool.thread_num() > 1);
         match pool {
-            Some(pool) if work >= PARALLEL_PARTICLES => {
-                let phase = &phase;
+            Some(pool) if particles >= PARALLEL_PARTICLES => {
+                let work = &work;
                 pool.scope(|scope| {
                     for seats in self.joining(&joins) {
-                        scope.spawn(async move { phase(seats) });
+                        scope.spawn(async move { work(seats) });
                     }
                 });
             }
             _ => {
-                self.joining(&joins).for_each(phase);
+                self.joining(&joins).for_each(work);
             }
         }
     }
@@ -272,6 +287,7 @@ impl Seats {
         Self {
             batch: ClothBatch::new(Arc::clone(fabric), lanes),
             entities: vec![None; lanes.get()],
+            surfaces: vec![LaneSurface::default(); lanes.get()],
             lanes,
             substeps: 0,
             joins: true,

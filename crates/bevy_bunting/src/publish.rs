@@ -2,9 +2,8 @@
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
-use bunting_solver::{LaneCount, LaneSurface};
 
-use crate::batches::{ClothBatches, Seat};
+use crate::batches::ClothBatches;
 use crate::error::{ClothError, ClothFailed};
 use crate::instance::ClothInstance;
 use crate::schedule::{ClothSystems, ClothTick};
@@ -23,38 +22,32 @@ impl Plugin for PublishPlugin {
     }
 }
 
-/// Batch by batch: the lanes of a batch lie side by side in memory.
+/// Surfaces are copied batch by batch, as the lanes of a batch lie side by side in memory, into the
+/// memory of what was shown before the last tick.
 pub(crate) fn publish_states(
     instances: Query<&ClothInstance>,
     mut cloths: Query<&mut ClothState>,
     mut batches: ResMut<ClothBatches>,
-    mut surfaces: Local<Vec<LaneSurface>>,
     mut diverged: Local<Vec<Entity>>,
     mut commands: Commands,
 ) {
-    surfaces.resize(LaneCount::Sixteen.get(), LaneSurface::default());
-    for (batch, entities) in batches.all() {
-        let places = || surfaces_of(entities);
-        for (lane, entity) in places() {
-            if let Ok(mut state) = cloths.get_mut(entity) {
-                // What was shown before the last tick is overwritten, in its own memory.
-                let surface = &mut surfaces[lane];
-                surface.positions = core::mem::take(&mut state.previous_positions);
-                surface.normals = core::mem::take(&mut state.previous_normals);
-            }
+    for (entity, surface) in batches.surfaces() {
+        if let Ok(mut state) = cloths.get_mut(entity) {
+            surface.positions = core::mem::take(&mut state.previous_positions);
+            surface.normals = core::mem::take(&mut state.previous_normals);
         }
-        batch.copy_surfaces(&mut surfaces);
-        for (lane, entity) in places() {
-            if let Ok(mut state) = cloths.get_mut(entity) {
-                let (state, surface) = (&mut *state, &mut surfaces[lane]);
-                let positions = core::mem::take(&mut surface.positions);
-                let normals = core::mem::take(&mut surface.normals);
-                state.previous_positions = core::mem::replace(&mut state.positions, positions);
-                state.previous_normals = core::mem::replace(&mut state.normals, normals);
-                state.moved = true;
-                if !surface.is_finite {
-                    diverged.push(entity);
-                }
+    }
+    batches.copy_surfaces();
+    for (entity, surface) in batches.surfaces() {
+        if let Ok(mut state) = cloths.get_mut(entity) {
+            let state = &mut *state;
+            let positions = core::mem::take(&mut surface.positions);
+            let normals = core::mem::take(&mut surface.normals);
+            state.previous_positions = core::mem::replace(&mut state.positions, positions);
+            state.previous_normals = core::mem::replace(&mut state.normals, normals);
+            state.moved = true;
+            if !surface.is_finite {
+                diverged.push(entity);
             }
         }
     }
@@ -68,10 +61,6 @@ pub(crate) fn publish_states(
             ClothFailed::report(&mut commands, entity, ClothError::Diverged { entity });
         }
     }
-}
-
-fn surfaces_of(seats: &[Option<Seat>]) -> impl Iterator<Item = (usize, Entity)> {
-    seats.iter().enumerate().filter_map(|(lane, seat)| Some((lane, seat.as_ref()?.0)))
 }
 
 /// What stands still is not between two places.

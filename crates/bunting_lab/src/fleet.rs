@@ -1,10 +1,8 @@
 //! Cloths of one scene, batched as a game would batch them.
 
-use std::{
-    sync::{Arc, Barrier},
-    thread,
-};
+use std::sync::Arc;
 
+use bevy_tasks::{TaskPool, TaskPoolBuilder};
 use bunting_solver::{ClothBatch, ClothSnapshot, Drive, Fabric, LaneCount, StepSettings};
 use glam::Vec3;
 
@@ -109,42 +107,42 @@ impl Fleet {
         }
     }
 
-    /// Times ticks of all cloths on `cores` threads, each of which keeps its batches. A tick sets the
-    /// wind, steps and computes normals; all threads wait for one another before and after it.
+    /// Times ticks of all cloths, on this thread alone and on others, in turn so that all see the same
+    /// machine. A tick sets the wind, steps and computes normals. As in the plugin each batch is a task
+    /// of a pool, and this thread does its share of them.
     #[must_use]
-    pub fn time_ticks(&mut self, cores: usize, effort: &Effort) -> Timing {
+    pub fn time_ticks(&mut self, cores: &[usize], effort: &Effort) -> Vec<Timing> {
         self.advance(effort.warm_up);
-        let mut timing = Timing::repeat(1, 2, || self.advance(1));
-        let repeats = effort.ticks(timing.median());
-        let share = self.batches.len().div_ceil(cores);
-        let (scene, settings, first_tick) = (&self.scene, self.settings, self.ticks);
-        let mut shares: Vec<&mut [ClothBatch]> = self.batches.chunks_mut(share).collect();
-        let barrier = Barrier::new(shares.len());
-        let tick = |batches: &mut [ClothBatch], repeat: usize| {
-            let mut cloth = 0;
-            for batch in batches {
-                cloth = drive(batch, scene, first_tick + repeat as u32, cloth);
-                batch.step(TICK, settings);
-            }
-            barrier.wait();
-        };
-        timing = Timing::default();
-        thread::scope(|scope| {
-            let (own, others) = shares.split_first_mut().expect("a fleet has cloths");
-            for batches in others {
-                scope.spawn(|| {
-                    for repeat in 0..repeats {
-                        barrier.wait();
-                        tick(batches, repeat);
-                    }
+        let repeats = effort.ticks(Timing::repeat(1, 2, || self.advance(1)).median());
+        let pools = cores.iter().map(|cores| TaskPoolBuilder::new().num_threads(cores - 1).build());
+        let pools: Vec<TaskPool> = pools.collect();
+        let mut timings = vec![Timing::default(); pools.len()];
+        for _ in 0..repeats {
+            for (pool, timing) in pools.iter().zip(&mut timings) {
+                timing.time(|| match pool.thread_num() {
+                    0 => self.advance(1),
+                    _ => self.tick_in(pool),
                 });
             }
-            for repeat in 0..repeats {
-                barrier.wait();
-                timing.time(|| tick(own, repeat));
+        }
+        timings
+    }
+
+    /// Advances all by a tick, batch by batch on this thread and on those of the pool.
+    fn tick_in(&mut self, pool: &TaskPool) {
+        self.ticks += 1;
+        let (scene, settings, tick) = (&self.scene, self.settings, self.ticks);
+        pool.scope(|scope| {
+            let mut first = 0;
+            for batch in &mut self.batches {
+                let cloth = first;
+                first += batch.lane_count();
+                scope.spawn(async move {
+                    drive(batch, scene, tick, cloth);
+                    batch.step(TICK, settings);
+                });
             }
         });
-        timing
     }
 }
 

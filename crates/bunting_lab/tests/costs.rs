@@ -24,7 +24,8 @@ fn budget_has_its_schema() {
     let json = budget::run(true).json;
     assert!(json["instruction_set"].is_string());
     for sheet in rows(&json, "sheets") {
-        assert_positive(sheet, &["n", "cloths", "cores", "ms_per_tick"]);
+        assert_positive(sheet, &["n", "cloths", "cores", "ms_per_tick", "over_one_core"]);
+        assert!(sheet["cores"] != 1 || sheet["over_one_core"] == 1.0, "{sheet}");
     }
     let phases = rows(&json, "phases");
     for phase in phases {

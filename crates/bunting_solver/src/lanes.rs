@@ -13,6 +13,8 @@ use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f32x4, f32x8, f32x16};
 
+use crate::instruction_set::{instruction_set, level};
+
 /// One float for each lane of a batch, in memory.
 pub(crate) trait Pack: Copy + Send + Sync + 'static {
     /// Number of lanes.
@@ -123,7 +125,7 @@ impl Pack for Pack1 {
         fn with_token<S: Simd, K: Kernel<Pack1>>(token: S, kernel: K) {
             kernel.run::<Single<S>>(token);
         }
-        dispatch!(Level::new(), token => with_token(token, kernel));
+        dispatch!(level(), token => with_token(token, kernel));
     }
 }
 
@@ -152,7 +154,7 @@ macro_rules! wide {
                 fn with_token<S: Simd, K: Kernel<$pack>>(token: S, kernel: K) {
                     kernel.run::<$vector<S>>(token);
                 }
-                dispatch!(Level::new(), token => with_token(token, kernel));
+                dispatch!(level(), token => with_token(token, kernel));
             }
         }
 
@@ -342,24 +344,6 @@ impl<S: Simd> Lane for Single<S> {
     #[inline(always)]
     fn or_where_not(self, mask: bool, other: Self) -> Self {
         if mask { self } else { other }
-    }
-}
-
-/// The instruction set that wide kernels run with on this machine, for reports.
-#[must_use]
-pub fn instruction_set() -> &'static str {
-    match Level::new() {
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx512(_) => "AVX-512",
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx2(_) => "AVX2",
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Sse4_2(_) => "SSE4.2",
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Sse2(_) => "SSE2",
-        #[cfg(target_arch = "aarch64")]
-        Level::Neon(_) => "NEON",
-        _ => "scalar",
     }
 }
 

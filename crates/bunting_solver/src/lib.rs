@@ -43,6 +43,7 @@ mod energy;
 mod fabric;
 mod formula;
 mod frame;
+mod instruction_set;
 mod integrate;
 mod lane_batch;
 mod lanes;
@@ -61,7 +62,8 @@ pub use fabric::{
     Grid, Hinge, HingeClass, Link, LinkClass, LinkFamily, Tether, Yarn,
 };
 pub use frame::FrameMotion;
-pub use lanes::{LaneCount, instruction_set};
+pub use instruction_set::{instruction_set, with_every_instruction_set};
+pub use lanes::LaneCount;
 pub use snapshot::ClothSnapshot;
 pub use step::{Drive, Scheme, StepSettings};
 pub use transfer::{LevelTransfer, TransferError};

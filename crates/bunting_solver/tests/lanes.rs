@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion,
-    Grid, LaneCount, StepSettings,
+    Grid, LaneCount, StepSettings, instruction_set, with_every_instruction_set,
 };
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
@@ -93,6 +93,29 @@ fn every_width_gives_the_scalar_bits() {
             assert_eq!(bits(&alone[seed]), bits(&by_eight[seed]), "eight lanes, cloth {seed}");
             assert_eq!(bits(&alone[seed]), bits(&by_sixteen[seed]), "sixteen lanes, cloth {seed}");
         }
+    }
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_bits() {
+    let fabric = flag();
+    for settings in EVERY_SCHEME {
+        for lanes in [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen] {
+            let runs = with_every_instruction_set(|| {
+                (instruction_set(), fly(&fabric, lanes, &[2], settings).remove(0))
+            });
+            let (best, flown) = &runs[0];
+            assert!(flown.is_finite());
+            for (set, other) in &runs[1..] {
+                assert_ne!(best, set);
+                assert_eq!(bits(flown), bits(other), "{best} and {set}, {lanes:?}");
+            }
+        }
+    }
+    if cfg!(target_arch = "x86_64") {
+        let sets = with_every_instruction_set(instruction_set);
+        assert_eq!(sets.last(), Some(&"SSE2"));
+        assert_eq!(sets[0], instruction_set());
     }
 }
 

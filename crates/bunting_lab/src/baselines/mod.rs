@@ -4,6 +4,7 @@
 //! arrays, no vector instructions, nothing computed twice.
 
 pub mod dihedral;
+pub mod hpbd;
 pub mod implicit_euler;
 pub mod jakobsen;
 pub mod mass_spring;
@@ -15,6 +16,7 @@ pub mod xpbd;
 use std::fmt;
 
 use glam::Vec3;
+use hpbd::Hpbd;
 use implicit_euler::ImplicitEuler;
 use jakobsen::Jakobsen;
 use mass_spring::{MassSpring, Order};
@@ -42,6 +44,8 @@ pub enum Method {
     PbdDihedral,
     /// Position-based dynamics with bending by distances over one vertex.
     PbdOverOne,
+    /// The same, coarser cloths first.
+    Hpbd,
     /// Extended position-based dynamics.
     Xpbd,
 }
@@ -61,13 +65,14 @@ impl Baseline {
     /// The settings that the tables show, cheapest first within each method.
     #[must_use]
     pub fn catalogue() -> Vec<Self> {
-        let settings: [(Method, &[(usize, usize)]); 7] = [
+        let settings: [(Method, &[(usize, usize)]); 8] = [
             (Method::ExplicitEuler, &[(400, 1)]),
             (Method::SymplecticEuler, &[(100, 1), (200, 1), (400, 1), (800, 1)]),
             (Method::ImplicitEuler, &[(1, 1), (4, 1)]),
             (Method::Jakobsen, &[(1, 5), (1, 20)]),
             (Method::PbdDihedral, &[(1, 10), (1, 40)]),
             (Method::PbdOverOne, &[(1, 10), (1, 40)]),
+            (Method::Hpbd, &[(1, 2), (1, 10), (10, 2)]),
             (Method::Xpbd, &[(1, 10), (10, 1), (20, 1), (80, 1)]),
         ];
         settings
@@ -93,6 +98,7 @@ impl Baseline {
             Method::Jakobsen => Box::new(Jakobsen::new(&sheet, self.passes)),
             Method::PbdDihedral => Box::new(Pbd::new(&sheet, Bending::Dihedral, self.passes)),
             Method::PbdOverOne => Box::new(Pbd::new(&sheet, Bending::OverOne, self.passes)),
+            Method::Hpbd => Box::new(Hpbd::new(&sheet, scene, self.passes)),
             Method::Xpbd => Box::new(Xpbd::new(&sheet, self.passes)),
         };
         Box::new(Stepped { sheet, stepper, substeps: self.substeps })
@@ -138,6 +144,7 @@ impl fmt::Display for Method {
             Self::Jakobsen => "Jakobsen",
             Self::PbdDihedral => "PBD, dihedral",
             Self::PbdOverOne => "PBD, over one",
+            Self::Hpbd => "HPBD",
             Self::Xpbd => "XPBD",
         })
     }

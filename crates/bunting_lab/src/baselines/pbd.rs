@@ -45,9 +45,9 @@ impl Pbd {
     }
 }
 
-impl Stepper for Pbd {
-    fn substep(&mut self, sheet: &mut Sheet, h: f32) {
-        sheet.predict(&mut self.previous, h);
+impl Pbd {
+    /// Sweeps over bending and links, as many times as there are passes.
+    pub(super) fn relax(&self, sheet: &mut Sheet) {
         for _ in 0..self.passes {
             for hinge in &self.hinges {
                 hinge.project(BENDING, &mut sheet.positions, &sheet.inverse_masses);
@@ -59,6 +59,13 @@ impl Stepper for Pbd {
                 project(link, 1.0, &mut sheet.positions, &sheet.inverse_masses);
             }
         }
+    }
+}
+
+impl Stepper for Pbd {
+    fn substep(&mut self, sheet: &mut Sheet, h: f32) {
+        sheet.predict(&mut self.previous, h);
+        self.relax(sheet);
         sheet.take_velocities_from(&self.previous, h);
     }
 }

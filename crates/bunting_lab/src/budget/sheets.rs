@@ -28,6 +28,8 @@ pub struct Sheet {
     pub ms_per_tick: f64,
     /// Shortest time of a tick, ms.
     pub ms_min: f64,
+    /// Shortest time on one core over the shortest on these.
+    pub over_one_core: f64,
 }
 
 /// Every number of flags at every level with every scheme, on one core and on all.
@@ -36,33 +38,33 @@ pub fn measure(effort: &Effort, mut done: impl FnMut()) -> Vec<Sheet> {
     for settings in schemes() {
         for n in LEVELS {
             for cloths in CLOTHS.into_iter().filter(|&cloths| cloths <= effort.most_cloths) {
-                for cores in core_counts() {
-                    sheets.push(sheet(n, cloths, cores, settings, effort));
-                    done();
-                }
+                sheets.extend(on_all_cores(n, cloths, settings, effort));
+                done();
             }
         }
     }
     sheets
 }
 
-/// How many sheets will be measured.
+/// How often `measure` says that it is done with a part.
 #[must_use]
 pub fn count(effort: &Effort) -> usize {
     let sizes = CLOTHS.into_iter().filter(|&cloths| cloths <= effort.most_cloths).count();
-    schemes().len() * LEVELS.len() * sizes * core_counts().len()
+    schemes().len() * LEVELS.len() * sizes
 }
 
 /// One core, and all if there are more.
-#[must_use]
-pub fn core_counts() -> Vec<usize> {
+fn core_counts() -> Vec<usize> {
     let all = thread::available_parallelism().map_or(1, usize::from);
     if all > 1 { vec![1, all] } else { vec![1] }
 }
 
-fn sheet(n: u32, cloths: usize, cores: usize, settings: StepSettings, effort: &Effort) -> Sheet {
-    let time = Fleet::new(Scene::flag(n as usize), cloths, settings).time_ticks(cores, effort);
-    Sheet {
+/// The same flags on one core and on all.
+fn on_all_cores(n: u32, cloths: usize, settings: StepSettings, effort: &Effort) -> Vec<Sheet> {
+    let cores = core_counts();
+    let times = Fleet::new(Scene::flag(n as usize), cloths, settings).time_ticks(&cores, effort);
+    let alone = times[0].min();
+    let sheets = cores.iter().zip(&times).map(|(&cores, time)| Sheet {
         n,
         cloths,
         cores,
@@ -70,5 +72,7 @@ fn sheet(n: u32, cloths: usize, cores: usize, settings: StepSettings, effort: &E
         substeps: settings.substeps,
         ms_per_tick: time.median() * 1e-3,
         ms_min: time.min() * 1e-3,
-    }
+        over_one_core: alone / time.min(),
+    });
+    sheets.collect()
 }

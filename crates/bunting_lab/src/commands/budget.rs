@@ -69,12 +69,22 @@ fn sheet_table(sheets: &[Sheet]) -> Table {
             figure(sheet.ms_per_tick),
             figure(sheet.ms_min),
             figure(sheet.ms_per_tick * 1e3 / sheet.cloths as f64),
+            figure(sheet.over_one_core),
         ]
     };
     Table {
         name: "budget_sheets".into(),
         title: format!("Flags in the wind, {}", instruction_set()),
-        headers: vec!["scheme", "n", "cloths", "cores", "ms/tick", "ms min", "µs/cloth"],
+        headers: vec![
+            "scheme",
+            "n",
+            "cloths",
+            "cores",
+            "ms/tick",
+            "ms min",
+            "µs/cloth",
+            "over one core",
+        ],
         rows: sheets.iter().map(cells).collect(),
     }
 }

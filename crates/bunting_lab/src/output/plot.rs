@@ -19,7 +19,7 @@ const MARGIN: f64 = 1.6;
 const BAR: f64 = 0.7;
 /// Colours of series in their order, told apart by colour-blind people too (Okabe and Ito 2008), and
 /// some more.
-const COLOURS: [RGBColor; 11] = [
+const COLOURS: [RGBColor; 12] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -31,6 +31,7 @@ const COLOURS: [RGBColor; 11] = [
     RGBColor(120, 60, 160),
     RGBColor(0, 0, 0),
     RGBColor(128, 128, 0),
+    RGBColor(160, 30, 60),
 ];
 
 /// How the points of a series are drawn.

@@ -4,7 +4,7 @@ use std::thread;
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, FabricBuilder, FabricMaterial, Grid as RestGrid, LaneCount,
-    LevelTransfer,
+    LevelTransfer, instruction_set, with_every_instruction_set,
 };
 use glam::{DVec3, Vec3};
 
@@ -30,11 +30,7 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     cases.push(HardCase::new("LOD thrash: pop", 17, "pixels from 20 m", pop, 1.0));
     cases.extend(changes(if quick { 3 } else { 20 }));
     cases.push(determinism(9, if quick { 500 } else { 10_000 }));
-    cases.push(HardCase::not_built(
-        "determinism across instruction sets",
-        "numbers that differ",
-        0.0,
-    ));
+    cases.push(instruction_sets(9, if quick { 100 } else { 2_000 }));
     cases.push(bad_input());
     cases.push(bad_neighbour());
     cases
@@ -93,26 +89,49 @@ fn changes(moments: usize) -> impl Iterator<Item = HardCase> {
 
 /// A flag alone, among eight and among sixteen, on this thread and on others, to the bit.
 fn determinism(n: usize, ticks: usize) -> HardCase {
-    let fly = move |lanes: LaneCount| {
-        let mut cloth = Product { settings: SETTINGS, lanes }.start(&Scene::flag(n));
-        (0..ticks).for_each(|_| cloth.tick());
-        cloth.batch.snapshot(0)
-    };
     let runs: Vec<ClothSnapshot> = thread::scope(|scope| {
         let lanes = [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen, LaneCount::One];
-        let threads = lanes.map(|lanes| scope.spawn(move || fly(lanes)));
+        let threads = lanes.map(|lanes| scope.spawn(move || fly(n, lanes, ticks)));
         threads.into_iter().map(|run| run.join().expect("a run")).collect()
     });
-    let differing = |other: &ClothSnapshot| {
-        let pairs = other.positions.iter().zip(&runs[0].positions);
-        pairs
-            .filter(|(one, two)| {
-                one.to_array().map(f32::to_bits) != two.to_array().map(f32::to_bits)
-            })
-            .count()
-    };
-    let worst = runs.iter().map(differing).max().unwrap_or_default();
-    HardCase::new("determinism: lanes and threads", n, "vertices that differ", worst as f64, 0.0)
+    HardCase::new(
+        "determinism: lanes and threads",
+        n,
+        "vertices that differ",
+        differing(&runs),
+        0.0,
+    )
+}
+
+/// A flag with each instruction set that the machine has, to the bit.
+fn instruction_sets(n: usize, ticks: usize) -> HardCase {
+    let mut sets = Vec::new();
+    let runs = with_every_instruction_set(|| {
+        sets.push(instruction_set());
+        fly(n, LaneCount::Eight, ticks)
+    });
+    let name = format!("determinism: {}", sets.join(", "));
+    if sets.len() == 1 {
+        return HardCase::not_built(name, "vertices that differ", 0.0);
+    }
+    HardCase::new(name, n, "vertices that differ", differing(&runs), 0.0)
+}
+
+/// A flag after so many ticks.
+fn fly(n: usize, lanes: LaneCount, ticks: usize) -> ClothSnapshot {
+    let mut cloth = Product { settings: SETTINGS, lanes }.start(&Scene::flag(n));
+    (0..ticks).for_each(|_| cloth.tick());
+    cloth.batch.snapshot(0)
+}
+
+/// Most vertices by which any of the states differs from the first.
+fn differing(states: &[ClothSnapshot]) -> f64 {
+    let bits = |x: &Vec3| x.to_array().map(f32::to_bits);
+    let counts = states.iter().map(|state| {
+        let pairs = state.positions.iter().zip(&states[0].positions);
+        pairs.filter(|(one, other)| bits(one) != bits(other)).count()
+    });
+    counts.max().unwrap_or_default() as f64
 }
 
 /// Everything that must be refused with a typed error.

@@ -14,13 +14,13 @@ mod weather;
 
 use serde::Serialize;
 
-/// Whether the feature that a case is about exists.
+/// Whether a case could be run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
     /// It was run.
     Built,
-    /// The feature is a later issue's.
+    /// The product or this machine lacks what it is about.
     NotBuilt,
 }
 
@@ -64,7 +64,7 @@ impl HardCase {
         }
     }
 
-    /// A case whose feature does not exist yet.
+    /// A case that the product or this machine lacks something for.
     #[must_use]
     pub fn not_built(name: impl Into<String>, figure: &'static str, limit: f64) -> Self {
         Self {

@@ -1,0 +1,65 @@
+//! Which instructions kernels run with: the best that the machine has.
+
+use core::cell::Cell;
+
+use fearless_simd::{Level, Simd};
+
+std::thread_local! {
+    /// What this thread's kernels run with instead of the best.
+    static CHOSEN: Cell<Option<Level>> = const { Cell::new(None) };
+}
+
+/// What a kernel is to run with.
+pub(crate) fn level() -> Level {
+    CHOSEN.get().unwrap_or_else(Level::new)
+}
+
+/// The instruction set that wide kernels run with on this machine, for reports.
+#[must_use]
+pub fn instruction_set() -> &'static str {
+    match level() {
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx512(_) => "AVX-512",
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Avx2(_) => "AVX2",
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Sse4_2(_) => "SSE4.2",
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        Level::Sse2(_) => "SSE2",
+        #[cfg(target_arch = "aarch64")]
+        Level::Neon(_) => "NEON",
+        _ => "scalar",
+    }
+}
+
+/// Does the same on this thread with each instruction set that the machine has, the best first. For
+/// tests of what must not depend on it.
+#[doc(hidden)]
+pub fn with_every_instruction_set<T>(mut work: impl FnMut() -> T) -> Vec<T> {
+    let results = levels().into_iter().map(|level| {
+        CHOSEN.set(Some(level));
+        work()
+    });
+    let results = results.collect();
+    CHOSEN.set(None);
+    results
+}
+
+/// The levels of this machine, the best first.
+fn levels() -> Vec<Level> {
+    let best = Level::new();
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        let all = [
+            best.as_avx512().map(Simd::level),
+            best.as_avx2().map(Simd::level),
+            best.as_sse4_2().map(Simd::level),
+            best.as_sse2().map(Simd::level),
+        ];
+        all.into_iter().flatten().collect()
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    {
+        vec![best]
+    }
+}
