@@ -7,12 +7,23 @@ pub fn symplectic_euler(g: f64, h: f64, n: u32) -> f64 {
     -g * h * h * n * (n + 1.0) / 2.0
 }
 
-/// Height after `n` steps of `h` seconds of BDF2 under gravity `g`, the first step by backward Euler, m.
+/// Height after `n` steps of `h` seconds of the mean of BDF2 and BDF3 under gravity `g`, the first step
+/// by backward Euler and the second by BDF2, m.
 ///
-/// Velocities are exact, vₙ = −g h n. Then xₙ − 4/3 xₙ₋₁ + 1/3 xₙ₋₂ = 2/3 h vₙ with x₀ = 0, x₁ = −g h²
-/// has the solution −g h² (n²/2 + 3/4 (1 − 3⁻ⁿ)).
+/// Velocities are exact, vₙ = −g h n. With xₙ − xₙ₋₁ = −g h² (n − ½ + eₙ) what is left of
+/// Δₙ = ½ Δₙ₋₁ − ⅒ Δₙ₋₂ + ⅗ h vₙ is eₙ = ½ eₙ₋₁ − ⅒ eₙ₋₂, with e₁ = ½ and e₂ = ⅙ (so e₀ = ⅚): a decaying
+/// oscillation of roots √⅒ exp(±iθ), cos θ = ¼ √10. All of it sums to 25/36, and what comes after n to
+/// (⅖ eₙ − ⅒ eₙ₋₁)/⅗.
 #[must_use]
-pub fn bdf2(g: f64, h: f64, n: u32) -> f64 {
-    let steps = f64::from(n);
-    -g * h * h * (0.5 * steps * steps + 0.75 * (1.0 - 3_f64.powf(-steps)))
+pub fn bdf2_opt(g: f64, h: f64, n: u32) -> f64 {
+    let cosine = 0.25 * 10_f64.sqrt();
+    let sine = (1.0 - cosine * cosine).sqrt();
+    let (a, b) = (5.0 / 6.0, (0.5 * 10_f64.sqrt() - 5.0 / 6.0 * cosine) / sine);
+    let e = |n: f64| {
+        let angle = n * sine.atan2(cosine);
+        0.1_f64.powf(0.5 * n) * (a * angle.cos() + b * angle.sin())
+    };
+    let n = f64::from(n);
+    let after = (0.4 * e(n) - 0.1 * e(n - 1.0)) / 0.6;
+    -g * h * h * (0.5 * n * n + 25.0 / 36.0 - after)
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use bunting_solver::StepSettings;
+use bunting_solver::{Scheme, StepSettings};
 use glam::{DVec3, dvec3};
 
 use crate::{
@@ -48,8 +48,12 @@ fn case(mount: &Mount, segments: usize, mode: usize, settings: StepSettings) -> 
     let masses = column_masses(&scene);
     let mode_shape = modes_of_chain(&masses).swap_remove(mode);
     let rate = mode_shape.rate * GRAVITY.sqrt();
-    // BDF2 and backward Euler slow a swing by (ωh)²/3.
-    let phase = (rate * substep(settings)).powi(2) / 3.0;
+    // Backward Euler slows a swing by (ωh)²/3, the mean of BDF2 and BDF3 by half of that.
+    let slowed = match settings.scheme {
+        Scheme::GaussSeidel => 3.0,
+        Scheme::Yarns => 6.0,
+    };
+    let phase = (rate * substep(settings)).powi(2) / slowed;
     Case::new(
         format!("hanging mode {}, N = {segments}, {}, rad/s", mode + 1, label(settings)),
         rate,

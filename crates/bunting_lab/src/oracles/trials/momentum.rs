@@ -37,7 +37,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
         ));
     }
     let schemes: [(Formula, Substeps, [u32; 3], f64); 2] = [
-        (Formula::BDF2, StepSettings::yarns, [3, 6, 12], 2.0),
+        (Formula::BDF2_OPT, StepSettings::yarns, [3, 6, 12], 2.0),
         (Formula::BACKWARD_EULER, StepSettings::gauss_seidel, [10, 20, 40], 1.0),
     ];
     for (formula, scheme, sizes, expected_order) in schemes {
