@@ -23,13 +23,14 @@ impl Formula {
     pub const BDF2_OPT: Self = Self { extrapolation: [0.5, -0.1], weight: 0.6 };
 }
 
-/// A lane boils when its velocities change to and fro from substep to substep, which happens where taut
-/// links vibrate faster than a substep can follow, and feeds on itself: with Δ² the second difference
-/// of velocity, when Σ |Δ²v|² exceeds this many times Σ |v|². White noise has 6; a flag in a strong
-/// wind at two substeps exceeds 1 in one of a thousand.
-const BOILING: f32 = 2.0;
+/// Velocities of which the first or the second difference is this many times larger, all squared and
+/// summed over the particles, are not worth extrapolating. Where taut links vibrate faster than a substep
+/// can follow, that feeds on itself, and the cloth boils: white noise has 2 and 6. Where air stops a
+/// cloth at once, it would turn it round. A flag in a strong wind at two substeps exceeds 1 in one of a
+/// thousand.
+const ROUGH: f32 = 2.0;
 
-/// Speeds that do not matter, in units of what gravity gives in a substep. Cloth at rest does not boil.
+/// Speeds that do not matter, in units of what gravity gives in a substep. Cloth at rest is not rough.
 const SLOW: f32 = 5.0;
 
 /// Standard gravity, m/s².
@@ -63,20 +64,33 @@ impl Past {
         }
     }
 
-    /// Begins anew where the lane boils: backward Euler takes the heat out. Given are the sums of
-    /// |Δ²v|² and of |v|² over `particles` particles.
-    pub fn cool(&mut self, [unrest, motion]: [f32; 2], particles: usize) {
+    /// Begins anew where the motion is rough: backward Euler takes the heat out.
+    pub fn judge(&mut self, unrest: Unrest<f32>, particles: usize) {
         let slow = SLOW * GRAVITY * self.step;
-        // The first two substeps do not know two velocities before.
-        if self.substeps > 2 && unrest > BOILING * (motion + particles as f32 * slow * slow) {
+        let calm = ROUGH * (unrest.motion + particles as f32 * slow * slow);
+        // The first substep knows no velocity before, the second only one.
+        let changes = self.substeps > 1 && unrest.change > calm;
+        let shakes = self.substeps > 2 && unrest.shake > calm;
+        if changes || shakes {
             self.substeps = 0;
         }
     }
 }
 
+/// Sums over the particles of a lane, or of all lanes, (m/s)².
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Unrest<T> {
+    /// Of |v|².
+    pub motion: T,
+    /// Of |Δv|².
+    pub change: T,
+    /// Of |Δ²v|².
+    pub shake: T,
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Formula, Past};
+    use super::{Formula, Past, Unrest};
     use crate::step::Scheme;
 
     const STEP: f32 = 0.01;
@@ -121,19 +135,23 @@ mod tests {
     }
 
     #[test]
-    fn what_boils_begins_anew() {
-        for (unrest, motion, next) in [
-            (6.0, 1.0, Formula::BACKWARD_EULER),
-            (1.0, 1.0, Formula::BDF2_OPT),
-            // Noise of rest.
-            (6e-6, 1e-6, Formula::BDF2_OPT),
+    fn rough_motion_begins_anew() {
+        let boiling = Unrest { motion: 1.0, change: 1.9, shake: 6.0 };
+        let stopped = Unrest { motion: 1.0, change: 4.0, shake: 1.0 };
+        let smooth = Unrest { motion: 1.0, change: 0.5, shake: 1.0 };
+        let noise_of_rest = Unrest { motion: 1e-6, change: 2e-6, shake: 6e-6 };
+        for (substeps, unrest, next) in [
+            (3, boiling, Formula::BACKWARD_EULER),
+            (3, stopped, Formula::BACKWARD_EULER),
+            (3, smooth, Formula::BDF2_OPT),
+            (3, noise_of_rest, Formula::BDF2_OPT),
+            // Not known yet.
+            (2, boiling, Formula::BDF2_OPT),
+            (1, stopped, Formula::BDF2),
         ] {
-            let mut past = after(3);
-            past.cool([unrest, motion], 1);
-            assert_eq!(past.begin(STEP, Scheme::Yarns), next, "{unrest} {motion}");
+            let mut past = after(substeps);
+            past.judge(unrest, 1);
+            assert_eq!(past.begin(STEP, Scheme::Yarns), next, "{substeps} {unrest:?}");
         }
-        let mut past = after(2);
-        past.cool([6.0, 1.0], 1);
-        assert_eq!(past.begin(STEP, Scheme::Yarns), Formula::BDF2_OPT, "nothing to judge by");
     }
 }

@@ -6,6 +6,7 @@
 
 use core::mem::swap;
 
+use crate::formula::Unrest;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
 use crate::parameters::Parameters;
@@ -36,7 +37,8 @@ impl<P: Pack> LaneBatch<P> {
                 ],
             });
         }
-        let mut unrest = [P::splat(0.0); 2];
+        let nothing = P::splat(0.0);
+        let mut unrest = Unrest { motion: nothing, change: nothing, shake: nothing };
         P::run(Extrapolate {
             inverse_areas,
             parameters: &self.parameters,
@@ -49,7 +51,7 @@ impl<P: Pack> LaneBatch<P> {
         });
         swap(&mut self.velocity, &mut self.oldest_velocity);
         swap(&mut self.older_velocity, &mut self.oldest_velocity);
-        self.cool(&unrest);
+        self.judge(&unrest);
         let feels_air = self.parameters.feels_air();
         if feels_air {
             self.gather_air();
@@ -69,12 +71,18 @@ impl<P: Pack> LaneBatch<P> {
         self.clock.done += 1;
     }
 
-    /// Takes lanes that boil down to first order.
-    fn cool(&mut self, unrest: &[P; 2]) {
+    /// Lets lanes whose motion is rough begin anew.
+    fn judge(&mut self, unrest: &Unrest<P>) {
         let particles = self.position.len();
         for (lane, slot) in self.slots.iter_mut().enumerate() {
             if let Some(slot) = slot {
-                slot.past.cool(unrest.map(|sums| sums.lanes()[lane]), particles);
+                let of_lane = |sum: &P| sum.lanes()[lane];
+                let unrest = Unrest {
+                    motion: of_lane(&unrest.motion),
+                    change: of_lane(&unrest.change),
+                    shake: of_lane(&unrest.shake),
+                };
+                slot.past.judge(unrest, particles);
             }
         }
     }
@@ -177,8 +185,7 @@ struct Extrapolate<'a, P: Pack> {
     velocity: &'a [Pack3<P>],
     older_velocity: &'a [Pack3<P>],
     oldest_velocity: &'a mut [Pack3<P>],
-    /// Sums of |Δ²v|² and of |v|² over the particles, (m/s)².
-    unrest: &'a mut [P; 2],
+    unrest: &'a mut Unrest<P>,
 }
 
 impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
@@ -191,7 +198,8 @@ impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
         let frame_rate = L::splat(token, self.frame_rate);
         let zero = V3::splat(token, 0.0);
         let half = L::splat(token, 0.5);
-        let mut unrest = [L::splat(token, 0.0); 2];
+        let nothing = L::splat(token, 0.0);
+        let mut sums = Unrest { motion: nothing, change: nothing, shake: nothing };
         let speeds = self.velocity.iter().zip(self.older_velocity).zip(self.oldest_velocity);
         for ((((velocity, older), oldest), position), &inverse_area) in
             speeds.zip(self.position).zip(self.inverse_areas)
@@ -204,9 +212,10 @@ impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
             let older: V3<L> = V3::load(token, older);
             let change = v - older;
             let change_before = older - V3::load(token, oldest);
-            let second = change - change_before;
-            unrest[0] = unrest[0] + second.dot(second);
-            unrest[1] = unrest[1] + v.dot(v);
+            let shake = change - change_before;
+            sums.motion = sums.motion + v.dot(v);
+            sums.change = sums.change + change.dot(change);
+            sums.shake = sums.shake + shake.dot(shake);
             let v = v.plus_scaled(change, last).plus_scaled(change_before, before);
             // Damping acts on the motion relative to the frame, whose point at x has this velocity.
             let damped = if any_moves {
@@ -218,9 +227,9 @@ impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
             };
             damped.store(oldest);
         }
-        for (sum, into) in unrest.into_iter().zip(self.unrest) {
-            sum.store(into);
-        }
+        sums.motion.store(&mut self.unrest.motion);
+        sums.change.store(&mut self.unrest.change);
+        sums.shake.store(&mut self.unrest.shake);
     }
 }
 
