@@ -18,6 +18,7 @@ use bevy_mesh::Mesh;
 use crate::lod::LodViewer;
 
 pub use debug::{ClothDebugPlugin, ClothGizmos};
+pub(crate) use level_mesh::LevelMesh;
 
 /// What happens in `PostUpdate` to show cloth. To change what is shown, change
 /// [`ClothSurface`](crate::ClothSurface)s before.
