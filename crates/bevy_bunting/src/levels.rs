@@ -48,14 +48,13 @@ struct Level {
 }
 
 impl Level {
+    #[cfg_attr(not(feature = "render"), expect(unused_variables, reason = "drawn only"))]
     fn new(
         fabric: Arc<Fabric>,
         vertices: Vec<u32>,
         builder: &FabricBuilder,
         rigid: &RigidPart,
     ) -> Self {
-        #[cfg(not(feature = "render"))]
-        let _ = builder;
         Self {
             blends: Blend::all(rigid, &vertices, &fabric),
             #[cfg(feature = "render")]

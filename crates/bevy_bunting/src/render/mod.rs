@@ -43,6 +43,8 @@ pub enum ClothRenderSystems {
 /// mesh that cannot be written is reported in a [`ClothFailed`](crate::ClothFailed) event and left
 /// alone until another takes its place.
 ///
+/// What is rigid, of weight 0, is written when a cloth gets its meshes, and not again.
+///
 /// Meshes are made when a cloth is new. After that no frame allocates, but for cloths that change
 /// their level, whose surface is eased with the mesh of the finer level; and only cloths that are visible, to a camera or to a light, and move are written. Their `Aabb`
 /// is kept right whether they are visible or not.
