@@ -2,9 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
+use bunting_examples::print;
 use bunting_scenes::Design;
-
-use crate::print;
 
 /// Which design is printed on a cloth.
 #[derive(Component, Clone, Copy, Debug)]

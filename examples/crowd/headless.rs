@@ -3,18 +3,15 @@
 use bevy::app::{TaskPoolOptions, TaskPoolPlugin};
 use bevy::log::{Level, LogPlugin};
 use bevy::prelude::*;
-use bevy::time::TimeUpdateStrategy;
 use bevy_bunting::prelude::*;
+use bunting_examples::ONE_TICK;
+use bunting_examples::pictures::{self, Album};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::flight;
-use crate::pictures::{self, Album};
 use crate::plaza::{self, Crowd};
 use crate::table::Record;
-
-/// One tick a frame, whatever the wall clock says.
-pub const ONE_TICK: TimeUpdateStrategy = TimeUpdateStrategy::FixedTimesteps(1);
+use crate::{colours, flight, stage};
 
 /// How long to fly.
 #[derive(Clone, Debug, Args)]
@@ -27,10 +24,11 @@ pub struct Run {
 /// Flies as fast as it goes, and prints what was measured.
 pub fn run(crowd: &Crowd, run: &Run, album: &Album) {
     let mut app = App::new();
-    let mut pictures = album.open();
+    let mut pictures = album.open(env!("CARGO_BIN_NAME"));
     let log = LogPlugin { level: Level::WARN, ..default() };
     if pictures.is_some() {
-        app.add_plugins((pictures::windowless().set(log), pictures::plugin));
+        app.add_plugins((pictures::windowless().set(log), pictures::plugin))
+            .add_plugins((stage::plugin, colours::plugin));
     } else {
         // One thread, as the budget has it.
         let threads = TaskPoolPlugin { task_pool_options: TaskPoolOptions::with_num_threads(1) };
@@ -41,7 +39,7 @@ pub fn run(crowd: &Crowd, run: &Run, album: &Album) {
     app.finish();
     app.cleanup();
     if let Some(pictures) = &mut pictures {
-        pictures.set_up(&mut app);
+        pictures.set_up(&mut app, stage::camera());
     }
 
     let rate = app.world().resource::<Time<Fixed>>().timestep().as_secs_f64().recip();

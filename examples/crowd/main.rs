@@ -23,31 +23,13 @@ mod stage;
 mod table;
 mod window;
 
-// Shared with the example `flags`.
-#[path = "../flags/durations.rs"]
-mod durations;
-#[path = "../flags/pictures.rs"]
-mod pictures;
-#[path = "../flags/print.rs"]
-mod print;
-#[path = "../flags/sky.rs"]
-mod sky;
-
-/// What `pictures` dresses the scene with.
-mod material {
-    pub use crate::colours::plugin;
-}
-
 use std::process::ExitCode;
 use std::time::Duration;
 
+use bunting_examples::pictures::Album;
 use clap::Parser;
 
 use crate::headless::Run;
-use crate::pictures::Album;
-
-/// Models and pictures.
-const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets");
 
 /// A crowd of flags.
 #[derive(Debug, Parser)]

@@ -4,8 +4,9 @@ use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::light::CascadeShadowConfigBuilder;
 use bevy::prelude::*;
 
+use bunting_examples::sky;
+
 use crate::plaza::Mast;
-use crate::sky;
 
 /// Light from the whole sky, on both sides of everything, cd/m².
 const SKYLIGHT: f32 = 1_500.0;

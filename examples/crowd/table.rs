@@ -4,10 +4,10 @@ use std::mem;
 
 use bevy::prelude::*;
 use bevy_bunting::{ClothCounts, ClothTimings, LodReport};
+use bunting_examples::durations::Durations;
 use comfy_table::presets::UTF8_BORDERS_ONLY;
 use comfy_table::{CellAlignment, Table};
 
-use crate::durations::Durations;
 use crate::plaza::{Crowd, LEVELS};
 
 /// Rows of the table.

@@ -4,15 +4,15 @@ use std::process::ExitCode;
 
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
+use bunting_examples::{ASSETS, any_display};
 
 use crate::flight::Pilot;
 use crate::plaza::{self, Crowd};
-use crate::{ASSETS, colours, controls, stage};
+use crate::{colours, controls, stage};
 
 /// Shows it until the window is closed.
 pub fn run(crowd: &Crowd) -> ExitCode {
-    // winit panics where no window can be opened.
-    if cfg!(target_os = "linux") && x11rb::connect(None).is_err() {
+    if !any_display() {
         eprintln!("no display can be opened: use --headless");
         return ExitCode::FAILURE;
     }

@@ -3,18 +3,15 @@
 use bevy::app::{TaskPoolOptions, TaskPoolPlugin, TaskPoolThreadAssignmentPolicy};
 use bevy::log::{Level, LogPlugin};
 use bevy::prelude::*;
-use bevy::time::TimeUpdateStrategy;
 use bevy_bunting::prelude::*;
+use bunting_examples::ONE_TICK;
+use bunting_examples::pictures::{self, Album};
 use bunting_scenes::Scene;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::pictures::{self, Album};
 use crate::record::Record;
-use crate::table;
-
-/// One tick a frame, whatever the wall clock says.
-pub const ONE_TICK: TimeUpdateStrategy = TimeUpdateStrategy::FixedTimesteps(1);
+use crate::{material, stage, table};
 
 /// How long to simulate, and on how many threads.
 #[derive(Clone, Debug, Args)]
@@ -35,11 +32,12 @@ fn positive(text: &str) -> Result<f64, String> {
 /// Simulates as fast as it goes, and prints what was measured.
 pub fn run(scene: &Scene, run: &Run, album: &Album) {
     let mut app = App::new();
-    let mut pictures = album.open();
+    let mut pictures = album.open(env!("CARGO_BIN_NAME"));
     let log = LogPlugin { level: Level::WARN, ..default() };
     let threads = TaskPoolPlugin { task_pool_options: compute_threads(run.threads.into()) };
     if pictures.is_some() {
-        app.add_plugins((pictures::windowless().set(threads).set(log), pictures::plugin));
+        app.add_plugins((pictures::windowless().set(threads).set(log), pictures::plugin))
+            .add_plugins((stage::plugin, material::plugin));
     } else {
         app.add_plugins((MinimalPlugins.set(threads), TransformPlugin, log));
     }
@@ -50,7 +48,7 @@ pub fn run(scene: &Scene, run: &Run, album: &Album) {
     app.finish();
     app.cleanup();
     if let Some(pictures) = &mut pictures {
-        pictures.set_up(&mut app);
+        pictures.set_up(&mut app, stage::camera());
     }
 
     let ticks_a_second =

@@ -16,33 +16,22 @@
 //! prints where the time went. Look at the total beside its budget of one millisecond a tick, at
 //! how the levels of detail follow the viewer, and at the strain: cloth hardly stretches.
 
-mod durations;
 mod headless;
-mod keys;
 mod material;
-mod orbit;
-mod pictures;
-mod print;
 mod record;
 mod road;
-mod sky;
 mod stage;
-mod strain;
 mod table;
-mod title;
-mod weather;
 mod window;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use bunting_examples::pictures::Album;
+use bunting_examples::{ASSETS, any_display};
 use clap::Parser;
 
 use crate::headless::Run;
-use crate::pictures::Album;
-
-/// Scenes and models.
-const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets");
 
 /// Exit code for a scene that cannot be read.
 const BAD_SCENE: u8 = 2;
@@ -75,7 +64,7 @@ fn main() -> ExitCode {
     if arguments.headless {
         headless::run(&scene, &arguments.run, &arguments.album);
         ExitCode::SUCCESS
-    } else if window::any_display() {
+    } else if any_display() {
         window::run(&scene)
     } else {
         eprintln!("no display can be opened: use --headless");

@@ -2,9 +2,8 @@
 
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
+use bunting_examples::print;
 use bunting_scenes::Design;
-
-use crate::print;
 
 /// Gives each flag a material that shows its design; the plugin gives it a mesh.
 pub fn plugin(app: &mut App) {

@@ -5,11 +5,10 @@ use std::mem;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bevy_bunting::{ClothCounts, ClothTimings};
+use bunting_examples::durations::Durations;
+use bunting_examples::strain::Strain;
 use bunting_scenes::Scene;
 use bunting_solver::LinkFamily;
-
-use crate::durations::Durations;
-use crate::strain::Strain;
 
 /// Everything that is measured in a run.
 #[derive(Debug)]

@@ -7,9 +7,10 @@ use bevy::gltf::{GltfAssetLabel, GltfMaterialName, GltfMeshName, GltfSceneName};
 use bevy::light::CascadeShadowConfigBuilder;
 use bevy::prelude::*;
 use bevy::transform::components::TransformTreeChanged;
+use bunting_examples::sky;
 use bunting_scenes::{Model, Pole, Track};
 
-use crate::{road, sky};
+use crate::road;
 
 /// Light from the whole sky, on both sides of everything, cd/m².
 const SKYLIGHT: f32 = 1_500.0;

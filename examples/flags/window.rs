@@ -4,15 +4,11 @@ use std::process::ExitCode;
 
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
+use bunting_examples::orbit::{self, Orbit};
+use bunting_examples::{ASSETS, keys, title, weather};
 use bunting_scenes::{LooksAt, Scene, Track};
 
-use crate::orbit::{self, Orbit};
-use crate::{ASSETS, keys, material, stage, title, weather};
-
-/// Whether a window could be opened: winit panics where none can.
-pub fn any_display() -> bool {
-    !cfg!(target_os = "linux") || x11rb::connect(None).is_ok()
-}
+use crate::{material, stage};
 
 /// Shows the scene until the window is closed.
 pub fn run(scene: &Scene) -> ExitCode {
@@ -24,7 +20,7 @@ pub fn run(scene: &Scene) -> ExitCode {
             .set(AssetPlugin { file_path: ASSETS.to_owned(), ..default() }),
         ClothPlugins::default(),
         (stage::plugin, material::plugin, orbit::plugin),
-        (weather::plugin, keys::plugin, title::plugin),
+        (weather::plugin, keys::plugin, title::plugin("Flags")),
     ))
     .add_systems(Startup, raise_camera)
     .add_systems(Update, bunting_scenes::follow_tracks);

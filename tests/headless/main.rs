@@ -7,5 +7,6 @@ mod governor;
 mod levels;
 mod lifecycle;
 mod order;
+mod parts;
 mod rest;
 mod surroundings;

@@ -127,6 +127,9 @@ pub enum AttachedVertices {
     List(Vec<u32>),
     /// All vertices for whose texture coordinate a predicate holds.
     Where(fn(Vec2) -> bool),
+    /// None but those that are rigid in any case: of weight 0, see
+    /// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
+    Rigid,
 }
 
 impl AttachedVertices {
@@ -147,6 +150,7 @@ impl AttachedVertices {
             }
             Self::List(vertices) => vertices.clone(),
             Self::Where(predicate) => all_where(predicate),
+            Self::Rigid => Vec::new(),
         }
     }
 }

@@ -23,7 +23,8 @@ use crate::schedule::{ClothSystems, ClothTick};
 pub struct ClothCollider {
     /// The shape in the entity's frame, m; the entity's scale is ignored.
     pub shape: SharedShape,
-    /// Distance that cloth keeps in addition to its thickness, m.
+    /// Distance that cloth keeps in addition to its thickness, m. It rounds edges: a box with a
+    /// margin is a round box, and cheaper than parry's, whose nearest points are searched for.
     pub margin: f32,
     /// Coulomb friction coefficient; the cloth's own is multiplied by it and the root taken.
     pub friction: f32,

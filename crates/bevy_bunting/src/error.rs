@@ -3,6 +3,8 @@
 use bevy_ecs::prelude::*;
 use bunting_solver::FabricError;
 
+use crate::part::WeightsError;
+
 /// Why a cloth is not simulated as asked. Other cloths go on undisturbed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -14,6 +16,14 @@ pub enum ClothError {
         entity: Entity,
         /// What is wrong with it, and where.
         source: FabricError,
+    },
+    /// The weights of the mesh cannot be used. Simulated again when its `ClothMesh` is replaced.
+    #[error("the weights of cloth {entity} cannot be used: {source}")]
+    Weights {
+        /// The cloth.
+        entity: Entity,
+        /// What is wrong with them.
+        source: WeightsError,
     },
     /// The material cannot be simulated. The cloth keeps the last good one, if it had any.
     #[error("the material of cloth {entity} cannot be simulated: {source}")]

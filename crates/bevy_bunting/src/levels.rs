@@ -14,6 +14,9 @@ use crate::attachment::Attachment;
 use crate::error::ClothError;
 use crate::lod::LodSet;
 use crate::mesh::ClothMesh;
+use crate::part::{Blend, RigidPart, SimulatedPart, check_weights};
+#[cfg(feature = "render")]
+use crate::render::LevelMesh;
 
 /// Vertices from which a cloth is cut beside the main thread, where there are threads: it takes
 /// some ticks then.
@@ -24,6 +27,8 @@ const LARGE: usize = 8192;
 pub(crate) struct ClothLevels {
     levels: Vec<Level>,
     transfers: Vec<LevelTransfer>,
+    /// What is not simulated.
+    rigid: RigidPart,
     /// Number of levels that were asked for.
     asked: usize,
     /// Why there are fewer.
@@ -33,21 +38,29 @@ pub(crate) struct ClothLevels {
 #[derive(Debug)]
 struct Level {
     fabric: Arc<Fabric>,
-    /// The vertices of the finest mesh that it has.
+    /// The vertices of the cloth's mesh that it simulates, ascending.
     vertices: Vec<u32>,
-    /// Three of its own vertices a triangle.
+    /// Particles that are not shown where they are.
+    blends: Vec<Blend>,
+    /// What it is drawn with.
     #[cfg(feature = "render")]
-    indices: Vec<u32>,
+    mesh: LevelMesh,
 }
 
 impl Level {
     #[cfg_attr(not(feature = "render"), expect(unused_variables, reason = "drawn only"))]
-    fn new(fabric: Arc<Fabric>, vertices: Vec<u32>, builder: &FabricBuilder) -> Self {
+    fn new(
+        fabric: Arc<Fabric>,
+        vertices: Vec<u32>,
+        builder: &FabricBuilder,
+        rigid: &RigidPart,
+    ) -> Self {
         Self {
+            blends: Blend::all(rigid, &vertices, &fabric),
+            #[cfg(feature = "render")]
+            mesh: LevelMesh::new(&vertices, builder.indices(), rigid),
             fabric,
             vertices,
-            #[cfg(feature = "render")]
-            indices: builder.indices().to_vec(),
         }
     }
 }
@@ -72,11 +85,29 @@ impl ClothLevels {
         self.asked
     }
 
-    /// The finest mesh's vertices that a level has, and its triangles as indices into them.
+    /// What a level is drawn with.
     #[cfg(feature = "render")]
-    pub fn mesh(&self, level: usize) -> (&[u32], &[u32]) {
+    pub fn mesh(&self, level: usize) -> &LevelMesh {
+        &self.level(level).mesh
+    }
+
+    /// What is not simulated.
+    #[cfg(feature = "render")]
+    pub fn rigid(&self) -> &RigidPart {
+        &self.rigid
+    }
+
+    /// The particle that a vertex of the cloth's mesh is at a level.
+    pub fn particle(&self, level: usize, vertex: u32) -> Option<usize> {
         let level = self.level(level);
-        (&level.vertices, &level.indices)
+        let at = level.vertices.binary_search(&vertex).ok()?;
+        Some(level.fabric.particle_of_vertex()[at] as usize)
+    }
+
+    /// Moves particles of a level from where they are simulated to where they are shown.
+    pub fn blend(&self, level: usize, positions: &mut [Vec3], normals: &mut [Vec3]) {
+        let blends = &self.level(level).blends;
+        blends.iter().for_each(|blend| blend.apply(positions, normals));
     }
 
     fn level(&self, level: usize) -> &Level {
@@ -135,12 +166,14 @@ impl ClothLevels {
     }
 
     /// Cuts as many levels as are asked for, or as can be.
-    fn cut(mut builder: FabricBuilder, asked: usize) -> Result<Self, FabricError> {
-        let fabric = Arc::new(builder.clone().build()?);
+    fn cut(mesh: &ClothMesh, attached: &[u32], asked: usize) -> Result<Self, FabricError> {
+        let part = SimulatedPart::of(mesh, attached)?;
+        let fabric = part.builder.clone().build().map_err(|error| part.renumber(error))?;
+        let SimulatedPart { mut builder, vertices, rigid, .. } = part;
         let held = fabric.has_pins();
-        let all = (0..fabric.particle_of_vertex().len() as u32).collect();
-        let finest = Level::new(fabric, all, &builder);
-        let mut cut = Self { levels: vec![finest], transfers: Vec::new(), asked, lack: None };
+        let finest = Level::new(Arc::new(fabric), vertices, &builder, &rigid);
+        let (levels, transfers) = (vec![finest], Vec::new());
+        let mut cut = Self { levels, transfers, rigid, asked, lack: None };
         while cut.levels.len() < asked {
             let finer = cut.level(usize::MAX);
             let next = builder.coarser().and_then(|coarser| {
@@ -160,7 +193,7 @@ impl ClothLevels {
             let of_finest = |&vertex: &u32| finer.vertices[vertex as usize];
             let vertices = coarser.vertices.iter().map(of_finest).collect();
             builder = coarser.builder;
-            cut.levels.push(Level::new(fabric, vertices, &builder));
+            cut.levels.push(Level::new(fabric, vertices, &builder, &cut.rigid));
             cut.transfers.push(transfer);
         }
         Ok(cut)
@@ -199,7 +232,9 @@ impl FabricLibrary {
     ) -> Result<Option<Arc<ClothLevels>>, ClothError> {
         lods.validate(entity)?;
         let pinned = attachment.map(|attachment| attachment.vertices.choose(&mesh.uvs()));
-        if pinned.as_ref().is_some_and(Vec::is_empty) {
+        check_weights(mesh).map_err(|source| ClothError::Weights { entity, source })?;
+        let held = |pinned: &Vec<u32>| !pinned.is_empty() || mesh.weights().contains(&0.0);
+        if !pinned.as_ref().is_none_or(held) {
             return Err(ClothError::NoVertices { entity, level: 0 });
         }
         let key = key(mesh, pinned.as_deref(), lods);
@@ -207,16 +242,16 @@ impl FabricLibrary {
             return Ok(Some(levels));
         }
         let asked = lods.levels();
-        let builder = || mesh.builder().pin(pinned.iter().flatten().copied());
+        let attached = pinned.unwrap_or_default();
         let cut = match (self.cutting.get_mut(&key), AsyncComputeTaskPool::try_get()) {
             (Some(task), _) => check_ready(task),
             (None, Some(pool)) if mesh.vertex_count() >= LARGE => {
-                let builder = builder();
-                let task = pool.spawn(async move { ClothLevels::cut(builder, asked) });
+                let mesh = mesh.clone();
+                let task = pool.spawn(async move { ClothLevels::cut(&mesh, &attached, asked) });
                 self.cutting.insert(key.clone(), task);
                 None
             }
-            _ => Some(ClothLevels::cut(builder(), asked)),
+            _ => Some(ClothLevels::cut(mesh, &attached, asked)),
         };
         let Some(cut) = cut else { return Ok(None) };
         self.cutting.remove(&key);
@@ -234,11 +269,14 @@ fn key(mesh: &ClothMesh, pinned: Option<&[u32]>, lods: &LodSet) -> Vec<u32> {
         ClothMesh::Grid { columns, rows, width, height } => {
             key.extend([0, *columns, *rows, width.to_bits(), height.to_bits()]);
         }
-        ClothMesh::Triangles { positions, indices, uv } => {
-            key.extend([1, positions.len() as u32, indices.len() as u32, uv.len() as u32]);
+        ClothMesh::Triangles { positions, indices, uv, weights } => {
+            let lengths = [positions.len(), indices.len(), uv.len(), weights.len()];
+            key.push(1);
+            key.extend(lengths.map(|length| length as u32));
             key.extend(positions.iter().flat_map(|position| position.to_array()).map(f32::to_bits));
             key.extend(indices);
             key.extend(uv.iter().flat_map(|uv| uv.to_array()).map(f32::to_bits));
+            key.extend(weights.iter().map(|weight| weight.to_bits()));
         }
     }
     key.extend(pinned.unwrap_or_default());

@@ -103,6 +103,7 @@ mod instance;
 mod levels;
 mod lod;
 mod mesh;
+mod part;
 mod pose;
 mod prepare;
 mod publish;
@@ -138,6 +139,7 @@ pub use lod::{
 };
 pub use mesh::{ClothMaterial, ClothMesh, ClothPaused};
 pub use parry3d;
+pub use part::WeightsError;
 pub use prepare::{ClothTargetLost, PreparePlugin};
 pub use publish::PublishPlugin;
 #[cfg(feature = "render")]
@@ -161,7 +163,7 @@ pub mod prelude {
         ClothEdge, ClothError, ClothFailed, ClothLevelChanged, ClothMaterial, ClothMesh,
         ClothPaused, ClothPlugins, ClothSettings, ClothState, ClothSurface, ClothSystems,
         ClothTargetLost, ClothTick, LodSet, LodViewer, TargetLost, TeleportCloth, TeleportMode,
-        WindField,
+        WeightsError, WindField,
     };
     pub use bunting_solver::{FabricMaterial, StepSettings};
 }

@@ -54,6 +54,9 @@ pub enum ClothMesh {
         indices: Vec<u32>,
         /// Texture coordinates, one a vertex or none: the warp runs along u.
         uv: Vec<Vec2>,
+        /// How far each vertex is simulated, from 0 to 1, one a vertex or none: all of it. See
+        /// [`with_weights`](ClothMesh::with_weights).
+        weights: Vec<f32>,
     },
 }
 
@@ -68,7 +71,44 @@ impl ClothMesh {
     /// one a vertex or none.
     #[must_use]
     pub const fn triangles(positions: Vec<Vec3>, indices: Vec<u32>, uv: Vec<Vec2>) -> Self {
-        Self::Triangles { positions, indices, uv }
+        Self::Triangles { positions, indices, uv, weights: Vec::new() }
+    }
+
+    /// Simulates only what moves: a weight for each vertex, from 0 to 1.
+    ///
+    /// | Weight | |
+    /// | --- | --- |
+    /// | 1 | simulated |
+    /// | between | simulated, and shown between there and its place: that part of the way |
+    /// | 0 | rigid: stays in its place in the cloth's frame, to the last bit |
+    ///
+    /// Triangles of which all vertices have weight 0 are no cloth: they have no particles and cost
+    /// no tick anything. A vertex of weight 0 on other triangles is pinned, so that the simulated
+    /// part hangs on the rigid one.
+    ///
+    /// A grid becomes triangles, which bend less exactly. Weights that cannot be used are reported in
+    /// a [`ClothFailed`](crate::ClothFailed) event.
+    #[must_use]
+    pub fn with_weights(self, weights: Vec<f32>) -> Self {
+        let builder = self.builder();
+        if builder.positions().is_empty() {
+            // A grid that is none, to be reported as such.
+            return self;
+        }
+        Self::Triangles {
+            positions: builder.positions().to_vec(),
+            indices: builder.indices().to_vec(),
+            uv: self.uvs(),
+            weights,
+        }
+    }
+
+    /// Weights of all vertices; none where everything is simulated.
+    pub(crate) fn weights(&self) -> &[f32] {
+        match self {
+            Self::Grid { .. } => &[],
+            Self::Triangles { weights, .. } => weights,
+        }
     }
 
     /// The grid, if it is one.
@@ -111,7 +151,7 @@ impl ClothMesh {
             Self::Grid { columns, rows, width, height } => {
                 FabricBuilder::grid(Grid::new(*columns, *rows, *width, *height))
             }
-            Self::Triangles { positions, indices, uv } => {
+            Self::Triangles { positions, indices, uv, .. } => {
                 FabricBuilder::new(positions.clone(), indices.clone()).uv(uv.clone())
             }
         }

@@ -140,8 +140,10 @@ fn cut_cloths(
                         ClothFailed::report(&mut commands, entity, lack);
                     }
                     instance.recut(levels, &mut batches);
-                    if let Some((fabric, snapshot)) = instance.fabric().zip(instance.waiting()) {
-                        state.begin_anew(instance.level, fabric, &snapshot.positions);
+                    if let Some((levels, snapshot)) =
+                        instance.levels.as_ref().zip(instance.waiting())
+                    {
+                        state.begin_anew(instance.level, levels, &snapshot.positions);
                     }
                 }
             }

@@ -45,6 +45,7 @@ pub(crate) fn publish_states(
             let normals = core::mem::take(&mut surface.normals);
             state.previous_positions = core::mem::replace(&mut state.positions, positions);
             state.previous_normals = core::mem::replace(&mut state.normals, normals);
+            state.blend();
             state.moved = true;
             if !surface.is_finite {
                 diverged.push(entity);
@@ -55,9 +56,10 @@ pub(crate) fn publish_states(
         let (Ok(instance), Ok(mut state)) = (instances.get(entity), cloths.get_mut(entity)) else {
             continue;
         };
-        if let (Some(slot), Some(fabric)) = (instance.slot(), instance.fabric()) {
+        if let (Some(slot), Some(levels)) = (instance.slot(), &instance.levels) {
             batches.lane(slot).rest();
-            state.begin_anew(instance.level, fabric, fabric.rest_positions());
+            let rest = levels.fabric(instance.level).rest_positions();
+            state.begin_anew(instance.level, levels, rest);
             ClothFailed::report(&mut commands, entity, ClothError::Diverged { entity });
         }
     }

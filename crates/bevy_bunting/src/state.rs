@@ -7,6 +7,7 @@ use bevy_math::Vec3;
 use bunting_solver::Fabric;
 
 use crate::activity::ClothActivity;
+use crate::levels::ClothLevels;
 
 /// The simulated surface of a cloth, as of the last tick; read only.
 ///
@@ -16,7 +17,9 @@ use crate::activity::ClothActivity;
 /// each frame the `GlobalTransform` is that of the target as it stands.
 ///
 /// There is one particle for each vertex of a grid; of triangles, vertices that lie on one another
-/// are one particle, see [`Fabric::particle_of_vertex`].
+/// are one particle, and rigid ones none, see [`particle_of_vertex`](Self::particle_of_vertex).
+/// Particles of a weight below 1 are where they are shown, between their places and where they are
+/// simulated, see [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
 ///
 /// [`ClothSystems::Publish`]: crate::ClothSystems::Publish
 #[derive(Component, Clone, Debug, Default)]
@@ -29,7 +32,7 @@ pub struct ClothState {
     pub(crate) activity: ClothActivity,
     /// Whether it has moved in the last tick.
     pub(crate) moved: bool,
-    pub(crate) fabric: Option<Arc<Fabric>>,
+    pub(crate) levels: Option<Arc<ClothLevels>>,
     /// What was shown before a change of level, until it is eased.
     pub(crate) left: Option<Left>,
 }
@@ -85,17 +88,30 @@ impl ClothState {
     /// None until the first tick, and while the cloth cannot be simulated.
     #[must_use]
     pub fn fabric(&self) -> Option<&Arc<Fabric>> {
-        self.fabric.as_ref()
+        self.levels.as_ref().map(|levels| levels.fabric(self.level))
     }
 
-    /// Starts anew on a fabric, where nothing that was shown goes on.
-    pub(crate) fn begin_anew(&mut self, level: usize, fabric: &Arc<Fabric>, positions: &[Vec3]) {
-        self.begin(level, fabric, positions);
+    /// The particle that a vertex of the [`ClothMesh`](crate::ClothMesh) is at the cloth's level.
+    /// None where the level does not have it, and where it is rigid: it then stays where the mesh
+    /// has it.
+    #[must_use]
+    pub fn particle_of_vertex(&self, vertex: u32) -> Option<usize> {
+        self.levels.as_ref()?.particle(self.level, vertex)
+    }
+
+    /// Starts anew at a level, where nothing that was shown goes on.
+    pub(crate) fn begin_anew(
+        &mut self,
+        level: usize,
+        levels: &Arc<ClothLevels>,
+        positions: &[Vec3],
+    ) {
+        self.begin(level, levels, positions);
         self.left = None;
     }
 
-    /// Starts on the fabric of another level.
-    pub(crate) fn begin(&mut self, level: usize, fabric: &Arc<Fabric>, positions: &[Vec3]) {
+    /// Starts on the fabric of another level, from where its particles are simulated.
+    pub(crate) fn begin(&mut self, level: usize, levels: &Arc<ClothLevels>, positions: &[Vec3]) {
         let left = Left {
             level: self.level,
             positions: core::mem::replace(&mut self.positions, positions.to_vec()),
@@ -105,10 +121,18 @@ impl ClothState {
         // Of several changes before a tick ends the first is what was seen.
         self.left.get_or_insert(left);
         self.level = level;
-        self.fabric = Some(Arc::clone(fabric));
+        self.levels = Some(Arc::clone(levels));
+        self.normals = normals(levels.fabric(level), positions);
+        self.blend();
         self.previous_positions.clone_from(&self.positions);
-        self.normals = normals(fabric, positions);
         self.previous_normals.clone_from(&self.normals);
+    }
+
+    /// Takes the surface from where it is simulated to where it is shown.
+    pub(crate) fn blend(&mut self) {
+        if let Some(levels) = &self.levels {
+            levels.blend(self.level, &mut self.positions, &mut self.normals);
+        }
     }
 }
 

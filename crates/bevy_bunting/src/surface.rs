@@ -14,6 +14,9 @@ use crate::state::ClothState;
 /// The surface of a cloth for display, in the cloth's frame: [`ClothState`] between its last two
 /// ticks, by how far the frame is past the last.
 ///
+/// Vertices that are rigid, of weight 0, have no particles: they stay where the
+/// [`ClothMesh`](crate::ClothMesh) has them, see [`ClothState::particle_of_vertex`].
+///
 /// After a change of level it goes on from the surface before, with the vertices of the finer level,
 /// and becomes that of the new level within 0.25 s.
 ///

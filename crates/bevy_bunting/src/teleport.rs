@@ -53,8 +53,9 @@ fn teleport(
     history.jump_next();
     if request.mode == TeleportMode::Reset {
         instance.rest(&mut batches);
-        if let Some(fabric) = instance.fabric() {
-            state.begin_anew(instance.level, fabric, fabric.rest_positions());
+        if let Some(levels) = &instance.levels {
+            let rest = levels.fabric(instance.level).rest_positions();
+            state.begin_anew(instance.level, levels, rest);
         }
     }
 }

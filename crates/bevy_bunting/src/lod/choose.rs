@@ -1,6 +1,5 @@
 //! The choice of levels, and of who sleeps because nobody looks.
 
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use bevy_ecs::prelude::*;
@@ -231,8 +230,9 @@ impl ChosenItem<'_, '_> {
             return;
         }
         self.instance.change_level(to, batches);
-        if let Some((fabric, snapshot)) = self.instance.fabric().zip(self.instance.waiting()) {
-            self.state.begin(to, &Arc::clone(fabric), &snapshot.positions);
+        let instance = &*self.instance;
+        if let Some((levels, snapshot)) = instance.levels.as_ref().zip(instance.waiting()) {
+            self.state.begin(to, levels, &snapshot.positions);
         }
         self.watch.changed = now;
         if let Some(candidate) = &mut self.watch.candidate {

@@ -9,13 +9,18 @@ use super::dress::LevelMeshes;
 use crate::easing::ClothEasing;
 use crate::state::ClothState;
 
-type Bounded = (&'static ClothState, Option<&'static ClothEasing>, &'static mut Aabb);
+type Bounded = (
+    &'static ClothState,
+    Option<&'static ClothEasing>,
+    Option<&'static LevelMeshes>,
+    &'static mut Aabb,
+);
 type IsStale = Or<(Changed<ClothState>, Changed<ClothEasing>, Changed<LevelMeshes>)>;
 
 /// Bounds everything between the last two ticks, for cloths that are visible and for those that
 /// may come into view.
 pub fn bound_cloths(mut cloths: Query<Bounded, (With<NoAutoAabb>, IsStale)>) {
-    for (state, easing, mut bounds) in &mut cloths {
+    for (state, easing, dress, mut bounds) in &mut cloths {
         let [from, to] = match easing {
             Some(easing) if easing.level().is_some() => {
                 [&*easing.previous_positions, &*easing.positions]
@@ -23,7 +28,9 @@ pub fn bound_cloths(mut cloths: Query<Bounded, (With<NoAutoAabb>, IsStale)>) {
             _ => [state.previous_positions(), state.positions()],
         };
         let particles = from.iter().chain(to);
+        let rigid = dress.and_then(|dress| dress.levels.rigid().bounds.as_ref());
         let (low, high) = particles
+            .chain(rigid.into_iter().flatten())
             .map(|&position| Vec3A::from(position))
             .fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), position| {
                 (low.min(position), high.max(position))

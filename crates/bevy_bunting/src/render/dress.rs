@@ -70,11 +70,11 @@ pub fn dress_cloths(
             None => worn.map(|worn| &worn.0),
         };
         let (finest, origin) = match given {
-            None => (meshes.add(level_mesh::finest(shape, levels.fabric(0))), MeshOrigin::Made),
+            None => (meshes.add(level_mesh::finest(shape, levels)), MeshOrigin::Made),
             Some(given) => {
                 // What is not yet loaded is asked for again.
                 let Some(mesh) = meshes.get(given) else { continue };
-                let vertices = levels.fabric(0).particle_of_vertex().len();
+                let vertices = levels.mesh(0).vertex_count();
                 match check(entity, mesh, vertices) {
                     Ok(()) => {
                         owners.retain(|_, owner| cloths.contains(*owner));
@@ -90,6 +90,12 @@ pub fn dress_cloths(
                 }
             }
         };
+        if origin == MeshOrigin::Given
+            && !levels.rigid().vertices.is_empty()
+            && let Some(mut mesh) = meshes.get_mut(&finest)
+        {
+            level_mesh::write_rigid(&mut mesh, levels, 0);
+        }
         let mut all = vec![finest];
         if origin != MeshOrigin::Refused {
             add_coarser(&mut all, levels, &mut meshes);
@@ -114,8 +120,7 @@ pub fn dress_cloths(
 fn add_coarser(all: &mut Vec<Handle<Mesh>>, levels: &ClothLevels, meshes: &mut Assets<Mesh>) {
     for level in 1..levels.count() {
         let finest = meshes.get(&all[0]).expect("it was found or made before");
-        let (vertices, indices) = levels.mesh(level);
-        let coarser = level_mesh::coarser(finest, vertices, indices, levels.fabric(level));
+        let coarser = level_mesh::coarser(finest, levels, level);
         all.push(meshes.add(coarser));
     }
 }

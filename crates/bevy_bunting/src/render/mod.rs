@@ -18,6 +18,7 @@ use bevy_mesh::Mesh;
 use crate::lod::LodViewer;
 
 pub use debug::{ClothDebugPlugin, ClothGizmos};
+pub(crate) use level_mesh::LevelMesh;
 
 /// What happens in `PostUpdate` to show cloth. To change what is shown, change
 /// [`ClothSurface`](crate::ClothSurface)s before.
@@ -41,6 +42,8 @@ pub enum ClothRenderSystems {
 /// every further one gets a copy. Coarser levels take their other attributes from the finest. A
 /// mesh that cannot be written is reported in a [`ClothFailed`](crate::ClothFailed) event and left
 /// alone until another takes its place.
+///
+/// What is rigid, of weight 0, is written when a cloth gets its meshes, and not again.
 ///
 /// Meshes are made when a cloth is new. After that no frame allocates, but for cloths that change
 /// their level, whose surface is eased with the mesh of the finer level; and only cloths that are visible, to a camera or to a light, and move are written. Their `Aabb`

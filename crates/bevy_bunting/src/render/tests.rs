@@ -1,5 +1,7 @@
 //! Meshes without a renderer: assets, cameras and visibility are all that it takes.
 
+mod parts;
+
 use std::time::{Duration, Instant};
 
 use bevy_app::prelude::*;

@@ -7,11 +7,11 @@ use bevy_camera::visibility::ViewVisibility;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
-use bunting_solver::Fabric;
 
 use super::dress::{LevelMeshes, MeshOrigin, check};
 use super::tangents::TangentScratch;
 use crate::error::{ClothError, ClothFailed};
+use crate::levels::ClothLevels;
 use crate::state::ClothState;
 use crate::surface::ClothSurface;
 
@@ -32,9 +32,9 @@ pub fn write_visible(
     mut commands: Commands,
 ) {
     for (entity, state, surface, visibility, mut dress, worn) in &mut cloths {
-        let Some(fabric) = shows(state, surface, visibility, &dress) else { continue };
+        let Some(levels) = shows(state, surface, visibility, &dress) else { continue };
         let Some(mut mesh) = meshes.get_mut(worn.id()) else { continue };
-        match write(entity, mesh.bypass_change_detection(), &fabric, surface, &mut scratch) {
+        match write(entity, mesh.bypass_change_detection(), &levels, surface, &mut scratch) {
             Ok(true) => {
                 mesh.into_inner();
             }
@@ -54,9 +54,9 @@ pub fn write_revealed(
     mut commands: Commands,
 ) {
     for (entity, state, surface, visibility, mut dress, mut worn) in &mut cloths {
-        let Some(fabric) = shows(state, surface, visibility, &dress) else { continue };
+        let Some(levels) = shows(state, surface, visibility, &dress) else { continue };
         let Some(mesh) = meshes.get_mut_untracked(worn.id()) else { continue };
-        match write(entity, mesh, &fabric, surface, &mut scratch) {
+        match write(entity, mesh, &levels, surface, &mut scratch) {
             Ok(true) => {
                 events.write(AssetEvent::Modified { id: worn.id() });
                 worn.set_changed();
@@ -67,17 +67,17 @@ pub fn write_revealed(
     }
 }
 
-/// The fabric of a cloth that is to be seen, with a surface and a mesh that fit.
+/// The levels of a cloth that is to be seen, with a surface and a mesh that fit.
 fn shows(
     state: &ClothState,
     surface: &ClothSurface,
     visibility: &ViewVisibility,
     dress: &LevelMeshes,
-) -> Option<Arc<Fabric>> {
+) -> Option<Arc<ClothLevels>> {
     state.fabric()?;
-    let fabric = dress.levels.fabric(surface.level());
-    let fits = surface.positions.len() == fabric.particle_count();
-    (visibility.get() && fits && dress.origin != MeshOrigin::Refused).then(|| Arc::clone(fabric))
+    let fits = surface.positions.len() == dress.levels.fabric(surface.level()).particle_count();
+    let shows = visibility.get() && fits && dress.origin != MeshOrigin::Refused;
+    shows.then(|| Arc::clone(&dress.levels))
 }
 
 fn refuse(dress: &mut LevelMeshes, error: ClothError, commands: &mut Commands, entity: Entity) {
@@ -89,18 +89,19 @@ fn refuse(dress: &mut LevelMeshes, error: ClothError, commands: &mut Commands, e
 fn write(
     entity: Entity,
     mesh: &mut Mesh,
-    fabric: &Fabric,
+    levels: &ClothLevels,
     surface: &ClothSurface,
     scratch: &mut TangentScratch,
 ) -> Result<bool, ClothError> {
-    let particles = fabric.particle_of_vertex();
-    check(entity, mesh, particles.len())?;
+    let (fabric, parts) = (levels.fabric(surface.level()), levels.mesh(surface.level()));
+    check(entity, mesh, parts.vertex_count())?;
+    let places = || parts.simulated.iter().zip(fabric.particle_of_vertex());
     let mut changed = false;
     for (attribute, source) in
         [(Mesh::ATTRIBUTE_POSITION, &surface.positions), (Mesh::ATTRIBUTE_NORMAL, &surface.normals)]
     {
         if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(attribute) {
-            changed |= spread(source, particles, values);
+            changed |= spread(source, places(), values);
         }
     }
     if changed {
@@ -110,10 +111,14 @@ fn write(
 }
 
 /// Gives each vertex the value of its particle. Whether any has changed.
-fn spread(source: &[Vec3], particles: &[u32], values: &mut [[f32; 3]]) -> bool {
+fn spread<'a>(
+    source: &[Vec3],
+    places: impl Iterator<Item = (&'a u32, &'a u32)>,
+    values: &mut [[f32; 3]],
+) -> bool {
     let mut changed = false;
-    for (value, &particle) in values.iter_mut().zip(particles) {
-        let new = source[particle as usize].to_array();
+    for (&place, &particle) in places {
+        let (value, new) = (&mut values[place as usize], source[particle as usize].to_array());
         changed |= *value != new;
         *value = new;
     }

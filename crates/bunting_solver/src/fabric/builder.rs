@@ -1,6 +1,7 @@
 //! From triangles to a fabric.
 
 mod coarser;
+mod rest_normals;
 mod slivers;
 
 use std::collections::BTreeMap;

@@ -1,5 +1,6 @@
 //! The next coarser level of a mesh.
 
+use glam::Vec3;
 use meshopt::{SimplifyOptions, VertexDataAdapter, typed_to_bytes};
 
 use super::{FabricBuilder, slivers};
@@ -35,6 +36,12 @@ impl FabricBuilder {
             Some(grid) => self.every_second(grid),
             None => self.simplified(),
         }
+    }
+
+    /// Positions of the vertices, m.
+    #[must_use]
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
     }
 
     /// Three vertices a triangle.

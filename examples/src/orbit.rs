@@ -31,8 +31,17 @@ pub struct Orbit {
 
 impl Orbit {
     /// Twenty-four metres from a point, in front of it.
+    #[must_use]
     pub const fn around(centre: Vec3) -> Self {
         Self { centre, distance: 24.0, yaw: 0.0, pitch: 0.0 }
+    }
+
+    /// Around a point, beginning at another.
+    #[must_use]
+    pub fn from(eye: Vec3, centre: Vec3) -> Self {
+        let away = eye - centre;
+        let pitch = away.y.atan2(away.xz().length());
+        Self { centre, distance: away.length(), yaw: away.x.atan2(away.z), pitch }
     }
 }
 

@@ -14,10 +14,17 @@ use crate::weather::Weather;
 /// Time between two titles.
 const PERIOD: Duration = Duration::from_millis(500);
 
+/// What the title begins with.
+#[derive(Resource, Debug)]
+struct Name(&'static str);
+
 /// Keeps the title of the window up to date.
-pub fn plugin(app: &mut App) {
-    app.add_plugins(FrameTimeDiagnosticsPlugin::default())
-        .add_systems(Update, write.run_if(on_real_timer(PERIOD)));
+pub fn plugin(name: &'static str) -> impl Plugin {
+    move |app: &mut App| {
+        app.add_plugins(FrameTimeDiagnosticsPlugin::default())
+            .insert_resource(Name(name))
+            .add_systems(Update, write.run_if(on_real_timer(PERIOD)));
+    }
 }
 
 fn write(
@@ -25,6 +32,7 @@ fn write(
     diagnostics: Res<DiagnosticsStore>,
     counts: Res<ClothCounts>,
     weather: Res<Weather>,
+    name: Res<Name>,
 ) {
     let mean =
         |path: &DiagnosticPath| diagnostics.get(path).and_then(|measured| measured.average());
@@ -32,7 +40,8 @@ fn write(
     let tick = mean(&ClothDiagnosticsPlugin::TICK).unwrap_or_default();
     let levels: Vec<String> = counts.0.iter().map(ToString::to_string).collect();
     window.title = format!(
-        "Flags | {frame:.1} ms a frame, cloth {tick:.3} ms a tick | flags by level: {} | wind × {:.2} | {}",
+        "{} | {frame:.1} ms a frame, cloth {tick:.3} ms a tick | cloths by level: {} | wind × {:.2} | {}",
+        name.0,
         levels.join(" "),
         weather.factor(),
         keys::HELP,

@@ -20,8 +20,7 @@ use bevy_bunting::prelude::*;
 use bunting_scenes::Model;
 use clap::Args;
 
-use crate::headless::ONE_TICK;
-use crate::{ASSETS, material, stage};
+use crate::{ASSETS, ONE_TICK};
 
 /// Frames after which a model or a picture that has not come will never come.
 const PATIENCE: u32 = 10_000;
@@ -47,9 +46,10 @@ pub struct Album {
 }
 
 impl Album {
-    /// Makes ready to take pictures. None if none are wanted, or none can be taken; it then says
-    /// why.
-    pub fn open(&self) -> Option<Pictures> {
+    /// Makes ready to take pictures, whose names begin with `name`. None if none are wanted, or none
+    /// can be taken; it then says why.
+    #[must_use]
+    pub fn open(&self, name: &'static str) -> Option<Pictures> {
         let directory = self.pictures.clone()?;
         if !any_driver() {
             eprintln!("no pictures: there is no Vulkan driver");
@@ -61,7 +61,8 @@ impl Album {
         }
         let mut times = self.at.clone();
         times.sort_by(|a, b| b.total_cmp(a));
-        Some(Pictures { directory, times, size: UVec2::new(self.width, self.width * 9 / 16) })
+        let size = UVec2::new(self.width, self.width * 9 / 16);
+        Some(Pictures { directory, name, times, size })
     }
 }
 
@@ -72,6 +73,7 @@ fn any_driver() -> bool {
 }
 
 /// Bevy's plugins for rendering without a window.
+#[must_use]
 pub fn windowless() -> PluginGroupBuilder {
     let settings = WgpuSettings { backends: Some(Backends::VULKAN), ..default() };
     DefaultPlugins
@@ -91,9 +93,9 @@ pub fn windowless() -> PluginGroupBuilder {
         .disable::<PipelinedRenderingPlugin>()
 }
 
-/// Shows the scene to whoever gets a camera.
+/// Counts the models that are there to be seen.
 pub fn plugin(app: &mut App) {
-    app.add_plugins((stage::plugin, material::plugin)).init_resource::<LoadedModels>();
+    app.init_resource::<LoadedModels>();
     app.add_observer(|_: On<WorldInstanceReady>, mut loaded: ResMut<LoadedModels>| loaded.0 += 1);
 }
 
@@ -105,6 +107,7 @@ struct LoadedModels(usize);
 #[derive(Debug)]
 pub struct Pictures {
     directory: PathBuf,
+    name: &'static str,
     /// The next last, s.
     times: Vec<f64>,
     size: UVec2,
@@ -112,7 +115,11 @@ pub struct Pictures {
 
 impl Pictures {
     /// Gives the viewer a camera and waits until all models are loaded.
-    pub fn set_up(&self, app: &mut App) {
+    ///
+    /// # Panics
+    ///
+    /// Unless the world has one [`LodViewer`].
+    pub fn set_up(&self, app: &mut App, camera: impl Bundle) {
         let world = app.world_mut();
         let target = Image::new_target_texture(
             self.size.x,
@@ -125,7 +132,7 @@ impl Pictures {
             .query_filtered::<Entity, With<LodViewer>>()
             .single(world)
             .expect("a scene has one viewer");
-        let camera = (stage::camera(), Camera { is_active: false, ..default() }, target);
+        let camera = (camera, Camera { is_active: false, ..default() }, target);
         world.entity_mut(viewer).insert(camera);
         let models = world.query::<&Model>().iter(world).count();
         draw_until(app, |world| world.resource::<LoadedModels>().0 == models);
@@ -135,7 +142,7 @@ impl Pictures {
     pub fn take_due(&mut self, app: &mut App, now: f64) {
         while let Some(time) = self.times.pop_if(|time| *time <= now) {
             let target = self.open_shutter(app.world_mut(), true);
-            let file = self.directory.join(format!("{}_{time:05.2}_s.png", env!("CARGO_BIN_NAME")));
+            let file = self.directory.join(format!("{}_{time:05.2}_s.png", self.name));
             let shot = app.world_mut().spawn(Screenshot(target)).observe(save_to_disk(file)).id();
             draw_until(app, |world| world.get_entity(shot).is_err());
             self.open_shutter(app.world_mut(), false);

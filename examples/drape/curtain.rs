@@ -1,0 +1,86 @@
+//! A curtain that hangs from a rail by its rings.
+
+use std::f32::consts::TAU;
+
+use bevy::prelude::*;
+use bevy_bunting::prelude::*;
+
+/// Pleats, each from a ring to the next.
+const PLEATS: u32 = 12;
+
+/// Vertices across a pleat.
+const ACROSS: u32 = 6;
+
+/// Rows of vertices.
+const ROWS: u32 = 36;
+
+/// Distance from ring to ring, m.
+const SPACING: f32 = 0.14;
+
+/// How far pleats are to either side of the rail's plane, m: a pleat takes one and a half times as
+/// much cloth as it is wide.
+const DEPTH: f32 = 0.042;
+
+/// Height of the curtain, m.
+const HEIGHT: f32 = 2.1;
+
+/// The slit begins at this part of the height and goes down to the hem.
+const SLIT: f32 = 0.3;
+
+/// Where the middle of the curtain's top is, m.
+pub const TOP: Vec3 = Vec3::new(-1.05, 2.2, -0.55);
+
+/// Hangs the curtain.
+pub fn hang(commands: &mut Commands) {
+    commands.spawn((
+        Curtain,
+        mesh(),
+        ClothMaterial(FabricMaterial { area_density: 0.16, ..FabricMaterial::COTTON }),
+        Attachment::in_place(AttachedVertices::List(rings().collect())),
+        Transform::from_translation(TOP),
+    ));
+}
+
+/// The cloth of the curtain.
+#[derive(Component, Clone, Copy, Debug)]
+pub struct Curtain;
+
+/// The vertices of the top that are on rings: where pleats are farthest in front.
+fn rings() -> impl Iterator<Item = u32> {
+    (0..=PLEATS).map(|pleat| pleat * ACROSS)
+}
+
+/// Where the rings hold the cloth, in its frame, m.
+pub fn ring_places() -> impl Iterator<Item = Vec3> {
+    rings().map(|vertex| position(vertex, 0))
+}
+
+/// Pleated as by its heading tape.
+fn mesh() -> ClothMesh {
+    let columns = PLEATS * ACROSS + 1;
+    let nodes = || (0..ROWS).flat_map(|row| (0..columns).map(move |column| (column, row)));
+    let positions = nodes().map(|(column, row)| position(column, row)).collect();
+    let uv = nodes().map(|(column, row)| {
+        Vec2::new(column as f32 / (columns - 1) as f32, row as f32 / (ROWS - 1) as f32)
+    });
+    let in_slit =
+        |column: u32, row: u32| column == columns / 2 && row as f32 >= SLIT * (ROWS - 1) as f32;
+    let cells = (1..ROWS).flat_map(|row| (1..columns).map(move |column| (column, row)));
+    let indices =
+        cells.filter(|&(column, row)| !in_slit(column, row)).flat_map(|(right, below)| {
+            let at = |column: u32, row: u32| row * columns + column;
+            let [a, b] = [at(right - 1, below - 1), at(right, below - 1)];
+            let [c, d] = [at(right - 1, below), at(right, below)];
+            if (right + below) % 2 == 0 { [a, c, d, a, d, b] } else { [a, c, b, b, c, d] }
+        });
+    ClothMesh::triangles(positions, indices.collect(), uv.collect())
+}
+
+fn position(column: u32, row: u32) -> Vec3 {
+    let pleats = column as f32 / ACROSS as f32;
+    Vec3::new(
+        SPACING * (pleats - 0.5 * PLEATS as f32),
+        -HEIGHT * row as f32 / (ROWS - 1) as f32,
+        DEPTH * (TAU * pleats).cos(),
+    )
+}
