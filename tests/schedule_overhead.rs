@@ -42,7 +42,7 @@ fn measure(settings: StepSettings) {
     }
 
     let mut app = app();
-    app.world_mut().resource_mut::<ClothSettings>().steps = vec![settings];
+    app.world_mut().resource_mut::<ClothSettings>().steps = vec![settings.into()];
     app.world_mut().spawn(WindField::steady(WIND));
     for _ in 0..FLAGS {
         app.world_mut().spawn((ClothMesh::from(grid), Attachment::in_place(ClothEdge::Left)));

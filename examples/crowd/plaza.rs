@@ -46,9 +46,7 @@ impl Mast {
 
 /// Fills a world.
 pub fn build(app: &mut App, crowd: &Crowd) {
-    app.insert_resource(ClothSettings { steps: steps(), ..default() })
-        .insert_resource(ByLevel(crowd.by_level))
-        .add_systems(FixedUpdate, flight::fly);
+    app.insert_resource(ByLevel(crowd.by_level)).add_systems(FixedUpdate, flight::fly);
     app.world_mut().resource_mut::<ClothBudget>().tick = crowd.budget;
     let mut commands = app.world_mut().commands();
     let wind = WindField::steady(Vec3::new(5.0, 0.0, 2.0)).with_gusts(1.5, 0.4, 3);
@@ -57,11 +55,6 @@ pub fn build(app: &mut App, crowd: &Crowd) {
     for index in 0..crowd.cloths {
         spawn(&mut commands, index, wind.velocity);
     }
-}
-
-/// What is coarse and far away is solved in fewer substeps: its particles are farther apart.
-fn steps() -> Vec<StepSettings> {
-    vec![StepSettings::default(), StepSettings { substeps: 1, ..StepSettings::default() }]
 }
 
 fn spawn(commands: &mut Commands, index: usize, wind: Vec3) {

@@ -67,7 +67,7 @@ fn who_looks_on_changes_no_bit() {
         }
         let coarse = StepSettings { substeps: 1, ..StepSettings::default() };
         app.world_mut().resource_mut::<ClothSettings>().steps =
-            vec![StepSettings::default(), coarse];
+            vec![StepSettings::default().into(), coarse.into()];
         let cloths = furnish(&mut app);
         run(&mut app, 120);
         all_bits(&app, &cloths)

@@ -1,11 +1,12 @@
 //! The sets run in the order that the documentation says.
 
 use bevy_app::prelude::*;
-use bevy_bunting::prelude::{ClothMesh, LodSet, StepSettings};
+use bevy_bunting::prelude::{Attachment, ClothEdge, ClothMesh, LodSet, StepSettings};
 use bevy_bunting::{ClothSettings, ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick};
 use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{IntoScheduleConfigs, ScheduleLabel, SystemSet};
 use bevy_math::Vec3;
+use bevy_time::{Fixed, Time};
 use bunting_tests::{app, run, spawn_flag};
 
 #[derive(Resource, Default)]
@@ -38,7 +39,7 @@ fn sets_run_in_order() {
     let mut app = probed();
     spawn_flag(&mut app, Vec3::ZERO);
     app.world_mut().resource_mut::<ClothSettings>().steps =
-        vec![StepSettings { substeps: 3, ..StepSettings::default() }];
+        vec![StepSettings { substeps: 3, ..StepSettings::default() }.into()];
     run(&mut app, 2);
     let log = core::mem::take(&mut app.world_mut().resource_mut::<Log>().0);
 
@@ -65,8 +66,8 @@ fn sets_run_in_order() {
 fn the_finest_level_sets_the_number_of_substeps() {
     let mut app = probed();
     app.world_mut().resource_mut::<ClothSettings>().steps = vec![
-        StepSettings { substeps: 6, ..StepSettings::default() },
-        StepSettings { substeps: 2, ..StepSettings::default() },
+        StepSettings { substeps: 6, ..StepSettings::default() }.into(),
+        StepSettings { substeps: 2, ..StepSettings::default() }.into(),
     ];
     let coarse = (ClothMesh::grid(5, 5, 1.0, 1.0), LodSet::new([10.0]).pinned_to(1));
     app.world_mut().spawn(coarse);
@@ -75,6 +76,20 @@ fn the_finest_level_sets_the_number_of_substeps() {
     spawn_flag(&mut app, Vec3::ZERO);
     run(&mut app, 1);
     assert_eq!(substeps(&mut app), 6);
+}
+
+#[test]
+fn fine_cloth_and_long_ticks_take_more_substeps() {
+    let mut app = probed();
+    let fine = (ClothMesh::grid(65, 65, 1.0, 1.0), Attachment::in_place(ClothEdge::Top));
+    app.world_mut().spawn(fine);
+    run(&mut app, 2);
+    assert_eq!(substeps(&mut app), 4);
+    app.world_mut().resource_mut::<Time<Fixed>>().set_timestep_hz(30.0);
+    run(&mut app, 8);
+    substeps(&mut app);
+    run(&mut app, 8);
+    assert_eq!(substeps(&mut app), 8);
 }
 
 /// Substeps since last asked.

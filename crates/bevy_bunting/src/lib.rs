@@ -165,7 +165,7 @@ pub mod prelude {
         ClothTargetLost, ClothTick, LodSet, LodViewer, TargetLost, TeleportCloth, TeleportMode,
         WeightsError, WindField,
     };
-    pub use bunting_solver::{FabricMaterial, StepSettings};
+    pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 
 /// All plugins that cloth needs, one a concern.

@@ -2,6 +2,7 @@
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
+use bevy_time::Time;
 
 use crate::activity::ClothActivity;
 use crate::batches::{ClothBatches, Newcomer};
@@ -38,20 +39,26 @@ fn note_end_of_pause(goes_on: On<Remove, ClothPaused>, mut cloths: Query<&mut Cl
     }
 }
 
-/// Seats those that wait, takes out those that are paused or asleep, and everyone when the settings
-/// change.
+/// Seats those that wait, takes out those that are paused or asleep, and everyone when the settings or
+/// the length of a tick change.
 pub(crate) fn seat_cloths(
     mut cloths: Query<(Entity, &mut ClothInstance, Has<ClothPaused>)>,
     settings: Res<ClothSettings>,
+    time: Res<Time>,
+    mut last_tick: Local<f32>,
     mut batches: ResMut<ClothBatches>,
 ) {
+    let tick = time.delta_secs();
+    let all_anew = settings.is_changed() || tick != *last_tick;
+    *last_tick = tick;
+    let gravity = settings.gravity.length();
     for (entity, mut instance, paused) in &mut cloths {
         // Most stay where they are.
-        if !instance.is_changed() && !settings.is_changed() {
+        if !instance.is_changed() && !all_anew {
             continue;
         }
         let still = paused || instance.activity != ClothActivity::Ticking;
-        if instance.slot().is_some() && (still || settings.is_changed()) {
+        if instance.slot().is_some() && (still || all_anew) {
             instance.unseat(&mut batches);
         }
         if still || instance.waiting().is_none() {
@@ -61,7 +68,8 @@ pub(crate) fn seat_cloths(
             (instance.fabric().cloned(), core::mem::take(&mut instance.place))
         {
             let newcomer = Newcomer { entity, snapshot, material: instance.material };
-            batches.add(&fabric, settings.step(instance.level), newcomer);
+            let limits = settings.limits(instance.level);
+            batches.add(&fabric, limits.of_fabric(&fabric, tick, gravity), newcomer);
         }
     }
     batches.settle(settings.lanes, |entity, slot| {

@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
-use bunting_solver::{LaneCount, StepSettings};
+use bunting_solver::{LaneCount, StepLimits};
 
 /// Settings for all cloths. They may be changed at any time.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
@@ -15,9 +15,9 @@ pub struct ClothSettings {
     /// Density of the air, kg/m³; 1.225 at sea level.
     pub air_density: f32,
     /// How finely each level of detail is solved, the finest level first; the last holds for all
-    /// levels after it.
+    /// levels after it. Within these limits substeps are chosen for each fabric.
     #[reflect(ignore)]
-    pub steps: Vec<StepSettings>,
+    pub steps: Vec<StepLimits>,
     /// Width of the batches; none takes what suits the number of cloths and the machine. It does
     /// not change the result by a bit.
     #[reflect(ignore)]
@@ -25,20 +25,22 @@ pub struct ClothSettings {
 }
 
 impl ClothSettings {
-    /// How finely a level is solved.
+    /// How finely a level may be solved.
     #[must_use]
-    pub fn step(&self, level: usize) -> StepSettings {
-        let step = self.steps.get(level).or(self.steps.last()).copied().unwrap_or_default();
-        StepSettings { substeps: step.substeps.max(1), passes: step.passes.max(1), ..step }
+    pub fn limits(&self, level: usize) -> StepLimits {
+        self.steps.get(level).or(self.steps.last()).cloned().unwrap_or_default()
     }
 }
 
 impl Default for ClothSettings {
+    /// Gravity and air at sea level; the finest level takes two substeps or more, the others one or more.
     fn default() -> Self {
+        let finest = StepLimits::default();
+        let coarse = StepLimits { substeps: 1..=*finest.substeps.end(), ..finest.clone() };
         Self {
             gravity: Vec3::new(0.0, -9.81, 0.0),
             air_density: 1.225,
-            steps: vec![StepSettings::default()],
+            steps: vec![finest, coarse],
             lanes: None,
         }
     }

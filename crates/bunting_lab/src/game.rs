@@ -42,7 +42,7 @@ pub fn calm_app(settings: StepSettings) -> App {
     ))
     .insert_resource(Time::<Fixed>::from_duration(tick))
     .insert_resource(TimeUpdateStrategy::ManualDuration(tick))
-    .insert_resource(ClothSettings { steps: vec![settings], ..ClothSettings::default() });
+    .insert_resource(ClothSettings { steps: vec![settings.into()], ..ClothSettings::default() });
     app
 }
 

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use bevy_math::Vec3;
+use bevy_time::Time;
 use bevy_transform::helper::TransformHelper;
 
 use super::budget::{ClothBudget, LodCosts, LodReport};
@@ -66,6 +67,7 @@ pub(crate) fn choose_levels(
     viewers: Query<(Entity, &LodViewer)>,
     transforms: TransformHelper,
     settings: Res<ClothSettings>,
+    time: Res<Time>,
     budget: Res<ClothBudget>,
     timings: Option<Res<ClothTimings>>,
     mut chooser: ResMut<Chooser>,
@@ -125,7 +127,8 @@ pub(crate) fn choose_levels(
             counts.add(cloth.instance.level);
         }
     }
-    chooser.kinds.appraise(&table, &chooser.model, &settings, fixed);
+    let tick = time.delta_secs();
+    chooser.kinds.appraise(&table, &chooser.model, &settings, tick, fixed);
     let choice = chooser.governor.choose(&chooser.kinds.kinds, &chooser.candidates, &limits);
     let kinds = &chooser.kinds;
     let each = chooser.candidates.iter();

@@ -25,6 +25,7 @@ fn reach(fabric: &Fabric) -> f32 {
 pub(crate) struct Kinds {
     levels: Vec<Weak<ClothLevels>>,
     particles: Vec<Vec<usize>>,
+    tautness: Vec<Vec<f32>>,
     radii: Vec<f32>,
     /// Errors and costs, as the governor wants them.
     pub kinds: Vec<Kind>,
@@ -43,6 +44,7 @@ impl Kinds {
             costs: vec![Default::default(); levels.count()],
         };
         let particles = fabrics().map(|fabric| fabric.particle_count()).collect();
+        let tautness = fabrics().map(|fabric| fabric.tautness()).collect();
         // The particle in the middle may be another one at each level.
         let radius = fabrics().map(|fabric| reach(fabric)).fold(0.0, f32::max);
         let free = self.levels.iter().position(|known| known.strong_count() == 0);
@@ -50,11 +52,13 @@ impl Kinds {
         if free.is_none() {
             self.levels.push(Weak::new());
             self.particles.push(Vec::new());
+            self.tautness.push(Vec::new());
             self.radii.push(0.0);
             self.kinds.push(Kind::default());
         }
         self.levels[index] = Arc::downgrade(levels);
         self.particles[index] = particles;
+        self.tautness[index] = tautness;
         self.radii[index] = STRETCH * radius;
         self.kinds[index] = kind;
         index
@@ -77,6 +81,7 @@ impl Kinds {
         table: &CostTable,
         model: &CostModel,
         settings: &ClothSettings,
+        tick: f32,
         fixed: bool,
     ) {
         let machine = if fixed || instruction_set() == "AVX-512" {
@@ -85,9 +90,15 @@ impl Kinds {
             LaneCount::Eight
         };
         let widest = settings.lanes.unwrap_or(machine);
-        for (kind, particles) in self.kinds.iter_mut().zip(&self.particles) {
-            for (level, (costs, &particles)) in kind.costs.iter_mut().zip(particles).enumerate() {
-                *costs = model.costs(table, particles, settings.step(level), widest);
+        let gravity = settings.gravity.length();
+        let known = self.particles.iter().zip(&self.tautness);
+        for (kind, (particles, tautness)) in self.kinds.iter_mut().zip(known) {
+            let fabrics = particles.iter().zip(tautness);
+            for (level, (costs, (&particles, &tautness))) in
+                kind.costs.iter_mut().zip(fabrics).enumerate()
+            {
+                let step = settings.limits(level).of_tautness(tautness, tick, gravity);
+                *costs = model.costs(table, particles, step, widest);
             }
         }
     }

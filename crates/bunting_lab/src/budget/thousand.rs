@@ -104,7 +104,8 @@ pub struct Thousand {
 pub fn measure(quick: bool) -> Thousand {
     let steps = steps();
     let mut app = game::app(steps[0]);
-    app.world_mut().resource_mut::<ClothSettings>().steps = steps.clone();
+    app.world_mut().resource_mut::<ClothSettings>().steps =
+        steps.iter().map(|&step| step.into()).collect();
     let places: Vec<Vec3> = (0..FLAGS).map(place).collect();
     for &at in &places {
         game::spawn_flag(&mut app, LEVELS[0], at, LodSet::automatic(LEVELS.len()));

@@ -205,6 +205,8 @@ impl FabricBuilder {
         let strands = Strands::new(&yarns, &yarn_colours, &links);
         let (hinges, hinge_classes, hinge_colours) = hinges::hinges(&rest, &edges, &pinned);
 
+        let reach = tethers.iter().map(|tether| tether.length).fold(0.0, f32::max);
+        let tautness = reach.sqrt() / links::shortest(&links);
         Ok(Fabric {
             rest,
             uv,
@@ -227,7 +229,8 @@ impl FabricBuilder {
             bend_lines,
             bend_profiles,
             pins,
-            reach: tethers.iter().map(|tether| tether.length).fold(0.0, f32::max),
+            reach,
+            tautness,
             tethers: if self.tethered { tethers } else { Vec::new() },
             grid: self.grid,
         })

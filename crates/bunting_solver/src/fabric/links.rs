@@ -184,3 +184,9 @@ pub(crate) fn finish(
         colour(rest.len(), links, |link: &Link| &link.particles, |link| link.family as u32);
     (links, table, colours)
 }
+
+/// Length of the shortest link of warp and weft, m.
+pub(super) fn shortest(links: &[Link]) -> f32 {
+    let stretching = links.iter().filter(|link| link.family != LinkFamily::Bias);
+    stretching.map(|link| link.rest_length).fold(f32::INFINITY, f32::min)
+}

@@ -63,6 +63,7 @@ pub struct Fabric {
     pins: Vec<Pin>,
     tethers: Vec<Tether>,
     reach: f32,
+    tautness: f32,
     grid: Option<Grid>,
 }
 
@@ -220,6 +221,13 @@ impl Fabric {
     #[must_use]
     pub fn reach(&self) -> f32 {
         self.reach
+    }
+
+    /// √L/l with L the [`reach`](Self::reach) and l the length of the shortest link of warp and weft, m^−½:
+    /// what gravity makes of it is how fast the topmost links of a hanging cloth vibrate.
+    #[must_use]
+    pub fn tautness(&self) -> f32 {
+        self.tautness
     }
 
     pub(crate) fn pins(&self) -> &[Pin] {
