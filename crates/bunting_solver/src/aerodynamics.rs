@@ -45,8 +45,8 @@ impl<P: Pack> Kernel<P> for Air<'_, P> {
         for sum in self.impulse.iter_mut() {
             V3::<L>::splat(token, 0.0).store(sum);
         }
-        for Patch { corners, shares } in self.fabric.patches() {
-            let [a, b, c, d] = corners.map(|corner| corner as usize);
+        for &Patch { corners: [a, b, c, d], shares } in self.fabric.patches() {
+            let (a, b, c, d) = (a as usize, b as usize, c as usize, d as usize);
             let at: V3<L> = V3::load(token, &self.position[a]);
             let ab = V3::load(token, &self.position[b]) - at;
             let ac = V3::load(token, &self.position[c]) - at;

@@ -128,6 +128,13 @@ impl<L: Lane> Motion<L> {
         self.shift.plus_scaled(self.turned(point) - transposed, half)
     }
 
+    /// Rewrites a direction that stays in the world.
+    #[inline(always)]
+    fn turn(&self, token: L::Token, direction: &mut Pack3<L::Pack>) {
+        let d: V3<L> = V3::load(token, direction);
+        self.apply(d, self.turned(d)).store(direction);
+    }
+
     /// The changed vector in lanes whose frame moves; a lane at rest keeps its bits, whatever its
     /// neighbours do.
     #[inline(always)]
@@ -153,10 +160,6 @@ impl<P: Pack> Kernel<P> for CarryState<'_, P> {
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let motion = Motion::<L>::load(token, self.parameters);
         let inverse_step = L::splat(token, self.inverse_step);
-        let turn = |direction: &mut Pack3<P>| {
-            let d: V3<L> = V3::load(token, direction);
-            motion.apply(d, motion.turned(d)).store(direction);
-        };
         let particles = self.position.iter_mut().zip(self.velocity);
         for ((position, velocity), &inverse_area) in particles.zip(self.inverse_areas) {
             let x: V3<L> = V3::load(token, position);
@@ -166,10 +169,12 @@ impl<P: Pack> Kernel<P> for CarryState<'_, P> {
                 continue;
             }
             carried.store(position);
-            turn(velocity);
+            motion.turn(token, velocity);
         }
         for directions in self.history {
-            directions.iter_mut().for_each(turn);
+            for direction in directions {
+                motion.turn(token, direction);
+            }
         }
     }
 }
@@ -236,7 +241,8 @@ impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
 /// γ₁ and γ₂.
 #[inline(always)]
 fn extrapolation<L: Lane>(token: L::Token, parameters: &Parameters<L::Pack>) -> [L; 2] {
-    parameters.extrapolation.each_ref().map(|part| L::load(token, part))
+    let [last, before] = &parameters.extrapolation;
+    [L::load(token, last), L::load(token, before)]
 }
 
 /// Adds what air and gravity do, and moves the particles to where they would go unconstrained.

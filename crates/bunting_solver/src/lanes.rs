@@ -8,6 +8,10 @@
 //! by IEEE 754, and nothing is estimated. A sum with a product is rounded once, in software where
 //! there is no instruction for it. So a lane's bits depend neither on the width, nor on the
 //! instruction set, nor on what rides in the other lanes.
+//!
+//! What a kernel does must be compiled with it, or it is compiled without the machine's instructions: all
+//! functions that it calls are `#[inline(always)]`, and since closures cannot be, it has none, and leaves
+//! `map` and `from_fn` alone.
 
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 

@@ -30,7 +30,8 @@ impl<P: Pack> Kernel<P> for Normals<'_, P> {
             V3::<L>::splat(token, 0.0).store(sum);
         }
         for patch in self.patches {
-            let [a, b, c, d] = patch.corners.map(|corner| corner as usize);
+            let [a, b, c, d] = patch.corners;
+            let (a, b, c, d) = (a as usize, b as usize, c as usize, d as usize);
             let at: V3<L> = V3::load(token, &self.position[a]);
             let ab = V3::load(token, &self.position[b]) - at;
             let ac = V3::load(token, &self.position[c]) - at;

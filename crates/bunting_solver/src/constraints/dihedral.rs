@@ -62,7 +62,12 @@ fn fold<L: Lane>(token: L::Token, [a, b, c, d]: [V3<L>; 4]) -> Fold<L> {
     let none = V3 { x: zero, y: zero, z: zero };
     Fold {
         angle: angle.or_where_not(whole, zero),
-        gradient: [at_a, at_b, at_c, at_d].map(|gradient| gradient.or_where_not(whole, none)),
+        gradient: [
+            at_a.or_where_not(whole, none),
+            at_b.or_where_not(whole, none),
+            at_c.or_where_not(whole, none),
+            at_d.or_where_not(whole, none),
+        ],
     }
 }
 
@@ -110,9 +115,12 @@ impl<P: Pack> Kernel<P> for Dihedral<'_, P> {
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let weights = self.fabric.inverse_areas();
         for (hinge, multiplier) in self.fabric.hinges().iter().zip(self.multiplier) {
-            let particles = hinge.particles.map(|particle| particle as usize);
-            let at = particles.map(|particle| V3::<L>::load(token, &self.position[particle]));
-            let weight = particles.map(|particle| L::splat(token, weights[particle]));
+            let mut at = [V3::<L>::splat(token, 0.0); 4];
+            let mut weight = [L::splat(token, 0.0); 4];
+            for (corner, &particle) in hinge.particles.iter().enumerate() {
+                at[corner] = V3::load(token, &self.position[particle as usize]);
+                weight[corner] = L::splat(token, weights[particle as usize]);
+            }
             let Fold { angle, gradient } = fold(token, at);
             let compliance = L::load(token, &self.compliance[hinge.class as usize]);
             let mut excess = shortest_turn(token, angle - L::splat(token, hinge.rest_angle));
@@ -129,9 +137,9 @@ impl<P: Pack> Kernel<P> for Dihedral<'_, P> {
                 (L::load(token, multiplier) + step).store(multiplier);
             }
             for ((particle, x), (w, g)) in
-                particles.into_iter().zip(at).zip(weight.into_iter().zip(gradient))
+                hinge.particles.into_iter().zip(at).zip(weight.into_iter().zip(gradient))
             {
-                (x + g * (w * step)).store(&mut self.position[particle]);
+                (x + g * (w * step)).store(&mut self.position[particle as usize]);
             }
         }
     }

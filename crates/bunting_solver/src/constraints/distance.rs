@@ -38,7 +38,7 @@ impl<P: Pack> Distance<'_, P> {
         let weights = self.weights;
         let least = L::splat(token, LEAST_LENGTH);
         for (link, target) in self.links.iter().zip(self.target) {
-            let [a, b] = link.particles.map(|particle| particle as usize);
+            let (a, b) = (link.particles[0] as usize, link.particles[1] as usize);
             let (wa, wb) = (L::splat(token, weights[a]), L::splat(token, weights[b]));
             let compliance = L::load(token, &self.compliance[link.class as usize]);
             let from: V3<L> = V3::load(token, &self.position[a]);

@@ -37,7 +37,7 @@ impl<P: Pack> Kernel<P> for Polish<'_, P> {
         let one = L::splat(token, 1.0);
         for link in self.links {
             let target = &mut self.target[link.target as usize];
-            let [a, b] = link.particles.map(|particle| particle as usize);
+            let (a, b) = (link.particles[0] as usize, link.particles[1] as usize);
             let (wa, wb) = (L::splat(token, self.weights[a]), L::splat(token, self.weights[b]));
             let compliance = L::load(token, &self.compliance[link.class as usize]);
             let from: V3<L> = V3::load(token, &self.position[a]);

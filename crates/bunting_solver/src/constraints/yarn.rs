@@ -123,8 +123,6 @@ impl<P: Pack> Yarns<'_, P> {
     ) {
         let position = &mut *self.position;
         let weights = &self.weights[..position.len()];
-        let weight = |particle: u32| -> L { L::splat(token, weights[particle as usize]) };
-        let side = |row: &[u32; ABREAST]| -> [u32; SIDE] { core::array::from_fn(|at| row[at]) };
         let (knots, _) = self.knots.as_chunks_mut::<SIDE>();
         let (targets, _) = self.target[strand.targets.clone()].as_chunks_mut::<SIDE>();
         let zero = L::splat(token, 0.0);
@@ -133,16 +131,19 @@ impl<P: Pack> Yarns<'_, P> {
         let least = L::splat(token, f32::MIN_POSITIVE);
         let none = V3::<L>::splat(token, 0.0);
 
-        let begin = side(&strand.particles[0]);
-        let mut end: [V3<L>; SIDE] =
-            begin.map(|particle| V3::load(token, &position[particle as usize]));
-        let mut end_weight = begin.map(weight);
+        let begin: &[u32; SIDE] = side(&strand.particles[0]);
+        let mut end = [none; SIDE];
+        let mut end_weight = [zero; SIDE];
+        for (at, &particle) in begin.iter().enumerate() {
+            end[at] = V3::load(token, &position[particle as usize]);
+            end_weight[at] = L::splat(token, weights[particle as usize]);
+        }
         let mut last = [none; SIDE];
         let mut inverse = [zero; SIDE];
         let mut change = [zero; SIDE];
         let rows = strand.links.iter().zip(&strand.particles[1..]);
         for (((links, particles), targets), knots) in rows.zip(&*targets).zip(knots.iter_mut()) {
-            for (at, particle) in side(particles).into_iter().enumerate() {
+            for (at, &particle) in side::<SIDE>(particles).iter().enumerate() {
                 let StrandLink { class, rest_length } = links[at];
                 let compliance = L::load(token, &self.compliance[class as usize]);
                 let target = if RECALL {
@@ -151,7 +152,7 @@ impl<P: Pack> Yarns<'_, P> {
                     L::splat(token, rest_length)
                 };
                 let next: V3<L> = V3::load(token, &position[particle as usize]);
-                let next_weight = weight(particle);
+                let next_weight = L::splat(token, weights[particle as usize]);
                 let along = next - end[at];
                 let squared = along.dot(along);
                 let length = squared.sqrt();
@@ -179,7 +180,7 @@ impl<P: Pack> Yarns<'_, P> {
         let mut pull = [none; SIDE];
         let rows = strand.links.iter().zip(&strand.particles[1..]).zip(targets).zip(knots);
         for (((links, particles), targets), knots) in rows.rev() {
-            for (at, particle) in side(particles).into_iter().enumerate() {
+            for (at, &particle) in side::<SIDE>(particles).iter().enumerate() {
                 let change = L::load(token, &knots[at].change).plus_product(share[at], found[at]);
                 (share[at], found[at]) = (L::load(token, &knots[at].share), change);
                 if KEEP {
@@ -194,16 +195,23 @@ impl<P: Pack> Yarns<'_, P> {
                 let tension = V3::load(token, &knots[at].along) * change;
                 let place = &mut position[particle as usize];
                 V3::load(token, place)
-                    .plus_scaled(tension - pull[at], weight(particle))
+                    .plus_scaled(tension - pull[at], L::splat(token, weights[particle as usize]))
                     .store(place);
                 pull[at] = tension;
             }
         }
-        for (at, particle) in begin.into_iter().enumerate() {
+        for (at, &particle) in begin.iter().enumerate() {
             let place = &mut position[particle as usize];
-            V3::load(token, place).minus_scaled(pull[at], weight(particle)).store(place);
+            let weight = L::splat(token, weights[particle as usize]);
+            V3::load(token, place).minus_scaled(pull[at], weight).store(place);
         }
     }
+}
+
+/// The first columns of a row of particles.
+#[inline(always)]
+fn side<const SIDE: usize>(row: &[u32; ABREAST]) -> &[u32; SIDE] {
+    row.first_chunk().expect("no more yarns than lie abreast")
 }
 
 #[cfg(test)]
