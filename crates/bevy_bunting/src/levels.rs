@@ -138,6 +138,10 @@ impl ClothLevels {
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
+        // Most of a crowd has not been seen yet.
+        if snapshot.is_at_rest(self.fabric(from)) {
+            return ClothSnapshot::at_rest(self.fabric(to));
+        }
         for transfer in self.between(from, to) {
             snapshot = transfer.restrict(&snapshot, material, gravity);
         }

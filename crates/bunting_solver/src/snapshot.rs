@@ -44,6 +44,13 @@ impl ClothSnapshot {
         Self::new(fabric.rest_positions().to_vec(), vec![Vec3::ZERO; fabric.particle_count()])
     }
 
+    /// Whether the fabric lies as it was cut, and does not move.
+    #[must_use]
+    pub fn is_at_rest(&self, fabric: &Fabric) -> bool {
+        self.positions == fabric.rest_positions()
+            && self.velocities.iter().all(|&velocity| velocity == Vec3::ZERO)
+    }
+
     /// The same positions and velocities, without a past.
     #[must_use]
     pub fn forgetful(self) -> Self {

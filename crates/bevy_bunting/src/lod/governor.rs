@@ -13,8 +13,9 @@
 //!    change, the coarser first; none becomes finer while there is no room for it.
 
 /// How many times more a step is worth that is taken already, so that two cloths of the same worth
-/// do not take turns.
-const LOYALTY: f32 = 1.3;
+/// do not take turns. What a step is worth goes with the fifth power of the distance: this is a quarter
+/// of it.
+const LOYALTY: f32 = 3.0;
 
 /// Part of the budget that what is not simulated yet may fill, so that costs that waver do not open
 /// and close a batch by turns.
