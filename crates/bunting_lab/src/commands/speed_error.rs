@@ -10,10 +10,11 @@ use crate::{
 
 /// Methods of the figure that compares position-based methods: the beginning of a method's name, the
 /// number of cloths at once, none for any, and what the legend says.
-const FIGURE: [(&str, Option<usize>, &str); 7] = [
+const FIGURE: [(&str, Option<usize>, &str); 8] = [
     ("bunting yarns", Some(16), "this project, of 16 at once"),
     ("bunting yarns", Some(1), "this project, alone"),
     ("bunting Gauss–Seidel", Some(16), "its Gauss–Seidel, of 16"),
+    ("HPBD", None, "HPBD, plain code"),
     ("XPBD", None, "XPBD, plain code"),
     ("PBD", None, "PBD, plain code"),
     ("Jakobsen", None, "Jakobsen, plain code"),
