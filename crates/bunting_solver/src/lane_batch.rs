@@ -15,6 +15,7 @@ use crate::parameters::Parameters;
 use crate::snapshot::{ClothSnapshot, History};
 use crate::step::{Drive, Scheme, StepSettings};
 use crate::vector::{Pack3, lane3, set_lane3, splat3};
+use crate::weave::Weave;
 
 /// Particles whose positions and normals in all lanes fit into the nearest cache, at 384 bytes each.
 const BLOCK: usize = 32;
@@ -93,6 +94,8 @@ pub(crate) struct LaneBatch<P: Pack> {
     /// The line about which the cloth is free to turn.
     pub pole: Option<Pole>,
     pub parameters: Parameters<P>,
+    /// The cloth's own yarns in the lanes of a vector, where it has one to itself.
+    pub weave: Option<Box<Weave>>,
     pub clock: Clock,
 }
 
@@ -143,6 +146,7 @@ impl<P: Pack> LaneBatch<P> {
             weights_step: 0.0,
             pole: Pole::of(&fabric),
             parameters: Parameters::new(&fabric),
+            weave: (P::WIDTH == 1).then(|| Weave::of(&fabric)).flatten().map(Box::new),
             clock: Clock::default(),
             fabric,
         }
@@ -169,8 +173,13 @@ impl<P: Pack> LaneBatch<P> {
 
     /// Overwrites the state of a lane; without a history the next substep is of first order.
     pub fn restore(&mut self, lane: usize, snapshot: &ClothSnapshot) {
-        write(&mut self.position, lane, &snapshot.positions);
-        write(&mut self.predicted, lane, &snapshot.positions);
+        // Without −0, which would or would not become 0 where something of no weight is added.
+        let positions: Vec<Vec3> = snapshot.positions.iter().map(|at| *at + Vec3::ZERO).collect();
+        write(&mut self.position, lane, &positions);
+        write(&mut self.predicted, lane, &positions);
+        if let Some(weave) = &mut self.weave {
+            weave.sheets.clear();
+        }
         write(&mut self.velocity, lane, &snapshot.velocities);
         let history = snapshot.history.as_ref();
         let past = [
@@ -269,6 +278,9 @@ impl<P: Pack> LaneBatch<P> {
             self.weights_step = weights_step;
             self.weights = added_mass::weights(&self.fabric, weights_step);
             self.inertias = inverted(&self.weights);
+            if let Some(weave) = &mut self.weave {
+                weave.sheets.set_weights(&self.weights);
+            }
         }
         self.gather_contacts(tick);
     }
@@ -291,6 +303,9 @@ impl<P: Pack> LaneBatch<P> {
             };
             if slot.applied.replace(applied) != Some(applied) {
                 self.parameters.apply(lane, &self.fabric, &applied);
+                if let Some(weave) = &mut self.weave {
+                    weave.set_parameters(&self.parameters);
+                }
             }
             let reach = self.fabric.reach();
             self.parameters.set_drive(lane, &slot.material, &slot.drive, reach, &self.clock);

@@ -64,6 +64,10 @@ pub(crate) trait Lane:
     fn splat(token: Self::Token, value: f32) -> Self;
     fn load(token: Self::Token, pack: &Self::Pack) -> Self;
     fn store(self, pack: &mut Self::Pack);
+    /// The first floats of a slice, one for each lane.
+    fn load_first(token: Self::Token, values: &[f32]) -> Self;
+    /// Overwrites the first floats of a slice.
+    fn store_first(self, values: &mut [f32]);
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
     fn lt(self, other: Self) -> Self::Mask;
@@ -176,6 +180,16 @@ macro_rules! wide {
             #[inline(always)]
             fn store(self, pack: &mut $pack) {
                 SimdBase::store_array(self, &mut pack.0);
+            }
+
+            #[inline(always)]
+            fn load_first(token: S, values: &[f32]) -> Self {
+                SimdBase::from_slice(token, &values[..$width])
+            }
+
+            #[inline(always)]
+            fn store_first(self, values: &mut [f32]) {
+                SimdBase::store_slice(&self, &mut values[..$width]);
             }
 
             #[inline(always)]
@@ -301,6 +315,16 @@ impl<S: Simd> Lane for Single<S> {
     #[inline(always)]
     fn store(self, pack: &mut Pack1) {
         pack.0[0] = self.value;
+    }
+
+    #[inline(always)]
+    fn load_first(token: S, values: &[f32]) -> Self {
+        Self { value: values[0], token }
+    }
+
+    #[inline(always)]
+    fn store_first(self, values: &mut [f32]) {
+        values[0] = self.value;
     }
 
     #[inline(always)]

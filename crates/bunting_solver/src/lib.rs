@@ -49,11 +49,13 @@ mod lane_batch;
 mod lanes;
 mod normals;
 mod parameters;
+mod places;
 mod snapshot;
 mod step;
 mod transfer;
 mod vector;
 mod velocity;
+mod weave;
 
 pub use batch::{BatchError, ClothBatch, LaneSurface};
 pub use collision::Collider;

@@ -12,8 +12,10 @@ use crate::vector::{Pack3, set_lane3, splat3};
 
 /// Factors L and D of a bend profile's pentadiagonal system, for each inner particle.
 #[derive(Clone, Debug)]
-pub(crate) struct BendFactors<P: Pack> {
+pub(crate) struct BendFactors<P: Pack, C = f32> {
     pub rows: Vec<BendFactor<P>>,
+    /// What a moment moves each particle by: one over its area and the square of the spacing, 1/m⁴.
+    pub weights: Vec<C>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -27,10 +29,14 @@ pub(crate) struct BendFactor<P: Pack> {
 }
 
 impl<P: Pack> BendFactors<P> {
-    fn new(profile: &BendProfile) -> Self {
+    pub fn new(profile: &BendProfile) -> Self {
         let nothing = P::splat(0.0);
         let row = BendFactor { near: nothing, far: nothing, inverse: nothing };
-        Self { rows: vec![row; profile.weights.len()] }
+        let per_spacing = profile.inverse_spacing;
+        Self {
+            rows: vec![row; profile.weights.len()],
+            weights: profile.inverse_areas.iter().map(|&w| w * per_spacing * per_spacing).collect(),
+        }
     }
 
     /// Factorises D W Dᵀ + α̃ for one lane, α̃ being `compliance` over a row's weight. In double

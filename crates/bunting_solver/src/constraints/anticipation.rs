@@ -34,6 +34,7 @@ impl<P: Pack> LaneBatch<P> {
         }
         self.lean(1.0);
         self.solve_bending();
+        self.unravel();
         self.lean(-1.0);
         self.bent.copy_from_slice(&self.position);
     }

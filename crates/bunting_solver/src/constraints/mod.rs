@@ -64,10 +64,12 @@ impl<P: Pack> LaneBatch<P> {
             self.solve_dihedral(false);
         }
         self.solve_yarns(passes);
+        self.unravel();
         self.solve_tethers();
         for _ in 0..passes.div_ceil(2) {
             self.polish();
         }
+        self.unravel();
         self.still_turn();
         self.remember_stretch();
         self.solve_contacts();
