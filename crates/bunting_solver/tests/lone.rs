@@ -69,7 +69,8 @@ fn agrees(fabric: FabricBuilder, material: FabricMaterial, settings: StepSetting
 fn flags_of_any_size() {
     for (columns, rows) in [(33, 33), (17, 9), (5, 23), (8, 16), (2, 9), (9, 2)] {
         for settings in [yarns(1, 4), yarns(2, 2), yarns(3, 1)] {
-            let grid = FabricBuilder::grid(Grid::new(columns, rows, 1.2, 0.8));
+            let (width, height) = (0.05 * (columns - 1) as f32, 0.04 * (rows - 1) as f32);
+            let grid = FabricBuilder::grid(Grid::new(columns, rows, width, height));
             agrees(grid.pin_where(|_, uv| uv.x == 0.0), FabricMaterial::SILK, settings);
         }
     }
@@ -119,4 +120,21 @@ fn what_went_wild_can_be_used_again() {
     batch.drive(0, Drive::default());
     (0..10).for_each(|_| batch.step(TICK, yarns(2, 2)));
     assert!(batch.is_finite(0));
+}
+
+#[test]
+fn another_scheme_from_one_tick_to_the_next() {
+    let grid = FabricBuilder::grid(Grid::new(9, 7, 1.2, 0.8)).pin_where(|_, uv| uv.x == 0.0);
+    let fabric = Arc::new(grid.build().expect("a good fabric"));
+    let [alone, shared] = [LaneCount::One, LaneCount::Eight].map(|lanes| {
+        let mut batch = ClothBatch::new(fabric.clone(), lanes);
+        batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::SILK).expect("a free lane");
+        for tick in 0..90 {
+            batch.drive(0, drive(tick));
+            let sweeps = (30..60).contains(&tick);
+            batch.step(TICK, if sweeps { StepSettings::gauss_seidel(5) } else { yarns(2, 2) });
+        }
+        batch.snapshot(0)
+    });
+    assert_eq!(alone, shared);
 }

@@ -7,13 +7,13 @@
 
 use crate::fabric::BendLine;
 use crate::lane_batch::LaneBatch;
-use crate::lanes::{Kernel, Lane, Pack, Pack8};
+use crate::lanes::{Kernel, Lane, Pack};
 use crate::parameters::BendFactors;
 use crate::places::{Cloths, Constant, Places};
 use crate::vector::{Pack3, V3};
 use crate::weave::Weave;
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Solves every line once.
     pub fn solve_bending(&mut self) {
         if let Some(weave) = self.woven() {
@@ -29,11 +29,11 @@ impl<P: Pack> LaneBatch<P> {
     }
 }
 
-impl Weave {
+impl<P: Pack> Weave<P> {
     fn solve_bending(&mut self) {
         for (facing, lines) in &self.bend_lines {
             self.sheets.turn(*facing);
-            Pack8::run(Bending {
+            P::run(Bending {
                 lines,
                 factors: &self.bend_factors,
                 moments: &mut self.moments,

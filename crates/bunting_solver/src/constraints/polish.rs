@@ -6,12 +6,12 @@
 
 use crate::fabric::PolishLink;
 use crate::lane_batch::LaneBatch;
-use crate::lanes::{Kernel, Lane, Pack, Pack8};
-use crate::places::{Cloths, Places};
+use crate::lanes::{Kernel, Lane, Pack};
+use crate::places::{Cloths, Constant, Places};
 use crate::vector::V3;
 use crate::weave::Weave;
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Sweeps over warp and weft once, yarn by yarn.
     pub fn polish(&mut self) {
         if let Some(weave) = self.woven() {
@@ -27,13 +27,13 @@ impl<P: Pack> LaneBatch<P> {
     }
 }
 
-impl Weave {
+impl<P: Pack> Weave<P> {
     fn polish(&mut self) {
         for colour in 0..self.strands.colours.len() {
             let links = self.strands.colours[colour].polish.clone();
             if !links.is_empty() {
                 self.sheets.turn(self.facings[colour]);
-                Pack8::run(Polish {
+                P::run(Polish {
                     links: &self.strands.polish[links],
                     compliance: &self.compliance,
                     target: &mut self.target,

@@ -12,7 +12,7 @@
 
 use crate::fabric::{ABREAST, LinkFamily, Strand, StrandLink, Strands};
 use crate::lane_batch::LaneBatch;
-use crate::lanes::{Kernel, Lane, Pack, Pack8};
+use crate::lanes::{Kernel, Lane, Pack};
 use crate::places::{Cloths, Constant, Places};
 use crate::vector::{Pack3, V3};
 use crate::weave::Weave;
@@ -37,7 +37,7 @@ impl<P: Pack> Knot<P> {
     }
 }
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Solves warp, weft, bias, then warp and weft again for each pass.
     ///
     /// The bias must not come last: what it moves is large against the strain of warp and weft.
@@ -68,12 +68,12 @@ impl<P: Pack> LaneBatch<P> {
     }
 }
 
-impl Weave {
+impl<P: Pack> Weave<P> {
     fn visit_yarns(&mut self, visit: Visit) {
         for colour in 0..self.strands.colours.len() {
             if visit.is_to(self.strands.colours[colour].family) {
                 self.sheets.turn(self.facings[colour]);
-                Pack8::run(Yarns {
+                P::run(Yarns {
                     strands: &self.strands.strands[self.strands.colours[colour].strands.clone()],
                     visit,
                     compliance: &self.compliance,
@@ -156,8 +156,11 @@ impl<P: Pack, S: Places<P>> Yarns<'_, P, S> {
         let none = V3::<L>::splat(token, 0.0);
 
         let begin = side(&strand.particles[0]);
-        let mut end: [V3<L>; SIDE] = begin.map(|particle| places.position(token, particle));
-        let mut end_weight: [L; SIDE] = begin.map(|particle| places.weight(token, particle));
+        let (mut end, mut end_weight) = ([none; SIDE], [zero; SIDE]);
+        for (at, particle) in begin.into_iter().enumerate() {
+            end[at] = places.position(token, particle);
+            end_weight[at] = places.weight(token, particle);
+        }
         let mut last = [none; SIDE];
         let mut inverse = [zero; SIDE];
         let mut change = [zero; SIDE];

@@ -1,16 +1,17 @@
-//! The lines along which a grid bends, eight in the lanes.
+//! The lines along which a grid bends, side by side in the lanes.
 
-use super::{Facing, SIDE, Sheets, pack};
+use super::{Facing, OfLanes, Sheets};
 use crate::fabric::{BendLine, Fabric};
-use crate::lanes::Pack8;
+use crate::lanes::Pack;
 use crate::parameters::BendFactors;
-
-/// The fabric's profile in each lane.
-type Profiles = Vec<[Option<u32>; SIDE]>;
+use crate::places::Constant;
 
 /// Rows, then columns, and their profiles: each pack of lines has its own.
-pub(super) fn lines(fabric: &Fabric, sheets: &Sheets) -> (Vec<(Facing, Vec<BendLine>)>, Profiles) {
-    let mut profiles = Profiles::new();
+pub(super) fn lines<P: Pack>(
+    fabric: &Fabric,
+    sheets: &Sheets,
+) -> (Vec<(Facing, Vec<BendLine>)>, Vec<OfLanes>) {
+    let mut profiles = Vec::new();
     let is_row = |line: &&BendLine| line.particles[1] == line.particles[0] + 1;
     let lines = [Facing::Turned, Facing::Straight].map(|facing| {
         let alike: Vec<&BendLine> = fabric
@@ -18,12 +19,12 @@ pub(super) fn lines(fabric: &Fabric, sheets: &Sheets) -> (Vec<(Facing, Vec<BendL
             .iter()
             .filter(|line| is_row(line) == (facing == Facing::Turned))
             .collect();
-        let side_by_side = alike.chunks(SIDE).enumerate().map(|(block, lines)| {
-            profiles.push(core::array::from_fn(|lane| lines.get(lane).map(|line| line.profile)));
+        let side_by_side = alike.chunks(P::WIDTH).enumerate().map(|(block, lines)| {
+            profiles.push((0..P::WIDTH).map(|lane| Some(lines.get(lane)?.profile)).collect());
             let places = 0..lines[0].particles.len();
             BendLine {
                 particles: places
-                    .map(|place| sheets.at(facing, place, (block * SIDE) as isize))
+                    .map(|place| sheets.at(facing, place, (block * P::WIDTH) as isize))
                     .collect(),
                 profile: profiles.len() as u32 - 1,
             }
@@ -34,21 +35,18 @@ pub(super) fn lines(fabric: &Fabric, sheets: &Sheets) -> (Vec<(Facing, Vec<BendL
 }
 
 /// Room for the factors of lines with these profiles, and what moments move their particles by.
-pub(super) fn factors(
-    fabric: &Fabric,
-    profiles: &[Option<u32>; SIDE],
-) -> BendFactors<Pack8, Pack8> {
-    let of_lanes = profiles.map(|profile| {
-        profile.map(|profile| BendFactors::<Pack8>::new(&fabric.bend_profiles()[profile as usize]))
-    });
-    let first = of_lanes[0].clone();
-    let Some(BendFactors { rows, weights }) = first else {
-        return BendFactors { rows: Vec::new(), weights: Vec::new() };
-    };
-    let lanes: [Option<&[f32]>; SIDE] =
-        core::array::from_fn(|lane| of_lanes[lane].as_ref().map(|of_lane| &of_lane.weights[..]));
-    let weights = (0..weights.len())
-        .map(|place| pack(&lanes, |weights| weights.map_or(0.0, |weights| weights[place])))
+pub(super) fn factors<P: Pack>(fabric: &Fabric, profiles: &OfLanes) -> BendFactors<P, P> {
+    let of_lanes: Vec<Option<BendFactors<P>>> = profiles
+        .iter()
+        .map(|profile| Some(BendFactors::new(&fabric.bend_profiles()[(*profile)? as usize])))
         .collect();
+    // Lines that lie side by side are of one length.
+    let first = of_lanes.iter().flatten().next();
+    let rows = first.map_or(Vec::new(), |of_lane| of_lane.rows.clone());
+    let places = first.map_or(0, |of_lane| of_lane.weights.len());
+    let weight = |lane: usize, place: usize| {
+        of_lanes[lane].as_ref().map_or(0.0, |of_lane| of_lane.weights[place])
+    };
+    let weights = (0..places).map(|place| P::of(|lane| weight(lane, place))).collect();
     BendFactors { rows, weights }
 }

@@ -2,75 +2,90 @@
 //!
 //! Yarns of one colour share no particle, so it makes no difference which are solved first, or whether
 //! all at once. Those of a grid run along its rows, columns and diagonals. With the particles of a row
-//! side by side in memory, eight columns that lie side by side are eight yarns, one in each lane; so
-//! are eight diagonals, where each row begins one particle further on; and eight rows are, once the
-//! sheet is turned. The kernels are those of cloths in the lanes, and every yarn has its scalar bits.
+//! side by side in memory, columns that lie side by side are yarns, one in each lane; so are diagonals,
+//! where each row begins one particle further on; and rows are, once the sheet is turned. The kernels
+//! are those of cloths in the lanes, and every yarn has its scalar bits.
+//!
+//! What is done to each particle by itself is done to a pack of one row, and triangles are summed by
+//! packs of cells.
 
+mod air;
 mod bend_lines;
+mod cells;
+mod normals;
 mod sheets;
+mod tethers;
 mod threads;
 
 pub(crate) use sheets::{Facing, Sheets};
+pub(crate) use tethers::PackedTethers;
 
 use crate::constraints::Knot;
 use crate::fabric::{ABREAST, BendLine, Fabric, Strands};
 use crate::lane_batch::LaneBatch;
-use crate::lanes::{Pack, Pack8};
+use crate::lanes::Pack;
 use crate::parameters::{BendFactors, Parameters};
+use crate::places::Constant;
 use crate::vector::{Pack3, splat3};
+use cells::Cells;
+use glam::Vec3;
+use sheets::Plane;
 
-/// Lines of a grid side by side.
-const SIDE: usize = Pack8::WIDTH;
+/// What the lanes of a pack are of the fabric: links' classes, lines' profiles.
+type OfLanes = Vec<Option<u32>>;
 
-/// One cloth, cut from a grid, while its constraints are solved.
+/// One cloth, cut from a grid.
 #[derive(Clone, Debug)]
-pub(crate) struct Weave {
+pub(crate) struct Weave<P: Pack> {
     pub sheets: Sheets,
     /// Whether the positions are here, and not in the batch.
     holds_positions: bool,
 
-    pub strands: Strands<Pack8>,
+    pub strands: Strands<P>,
     /// For each colour of the strands, along what its yarns lie.
     pub facings: Vec<Facing>,
-    pub target: Vec<Pack8>,
-    pub knots: Vec<Knot<Pack8>>,
+    pub target: Vec<P>,
+    pub knots: Vec<Knot<P>>,
     /// For each class of the strands' links, the fabric's class in each lane.
-    classes: Vec<[Option<u32>; SIDE]>,
+    classes: Vec<OfLanes>,
     /// For each class, one in lanes that have a link, zero in others.
-    pub present: Vec<Pack8>,
+    pub present: Vec<P>,
     /// For each class, as in the batch's parameters.
-    pub compliance: Vec<Pack8>,
+    pub compliance: Vec<P>,
 
     /// Rows, then columns.
     pub bend_lines: Vec<(Facing, Vec<BendLine>)>,
     /// For each profile of these lines, the fabric's profile in each lane.
-    profiles: Vec<[Option<u32>; SIDE]>,
-    pub bend_factors: Vec<BendFactors<Pack8, Pack8>>,
-    pub moments: Vec<Pack3<Pack8>>,
+    profiles: Vec<OfLanes>,
+    pub bend_factors: Vec<BendFactors<P, P>>,
+    pub moments: Vec<Pack3<P>>,
+
+    pub tethers: PackedTethers<P>,
+    cells: Cells<P>,
+    velocity: Plane,
 }
 
-impl Weave {
+impl<P: Pack> Weave<P> {
     /// None unless the fabric is a grid whose yarns run straight.
     pub fn of(fabric: &Fabric) -> Option<Self> {
         let grid = fabric.grid()?;
-        let sheets = Sheets::new(grid);
+        let sheets = Sheets::new::<P>(grid);
         let (strands, facings, classes) = threads::strands(fabric, &sheets)?;
-        let nothing = Pack8::splat(0.0);
-        let (bend_lines, profiles) = bend_lines::lines(fabric, &sheets);
+        let cells = Cells::of(fabric, sheets.stride())?;
+        let nothing = P::splat(0.0);
+        let (bend_lines, profiles) = bend_lines::lines::<P>(fabric, &sheets);
+        let present = |of_lanes: &OfLanes| P::of(|lane| f32::from(of_lanes[lane].is_some()));
         let mut weave = Self {
             holds_positions: false,
             target: vec![nothing; strands.target_count()],
             knots: vec![Knot::new(); ABREAST * strands.longest()],
-            present: classes
-                .iter()
-                .map(|of_lanes| pack(of_lanes, |class| f32::from(class.is_some())))
-                .collect(),
+            present: classes.iter().map(present).collect(),
             compliance: vec![nothing; classes.len()],
-            bend_factors: profiles
-                .iter()
-                .map(|of_lanes| bend_lines::factors(fabric, of_lanes))
-                .collect(),
-            moments: vec![splat3(glam::Vec3::ZERO); grid.columns.max(grid.rows) as usize],
+            bend_factors: profiles.iter().map(|of| bend_lines::factors(fabric, of)).collect(),
+            moments: vec![splat3(Vec3::ZERO); grid.columns.max(grid.rows) as usize],
+            tethers: PackedTethers::of(fabric),
+            velocity: sheets.plane(),
+            cells,
             sheets,
             strands,
             facings,
@@ -82,30 +97,38 @@ impl Weave {
         Some(weave)
     }
 
-    /// Takes over what the scalar solver would read from the only lane's parameters.
-    pub fn set_parameters<P: Pack>(&mut self, parameters: &Parameters<P>) {
+    /// Begins with a cloth's positions, of which the pins' stay.
+    pub fn begin(&mut self, positions: &[Vec3]) {
+        self.sheets.clear();
+        self.tethers.set_pins(positions);
+    }
+
+    /// Takes over what is constant over many substeps.
+    pub fn set_parameters(&mut self, parameters: &Parameters<P>) {
         let only = |pack: &P| pack.lanes()[0];
         for (compliance, of_lanes) in self.compliance.iter_mut().zip(&self.classes) {
-            *compliance = pack(of_lanes, |class| {
-                class.map_or(0.0, |class| only(&parameters.link_compliance[class as usize]))
+            *compliance = P::of(|lane| {
+                of_lanes[lane]
+                    .map_or(0.0, |class| only(&parameters.link_compliance[class as usize]))
             });
         }
         for (factors, of_lanes) in self.bend_factors.iter_mut().zip(&self.profiles) {
             for (row, factor) in factors.rows.iter_mut().enumerate() {
-                let of = |profile: Option<u32>| {
-                    profile.map(|profile| &parameters.bend_factors[profile as usize].rows[row])
+                let of = |lane: usize| {
+                    of_lanes[lane]
+                        .map(|profile| &parameters.bend_factors[profile as usize].rows[row])
                 };
-                factor.near = pack(of_lanes, |at| of(at).map_or(0.0, |row| only(&row.near)));
-                factor.far = pack(of_lanes, |at| of(at).map_or(0.0, |row| only(&row.far)));
-                factor.inverse = pack(of_lanes, |at| of(at).map_or(0.0, |row| only(&row.inverse)));
+                factor.near = P::of(|lane| of(lane).map_or(0.0, |row| only(&row.near)));
+                factor.far = P::of(|lane| of(lane).map_or(0.0, |row| only(&row.far)));
+                factor.inverse = P::of(|lane| of(lane).map_or(0.0, |row| only(&row.inverse)));
             }
         }
     }
 }
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// The cloth in its weave, positions and all, if it is woven.
-    pub fn woven(&mut self) -> Option<&mut Weave> {
+    pub fn woven(&mut self) -> Option<&mut Weave<P>> {
         let weave = self.weave.as_deref_mut()?;
         if !weave.holds_positions {
             weave.sheets.read(&self.position);
@@ -125,56 +148,28 @@ impl<P: Pack> LaneBatch<P> {
     }
 }
 
-/// A number for each lane.
-fn pack<T: Copy>(lanes: &[T; SIDE], number: impl Fn(T) -> f32) -> Pack8 {
-    let mut pack = Pack8::splat(0.0);
-    for (value, &lane) in pack.lanes_mut().iter_mut().zip(lanes) {
-        *value = number(lane);
-    }
-    pack
-}
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
+    use super::Weave;
+    use crate::fabric::{Fabric, FabricBuilder, Grid};
+    use crate::lanes::Pack8;
 
-    use super::*;
-    use crate::fabric::{FabricBuilder, FabricMaterial, Grid};
-    use crate::lanes::Pack1;
-    use crate::snapshot::ClothSnapshot;
-    use crate::step::{Drive, StepSettings};
-    use crate::vector::lane3;
-
-    fn bits(batch: &LaneBatch<Pack1>) -> Vec<[u32; 3]> {
-        batch.position.iter().map(|at| lane3(at, 0).to_array().map(f32::to_bits)).collect()
+    fn flag(columns: u32, rows: u32, cell_height: f32) -> Fabric {
+        let (width, height) = ((columns - 1) as f32, (rows - 1) as f32 * cell_height);
+        let grid = FabricBuilder::grid(Grid::new(columns, rows, width, height));
+        grid.pin_where(|_, uv| uv.x == 0.0).build().expect("a good fabric")
     }
 
     #[test]
-    fn each_solve_has_the_scalar_bits() {
-        let grid = FabricBuilder::grid(Grid::new(13, 11, 1.0, 1.0));
-        let fabric = grid.pin([57, 58, 59, 70, 71, 72, 84, 86]).build().expect("a good fabric");
-        let fabric = Arc::new(fabric);
-        let mut woven = LaneBatch::<Pack1>::new(Arc::clone(&fabric));
-        woven.insert(0, &ClothSnapshot::at_rest(&fabric), FabricMaterial::DENIM);
-        let drive = Drive { wind: glam::Vec3::new(1.0, 2.0, 5.0), ..Drive::default() };
-        woven.slots[0].as_mut().expect("a cloth").drive = drive;
-        let mut scalar = woven.clone();
-        scalar.weave = None;
-        for _ in 0..20 {
-            for batch in [&mut woven, &mut scalar] {
-                batch.begin_tick(1.0 / 120.0, StepSettings::yarns(1));
-                batch.integrate();
-            }
-            let solves: [fn(&mut LaneBatch<Pack1>); 3] =
-                [LaneBatch::solve_bending, |batch| batch.solve_yarns(2), LaneBatch::polish];
-            for (index, solve) in solves.into_iter().enumerate() {
-                for batch in [&mut woven, &mut scalar] {
-                    solve(batch);
-                    batch.unravel();
-                }
-                assert_eq!(bits(&woven), bits(&scalar), "{index}");
-            }
-            woven.update_velocities();
-            scalar.update_velocities();
+    fn grids_are_woven() {
+        for (columns, rows) in [(33, 33), (17, 9), (5, 23), (8, 16), (2, 9), (9, 2), (2, 2)] {
+            let weave = Weave::<Pack8>::of(&flag(columns, rows, 0.8));
+            assert!(weave.is_some(), "{columns} × {rows}");
         }
+    }
+
+    #[test]
+    fn what_zigzags_is_not() {
+        assert!(Weave::<Pack8>::of(&flag(5, 17, 0.1)).is_none());
     }
 }

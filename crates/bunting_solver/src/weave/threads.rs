@@ -1,13 +1,11 @@
-//! The yarns of a grid, eight in the lanes.
+//! The yarns of a grid, side by side in the lanes.
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::{Facing, SIDE, Sheets, pack};
+use super::{Facing, OfLanes, Sheets};
 use crate::fabric::{Fabric, Grid, Link, LinkFamily, StrandLink, Strands, Thread, Yarn};
-use crate::lanes::Pack8;
-
-/// The fabric's class in each lane.
-type Classes = Vec<[Option<u32>; SIDE]>;
+use crate::lanes::Pack;
+use crate::places::Constant;
 
 /// The links of yarns of one course, each by the line of the sheet on which it begins and by its yarn,
 /// and where on its yarn it is.
@@ -56,13 +54,13 @@ impl Course {
 
 /// All yarns, along what those of each colour lie, and the classes of their links. None where they do
 /// not run straight.
-pub(super) fn strands(
+pub(super) fn strands<P: Pack>(
     fabric: &Fabric,
     sheets: &Sheets,
-) -> Option<(Strands<Pack8>, Vec<Facing>, Classes)> {
+) -> Option<(Strands<P>, Vec<Facing>, Vec<OfLanes>)> {
     let grid = fabric.grid()?;
-    let mut classes = Classes::new();
-    let mut colours: Vec<(LinkFamily, Vec<Thread<Pack8>>)> = Vec::new();
+    let mut classes = Vec::new();
+    let mut colours: Vec<(LinkFamily, Vec<Thread<P>>)> = Vec::new();
     let mut facings = Vec::new();
     for range in fabric.yarn_colours().ranges() {
         let yarns = &fabric.yarns()[range.clone()];
@@ -80,8 +78,8 @@ pub(super) fn strands(
         for (course, links) in courses {
             let first = links.keys().map(|&(_, yarn)| yarn).min()?;
             let last = links.keys().map(|&(_, yarn)| yarn).max()?;
-            let blocks = (first..=last).step_by(SIDE);
-            let mut threads: Vec<Thread<Pack8>> = blocks
+            let blocks = (first..=last).step_by(P::WIDTH);
+            let mut threads: Vec<Thread<P>> = blocks
                 .filter_map(|first| thread(course, first, &links, sheets, &mut classes))
                 .collect();
             threads.sort_by_key(|thread| core::cmp::Reverse(thread.links.len()));
@@ -92,22 +90,22 @@ pub(super) fn strands(
     Some((Strands::of(colours.into_iter()), facings, classes))
 }
 
-/// Eight yarns from the first on.
-fn thread(
+/// Yarns side by side, from the first on.
+fn thread<P: Pack>(
     course: Course,
     first: isize,
     links: &Links,
     sheets: &Sheets,
-    classes: &mut Classes,
-) -> Option<Thread<Pack8>> {
-    let here = first..first + SIDE as isize;
+    classes: &mut Vec<OfLanes>,
+) -> Option<Thread<P>> {
+    let here = first..first + P::WIDTH as isize;
     let lines = || links.keys().filter(|(_, yarn)| here.contains(yarn)).map(|&(line, _)| line);
     let (begin, end) = (lines().min()?, lines().max()? + 1);
     let at = |line| sheets.at(course.facing(), line, first + course.skew() * line as isize);
-    let lanes = |line| -> [Option<(&Link, usize)>; SIDE] {
-        core::array::from_fn(|lane| links.get(&(line, first + lane as isize)).copied())
+    let lanes = |line| -> Vec<Option<(&Link, usize)>> {
+        (first..).take(P::WIDTH).map(|yarn| links.get(&(line, yarn)).copied()).collect()
     };
-    let mut class = |of_lanes: [Option<u32>; SIDE]| {
+    let mut class = |of_lanes: OfLanes| {
         let known = classes.iter().position(|known| *known == of_lanes);
         known.unwrap_or_else(|| {
             classes.push(of_lanes);
@@ -118,18 +116,17 @@ fn thread(
     let mut polish = [Vec::new(), Vec::new()];
     for line in begin..end {
         let lanes = lanes(line);
+        let of_link = |(link, _): (&Link, usize)| link.class;
         strand_links.push(StrandLink {
-            class: class(lanes.map(|link| link.map(|(link, _)| link.class))),
-            rest_length: pack(&lanes, |link| link.map_or(0.0, |(link, _)| link.rest_length)),
+            class: class(lanes.iter().map(|link| link.map(of_link)).collect()),
+            rest_length: P::of(|lane| lanes[lane].map_or(0.0, |(link, _)| link.rest_length)),
         });
         // A yarn that begins at a pin further on counts its links from there.
         for (parity, polish) in polish.iter_mut().enumerate() {
-            let alike = lanes.map(|link| link.filter(|(_, index)| index % 2 == parity));
-            if alike.iter().any(Option::is_some) {
-                polish.push((
-                    line - begin,
-                    class(alike.map(|link| link.map(|(link, _)| link.class))),
-                ));
+            let alike = lanes.iter().map(|link| link.filter(|(_, index)| index % 2 == parity));
+            let of_lanes: OfLanes = alike.map(|link| link.map(of_link)).collect();
+            if of_lanes.iter().any(Option::is_some) {
+                polish.push((line - begin, class(of_lanes)));
             }
         }
     }
