@@ -46,7 +46,8 @@ pub(crate) struct Applied {
     pub formula: Formula,
 }
 
-/// Up to `P::WIDTH` cloths of one fabric.
+/// Up to `P::WIDTH` cloths of one fabric, one in each lane. Or one whose particles lie side by side in the
+/// lanes: then what belongs to the fabric is each lane's own, and `C` is `P`.
 #[derive(Clone, Debug)]
 pub(crate) struct LaneBatch<P: Pack, C = f32> {
     pub fabric: Arc<Fabric>,
@@ -264,7 +265,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             }
         }
         if C::SIDE > 1 {
-            for (cloth, surface) in into.iter_mut().enumerate() {
+            for (cloth, surface) in
+                into.iter_mut().enumerate().filter(|(cloth, _)| self.slots[*cloth].is_some())
+            {
                 self.copy_positions(cloth, &mut surface.positions);
                 self.copy_normals(cloth, &mut surface.normals);
             }

@@ -5,7 +5,7 @@ use crate::instruction_set::instruction_set;
 /// How many cloths ride side by side in a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum LaneCount {
-    /// One cloth: scalar code.
+    /// One cloth. Cut from a grid it fills lanes with its own yarns; other meshes are scalar code.
     One,
     /// Eight cloths: full speed with AVX2.
     #[default]

@@ -16,14 +16,14 @@ use crate::weave::{Facing, PackedTethers, Sheets, Weave};
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Projects every tether once.
     pub fn solve_tethers(&mut self) {
-        self.woven();
-        if let Some(weave) = &mut self.weave {
-            weave.solve_tethers(&self.parameters.tether_stretch);
+        let stretch = self.parameters.tether_stretch;
+        if let Some(weave) = self.woven() {
+            weave.solve_tethers(&stretch);
             return;
         }
         P::run(Tethers {
             tethers: self.fabric.tethers(),
-            stretch: &self.parameters.tether_stretch,
+            stretch: &stretch,
             position: &mut self.position,
         });
     }

@@ -20,6 +20,10 @@ mod threads;
 pub(crate) use sheets::{Facing, Sheets};
 pub(crate) use tethers::PackedTethers;
 
+use cells::Cells;
+use glam::Vec3;
+use sheets::Plane;
+
 use crate::constraints::Knot;
 use crate::fabric::{ABREAST, BendLine, Fabric, Strands};
 use crate::lane_batch::LaneBatch;
@@ -27,9 +31,6 @@ use crate::lanes::Pack;
 use crate::parameters::{BendFactors, Parameters};
 use crate::places::Constant;
 use crate::vector::{Pack3, splat3};
-use cells::Cells;
-use glam::Vec3;
-use sheets::Plane;
 
 /// What the lanes of a pack are of the fabric: links' classes, lines' profiles.
 type OfLanes = Vec<Option<u32>>;

@@ -1,10 +1,11 @@
 //! Tethers of packs of particles.
 
+use glam::Vec3;
+
 use crate::fabric::Fabric;
 use crate::lanes::Pack;
 use crate::seating::Seating;
 use crate::vector::{Pack3, set_lane3, splat3};
-use glam::Vec3;
 
 /// For each pack of particles, where the pins are to which they are tethered.
 #[derive(Clone, Debug)]
