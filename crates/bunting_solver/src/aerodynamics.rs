@@ -14,12 +14,19 @@ use crate::constants::LEAST_AREA_SQUARED;
 use crate::fabric::{Fabric, Patch};
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
+use crate::normals::face;
 use crate::parameters::Parameters;
+use crate::places::Constant;
 use crate::vector::{Pack3, V3};
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Gathers what the air does to each particle in this substep.
     pub fn gather_air(&mut self) {
+        if let Some(weave) = &mut self.weave {
+            let (position, velocity) = (&self.position, &self.velocity);
+            weave.gather_air(&self.parameters, position, velocity, &mut self.predicted);
+            return;
+        }
         P::run(Air {
             fabric: &self.fabric,
             parameters: &self.parameters,
@@ -47,15 +54,21 @@ impl<P: Pack> Kernel<P> for Air<'_, P> {
         }
         for &Patch { corners: [a, b, c, d], shares } in self.fabric.patches() {
             let (a, b, c, d) = (a as usize, b as usize, c as usize, d as usize);
-            let at: V3<L> = V3::load(token, &self.position[a]);
-            let ab = V3::load(token, &self.position[b]) - at;
-            let ac = V3::load(token, &self.position[c]) - at;
-            let ad = V3::load(token, &self.position[d]) - at;
-            let shared = V3::load(token, &self.velocity[a]) + V3::load(token, &self.velocity[c]);
-            let of_first = shared + V3::load(token, &self.velocity[b]);
-            let of_second = shared + V3::load(token, &self.velocity[d]);
-            let first = air.change(ab.cross(ac), of_first) * L::splat(token, shares[0]);
-            let second = air.change(ac.cross(ad), of_second) * L::splat(token, shares[1]);
+            let [first, second] = air.blow(
+                [
+                    V3::load(token, &self.position[a]),
+                    V3::load(token, &self.position[b]),
+                    V3::load(token, &self.position[c]),
+                    V3::load(token, &self.position[d]),
+                ],
+                [
+                    V3::load(token, &self.velocity[a]),
+                    V3::load(token, &self.velocity[b]),
+                    V3::load(token, &self.velocity[c]),
+                    V3::load(token, &self.velocity[d]),
+                ],
+                [L::splat(token, shares[0]), L::splat(token, shares[1])],
+            );
             let both = first + second;
             both.add_to(token, &mut self.impulse[a]);
             first.add_to(token, &mut self.impulse[b]);
@@ -66,7 +79,7 @@ impl<P: Pack> Kernel<P> for Air<'_, P> {
 }
 
 /// The air as a triangle meets it.
-struct Stream<L: Lane> {
+pub(crate) struct Stream<L: Lane> {
     wind: V3<L>,
     pressure: L,
     friction: L,
@@ -79,7 +92,7 @@ struct Stream<L: Lane> {
 
 impl<L: Lane> Stream<L> {
     #[inline(always)]
-    fn load(token: L::Token, parameters: &Parameters<L::Pack>) -> Self {
+    pub fn load(token: L::Token, parameters: &Parameters<L::Pack>) -> Self {
         let friction = L::load(token, &parameters.friction);
         let rubs = L::splat(token, 0.0).lt(friction);
         Self {
@@ -92,6 +105,16 @@ impl<L: Lane> Stream<L> {
             one: L::splat(token, 1.0),
             least: L::splat(token, LEAST_AREA_SQUARED),
         }
+    }
+
+    /// What falls to each corner of the two triangles of a patch: their changes of velocity times their
+    /// shares. Given the positions and velocities of the four corners.
+    #[inline(always)]
+    pub fn blow(&self, at: [V3<L>; 4], velocities: [V3<L>; 4], shares: [L; 2]) -> [V3<L>; 2] {
+        let [first, second] = face(at);
+        let [a, b, c, d] = velocities;
+        let shared = a + c;
+        [self.change(first, shared + b) * shares[0], self.change(second, shared + d) * shares[1]]
     }
 
     /// Change of velocity of a triangle in this substep, given a normal of any length and the sum of

@@ -7,9 +7,10 @@ use glam::Vec3;
 use crate::collision::Collider;
 use crate::fabric::{Fabric, FabricError, FabricMaterial};
 use crate::lane_batch::LaneBatch;
-use crate::lanes::{LaneCount, Pack1, Pack8, Pack16};
+use crate::lane_count::LaneCount;
+use crate::lanes::{Pack1, Pack8, Pack16};
 use crate::snapshot::ClothSnapshot;
-use crate::step::{Drive, StepSettings};
+use crate::step::{Drive, Scheme, StepSettings};
 
 /// Why a cloth cannot ride in a batch.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -58,6 +59,8 @@ pub struct ClothBatch(Width);
 #[derive(Clone, Debug)]
 enum Width {
     One(Box<LaneBatch<Pack1>>),
+    /// One cloth that has all lanes to itself.
+    Woven(Box<LaneBatch<Pack8, Pack8>>),
     Eight(Box<LaneBatch<Pack8>>),
     Sixteen(Box<LaneBatch<Pack16>>),
 }
@@ -67,6 +70,7 @@ macro_rules! at_any_width {
     ($batch:expr, $lanes:ident => $body:expr) => {
         match $batch {
             Width::One($lanes) => $body,
+            Width::Woven($lanes) => $body,
             Width::Eight($lanes) => $body,
             Width::Sixteen($lanes) => $body,
         }
@@ -78,7 +82,10 @@ impl ClothBatch {
     #[must_use]
     pub fn new(fabric: Arc<Fabric>, lanes: LaneCount) -> Self {
         Self(match lanes {
-            LaneCount::One => Width::One(Box::new(LaneBatch::new(fabric))),
+            LaneCount::One => match LaneBatch::woven_of(&fabric) {
+                Some(woven) => Width::Woven(Box::new(woven)),
+                None => Width::One(Box::new(LaneBatch::new(fabric))),
+            },
             LaneCount::Eight => Width::Eight(Box::new(LaneBatch::new(fabric))),
             LaneCount::Sixteen => Width::Sixteen(Box::new(LaneBatch::new(fabric))),
         })
@@ -224,6 +231,11 @@ impl ClothBatch {
     /// Begins a tick of `tick` seconds: compliances for its substeps, contact candidates. In a tick of
     /// no time nothing moves.
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
+        if let Width::Woven(woven) = &self.0
+            && settings.scheme != Scheme::Yarns
+        {
+            self.0 = Width::One(Box::new(woven.unwoven()));
+        }
         at_any_width!(&mut self.0, batch => batch.begin_tick(tick, settings));
     }
 

@@ -10,9 +10,10 @@ use crate::formula::Unrest;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
 use crate::parameters::Parameters;
+use crate::places::{Constant, PARTS};
 use crate::vector::{Pack3, V3};
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Begins a substep: carries the state into the moved frame, applies gravity and the air, damps,
     /// and predicts positions.
     pub fn integrate(&mut self) {
@@ -20,10 +21,9 @@ impl<P: Pack> LaneBatch<P> {
             return;
         }
         self.begin_substep();
-        let inverse_areas = self.fabric.inverse_areas();
         if self.parameters.carries {
             P::run(CarryState {
-                inverse_areas,
+                inverse_areas: &self.packs.inverse_areas,
                 parameters: &self.parameters,
                 inverse_step: 1.0 / self.clock.step,
                 position: &mut self.position,
@@ -40,7 +40,8 @@ impl<P: Pack> LaneBatch<P> {
         let nothing = P::splat(0.0);
         let mut unrest = Unrest { motion: nothing, change: nothing, shake: nothing };
         P::run(Extrapolate {
-            inverse_areas,
+            inverse_areas: &self.packs.inverse_areas,
+            parts: &self.parts,
             parameters: &self.parameters,
             frame_rate: -1.0 / self.clock.step,
             position: &self.position,
@@ -57,8 +58,8 @@ impl<P: Pack> LaneBatch<P> {
             self.gather_air();
         }
         P::run(Predict {
-            areas: self.fabric.particle_areas(),
-            weights: &self.weights,
+            areas: &self.packs.areas,
+            weights: &self.packs.weights,
             parameters: &self.parameters,
             position: &mut self.position,
             predicted: &mut self.predicted,
@@ -73,10 +74,10 @@ impl<P: Pack> LaneBatch<P> {
 
     /// Lets lanes whose motion is rough begin anew.
     fn judge(&mut self, unrest: &Unrest<P>) {
-        let particles = self.position.len();
-        for (lane, slot) in self.slots.iter_mut().enumerate() {
+        let particles = self.fabric.particle_count();
+        for (cloth, slot) in self.slots.iter_mut().enumerate() {
             if let Some(slot) = slot {
-                let of_lane = |sum: &P| sum.lanes()[lane];
+                let of_lane = |sum: &P| sum.lanes()[C::lanes(cloth).start];
                 let unrest = Unrest {
                     motion: of_lane(&unrest.motion),
                     change: of_lane(&unrest.change),
@@ -145,8 +146,8 @@ impl<L: Lane> Motion<L> {
 
 /// Rewrites the state in the coordinates of the moved frame. Free particles stay where they are in
 /// the world; pinned ones go with the frame, and so have a velocity.
-struct CarryState<'a, P: Pack> {
-    inverse_areas: &'a [f32],
+struct CarryState<'a, P: Pack, C> {
+    inverse_areas: &'a [C],
     parameters: &'a Parameters<P>,
     inverse_step: f32,
     position: &'a mut [Pack3<P>],
@@ -155,7 +156,7 @@ struct CarryState<'a, P: Pack> {
     history: [&'a mut [Pack3<P>]; 5],
 }
 
-impl<P: Pack> Kernel<P> for CarryState<'_, P> {
+impl<P: Pack, C: Constant<P>> Kernel<P> for CarryState<'_, P, C> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let motion = Motion::<L>::load(token, self.parameters);
@@ -164,12 +165,15 @@ impl<P: Pack> Kernel<P> for CarryState<'_, P> {
         for ((position, velocity), &inverse_area) in particles.zip(self.inverse_areas) {
             let x: V3<L> = V3::load(token, position);
             let carried = motion.apply(x, motion.moved(x));
-            if inverse_area == 0.0 {
-                ((x - carried) * inverse_step).store(velocity);
+            let of_pin = (x - carried) * inverse_step;
+            if inverse_area.is_zero() {
+                of_pin.store(velocity);
                 continue;
             }
-            carried.store(position);
+            inverse_area.choose3(token, carried, x).store(position);
             motion.turn(token, velocity);
+            let turned: V3<L> = V3::load(token, velocity);
+            inverse_area.choose3(token, turned, of_pin).store(velocity);
         }
         for directions in self.history {
             for direction in directions {
@@ -181,8 +185,10 @@ impl<P: Pack> Kernel<P> for CarryState<'_, P> {
 
 /// Extrapolates velocities and damps them, writing them over the oldest. Gravity and air come after,
 /// undamped, so that rest states are exact.
-struct Extrapolate<'a, P: Pack> {
-    inverse_areas: &'a [f32],
+struct Extrapolate<'a, P: Pack, C> {
+    inverse_areas: &'a [C],
+    /// Into which part of the sums each pack goes.
+    parts: &'a [u8],
     parameters: &'a Parameters<P>,
     /// −1/h, 1/s.
     frame_rate: f32,
@@ -193,7 +199,7 @@ struct Extrapolate<'a, P: Pack> {
     unrest: &'a mut Unrest<P>,
 }
 
-impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
+impl<P: Pack, C: Constant<P>> Kernel<P> for Extrapolate<'_, P, C> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let [last, before] = extrapolation::<L>(token, self.parameters);
@@ -204,12 +210,14 @@ impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
         let zero = V3::splat(token, 0.0);
         let half = L::splat(token, 0.5);
         let nothing = L::splat(token, 0.0);
-        let mut sums = Unrest { motion: nothing, change: nothing, shake: nothing };
+        let mut motions = [nothing; PARTS];
+        let mut changes = [nothing; PARTS];
+        let mut shakes = [nothing; PARTS];
         let speeds = self.velocity.iter().zip(self.older_velocity).zip(self.oldest_velocity);
-        for ((((velocity, older), oldest), position), &inverse_area) in
-            speeds.zip(self.position).zip(self.inverse_areas)
+        for (((((velocity, older), oldest), position), inverse_area), &part) in
+            speeds.zip(self.position).zip(self.inverse_areas).zip(self.parts)
         {
-            if inverse_area == 0.0 {
+            if inverse_area.is_zero() {
                 *oldest = *velocity;
                 continue;
             }
@@ -218,9 +226,14 @@ impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
             let change = v - older;
             let change_before = older - V3::load(token, oldest);
             let shake = change - change_before;
-            sums.motion = sums.motion + v.dot(v);
-            sums.change = sums.change + change.dot(change);
-            sums.shake = sums.shake + shake.dot(shake);
+            let part = part as usize % PARTS;
+            let add = |sums: &mut [L; PARTS], square: L| {
+                sums[part] = sums[part] + inverse_area.choose(token, square, nothing);
+            };
+            add(&mut motions, v.dot(v));
+            add(&mut changes, change.dot(change));
+            add(&mut shakes, shake.dot(shake));
+            let unchanged = v;
             let v = v.plus_scaled(change, last).plus_scaled(change_before, before);
             // Damping acts on the motion relative to the frame, whose point at x has this velocity.
             let damped = if any_moves {
@@ -230,11 +243,11 @@ impl<P: Pack> Kernel<P> for Extrapolate<'_, P> {
             } else {
                 v * keep
             };
-            damped.store(oldest);
+            inverse_area.choose3(token, damped, unchanged).store(oldest);
         }
-        sums.motion.store(&mut self.unrest.motion);
-        sums.change.store(&mut self.unrest.change);
-        sums.shake.store(&mut self.unrest.shake);
+        C::total(token, motions).store(&mut self.unrest.motion);
+        C::total(token, changes).store(&mut self.unrest.change);
+        C::total(token, shakes).store(&mut self.unrest.shake);
     }
 }
 
@@ -246,9 +259,9 @@ fn extrapolation<L: Lane>(token: L::Token, parameters: &Parameters<L::Pack>) -> 
 }
 
 /// Adds what air and gravity do, and moves the particles to where they would go unconstrained.
-struct Predict<'a, P: Pack> {
-    areas: &'a [f32],
-    weights: &'a [f32],
+struct Predict<'a, P: Pack, C> {
+    areas: &'a [C],
+    weights: &'a [C],
     parameters: &'a Parameters<P>,
     position: &'a mut [Pack3<P>],
     predicted: &'a mut [Pack3<P>],
@@ -259,7 +272,7 @@ struct Predict<'a, P: Pack> {
     feels_air: bool,
 }
 
-impl<P: Pack> Kernel<P> for Predict<'_, P> {
+impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let step = L::load(token, &self.parameters.step);
@@ -268,27 +281,30 @@ impl<P: Pack> Kernel<P> for Predict<'_, P> {
         let places = self.position.iter_mut().zip(self.predicted);
         let changes = self.displacement.iter().zip(self.older_displacement);
         let inertia = self.weights.iter().zip(self.areas);
-        for ((((position, predicted), (displacement, older)), velocity), (&weight, &area)) in
+        for ((((position, predicted), (displacement, older)), velocity), (constant, area)) in
             places.zip(changes).zip(self.velocity).zip(inertia)
         {
-            if weight == 0.0 {
+            if constant.is_zero() {
                 *predicted = *position;
                 continue;
             }
+            let weight: L = constant.load(token);
+            let unchanged: V3<L> = V3::load(token, velocity);
             // Gravity acts on the true mass, whatever inertia is added to it.
-            let falling =
-                V3::load(token, velocity).plus_scaled(gravity, L::splat(token, weight * area));
+            let falling = unchanged.plus_scaled(gravity, weight * area.load(token));
             let v = if self.feels_air {
-                falling.plus_scaled(V3::load(token, predicted), L::splat(token, weight))
+                falling.plus_scaled(V3::load(token, predicted), weight)
             } else {
                 falling
             };
-            v.store(velocity);
+            constant.choose3(token, v, unchanged).store(velocity);
+            let oldest: V3<L> = V3::load(token, older);
             let change = (v * step)
                 .plus_scaled(V3::load(token, displacement), last)
-                .plus_scaled(V3::load(token, older), before);
-            change.store(older);
-            let x = V3::load(token, position) + change;
+                .plus_scaled(oldest, before);
+            constant.choose3(token, change, oldest).store(older);
+            let from: V3<L> = V3::load(token, position);
+            let x = constant.choose3(token, from + change, from);
             x.store(predicted);
             x.store(position);
         }

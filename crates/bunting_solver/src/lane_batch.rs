@@ -10,11 +10,14 @@ use crate::collision::Collider;
 use crate::constraints::{Knot, Pole};
 use crate::fabric::{ABREAST, Fabric, FabricMaterial};
 use crate::formula::{Formula, Past};
-use crate::lanes::Pack;
+use crate::lanes::{Pack, Pack1};
 use crate::parameters::Parameters;
+use crate::places::Constant;
+use crate::seating::{Packed, Seating};
 use crate::snapshot::{ClothSnapshot, History};
 use crate::step::{Drive, Scheme, StepSettings};
 use crate::vector::{Pack3, lane3, set_lane3, splat3};
+use crate::weave::Weave;
 
 /// Particles whose positions and normals in all lanes fit into the nearest cache, at 384 bytes each.
 const BLOCK: usize = 32;
@@ -43,9 +46,10 @@ pub(crate) struct Applied {
     pub formula: Formula,
 }
 
-/// Up to `P::WIDTH` cloths of one fabric.
+/// Up to `P::WIDTH` cloths of one fabric, one in each lane. Or one whose particles lie side by side in the
+/// lanes: then what belongs to the fabric is each lane's own, and `C` is `P`.
 #[derive(Clone, Debug)]
-pub(crate) struct LaneBatch<P: Pack> {
+pub(crate) struct LaneBatch<P: Pack, C = f32> {
     pub fabric: Arc<Fabric>,
     pub slots: Vec<Option<Slot>>,
 
@@ -85,14 +89,20 @@ pub(crate) struct LaneBatch<P: Pack> {
 
     /// One over each particle's inertia, in units of the density, 1/m²; zero where it is pinned.
     pub weights: Vec<f32>,
-    /// One over each weight, m²; zero where a particle is pinned.
-    pub inertias: Vec<f32>,
+    /// Where the particles lie.
+    pub seating: Seating,
+    /// For each pack, into which part of a sum over all particles it goes.
+    pub parts: Vec<u8>,
+    /// What the particles of each pack have.
+    pub packs: Packed<C>,
     /// The effective substep that the weights are for, s; zero with the fabric's own.
     weights_step: f32,
 
     /// The line about which the cloth is free to turn.
     pub pole: Option<Pole>,
     pub parameters: Parameters<P>,
+    /// The cloth's own yarns in the lanes of a vector, where it has one to itself.
+    pub weave: Option<Box<Weave<P>>>,
     pub clock: Clock,
 }
 
@@ -113,25 +123,25 @@ impl Clock {
     }
 }
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     pub fn new(fabric: Arc<Fabric>) -> Self {
-        let rest: Vec<Pack3<P>> =
-            fabric.rest_positions().iter().map(|&rest| splat3(rest)).collect();
-        let zero = vec![splat3(Vec3::ZERO); rest.len()];
+        let seating = Seating::of::<P, C>(&fabric);
+        let parts = seating.parts();
+        let zero = vec![splat3(Vec3::ZERO); parts.len()];
         let nothing = P::splat(0.0);
         let longest_line =
             fabric.bend_lines().iter().map(|line| line.particles.len()).max().unwrap_or(0);
-        let longest_yarn = fabric.yarns().iter().map(|yarn| yarn.links.len()).max().unwrap_or(0);
-        Self {
-            slots: vec![None; P::WIDTH],
-            predicted: rest.clone(),
+        let longest_yarn = fabric.strands().longest();
+        let mut batch = Self {
+            slots: vec![None; P::WIDTH / C::SIDE],
+            predicted: zero.clone(),
             displacement: zero.clone(),
             bent: zero.clone(),
             memory: zero.clone(),
             older_displacement: zero.clone(),
             older_velocity: zero.clone(),
             oldest_velocity: zero.clone(),
-            position: rest,
+            position: zero.clone(),
             velocity: zero.clone(),
             normal: zero,
             link_target: vec![nothing; fabric.strands().target_count()],
@@ -139,13 +149,19 @@ impl<P: Pack> LaneBatch<P> {
             moments: vec![splat3(Vec3::ZERO); longest_line],
             knots: vec![Knot::new(); ABREAST * longest_yarn],
             weights: fabric.inverse_areas().to_vec(),
-            inertias: inverted(fabric.inverse_areas()),
+            packs: Packed::new(seating, &fabric),
+            parts,
+            seating,
             weights_step: 0.0,
             pole: Pole::of(&fabric),
             parameters: Parameters::new(&fabric),
+            weave: None,
             clock: Clock::default(),
             fabric,
-        }
+        };
+        // Lanes without a cloth lie at rest.
+        (0..batch.slots.len()).for_each(|cloth| batch.remove(cloth));
+        batch
     }
 
     pub fn insert(&mut self, lane: usize, snapshot: &ClothSnapshot, material: FabricMaterial) {
@@ -169,25 +185,36 @@ impl<P: Pack> LaneBatch<P> {
 
     /// Overwrites the state of a lane; without a history the next substep is of first order.
     pub fn restore(&mut self, lane: usize, snapshot: &ClothSnapshot) {
-        write(&mut self.position, lane, &snapshot.positions);
-        write(&mut self.predicted, lane, &snapshot.positions);
-        write(&mut self.velocity, lane, &snapshot.velocities);
+        // Without −0, which would or would not become 0 where something of no weight is added.
+        let positions: Vec<Vec3> = snapshot.positions.iter().map(|at| *at + Vec3::ZERO).collect();
         let history = snapshot.history.as_ref();
-        let past = [
+        let state = [
+            (&mut self.position, Some(&positions)),
+            (&mut self.predicted, Some(&positions)),
+            (&mut self.velocity, Some(&snapshot.velocities)),
             (&mut self.displacement, history.map(|history| &history.displacements[0])),
             (&mut self.older_displacement, history.map(|history| &history.displacements[1])),
             (&mut self.older_velocity, history.map(|history| &history.older_velocities[0])),
             (&mut self.oldest_velocity, history.map(|history| &history.older_velocities[1])),
             (&mut self.memory, history.map(|history| &history.memory)),
         ];
-        for (packs, values) in past {
-            match values {
-                Some(values) => write(packs, lane, values),
-                None => packs.iter_mut().for_each(|pack| set_lane3(pack, lane, Vec3::ZERO)),
+        let lanes = C::lanes(lane);
+        for (packs, values) in state {
+            // Where no particle lies, too.
+            for coordinate in packs.iter_mut().flatten() {
+                coordinate.lanes_mut()[lanes.clone()].fill(0.0);
+            }
+            for (particle, &value) in values.into_iter().flatten().enumerate() {
+                let (pack, lane) = self.seating.seat(particle, lane);
+                set_lane3(&mut packs[pack], lane, value);
             }
         }
         for pin in self.fabric.pins() {
-            set_lane3(&mut self.velocity[pin.particle as usize], lane, Vec3::ZERO);
+            let (pack, lane) = self.seating.seat(pin.particle as usize, lane);
+            set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
+        }
+        if let Some(weave) = &mut self.weave {
+            weave.begin(&positions);
         }
         if let Some(slot) = &mut self.slots[lane] {
             slot.past = history.map_or_else(Past::default, |history| history.past);
@@ -196,7 +223,7 @@ impl<P: Pack> LaneBatch<P> {
 
     /// The state of a lane, past and all.
     pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
-        let read = |packs: &[Pack3<P>]| packs.iter().map(|pack| lane3(pack, lane)).collect();
+        let read = |packs: &[Pack3<P>]| self.of_cloth(packs, lane).collect();
         let past = self.slots[lane].as_ref().map_or_else(Past::default, |slot| slot.past);
         ClothSnapshot {
             positions: read(&self.position),
@@ -212,29 +239,39 @@ impl<P: Pack> LaneBatch<P> {
 
     pub fn copy_positions(&self, lane: usize, into: &mut Vec<Vec3>) {
         into.clear();
-        into.extend(self.position.iter().map(|pack| lane3(pack, lane)));
+        into.extend(self.of_cloth(&self.position, lane));
     }
 
     pub fn copy_velocities(&self, lane: usize, into: &mut Vec<Vec3>) {
         into.clear();
-        into.extend(self.velocity.iter().map(|pack| lane3(pack, lane)));
+        into.extend(self.of_cloth(&self.velocity, lane));
     }
 
     pub fn copy_normals(&self, lane: usize, into: &mut Vec<Vec3>) {
         into.clear();
-        into.extend(self.normal.iter().map(|pack| lane3(pack, lane)));
+        into.extend(self.of_cloth(&self.normal, lane));
     }
 
     pub fn copy_surfaces(&self, into: &mut [LaneSurface]) {
-        let into = &mut into[..P::WIDTH];
+        let particles = self.fabric.particle_count();
+        let into = &mut into[..self.slots.len()];
         let sums = sums(&self.position);
-        for (surface, (slot, sum)) in into.iter_mut().zip(self.slots.iter().zip(sums.lanes())) {
-            if slot.is_some() {
+        for (cloth, surface) in into.iter_mut().enumerate() {
+            if self.slots[cloth].is_some() {
                 // What is not finite makes the sum so.
-                surface.is_finite = sum.is_finite();
-                surface.positions.resize(self.position.len(), Vec3::ZERO);
-                surface.normals.resize(self.normal.len(), Vec3::ZERO);
+                surface.is_finite = sums.lanes()[C::lanes(cloth)].iter().all(|sum| sum.is_finite());
+                surface.positions.resize(particles, Vec3::ZERO);
+                surface.normals.resize(particles, Vec3::ZERO);
             }
+        }
+        if C::SIDE > 1 {
+            for (cloth, surface) in
+                into.iter_mut().enumerate().filter(|(cloth, _)| self.slots[*cloth].is_some())
+            {
+                self.copy_positions(cloth, &mut surface.positions);
+                self.copy_normals(cloth, &mut surface.normals);
+            }
+            return;
         }
         // Particles by the block, so that each is fetched once for all lanes.
         let mut first = 0;
@@ -250,8 +287,16 @@ impl<P: Pack> LaneBatch<P> {
     }
 
     pub fn is_finite(&self, lane: usize) -> bool {
-        let finite = |packs: &[Pack3<P>]| packs.iter().all(|pack| lane3(pack, lane).is_finite());
+        let finite = |packs| self.of_cloth(packs, lane).all(Vec3::is_finite);
         finite(&self.position) && finite(&self.velocity)
+    }
+
+    /// The vectors of one cloth, particle by particle.
+    fn of_cloth(&self, packs: &[Pack3<P>], cloth: usize) -> impl Iterator<Item = Vec3> {
+        (0..self.fabric.particle_count()).map(move |particle| {
+            let (pack, lane) = self.seating.seat(particle, cloth);
+            lane3(&packs[pack], lane)
+        })
     }
 
     /// Sets everything that is constant over the tick, and gathers contacts.
@@ -268,7 +313,10 @@ impl<P: Pack> LaneBatch<P> {
         if self.weights_step != weights_step {
             self.weights_step = weights_step;
             self.weights = added_mass::weights(&self.fabric, weights_step);
-            self.inertias = inverted(&self.weights);
+            self.packs.set_weights(self.seating, &self.weights);
+            if let Some(weave) = &mut self.weave {
+                weave.sheets.set_weights(&self.weights);
+            }
         }
         self.gather_contacts(tick);
     }
@@ -277,9 +325,10 @@ impl<P: Pack> LaneBatch<P> {
     pub fn begin_substep(&mut self) {
         let moved = self.parameters.moves_any();
         let Clock { settings, step, .. } = self.clock;
-        for (lane, slot) in self.slots.iter_mut().enumerate() {
+        for (cloth, slot) in self.slots.iter_mut().enumerate() {
+            let lanes = C::lanes(cloth);
             let Some(slot) = slot else {
-                self.parameters.set_empty(lane);
+                self.parameters.set_empty(lanes);
                 continue;
             };
             let formula = slot.past.begin(step, settings.scheme);
@@ -290,19 +339,41 @@ impl<P: Pack> LaneBatch<P> {
                 formula,
             };
             if slot.applied.replace(applied) != Some(applied) {
-                self.parameters.apply(lane, &self.fabric, &applied);
+                self.parameters.apply(lanes.clone(), &self.fabric, &applied);
+                if let Some(weave) = &mut self.weave {
+                    weave.set_parameters(&self.parameters);
+                }
             }
             let reach = self.fabric.reach();
-            self.parameters.set_drive(lane, &slot.material, &slot.drive, reach, &self.clock);
+            self.parameters.set_drive(lanes, &slot.material, &slot.drive, reach, &self.clock);
         }
         // One substep more than the motion lasts, so that pinned particles come to rest.
         self.parameters.carries = moved || self.parameters.moves_any();
     }
 }
 
-/// One over each number, and zero for zero.
-fn inverted(values: &[f32]) -> Vec<f32> {
-    values.iter().map(|&value| if value == 0.0 { 0.0 } else { 1.0 / value }).collect()
+impl<P: Pack> LaneBatch<P, P> {
+    /// A batch of one cloth that fills the lanes with its own yarns, if the fabric lets it.
+    pub fn woven_of(fabric: &Arc<Fabric>) -> Option<Self> {
+        let weave = Weave::of(fabric)?;
+        let mut batch = Self::new(Arc::clone(fabric));
+        batch.weave = Some(Box::new(weave));
+        batch.remove(0);
+        Some(batch)
+    }
+
+    /// The same cloth by itself in a lane, for a scheme without yarns.
+    pub fn unwoven(&self) -> LaneBatch<Pack1> {
+        let mut batch = LaneBatch::new(Arc::clone(&self.fabric));
+        if let Some(slot) = &self.slots[0] {
+            batch.insert(0, &self.snapshot(0), slot.material);
+            batch.slots[0] = Some(Slot { applied: None, ..slot.clone() });
+        }
+        for (pack, normal) in batch.normal.iter_mut().zip(self.of_cloth(&self.normal, 0)) {
+            set_lane3(pack, 0, normal);
+        }
+        batch
+    }
 }
 
 /// The sum of all coordinates, for each lane.
@@ -322,12 +393,5 @@ fn read<P: Pack>(packs: &[Pack3<P>], lane: usize, into: &mut [Vec3]) {
     assert!(lane < P::WIDTH, "a lane of the batch");
     for (value, pack) in into.iter_mut().zip(packs) {
         *value = lane3(pack, lane);
-    }
-}
-
-/// Overwrites one lane of a vector for each particle.
-fn write<P: Pack>(packs: &mut [Pack3<P>], lane: usize, values: &[Vec3]) {
-    for (pack, &value) in packs.iter_mut().zip(values) {
-        set_lane3(pack, lane, value);
     }
 }

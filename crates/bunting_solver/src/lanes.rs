@@ -13,14 +13,15 @@
 //! functions that it calls are `#[inline(always)]`, and since closures cannot be, it has none, and leaves
 //! `map` and `from_fn` alone.
 
+use core::fmt::Debug;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
 
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f32x4, f32x8, f32x16};
 
-use crate::instruction_set::{instruction_set, level};
+use crate::instruction_set::level;
 
 /// One float for each lane of a batch, in memory.
-pub(crate) trait Pack: Copy + Send + Sync + 'static {
+pub(crate) trait Pack: Copy + Debug + Send + Sync + 'static {
     /// Number of lanes.
     const WIDTH: usize;
 
@@ -68,6 +69,10 @@ pub(crate) trait Lane:
     fn splat(token: Self::Token, value: f32) -> Self;
     fn load(token: Self::Token, pack: &Self::Pack) -> Self;
     fn store(self, pack: &mut Self::Pack);
+    /// Floats that lie side by side, one for each lane, from a place on.
+    fn load_at(token: Self::Token, values: &[f32], at: usize) -> Self;
+    /// Overwrites floats that lie side by side, from a place on.
+    fn store_at(self, values: &mut [f32], at: usize);
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
     fn lt(self, other: Self) -> Self::Mask;
@@ -180,6 +185,16 @@ macro_rules! wide {
             #[inline(always)]
             fn store(self, pack: &mut $pack) {
                 SimdBase::store_array(self, &mut pack.0);
+            }
+
+            #[inline(always)]
+            fn load_at(token: S, values: &[f32], at: usize) -> Self {
+                SimdBase::from_slice(token, &values[at..at + $width])
+            }
+
+            #[inline(always)]
+            fn store_at(self, values: &mut [f32], at: usize) {
+                SimdBase::store_slice(&self, &mut values[at..at + $width]);
             }
 
             #[inline(always)]
@@ -308,6 +323,16 @@ impl<S: Simd> Lane for Single<S> {
     }
 
     #[inline(always)]
+    fn load_at(token: S, values: &[f32], at: usize) -> Self {
+        Self { value: values[at], token }
+    }
+
+    #[inline(always)]
+    fn store_at(self, values: &mut [f32], at: usize) {
+        values[at] = self.value;
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Self {
         // Correctly rounded by IEEE 754 on every target.
         self.with(f32::sqrt(self.value))
@@ -348,40 +373,5 @@ impl<S: Simd> Lane for Single<S> {
     #[inline(always)]
     fn or_where_not(self, mask: bool, other: Self) -> Self {
         if mask { self } else { other }
-    }
-}
-
-/// How many cloths ride side by side in a batch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
-pub enum LaneCount {
-    /// One cloth: scalar code.
-    One,
-    /// Eight cloths: full speed with AVX2.
-    #[default]
-    Eight,
-    /// Sixteen cloths: full speed with AVX-512.
-    Sixteen,
-}
-
-impl LaneCount {
-    /// Number of lanes.
-    #[must_use]
-    pub const fn get(self) -> usize {
-        match self {
-            Self::One => 1,
-            Self::Eight => 8,
-            Self::Sixteen => 16,
-        }
-    }
-
-    /// The narrowest width that holds `cloths`, at most the widest that pays on this machine.
-    #[must_use]
-    pub fn holding(cloths: usize) -> Self {
-        match cloths {
-            0 | 1 => Self::One,
-            2..=8 => Self::Eight,
-            _ if instruction_set() == "AVX-512" => Self::Sixteen,
-            _ => Self::Eight,
-        }
     }
 }

@@ -46,15 +46,19 @@ mod frame;
 mod instruction_set;
 mod integrate;
 mod lane_batch;
+mod lane_count;
 mod lanes;
 mod normals;
 mod parameters;
+mod places;
+mod seating;
 mod snapshot;
 mod step;
 mod step_limits;
 mod transfer;
 mod vector;
 mod velocity;
+mod weave;
 
 pub use batch::{BatchError, ClothBatch, LaneSurface};
 pub use collision::Collider;
@@ -64,7 +68,7 @@ pub use fabric::{
 };
 pub use frame::FrameMotion;
 pub use instruction_set::{instruction_set, with_every_instruction_set};
-pub use lanes::LaneCount;
+pub use lane_count::LaneCount;
 pub use snapshot::ClothSnapshot;
 pub use step::{Drive, Scheme, StepSettings};
 pub use step_limits::StepLimits;

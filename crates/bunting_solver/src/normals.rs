@@ -4,11 +4,16 @@ use crate::constants::LEAST_AREA_SQUARED;
 use crate::fabric::Patch;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
+use crate::places::Constant;
 use crate::vector::{Pack3, V3};
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Recomputes all normals.
     pub fn compute_normals(&mut self) {
+        if let Some(weave) = &mut self.weave {
+            weave.compute_normals(&self.position, &mut self.normal);
+            return;
+        }
         P::run(Normals {
             patches: self.fabric.patches(),
             position: &self.position,
@@ -32,23 +37,34 @@ impl<P: Pack> Kernel<P> for Normals<'_, P> {
         for patch in self.patches {
             let [a, b, c, d] = patch.corners;
             let (a, b, c, d) = (a as usize, b as usize, c as usize, d as usize);
-            let at: V3<L> = V3::load(token, &self.position[a]);
-            let ab = V3::load(token, &self.position[b]) - at;
-            let ac = V3::load(token, &self.position[c]) - at;
-            let ad = V3::load(token, &self.position[d]) - at;
-            let (first, second) = (ab.cross(ac), ac.cross(ad));
+            let [first, second] = face::<L>([
+                V3::load(token, &self.position[a]),
+                V3::load(token, &self.position[b]),
+                V3::load(token, &self.position[c]),
+                V3::load(token, &self.position[d]),
+            ]);
             let both = first + second;
             both.add_to(token, &mut self.normal[a]);
             first.add_to(token, &mut self.normal[b]);
             both.add_to(token, &mut self.normal[c]);
             second.add_to(token, &mut self.normal[d]);
         }
-        let least = L::splat(token, LEAST_AREA_SQUARED);
-        let one = L::splat(token, 1.0);
         for normal in self.normal {
-            let sum: V3<L> = V3::load(token, normal);
-            let length = sum.dot(sum).max(least).sqrt();
-            (sum * (one / length)).store(normal);
+            normalised(token, V3::<L>::load(token, normal)).store(normal);
         }
     }
+}
+
+/// Normals, of twice the triangles' areas, of a patch with these corners.
+#[inline(always)]
+pub(crate) fn face<L: Lane>([a, b, c, d]: [V3<L>; 4]) -> [V3<L>; 2] {
+    let (ab, ac, ad) = (b - a, c - a, d - a);
+    [ab.cross(ac), ac.cross(ad)]
+}
+
+#[inline(always)]
+pub(crate) fn normalised<L: Lane>(token: L::Token, sum: V3<L>) -> V3<L> {
+    let least = L::splat(token, LEAST_AREA_SQUARED);
+    let length = sum.dot(sum).max(least).sqrt();
+    sum * (L::splat(token, 1.0) / length)
 }

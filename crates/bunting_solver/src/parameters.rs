@@ -1,5 +1,7 @@
 //! What differs from lane to lane and is constant over a tick or a substep.
 
+use core::ops::Range;
+
 use glam::Vec3;
 
 use crate::constants::{GREATEST_COMPLIANCE, LEAST_LINK_COMPLIANCE};
@@ -8,12 +10,14 @@ use crate::fabric::{BendProfile, Fabric, FabricMaterial};
 use crate::lane_batch::{Applied, Clock};
 use crate::lanes::Pack;
 use crate::step::Drive;
-use crate::vector::{Pack3, set_lane3, splat3};
+use crate::vector::{Pack3, fill_lanes3, splat3};
 
 /// Factors L and D of a bend profile's pentadiagonal system, for each inner particle.
 #[derive(Clone, Debug)]
-pub(crate) struct BendFactors<P: Pack> {
+pub(crate) struct BendFactors<P: Pack, C = f32> {
     pub rows: Vec<BendFactor<P>>,
+    /// What a moment moves each particle by: one over its area and the square of the spacing, 1/m⁴.
+    pub weights: Vec<C>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -27,15 +31,19 @@ pub(crate) struct BendFactor<P: Pack> {
 }
 
 impl<P: Pack> BendFactors<P> {
-    fn new(profile: &BendProfile) -> Self {
+    pub fn new(profile: &BendProfile) -> Self {
         let nothing = P::splat(0.0);
         let row = BendFactor { near: nothing, far: nothing, inverse: nothing };
-        Self { rows: vec![row; profile.weights.len()] }
+        let per_spacing = profile.inverse_spacing;
+        Self {
+            rows: vec![row; profile.weights.len()],
+            weights: profile.inverse_areas.iter().map(|&w| w * per_spacing * per_spacing).collect(),
+        }
     }
 
     /// Factorises D W Dᵀ + α̃ for one lane, α̃ being `compliance` over a row's weight. In double
     /// precision, since it is done once.
-    fn factorise(&mut self, lane: usize, profile: &BendProfile, compliance: f32) {
+    fn factorise(&mut self, lanes: &Range<usize>, profile: &BendProfile, compliance: f32) {
         let per_spacing = f64::from(profile.inverse_spacing);
         let areas: Vec<f64> = profile
             .inverse_areas
@@ -58,7 +66,7 @@ impl<P: Pack> BendFactors<P> {
                 (&mut factor.far, far),
                 (&mut factor.inverse, 1.0 / pivot),
             ] {
-                pack.lanes_mut()[lane] = value as f32;
+                pack.lanes_mut()[lanes.clone()].fill(value as f32);
             }
             (two, one) = (one, (1.0 / pivot, near));
         }
@@ -133,20 +141,21 @@ impl<P: Pack> Parameters<P> {
     }
 
     /// A lane without a cloth stands still.
-    pub fn set_empty(&mut self, lane: usize) {
-        let set = |pack: &mut P, value: f32| pack.lanes_mut()[lane] = value;
+    pub fn set_empty(&mut self, lanes: Range<usize>) {
+        let set = |pack: &mut P, value: f32| pack.lanes_mut()[lanes.clone()].fill(value);
+        let set3 = |pack: &mut Pack3<P>, value: Vec3| fill_lanes3(pack, &lanes, value);
         set(&mut self.step, 0.0);
         set(&mut self.inverse_step, 0.0);
         set(&mut self.moves, 0.0);
-        set_lane3(&mut self.gravity_step, lane, Vec3::ZERO);
-        set_lane3(&mut self.wind, lane, Vec3::ZERO);
+        set3(&mut self.gravity_step, Vec3::ZERO);
+        set3(&mut self.wind, Vec3::ZERO);
     }
 
     /// Integration formula, compliances, air and damping.
-    pub fn apply(&mut self, lane: usize, fabric: &Fabric, applied: &Applied) {
+    pub fn apply(&mut self, lanes: Range<usize>, fabric: &Fabric, applied: &Applied) {
         let Applied { material, air_density, step, formula } = applied;
         let step = formula.weight * step;
-        let set = |pack: &mut P, value: f32| pack.lanes_mut()[lane] = value;
+        let set = |pack: &mut P, value: f32| pack.lanes_mut()[lanes.clone()].fill(value);
         for (pack, part) in self.extrapolation.iter_mut().zip(formula.extrapolation) {
             set(pack, part);
         }
@@ -163,7 +172,7 @@ impl<P: Pack> Parameters<P> {
             set(pack, compliance(class.stiffness(material)));
         }
         for (factors, profile) in self.bend_factors.iter_mut().zip(fabric.bend_profiles()) {
-            factors.factorise(lane, profile, compliance(material.bend_stiffness));
+            factors.factorise(&lanes, profile, compliance(material.bend_stiffness));
         }
         let spacing = fabric.bend_profiles().iter().map(|profile| profile.inverse_spacing);
         let finest = spacing.fold(0.0, f32::max);
@@ -186,7 +195,7 @@ impl<P: Pack> Parameters<P> {
     /// Gravity, wind, what they stretch the cloth by, and the frame's motion in the coming substep.
     pub fn set_drive(
         &mut self,
-        lane: usize,
+        lanes: Range<usize>,
         material: &FabricMaterial,
         drive: &Drive,
         reach: f32,
@@ -194,15 +203,17 @@ impl<P: Pack> Parameters<P> {
     ) {
         let (index, count) = (clock.done, clock.settings.substeps);
         let turned = |direction| drive.motion.turn_back(direction, index, count);
-        set_lane3(&mut self.gravity_step, lane, turned(drive.gravity) * self.step.lanes()[lane]);
-        set_lane3(&mut self.wind, lane, turned(drive.wind));
-        self.tether_stretch.lanes_mut()[lane] = 1.0 + greatest_strain(material, drive, reach);
+        let set = |pack: &mut P, value: f32| pack.lanes_mut()[lanes.clone()].fill(value);
+        let set3 = |pack: &mut Pack3<P>, value: Vec3| fill_lanes3(pack, &lanes, value);
+        set3(&mut self.gravity_step, turned(drive.gravity) * self.step.lanes()[lanes.start]);
+        set3(&mut self.wind, turned(drive.wind));
+        set(&mut self.tether_stretch, 1.0 + greatest_strain(material, drive, reach));
         let carry = drive.motion.carry(index, count);
         for (pack, row) in self.turn.iter_mut().zip(carry.turn.rows) {
-            set_lane3(pack, lane, row);
+            set3(pack, row);
         }
-        set_lane3(&mut self.shift, lane, carry.shift);
-        self.moves.lanes_mut()[lane] = if carry.moves { 1.0 } else { 0.0 };
+        set3(&mut self.shift, carry.shift);
+        set(&mut self.moves, if carry.moves { 1.0 } else { 0.0 });
     }
 
     /// Whether the air acts on any lane.

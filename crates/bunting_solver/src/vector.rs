@@ -1,6 +1,6 @@
 //! Vectors in three dimensions whose coordinates are lanes, in registers and in memory.
 
-use core::ops::{Add, Mul, Sub};
+use core::ops::{Add, Mul, Range, Sub};
 
 use glam::Vec3;
 
@@ -26,6 +26,13 @@ pub(crate) fn set_lane3<P: Pack>(pack: &mut Pack3<P>, lane: usize, value: Vec3) 
     pack[0].lanes_mut()[lane] = value.x;
     pack[1].lanes_mut()[lane] = value.y;
     pack[2].lanes_mut()[lane] = value.z;
+}
+
+/// Overwrites the vectors of some lanes.
+pub(crate) fn fill_lanes3<P: Pack>(pack: &mut Pack3<P>, lanes: &Range<usize>, value: Vec3) {
+    for (pack, value) in pack.iter_mut().zip(value.to_array()) {
+        pack.lanes_mut()[lanes.clone()].fill(value);
+    }
 }
 
 /// One vector for each lane, in registers.

@@ -6,16 +6,17 @@
 
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
+use crate::places::Constant;
 use crate::vector::{Pack3, V3};
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Ends a substep.
     pub fn update_velocities(&mut self) {
         if self.clock.stands_still() {
             return;
         }
         P::run(UpdateVelocities {
-            inverse_areas: self.fabric.inverse_areas(),
+            inverse_areas: &self.packs.inverse_areas,
             inverse_step: &self.parameters.inverse_step,
             position: &self.position,
             predicted: &self.predicted,
@@ -26,8 +27,8 @@ impl<P: Pack> LaneBatch<P> {
     }
 }
 
-struct UpdateVelocities<'a, P: Pack> {
-    inverse_areas: &'a [f32],
+struct UpdateVelocities<'a, P: Pack, C> {
+    inverse_areas: &'a [C],
     inverse_step: &'a P,
     position: &'a [Pack3<P>],
     predicted: &'a [Pack3<P>],
@@ -35,23 +36,25 @@ struct UpdateVelocities<'a, P: Pack> {
     velocity: &'a mut [Pack3<P>],
 }
 
-impl<P: Pack> Kernel<P> for UpdateVelocities<'_, P> {
+impl<P: Pack, C: Constant<P>> Kernel<P> for UpdateVelocities<'_, P, C> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let inverse_step = L::load(token, self.inverse_step);
         let places = self.position.iter().zip(self.predicted);
         let changes = self.displacement.iter_mut().zip(self.velocity);
-        for (((position, predicted), (displacement, velocity)), &inverse_area) in
+        for (((position, predicted), (displacement, velocity)), inverse_area) in
             places.zip(changes).zip(self.inverse_areas)
         {
-            if inverse_area == 0.0 {
+            if inverse_area.is_zero() {
                 continue;
             }
             let x: V3<L> = V3::load(token, position);
             let correction = x - V3::load(token, predicted);
-            (V3::load(token, displacement) + correction).store(displacement);
+            let change: V3<L> = V3::load(token, displacement);
+            inverse_area.choose3(token, change + correction, change).store(displacement);
             let v: V3<L> = V3::load(token, velocity);
-            v.plus_scaled(correction, inverse_step).store(velocity);
+            let corrected = v.plus_scaled(correction, inverse_step);
+            inverse_area.choose3(token, corrected, v).store(velocity);
         }
     }
 }

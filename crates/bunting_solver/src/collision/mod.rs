@@ -8,6 +8,7 @@ use parry3d::shape::SharedShape;
 use crate::frame::FrameMotion;
 use crate::lane_batch::{LaneBatch, Slot};
 use crate::lanes::Pack;
+use crate::places::Constant;
 use crate::vector::lane3;
 
 /// A shape that a cloth cannot enter, moving along a straight line and turning at a constant rate
@@ -54,11 +55,11 @@ impl Collider {
     }
 }
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Gathers, once a tick, the particles that may touch each collider: those that its swept
     /// bounding box reaches, grown by how far the particle may go.
     pub fn gather_contacts(&mut self, tick: f32) {
-        for (lane, slot) in self.slots.iter_mut().enumerate() {
+        for (cloth, slot) in self.slots.iter_mut().enumerate() {
             let Some(Slot { material, drive, colliders, contacts, .. }) = slot else {
                 continue;
             };
@@ -71,10 +72,11 @@ impl<P: Pack> LaneBatch<P> {
                 candidates.clear();
                 let swept = swept_box(collider);
                 let keep = material.thickness + collider.margin + frame_reach + gained;
-                let particles = self.position.iter().zip(&self.velocity).enumerate();
-                candidates.extend(particles.filter_map(|(particle, (position, velocity))| {
-                    let reach = keep + lane3(velocity, lane).length() * tick;
-                    let at = lane3(position, lane);
+                let particles = 0..self.fabric.particle_count();
+                candidates.extend(particles.filter_map(|particle| {
+                    let (pack, lane) = self.seating.seat(particle, cloth);
+                    let reach = keep + lane3(&self.velocity[pack], lane).length() * tick;
+                    let at = lane3(&self.position[pack], lane);
                     let outside = (swept.mins - at).max(at - swept.maxs).max_element();
                     (outside <= reach && !self.fabric.is_pinned(particle))
                         .then_some(particle as u32)

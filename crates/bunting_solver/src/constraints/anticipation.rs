@@ -8,6 +8,7 @@
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
 use crate::parameters::Parameters;
+use crate::places::Constant;
 use crate::vector::{Pack3, V3};
 
 /// Part of the remembered change that is anticipated. All of it would not forget a jitter.
@@ -25,7 +26,7 @@ pub(crate) fn anticipated(stiffness_number: f32) -> f32 {
     if stiffness_number > STIFF { ANTICIPATED } else { 0.0 }
 }
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Solves bending with the positions leaning by what stretch is expected to do.
     pub fn solve_bending_with_anticipation(&mut self) {
         if !self.anticipates() {
@@ -34,6 +35,7 @@ impl<P: Pack> LaneBatch<P> {
         }
         self.lean(1.0);
         self.solve_bending();
+        self.unravel();
         self.lean(-1.0);
         self.bent.copy_from_slice(&self.position);
     }

@@ -5,107 +5,123 @@
 //! and z: it is factorised once as L D Lᵀ. Solved before stretch it passes the heavy cantilever with
 //! three substeps, where Gauss–Seidel needs hundreds.
 
-use crate::fabric::{BendProfile, Fabric};
+use crate::fabric::BendLine;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
 use crate::parameters::BendFactors;
+use crate::places::{Cloths, Constant, Places};
 use crate::vector::{Pack3, V3};
+use crate::weave::Weave;
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Solves every line once.
     pub fn solve_bending(&mut self) {
+        if let Some(weave) = self.woven() {
+            weave.solve_bending();
+            return;
+        }
         P::run(Bending {
-            fabric: &self.fabric,
+            lines: self.fabric.bend_lines(),
             factors: &self.parameters.bend_factors,
             moments: &mut self.moments,
-            position: &mut self.position,
+            places: Cloths::new(&self.weights, &mut self.position),
         });
     }
 }
 
-struct Bending<'a, P: Pack> {
-    fabric: &'a Fabric,
-    factors: &'a [BendFactors<P>],
-    moments: &'a mut [Pack3<P>],
-    position: &'a mut [Pack3<P>],
-}
-
-impl<P: Pack> Kernel<P> for Bending<'_, P> {
-    #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        for line in self.fabric.bend_lines() {
-            let profile = &self.fabric.bend_profiles()[line.profile as usize];
-            let factors = &self.factors[line.profile as usize];
-            solve_line::<L>(token, &line.particles, profile, factors, self.moments, self.position);
+impl<P: Pack> Weave<P> {
+    fn solve_bending(&mut self) {
+        for (facing, lines) in &self.bend_lines {
+            self.sheets.turn(*facing);
+            P::run(Bending {
+                lines,
+                factors: &self.bend_factors,
+                moments: &mut self.moments,
+                places: self.sheets.threads(&self.present),
+            });
         }
     }
 }
 
-#[inline(always)]
-fn solve_line<L: Lane>(
-    token: L::Token,
-    particles: &[u32],
-    profile: &BendProfile,
-    factors: &BendFactors<L::Pack>,
-    moments: &mut [Pack3<L::Pack>],
-    position: &mut [Pack3<L::Pack>],
-) {
-    let zero = V3::<L>::splat(token, 0.0);
-    let two = L::splat(token, 2.0);
-    let inner = factors.rows.len();
-
-    // Down the line: L y = −l C. What is left out is made up for when the moments act.
-    let mut at: V3<L> = V3::load(token, &position[particles[1] as usize]);
-    let mut edge = at - V3::load(token, &position[particles[0] as usize]);
-    let (mut last, mut before_last) = (zero, zero);
-    for (row, (factor, &next)) in factors.rows.iter().zip(&particles[2..]).enumerate() {
-        let next: V3<L> = V3::load(token, &position[next as usize]);
-        let next_edge = next - at;
-        let y = (edge - next_edge)
-            .minus_scaled(last, L::load(token, &factor.near))
-            .minus_scaled(before_last, L::load(token, &factor.far));
-        y.store(&mut moments[row]);
-        (before_last, last) = (last, y);
-        (at, edge) = (next, next_edge);
-    }
-
-    // Back up: D Lᵀ λ = y, and Δx = W Dᵀ λ: each particle takes the moments of its own stencil and
-    // of its neighbours'.
-    let (mut above, mut above_that) = (zero, zero);
-    let (mut near, mut far) = (L::splat(token, 0.0), L::splat(token, 0.0));
-    let mut next_far = L::splat(token, 0.0);
-    for row in (0..inner).rev() {
-        let factor = &factors.rows[row];
-        let y: V3<L> = V3::load(token, &moments[row]);
-        let moment = (y * L::load(token, &factor.inverse))
-            .minus_scaled(above, near)
-            .minus_scaled(above_that, far);
-        let moved = (moment + above_that).minus_scaled(above, two);
-        shift::<L>(token, &mut position[particles[row + 2] as usize], moved, profile, row + 2);
-        (above_that, above) = (above, moment);
-        near = L::load(token, &factor.near);
-        far = next_far;
-        next_far = L::load(token, &factor.far);
-    }
-    let moved = above_that.minus_scaled(above, two);
-    shift::<L>(token, &mut position[particles[1] as usize], moved, profile, 1);
-    shift::<L>(token, &mut position[particles[0] as usize], above, profile, 0);
+struct Bending<'a, P: Pack, S: Places<P>> {
+    lines: &'a [BendLine],
+    factors: &'a [BendFactors<P, S::Constant>],
+    moments: &'a mut [Pack3<P>],
+    places: S,
 }
 
-/// Moves a particle of a line by the difference of moments that acts on it.
-#[inline(always)]
-fn shift<L: Lane>(
-    token: L::Token,
-    position: &mut Pack3<L::Pack>,
-    moments: V3<L>,
-    profile: &BendProfile,
-    at: usize,
-) {
-    let weight = L::splat(
-        token,
-        profile.inverse_areas[at] * profile.inverse_spacing * profile.inverse_spacing,
-    );
-    V3::load(token, position).plus_scaled(moments, weight).store(position);
+impl<P: Pack, S: Places<P>> Kernel<P> for Bending<'_, P, S> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
+        for line in self.lines {
+            let factors = &self.factors[line.profile as usize];
+            self.solve_line::<L>(token, &line.particles, factors);
+        }
+    }
+}
+
+impl<P: Pack, S: Places<P>> Bending<'_, P, S> {
+    #[inline(always)]
+    fn solve_line<L: Lane<Pack = P>>(
+        &mut self,
+        token: L::Token,
+        particles: &[u32],
+        factors: &BendFactors<P, S::Constant>,
+    ) {
+        let zero = V3::<L>::splat(token, 0.0);
+        let two = L::splat(token, 2.0);
+        let inner = factors.rows.len();
+
+        // Down the line: L y = −l C. What is left out is made up for when the moments act.
+        let mut at: V3<L> = self.places.position(token, particles[1]);
+        let mut edge = at - self.places.position(token, particles[0]);
+        let (mut last, mut before_last) = (zero, zero);
+        for (row, (factor, &next)) in factors.rows.iter().zip(&particles[2..]).enumerate() {
+            let next: V3<L> = self.places.position(token, next);
+            let next_edge = next - at;
+            let y = (edge - next_edge)
+                .minus_scaled(last, L::load(token, &factor.near))
+                .minus_scaled(before_last, L::load(token, &factor.far));
+            y.store(&mut self.moments[row]);
+            (before_last, last) = (last, y);
+            (at, edge) = (next, next_edge);
+        }
+
+        // Back up: D Lᵀ λ = y, and Δx = W Dᵀ λ: each particle takes the moments of its own stencil and
+        // of its neighbours'.
+        let (mut above, mut above_that) = (zero, zero);
+        let (mut near, mut far) = (L::splat(token, 0.0), L::splat(token, 0.0));
+        let mut next_far = L::splat(token, 0.0);
+        for row in (0..inner).rev() {
+            let factor = &factors.rows[row];
+            let y: V3<L> = V3::load(token, &self.moments[row]);
+            let moment = (y * L::load(token, &factor.inverse))
+                .minus_scaled(above, near)
+                .minus_scaled(above_that, far);
+            let moved = (moment + above_that).minus_scaled(above, two);
+            self.shift::<L>(token, particles[row + 2], moved, factors.weights[row + 2]);
+            (above_that, above) = (above, moment);
+            near = L::load(token, &factor.near);
+            far = next_far;
+            next_far = L::load(token, &factor.far);
+        }
+        let moved = above_that.minus_scaled(above, two);
+        self.shift::<L>(token, particles[1], moved, factors.weights[1]);
+        self.shift::<L>(token, particles[0], above, factors.weights[0]);
+    }
+
+    /// Moves a particle of a line by the difference of moments that acts on it.
+    #[inline(always)]
+    fn shift<L: Lane<Pack = P>>(
+        &mut self,
+        token: L::Token,
+        particle: u32,
+        moments: V3<L>,
+        weight: S::Constant,
+    ) {
+        let position = self.places.position(token, particle);
+        self.places.set_position(particle, position.plus_scaled(moments, weight.load(token)));
+    }
 }
 
 #[cfg(test)]

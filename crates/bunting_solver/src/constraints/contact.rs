@@ -8,18 +8,19 @@ use parry3d::shape::Shape;
 use crate::constants::{LEAST_CLEARANCE, LEAST_LENGTH};
 use crate::lane_batch::{Clock, LaneBatch};
 use crate::lanes::Pack;
+use crate::places::Constant;
 use crate::vector::{lane3, set_lane3};
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Projects every contact candidate once.
     pub fn solve_contacts(&mut self) {
         let Clock { settings, done, .. } = self.clock;
         // `integrate` has counted this substep already.
         let index = done - 1;
         let part = |substep: u32| substep as f32 / settings.substeps as f32;
-        for (lane, slot) in self.slots.iter().enumerate() {
+        for (cloth, slot) in self.slots.iter().enumerate() {
             let Some(slot) = slot else { continue };
-            let effective_step = self.parameters.step.lanes()[lane];
+            let effective_step = self.parameters.step.lanes()[C::lanes(cloth).start];
             let carry = slot.drive.motion.carry(index, settings.substeps);
             for (collider, candidates) in slot.colliders.iter().zip(&slot.contacts) {
                 let (old_pose, pose) =
@@ -30,10 +31,11 @@ impl<P: Pack> LaneBatch<P> {
                     friction: (slot.material.surface_friction * collider.friction).sqrt(),
                 };
                 for &particle in candidates {
-                    let position = &mut self.position[particle as usize];
-                    let velocity = &mut self.velocity[particle as usize];
-                    let predicted = lane3(&self.predicted[particle as usize], lane);
-                    let old = predicted - lane3(&self.displacement[particle as usize], lane);
+                    let (pack, lane) = self.seating.seat(particle as usize, cloth);
+                    let position = &mut self.position[pack];
+                    let velocity = &mut self.velocity[pack];
+                    let predicted = lane3(&self.predicted[pack], lane);
+                    let old = predicted - lane3(&self.displacement[pack], lane);
                     // Both ends of the particle's way in the collider's own frame, so that it is
                     // relative to the surface; the old end as it stood before the frame moved.
                     let from = old_pose.inverse_transform_point(carry.back(old));

@@ -11,9 +11,10 @@ use crate::constants::{LEAST_AREA_SQUARED, LEAST_LENGTH};
 use crate::fabric::Fabric;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
+use crate::places::Constant;
 use crate::vector::{Pack3, V3};
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Projects every hinge once.
     pub fn solve_dihedral(&mut self, accumulate: bool) {
         let solve = Dihedral {

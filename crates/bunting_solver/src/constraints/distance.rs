@@ -4,9 +4,10 @@ use crate::constants::LEAST_LENGTH;
 use crate::fabric::Link;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
+use crate::places::Constant;
 use crate::vector::{Pack3, V3};
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Projects every link once.
     pub fn solve_distance(&mut self, accumulate: bool) {
         let solve = Distance {

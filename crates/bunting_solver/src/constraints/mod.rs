@@ -24,9 +24,10 @@ pub(crate) use yarn::Knot;
 
 use crate::lane_batch::LaneBatch;
 use crate::lanes::Pack;
+use crate::places::Constant;
 use crate::step::Scheme;
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Projects all constraints, as many passes as the settings ask for.
     pub fn solve_constraints(&mut self) {
         if self.clock.stands_still() {
@@ -68,6 +69,7 @@ impl<P: Pack> LaneBatch<P> {
         for _ in 0..passes.div_ceil(2) {
             self.polish();
         }
+        self.unravel();
         self.still_turn();
         self.remember_stretch();
         self.solve_contacts();

@@ -12,6 +12,7 @@ use glam::Vec3;
 use crate::fabric::Fabric;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
+use crate::places::{Constant, PARTS};
 use crate::vector::{Pack3, V3, splat3};
 
 /// How far pins may lie off the line through them, as a part of its length.
@@ -43,49 +44,57 @@ impl Pole {
     }
 }
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Takes the moment about the pole out of what this substep has corrected.
     pub fn still_turn(&mut self) {
         let Some(pole) = self.pole else { return };
         P::run(StillTurn {
             pole,
-            inertias: &self.inertias,
+            inertias: &self.packs.inertias,
+            parts: &self.parts,
             predicted: &self.predicted,
             position: &mut self.position,
         });
     }
 }
 
-struct StillTurn<'a, P: Pack> {
+struct StillTurn<'a, P: Pack, C> {
     pole: Pole,
     /// Each particle's inertia, in units of the density, m²; zero where it is pinned.
-    inertias: &'a [f32],
+    inertias: &'a [C],
+    /// Into which part of the sums each pack goes.
+    parts: &'a [u8],
     predicted: &'a [Pack3<P>],
     position: &'a mut [Pack3<P>],
 }
 
-impl<P: Pack> Kernel<P> for StillTurn<'_, P> {
+impl<P: Pack, C: Constant<P>> Kernel<P> for StillTurn<'_, P, C> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let at: V3<L> = V3::load(token, &splat3(self.pole.at));
         let along: V3<L> = V3::load(token, &splat3(self.pole.along));
-        let mut moment = L::splat(token, 0.0);
-        let mut inertia = L::splat(token, f32::MIN_POSITIVE);
-        let places = self.position.iter().zip(self.predicted).zip(self.inertias);
-        for ((position, predicted), &mass) in places {
+        let mut moments = [L::splat(token, 0.0); PARTS];
+        let mut inertias = [L::splat(token, 0.0); PARTS];
+        let places = self.position.iter().zip(self.predicted).zip(self.inertias).zip(self.parts);
+        for (((position, predicted), mass), &part) in places {
             let x: V3<L> = V3::load(token, position);
-            let mass = L::splat(token, mass);
+            let mass: L = mass.load(token);
+            let part = part as usize % PARTS;
             // How fast the particle would go round at a radian per second.
             let round = along.cross(x - at);
-            moment = moment.plus_product(mass, round.dot(x - V3::load(token, predicted)));
-            inertia = inertia.plus_product(mass, round.dot(round));
+            let way = round.dot(x - V3::load(token, predicted));
+            moments[part] = moments[part].plus_product(mass, way);
+            inertias[part] = inertias[part].plus_product(mass, round.dot(round));
         }
-        let turn = moment / inertia;
-        for (position, &mass) in self.position.iter_mut().zip(self.inertias) {
-            if mass > 0.0 {
-                let x: V3<L> = V3::load(token, position);
-                x.minus_scaled(along.cross(x - at), turn).store(position);
+        let inertia = C::total(token, inertias) + L::splat(token, f32::MIN_POSITIVE);
+        let turn = C::total(token, moments) / inertia;
+        for (position, mass) in self.position.iter_mut().zip(self.inertias) {
+            if mass.is_zero() {
+                continue;
             }
+            let x: V3<L> = V3::load(token, position);
+            let turned = x.minus_scaled(along.cross(x - at), turn);
+            mass.choose3(token, turned, x).store(position);
         }
     }
 }

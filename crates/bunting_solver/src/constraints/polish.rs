@@ -7,53 +7,75 @@
 use crate::fabric::PolishLink;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
-use crate::vector::{Pack3, V3};
+use crate::places::{Cloths, Constant, Places};
+use crate::vector::V3;
+use crate::weave::Weave;
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Sweeps over warp and weft once, yarn by yarn.
     pub fn polish(&mut self) {
+        if let Some(weave) = self.woven() {
+            weave.polish();
+            return;
+        }
         P::run(Polish {
             links: &self.fabric.strands().polish,
-            weights: &self.weights,
             compliance: &self.parameters.link_compliance,
             target: &mut self.link_target,
-            position: &mut self.position,
+            places: Cloths::new(&self.weights, &mut self.position),
         });
     }
 }
 
-struct Polish<'a, P: Pack> {
-    links: &'a [PolishLink],
-    weights: &'a [f32],
-    compliance: &'a [P],
-    target: &'a mut [P],
-    position: &'a mut [Pack3<P>],
+impl<P: Pack> Weave<P> {
+    fn polish(&mut self) {
+        for colour in 0..self.strands.colours.len() {
+            let links = self.strands.colours[colour].polish.clone();
+            if !links.is_empty() {
+                self.sheets.turn(self.facings[colour]);
+                P::run(Polish {
+                    links: &self.strands.polish[links],
+                    compliance: &self.compliance,
+                    target: &mut self.target,
+                    places: self.sheets.threads(&self.present),
+                });
+            }
+        }
+    }
 }
 
-impl<P: Pack> Kernel<P> for Polish<'_, P> {
+struct Polish<'a, P: Pack, S: Places<P>> {
+    links: &'a [PolishLink],
+    compliance: &'a [P],
+    target: &'a mut [P],
+    places: S,
+}
+
+impl<P: Pack, S: Places<P>> Kernel<P> for Polish<'_, P, S> {
     #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+    fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         let least = L::splat(token, f32::MIN_POSITIVE);
-        let one = L::splat(token, 1.0);
         for link in self.links {
             let target = &mut self.target[link.target as usize];
-            let (a, b) = (link.particles[0] as usize, link.particles[1] as usize);
-            let (wa, wb) = (L::splat(token, self.weights[a]), L::splat(token, self.weights[b]));
+            let [a, b] = link.particles;
+            let wa: L = self.places.weight(token, a);
+            let wb: L = self.places.weight(token, b);
             let compliance = L::load(token, &self.compliance[link.class as usize]);
-            let from: V3<L> = V3::load(token, &self.position[a]);
-            let to: V3<L> = V3::load(token, &self.position[b]);
+            let from: V3<L> = self.places.position(token, a);
+            let to: V3<L> = self.places.position(token, b);
             let along = to - from;
             let squared = along.dot(along);
             let length = squared.sqrt();
             let held = L::load(token, target);
             let lack = (-squared).plus_product(held, length);
             // Multiplied, not divided by: the division need not wait for the root.
+            let one = self.places.one::<L>(token, link.class);
             let inverse = one / least.plus_product(wa + wb + compliance, squared);
             let change = lack * inverse;
             held.minus_product(compliance * length, change).store(target);
             let pull = along * change;
-            from.minus_scaled(pull, wa).store(&mut self.position[a]);
-            to.plus_scaled(pull, wb).store(&mut self.position[b]);
+            self.places.set_position(a, from.minus_scaled(pull, wa));
+            self.places.set_position(b, to.plus_scaled(pull, wb));
         }
     }
 }

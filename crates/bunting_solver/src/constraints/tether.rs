@@ -9,15 +9,33 @@ use crate::constants::LEAST_LENGTH;
 use crate::fabric::Tether;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
+use crate::places::{Constant, Places};
 use crate::vector::{Pack3, V3};
+use crate::weave::{Facing, PackedTethers, Sheets, Weave};
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Projects every tether once.
     pub fn solve_tethers(&mut self) {
+        let stretch = self.parameters.tether_stretch;
+        if let Some(weave) = self.woven() {
+            weave.solve_tethers(&stretch);
+            return;
+        }
         P::run(Tethers {
             tethers: self.fabric.tethers(),
-            stretch: &self.parameters.tether_stretch,
+            stretch: &stretch,
             position: &mut self.position,
+        });
+    }
+}
+
+impl<P: Pack> Weave<P> {
+    fn solve_tethers(&mut self, stretch: &P) {
+        self.sheets.turn(Facing::Straight);
+        P::run(Packs {
+            tethers: &self.tethers,
+            stretch,
+            places: self.sheets.threads(&self.present),
         });
     }
 }
@@ -34,17 +52,47 @@ impl<P: Pack> Kernel<P> for Tethers<'_, P> {
         let stretch = L::load(token, self.stretch);
         for tether in self.tethers {
             let pin: V3<L> = V3::load(token, &self.position[tether.pin as usize]);
-            let at: V3<L> = V3::load(token, &self.position[tether.particle as usize]);
-            let away = at - pin;
-            let squared = away.dot(away);
+            let place = &mut self.position[tether.particle as usize];
             let reach = stretch * L::splat(token, tether.length);
-            let strays = (reach * reach).lt(squared);
-            // Seldom true of any lane, so the root and the division are seldom paid for.
-            if strays.any() {
-                let length = squared.sqrt().max(L::splat(token, LEAST_LENGTH));
-                let caught = pin + away * (reach / length);
-                caught.or_where_not(strays, at).store(&mut self.position[tether.particle as usize]);
+            if let Some(caught) = caught(token, V3::load(token, place), pin, reach) {
+                caught.store(place);
             }
         }
     }
+}
+
+/// Packs of one cloth's particles.
+struct Packs<'a, P: Pack, S: Places<P>> {
+    tethers: &'a PackedTethers<P>,
+    stretch: &'a P,
+    places: S,
+}
+
+impl<P: Pack, S: Places<P>> Kernel<P> for Packs<'_, P, S> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
+        let stretch = L::load(token, self.stretch);
+        let PackedTethers { pins, lengths, .. } = self.tethers;
+        for ((pin, length), at) in pins.iter().zip(lengths).zip(Sheets::packs::<P>()) {
+            let pin: V3<L> = V3::load(token, pin);
+            let reach = stretch * L::load(token, length);
+            if let Some(caught) = caught(token, self.places.position(token, at), pin, reach) {
+                self.places.set_position(at, caught);
+            }
+        }
+    }
+}
+
+/// Where particles are within reach of their pins, if any strays.
+#[inline(always)]
+fn caught<L: Lane>(token: L::Token, at: V3<L>, pin: V3<L>, reach: L) -> Option<V3<L>> {
+    let away = at - pin;
+    let squared = away.dot(away);
+    let strays = (reach * reach).lt(squared);
+    // Seldom true of any lane, so the root and the division are seldom paid for.
+    if !strays.any() {
+        return None;
+    }
+    let length = squared.sqrt().max(L::splat(token, LEAST_LENGTH));
+    Some((pin + away * (reach / length)).or_where_not(strays, at))
 }

@@ -13,7 +13,9 @@
 use crate::fabric::{ABREAST, LinkFamily, Strand, StrandLink, Strands};
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
+use crate::places::{Cloths, Constant, Places};
 use crate::vector::{Pack3, V3};
+use crate::weave::Weave;
 
 /// What the elimination leaves for the substitution, for one link.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +37,7 @@ impl<P: Pack> Knot<P> {
     }
 }
 
-impl<P: Pack> LaneBatch<P> {
+impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Solves warp, weft, bias, then warp and weft again for each pass.
     ///
     /// The bias must not come last: what it moves is large against the strain of warp and weft.
@@ -48,20 +50,38 @@ impl<P: Pack> LaneBatch<P> {
     }
 
     fn visit_yarns(&mut self, visit: Visit) {
+        if let Some(weave) = self.woven() {
+            weave.visit_yarns(visit);
+            return;
+        }
         let Strands { strands, colours, .. } = self.fabric.strands();
-        for colour in colours {
-            if (colour.family == LinkFamily::Bias) != (visit == Visit::Only) {
-                continue;
-            }
+        for colour in colours.iter().filter(|colour| visit.is_to(colour.family)) {
             P::run(Yarns {
                 strands: &strands[colour.strands.clone()],
                 visit,
-                weights: &self.weights,
                 compliance: &self.parameters.link_compliance,
                 knots: &mut self.knots,
                 target: &mut self.link_target,
-                position: &mut self.position,
+                places: Cloths::new(&self.weights, &mut self.position),
             });
+        }
+    }
+}
+
+impl<P: Pack> Weave<P> {
+    fn visit_yarns(&mut self, visit: Visit) {
+        for colour in 0..self.strands.colours.len() {
+            if visit.is_to(self.strands.colours[colour].family) {
+                self.sheets.turn(self.facings[colour]);
+                P::run(Yarns {
+                    strands: &self.strands.strands[self.strands.colours[colour].strands.clone()],
+                    visit,
+                    compliance: &self.compliance,
+                    knots: &mut self.knots,
+                    target: &mut self.target,
+                    places: self.sheets.threads(&self.present),
+                });
+            }
         }
     }
 }
@@ -77,18 +97,23 @@ enum Visit {
     Only,
 }
 
+impl Visit {
+    fn is_to(self, family: LinkFamily) -> bool {
+        (family == LinkFamily::Bias) == (self == Self::Only)
+    }
+}
+
 /// The yarns of one colour.
-struct Yarns<'a, P: Pack> {
-    strands: &'a [Strand],
+struct Yarns<'a, P: Pack, S: Places<P>> {
+    strands: &'a [Strand<S::Constant>],
     visit: Visit,
-    weights: &'a [f32],
     compliance: &'a [P],
     knots: &'a mut [Knot<P>],
     target: &'a mut [P],
-    position: &'a mut [Pack3<P>],
+    places: S,
 }
 
-impl<P: Pack> Kernel<P> for Yarns<'_, P> {
+impl<P: Pack, S: Places<P>> Kernel<P> for Yarns<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         match self.visit {
@@ -99,7 +124,7 @@ impl<P: Pack> Kernel<P> for Yarns<'_, P> {
     }
 }
 
-impl<P: Pack> Yarns<'_, P> {
+impl<P: Pack, S: Places<P>> Yarns<'_, P, S> {
     /// `RECALL` the targets of the visit before, and `KEEP` them for the next.
     #[inline(always)]
     fn solve_all<L: Lane<Pack = P>, const RECALL: bool, const KEEP: bool>(
@@ -119,24 +144,21 @@ impl<P: Pack> Yarns<'_, P> {
     fn solve<L: Lane<Pack = P>, const SIDE: usize, const RECALL: bool, const KEEP: bool>(
         &mut self,
         token: L::Token,
-        strand: &Strand,
+        strand: &Strand<S::Constant>,
     ) {
-        let position = &mut *self.position;
-        let weights = &self.weights[..position.len()];
+        let places = &mut self.places;
         let (knots, _) = self.knots.as_chunks_mut::<SIDE>();
         let (targets, _) = self.target[strand.targets.clone()].as_chunks_mut::<SIDE>();
         let zero = L::splat(token, 0.0);
-        let one = L::splat(token, 1.0);
         // A link without length has no direction: its row is 0 = 0, and its change none.
         let least = L::splat(token, f32::MIN_POSITIVE);
         let none = V3::<L>::splat(token, 0.0);
 
         let begin: &[u32; SIDE] = side(&strand.particles[0]);
-        let mut end = [none; SIDE];
-        let mut end_weight = [zero; SIDE];
+        let (mut end, mut end_weight) = ([none; SIDE], [zero; SIDE]);
         for (at, &particle) in begin.iter().enumerate() {
-            end[at] = V3::load(token, &position[particle as usize]);
-            end_weight[at] = L::splat(token, weights[particle as usize]);
+            end[at] = places.position(token, particle);
+            end_weight[at] = places.weight(token, particle);
         }
         let mut last = [none; SIDE];
         let mut inverse = [zero; SIDE];
@@ -146,13 +168,10 @@ impl<P: Pack> Yarns<'_, P> {
             for (at, &particle) in side::<SIDE>(particles).iter().enumerate() {
                 let StrandLink { class, rest_length } = links[at];
                 let compliance = L::load(token, &self.compliance[class as usize]);
-                let target = if RECALL {
-                    L::load(token, &targets[at])
-                } else {
-                    L::splat(token, rest_length)
-                };
-                let next: V3<L> = V3::load(token, &position[particle as usize]);
-                let next_weight = L::splat(token, weights[particle as usize]);
+                let target =
+                    if RECALL { L::load(token, &targets[at]) } else { rest_length.load(token) };
+                let next: V3<L> = places.position(token, particle);
+                let next_weight = places.weight(token, particle);
                 let along = next - end[at];
                 let squared = along.dot(along);
                 let length = squared.sqrt();
@@ -162,7 +181,8 @@ impl<P: Pack> Yarns<'_, P> {
                 let share = coupling * inverse[at];
                 let diagonal =
                     least.plus_product(end_weight[at] + next_weight + compliance, squared);
-                inverse[at] = one / diagonal.minus_product(coupling, share);
+                inverse[at] =
+                    places.one::<L>(token, class) / diagonal.minus_product(coupling, share);
                 change[at] = lack.plus_product(coupling, change[at]) * inverse[at];
                 along.store(&mut knots[at].along);
                 share.store(&mut knots[at].share);
@@ -188,22 +208,23 @@ impl<P: Pack> Yarns<'_, P> {
                     let target = if RECALL {
                         L::load(token, &targets[at])
                     } else {
-                        L::splat(token, links[at].rest_length)
+                        links[at].rest_length.load(token)
                     };
                     target.minus_product(give, change).store(&mut targets[at]);
                 }
                 let tension = V3::load(token, &knots[at].along) * change;
-                let place = &mut position[particle as usize];
-                V3::load(token, place)
-                    .plus_scaled(tension - pull[at], L::splat(token, weights[particle as usize]))
-                    .store(place);
+                let moved = places
+                    .position(token, particle)
+                    .plus_scaled(tension - pull[at], places.weight(token, particle));
+                places.set_position(particle, moved);
                 pull[at] = tension;
             }
         }
         for (at, &particle) in begin.iter().enumerate() {
-            let place = &mut position[particle as usize];
-            let weight = L::splat(token, weights[particle as usize]);
-            V3::load(token, place).minus_scaled(pull[at], weight).store(place);
+            let moved = places
+                .position(token, particle)
+                .minus_scaled(pull[at], places.weight(token, particle));
+            places.set_position(particle, moved);
         }
     }
 }

@@ -22,7 +22,7 @@ mod yarns;
 use glam::{Vec2, Vec3};
 
 pub(crate) use patches::Patch;
-pub(crate) use strands::{ABREAST, PolishLink, Strand, StrandLink, Strands};
+pub(crate) use strands::{ABREAST, PolishLink, Strand, StrandLink, Strands, Thread};
 pub(crate) use tethers::Pin;
 
 pub use bending::{BendLine, BendProfile};

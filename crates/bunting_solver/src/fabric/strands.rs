@@ -17,24 +17,35 @@ pub(crate) const ABREAST: usize = 2;
 
 /// Yarns of one colour side by side.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Strand {
+pub(crate) struct Strand<C = f32> {
     /// How many yarns there are; in rows, the columns from here on mean nothing.
     pub count: usize,
     /// Rows of particles, one more than there are rows of links.
     pub particles: Vec<[u32; ABREAST]>,
     /// Rows of links.
-    pub links: Vec<[StrandLink; ABREAST]>,
+    pub links: Vec<[StrandLink<C>; ABREAST]>,
     /// Where among all targets those of its links are: row by row, `count` a row.
     pub targets: Range<usize>,
 }
 
 /// A link as it is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct StrandLink {
+pub(crate) struct StrandLink<C = f32> {
     /// Index into the fabric's link classes.
     pub class: u32,
     /// Distance at rest, m.
-    pub rest_length: f32,
+    pub rest_length: C,
+}
+
+/// A yarn as it is solved.
+#[derive(Clone, Debug)]
+pub(crate) struct Thread<C = f32> {
+    /// Particles along it, one more than there are links.
+    pub particles: Vec<u32>,
+    pub links: Vec<StrandLink<C>>,
+    /// Which links are polished, one after the other, and the class of each: every second link and then
+    /// the others.
+    pub polish: Vec<(usize, u32)>,
 }
 
 /// Strands of one colour.
@@ -42,13 +53,14 @@ pub(crate) struct StrandLink {
 pub(crate) struct StrandColour {
     pub family: LinkFamily,
     pub strands: Range<usize>,
+    pub polish: Range<usize>,
 }
 
 /// All yarns of a fabric, laid side by side.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Strands {
+pub(crate) struct Strands<C = f32> {
     /// Colour by colour.
-    pub strands: Vec<Strand>,
+    pub strands: Vec<Strand<C>>,
     pub colours: Vec<StrandColour>,
     /// Warp and weft link by link, yarn after yarn: in each, every second link and then the others,
     /// so that neighbours in the list share no particle.
@@ -69,28 +81,48 @@ pub(crate) struct PolishLink {
 impl Strands {
     /// Lays yarns side by side, colour by colour.
     pub fn new(yarns: &[Yarn], colours: &Colours, links: &[Link]) -> Self {
-        let mut strands: Vec<Strand> = Vec::new();
+        let as_solved = |yarn: &Yarn| {
+            let count = yarn.links.len();
+            let order = (0..count).step_by(2).chain((1..count).step_by(2));
+            let link = |at: usize| &links[yarn.links[at] as usize];
+            Thread {
+                particles: yarn.particles.clone(),
+                links: (0..count).map(|at| StrandLink::of(link(at))).collect(),
+                polish: order.map(|at| (at, link(at).class)).collect(),
+            }
+        };
+        Self::of(colours.ranges().iter().map(|range| {
+            let yarns = &yarns[range.clone()];
+            let family = links[yarns[0].links[0] as usize].family;
+            (family, yarns.iter().map(as_solved).collect())
+        }))
+    }
+}
+
+impl<C: Copy> Strands<C> {
+    /// Lays what is solved alike side by side, colour by colour.
+    pub fn of(colours: impl Iterator<Item = (LinkFamily, Vec<Thread<C>>)>) -> Self {
+        let mut strands: Vec<Strand<C>> = Vec::new();
         let mut coloured = Vec::new();
         let mut polish = Vec::new();
-        for range in colours.ranges() {
-            let first = strands.len();
-            let family = links[yarns[range.start].links[0] as usize].family;
-            for side in yarns[range.clone()].chunks(ABREAST) {
+        for (family, threads) in colours {
+            let (first_strand, first_link) = (strands.len(), polish.len());
+            for side in threads.chunks(ABREAST) {
                 let targets = strands.last().map_or(0, |strand| strand.targets.end);
-                strands.push(Strand::new(side, links, targets));
+                strands.push(Strand::new(side, targets));
                 if family == LinkFamily::Bias {
                     continue;
                 }
-                for (at, yarn) in side.iter().enumerate() {
-                    let count = yarn.links.len();
-                    polish.extend((0..count).step_by(2).chain((1..count).step_by(2)).map(|row| {
-                        let Link { particles, class, .. } = links[yarn.links[row] as usize];
-                        let target = (targets + row * side.len() + at) as u32;
-                        PolishLink { particles, class, target }
+                for (at, thread) in side.iter().enumerate() {
+                    polish.extend(thread.polish.iter().map(|&(row, class)| PolishLink {
+                        particles: [thread.particles[row], thread.particles[row + 1]],
+                        class,
+                        target: (targets + row * side.len() + at) as u32,
                     }));
                 }
             }
-            coloured.push(StrandColour { family, strands: first..strands.len() });
+            let (strands, polish) = (first_strand..strands.len(), first_link..polish.len());
+            coloured.push(StrandColour { family, strands, polish });
         }
         Self { strands, colours: coloured, polish }
     }
@@ -99,32 +131,40 @@ impl Strands {
     pub fn target_count(&self) -> usize {
         self.strands.last().map_or(0, |strand| strand.targets.end)
     }
+
+    /// Most links that one strand has.
+    pub fn longest(&self) -> usize {
+        self.strands.iter().map(|strand| strand.links.len()).max().unwrap_or(0)
+    }
 }
 
-impl Strand {
-    fn new(yarns: &[Yarn], links: &[Link], first_target: usize) -> Self {
-        let rows = yarns.iter().map(|yarn| yarn.links.len()).max().unwrap_or(0);
-        let column = |at: usize| &yarns[at.min(yarns.len() - 1)];
+impl StrandLink {
+    fn of(link: &Link) -> Self {
+        Self { class: link.class, rest_length: link.rest_length }
+    }
+}
+
+impl<C: Copy> Strand<C> {
+    fn new(threads: &[Thread<C>], first_target: usize) -> Self {
+        let rows = threads.iter().map(|thread| thread.links.len()).max().unwrap_or(0);
+        let column = |at: usize| &threads[at.min(threads.len() - 1)];
         let particles = (0..=rows).map(|row| {
             core::array::from_fn(|at| {
                 let path = &column(at).particles;
                 path[row.min(path.len() - 1)]
             })
         });
-        let link_rows = (0..rows).map(|row| {
+        let links = (0..rows).map(|row| {
             core::array::from_fn(|at| {
                 let path = &column(at).links;
-                let Link { class, rest_length, .. } = links[path[row.min(path.len() - 1)] as usize];
-                StrandLink { class, rest_length }
+                path[row.min(path.len() - 1)]
             })
         });
-        let particles = particles.collect();
-        let links: Vec<[StrandLink; ABREAST]> = link_rows.collect();
         Self {
-            count: yarns.len(),
-            particles,
-            links,
-            targets: first_target..first_target + rows * yarns.len(),
+            count: threads.len(),
+            particles: particles.collect(),
+            links: links.collect(),
+            targets: first_target..first_target + rows * threads.len(),
         }
     }
 }

@@ -8,7 +8,7 @@ use super::LevelTransfer;
 use crate::batch::ClothBatch;
 use crate::energy::{elastic, moment};
 use crate::fabric::{Fabric, FabricBuilder, FabricMaterial, Grid};
-use crate::lanes::LaneCount;
+use crate::lane_count::LaneCount;
 use crate::snapshot::ClothSnapshot;
 use crate::step::{Drive, StepSettings};
 
