@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use crate::collision::Collider;
 use crate::fabric::{Fabric, FabricError, FabricMaterial};
+use crate::formula::Past;
 use crate::lane_batch::LaneBatch;
 use crate::lane_count::LaneCount;
 use crate::lanes::{Pack1, Pack8, Pack16};
@@ -124,6 +125,15 @@ impl ClothBatch {
     #[must_use]
     pub fn is_empty(&self) -> bool {
         at_any_width!(&self.0, batch => batch.slots.iter().all(Option::is_none))
+    }
+
+    /// Lets the integrator of a lane begin anew: its next substep is of first order.
+    pub(crate) fn forget_past(&mut self, lane: usize) {
+        at_any_width!(&mut self.0, batch => {
+            if let Some(slot) = &mut batch.slots[lane] {
+                slot.past = Past::default();
+            }
+        });
     }
 
     /// Puts a cloth into the first free lane and returns the lane.

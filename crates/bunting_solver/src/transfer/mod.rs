@@ -23,6 +23,7 @@ use crate::fabric::{Fabric, FabricMaterial};
 use crate::snapshot::ClothSnapshot;
 use mesh::Relief;
 use rows::Rows;
+use settle::Settler;
 
 /// Part of the elastic and the kinetic energy that may be added as strain, and is taken from the motion.
 /// Smaller: cloth at rest is settled that need not be. Larger: motion is lost.
@@ -62,6 +63,8 @@ pub enum TransferError {
 pub struct LevelTransfer {
     fine: Arc<Fabric>,
     coarse: Arc<Fabric>,
+    /// Where cloths that become finer, and coarser, settle.
+    settlers: [Arc<Settler>; 2],
     /// Where new particles come from.
     smooth: Rows,
     /// Where they lie on the coarse triangles.
@@ -96,6 +99,7 @@ impl LevelTransfer {
         Ok(Self {
             fine: Arc::clone(fine),
             coarse: Arc::clone(coarse),
+            settlers: [fine, coarse].map(|fabric| Arc::new(Settler::new(fabric))),
             smooth: grid::smooth(fine_grid, coarse_grid),
             flat: grid::flat(fine_grid, coarse_grid),
             relief: Relief::default(),
@@ -132,6 +136,7 @@ impl LevelTransfer {
         Ok(Self {
             fine: Arc::clone(fine),
             coarse: Arc::clone(coarse),
+            settlers: [fine, coarse].map(|fabric| Arc::new(Settler::new(fabric))),
             smooth: rows.clone(),
             flat: rows,
             relief,
@@ -151,7 +156,7 @@ impl LevelTransfer {
         self.relief.add(&coarse.positions, &mut positions);
         let velocities = self.smooth.interpolate(&coarse.velocities).collect();
         let before = Side { fabric: &self.coarse, state: coarse };
-        before.arrive(&self.fine, positions, velocities, material, gravity)
+        before.arrive(&self.settlers[0], positions, velocities, material, gravity)
     }
 
     /// Fine to coarse, for a cloth of a material under a gravity along the axes of its frame, m/s².
@@ -165,7 +170,7 @@ impl LevelTransfer {
         let positions = self.pick(&fine.positions).collect();
         let velocities = self.gather_velocities(&fine.velocities);
         let before = Side { fabric: &self.fine, state: fine };
-        before.arrive(&self.coarse, positions, velocities, material, gravity)
+        before.arrive(&self.settlers[1], positions, velocities, material, gravity)
     }
 
     /// Values at the fine particles, of those that are shared: one a coarse particle.
@@ -190,12 +195,13 @@ impl Side<'_> {
     /// The state on another fabric, made sound.
     fn arrive(
         &self,
-        fabric: &Arc<Fabric>,
+        settler: &Settler,
         mut positions: Vec<Vec3>,
         mut velocities: Vec<Vec3>,
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
+        let fabric = &settler.fabric();
         for (particle, position) in positions.iter_mut().enumerate() {
             if fabric.is_pinned(particle) {
                 *position = fabric.rest_positions()[particle];
@@ -206,7 +212,7 @@ impl Side<'_> {
         let had = elastic(self.fabric, material, &self.state.positions);
         // So little more that the motion hardly notices when it pays.
         let limit = had + PAID * (had + 0.5 * density * agitation);
-        let positions = settle::settle(fabric, material, positions, limit);
+        settler.settle(material, &mut positions, limit);
         let stretched = elastic(fabric, material, &positions) - had;
         let height = moment(self.fabric, &self.state.positions) - moment(fabric, &positions);
         let gained = stretched / density + height.dot(gravity.as_dvec3());

@@ -5,15 +5,14 @@
 //! without loads, each slowed, until hardly more energy is stored than before. Up, one does; down, where
 //! folds have no room between the particles that stay, the cloth must find others.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::Vec3;
 
+use crate::batch::ClothBatch;
 use crate::energy::elastic;
 use crate::fabric::{Fabric, FabricMaterial};
-use crate::formula::Past;
-use crate::lane_batch::LaneBatch;
-use crate::lanes::Pack1;
+use crate::lane_count::LaneCount;
 use crate::snapshot::ClothSnapshot;
 use crate::step::{Drive, StepSettings};
 
@@ -29,35 +28,52 @@ const MOST_STEPS: u32 = 24;
 /// Damping, 1/s: 7 % of the velocity in a substep. Less: the cloth overshoots. More: it creeps.
 const DAMPING: f32 = 8.7;
 
-/// The positions with at most so much elastic energy, J, or as near to that as they come.
-pub(super) fn settle(
-    fabric: &Arc<Fabric>,
-    material: &FabricMaterial,
-    mut positions: Vec<Vec3>,
-    limit: f64,
-) -> Vec<Vec3> {
-    let mut batch = LaneBatch::<Pack1>::new(Arc::clone(fabric));
-    let damped = FabricMaterial { damping: DAMPING, internal_damping: 0.0, ..*material };
-    let at_rest = vec![Vec3::ZERO; positions.len()];
-    batch.insert(0, &ClothSnapshot::new(positions.clone(), at_rest), damped);
-    if let Some(slot) = &mut batch.slots[0] {
-        slot.drive = Drive::NONE;
+/// Where cloths of a fabric settle, one after the other.
+#[derive(Debug)]
+pub(super) struct Settler {
+    batch: Mutex<ClothBatch>,
+}
+
+impl Settler {
+    pub fn new(fabric: &Arc<Fabric>) -> Self {
+        Self { batch: Mutex::new(ClothBatch::new(Arc::clone(fabric), LaneCount::One)) }
     }
-    let settings = StepSettings { passes: 2, ..StepSettings::yarns(MOST_STEPS) };
-    batch.begin_tick(STEP * MOST_STEPS as f32, settings);
-    for step in 0..MOST_STEPS {
-        // Reckoning the energy takes half as long as a substep: after none, one, two, four, eight, …
-        if (step == 0 || step.is_power_of_two()) && elastic(fabric, material, &positions) <= limit {
-            break;
+
+    /// The fabric.
+    pub fn fabric(&self) -> Arc<Fabric> {
+        Arc::clone(self.lock().fabric())
+    }
+
+    fn lock(&self) -> MutexGuard<'_, ClothBatch> {
+        // Whoever panicked left a cloth there, and the next takes its place.
+        self.batch.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Lets positions come to at most so much elastic energy, J, or as near to that as they come. What
+    /// cannot be simulated stays as it is.
+    pub fn settle(&self, material: &FabricMaterial, positions: &mut Vec<Vec3>, limit: f64) {
+        let mut batch = self.lock();
+        let fabric = Arc::clone(batch.fabric());
+        let damped = FabricMaterial { damping: DAMPING, internal_damping: 0.0, ..*material };
+        let at_rest = vec![Vec3::ZERO; positions.len()];
+        if batch.replace(0, &ClothSnapshot::new(positions.clone(), at_rest), damped).is_err() {
+            return;
         }
-        if let Some(slot) = &mut batch.slots[0] {
+        batch.drive(0, Drive::NONE);
+        let settings = StepSettings { passes: 2, ..StepSettings::yarns(MOST_STEPS) };
+        batch.begin_tick(STEP * MOST_STEPS as f32, settings);
+        for step in 0..MOST_STEPS {
+            // Reckoning the energy takes half as long as a substep: after none, one, two, four, …
+            let reckons = step == 0 || step.is_power_of_two();
+            if reckons && elastic(&fabric, material, positions) <= limit {
+                break;
+            }
             // Each of first order: a second would foresee the push of the one before.
-            slot.past = Past::default();
+            batch.forget_past(0);
+            batch.integrate();
+            batch.solve_constraints();
+            batch.update_velocities();
+            batch.copy_positions(0, positions);
         }
-        batch.integrate();
-        batch.solve_constraints();
-        batch.update_velocities();
-        batch.copy_positions(0, &mut positions);
     }
-    positions
 }
