@@ -22,7 +22,9 @@ use crate::vector::{Pack3, V3};
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Gathers what the air does to each particle in this substep.
     pub fn gather_air(&mut self) {
-        if let Some(weave) = &mut self.weave {
+        if C::SIDE > 1
+            && let Some(weave) = &mut self.weave
+        {
             let (position, velocity) = (&self.position, &self.velocity);
             weave.gather_air(&self.parameters, position, velocity, &mut self.predicted);
             return;

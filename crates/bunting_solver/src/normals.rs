@@ -10,7 +10,9 @@ use crate::vector::{Pack3, V3};
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Recomputes all normals.
     pub fn compute_normals(&mut self) {
-        if let Some(weave) = &mut self.weave {
+        if C::SIDE > 1
+            && let Some(weave) = &mut self.weave
+        {
             weave.compute_normals(&self.position, &mut self.normal);
             return;
         }

@@ -16,7 +16,9 @@ use crate::weave::Weave;
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Solves every line once.
     pub fn solve_bending(&mut self) {
-        if let Some(weave) = self.woven() {
+        if C::SIDE > 1
+            && let Some(weave) = self.woven()
+        {
             weave.solve_bending();
             return;
         }

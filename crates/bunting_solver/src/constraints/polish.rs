@@ -14,7 +14,9 @@ use crate::weave::Weave;
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Sweeps over warp and weft once, yarn by yarn.
     pub fn polish(&mut self) {
-        if let Some(weave) = self.woven() {
+        if C::SIDE > 1
+            && let Some(weave) = self.woven()
+        {
             weave.polish();
             return;
         }

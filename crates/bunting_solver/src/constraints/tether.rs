@@ -17,7 +17,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Projects every tether once.
     pub fn solve_tethers(&mut self) {
         let stretch = self.parameters.tether_stretch;
-        if let Some(weave) = self.woven() {
+        if C::SIDE > 1
+            && let Some(weave) = self.woven()
+        {
             weave.solve_tethers(&stretch);
             return;
         }

@@ -50,7 +50,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     }
 
     fn visit_yarns(&mut self, visit: Visit) {
-        if let Some(weave) = self.woven() {
+        if C::SIDE > 1
+            && let Some(weave) = self.woven()
+        {
             weave.visit_yarns(visit);
             return;
         }

@@ -128,7 +128,8 @@ impl<P: Pack> Weave<P> {
 }
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
-    /// The cloth in its weave, positions and all, if it is woven.
+    /// The cloth in its weave, positions and all, if it is woven. Where several cloths lie in the lanes
+    /// (`C::SIDE` is 1) it is none: asked first, that spares the compiler all that is done with it.
     pub fn woven(&mut self) -> Option<&mut Weave<P>> {
         let weave = self.weave.as_deref_mut()?;
         if !weave.holds_positions {
