@@ -38,7 +38,7 @@ impl Default for ClothBudget {
             refine_above: 1.0,
             coarsen_below: 0.5,
             dwell: 30,
-            switches: 2,
+            switches: 1,
             margin: 0.05,
         }
     }

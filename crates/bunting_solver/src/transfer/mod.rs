@@ -212,8 +212,7 @@ impl Side<'_> {
         let had = elastic(self.fabric, material, &self.state.positions);
         // So little more that the motion hardly notices when it pays.
         let limit = had + PAID * (had + 0.5 * density * agitation);
-        settler.settle(material, &mut positions, limit);
-        let stretched = elastic(fabric, material, &positions) - had;
+        let stretched = settler.settle(material, &mut positions, limit) - had;
         let height = moment(self.fabric, &self.state.positions) - moment(fabric, &positions);
         let gained = stretched / density + height.dot(gravity.as_dvec3());
         motion::match_momentum(

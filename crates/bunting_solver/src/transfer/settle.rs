@@ -49,24 +49,26 @@ impl Settler {
         self.batch.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets positions come to at most so much elastic energy, J, or as near to that as they come. What
-    /// cannot be simulated stays as it is.
-    pub fn settle(&self, material: &FabricMaterial, positions: &mut Vec<Vec3>, limit: f64) {
+    /// Lets positions come to at most so much elastic energy, J, or as near to that as they come, and
+    /// returns how much it is. What cannot be simulated stays as it is.
+    pub fn settle(&self, material: &FabricMaterial, positions: &mut Vec<Vec3>, limit: f64) -> f64 {
         let mut batch = self.lock();
         let fabric = Arc::clone(batch.fabric());
         let damped = FabricMaterial { damping: DAMPING, internal_damping: 0.0, ..*material };
         let at_rest = vec![Vec3::ZERO; positions.len()];
         if batch.replace(0, &ClothSnapshot::new(positions.clone(), at_rest), damped).is_err() {
-            return;
+            return elastic(&fabric, material, positions);
         }
         batch.drive(0, Drive::NONE);
         let settings = StepSettings { passes: 2, ..StepSettings::yarns(MOST_STEPS) };
         batch.begin_tick(STEP * MOST_STEPS as f32, settings);
         for step in 0..MOST_STEPS {
             // Reckoning the energy takes half as long as a substep: after none, one, two, four, …
-            let reckons = step == 0 || step.is_power_of_two();
-            if reckons && elastic(&fabric, material, positions) <= limit {
-                break;
+            if step == 0 || step.is_power_of_two() {
+                let stored = elastic(&fabric, material, positions);
+                if stored <= limit {
+                    return stored;
+                }
             }
             // Each of first order: a second would foresee the push of the one before.
             batch.forget_past(0);
@@ -75,5 +77,6 @@ impl Settler {
             batch.update_velocities();
             batch.copy_positions(0, positions);
         }
+        elastic(&fabric, material, positions)
     }
 }
