@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
-use bunting_solver::{LaneCount, StepLimits};
+use bunting_solver::{Drive, LaneCount, StepLimits};
 
 /// Settings for all cloths. They may be changed at any time.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
@@ -38,8 +38,8 @@ impl Default for ClothSettings {
         let finest = StepLimits::default();
         let coarse = StepLimits { substeps: 1..=*finest.substeps.end(), ..finest.clone() };
         Self {
-            gravity: Vec3::new(0.0, -9.81, 0.0),
-            air_density: 1.225,
+            gravity: Drive::default().gravity,
+            air_density: Drive::default().air_density,
             steps: vec![finest, coarse],
             lanes: None,
         }

@@ -5,14 +5,12 @@
 //! a whole cloth on a few light particles. There the inertia is raised to what the substep can
 //! follow, from static bounds alone; gravity acts on the true mass, so that rest states are exact.
 
+use crate::constants::GRAVITY;
 use crate::fabric::Fabric;
 
 /// Inertia that a particle needs, in units of (β h)² T/l: 4.2 was found to calm a cloth hung by two
 /// corners, with some to spare, up to 65 × 65 at three substeps.
 const INERTIA_PER_TENSION: f32 = 4.2;
-
-/// Standard gravity, m/s²: the bound is on what hangs, wherever the scene's gravity points.
-const GRAVITY: f32 = 9.81;
 
 /// One over each particle's area or more, 1/m²; zero where it is pinned. `step` is the effective
 /// length of a substep, s.

@@ -1,5 +1,9 @@
 //! Every tolerance of the step, with its unit and what breaks when it is changed.
 
+/// Standard gravity, m/s²: the default of a scene, and the measure of static bounds wherever the scene's
+/// gravity points.
+pub(crate) const GRAVITY: f32 = 9.81;
+
 /// Lengths below this are none, m. Smaller: a collapsed link divides by nothing. Larger: fine meshes
 /// lose their finest links.
 pub(crate) const LEAST_LENGTH: f32 = 1e-9;

@@ -8,7 +8,8 @@ use crate::constants::INERTIA_RIDGE;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
 use crate::parameters::Parameters;
-use crate::places::{Constant, PARTS};
+use crate::places::Constant;
+use crate::sums::Sum;
 use crate::vector::{Pack3, V3};
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
@@ -42,40 +43,37 @@ struct DampInternally<'a, P: Pack, C> {
 impl<P: Pack, C: Constant<P>> Kernel<P> for DampInternally<'_, P, C> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let zero = V3::<L>::splat(token, 0.0);
-        let (mut centres, mut drifts) = ([zero; PARTS], [zero; PARTS]);
+        let mut centre = V3::<Sum<L>>::sums(token);
+        let mut drift = V3::<Sum<L>>::sums(token);
         for (((position, velocity), area), &part) in
             self.position.iter().zip(&*self.velocity).zip(self.areas).zip(self.parts)
         {
             let area: L = area.load(token);
-            let part = part as usize % PARTS;
-            centres[part] = centres[part] + V3::load(token, position) * area;
-            drifts[part] = drifts[part] + V3::load(token, velocity) * area;
+            centre.add_term(part, V3::load(token, position) * area);
+            drift.add_term(part, V3::load(token, velocity) * area);
         }
         let per_area = L::splat(token, 1.0) / L::splat(token, self.area);
-        let centre = total::<L, C>(token, &centres) * per_area;
-        let drift = total::<L, C>(token, &drifts) * per_area;
+        let centre = centre.total::<C>(token) * per_area;
+        let drift = drift.total::<C>(token) * per_area;
 
         // L = Σ m r × v and I = Σ m (|r|² 1 − r rᵀ) (thesis, eq. A.3 and A.5).
-        let mut spins = [zero; PARTS];
-        let (mut squares, mut products) = ([zero; PARTS], [zero; PARTS]);
+        let mut spin = V3::<Sum<L>>::sums(token);
+        let mut squares = V3::<Sum<L>>::sums(token);
+        let mut products = V3::<Sum<L>>::sums(token);
         for (((position, velocity), area), &part) in
             self.position.iter().zip(&*self.velocity).zip(self.areas).zip(self.parts)
         {
             let area: L = area.load(token);
-            let part = part as usize % PARTS;
             let arm = V3::load(token, position) - centre;
             let weighted = arm * area;
-            spins[part] = spins[part] + weighted.cross(V3::load(token, velocity) - drift);
-            squares[part] = squares[part]
-                + V3 { x: weighted.x * arm.x, y: weighted.y * arm.y, z: weighted.z * arm.z };
-            products[part] = products[part]
-                + V3 { x: weighted.y * arm.z, y: weighted.z * arm.x, z: weighted.x * arm.y };
+            let (x, y, z) = (weighted.x, weighted.y, weighted.z);
+            spin.add_term(part, weighted.cross(V3::load(token, velocity) - drift));
+            squares.add_term(part, V3 { x: x * arm.x, y: y * arm.y, z: z * arm.z });
+            products.add_term(part, V3 { x: y * arm.z, y: z * arm.x, z: x * arm.y });
         }
-        let spin = total::<L, C>(token, &spins);
-        let squares = total::<L, C>(token, &squares);
-        let products = total::<L, C>(token, &products);
-        let turning = solve_inertia(token, squares, products, spin);
+        let squares = squares.total::<C>(token);
+        let products = products.total::<C>(token);
+        let turning = solve_inertia(token, squares, products, spin.total::<C>(token));
 
         let keep = L::load(token, &self.parameters.keep_internal);
         let damps = keep.lt(L::splat(token, 1.0));
@@ -88,16 +86,6 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for DampInternally<'_, P, C> {
             (rigid + (v - rigid) * keep).or_where_not(damps, v).store(velocity);
         }
     }
-}
-
-/// A sum over all particles, given those of its parts.
-#[inline(always)]
-fn total<L: Lane, C: Constant<L::Pack>>(token: L::Token, parts: &[V3<L>; PARTS]) -> V3<L> {
-    let mut sums = [[L::splat(token, 0.0); PARTS]; 3];
-    for (part, sum) in parts.iter().enumerate() {
-        (sums[0][part], sums[1][part], sums[2][part]) = (sum.x, sum.y, sum.z);
-    }
-    V3 { x: C::total(token, sums[0]), y: C::total(token, sums[1]), z: C::total(token, sums[2]) }
 }
 
 /// ω = I⁻¹ L by Cramer's rule, with a ridge: the inertia of a line or a point has no inverse.

@@ -1,5 +1,6 @@
 //! Which backward differentiation formula a lane takes in a substep, and what it must remember for it.
 
+use crate::constants::GRAVITY;
 use crate::step::Scheme;
 
 /// A backward differentiation formula of order one or two. With Δ and Δ₋₁ the last two changes of x,
@@ -32,9 +33,6 @@ const ROUGH: f32 = 2.0;
 
 /// Speeds that do not matter, in units of what gravity gives in a substep. Cloth at rest is not rough.
 const SLOW: f32 = 5.0;
-
-/// Standard gravity, m/s².
-const GRAVITY: f32 = 9.81;
 
 /// What a lane remembers of its last substeps besides the particles' past.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

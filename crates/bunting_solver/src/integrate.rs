@@ -10,7 +10,8 @@ use crate::formula::Unrest;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
 use crate::parameters::Parameters;
-use crate::places::{Constant, PARTS};
+use crate::places::Constant;
+use crate::sums::Sum;
 use crate::vector::{Pack3, V3};
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
@@ -210,9 +211,9 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Extrapolate<'_, P, C> {
         let zero = V3::splat(token, 0.0);
         let half = L::splat(token, 0.5);
         let nothing = L::splat(token, 0.0);
-        let mut motions = [nothing; PARTS];
-        let mut changes = [nothing; PARTS];
-        let mut shakes = [nothing; PARTS];
+        let mut motions = Sum::new(token);
+        let mut changes = Sum::new(token);
+        let mut shakes = Sum::new(token);
         let speeds = self.velocity.iter().zip(self.older_velocity).zip(self.oldest_velocity);
         for (((((velocity, older), oldest), position), inverse_area), &part) in
             speeds.zip(self.position).zip(self.inverse_areas).zip(self.parts)
@@ -226,13 +227,9 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Extrapolate<'_, P, C> {
             let change = v - older;
             let change_before = older - V3::load(token, oldest);
             let shake = change - change_before;
-            let part = part as usize % PARTS;
-            let add = |sums: &mut [L; PARTS], square: L| {
-                sums[part] = sums[part] + inverse_area.choose(token, square, nothing);
-            };
-            add(&mut motions, v.dot(v));
-            add(&mut changes, change.dot(change));
-            add(&mut shakes, shake.dot(shake));
+            motions.add(part, inverse_area.choose(token, v.dot(v), nothing));
+            changes.add(part, inverse_area.choose(token, change.dot(change), nothing));
+            shakes.add(part, inverse_area.choose(token, shake.dot(shake), nothing));
             let unchanged = v;
             let v = v.plus_scaled(change, last).plus_scaled(change_before, before);
             // Damping acts on the motion relative to the frame, whose point at x has this velocity.
@@ -245,9 +242,9 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Extrapolate<'_, P, C> {
             };
             inverse_area.choose3(token, damped, unchanged).store(oldest);
         }
-        C::total(token, motions).store(&mut self.unrest.motion);
-        C::total(token, changes).store(&mut self.unrest.change);
-        C::total(token, shakes).store(&mut self.unrest.shake);
+        motions.total::<C>(token).store(&mut self.unrest.motion);
+        changes.total::<C>(token).store(&mut self.unrest.change);
+        shakes.total::<C>(token).store(&mut self.unrest.shake);
     }
 }
 

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::added_mass;
-use crate::batch::LaneSurface;
 use crate::collision::Collider;
 use crate::constraints::{Knot, Pole};
 use crate::fabric::{ABREAST, Fabric, FabricMaterial};
@@ -16,11 +15,8 @@ use crate::places::Constant;
 use crate::seating::{Packed, Seating};
 use crate::snapshot::{ClothSnapshot, History};
 use crate::step::{Drive, Scheme, StepSettings};
-use crate::vector::{Pack3, lane3, set_lane3, splat3};
+use crate::vector::{Pack3, fill_lanes3, set_lane3, splat3};
 use crate::weave::Weave;
-
-/// Particles whose positions and normals in all lanes fit into the nearest cache, at 384 bytes each.
-const BLOCK: usize = 32;
 
 /// One cloth's place in a batch: what the lanes do not hold.
 #[derive(Clone, Debug)]
@@ -132,16 +128,25 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         let longest_line =
             fabric.bend_lines().iter().map(|line| line.particles.len()).max().unwrap_or(0);
         let longest_yarn = fabric.strands().longest();
-        let mut batch = Self {
-            slots: vec![None; P::WIDTH / C::SIDE],
-            predicted: zero.clone(),
+        let cloths = P::WIDTH / C::SIDE;
+        // Lanes without a cloth lie at rest.
+        let mut position = zero.clone();
+        for (particle, &rest) in fabric.rest_positions().iter().enumerate() {
+            for cloth in 0..cloths {
+                let (pack, lane) = seating.seat(particle, cloth);
+                set_lane3(&mut position[pack], lane, without_minus_zero(rest));
+            }
+        }
+        Self {
+            slots: vec![None; cloths],
+            predicted: position.clone(),
             displacement: zero.clone(),
             bent: zero.clone(),
             memory: zero.clone(),
             older_displacement: zero.clone(),
             older_velocity: zero.clone(),
             oldest_velocity: zero.clone(),
-            position: zero.clone(),
+            position,
             velocity: zero.clone(),
             normal: zero,
             link_target: vec![nothing; fabric.strands().target_count()],
@@ -158,10 +163,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             weave: None,
             clock: Clock::default(),
             fabric,
-        };
-        // Lanes without a cloth lie at rest.
-        (0..batch.slots.len()).for_each(|cloth| batch.remove(cloth));
-        batch
+        }
     }
 
     pub fn insert(&mut self, lane: usize, snapshot: &ClothSnapshot, material: FabricMaterial) {
@@ -185,8 +187,8 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
 
     /// Overwrites the state of a lane; without a history the next substep is of first order.
     pub fn restore(&mut self, lane: usize, snapshot: &ClothSnapshot) {
-        // Without −0, which would or would not become 0 where something of no weight is added.
-        let positions: Vec<Vec3> = snapshot.positions.iter().map(|at| *at + Vec3::ZERO).collect();
+        let positions: Vec<Vec3> =
+            snapshot.positions.iter().copied().map(without_minus_zero).collect();
         let history = snapshot.history.as_ref();
         let state = [
             (&mut self.position, Some(&positions)),
@@ -200,9 +202,11 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         ];
         let lanes = C::lanes(lane);
         for (packs, values) in state {
-            // Where no particle lies, too.
-            for coordinate in packs.iter_mut().flatten() {
-                coordinate.lanes_mut()[lanes.clone()].fill(0.0);
+            // Particles side by side leave lanes where there is none.
+            if values.is_none() || C::SIDE > 1 {
+                for pack in packs.iter_mut() {
+                    fill_lanes3(pack, &lanes, Vec3::ZERO);
+                }
             }
             for (particle, &value) in values.into_iter().flatten().enumerate() {
                 let (pack, lane) = self.seating.seat(particle, lane);
@@ -235,68 +239,6 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 memory: read(&self.memory),
             }),
         }
-    }
-
-    pub fn copy_positions(&self, lane: usize, into: &mut Vec<Vec3>) {
-        into.clear();
-        into.extend(self.of_cloth(&self.position, lane));
-    }
-
-    pub fn copy_velocities(&self, lane: usize, into: &mut Vec<Vec3>) {
-        into.clear();
-        into.extend(self.of_cloth(&self.velocity, lane));
-    }
-
-    pub fn copy_normals(&self, lane: usize, into: &mut Vec<Vec3>) {
-        into.clear();
-        into.extend(self.of_cloth(&self.normal, lane));
-    }
-
-    pub fn copy_surfaces(&self, into: &mut [LaneSurface]) {
-        let particles = self.fabric.particle_count();
-        let into = &mut into[..self.slots.len()];
-        let sums = sums(&self.position);
-        for (cloth, surface) in into.iter_mut().enumerate() {
-            if self.slots[cloth].is_some() {
-                // What is not finite makes the sum so.
-                surface.is_finite = sums.lanes()[C::lanes(cloth)].iter().all(|sum| sum.is_finite());
-                surface.positions.resize(particles, Vec3::ZERO);
-                surface.normals.resize(particles, Vec3::ZERO);
-            }
-        }
-        if C::SIDE > 1 {
-            for (cloth, surface) in
-                into.iter_mut().enumerate().filter(|(cloth, _)| self.slots[*cloth].is_some())
-            {
-                self.copy_positions(cloth, &mut surface.positions);
-                self.copy_normals(cloth, &mut surface.normals);
-            }
-            return;
-        }
-        // Particles by the block, so that each is fetched once for all lanes.
-        let mut first = 0;
-        for (positions, normals) in self.position.chunks(BLOCK).zip(self.normal.chunks(BLOCK)) {
-            for (lane, surface) in into.iter_mut().enumerate() {
-                if self.slots[lane].is_some() {
-                    read(positions, lane, &mut surface.positions[first..]);
-                    read(normals, lane, &mut surface.normals[first..]);
-                }
-            }
-            first += positions.len();
-        }
-    }
-
-    pub fn is_finite(&self, lane: usize) -> bool {
-        let finite = |packs| self.of_cloth(packs, lane).all(Vec3::is_finite);
-        finite(&self.position) && finite(&self.velocity)
-    }
-
-    /// The vectors of one cloth, particle by particle.
-    fn of_cloth(&self, packs: &[Pack3<P>], cloth: usize) -> impl Iterator<Item = Vec3> {
-        (0..self.fabric.particle_count()).map(move |particle| {
-            let (pack, lane) = self.seating.seat(particle, cloth);
-            lane3(&packs[pack], lane)
-        })
     }
 
     /// Sets everything that is constant over the tick, and gathers contacts.
@@ -355,10 +297,10 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
 impl<P: Pack> LaneBatch<P, P> {
     /// A batch of one cloth that fills the lanes with its own yarns, if the fabric lets it.
     pub fn woven_of(fabric: &Arc<Fabric>) -> Option<Self> {
-        let weave = Weave::of(fabric)?;
+        let mut weave = Weave::of(fabric)?;
         let mut batch = Self::new(Arc::clone(fabric));
+        weave.begin(fabric.rest_positions());
         batch.weave = Some(Box::new(weave));
-        batch.remove(0);
         Some(batch)
     }
 
@@ -376,22 +318,7 @@ impl<P: Pack> LaneBatch<P, P> {
     }
 }
 
-/// The sum of all coordinates, for each lane.
-fn sums<P: Pack>(packs: &[Pack3<P>]) -> P {
-    let mut sums = P::splat(0.0);
-    for coordinate in packs.iter().flatten() {
-        for (sum, value) in sums.lanes_mut().iter_mut().zip(coordinate.lanes()) {
-            *sum += value;
-        }
-    }
-    sums
-}
-
-/// Reads one lane of a vector for each particle.
-fn read<P: Pack>(packs: &[Pack3<P>], lane: usize, into: &mut [Vec3]) {
-    // Once, and not for every number.
-    assert!(lane < P::WIDTH, "a lane of the batch");
-    for (value, pack) in into.iter_mut().zip(packs) {
-        *value = lane3(pack, lane);
-    }
+/// A position rid of −0, which would or would not become 0 where something of no weight is added.
+fn without_minus_zero(position: Vec3) -> Vec3 {
+    position + Vec3::ZERO
 }

@@ -7,10 +7,8 @@ use core::fmt::Debug;
 use core::ops::Range;
 
 use crate::lanes::{Lane, Pack};
+use crate::sums::PARTS;
 use crate::vector::{Pack3, V3};
-
-/// In how many parts sums over all particles are taken: by their columns.
-pub(crate) const PARTS: usize = 8;
 
 /// A number that belongs to the fabric.
 pub(crate) trait Constant<P: Pack>: Copy + Debug + Send + Sync + 'static {

@@ -2,7 +2,8 @@
 
 use crate::fabric::Fabric;
 use crate::lanes::Pack;
-use crate::places::{Constant, PARTS};
+use crate::places::Constant;
+use crate::sums::PARTS;
 
 /// Where particles lie among the packs of a batch.
 #[derive(Clone, Copy, Debug)]

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use crate::constants::GRAVITY;
 use crate::frame::FrameMotion;
 
 /// How the constraints are solved, and with which integrator.
@@ -78,7 +79,7 @@ impl Default for Drive {
     fn default() -> Self {
         Self {
             motion: FrameMotion::NONE,
-            gravity: Vec3::new(0.0, -9.81, 0.0),
+            gravity: Vec3::new(0.0, -GRAVITY, 0.0),
             wind: Vec3::ZERO,
             air_density: AIR_DENSITY,
         }

@@ -12,7 +12,8 @@ use glam::Vec3;
 use crate::fabric::Fabric;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
-use crate::places::{Constant, PARTS};
+use crate::places::Constant;
+use crate::sums::Sum;
 use crate::vector::{Pack3, V3, splat3};
 
 /// How far pins may lie off the line through them, as a part of its length.
@@ -73,21 +74,20 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for StillTurn<'_, P, C> {
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let at: V3<L> = V3::load(token, &splat3(self.pole.at));
         let along: V3<L> = V3::load(token, &splat3(self.pole.along));
-        let mut moments = [L::splat(token, 0.0); PARTS];
-        let mut inertias = [L::splat(token, 0.0); PARTS];
+        let mut moment = Sum::new(token);
+        let mut inertia = Sum::new(token);
         let places = self.position.iter().zip(self.predicted).zip(self.inertias).zip(self.parts);
         for (((position, predicted), mass), &part) in places {
             let x: V3<L> = V3::load(token, position);
             let mass: L = mass.load(token);
-            let part = part as usize % PARTS;
             // How fast the particle would go round at a radian per second.
             let round = along.cross(x - at);
             let way = round.dot(x - V3::load(token, predicted));
-            moments[part] = moments[part].plus_product(mass, way);
-            inertias[part] = inertias[part].plus_product(mass, round.dot(round));
+            moment.add_product(part, mass, way);
+            inertia.add_product(part, mass, round.dot(round));
         }
-        let inertia = C::total(token, inertias) + L::splat(token, f32::MIN_POSITIVE);
-        let turn = C::total(token, moments) / inertia;
+        let inertia = inertia.total::<C>(token) + L::splat(token, f32::MIN_POSITIVE);
+        let turn = moment.total::<C>(token) / inertia;
         for (position, mass) in self.position.iter_mut().zip(self.inertias) {
             if mass.is_zero() {
                 continue;
