@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
-use bunting_examples::print;
+use bunting_examples::{print, stage};
 use bunting_scenes::Design;
 
 /// Which design is printed on a cloth.
@@ -39,21 +39,12 @@ fn mix(
     mut images: ResMut<Assets<Image>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    let cloth = StandardMaterial {
-        double_sided: true,
-        cull_mode: None,
-        perceptual_roughness: 0.8,
-        reflectance: 0.25,
-        // Light shines through thin cloth.
-        diffuse_transmission: 0.25,
-        ..default()
-    };
     let prints = designs().map(|design| {
         let picture = images.add(print::picture(&design, Vec2::new(1.2, 0.8)));
-        materials.add(StandardMaterial { base_color_texture: Some(picture), ..cloth.clone() })
+        materials.add(StandardMaterial { base_color_texture: Some(picture), ..stage::bunting() })
     });
     let levels = LEVEL_COLOURS.map(|colour| {
-        materials.add(StandardMaterial { base_color: colour.into(), ..cloth.clone() })
+        materials.add(StandardMaterial { base_color: colour.into(), ..stage::bunting() })
     });
     commands.insert_resource(Dyes { prints: prints.to_vec(), levels: levels.to_vec() });
 }

@@ -39,7 +39,7 @@ pub fn run(crowd: &Crowd, run: &Run, album: &Album) {
     app.finish();
     app.cleanup();
     if let Some(pictures) = &mut pictures {
-        pictures.set_up(&mut app, stage::camera());
+        pictures.set_up(&mut app, stage::STAGE.camera());
     }
 
     let rate = app.world().resource::<Time<Fixed>>().timestep().as_secs_f64().recip();

@@ -26,7 +26,7 @@ pub fn run(crowd: &Crowd) -> ExitCode {
         (stage::plugin, colours::plugin, controls::plugin),
     ))
     .add_systems(PostStartup, |mut commands: Commands, pilot: Single<Entity, With<Pilot>>| {
-        commands.entity(*pilot).insert(stage::camera());
+        commands.entity(*pilot).insert(stage::STAGE.camera());
     });
     plaza::build(&mut app, crowd);
     if app.run().is_success() { ExitCode::SUCCESS } else { ExitCode::FAILURE }

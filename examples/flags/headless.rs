@@ -48,7 +48,7 @@ pub fn run(scene: &Scene, run: &Run, album: &Album) {
     app.finish();
     app.cleanup();
     if let Some(pictures) = &mut pictures {
-        pictures.set_up(&mut app, stage::camera());
+        pictures.set_up(&mut app, stage::STAGE.camera());
     }
 
     let ticks_a_second =

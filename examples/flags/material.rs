@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
-use bunting_examples::print;
+use bunting_examples::{print, stage};
 use bunting_scenes::Design;
 
 /// Gives each flag a material that shows its design; the plugin gives it a mesh.
@@ -20,13 +20,7 @@ fn dress(
         let &ClothMesh::Grid { width, height, .. } = shape else { continue };
         let material = materials.add(StandardMaterial {
             base_color_texture: Some(images.add(print::picture(design, Vec2::new(width, height)))),
-            double_sided: true,
-            cull_mode: None,
-            perceptual_roughness: 0.8,
-            reflectance: 0.25,
-            // Light shines through thin cloth.
-            diffuse_transmission: 0.25,
-            ..default()
+            ..stage::bunting()
         });
         commands.entity(flag).insert(MeshMaterial3d(material));
     }

@@ -1,28 +1,31 @@
 //! What surrounds the flags: sky, ground, roads, light, poles and vehicles.
 
+use std::f32::consts::FRAC_PI_4;
+
 use bevy::camera::primitives::Aabb;
 use bevy::camera::visibility::VisibilityClass;
-use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::gltf::{GltfAssetLabel, GltfMaterialName, GltfMeshName, GltfSceneName};
-use bevy::light::CascadeShadowConfigBuilder;
 use bevy::prelude::*;
 use bevy::transform::components::TransformTreeChanged;
-use bunting_examples::sky;
+use bunting_examples::stage::{self, Stage};
 use bunting_scenes::{Model, Pole, Track};
 
 use crate::road;
 
-/// Light from the whole sky, on both sides of everything, cd/m².
-const SKYLIGHT: f32 = 1_500.0;
-
-/// Light of the sun, lx.
-const SUNLIGHT: f32 = 5_000.0;
+/// A meadow in the morning.
+pub const STAGE: Stage = Stage {
+    ground: Color::srgb(0.33, 0.37, 0.24),
+    extent: 2000.0,
+    haze: [100.0, 700.0],
+    field_of_view: FRAC_PI_4,
+    sun: Vec3::new(-1.0, 1.0, 0.55),
+    cascades: 3,
+    shadows: [25.0, 140.0],
+};
 
 /// Shows the surroundings of a scene's entities.
 pub fn plugin(app: &mut App) {
-    let skylight = Color::srgb(0.80, 0.90, 0.96);
-    app.add_plugins(sky::plugin)
-        .insert_resource(GlobalAmbientLight { color: skylight, brightness: SKYLIGHT, ..default() })
+    app.add_plugins(STAGE)
         // What glTF scenes are made of; Bevy's feature `reflect_auto_register` would do it, too.
         .register_type::<Name>()
         .register_type::<ChildOf>()
@@ -39,55 +42,7 @@ pub fn plugin(app: &mut App) {
         .register_type::<GltfSceneName>()
         .register_type::<GltfMeshName>()
         .register_type::<GltfMaterialName>()
-        .add_systems(Startup, (lay_ground, light))
         .add_systems(PostStartup, (lay_roads, raise_poles, load_vehicles));
-}
-
-/// What a camera needs to show the scene well.
-pub fn camera() -> impl Bundle {
-    // The ground ends where the sky begins.
-    let haze = DistanceFog {
-        color: sky::HORIZON,
-        falloff: FogFalloff::Linear { start: 100.0, end: 700.0 },
-        ..default()
-    };
-    (Camera3d::default(), Tonemapping::None, haze)
-}
-
-fn lay_ground(
-    mut commands: Commands,
-    mut meshes: ResMut<Assets<Mesh>>,
-    mut materials: ResMut<Assets<StandardMaterial>>,
-) {
-    let grass = StandardMaterial {
-        base_color: Color::srgb(0.33, 0.37, 0.24),
-        perceptual_roughness: 1.0,
-        reflectance: 0.1,
-        ..default()
-    };
-    commands.spawn((
-        Mesh3d(meshes.add(Plane3d::default().mesh().size(2000.0, 2000.0))),
-        MeshMaterial3d(materials.add(grass)),
-    ));
-}
-
-fn light(mut commands: Commands) {
-    commands.spawn((
-        DirectionalLight {
-            illuminance: SUNLIGHT,
-            color: Color::srgb(1.0, 0.95, 0.86),
-            shadow_maps_enabled: true,
-            ..default()
-        },
-        CascadeShadowConfigBuilder {
-            num_cascades: 3,
-            first_cascade_far_bound: 25.0,
-            maximum_distance: 140.0,
-            ..default()
-        }
-        .build(),
-        Transform::from_xyz(-1.0, 1.0, 0.55).looking_at(Vec3::ZERO, Vec3::Y),
-    ));
 }
 
 fn lay_roads(
@@ -113,11 +68,7 @@ fn raise_poles(
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    let paint = materials.add(StandardMaterial {
-        base_color: Color::srgb(0.85, 0.86, 0.87),
-        perceptual_roughness: 0.35,
-        ..default()
-    });
+    let paint = materials.add(stage::paint());
     let gold = materials.add(StandardMaterial {
         base_color: Color::srgb(0.85, 0.65, 0.25),
         metallic: 0.8,

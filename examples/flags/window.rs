@@ -31,5 +31,8 @@ pub fn run(scene: &Scene) -> ExitCode {
 /// Takes the viewer off its track and gives it a camera.
 fn raise_camera(mut commands: Commands, viewer: Single<(Entity, &LooksAt), With<LodViewer>>) {
     let (viewer, looks_at) = *viewer;
-    commands.entity(viewer).remove::<Track>().insert((stage::camera(), Orbit::around(looks_at.0)));
+    commands
+        .entity(viewer)
+        .remove::<Track>()
+        .insert((stage::STAGE.camera(), Orbit::around(looks_at.0)));
 }

@@ -10,10 +10,11 @@ use bevy_bunting::prelude::*;
 use comfy_table::presets::UTF8_BORDERS_ONLY;
 use comfy_table::{CellAlignment, Table};
 
+use crate::ONE_TICK;
 use crate::durations::Durations;
 use crate::pictures::{self, Album};
 use crate::show::{Check, Show};
-use crate::{ONE_TICK, stage};
+use crate::stage::Stage;
 
 /// Simulates as fast as it goes, takes pictures and prints a table. Fails if something did not hold
 /// that must.
@@ -22,7 +23,7 @@ pub fn run(show: &Show, seconds: f64, album: &Album) -> ExitCode {
     let mut pictures = album.open(show.name);
     let log = LogPlugin { level: Level::WARN, ..default() };
     if pictures.is_some() {
-        app.add_plugins((pictures::windowless().set(log), pictures::plugin, stage::plugin));
+        app.add_plugins((pictures::windowless().set(log), pictures::plugin, Stage::SMALL));
         (show.dress)(&mut app);
     } else {
         let threads = TaskPoolPlugin { task_pool_options: TaskPoolOptions::with_num_threads(1) };
@@ -35,7 +36,7 @@ pub fn run(show: &Show, seconds: f64, album: &Album) -> ExitCode {
     app.finish();
     app.cleanup();
     if let Some(pictures) = &mut pictures {
-        pictures.set_up(&mut app, stage::camera());
+        pictures.set_up(&mut app, Stage::SMALL.camera());
     }
 
     let rate = app.world().resource::<Time<Fixed>>().timestep().as_secs_f64().recip();

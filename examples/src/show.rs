@@ -8,7 +8,8 @@ use clap::Parser;
 
 use crate::orbit::{self, Orbit};
 use crate::pictures::Album;
-use crate::{ASSETS, any_display, headless, keys, stage, title, weather};
+use crate::stage::Stage;
+use crate::{ASSETS, any_display, headless, keys, title, weather};
 
 /// A scene, and how to look at it.
 #[derive(Clone, Copy, Debug)]
@@ -75,12 +76,12 @@ impl Show {
                 .set(WindowPlugin { primary_window: Some(window), ..default() })
                 .set(AssetPlugin { file_path: ASSETS.to_owned(), ..default() }),
             ClothPlugins::default(),
-            (stage::plugin, orbit::plugin),
+            (Stage::SMALL, orbit::plugin),
             (weather::plugin, keys::plugin, title::plugin(self.name)),
         ));
         (self.build)(&mut app);
         (self.dress)(&mut app);
-        app.world_mut().spawn((stage::camera(), Orbit::from(self.eye, self.looks_at)));
+        app.world_mut().spawn((Stage::SMALL.camera(), Orbit::from(self.eye, self.looks_at)));
         if app.run().is_success() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
     }
 }

@@ -1,4 +1,4 @@
-//! What surrounds a small scene: sky, ground and light.
+//! What surrounds a scene: sky, ground and light.
 
 use std::f32::consts::FRAC_PI_4;
 
@@ -14,24 +14,60 @@ const SKYLIGHT: f32 = 1_500.0;
 /// Light of the sun, lx.
 const SUNLIGHT: f32 = 5_000.0;
 
-/// Shows the surroundings.
-pub fn plugin(app: &mut App) {
-    let skylight = Color::srgb(0.80, 0.90, 0.96);
-    app.add_plugins(sky::plugin)
-        .insert_resource(GlobalAmbientLight { color: skylight, brightness: SKYLIGHT, ..default() })
-        .add_systems(Startup, (pave, light));
+/// The plugin that shows what surrounds a scene.
+#[derive(Clone, Resource)]
+pub struct Stage {
+    /// Colour of the ground.
+    pub ground: Color,
+    /// Width of the ground, m.
+    pub extent: f32,
+    /// Distances at which haze begins, and hides all else, m: the ground ends where the sky begins.
+    pub haze: [f32; 2],
+    /// Vertical field of view, rad.
+    pub field_of_view: f32,
+    /// Whence the sun shines.
+    pub sun: Vec3,
+    /// Cascades of the shadows.
+    pub cascades: usize,
+    /// Distances at which the first cascade and the shadows end, m.
+    pub shadows: [f32; 2],
 }
 
-/// What a camera needs to show them well.
-#[must_use]
-pub fn camera() -> impl Bundle {
-    let lens = PerspectiveProjection { fov: FRAC_PI_4, ..default() };
-    let haze = DistanceFog {
-        color: sky::HORIZON,
-        falloff: FogFalloff::Linear { start: 40.0, end: 400.0 },
-        ..default()
+impl Stage {
+    /// For a scene of some metres.
+    pub const SMALL: Self = Self {
+        ground: Color::srgb(0.60, 0.56, 0.49),
+        extent: 1000.0,
+        haze: [40.0, 400.0],
+        field_of_view: FRAC_PI_4,
+        sun: Vec3::new(-1.0, 1.4, 1.1),
+        cascades: 2,
+        shadows: [8.0, 30.0],
     };
-    (Camera3d::default(), Projection::Perspective(lens), Tonemapping::None, haze)
+
+    /// What a camera needs to show it well.
+    #[must_use]
+    pub fn camera(&self) -> impl Bundle + use<> {
+        let lens = PerspectiveProjection { fov: self.field_of_view, ..default() };
+        let [start, end] = self.haze;
+        let haze = DistanceFog {
+            color: sky::HORIZON,
+            falloff: FogFalloff::Linear { start, end },
+            ..default()
+        };
+        (Camera3d::default(), Projection::Perspective(lens), Tonemapping::None, haze)
+    }
+}
+
+impl Plugin for Stage {
+    fn build(&self, app: &mut App) {
+        let skylight = Color::srgb(0.80, 0.90, 0.96);
+        let everywhere = GlobalAmbientLight { color: skylight, brightness: SKYLIGHT, ..default() };
+        app.add_plugins(sky::plugin)
+            .insert_resource(everywhere)
+            .insert_resource(self.clone())
+            .add_systems(Startup, (pave, light));
+    }
 }
 
 /// Cloth of a colour, or of a printed one: light shines through it, and both faces are seen.
@@ -47,24 +83,42 @@ pub fn cloth() -> StandardMaterial {
     }
 }
 
+/// Cloth of a flag, which is smoother.
+#[must_use]
+pub fn bunting() -> StandardMaterial {
+    StandardMaterial { perceptual_roughness: 0.8, reflectance: 0.25, ..cloth() }
+}
+
+/// Paint of poles and masts.
+#[must_use]
+pub fn paint() -> StandardMaterial {
+    StandardMaterial {
+        base_color: Color::srgb(0.85, 0.86, 0.87),
+        perceptual_roughness: 0.35,
+        ..default()
+    }
+}
+
 fn pave(
     mut commands: Commands,
+    stage: Res<Stage>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
-    let stone = StandardMaterial {
-        base_color: Color::srgb(0.60, 0.56, 0.49),
+    let ground = StandardMaterial {
+        base_color: stage.ground,
         perceptual_roughness: 1.0,
         reflectance: 0.1,
         ..default()
     };
     commands.spawn((
-        Mesh3d(meshes.add(Plane3d::default().mesh().size(1000.0, 1000.0))),
-        MeshMaterial3d(materials.add(stone)),
+        Mesh3d(meshes.add(Plane3d::default().mesh().size(stage.extent, stage.extent))),
+        MeshMaterial3d(materials.add(ground)),
     ));
 }
 
-fn light(mut commands: Commands) {
+fn light(mut commands: Commands, stage: Res<Stage>) {
+    let [first_cascade_far_bound, maximum_distance] = stage.shadows;
     commands.spawn((
         DirectionalLight {
             illuminance: SUNLIGHT,
@@ -73,12 +127,12 @@ fn light(mut commands: Commands) {
             ..default()
         },
         CascadeShadowConfigBuilder {
-            num_cascades: 2,
-            first_cascade_far_bound: 8.0,
-            maximum_distance: 30.0,
+            num_cascades: stage.cascades,
+            first_cascade_far_bound,
+            maximum_distance,
             ..default()
         }
         .build(),
-        Transform::from_xyz(-1.0, 1.4, 1.1).looking_at(Vec3::ZERO, Vec3::Y),
+        Transform::from_translation(stage.sun).looking_at(Vec3::ZERO, Vec3::Y),
     ));
 }
