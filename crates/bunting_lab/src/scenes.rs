@@ -14,6 +14,12 @@ use serde::Serialize;
 pub const GRAVITY: f64 = 9.81;
 /// Ticks a second of every scene.
 pub const TICK_RATE: u32 = 60;
+
+/// Whole ticks in `seconds`.
+#[must_use]
+pub fn ticks(seconds: f64) -> usize {
+    (seconds * f64::from(TICK_RATE)).round() as usize
+}
 /// Seconds a hanging cloth is given to come to rest.
 const HANG_SECONDS: f64 = 6.0;
 /// Seconds at the end of a hanging scene over which strain is averaged.
@@ -250,13 +256,13 @@ impl Scene {
     /// Whole ticks of the run.
     #[must_use]
     pub fn ticks(&self) -> usize {
-        (self.seconds * f64::from(TICK_RATE)).round() as usize
+        ticks(self.seconds)
     }
 
     /// First tick of the window over which figures are averaged.
     #[must_use]
     pub fn window_start(&self) -> usize {
-        self.ticks() - (self.window.min(self.seconds) * f64::from(TICK_RATE)).round() as usize
+        self.ticks() - ticks(self.window.min(self.seconds))
     }
 
     /// Positions at the start, m.

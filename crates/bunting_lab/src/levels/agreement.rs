@@ -9,8 +9,9 @@ use serde::Serialize;
 use crate::{
     budget::scheme_name,
     fleet::Fleet,
+    levels::FLAGS,
     product::Product,
-    scenes::{Scene, TICK_RATE},
+    scenes::{Scene, TICK_RATE, ticks},
     simulation::Simulation,
     stats,
 };
@@ -19,8 +20,6 @@ use crate::{
 const TILT: f32 = PI as f32 / 36.0;
 /// Length of the swing, s.
 const SWING_SECONDS: f64 = 10.0;
-/// Flags flown at once, each in other gusts.
-const FLAGS: usize = 8;
 
 /// Figures of one level.
 #[derive(Clone, Debug, Serialize)]
@@ -73,8 +72,7 @@ fn swing_period(n: usize, settings: StepSettings) -> f64 {
     let positions: Vec<Vec3> = cloth.positions().iter().map(tilted).collect();
     let velocities = vec![Vec3::ZERO; positions.len()];
     cloth.restore(&ClothSnapshot::new(positions, velocities));
-    let ticks = (SWING_SECONDS * f64::from(TICK_RATE)) as usize;
-    let tip: Vec<f64> = (0..ticks)
+    let tip: Vec<f64> = (0..ticks(SWING_SECONDS))
         .map(|_| {
             cloth.tick();
             f64::from(cloth.positions()[n * n - 1].z)

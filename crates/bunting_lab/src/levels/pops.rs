@@ -16,7 +16,7 @@ use crate::{
     budget::scheme_name,
     game,
     product::{self, material},
-    scenes::{Scene, TICK_RATE},
+    scenes::{Scene, ticks},
     stats::{self, worse},
 };
 
@@ -173,7 +173,7 @@ pub fn thrash(n: usize, settings: StepSettings, seconds: f64) -> f64 {
     (0..3).for_each(|_| app.update());
     let mut frames = Vec::new();
     let mut most = 0.0_f64;
-    for frame in 0..(seconds * f64::from(TICK_RATE)) as usize {
+    for frame in 0..ticks(seconds) {
         app.world_mut().get_mut::<LodSet>(sheet).expect("levels").pinned = Some((frame + 1) % 2);
         app.update();
         frames.push(view.of(&app, sheet));

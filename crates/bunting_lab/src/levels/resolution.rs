@@ -8,17 +8,11 @@ use serde::Serialize;
 use crate::{
     budget::scheme_name,
     fleet::Fleet,
+    levels::{FLAGS, INTERVAL, SETTLING},
     product,
-    scenes::{Scene, TICK_RATE},
+    scenes::{Scene, ticks},
     stats,
 };
-
-/// Flags flown at once.
-const FLAGS: usize = 8;
-/// Time that flags fly before the first look, s.
-const SETTLING: f64 = 3.0;
-/// Time between looks, s; no part of a gust's period.
-const INTERVAL: f64 = 0.37;
 
 /// Distances of a flag's surface from that of a coarser level.
 #[derive(Clone, Debug, Serialize)]
@@ -53,7 +47,6 @@ impl Resolution {
             .map(|pair| LevelTransfer::between(&pair[0], &pair[1]).expect("neighbours"))
             .collect();
         let mut fleet = Fleet::new(Scene::flag(fine), FLAGS, settings);
-        let ticks = |seconds: f64| (seconds * f64::from(TICK_RATE)) as usize;
         fleet.advance(ticks(SETTLING));
         let mut distances = vec![Vec::new(); transfers.len()];
         for _ in 0..moments {

@@ -11,19 +11,12 @@ use serde::Serialize;
 use crate::{
     budget::scheme_name,
     fleet::Fleet,
-    levels::pops::PIXELS,
+    levels::{FLAGS, INTERVAL, SETTLING, pops::PIXELS},
     product,
     reference::grid::Grid,
-    scenes::{Scene, TICK_RATE},
+    scenes::{Scene, ticks},
     stats,
 };
-
-/// Flags flown at once.
-const FLAGS: usize = 8;
-/// Time that flags fly before the first change, s.
-const SETTLING: f64 = 3.0;
-/// Time between changes, s; no part of a gust's period.
-const INTERVAL: f64 = 0.37;
 
 /// Jumps of one change of level, over many moments of a flight.
 #[derive(Clone, Debug, Serialize)]
@@ -89,7 +82,6 @@ impl Switch {
             if is_coarse { transfer.spread(&state.positions).collect() } else { state.positions }
         };
         let grids = [from, to].map(|n| Grid::new(&Scene::flag(n)));
-        let ticks = |seconds: f64| (seconds * f64::from(TICK_RATE)) as usize;
         flying.advance(ticks(SETTLING));
         let mut jumps = Vec::new();
         for _ in 0..moments {

@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::{Engine, Peer};
 use crate::{
     reference::grid::Grid,
-    scenes::{Scene, TICK_RATE},
+    scenes::{Scene, TICK_RATE, ticks},
     stats::{self, Strain},
     timing::Timing,
 };
@@ -128,7 +128,7 @@ fn shock(
     time.time(|| happen(cloth.as_mut()));
     let mut worst = 0.0_f64;
     let mut recovery = None;
-    for tick in 0..(PATIENCE * f64::from(TICK_RATE)) as usize {
+    for tick in 0..ticks(PATIENCE) {
         let strain = strain(&grid, cloth.as_ref()).max;
         // A maximum would pass over what is not a number.
         worst = if strain.is_finite() { worst.max(strain) } else { f64::INFINITY };

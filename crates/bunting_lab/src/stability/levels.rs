@@ -10,14 +10,14 @@ use glam::{DVec3, Vec3};
 
 use super::{
     HardCase,
-    rig::{SETTINGS, energy, start, ticks},
+    rig::{SETTINGS, energy, start},
 };
 use crate::{
     budget::LEVELS,
     levels::pops::{self, Pop},
     product::{Product, fabric, material},
     reference::grid::Grid,
-    scenes::Scene,
+    scenes::{Scene, ticks},
     simulation::Simulation,
     stats::worse,
 };

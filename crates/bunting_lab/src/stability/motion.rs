@@ -7,12 +7,12 @@ use glam::{DVec3, Quat, Vec3};
 
 use super::{
     HardCase,
-    rig::{positions, reach, run, speed, start, strain, ticks},
+    rig::{positions, reach, run, speed, start, strain},
 };
 use crate::{
     oracles::specimen::Specimen,
     product::{Cloth, TICK, fabric},
-    scenes::{Pins, Pose, Scene},
+    scenes::{Pins, Pose, Scene, ticks},
     simulation::Simulation,
     stats::{rms_distance, worse},
 };

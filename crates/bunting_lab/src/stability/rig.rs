@@ -6,7 +6,7 @@ use glam::DVec3;
 use crate::{
     product::{Cloth, DEFAULT, Product},
     reference::grid::Grid,
-    scenes::{Scene, TICK_RATE},
+    scenes::{Scene, ticks},
     simulation::Simulation,
     stats::{Strain, rms_length},
 };
@@ -22,11 +22,6 @@ pub fn start(scene: &Scene) -> Cloth {
 /// Advances by `seconds`.
 pub fn run(cloth: &mut Cloth, seconds: f64) {
     (0..ticks(seconds)).for_each(|_| cloth.tick());
-}
-
-/// Whole ticks in `seconds`.
-pub fn ticks(seconds: f64) -> usize {
-    (seconds * f64::from(TICK_RATE)).round() as usize
 }
 
 /// Positions in double precision, m.

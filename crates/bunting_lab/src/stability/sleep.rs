@@ -8,8 +8,12 @@ use bevy_ecs::entity::Entity;
 use bunting_solver::StepSettings;
 use glam::DVec3;
 
-use super::{HardCase, rig::ticks};
-use crate::{game, product, scenes::Scene, stats::rms_distance};
+use super::HardCase;
+use crate::{
+    game, product,
+    scenes::{Scene, ticks},
+    stats::rms_distance,
+};
 
 /// Vertices along each side of the sheet.
 const SIZE: usize = 17;

@@ -4,13 +4,13 @@ use bunting_solver::StepSettings;
 
 use super::{
     HardCase,
-    rig::{SETTINGS, energy, run, speed, start, strain, ticks},
+    rig::{SETTINGS, energy, run, speed, start, strain},
 };
 use crate::{
     oracles::{rig::strip, specimen::Specimen, trials},
     product::{Cloth, Product},
     reference::grid::Grid,
-    scenes::{Fabric, Pins, Pose, Scene},
+    scenes::{Fabric, Pins, Pose, Scene, ticks},
     simulation::Simulation,
     stats::{crossing_frequency, rms_distance, worse},
 };

@@ -2,12 +2,12 @@
 
 use super::{
     HardCase,
-    rig::{SETTINGS, positions, reach, run, start, ticks},
+    rig::{SETTINGS, positions, reach, run, start},
 };
 use crate::{
     product::{Product, material},
     reference::grid::Grid,
-    scenes::{Air, Fabric, Pins, Pose, Scene},
+    scenes::{Air, Fabric, Pins, Pose, Scene, ticks},
     simulation::Simulation,
     stats::worse,
 };

@@ -13,7 +13,7 @@ use crate::{
         specimen::Mount,
     },
     reference::grid::Grid,
-    scenes::{Fabric, GRAVITY, Pins, Pose, Scene, TICK_RATE},
+    scenes::{Fabric, GRAVITY, Pins, Pose, Scene, ticks},
 };
 
 /// Links along the free metre of a column.
@@ -149,7 +149,7 @@ fn grows(mount: &Mount, form: &Form, segments: usize, settings: StepSettings, lo
         .collect();
     specimen.place(&laid, &vec![DVec3::ZERO; laid.len()]);
     specimen.load(form.upright * GRAVITY * load / form.critical);
-    (0..(SECONDS * f64::from(TICK_RATE)) as usize).any(|_| {
+    (0..ticks(SECONDS)).any(|_| {
         specimen.tick();
         let tip = row(&scene, specimen.as_ref(), segments + 1).dot(form.sideways).abs();
         // What is no longer a number has grown too.

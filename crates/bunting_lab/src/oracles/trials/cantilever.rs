@@ -9,7 +9,7 @@ use crate::{
         rig::{YARNS, label, order, row, run, strip},
         specimen::{Mount, Specimen},
     },
-    scenes::{Fabric, GRAVITY, Pins, Pose, Scene, TICK_RATE},
+    scenes::{Fabric, GRAVITY, Pins, Pose, Scene, ticks},
 };
 
 /// Γ = σgL³/B, as tabulated by Romero et al. 2021.
@@ -78,9 +78,9 @@ fn aspect(mount: &Mount, gamma: f64, segments: usize, settings: StepSettings) ->
 
 /// Raises gravity from nothing, as other equilibria exist.
 fn load_slowly(specimen: &mut dyn Specimen) {
-    let ticks = (LOADING * f64::from(TICK_RATE)) as usize;
-    for tick in 1..=ticks {
-        specimen.load(GRAVITY * tick as f64 / ticks as f64);
+    let last = ticks(LOADING);
+    for tick in 1..=last {
+        specimen.load(GRAVITY * tick as f64 / last as f64);
         specimen.tick();
     }
 }

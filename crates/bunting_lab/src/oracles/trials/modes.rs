@@ -12,7 +12,7 @@ use crate::{
         rig::{GAUSS_SEIDEL, YARNS, chains, column_masses, label, order, strip, substep},
         specimen::Mount,
     },
-    scenes::{GRAVITY, Pins, Pose, Scene, TICK_RATE},
+    scenes::{GRAVITY, Pins, Pose, Scene, TICK_RATE, ticks},
     stats::crossing_frequency,
 };
 
@@ -82,8 +82,7 @@ fn frequency(
         })
         .collect();
     specimen.place(&shaped, &vec![DVec3::ZERO; shaped.len()]);
-    let ticks = (SECONDS * f64::from(TICK_RATE)) as usize;
-    let signal: Vec<f64> = (0..ticks)
+    let signal: Vec<f64> = (0..ticks(SECONDS))
         .map(|_| {
             specimen.tick();
             let column = specimen.positions().iter().step_by(2).skip(1);

@@ -9,7 +9,7 @@ use crate::{
         rig::{YARNS, label, row, strip, substep},
         specimen::Mount,
     },
-    scenes::{Fabric, GRAVITY, Pins, Pose, TICK_RATE},
+    scenes::{Fabric, GRAVITY, Pins, Pose, TICK_RATE, ticks},
     stats::crossing_frequency,
 };
 
@@ -51,7 +51,7 @@ fn period(mount: &Mount, amplitude: f64) -> f64 {
     let tilted: Vec<DVec3> =
         scene.positions().iter().map(|x| dvec3(x.x, x.y * cosine, -x.y * sine)).collect();
     specimen.place(&tilted, &vec![DVec3::ZERO; tilted.len()]);
-    let angles: Vec<f64> = (0..(SECONDS * f64::from(TICK_RATE)) as usize)
+    let angles: Vec<f64> = (0..ticks(SECONDS))
         .map(|_| {
             specimen.tick();
             let tip = row(&scene, specimen.as_ref(), SEGMENTS);
