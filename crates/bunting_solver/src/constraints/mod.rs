@@ -66,7 +66,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         }
         self.solve_yarns(passes);
         self.solve_tethers();
-        for _ in 0..passes.div_ceil(2) {
+        for _ in 0..passes / 2 {
             self.polish();
         }
         self.unravel();
