@@ -29,7 +29,7 @@ use crate::{
 /// Entry of `COMPARED_TICKS` that a row's position error is taken at: 0.4 s.
 const COMPARED: usize = 1;
 /// Time after which a method that would take longer on a scene is left out, s.
-const PATIENCE: f64 = 60.0;
+const PATIENCE: f64 = 15.0;
 /// Part of a position error that the reference's own may be; beyond it no error is reported.
 const KNOWN: f64 = 0.1;
 /// Ticks before time is taken.
