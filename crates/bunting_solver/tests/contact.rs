@@ -102,6 +102,44 @@ fn a_fast_ball_does_not_tunnel() {
 }
 
 #[test]
+fn nothing_stays_inside_a_fast_shape() {
+    // What was far from it is drawn in by what it has caught, within the same tick.
+    let turned = Quat::from_rotation_x(core::f32::consts::FRAC_PI_4);
+    let shapes = [SharedShape::capsule_x(0.2, 0.05), SharedShape::cuboid(0.2, 0.05, 0.05)];
+    for shape in shapes {
+        let grid = FabricBuilder::grid(Grid::new(65, 65, 1.0, 1.0));
+        let fabric = Arc::new(grid.pin_where(|_, uv| uv.y == 0.0).build().expect("good"));
+        let mut batch = cloth(
+            &fabric,
+            FabricMaterial {
+                thickness: 0.0,
+                warp_stiffness: 1e4,
+                weft_stiffness: 1e4,
+                shear_stiffness: 200.0,
+                ..material()
+            },
+        );
+        batch.drive(0, Drive { air_density: 0.0, ..Drive::default() });
+        let at = |tick: usize| Vec3::new(0.5, -0.5, -0.5 + 20.0 * TICK * tick as f32);
+        for tick in 0..4 {
+            let from = (at(tick), turned);
+            let to = (at(tick + 1), turned);
+            batch.set_colliders(
+                0,
+                [Collider { from, to, ..Collider::fixed(shape.clone(), at(tick), turned) }],
+            );
+            batch.step(TICK, StepSettings { passes: 2, ..StepSettings::yarns(2) });
+            for position in batch.snapshot(0).positions {
+                let local = turned.inverse() * (position - at(tick + 1));
+                let nearest = shape.project_local_point(local, false);
+                let depth = if nearest.is_inside { nearest.point.distance(local) } else { 0.0 };
+                assert!(depth < 1e-3, "{depth} m inside {:?} in tick {tick}", shape.shape_type());
+            }
+        }
+    }
+}
+
+#[test]
 fn friction_holds_a_cloth_on_a_slope_and_its_absence_does_not() {
     let slope = 0.3_f32; // rad; tan = 0.31
     for (friction, holds) in [(0.6, true), (0.0, false)] {

@@ -71,7 +71,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             for (collider, candidates) in colliders.iter().zip(contacts) {
                 candidates.clear();
                 let swept = swept_box(collider);
-                let keep = material.thickness + collider.margin + frame_reach + gained;
+                // What the collider has caught draws the rest along.
+                let drawn = collider.from.0.distance(collider.to.0);
+                let keep = material.thickness + collider.margin + frame_reach + gained + drawn;
                 let particles = 0..self.fabric.particle_count();
                 candidates.extend(particles.filter_map(|particle| {
                     let (pack, lane) = self.seating.seat(particle, cloth);

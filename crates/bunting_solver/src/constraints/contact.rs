@@ -79,31 +79,42 @@ struct Push {
 impl Surface<'_> {
     /// Pushes a particle that goes from one point to another out of the shape, if it is in it.
     fn push(&self, from: Vec3, to: Vec3) -> Option<Push> {
-        let (Touch { normal, depth }, friction) = match self.crossing(from, to) {
-            // What a fast shape overtakes goes with it: a slide as long as the way would let the
-            // particle slip round the shape within the substep.
-            Some(touch) => (touch, f32::INFINITY),
-            None => (self.overlap(from, to)?, self.friction),
+        let (out, normal) = match self.crossing(from, to) {
+            Some(hit) => hit,
+            None => self.slide(from, to)?,
         };
-        let moved = to - from;
-        let slide = moved - normal * moved.dot(normal);
-        // Friction holds back a slide as far as the push is deep (Coulomb's cone).
-        let held = (friction * depth / slide.length().max(LEAST_LENGTH)).min(1.0);
-        let out = to + normal * depth - slide * held;
         // A particle that was inside to begin with is put outside without being thrown.
-        let thrown = moved.dot(normal) + depth - moved.dot(normal).max(0.0);
+        let thrown = (out - from).dot(normal) - (to - from).dot(normal).max(0.0);
         Some(Push { to: out, thrown: (thrown > 0.0).then(|| normal * thrown) })
     }
 
-    /// Where the way enters the shape from outside.
-    fn crossing(&self, from: Vec3, to: Vec3) -> Option<Touch> {
+    /// Where a particle stays whose way enters the shape from outside, and the normal there. What a fast
+    /// shape overtakes goes with it, and does not slide: a slide as long as the way would let the particle
+    /// slip round the shape within the substep.
+    fn crossing(&self, from: Vec3, to: Vec3) -> Option<(Vec3, Vec3)> {
         if self.shape.contains_local_point(from) {
             return None;
         }
         let way = Ray::new(from, to - from);
         let hit = self.shape.cast_local_ray_and_get_normal(&way, 1.0, true)?;
-        let depth = self.keep - hit.normal.dot(to - way.point_at(hit.time_of_impact));
-        (depth > 0.0).then_some(Touch { normal: hit.normal, depth })
+        let above = |at: Vec3| hit.normal.dot(at - way.point_at(hit.time_of_impact)) - self.keep;
+        if above(to) >= 0.0 {
+            return None;
+        }
+        let at = from - hit.normal * above(from);
+        // Beside an edge, and where the ray's normal is but an estimate.
+        let out = self.overlap(from, at).map_or(at, |Touch { normal, depth }| at + normal * depth);
+        Some((out, hit.normal))
+    }
+
+    /// Where a particle slides that comes nearer than the distance to keep, and the normal there.
+    fn slide(&self, from: Vec3, to: Vec3) -> Option<(Vec3, Vec3)> {
+        let Touch { normal, depth } = self.overlap(from, to)?;
+        let moved = to - from;
+        let slide = moved - normal * moved.dot(normal);
+        // Friction holds back a slide as far as the push is deep (Coulomb's cone).
+        let held = (self.friction * depth / slide.length().max(LEAST_LENGTH)).min(1.0);
+        Some((to + normal * depth - slide * held, normal))
     }
 
     /// The surface nearest to `to`, if it is nearer than the distance to keep.
