@@ -9,7 +9,7 @@ use crate::constraints::anticipated;
 use crate::fabric::{BendProfile, Fabric, FabricMaterial};
 use crate::lane_batch::{Applied, Clock};
 use crate::lanes::Pack;
-use crate::step::Drive;
+use crate::step::{Drive, Scheme};
 use crate::vector::{Pack3, fill_lanes3, splat3};
 
 /// Factors L and D of a bend profile's pentadiagonal system, for each inner particle.
@@ -104,8 +104,8 @@ pub(crate) struct Parameters<P: Pack> {
     /// Part of the non-rigid velocity that internal damping leaves in a substep, for cloth without
     /// pins.
     pub keep_internal: P,
-    /// Length that tethers have, in units of that at rest.
-    pub tether_stretch: P,
+    /// What the loads may stretch a length to, in units of that at rest.
+    pub greatest_stretch: P,
     /// The frame's motion in this substep, see [`Carry`](crate::frame::Carry).
     pub turn: [Pack3<P>; 3],
     pub shift: Pack3<P>,
@@ -132,7 +132,7 @@ impl<P: Pack> Parameters<P> {
             friction: nothing,
             keep: P::splat(1.0),
             keep_internal: P::splat(1.0),
-            tether_stretch: P::splat(1.0),
+            greatest_stretch: P::splat(1.0),
             turn: [splat3(Vec3::ZERO); 3],
             shift: splat3(Vec3::ZERO),
             moves: nothing,
@@ -153,7 +153,7 @@ impl<P: Pack> Parameters<P> {
 
     /// Integration formula, compliances, air and damping.
     pub fn apply(&mut self, lanes: Range<usize>, fabric: &Fabric, applied: &Applied) {
-        let Applied { material, air_density, step, formula } = applied;
+        let Applied { material, air_density, step, formula, scheme } = applied;
         let step = formula.weight * step;
         let set = |pack: &mut P, value: f32| pack.lanes_mut()[lanes.clone()].fill(value);
         for (pack, part) in self.extrapolation.iter_mut().zip(formula.extrapolation) {
@@ -166,7 +166,11 @@ impl<P: Pack> Parameters<P> {
         };
         let least = LEAST_LINK_COMPLIANCE / fabric.particle_areas()[0];
         for (pack, class) in self.link_compliance.iter_mut().zip(fabric.link_classes()) {
-            set(pack, compliance(class.stiffness(material)).max(least));
+            let stiffness = match scheme {
+                Scheme::Yarns if fabric.squares_cells() => class.stiffness_beside_shear(material),
+                _ => class.stiffness(material),
+            };
+            set(pack, compliance(stiffness).max(least));
         }
         for (pack, class) in self.hinge_compliance.iter_mut().zip(fabric.hinge_classes()) {
             set(pack, compliance(class.stiffness(material)));
@@ -207,7 +211,7 @@ impl<P: Pack> Parameters<P> {
         let set3 = |pack: &mut Pack3<P>, value: Vec3| fill_lanes3(pack, &lanes, value);
         set3(&mut self.gravity_step, turned(drive.gravity) * self.step.lanes()[lanes.start]);
         set3(&mut self.wind, turned(drive.wind));
-        set(&mut self.tether_stretch, 1.0 + greatest_strain(material, drive, reach));
+        set(&mut self.greatest_stretch, 1.0 + greatest_strain(material, drive, reach));
         let carry = drive.motion.carry(index, count);
         for (pack, row) in self.turn.iter_mut().zip(carry.turn.rows) {
             set3(pack, row);

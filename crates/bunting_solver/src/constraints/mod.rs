@@ -10,6 +10,7 @@ mod anticipation;
 #[cfg(test)]
 mod bench;
 mod bending;
+mod bias;
 mod contact;
 mod dihedral;
 mod distance;

@@ -202,7 +202,10 @@ impl FabricBuilder {
         let tethers = tethers::tethers(&rest, &edges, &pins, self.grid.is_some());
         let (bend_lines, bend_profiles) =
             self.grid.map(|grid| bending::lines(&grid, &inverse_areas)).unwrap_or_default();
-        let strands = Strands::new(&yarns, &yarn_colours, &links);
+        let mut strands = Strands::new(&yarns, &yarn_colours, &links);
+        if let Some(grid) = &self.grid {
+            strands.set_cells(grid.cells().map(|(corners, _)| corners));
+        }
         let (hinges, hinge_classes, hinge_colours) = hinges::hinges(&rest, &edges, &pinned);
 
         let reach = tethers.iter().map(|tether| tether.length).fold(0.0, f32::max);

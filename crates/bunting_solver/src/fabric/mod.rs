@@ -22,7 +22,7 @@ mod yarns;
 use glam::{Vec2, Vec3};
 
 pub(crate) use patches::Patch;
-pub(crate) use strands::{ABREAST, PolishLink, Strand, StrandLink, Strands, Thread};
+pub(crate) use strands::{ABREAST, Cell, PolishLink, Strand, StrandLink, Strands, Thread};
 pub(crate) use tethers::Pin;
 
 pub use bending::{BendLine, BendProfile};
@@ -172,6 +172,11 @@ impl Fabric {
 
     pub(crate) fn strands(&self) -> &Strands {
         &self.strands
+    }
+
+    /// Whether its bias carries shear alone, as that of a grid does whose diagonals count as bias.
+    pub(crate) fn squares_cells(&self) -> bool {
+        !self.strands.cells.is_empty()
     }
 
     /// Runs of yarns that share no particle.
