@@ -5,8 +5,8 @@ use core::ops::Range;
 use glam::Vec3;
 
 use crate::constants::{GREATEST_COMPLIANCE, LEAST_LINK_COMPLIANCE};
-use crate::constraints::anticipated;
-use crate::fabric::{BendProfile, Fabric, FabricMaterial};
+use crate::constraints::{anticipated, resists_twist};
+use crate::fabric::{BendProfile, Fabric, FabricMaterial, RibbonProfile};
 use crate::lane_batch::{Applied, Clock};
 use crate::lanes::Pack;
 use crate::step::{Drive, Scheme};
@@ -73,6 +73,58 @@ impl<P: Pack> BendFactors<P> {
     }
 }
 
+/// Factors L and D of a ribbon profile's tridiagonal system, for each cell.
+#[derive(Clone, Debug)]
+pub(crate) struct TwistFactors<P: Pack, C = f32> {
+    pub cells: Vec<TwistFactor<P>>,
+    /// One over the area of each particle, 1/m².
+    pub weights: Vec<[C; 2]>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TwistFactor<P: Pack> {
+    /// Factor of L below the diagonal.
+    pub near: P,
+    /// One over the diagonal; zero in lanes that do not resist twist.
+    pub inverse: P,
+}
+
+impl<P: Pack> TwistFactors<P> {
+    pub fn new(profile: &RibbonProfile) -> Self {
+        let weights = profile.inverse_areas.clone();
+        Self { cells: Self::room(weights.len()), weights }
+    }
+
+    /// No factors yet, for a ribbon of so many pairs.
+    pub fn room(pairs: usize) -> Vec<TwistFactor<P>> {
+        let nothing = P::splat(0.0);
+        vec![TwistFactor { near: nothing, inverse: nothing }; pairs - 1]
+    }
+
+    /// Factorises C W Cᵀ + α̃ for one lane. In double precision, since it is done once.
+    fn factorise(&mut self, lanes: &Range<usize>, profile: &RibbonProfile, compliance: f32) {
+        let pair: Vec<f64> =
+            profile.inverse_areas.iter().map(|[a, b]| f64::from(*a) + f64::from(*b)).collect();
+        let softness = f64::from(compliance / profile.weight);
+        let mut last = 0.0;
+        for (cell, factor) in self.cells.iter_mut().enumerate() {
+            let near = -pair[cell] * last;
+            let inverse = 1.0 / (pair[cell] + pair[cell + 1] + softness + near * pair[cell]);
+            factor.near.lanes_mut()[lanes.clone()].fill(near as f32);
+            factor.inverse.lanes_mut()[lanes.clone()].fill(inverse as f32);
+            last = inverse;
+        }
+    }
+
+    /// Finds no moment in these lanes.
+    fn forget(&mut self, lanes: &Range<usize>) {
+        for factor in &mut self.cells {
+            factor.near.lanes_mut()[lanes.clone()].fill(0.0);
+            factor.inverse.lanes_mut()[lanes.clone()].fill(0.0);
+        }
+    }
+}
+
 /// One value for each lane of everything that a kernel needs besides the particles.
 #[derive(Clone, Debug)]
 pub(crate) struct Parameters<P: Pack> {
@@ -89,6 +141,8 @@ pub(crate) struct Parameters<P: Pack> {
     pub hinge_compliance: Vec<P>,
     /// Of each bend profile.
     pub bend_factors: Vec<BendFactors<P>>,
+    /// Of each ribbon profile.
+    pub twist_factors: Vec<TwistFactors<P>>,
     /// Part of its memory of stretch that bending anticipates.
     pub anticipated: P,
     /// Gravity times the substep, m/s.
@@ -125,6 +179,7 @@ impl<P: Pack> Parameters<P> {
             link_compliance: vec![nothing; fabric.link_classes().len()],
             hinge_compliance: vec![nothing; fabric.hinge_classes().len()],
             bend_factors: fabric.bend_profiles().iter().map(BendFactors::new).collect(),
+            twist_factors: fabric.ribbon_profiles().iter().map(TwistFactors::new).collect(),
             anticipated: nothing,
             gravity_step: splat3(Vec3::ZERO),
             wind: splat3(Vec3::ZERO),
@@ -178,6 +233,14 @@ impl<P: Pack> Parameters<P> {
         for (factors, profile) in self.bend_factors.iter_mut().zip(fabric.bend_profiles()) {
             factors.factorise(&lanes, profile, compliance(material.bend_stiffness));
         }
+        let twists = resists_twist(fabric, material);
+        for (factors, profile) in self.twist_factors.iter_mut().zip(fabric.ribbon_profiles()) {
+            if twists {
+                factors.factorise(&lanes, profile, compliance(material.bend_stiffness));
+            } else {
+                factors.forget(&lanes);
+            }
+        }
         let spacing = fabric.bend_profiles().iter().map(|profile| profile.inverse_spacing);
         let finest = spacing.fold(0.0, f32::max);
         let stiffness_number =
@@ -224,6 +287,12 @@ impl<P: Pack> Parameters<P> {
     pub fn feels_air(&self) -> bool {
         let acts = |pack: &P| pack.lanes().iter().any(|&coefficient| coefficient != 0.0);
         acts(&self.pressure) || acts(&self.friction)
+    }
+
+    /// Whether any lane resists twist.
+    pub fn twists(&self) -> bool {
+        let first = self.twist_factors.first().and_then(|factors| factors.cells.first());
+        first.is_some_and(|cell| cell.inverse.lanes().iter().any(|&inverse| inverse != 0.0))
     }
 
     /// Whether the frame of any lane moves in this substep.

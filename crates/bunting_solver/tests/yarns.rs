@@ -155,6 +155,39 @@ fn a_heavy_cantilever_droops_as_its_closed_form() {
     }
 }
 
+/// A strip too stiff to bend swings as a rod, let go from level: 2π √(2/3g (1 + 1/2N²)) × 1.180341. Two lines of
+/// vertices that could twist would swing each for itself: by as much of a period as 4 %.
+#[test]
+fn a_stiff_strip_swings_as_a_rod() {
+    let links = 8;
+    let grid = Grid::new(2, links + 1, 1.0 / links as f32, 1.0);
+    let builder = FabricBuilder::grid(grid).pin_where(|_, uv| uv.y == 0.0);
+    let fabric = Arc::new(builder.build().expect("a good fabric"));
+    let mut start = ClothSnapshot::at_rest(&fabric);
+    for position in &mut start.positions {
+        *position = Vec3::new(position.x, 0.0, -position.y);
+    }
+    let material = FabricMaterial { bend_stiffness: 100.0, ..STANDARD };
+    let mut batch = lone(&fabric, material, Drive::default());
+    batch.restore(0, &start).expect("it fits");
+    let tip = grid.index(0, links) as usize;
+    let (mut last, mut crossings) = (1.0, Vec::new());
+    for tick in 1..=600 {
+        batch.step(TICK, StepSettings::default());
+        let positions = batch.snapshot(0).positions;
+        let at = positions[tip].z + positions[tip + 1].z;
+        if last < 0.0 && at >= 0.0 {
+            crossings.push((tick as f32 - at / (at - last)) * TICK);
+        }
+        last = at;
+    }
+    let swings = crossings.len() - 1;
+    let period = (crossings[swings] - crossings[0]) / swings as f32;
+    let small = 2.0 * (2.0 / (3.0 * GRAVITY) * (1.0 + 0.5 / (links * links) as f32)).sqrt();
+    let expected = core::f32::consts::PI * small * 1.180_341;
+    assert!((period / expected - 1.0).abs() < 2e-3, "{period} s, {expected}");
+}
+
 /// What hangs in folds from an upright pole is free to go round it, and nothing makes it.
 #[test]
 fn a_limp_flag_does_not_creep_round_its_pole() {

@@ -17,10 +17,12 @@ mod distance;
 mod pole;
 mod polish;
 mod tether;
+mod twist;
 mod yarn;
 
 pub(crate) use anticipation::anticipated;
 pub(crate) use pole::Pole;
+pub(crate) use twist::resists_twist;
 pub(crate) use yarn::Knot;
 
 use crate::lane_batch::LaneBatch;

@@ -16,6 +16,7 @@ mod patches;
 mod strands;
 mod tethers;
 mod topology;
+mod twist;
 mod weld;
 mod yarns;
 
@@ -24,6 +25,7 @@ use glam::{Vec2, Vec3};
 pub(crate) use patches::Patch;
 pub(crate) use strands::{ABREAST, Cell, PolishLink, Strand, StrandLink, Strands, Thread};
 pub(crate) use tethers::Pin;
+pub(crate) use twist::{Ribbon, RibbonProfile};
 
 pub use bending::{BendLine, BendProfile};
 pub use builder::{Coarser, FabricBuilder};
@@ -60,6 +62,8 @@ pub struct Fabric {
     hinge_colours: Colours,
     bend_lines: Vec<BendLine>,
     bend_profiles: Vec<BendProfile>,
+    ribbons: Vec<Ribbon>,
+    ribbon_profiles: Vec<RibbonProfile>,
     pins: Vec<Pin>,
     tethers: Vec<Tether>,
     reach: f32,
@@ -214,6 +218,15 @@ impl Fabric {
     #[must_use]
     pub fn bend_profiles(&self) -> &[BendProfile] {
         &self.bend_profiles
+    }
+
+    /// Ribbons of cells along which a grid twists.
+    pub(crate) fn ribbons(&self) -> &[Ribbon] {
+        &self.ribbons
+    }
+
+    pub(crate) fn ribbon_profiles(&self) -> &[RibbonProfile] {
+        &self.ribbon_profiles
     }
 
     /// How far each particle may be from the nearest pin.
