@@ -158,8 +158,11 @@ pub(crate) struct Parameters<P: Pack> {
     /// Part of the non-rigid velocity that internal damping leaves in a substep, for cloth without
     /// pins.
     pub keep_internal: P,
-    /// What the loads may stretch a length to, in units of that at rest.
-    pub greatest_stretch: P,
+    /// Length that tethers have, in units of that at rest: twice what the loads may stretch, which they must
+    /// not hide.
+    pub tether_stretch: P,
+    /// Length that the loads may stretch the bias to, in units of that at rest.
+    pub bias_stretch: P,
     /// The frame's motion in this substep, see [`Carry`](crate::frame::Carry).
     pub turn: [Pack3<P>; 3],
     pub shift: Pack3<P>,
@@ -187,7 +190,8 @@ impl<P: Pack> Parameters<P> {
             friction: nothing,
             keep: P::splat(1.0),
             keep_internal: P::splat(1.0),
-            greatest_stretch: P::splat(1.0),
+            tether_stretch: P::splat(1.0),
+            bias_stretch: P::splat(1.0),
             turn: [splat3(Vec3::ZERO); 3],
             shift: splat3(Vec3::ZERO),
             moves: nothing,
@@ -274,7 +278,9 @@ impl<P: Pack> Parameters<P> {
         let set3 = |pack: &mut Pack3<P>, value: Vec3| fill_lanes3(pack, &lanes, value);
         set3(&mut self.gravity_step, turned(drive.gravity) * self.step.lanes()[lanes.start]);
         set3(&mut self.wind, turned(drive.wind));
-        set(&mut self.greatest_stretch, 1.0 + greatest_strain(material, drive, reach));
+        let [hung, blown] = greatest_strains(material, drive, reach);
+        set(&mut self.tether_stretch, 1.0 + 2.0 * (hung + blown));
+        set(&mut self.bias_stretch, 1.0 + hung + blown.min(MOST_BLOWN));
         let carry = drive.motion.carry(index, count);
         for (pack, row) in self.turn.iter_mut().zip(carry.turn.rows) {
             set3(pack, row);
@@ -301,12 +307,15 @@ impl<P: Pack> Parameters<P> {
     }
 }
 
-/// How much gravity and wind together may stretch the top of a cloth that hangs by a length of
-/// `reach` metres, twice over: a bound for tethers, which must not hide what the material gives.
-fn greatest_strain(material: &FabricMaterial, drive: &Drive, reach: f32) -> f32 {
+/// Strain by the wind beyond which it counts as not yet solved, rather than as the material's. Larger: what
+/// a storm overstretches is not held by the bias. Smaller: what wind holds taut stretches too little.
+const MOST_BLOWN: f32 = 0.01;
+
+/// How much gravity and wind may stretch the top of a cloth that hangs by a length of `reach` metres.
+fn greatest_strains(material: &FabricMaterial, drive: &Drive, reach: f32) -> [f32; 2] {
     let softer = material.warp_stiffness.min(material.weft_stiffness);
     let weight = material.area_density * drive.gravity.length();
     let coefficients = material.pressure_coefficient + material.friction_coefficient;
     let pressure = 0.5 * drive.air_density * coefficients * drive.wind.length_squared();
-    2.0 * (weight + pressure) * reach / softer
+    [weight * reach / softer, pressure * reach / softer]
 }

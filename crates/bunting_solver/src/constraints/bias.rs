@@ -28,7 +28,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Finds how long the diagonals of each cell want to be, given warp and weft solved.
     pub fn square_cells(&mut self) {
         let Some(length) = self.fabric.grid().map(length) else { return };
-        let stretch = self.parameters.greatest_stretch;
+        let stretch = self.parameters.bias_stretch;
         if C::SIDE > 1
             && let Some(weave) = self.woven()
         {

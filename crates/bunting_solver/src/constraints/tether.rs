@@ -16,7 +16,7 @@ use crate::weave::{Facing, PackedTethers, Sheets, Weave};
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Projects every tether once.
     pub fn solve_tethers(&mut self) {
-        let stretch = self.parameters.greatest_stretch;
+        let stretch = self.parameters.tether_stretch;
         if C::SIDE > 1
             && let Some(weave) = self.woven()
         {
