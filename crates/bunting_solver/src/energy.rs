@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::fabric::{Fabric, FabricMaterial, hinge_angle};
+use crate::constraints::resists_twist;
+use crate::fabric::{Fabric, FabricMaterial, Ribbon, hinge_angle};
 
 /// Elastic energy, J: of links and of bending, as the constraints have it. Links that cannot stretch
 /// store none.
@@ -21,7 +22,9 @@ pub(crate) fn elastic(fabric: &Fabric, material: &FabricMaterial, positions: &[V
     let stretch: f64 = stretch.sum();
     let bending: f64 = if fabric.grid().is_some() {
         let lines = fabric.bend_lines().iter();
-        lines.map(|line| along_line(fabric, line.profile, &line.particles, positions)).sum()
+        let along: f64 =
+            lines.map(|line| along_line(fabric, line.profile, &line.particles, positions)).sum();
+        along + if resists_twist(fabric, material) { twist(fabric, positions) } else { 0.0 }
     } else {
         let hinges = fabric.hinges().iter();
         hinges
@@ -46,6 +49,18 @@ fn along_line(fabric: &Fabric, profile: u32, particles: &[u32], positions: &[Vec
         second.length_squared() * f64::from(profile.inverse_spacing).powi(2)
     });
     turns.zip(&profile.weights).map(|(turn, &weight)| turn * f64::from(weight)).sum()
+}
+
+/// Twice the energy of a grid's twist against unit bending stiffness.
+pub(crate) fn twist(fabric: &Fabric, positions: &[Vec3]) -> f64 {
+    let at = |particle: u32| positions[particle as usize].as_dvec3();
+    let across = |[from, to]: [u32; 2]| at(to) - at(from);
+    let of_ribbon = |ribbon: &Ribbon| -> f64 {
+        let weight = fabric.ribbon_profiles()[ribbon.profile as usize].weight;
+        let turns = ribbon.pairs.windows(2).map(|cell| across(cell[1]) - across(cell[0]));
+        f64::from(weight) * turns.map(|turn| turn.length_squared()).sum::<f64>()
+    };
+    fabric.ribbons().iter().map(of_ribbon).sum()
 }
 
 /// Sum of area times vector over all particles, pinned or not.

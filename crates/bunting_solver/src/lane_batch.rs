@@ -40,6 +40,8 @@ pub(crate) struct Applied {
     /// Length of a substep, s.
     pub step: f32,
     pub formula: Formula,
+    /// The bias of a grid does not carry the same in each.
+    pub scheme: Scheme,
 }
 
 /// Up to `P::WIDTH` cloths of one fabric, one in each lane. Or one whose particles lie side by side in the
@@ -213,6 +215,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 set_lane3(&mut packs[pack], lane, value);
             }
         }
+        self.square_cells_as_at_rest(lanes);
         for pin in self.fabric.pins() {
             let (pack, lane) = self.seating.seat(pin.particle as usize, lane);
             set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
@@ -279,6 +282,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 air_density: slot.drive.air_density,
                 step,
                 formula,
+                scheme: settings.scheme,
             };
             if slot.applied.replace(applied) != Some(applied) {
                 self.parameters.apply(lanes.clone(), &self.fabric, &applied);
@@ -286,7 +290,11 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                     weave.set_parameters(&self.parameters);
                 }
             }
-            let reach = self.fabric.reach();
+            let reach = match self.fabric.grid() {
+                // What is free is held by its own inertia.
+                Some(grid) if !self.fabric.has_pins() => grid.width.max(grid.height),
+                _ => self.fabric.reach(),
+            };
             self.parameters.set_drive(lanes, &slot.material, &slot.drive, reach, &self.clock);
         }
         // One substep more than the motion lasts, so that pinned particles come to rest.

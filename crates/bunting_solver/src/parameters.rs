@@ -5,11 +5,11 @@ use core::ops::Range;
 use glam::Vec3;
 
 use crate::constants::{GREATEST_COMPLIANCE, LEAST_LINK_COMPLIANCE};
-use crate::constraints::anticipated;
-use crate::fabric::{BendProfile, Fabric, FabricMaterial};
+use crate::constraints::{anticipated, resists_twist};
+use crate::fabric::{BendProfile, Fabric, FabricMaterial, RibbonProfile};
 use crate::lane_batch::{Applied, Clock};
 use crate::lanes::Pack;
-use crate::step::Drive;
+use crate::step::{Drive, Scheme};
 use crate::vector::{Pack3, fill_lanes3, splat3};
 
 /// Factors L and D of a bend profile's pentadiagonal system, for each inner particle.
@@ -73,6 +73,58 @@ impl<P: Pack> BendFactors<P> {
     }
 }
 
+/// Factors L and D of a ribbon profile's tridiagonal system, for each cell.
+#[derive(Clone, Debug)]
+pub(crate) struct TwistFactors<P: Pack, C = f32> {
+    pub cells: Vec<TwistFactor<P>>,
+    /// One over the area of each particle, 1/m².
+    pub weights: Vec<[C; 2]>,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TwistFactor<P: Pack> {
+    /// Factor of L below the diagonal.
+    pub near: P,
+    /// One over the diagonal; zero in lanes that do not resist twist.
+    pub inverse: P,
+}
+
+impl<P: Pack> TwistFactors<P> {
+    pub fn new(profile: &RibbonProfile) -> Self {
+        let weights = profile.inverse_areas.clone();
+        Self { cells: Self::room(weights.len()), weights }
+    }
+
+    /// No factors yet, for a ribbon of so many pairs.
+    pub fn room(pairs: usize) -> Vec<TwistFactor<P>> {
+        let nothing = P::splat(0.0);
+        vec![TwistFactor { near: nothing, inverse: nothing }; pairs - 1]
+    }
+
+    /// Factorises C W Cᵀ + α̃ for one lane. In double precision, since it is done once.
+    fn factorise(&mut self, lanes: &Range<usize>, profile: &RibbonProfile, compliance: f32) {
+        let pair: Vec<f64> =
+            profile.inverse_areas.iter().map(|[a, b]| f64::from(*a) + f64::from(*b)).collect();
+        let softness = f64::from(compliance / profile.weight);
+        let mut last = 0.0;
+        for (cell, factor) in self.cells.iter_mut().enumerate() {
+            let near = -pair[cell] * last;
+            let inverse = 1.0 / (pair[cell] + pair[cell + 1] + softness + near * pair[cell]);
+            factor.near.lanes_mut()[lanes.clone()].fill(near as f32);
+            factor.inverse.lanes_mut()[lanes.clone()].fill(inverse as f32);
+            last = inverse;
+        }
+    }
+
+    /// Finds no moment in these lanes.
+    fn forget(&mut self, lanes: &Range<usize>) {
+        for factor in &mut self.cells {
+            factor.near.lanes_mut()[lanes.clone()].fill(0.0);
+            factor.inverse.lanes_mut()[lanes.clone()].fill(0.0);
+        }
+    }
+}
+
 /// One value for each lane of everything that a kernel needs besides the particles.
 #[derive(Clone, Debug)]
 pub(crate) struct Parameters<P: Pack> {
@@ -89,6 +141,8 @@ pub(crate) struct Parameters<P: Pack> {
     pub hinge_compliance: Vec<P>,
     /// Of each bend profile.
     pub bend_factors: Vec<BendFactors<P>>,
+    /// Of each ribbon profile.
+    pub twist_factors: Vec<TwistFactors<P>>,
     /// Part of its memory of stretch that bending anticipates.
     pub anticipated: P,
     /// Gravity times the substep, m/s.
@@ -104,8 +158,11 @@ pub(crate) struct Parameters<P: Pack> {
     /// Part of the non-rigid velocity that internal damping leaves in a substep, for cloth without
     /// pins.
     pub keep_internal: P,
-    /// Length that tethers have, in units of that at rest.
+    /// Length that tethers have, in units of that at rest: twice what the loads may stretch, which they must
+    /// not hide.
     pub tether_stretch: P,
+    /// Length that the loads may stretch the bias to, in units of that at rest.
+    pub bias_stretch: P,
     /// The frame's motion in this substep, see [`Carry`](crate::frame::Carry).
     pub turn: [Pack3<P>; 3],
     pub shift: Pack3<P>,
@@ -125,6 +182,7 @@ impl<P: Pack> Parameters<P> {
             link_compliance: vec![nothing; fabric.link_classes().len()],
             hinge_compliance: vec![nothing; fabric.hinge_classes().len()],
             bend_factors: fabric.bend_profiles().iter().map(BendFactors::new).collect(),
+            twist_factors: fabric.ribbon_profiles().iter().map(TwistFactors::new).collect(),
             anticipated: nothing,
             gravity_step: splat3(Vec3::ZERO),
             wind: splat3(Vec3::ZERO),
@@ -133,6 +191,7 @@ impl<P: Pack> Parameters<P> {
             keep: P::splat(1.0),
             keep_internal: P::splat(1.0),
             tether_stretch: P::splat(1.0),
+            bias_stretch: P::splat(1.0),
             turn: [splat3(Vec3::ZERO); 3],
             shift: splat3(Vec3::ZERO),
             moves: nothing,
@@ -153,7 +212,7 @@ impl<P: Pack> Parameters<P> {
 
     /// Integration formula, compliances, air and damping.
     pub fn apply(&mut self, lanes: Range<usize>, fabric: &Fabric, applied: &Applied) {
-        let Applied { material, air_density, step, formula } = applied;
+        let Applied { material, air_density, step, formula, scheme } = applied;
         let step = formula.weight * step;
         let set = |pack: &mut P, value: f32| pack.lanes_mut()[lanes.clone()].fill(value);
         for (pack, part) in self.extrapolation.iter_mut().zip(formula.extrapolation) {
@@ -166,13 +225,25 @@ impl<P: Pack> Parameters<P> {
         };
         let least = LEAST_LINK_COMPLIANCE / fabric.particle_areas()[0];
         for (pack, class) in self.link_compliance.iter_mut().zip(fabric.link_classes()) {
-            set(pack, compliance(class.stiffness(material)).max(least));
+            let stiffness = match scheme {
+                Scheme::Yarns if fabric.squares_cells() => class.stiffness_beside_shear(material),
+                _ => class.stiffness(material),
+            };
+            set(pack, compliance(stiffness).max(least));
         }
         for (pack, class) in self.hinge_compliance.iter_mut().zip(fabric.hinge_classes()) {
             set(pack, compliance(class.stiffness(material)));
         }
         for (factors, profile) in self.bend_factors.iter_mut().zip(fabric.bend_profiles()) {
             factors.factorise(&lanes, profile, compliance(material.bend_stiffness));
+        }
+        let twists = resists_twist(fabric, material);
+        for (factors, profile) in self.twist_factors.iter_mut().zip(fabric.ribbon_profiles()) {
+            if twists {
+                factors.factorise(&lanes, profile, compliance(material.bend_stiffness));
+            } else {
+                factors.forget(&lanes);
+            }
         }
         let spacing = fabric.bend_profiles().iter().map(|profile| profile.inverse_spacing);
         let finest = spacing.fold(0.0, f32::max);
@@ -207,7 +278,9 @@ impl<P: Pack> Parameters<P> {
         let set3 = |pack: &mut Pack3<P>, value: Vec3| fill_lanes3(pack, &lanes, value);
         set3(&mut self.gravity_step, turned(drive.gravity) * self.step.lanes()[lanes.start]);
         set3(&mut self.wind, turned(drive.wind));
-        set(&mut self.tether_stretch, 1.0 + greatest_strain(material, drive, reach));
+        let [hung, blown] = greatest_strains(material, drive, reach);
+        set(&mut self.tether_stretch, 1.0 + 2.0 * (hung + blown));
+        set(&mut self.bias_stretch, 1.0 + hung + blown.min(MOST_BLOWN));
         let carry = drive.motion.carry(index, count);
         for (pack, row) in self.turn.iter_mut().zip(carry.turn.rows) {
             set3(pack, row);
@@ -222,18 +295,27 @@ impl<P: Pack> Parameters<P> {
         acts(&self.pressure) || acts(&self.friction)
     }
 
+    /// Whether any lane resists twist.
+    pub fn twists(&self) -> bool {
+        let first = self.twist_factors.first().and_then(|factors| factors.cells.first());
+        first.is_some_and(|cell| cell.inverse.lanes().iter().any(|&inverse| inverse != 0.0))
+    }
+
     /// Whether the frame of any lane moves in this substep.
     pub fn moves_any(&self) -> bool {
         self.moves.lanes().contains(&1.0)
     }
 }
 
-/// How much gravity and wind together may stretch the top of a cloth that hangs by a length of
-/// `reach` metres, twice over: a bound for tethers, which must not hide what the material gives.
-fn greatest_strain(material: &FabricMaterial, drive: &Drive, reach: f32) -> f32 {
+/// Strain by the wind beyond which it counts as not yet solved, rather than as the material's. Larger: what
+/// a storm overstretches is not held by the bias. Smaller: what wind holds taut stretches too little.
+const MOST_BLOWN: f32 = 0.01;
+
+/// How much gravity and wind may stretch the top of a cloth that hangs by a length of `reach` metres.
+fn greatest_strains(material: &FabricMaterial, drive: &Drive, reach: f32) -> [f32; 2] {
     let softer = material.warp_stiffness.min(material.weft_stiffness);
     let weight = material.area_density * drive.gravity.length();
     let coefficients = material.pressure_coefficient + material.friction_coefficient;
     let pressure = 0.5 * drive.air_density * coefficients * drive.wind.length_squared();
-    2.0 * (weight + pressure) * reach / softer
+    [weight * reach / softer, pressure * reach / softer]
 }

@@ -15,31 +15,35 @@ const STEPS: usize = 4000;
 /// Step of the logarithm of the tip's angle in the search for the first equilibrium.
 const SCAN: f64 = 0.25;
 
-/// Critical w L³/B of a column of rigid links, clamped in the middle of one below the first, joined by
-/// springs B/l and bearing these masses at their upper ends, in units of a whole link's.
+/// Critical w L³/B of a column of square cells, clamped in the middle of one below the first, whose two
+/// sides are rigid links joined by springs B/2l each and bear these masses at their upper ends, in units of
+/// a whole row's.
 ///
-/// A small tilt of link k stores ½ B/l (θₖ − θₖ₋₁)², twice that at the clamp, whose hinge covers half a
-/// link, and lowers what the link bears by ½ l θₖ²: the load is the least eigenvalue of one against the
-/// other.
+/// Small tilts of the links of a row store ¼ B/l (θₖ − θₖ₋₁)² on each side, twice that at the clamp, whose
+/// hinge covers half a link, and B/l (θ − θ')² where they differ, by twist; each lowers what it bears by
+/// ½ l θ²: the load is the least eigenvalue of one against the other.
 ///
 /// # Panics
 ///
 /// When a mass is not positive.
 #[must_use]
-pub fn column_of_links(masses: &[f64]) -> f64 {
-    let count = masses.len();
-    let borne = |link: usize| masses[link..].iter().sum::<f64>();
-    let spring = |joint: usize| if joint == 0 { 2.0 } else { f64::from(u8::from(joint < count)) };
-    let stiffness = |row: usize, column: usize| match row.abs_diff(column) {
-        0 => spring(row) + spring(row + 1),
-        1 => -1.0,
+pub fn column_of_links(masses: &[[f64; 2]]) -> f64 {
+    let rows = masses.len();
+    let borne = |at: usize| masses[at / 2..].iter().map(|row| row[at % 2]).sum::<f64>();
+    let spring =
+        |joint: usize| if joint == 0 { 1.0 } else { 0.5 * f64::from(u8::from(joint < rows)) };
+    let twist = 2.0;
+    let stiffness = |one: usize, other: usize| match (one / 2).abs_diff(other / 2) {
+        0 if one == other => spring(one / 2) + spring(one / 2 + 1) + twist,
+        0 => -twist,
+        1 if one % 2 == other % 2 => -0.5,
         _ => 0.0,
     };
-    let matrix = Mat::from_fn(count, count, |row, column| {
-        stiffness(row, column) / (borne(row) * borne(column)).sqrt()
+    let matrix = Mat::from_fn(2 * rows, 2 * rows, |one, other| {
+        stiffness(one, other) / (borne(one) * borne(other)).sqrt()
     });
     let loads = matrix.self_adjoint_eigenvalues(Side::Lower).expect("a finite symmetric matrix");
-    loads[0] * (count as f64).powi(3)
+    loads[0] * (rows as f64).powi(3)
 }
 
 /// A horizontally clamped strip under its own weight, over its length.

@@ -165,8 +165,8 @@ fn strips_buckle() {
     assert_near(tilt_at_clamp(SELF_WEIGHT_COLUMN, 1), 0.0, SIXTH_DECIMAL);
     assert_near(tilt_at_clamp((0.5 * LATERAL_BUCKLING).powi(2), 4), 0.0, SIXTH_DECIMAL);
     // A rigid link on one spring 2B/l that bears half a link: w l² (l/2) = 2B/l · l/l.
-    assert_near(column_of_links(&[0.5]), 4.0, SIXTH_DECIMAL);
-    let mut masses = vec![1.0; 64];
-    masses[63] = 0.5;
+    assert_near(column_of_links(&[[0.25, 0.25]]), 4.0, SIXTH_DECIMAL);
+    let mut masses = vec![[0.5, 0.5]; 64];
+    masses[63] = [0.25, 0.25];
     assert_near(column_of_links(&masses), SELF_WEIGHT_COLUMN, 0.001);
 }

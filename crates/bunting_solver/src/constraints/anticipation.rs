@@ -31,10 +31,12 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     pub fn solve_bending_with_anticipation(&mut self) {
         if !self.anticipates() {
             self.solve_bending();
+            self.solve_twist();
             return;
         }
         self.lean(1.0);
         self.solve_bending();
+        self.solve_twist();
         self.unravel();
         self.lean(-1.0);
         self.bent.copy_from_slice(&self.position);

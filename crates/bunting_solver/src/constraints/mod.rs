@@ -10,16 +10,19 @@ mod anticipation;
 #[cfg(test)]
 mod bench;
 mod bending;
+mod bias;
 mod contact;
 mod dihedral;
 mod distance;
 mod pole;
 mod polish;
 mod tether;
+mod twist;
 mod yarn;
 
 pub(crate) use anticipation::anticipated;
 pub(crate) use pole::Pole;
+pub(crate) use twist::resists_twist;
 pub(crate) use yarn::Knot;
 
 use crate::lane_batch::LaneBatch;

@@ -38,12 +38,20 @@ impl<P: Pack> Knot<P> {
 }
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
-    /// Solves warp, weft, bias, then warp and weft again for each pass.
+    /// Solves warp, weft, bias, then warp and weft again for each pass. The bias of a grid is told what its
+    /// cells are stretched by.
     ///
     /// The bias must not come last: what it moves is large against the strain of warp and weft.
     pub fn solve_yarns(&mut self, passes: u32) {
         self.visit_yarns(Visit::First);
-        self.visit_yarns(Visit::Only);
+        if self.fabric.squares_cells() {
+            if self.clock.done == 1 {
+                self.square_cells();
+            }
+            self.visit_yarns(Visit::Sheared);
+        } else {
+            self.visit_yarns(Visit::Only);
+        }
         for _ in 0..passes {
             self.visit_yarns(Visit::Again);
         }
@@ -97,11 +105,13 @@ enum Visit {
     Again,
     /// To the bias. Nobody asks for its targets.
     Only,
+    /// To the bias of a grid, whose targets are known.
+    Sheared,
 }
 
 impl Visit {
     fn is_to(self, family: LinkFamily) -> bool {
-        (family == LinkFamily::Bias) == (self == Self::Only)
+        (family == LinkFamily::Bias) == matches!(self, Self::Only | Self::Sheared)
     }
 }
 
@@ -122,6 +132,7 @@ impl<P: Pack, S: Places<P>> Kernel<P> for Yarns<'_, P, S> {
             Visit::First => self.solve_all::<L, false, true>(token),
             Visit::Again => self.solve_all::<L, true, true>(token),
             Visit::Only => self.solve_all::<L, false, false>(token),
+            Visit::Sheared => self.solve_all::<L, true, false>(token),
         }
     }
 }

@@ -11,8 +11,8 @@ use glam::{Vec2, Vec3};
 
 use super::links::{self, Sheet};
 use super::{
-    Fabric, FabricError, Grid, bending, hinges, patches, strands::Strands, tethers, topology, weld,
-    yarns,
+    Fabric, FabricError, Grid, bending, hinges, patches, strands::Strands, tethers, topology,
+    twist, weld, yarns,
 };
 
 pub use coarser::Coarser;
@@ -202,7 +202,12 @@ impl FabricBuilder {
         let tethers = tethers::tethers(&rest, &edges, &pins, self.grid.is_some());
         let (bend_lines, bend_profiles) =
             self.grid.map(|grid| bending::lines(&grid, &inverse_areas)).unwrap_or_default();
-        let strands = Strands::new(&yarns, &yarn_colours, &links);
+        let (ribbons, ribbon_profiles) =
+            self.grid.map(|grid| twist::ribbons(&grid, &inverse_areas)).unwrap_or_default();
+        let mut strands = Strands::new(&yarns, &yarn_colours, &links);
+        if let Some(grid) = &self.grid {
+            strands.set_cells(grid.cells().map(|(corners, _)| corners));
+        }
         let (hinges, hinge_classes, hinge_colours) = hinges::hinges(&rest, &edges, &pinned);
 
         let reach = tethers.iter().map(|tether| tether.length).fold(0.0, f32::max);
@@ -228,6 +233,8 @@ impl FabricBuilder {
             hinge_colours,
             bend_lines,
             bend_profiles,
+            ribbons,
+            ribbon_profiles,
             pins,
             reach,
             tautness,

@@ -72,7 +72,7 @@ impl Grid {
     }
 
     /// The corners of each cell: top left, top right, bottom left, bottom right.
-    fn cells(&self) -> impl Iterator<Item = ([u32; 4], bool)> + '_ {
+    pub(crate) fn cells(&self) -> impl Iterator<Item = ([u32; 4], bool)> + '_ {
         (0..self.rows - 1).flat_map(move |row| {
             (0..self.columns - 1).map(move |column| {
                 let corner = |right, down| self.index(column + right, row + down);

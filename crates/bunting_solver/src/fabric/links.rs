@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::{DMat3, DVec3, Vec2, Vec3};
 
 use super::colour::{Classes, Colours, colour};
+use super::material::FabricMaterial;
 
 /// A distance constraint between two particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,19 +44,28 @@ pub struct LinkClass {
 impl LinkClass {
     /// Stiffness of the link in a material, N/m.
     #[must_use]
-    pub fn stiffness(&self, material: &super::FabricMaterial) -> f32 {
-        let moduli = material.lattice_moduli();
+    pub fn stiffness(&self, material: &FabricMaterial) -> f32 {
         // Zero weights are skipped: an inextensible material's moduli are infinite.
-        let sum: f32 = self
-            .weights
-            .iter()
-            .zip(moduli)
-            .filter(|(weight, _)| **weight != 0.0)
-            .map(|(weight, modulus)| weight * modulus)
-            .sum();
-        let floor = self.floor * material.warp_stiffness.min(material.weft_stiffness);
+        self.of_moduli(material.lattice_moduli(), |weight| weight != 0.0).max(self.least(material))
+    }
+
+    /// The same where the bias carries shear alone (`constraints/bias.rs`), so that what warp and weft
+    /// leave to it is theirs.
+    pub(crate) fn stiffness_beside_shear(&self, material: &FabricMaterial) -> f32 {
+        let FabricMaterial { warp_stiffness, weft_stiffness, shear_stiffness, .. } = *material;
+        let moduli = [warp_stiffness, weft_stiffness, shear_stiffness];
+        self.of_moduli(moduli, |weight| weight > 0.0).max(self.least(material))
+    }
+
+    fn of_moduli(&self, moduli: [f32; 3], counts: fn(f32) -> bool) -> f32 {
+        let weights = self.weights.iter().zip(moduli).filter(|(weight, _)| counts(**weight));
+        let sum: f32 = weights.map(|(weight, modulus)| weight * modulus).sum();
         // An infinite modulus of either sign leaves no number behind; it means inextensible.
-        if sum.is_nan() { f32::INFINITY } else { sum.max(floor) }
+        if sum.is_nan() { f32::INFINITY } else { sum }
+    }
+
+    fn least(&self, material: &FabricMaterial) -> f32 {
+        self.floor * material.warp_stiffness.min(material.weft_stiffness)
     }
 }
 

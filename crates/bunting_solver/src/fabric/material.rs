@@ -148,7 +148,8 @@ impl FabricMaterial {
     ///
     /// Links on the bias carry shear, but stretch too: they couple warp and weft by C₁₂ = G. A
     /// strip pulled along the warp, free to narrow, then measures C₁₁ − C₁₂²/C₂₂; asking that to be
-    /// the warp stiffness, and likewise the weft, gives these two.
+    /// the warp stiffness, and likewise the weft, gives these two. The bias of a grid of yarns carries
+    /// shear alone, and needs none of this.
     #[must_use]
     pub fn lattice_moduli(&self) -> [f32; 3] {
         let (warp, weft, shear) = (self.warp_stiffness, self.weft_stiffness, self.shear_stiffness);

@@ -16,14 +16,16 @@ mod patches;
 mod strands;
 mod tethers;
 mod topology;
+mod twist;
 mod weld;
 mod yarns;
 
 use glam::{Vec2, Vec3};
 
 pub(crate) use patches::Patch;
-pub(crate) use strands::{ABREAST, PolishLink, Strand, StrandLink, Strands, Thread};
+pub(crate) use strands::{ABREAST, Cell, PolishLink, Strand, StrandLink, Strands, Thread};
 pub(crate) use tethers::Pin;
+pub(crate) use twist::{Ribbon, RibbonProfile};
 
 pub use bending::{BendLine, BendProfile};
 pub use builder::{Coarser, FabricBuilder};
@@ -60,6 +62,8 @@ pub struct Fabric {
     hinge_colours: Colours,
     bend_lines: Vec<BendLine>,
     bend_profiles: Vec<BendProfile>,
+    ribbons: Vec<Ribbon>,
+    ribbon_profiles: Vec<RibbonProfile>,
     pins: Vec<Pin>,
     tethers: Vec<Tether>,
     reach: f32,
@@ -174,6 +178,11 @@ impl Fabric {
         &self.strands
     }
 
+    /// Whether its bias carries shear alone, as that of a grid does whose diagonals count as bias.
+    pub(crate) fn squares_cells(&self) -> bool {
+        !self.strands.cells.is_empty()
+    }
+
     /// Runs of yarns that share no particle.
     #[must_use]
     pub fn yarn_colours(&self) -> &Colours {
@@ -209,6 +218,15 @@ impl Fabric {
     #[must_use]
     pub fn bend_profiles(&self) -> &[BendProfile] {
         &self.bend_profiles
+    }
+
+    /// Ribbons of cells along which a grid twists.
+    pub(crate) fn ribbons(&self) -> &[Ribbon] {
+        &self.ribbons
+    }
+
+    pub(crate) fn ribbon_profiles(&self) -> &[RibbonProfile] {
+        &self.ribbon_profiles
     }
 
     /// How far each particle may be from the nearest pin.

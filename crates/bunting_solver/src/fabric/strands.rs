@@ -6,6 +6,7 @@
 //! have no direction and pull nothing.
 
 use core::ops::Range;
+use std::collections::HashMap;
 
 use super::colour::Colours;
 use super::links::{Link, LinkFamily};
@@ -65,6 +66,17 @@ pub(crate) struct Strands<C = f32> {
     /// Warp and weft link by link, yarn after yarn: in each, every second link and then the others,
     /// so that neighbours in the list share no particle.
     pub polish: Vec<PolishLink>,
+    /// The cells of a grid whose diagonals are links; none of other meshes.
+    pub cells: Vec<Cell>,
+}
+
+/// A cell of a grid, or a pack of them, and its diagonals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cell {
+    /// Top left, top right, bottom left and bottom right.
+    pub corners: [u32; 4],
+    /// Indices of the targets of its diagonals; twice the same where there is but one.
+    pub targets: [u32; 2],
 }
 
 /// A link as it is polished.
@@ -124,7 +136,21 @@ impl<C: Copy> Strands<C> {
             let (strands, polish) = (first_strand..strands.len(), first_link..polish.len());
             coloured.push(StrandColour { family, strands, polish });
         }
-        Self { strands, colours: coloured, polish }
+        Self { strands, colours: coloured, polish, cells: Vec::new() }
+    }
+
+    /// The bias links, column by column of their strands: both ends, and the index of the target.
+    pub fn bias(&self) -> impl Iterator<Item = ([u32; 2], u32)> {
+        let bias = self.colours.iter().filter(|colour| colour.family == LinkFamily::Bias);
+        bias.flat_map(|colour| &self.strands[colour.strands.clone()]).flat_map(|strand| {
+            let rows = strand.particles.windows(2).enumerate();
+            rows.flat_map(move |(row, ends)| {
+                (0..strand.count).map(move |at| {
+                    let target = strand.targets.start + row * strand.count + at;
+                    ([ends[0][at], ends[1][at]], target as u32)
+                })
+            })
+        })
     }
 
     /// Number of targets, those of links that only fill included.
@@ -135,6 +161,22 @@ impl<C: Copy> Strands<C> {
     /// Most links that one strand has.
     pub fn longest(&self) -> usize {
         self.strands.iter().map(|strand| strand.links.len()).max().unwrap_or(0)
+    }
+}
+
+impl Strands {
+    /// Finds the diagonals of cells, given their corners.
+    pub fn set_cells(&mut self, cells: impl Iterator<Item = [u32; 4]>) {
+        let targets: HashMap<[u32; 2], u32> =
+            self.bias().map(|([a, b], target)| ([a.min(b), a.max(b)], target)).collect();
+        let cells = cells.filter_map(|corners| {
+            let [top_left, top_right, bottom_left, bottom_right] = corners;
+            let falling = targets.get(&[top_left, bottom_right]);
+            let rising = targets.get(&[top_right, bottom_left]);
+            let targets = [*falling.or(rising)?, *rising.or(falling)?];
+            Some(Cell { corners, targets })
+        });
+        self.cells = cells.collect();
     }
 }
 

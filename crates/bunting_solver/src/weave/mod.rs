@@ -13,6 +13,7 @@ mod air;
 mod bend_lines;
 mod cells;
 mod normals;
+mod ribbons;
 mod sheets;
 mod tethers;
 mod threads;
@@ -22,6 +23,7 @@ pub(crate) use tethers::PackedTethers;
 
 use cells::Cells;
 use glam::Vec3;
+use ribbons::Ribbons;
 use sheets::Plane;
 
 use crate::constraints::Knot;
@@ -59,6 +61,7 @@ pub(crate) struct Weave<P: Pack> {
     /// For each profile of these lines, the fabric's profile in each lane.
     profiles: Vec<OfLanes>,
     pub bend_factors: Vec<BendFactors<P, P>>,
+    pub ribbons: Ribbons<P>,
     pub moments: Vec<Pack3<P>>,
 
     pub tethers: PackedTethers<P>,
@@ -84,6 +87,7 @@ impl<P: Pack> Weave<P> {
             compliance: vec![nothing; classes.len()],
             bend_factors: profiles.iter().map(|of| bend_lines::factors(fabric, of)).collect(),
             moments: vec![splat3(Vec3::ZERO); grid.columns.max(grid.rows) as usize],
+            ribbons: Ribbons::of(fabric, &sheets),
             tethers: PackedTethers::of(fabric),
             velocity: sheets.plane(),
             cells,
@@ -113,6 +117,7 @@ impl<P: Pack> Weave<P> {
                     .map_or(0.0, |class| only(&parameters.link_compliance[class as usize]))
             });
         }
+        self.ribbons.set_parameters(parameters);
         for (factors, of_lanes) in self.bend_factors.iter_mut().zip(&self.profiles) {
             for (row, factor) in factors.rows.iter_mut().enumerate() {
                 let of = |lane: usize| {

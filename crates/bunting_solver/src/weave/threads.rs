@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::{Facing, OfLanes, Sheets};
-use crate::fabric::{Fabric, Grid, Link, LinkFamily, StrandLink, Strands, Thread, Yarn};
+use crate::fabric::{Cell, Fabric, Grid, Link, LinkFamily, StrandLink, Strands, Thread, Yarn};
 use crate::lanes::Pack;
 use crate::places::Constant;
 
@@ -87,7 +87,15 @@ pub(super) fn strands<P: Pack>(
             facings.push(course.facing());
         }
     }
-    Some((Strands::of(colours.into_iter()), facings, classes))
+    let mut strands = Strands::of(colours.into_iter());
+    // Packs of diagonals, each with those that cross them.
+    let stride = sheets.stride() as u32;
+    let cells = strands.bias().map(|([above, below], target)| {
+        let left = if below > above + stride { above } else { above - 1 };
+        Cell { corners: [left, left + 1, left + stride, left + stride + 1], targets: [target; 2] }
+    });
+    strands.cells = cells.collect();
+    Some((strands, facings, classes))
 }
 
 /// Yarns side by side, from the first on.

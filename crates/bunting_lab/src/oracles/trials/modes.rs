@@ -9,7 +9,7 @@ use crate::{
     oracles::{
         Case,
         pendulum::{Mode, modes_of_chain},
-        rig::{GAUSS_SEIDEL, YARNS, chains, column_masses, label, order, strip, substep},
+        rig::{GAUSS_SEIDEL, YARNS, chains, column_masses, label, strip, substep},
         specimen::Mount,
     },
     scenes::{GRAVITY, Pins, Pose, Scene, TICK_RATE, ticks},
@@ -26,7 +26,7 @@ const SECONDS: f64 = 10.0;
 /// by linear interpolation is off by 1e-3 of a period, over 6 periods and more.
 const READING: f64 = 2e-4;
 
-/// The first three modes at two sizes, and the order of the third in the step.
+/// The first three modes at two sizes, and the third at other substeps.
 pub fn cases(mount: &Mount) -> Vec<Case> {
     let mut cases = Vec::new();
     for segments in [8, 32] {
@@ -35,11 +35,10 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
         }
     }
     cases.push(case(mount, 8, 0, GAUSS_SEIDEL));
-    let errors = [2, 4, 8].map(|substeps| {
-        let case = case(mount, 32, 2, StepSettings::yarns(substeps));
-        case.measured - case.expected
-    });
-    cases.push(order("hanging mode 3, N = 32, order in the step, yarns", 2.0, &errors));
+    // What two substeps miss can already not be read, so that the next show no order.
+    for substeps in [4, 8] {
+        cases.push(case(mount, 32, 2, StepSettings::yarns(substeps)));
+    }
     cases
 }
 
