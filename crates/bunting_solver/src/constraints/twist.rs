@@ -4,6 +4,7 @@
 //! The XPBD system of a ribbon is tridiagonal, constant, and the same for x, y and z. Cell by cell it
 //! would take as many sweeps as a strip has cells to hold it on edge.
 
+use crate::constants::GRAVITY;
 use crate::fabric::{Fabric, FabricMaterial, Ribbon};
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
@@ -15,9 +16,6 @@ use crate::weave::Weave;
 /// Γ = σ g L³/B from which on cloth is limp: held level by its edge, it reaches out by a twentieth of its
 /// length, and twist is small beside its weight. A flag of a metre has 100,000.
 const LIMP: f32 = 1000.0;
-
-/// Standard gravity, m/s².
-const GRAVITY: f32 = 9.81;
 
 /// Whether cloth is stiff enough to be seen to resist twist.
 pub(crate) fn resists_twist(fabric: &Fabric, material: &FabricMaterial) -> bool {

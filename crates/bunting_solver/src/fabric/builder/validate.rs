@@ -1,0 +1,37 @@
+//! What is wrong with a mesh before it is cut.
+
+use super::FabricBuilder;
+use crate::fabric::FabricError;
+
+impl FabricBuilder {
+    /// Checks that counts and indices fit, and that positions are numbers.
+    pub(super) fn validate(&self) -> Result<(), FabricError> {
+        if let Some(grid) = &self.grid {
+            grid.validate()?;
+        }
+        if self.indices.is_empty() {
+            return Err(FabricError::Empty);
+        }
+        if !self.indices.len().is_multiple_of(3) {
+            return Err(FabricError::IndexCount { count: self.indices.len() });
+        }
+        let vertices = self.positions.len();
+        if let Some(at) = self.indices.iter().position(|&index| index as usize >= vertices) {
+            return Err(FabricError::IndexOutOfRange {
+                triangle: at / 3,
+                vertex: self.indices[at],
+                vertices,
+            });
+        }
+        if let Some(&vertex) = self.pinned.iter().find(|&&vertex| vertex as usize >= vertices) {
+            return Err(FabricError::PinOutOfRange { vertex, vertices });
+        }
+        if let Some(vertex) = self.positions.iter().position(|position| !position.is_finite()) {
+            return Err(FabricError::NotFinite { vertex });
+        }
+        if !self.uv.is_empty() && self.uv.len() != vertices {
+            return Err(FabricError::UvCount { uvs: self.uv.len(), vertices });
+        }
+        Ok(())
+    }
+}
