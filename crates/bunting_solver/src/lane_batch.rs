@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::added_mass;
+use crate::added_mass::Weights;
 use crate::batch::LaneSurface;
 use crate::collision::Collider;
 use crate::constraints::{Knot, Pole};
@@ -87,8 +87,8 @@ pub(crate) struct LaneBatch<P: Pack, C = f32> {
     /// Room for the links of yarns side by side.
     pub knots: Vec<Knot<P>>,
 
-    /// One over each particle's inertia, in units of the density, 1/m²; zero where it is pinned.
-    pub weights: Vec<f32>,
+    /// One over each particle's inertia.
+    pub weights: Weights,
     /// Where the particles lie.
     pub seating: Seating,
     /// For each pack, into which part of a sum over all particles it goes.
@@ -148,7 +148,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             hinge_multiplier: vec![nothing; fabric.hinges().len()],
             moments: vec![splat3(Vec3::ZERO); longest_line],
             knots: vec![Knot::new(); ABREAST * longest_yarn],
-            weights: fabric.inverse_areas().to_vec(),
+            weights: Weights::bare(&fabric),
             packs: Packed::new(seating, &fabric),
             parts,
             seating,
@@ -312,7 +312,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         };
         if self.weights_step != weights_step {
             self.weights_step = weights_step;
-            self.weights = added_mass::weights(&self.fabric, weights_step);
+            self.weights = Weights::new(&self.fabric, weights_step);
             self.packs.set_weights(self.seating, &self.weights);
             if let Some(weave) = &mut self.weave {
                 weave.sheets.set_weights(&self.weights);
@@ -345,6 +345,11 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 }
             }
             let reach = self.fabric.reach();
+            let upright = self.pole.map_or(0.0, |pole| pole.uprightness(slot.drive.gravity));
+            self.parameters.set_upright(lanes.clone(), upright);
+            if let Some(weave) = &mut self.weave {
+                weave.sheets.upright = upright;
+            }
             self.parameters.set_drive(lanes, &slot.material, &slot.drive, reach, &self.clock);
         }
         // One substep more than the motion lasts, so that pinned particles come to rest.

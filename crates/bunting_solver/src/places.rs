@@ -6,6 +6,7 @@
 use core::fmt::Debug;
 use core::ops::Range;
 
+use crate::added_mass::Weights;
 use crate::lanes::{Lane, Pack};
 use crate::vector::{Pack3, V3};
 
@@ -139,12 +140,15 @@ pub(crate) trait Places<P: Pack> {
 /// Cloths side by side.
 pub(crate) struct Cloths<'a, P: Pack> {
     weights: &'a [f32],
+    eased: &'a [f32],
+    upright: &'a P,
     position: &'a mut [Pack3<P>],
 }
 
 impl<'a, P: Pack> Cloths<'a, P> {
-    pub fn new(weights: &'a [f32], position: &'a mut [Pack3<P>]) -> Self {
-        Self { weights, position }
+    /// `upright` says how far each cloth hangs along its pole.
+    pub fn new(weights: &'a Weights, upright: &'a P, position: &'a mut [Pack3<P>]) -> Self {
+        Self { weights: &weights.across, eased: &weights.eased, upright, position }
     }
 }
 
@@ -163,7 +167,9 @@ impl<P: Pack> Places<P> for Cloths<'_, P> {
 
     #[inline(always)]
     fn weight<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> L {
-        L::splat(token, self.weights[at as usize])
+        let eased = L::splat(token, self.eased[at as usize]);
+        let upright = L::load(token, self.upright);
+        L::splat(token, self.weights[at as usize]).minus_product(eased, upright)
     }
 
     #[inline(always)]

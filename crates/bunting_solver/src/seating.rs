@@ -1,5 +1,6 @@
 //! Where particles lie among the packs of a batch, and what the fabric says of those of each.
 
+use crate::added_mass::Weights;
 use crate::fabric::Fabric;
 use crate::lanes::Pack;
 use crate::places::{Constant, PARTS};
@@ -59,8 +60,11 @@ pub(crate) struct Packed<C> {
     pub areas: Vec<C>,
     /// One over the area, 1/m²; zero where pinned.
     pub inverse_areas: Vec<C>,
-    /// One over the inertia, in units of the density, 1/m²; zero where pinned.
+    /// One over the inertia, in units of the density, 1/m²; zero where pinned. As the others, of a cloth
+    /// that does not hang along its pole.
     pub weights: Vec<C>,
+    /// How much less that is of a cloth that does, 1/m².
+    pub eased: Vec<C>,
     /// Inertia, in units of the density, m²; zero where pinned.
     pub inertias: Vec<C>,
 }
@@ -74,18 +78,20 @@ impl<C> Packed<C> {
             areas: seating.lay(fabric.particle_areas()),
             inverse_areas: seating.lay(fabric.inverse_areas()),
             weights: Vec::new(),
+            eased: Vec::new(),
             inertias: Vec::new(),
         };
-        packed.set_weights(seating, fabric.inverse_areas());
+        packed.set_weights(seating, &Weights::bare(fabric));
         packed
     }
 
-    pub fn set_weights<P: Pack>(&mut self, seating: Seating, weights: &[f32])
+    pub fn set_weights<P: Pack>(&mut self, seating: Seating, weights: &Weights)
     where
         C: Constant<P>,
     {
-        self.weights = seating.lay(weights);
-        self.inertias = seating.lay(&inverted(weights));
+        self.weights = seating.lay(&weights.across);
+        self.eased = seating.lay(&weights.eased);
+        self.inertias = seating.lay(&inverted(&weights.across));
     }
 }
 

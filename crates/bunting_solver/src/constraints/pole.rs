@@ -42,6 +42,20 @@ impl Pole {
         let straight = pins.iter().all(|pin| off(pin) <= STRAIGHT * at.distance(*far));
         straight.then_some(Self { at, along })
     }
+
+    /// The two pins at its ends.
+    pub fn ends(&self, fabric: &Fabric) -> [u32; 2] {
+        let place = |particle: u32| self.along.dot(fabric.rest_positions()[particle as usize]);
+        let order = |a: &u32, b: &u32| place(*a).total_cmp(&place(*b));
+        let pins = || fabric.pins().iter().map(|pin| pin.particle);
+        let ends = [pins().min_by(order), pins().max_by(order)];
+        ends.map(|end| end.expect("a pole has pins"))
+    }
+
+    /// How far the cloth hangs along it: from 0 with the pole across gravity to 1 along it.
+    pub fn uprightness(&self, gravity: Vec3) -> f32 {
+        gravity.normalize_or_zero().dot(self.along).abs()
+    }
 }
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
@@ -50,6 +64,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         let Some(pole) = self.pole else { return };
         P::run(StillTurn {
             pole,
+            upright: &self.parameters.upright,
+            weights: &self.packs.weights,
+            eased: &self.packs.eased,
             inertias: &self.packs.inertias,
             parts: &self.parts,
             predicted: &self.predicted,
@@ -60,7 +77,13 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
 
 struct StillTurn<'a, P: Pack, C> {
     pole: Pole,
-    /// Each particle's inertia, in units of the density, m²; zero where it is pinned.
+    upright: &'a P,
+    /// One over each particle's inertia where the pole lies across gravity, 1/m².
+    weights: &'a [C],
+    /// How much less that is where it stands upright, 1/m².
+    eased: &'a [C],
+    /// Each particle's inertia where the pole lies across gravity, in units of the density, m²; zero
+    /// where it is pinned.
     inertias: &'a [C],
     /// Into which part of the sums each pack goes.
     parts: &'a [u8],
@@ -73,12 +96,20 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for StillTurn<'_, P, C> {
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let at: V3<L> = V3::load(token, &splat3(self.pole.at));
         let along: V3<L> = V3::load(token, &splat3(self.pole.along));
+        let upright = L::load(token, self.upright);
+        let one = L::splat(token, 1.0);
         let mut moments = [L::splat(token, 0.0); PARTS];
         let mut inertias = [L::splat(token, 0.0); PARTS];
-        let places = self.position.iter().zip(self.predicted).zip(self.inertias).zip(self.parts);
-        for (((position, predicted), mass), &part) in places {
+        let masses = self.inertias.iter().zip(self.weights).zip(self.eased);
+        let places = self.position.iter().zip(self.predicted).zip(masses).zip(self.parts);
+        for (((position, predicted), ((inertia, weight), eased)), &part) in places {
             let x: V3<L> = V3::load(token, position);
-            let mass: L = mass.load(token);
+            let mut mass: L = inertia.load(token);
+            if !eased.is_zero() {
+                let less: L = eased.load(token);
+                let weight: L = weight.load(token);
+                mass = eased.choose(token, one / weight.minus_product(less, upright), mass);
+            }
             let part = part as usize % PARTS;
             // How fast the particle would go round at a radian per second.
             let round = along.cross(x - at);
