@@ -72,6 +72,12 @@ impl Weights {
         }
         weights
     }
+
+    /// Those of a cloth whose pole stands so far upright, 1/m²; zero where it is pinned.
+    pub fn hung(&self, upright: f32) -> Vec<f32> {
+        let pairs = self.across.iter().zip(&self.eased);
+        pairs.map(|(across, eased)| across - eased * upright).collect()
+    }
 }
 
 /// The inertia that each particle needs, m², given where a load, m³/s², is carried.

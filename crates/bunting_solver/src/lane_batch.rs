@@ -32,6 +32,8 @@ pub(crate) struct Slot {
     pub past: Past,
     /// What the lane's parameters were last computed from.
     pub applied: Option<Applied>,
+    /// How upright its pole stood when its weights were last computed.
+    pub upright: Option<f32>,
     /// For each collider, the particles that may touch it in this tick.
     pub contacts: Vec<Vec<u32>>,
 }
@@ -89,6 +91,10 @@ pub(crate) struct LaneBatch<P: Pack, C = f32> {
 
     /// One over each particle's inertia.
     pub weights: Weights,
+    /// The same for each cloth as it hangs, 1/m²; zero where it is pinned.
+    pub lane_weights: Vec<P>,
+    /// One over that, m²; zero where it is pinned.
+    pub lane_inertias: Vec<P>,
     /// Where the particles lie.
     pub seating: Seating,
     /// For each pack, into which part of a sum over all particles it goes.
@@ -149,6 +155,8 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             moments: vec![splat3(Vec3::ZERO); longest_line],
             knots: vec![Knot::new(); ABREAST * longest_yarn],
             weights: Weights::bare(&fabric),
+            lane_weights: vec![nothing; parts.len()],
+            lane_inertias: vec![nothing; parts.len()],
             packs: Packed::new(seating, &fabric),
             parts,
             seating,
@@ -171,6 +179,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             colliders: Vec::new(),
             past: Past::default(),
             applied: None,
+            upright: None,
             contacts: Vec::new(),
         });
         self.restore(lane, snapshot);
@@ -313,10 +322,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         if self.weights_step != weights_step {
             self.weights_step = weights_step;
             self.weights = Weights::new(&self.fabric, weights_step);
-            self.packs.set_weights(self.seating, &self.weights);
-            if let Some(weave) = &mut self.weave {
-                weave.sheets.set_weights(&self.weights);
-            }
+            self.slots.iter_mut().flatten().for_each(|slot| slot.upright = None);
         }
         self.gather_contacts(tick);
     }
@@ -346,9 +352,17 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             }
             let reach = self.fabric.reach();
             let upright = self.pole.map_or(0.0, |pole| pole.uprightness(slot.drive.gravity));
-            self.parameters.set_upright(lanes.clone(), upright);
-            if let Some(weave) = &mut self.weave {
-                weave.sheets.upright = upright;
+            if slot.upright.replace(upright) != Some(upright) {
+                let weights = self.weights.hung(upright);
+                for (particle, &weight) in weights.iter().enumerate() {
+                    let (pack, lane) = self.seating.seat(particle, cloth);
+                    let inertia = if weight > 0.0 { 1.0 / weight } else { 0.0 };
+                    self.lane_weights[pack].lanes_mut()[lane] = weight;
+                    self.lane_inertias[pack].lanes_mut()[lane] = inertia;
+                }
+                if let Some(weave) = &mut self.weave {
+                    weave.sheets.set_weights(&weights);
+                }
             }
             self.parameters.set_drive(lanes, &slot.material, &slot.drive, reach, &self.clock);
         }
@@ -372,7 +386,7 @@ impl<P: Pack> LaneBatch<P, P> {
         let mut batch = LaneBatch::new(Arc::clone(&self.fabric));
         if let Some(slot) = &self.slots[0] {
             batch.insert(0, &self.snapshot(0), slot.material);
-            batch.slots[0] = Some(Slot { applied: None, ..slot.clone() });
+            batch.slots[0] = Some(Slot { applied: None, upright: None, ..slot.clone() });
         }
         for (pack, normal) in batch.normal.iter_mut().zip(self.of_cloth(&self.normal, 0)) {
             set_lane3(pack, 0, normal);

@@ -91,8 +91,6 @@ pub(crate) struct Parameters<P: Pack> {
     pub bend_factors: Vec<BendFactors<P>>,
     /// Part of its memory of stretch that bending anticipates.
     pub anticipated: P,
-    /// How far the cloth hangs along its pole, from 0 to 1.
-    pub upright: P,
     /// Gravity times the substep, m/s.
     pub gravity_step: Pack3<P>,
     /// Air velocity, m/s.
@@ -128,7 +126,6 @@ impl<P: Pack> Parameters<P> {
             hinge_compliance: vec![nothing; fabric.hinge_classes().len()],
             bend_factors: fabric.bend_profiles().iter().map(BendFactors::new).collect(),
             anticipated: nothing,
-            upright: nothing,
             gravity_step: splat3(Vec3::ZERO),
             wind: splat3(Vec3::ZERO),
             pressure: nothing,
@@ -150,7 +147,6 @@ impl<P: Pack> Parameters<P> {
         set(&mut self.step, 0.0);
         set(&mut self.inverse_step, 0.0);
         set(&mut self.moves, 0.0);
-        set(&mut self.upright, 0.0);
         set3(&mut self.gravity_step, Vec3::ZERO);
         set3(&mut self.wind, Vec3::ZERO);
     }
@@ -194,11 +190,6 @@ impl<P: Pack> Parameters<P> {
         };
         set(&mut self.keep, libm::expf(-(material.damping + pinned) * step));
         set(&mut self.keep_internal, libm::expf(-free * step));
-    }
-
-    /// How far the cloth hangs along its pole.
-    pub fn set_upright(&mut self, lanes: Range<usize>, upright: f32) {
-        self.upright.lanes_mut()[lanes].fill(upright);
     }
 
     /// Gravity, wind, what they stretch the cloth by, and the frame's motion in the coming substep.

@@ -6,7 +6,6 @@
 use core::fmt::Debug;
 use core::ops::Range;
 
-use crate::added_mass::Weights;
 use crate::lanes::{Lane, Pack};
 use crate::vector::{Pack3, V3};
 
@@ -139,16 +138,13 @@ pub(crate) trait Places<P: Pack> {
 
 /// Cloths side by side.
 pub(crate) struct Cloths<'a, P: Pack> {
-    weights: &'a [f32],
-    eased: &'a [f32],
-    upright: &'a P,
+    weights: &'a [P],
     position: &'a mut [Pack3<P>],
 }
 
 impl<'a, P: Pack> Cloths<'a, P> {
-    /// `upright` says how far each cloth hangs along its pole.
-    pub fn new(weights: &'a Weights, upright: &'a P, position: &'a mut [Pack3<P>]) -> Self {
-        Self { weights: &weights.across, eased: &weights.eased, upright, position }
+    pub fn new(weights: &'a [P], position: &'a mut [Pack3<P>]) -> Self {
+        Self { weights, position }
     }
 }
 
@@ -167,9 +163,7 @@ impl<P: Pack> Places<P> for Cloths<'_, P> {
 
     #[inline(always)]
     fn weight<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> L {
-        let eased = L::splat(token, self.eased[at as usize]);
-        let upright = L::load(token, self.upright);
-        L::splat(token, self.weights[at as usize]).minus_product(eased, upright)
+        L::load(token, &self.weights[at as usize])
     }
 
     #[inline(always)]

@@ -1,6 +1,5 @@
 //! Where particles lie among the packs of a batch, and what the fabric says of those of each.
 
-use crate::added_mass::Weights;
 use crate::fabric::Fabric;
 use crate::lanes::Pack;
 use crate::places::{Constant, PARTS};
@@ -60,13 +59,6 @@ pub(crate) struct Packed<C> {
     pub areas: Vec<C>,
     /// One over the area, 1/m²; zero where pinned.
     pub inverse_areas: Vec<C>,
-    /// One over the inertia, in units of the density, 1/m²; zero where pinned. As the others, of a cloth
-    /// that does not hang along its pole.
-    pub weights: Vec<C>,
-    /// How much less that is of a cloth that does, 1/m².
-    pub eased: Vec<C>,
-    /// Inertia, in units of the density, m²; zero where pinned.
-    pub inertias: Vec<C>,
 }
 
 impl<C> Packed<C> {
@@ -74,28 +66,9 @@ impl<C> Packed<C> {
     where
         C: Constant<P>,
     {
-        let mut packed = Self {
+        Self {
             areas: seating.lay(fabric.particle_areas()),
             inverse_areas: seating.lay(fabric.inverse_areas()),
-            weights: Vec::new(),
-            eased: Vec::new(),
-            inertias: Vec::new(),
-        };
-        packed.set_weights(seating, &Weights::bare(fabric));
-        packed
+        }
     }
-
-    pub fn set_weights<P: Pack>(&mut self, seating: Seating, weights: &Weights)
-    where
-        C: Constant<P>,
-    {
-        self.weights = seating.lay(&weights.across);
-        self.eased = seating.lay(&weights.eased);
-        self.inertias = seating.lay(&inverted(&weights.across));
-    }
-}
-
-/// One over each number, and zero for zero.
-fn inverted(values: &[f32]) -> Vec<f32> {
-    values.iter().map(|&value| if value == 0.0 { 0.0 } else { 1.0 / value }).collect()
 }

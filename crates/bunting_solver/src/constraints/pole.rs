@@ -52,9 +52,11 @@ impl Pole {
         ends.map(|end| end.expect("a pole has pins"))
     }
 
-    /// How far the cloth hangs along it: from 0 with the pole across gravity to 1 along it.
+    /// How far the cloth hangs along it: from 0 with the pole across gravity to 1 along it, in steps, as
+    /// much hangs on it that is not computed for every small turn.
     pub fn uprightness(&self, gravity: Vec3) -> f32 {
-        gravity.normalize_or_zero().dot(self.along).abs()
+        const STEPS: f32 = 32.0;
+        libm::roundf(STEPS * gravity.normalize_or_zero().dot(self.along).abs()) / STEPS
     }
 }
 
@@ -64,10 +66,8 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         let Some(pole) = self.pole else { return };
         P::run(StillTurn {
             pole,
-            upright: &self.parameters.upright,
-            weights: &self.packs.weights,
-            eased: &self.packs.eased,
-            inertias: &self.packs.inertias,
+            inverse_areas: &self.packs.inverse_areas,
+            inertias: &self.lane_inertias,
             parts: &self.parts,
             predicted: &self.predicted,
             position: &mut self.position,
@@ -77,14 +77,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
 
 struct StillTurn<'a, P: Pack, C> {
     pole: Pole,
-    upright: &'a P,
-    /// One over each particle's inertia where the pole lies across gravity, 1/m².
-    weights: &'a [C],
-    /// How much less that is where it stands upright, 1/m².
-    eased: &'a [C],
-    /// Each particle's inertia where the pole lies across gravity, in units of the density, m²; zero
-    /// where it is pinned.
-    inertias: &'a [C],
+    inverse_areas: &'a [C],
+    /// Each particle's inertia, in units of the density, m²; zero where it is pinned.
+    inertias: &'a [P],
     /// Into which part of the sums each pack goes.
     parts: &'a [u8],
     predicted: &'a [Pack3<P>],
@@ -96,20 +91,12 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for StillTurn<'_, P, C> {
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let at: V3<L> = V3::load(token, &splat3(self.pole.at));
         let along: V3<L> = V3::load(token, &splat3(self.pole.along));
-        let upright = L::load(token, self.upright);
-        let one = L::splat(token, 1.0);
         let mut moments = [L::splat(token, 0.0); PARTS];
         let mut inertias = [L::splat(token, 0.0); PARTS];
-        let masses = self.inertias.iter().zip(self.weights).zip(self.eased);
-        let places = self.position.iter().zip(self.predicted).zip(masses).zip(self.parts);
-        for (((position, predicted), ((inertia, weight), eased)), &part) in places {
+        let places = self.position.iter().zip(self.predicted).zip(self.inertias).zip(self.parts);
+        for (((position, predicted), mass), &part) in places {
             let x: V3<L> = V3::load(token, position);
-            let mut mass: L = inertia.load(token);
-            if !eased.is_zero() {
-                let less: L = eased.load(token);
-                let weight: L = weight.load(token);
-                mass = eased.choose(token, one / weight.minus_product(less, upright), mass);
-            }
+            let mass = L::load(token, mass);
             let part = part as usize % PARTS;
             // How fast the particle would go round at a radian per second.
             let round = along.cross(x - at);
@@ -119,13 +106,13 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for StillTurn<'_, P, C> {
         }
         let inertia = C::total(token, inertias) + L::splat(token, f32::MIN_POSITIVE);
         let turn = C::total(token, moments) / inertia;
-        for (position, mass) in self.position.iter_mut().zip(self.inertias) {
-            if mass.is_zero() {
+        for (position, inverse_area) in self.position.iter_mut().zip(self.inverse_areas) {
+            if inverse_area.is_zero() {
                 continue;
             }
             let x: V3<L> = V3::load(token, position);
             let turned = x.minus_scaled(along.cross(x - at), turn);
-            mass.choose3(token, turned, x).store(position);
+            inverse_area.choose3(token, turned, x).store(position);
         }
     }
 }

@@ -24,7 +24,6 @@ use cells::Cells;
 use glam::Vec3;
 use sheets::Plane;
 
-use crate::added_mass::Weights;
 use crate::constraints::Knot;
 use crate::fabric::{ABREAST, BendLine, Fabric, Strands};
 use crate::lane_batch::LaneBatch;
@@ -95,7 +94,7 @@ impl<P: Pack> Weave<P> {
             bend_lines,
             profiles,
         };
-        weave.sheets.set_weights(&Weights::bare(fabric));
+        weave.sheets.set_weights(fabric.inverse_areas());
         Some(weave)
     }
 

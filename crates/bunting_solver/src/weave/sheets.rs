@@ -3,7 +3,6 @@
 
 use fearless_simd::{Simd, SimdBase, dispatch, f32x4};
 
-use crate::added_mass::Weights;
 use crate::fabric::Grid;
 use crate::instruction_set::level;
 use crate::lanes::{Lane, Pack};
@@ -26,8 +25,6 @@ pub(crate) struct Sheets {
     /// Particles in a row, and in a column.
     extent: [usize; 2],
     sheets: [Sheet; 2],
-    /// How far the cloth hangs along its pole, from 0 to 1.
-    pub upright: f32,
 }
 
 /// Lines of particles, drawn out to whole packs by particles that are pinned to the origin.
@@ -39,7 +36,6 @@ struct Sheet {
     position: Plane,
     /// As the batch's, 1/m².
     weights: Vec<f32>,
-    eased: Vec<f32>,
 }
 
 /// A vector for each particle of a sheet, coordinate by coordinate.
@@ -102,7 +98,6 @@ impl Sheets {
             facing: Facing::Straight,
             extent,
             sheets: [Sheet::new(high, wide), Sheet::new(wide, high)],
-            upright: 0.0,
         }
     }
 
@@ -139,13 +134,13 @@ impl Sheets {
         }
     }
 
-    pub fn set_weights(&mut self, weights: &Weights) {
-        let columns = self.extent[0];
-        let [straight, turned] = &mut self.sheets;
-        for (particle, (&weight, &eased)) in weights.across.iter().zip(&weights.eased).enumerate() {
-            let (row, column) = (particle / columns, particle % columns);
-            straight.set_weight(row, column, weight, eased);
-            turned.set_weight(column, row, weight, eased);
+    pub fn set_weights(&mut self, weights: &[f32]) {
+        for (row, weights) in weights.chunks(self.extent[0]).enumerate() {
+            for (column, &weight) in weights.iter().enumerate() {
+                let [straight, turned] = &mut self.sheets;
+                straight.weights[MARGIN + row * straight.stride + column] = weight;
+                turned.weights[MARGIN + column * turned.stride + row] = weight;
+            }
         }
     }
 
@@ -176,23 +171,16 @@ impl Sheets {
 
     /// The particles as they face us. `present` is one in the lanes that have a link of a class.
     pub fn threads<'a, P: Pack>(&'a mut self, present: &'a [P]) -> Threads<'a, P> {
-        let upright = self.upright;
-        let Sheet { position, weights, eased, .. } = &mut self.sheets[self.facing as usize];
+        let Sheet { position, weights, .. } = &mut self.sheets[self.facing as usize];
         let Plane([x, y, z]) = position;
-        Threads { position: [x, y, z], weights, eased, upright, present }
+        Threads { position: [x, y, z], weights, present }
     }
 }
 
 impl Sheet {
     fn new(lines: usize, stride: usize) -> Self {
         let position = Plane::new(lines, stride);
-        let nothing = position.0[0].clone();
-        Self { stride, weights: nothing.clone(), eased: nothing, position }
-    }
-
-    fn set_weight(&mut self, line: usize, place: usize, weight: f32, eased: f32) {
-        let at = MARGIN + line * self.stride + place;
-        (self.weights[at], self.eased[at]) = (weight, eased);
+        Self { stride, weights: position.0[0].clone(), position }
     }
 
     /// Takes over the positions of the other sheet, whose lines are so long and so many.
@@ -236,8 +224,6 @@ fn turn<S: Simd>(
 pub(crate) struct Threads<'a, P: Pack> {
     position: [&'a mut [f32]; 3],
     weights: &'a [f32],
-    eased: &'a [f32],
-    upright: f32,
     present: &'a [P],
 }
 
@@ -260,9 +246,7 @@ impl<P: Pack> Places<P> for Threads<'_, P> {
 
     #[inline(always)]
     fn weight<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> L {
-        let eased = L::load_at(token, self.eased, at as usize);
-        let upright = L::splat(token, self.upright);
-        L::load_at(token, self.weights, at as usize).minus_product(eased, upright)
+        L::load_at(token, self.weights, at as usize)
     }
 
     #[inline(always)]
