@@ -80,6 +80,11 @@ impl Weights {
     }
 }
 
+/// One over each weight, and zero for zero.
+pub(crate) fn inertias(weights: &[f32]) -> Vec<f32> {
+    weights.iter().map(|&weight| if weight > 0.0 { 1.0 / weight } else { 0.0 }).collect()
+}
+
 /// The inertia that each particle needs, m², given where a load, m³/s², is carried.
 fn needed(fabric: &Fabric, supports: &[u32], load: f32, step: f32) -> impl Iterator<Item = f32> {
     let rest = fabric.rest_positions();

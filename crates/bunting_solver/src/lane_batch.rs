@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::added_mass::Weights;
+use crate::added_mass::{self, Weights};
 use crate::batch::LaneSurface;
 use crate::collision::Collider;
 use crate::constraints::{Knot, Pole};
@@ -354,12 +354,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             let upright = self.pole.map_or(0.0, |pole| pole.uprightness(slot.drive.gravity));
             if slot.upright.replace(upright) != Some(upright) {
                 let weights = self.weights.hung(upright);
-                for (particle, &weight) in weights.iter().enumerate() {
-                    let (pack, lane) = self.seating.seat(particle, cloth);
-                    let inertia = if weight > 0.0 { 1.0 / weight } else { 0.0 };
-                    self.lane_weights[pack].lanes_mut()[lane] = weight;
-                    self.lane_inertias[pack].lanes_mut()[lane] = inertia;
-                }
+                let inertias = added_mass::inertias(&weights);
+                self.seating.put(cloth, &weights, &mut self.lane_weights);
+                self.seating.put(cloth, &inertias, &mut self.lane_inertias);
                 if let Some(weave) = &mut self.weave {
                     weave.sheets.set_weights(&weights);
                 }

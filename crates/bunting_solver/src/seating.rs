@@ -45,6 +45,14 @@ impl Seating {
         .collect()
     }
 
+    /// Overwrites what a cloth has in the packs, given one value for each particle.
+    pub fn put<P: Pack>(self, cloth: usize, values: &[f32], packs: &mut [P]) {
+        for (particle, &value) in values.iter().enumerate() {
+            let (pack, lane) = self.seat(particle, cloth);
+            packs[pack].lanes_mut()[lane] = value;
+        }
+    }
+
     /// Into which part of a sum each pack goes.
     pub fn parts(self) -> Vec<u8> {
         let part = |block: usize| (block * self.side % PARTS) as u8;
