@@ -60,7 +60,8 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         }
         P::run(Predict {
             areas: &self.packs.areas,
-            weights: &self.packs.weights,
+            inverse_areas: &self.packs.inverse_areas,
+            weights: &self.lane_weights,
             parameters: &self.parameters,
             position: &mut self.position,
             predicted: &mut self.predicted,
@@ -258,7 +259,8 @@ fn extrapolation<L: Lane>(token: L::Token, parameters: &Parameters<L::Pack>) -> 
 /// Adds what air and gravity do, and moves the particles to where they would go unconstrained.
 struct Predict<'a, P: Pack, C> {
     areas: &'a [C],
-    weights: &'a [C],
+    inverse_areas: &'a [C],
+    weights: &'a [P],
     parameters: &'a Parameters<P>,
     position: &'a mut [Pack3<P>],
     predicted: &'a mut [Pack3<P>],
@@ -277,15 +279,17 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
         let gravity: V3<L> = V3::load(token, &self.parameters.gravity_step);
         let places = self.position.iter_mut().zip(self.predicted);
         let changes = self.displacement.iter().zip(self.older_displacement);
-        let inertia = self.weights.iter().zip(self.areas);
-        for ((((position, predicted), (displacement, older)), velocity), (constant, area)) in
-            places.zip(changes).zip(self.velocity).zip(inertia)
+        let inertia = self.weights.iter().zip(self.areas).zip(self.inverse_areas);
+        for (
+            (((position, predicted), (displacement, older)), velocity),
+            ((weight, area), constant),
+        ) in places.zip(changes).zip(self.velocity).zip(inertia)
         {
             if constant.is_zero() {
                 *predicted = *position;
                 continue;
             }
-            let weight: L = constant.load(token);
+            let weight = L::load(token, weight);
             let unchanged: V3<L> = V3::load(token, velocity);
             // Gravity acts on the true mass, whatever inertia is added to it.
             let falling = unchanged.plus_scaled(gravity, weight * area.load(token));

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::added_mass;
+use crate::added_mass::{self, Weights};
 use crate::collision::Collider;
 use crate::constraints::{Knot, Pole};
 use crate::fabric::{ABREAST, Fabric, FabricMaterial};
@@ -28,6 +28,8 @@ pub(crate) struct Slot {
     pub past: Past,
     /// What the lane's parameters were last computed from.
     pub applied: Option<Applied>,
+    /// How upright its pole stood when its weights were last computed.
+    pub upright: Option<f32>,
     /// For each collider, the particles that may touch it in this tick.
     pub contacts: Vec<Vec<u32>>,
 }
@@ -85,8 +87,12 @@ pub(crate) struct LaneBatch<P: Pack, C = f32> {
     /// Room for the links of yarns side by side.
     pub knots: Vec<Knot<P>>,
 
-    /// One over each particle's inertia, in units of the density, 1/m²; zero where it is pinned.
-    pub weights: Vec<f32>,
+    /// One over each particle's inertia.
+    pub weights: Weights,
+    /// The same for each cloth as it hangs, 1/m²; zero where it is pinned.
+    pub lane_weights: Vec<P>,
+    /// One over that, m²; zero where it is pinned.
+    pub lane_inertias: Vec<P>,
     /// Where the particles lie.
     pub seating: Seating,
     /// For each pack, into which part of a sum over all particles it goes.
@@ -155,7 +161,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             hinge_multiplier: vec![nothing; fabric.hinges().len()],
             moments: vec![splat3(Vec3::ZERO); longest_line],
             knots: vec![Knot::new(); ABREAST * longest_yarn],
-            weights: fabric.inverse_areas().to_vec(),
+            weights: Weights::bare(&fabric),
+            lane_weights: vec![nothing; parts.len()],
+            lane_inertias: vec![nothing; parts.len()],
             packs: Packed::new(seating, &fabric),
             parts,
             seating,
@@ -175,6 +183,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             colliders: Vec::new(),
             past: Past::default(),
             applied: None,
+            upright: None,
             contacts: Vec::new(),
         });
         self.restore(lane, snapshot);
@@ -257,11 +266,8 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         };
         if self.weights_step != weights_step {
             self.weights_step = weights_step;
-            self.weights = added_mass::weights(&self.fabric, weights_step);
-            self.packs.set_weights(self.seating, &self.weights);
-            if let Some(weave) = &mut self.weave {
-                weave.sheets.set_weights(&self.weights);
-            }
+            self.weights = Weights::new(&self.fabric, weights_step);
+            self.slots.iter_mut().flatten().for_each(|slot| slot.upright = None);
         }
         self.gather_contacts(tick);
     }
@@ -288,6 +294,16 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 self.parameters.apply(lanes.clone(), &self.fabric, &applied);
                 if let Some(weave) = &mut self.weave {
                     weave.set_parameters(&self.parameters);
+                }
+            }
+            let upright = self.pole.map_or(0.0, |pole| pole.uprightness(slot.drive.gravity));
+            if slot.upright.replace(upright) != Some(upright) {
+                let weights = self.weights.hung(upright);
+                let inertias = added_mass::inertias(&weights);
+                self.seating.put(cloth, &weights, &mut self.lane_weights);
+                self.seating.put(cloth, &inertias, &mut self.lane_inertias);
+                if let Some(weave) = &mut self.weave {
+                    weave.sheets.set_weights(&weights);
                 }
             }
             let reach = match self.fabric.grid() {
@@ -317,7 +333,7 @@ impl<P: Pack> LaneBatch<P, P> {
         let mut batch = LaneBatch::new(Arc::clone(&self.fabric));
         if let Some(slot) = &self.slots[0] {
             batch.insert(0, &self.snapshot(0), slot.material);
-            batch.slots[0] = Some(Slot { applied: None, ..slot.clone() });
+            batch.slots[0] = Some(Slot { applied: None, upright: None, ..slot.clone() });
         }
         for (pack, normal) in batch.normal.iter_mut().zip(self.of_cloth(&self.normal, 0)) {
             set_lane3(pack, 0, normal);

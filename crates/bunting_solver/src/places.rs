@@ -136,12 +136,12 @@ pub(crate) trait Places<P: Pack> {
 
 /// Cloths side by side.
 pub(crate) struct Cloths<'a, P: Pack> {
-    weights: &'a [f32],
+    weights: &'a [P],
     position: &'a mut [Pack3<P>],
 }
 
 impl<'a, P: Pack> Cloths<'a, P> {
-    pub fn new(weights: &'a [f32], position: &'a mut [Pack3<P>]) -> Self {
+    pub fn new(weights: &'a [P], position: &'a mut [Pack3<P>]) -> Self {
         Self { weights, position }
     }
 }
@@ -161,7 +161,7 @@ impl<P: Pack> Places<P> for Cloths<'_, P> {
 
     #[inline(always)]
     fn weight<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> L {
-        L::splat(token, self.weights[at as usize])
+        L::load(token, &self.weights[at as usize])
     }
 
     #[inline(always)]

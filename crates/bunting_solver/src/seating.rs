@@ -46,6 +46,14 @@ impl Seating {
         .collect()
     }
 
+    /// Overwrites what a cloth has in the packs, given one value for each particle.
+    pub fn put<P: Pack>(self, cloth: usize, values: &[f32], packs: &mut [P]) {
+        for (particle, &value) in values.iter().enumerate() {
+            let (pack, lane) = self.seat(particle, cloth);
+            packs[pack].lanes_mut()[lane] = value;
+        }
+    }
+
     /// Into which part of a sum each pack goes.
     pub fn parts(self) -> Vec<u8> {
         let part = |block: usize| (block * self.side % PARTS) as u8;
@@ -60,10 +68,6 @@ pub(crate) struct Packed<C> {
     pub areas: Vec<C>,
     /// One over the area, 1/m²; zero where pinned.
     pub inverse_areas: Vec<C>,
-    /// One over the inertia, in units of the density, 1/m²; zero where pinned.
-    pub weights: Vec<C>,
-    /// Inertia, in units of the density, m²; zero where pinned.
-    pub inertias: Vec<C>,
 }
 
 impl<C> Packed<C> {
@@ -71,26 +75,9 @@ impl<C> Packed<C> {
     where
         C: Constant<P>,
     {
-        let mut packed = Self {
+        Self {
             areas: seating.lay(fabric.particle_areas()),
             inverse_areas: seating.lay(fabric.inverse_areas()),
-            weights: Vec::new(),
-            inertias: Vec::new(),
-        };
-        packed.set_weights(seating, fabric.inverse_areas());
-        packed
+        }
     }
-
-    pub fn set_weights<P: Pack>(&mut self, seating: Seating, weights: &[f32])
-    where
-        C: Constant<P>,
-    {
-        self.weights = seating.lay(weights);
-        self.inertias = seating.lay(&inverted(weights));
-    }
-}
-
-/// One over each number, and zero for zero.
-fn inverted(values: &[f32]) -> Vec<f32> {
-    values.iter().map(|&value| if value == 0.0 { 0.0 } else { 1.0 / value }).collect()
 }

@@ -26,7 +26,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             lines: self.fabric.bend_lines(),
             factors: &self.parameters.bend_factors,
             moments: &mut self.moments,
-            places: Cloths::new(&self.weights, &mut self.position),
+            places: Cloths::new(&self.lane_weights, &mut self.position),
         });
     }
 }

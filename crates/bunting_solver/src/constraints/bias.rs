@@ -40,7 +40,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             length,
             stretch: &stretch,
             target: &mut self.link_target,
-            places: Cloths::new(&self.weights, &mut self.position),
+            places: Cloths::new(&self.lane_weights, &mut self.position),
         });
     }
 

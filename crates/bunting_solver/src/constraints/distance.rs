@@ -12,7 +12,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     pub fn solve_distance(&mut self, accumulate: bool) {
         let solve = Distance {
             links: self.fabric.links(),
-            weights: &self.weights,
+            weights: self.fabric.inverse_areas(),
             compliance: &self.parameters.link_compliance,
             target: &mut self.link_target,
             position: &mut self.position,

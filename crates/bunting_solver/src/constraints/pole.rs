@@ -43,6 +43,22 @@ impl Pole {
         let straight = pins.iter().all(|pin| off(pin) <= STRAIGHT * at.distance(*far));
         straight.then_some(Self { at, along })
     }
+
+    /// The two pins at its ends.
+    pub fn ends(&self, fabric: &Fabric) -> [u32; 2] {
+        let place = |particle: u32| self.along.dot(fabric.rest_positions()[particle as usize]);
+        let order = |a: &u32, b: &u32| place(*a).total_cmp(&place(*b));
+        let pins = || fabric.pins().iter().map(|pin| pin.particle);
+        let ends = [pins().min_by(order), pins().max_by(order)];
+        ends.map(|end| end.expect("a pole has pins"))
+    }
+
+    /// How far the cloth hangs along it: from 0 with the pole across gravity to 1 along it, in steps, as
+    /// much hangs on it that is not computed for every small turn.
+    pub fn uprightness(&self, gravity: Vec3) -> f32 {
+        const STEPS: f32 = 32.0;
+        libm::roundf(STEPS * gravity.normalize_or_zero().dot(self.along).abs()) / STEPS
+    }
 }
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
@@ -51,7 +67,8 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         let Some(pole) = self.pole else { return };
         P::run(StillTurn {
             pole,
-            inertias: &self.packs.inertias,
+            inverse_areas: &self.packs.inverse_areas,
+            inertias: &self.lane_inertias,
             parts: &self.parts,
             predicted: &self.predicted,
             position: &mut self.position,
@@ -61,8 +78,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
 
 struct StillTurn<'a, P: Pack, C> {
     pole: Pole,
+    inverse_areas: &'a [C],
     /// Each particle's inertia, in units of the density, m²; zero where it is pinned.
-    inertias: &'a [C],
+    inertias: &'a [P],
     /// Into which part of the sums each pack goes.
     parts: &'a [u8],
     predicted: &'a [Pack3<P>],
@@ -79,7 +97,7 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for StillTurn<'_, P, C> {
         let places = self.position.iter().zip(self.predicted).zip(self.inertias).zip(self.parts);
         for (((position, predicted), mass), &part) in places {
             let x: V3<L> = V3::load(token, position);
-            let mass: L = mass.load(token);
+            let mass = L::load(token, mass);
             // How fast the particle would go round at a radian per second.
             let round = along.cross(x - at);
             let way = round.dot(x - V3::load(token, predicted));
@@ -88,13 +106,13 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for StillTurn<'_, P, C> {
         }
         let inertia = inertia.total::<C>(token) + L::splat(token, f32::MIN_POSITIVE);
         let turn = moment.total::<C>(token) / inertia;
-        for (position, mass) in self.position.iter_mut().zip(self.inertias) {
-            if mass.is_zero() {
+        for (position, inverse_area) in self.position.iter_mut().zip(self.inverse_areas) {
+            if inverse_area.is_zero() {
                 continue;
             }
             let x: V3<L> = V3::load(token, position);
             let turned = x.minus_scaled(along.cross(x - at), turn);
-            mass.choose3(token, turned, x).store(position);
+            inverse_area.choose3(token, turned, x).store(position);
         }
     }
 }

@@ -24,7 +24,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             links: &self.fabric.strands().polish,
             compliance: &self.parameters.link_compliance,
             target: &mut self.link_target,
-            places: Cloths::new(&self.weights, &mut self.position),
+            places: Cloths::new(&self.lane_weights, &mut self.position),
         });
     }
 }

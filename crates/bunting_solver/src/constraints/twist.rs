@@ -40,7 +40,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             ribbons: self.fabric.ribbons(),
             factors: &self.parameters.twist_factors,
             moments: &mut self.moments,
-            places: Cloths::new(&self.weights, &mut self.position),
+            places: Cloths::new(&self.lane_weights, &mut self.position),
         });
     }
 }

@@ -72,7 +72,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 compliance: &self.parameters.link_compliance,
                 knots: &mut self.knots,
                 target: &mut self.link_target,
-                places: Cloths::new(&self.weights, &mut self.position),
+                places: Cloths::new(&self.lane_weights, &mut self.position),
             });
         }
     }
