@@ -16,6 +16,10 @@ use crate::lod::Measured;
 /// takes to wake other threads.
 const PARALLEL_PARTICLES: usize = 64 * 1024;
 
+/// Empty batches of one width that are kept: making one takes longer than a tick. As many as there are
+/// cloths that ride alone.
+const SPARE: usize = 3;
+
 /// Where the state of a cloth is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Slot {
@@ -56,7 +60,7 @@ struct Group {
     fabric: Arc<Fabric>,
     settings: StepSettings,
     batches: Vec<Seats>,
-    /// Empty batches, at most one of each width.
+    /// Empty batches, at most [`SPARE`] of each width.
     spare: Vec<Seats>,
     newcomers: Vec<Newcomer>,
     changed: bool,
@@ -348,7 +352,7 @@ impl Group {
     /// everyone. Tells who sits in which lane of which batch, of all that did not before.
     fn settle(&mut self, lanes: Option<LaneCount>, mut moved: impl FnMut(Entity, usize, usize)) {
         let seated: usize = self.batches.iter().map(Seats::occupancy).sum();
-        let mut missing = widths(seated + self.newcomers.len(), lanes);
+        let mut missing = self.widths(seated + self.newcomers.len(), lanes);
         let mut fullest: Vec<usize> = (0..self.batches.len()).collect();
         fullest.sort_by_key(|&batch| core::cmp::Reverse(self.batches[batch].occupancy()));
         let mut dissolved = fullest;
@@ -360,8 +364,7 @@ impl Group {
         for batch in dissolved.into_iter().rev() {
             let mut seats = self.batches.swap_remove(batch);
             seats.dissolve(&mut self.newcomers);
-            // One of each width is kept: making one takes longer than a tick.
-            if self.spare.iter().all(|spare| spare.lanes != seats.lanes) {
+            if self.spare.iter().filter(|spare| spare.lanes == seats.lanes).count() < SPARE {
                 self.spare.push(seats);
             }
             for (lane, (entity, _)) in self.batches.get(batch).into_iter().flat_map(Seats::taken) {
@@ -388,15 +391,17 @@ impl Group {
         drop(newcomers);
         self.changed = false;
     }
-}
 
-/// Widths of the batches for a number of cloths.
-fn widths(mut cloths: usize, lanes: Option<LaneCount>) -> Vec<LaneCount> {
-    let mut widths = Vec::new();
-    while cloths > 0 {
-        let width = lanes.unwrap_or(LaneCount::holding(cloths));
-        widths.push(width);
-        cloths = cloths.saturating_sub(width.get());
+    /// Widths of the batches for a number of cloths.
+    fn widths(&self, mut cloths: usize, lanes: Option<LaneCount>) -> Vec<LaneCount> {
+        let mut widths = Vec::new();
+        while cloths > 0 {
+            let scheme = self.settings.scheme;
+            let width =
+                lanes.unwrap_or_else(|| LaneCount::first_of(cloths, &self.fabric, scheme));
+            widths.push(width);
+            cloths = cloths.saturating_sub(width.get());
+        }
+        widths
     }
-    widths
 }

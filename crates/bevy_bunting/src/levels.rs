@@ -133,7 +133,7 @@ impl ClothLevels {
     /// the axes of its frame, m/s².
     pub fn transfer(
         &self,
-        mut snapshot: ClothSnapshot,
+        snapshot: ClothSnapshot,
         (from, to): (usize, usize),
         material: &FabricMaterial,
         gravity: Vec3,
@@ -142,31 +142,28 @@ impl ClothLevels {
         if snapshot.is_at_rest(self.fabric(from)) {
             return ClothSnapshot::at_rest(self.fabric(to));
         }
-        for transfer in self.between(from, to) {
-            snapshot = transfer.restrict(&snapshot, material, gravity);
+        let (coarser, finer) = (self.between(from, to), self.between(to, from));
+        if !coarser.is_empty() {
+            LevelTransfer::restrict_through(coarser, &snapshot, material, gravity)
+        } else if !finer.is_empty() {
+            LevelTransfer::prolong_through(finer, &snapshot, material, gravity)
+        } else {
+            snapshot
         }
-        for transfer in self.between(to, from).rev() {
-            snapshot = transfer.prolong(&snapshot, material, gravity);
-        }
-        snapshot
     }
 
     /// Values at the particles of a level, spread over its triangles to those of a finer level.
     pub fn spread(&self, mut values: Vec<Vec3>, from: usize, to: usize) -> Vec<Vec3> {
-        for transfer in self.between(to, from).rev() {
+        for transfer in self.between(to, from).iter().rev() {
             values = transfer.spread(&values).collect();
         }
         values
     }
 
     /// What lies between a level and a coarser one.
-    fn between(
-        &self,
-        fine: usize,
-        coarse: usize,
-    ) -> impl DoubleEndedIterator<Item = &LevelTransfer> {
+    fn between(&self, fine: usize, coarse: usize) -> &[LevelTransfer] {
         let end = coarse.min(self.transfers.len());
-        self.transfers[fine.min(end)..end].iter()
+        &self.transfers[fine.min(end)..end]
     }
 
     /// Cuts as many levels as are asked for, or as can be.

@@ -198,16 +198,8 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             (&mut self.oldest_velocity, history.map(|history| &history.older_velocities[1])),
             (&mut self.memory, history.map(|history| &history.memory)),
         ];
-        let lanes = C::lanes(lane);
         for (packs, values) in state {
-            // Where no particle lies, too.
-            for coordinate in packs.iter_mut().flatten() {
-                coordinate.lanes_mut()[lanes.clone()].fill(0.0);
-            }
-            for (particle, &value) in values.into_iter().flatten().enumerate() {
-                let (pack, lane) = self.seating.seat(particle, lane);
-                set_lane3(&mut packs[pack], lane, value);
-            }
+            self.seating.write::<P, C>(packs, lane, values.map(|values| &values[..]));
         }
         for pin in self.fabric.pins() {
             let (pack, lane) = self.seating.seat(pin.particle as usize, lane);

@@ -1,8 +1,11 @@
 //! Where particles lie among the packs of a batch, and what the fabric says of those of each.
 
+use glam::Vec3;
+
 use crate::fabric::Fabric;
 use crate::lanes::Pack;
 use crate::places::{Constant, PARTS};
+use crate::vector::{Pack3, set_lane3};
 
 /// Where particles lie among the packs of a batch.
 #[derive(Clone, Copy, Debug)]
@@ -34,6 +37,34 @@ impl Seating {
         }
         let (row, column) = (particle / self.columns, particle % self.columns);
         (row * self.blocks() + column / self.side, column % self.side)
+    }
+
+    /// Writes the vectors of one cloth, particle by particle; zero where there are none, and where no
+    /// particle lies.
+    pub fn write<P: Pack, C: Constant<P>>(
+        self,
+        packs: &mut [Pack3<P>],
+        cloth: usize,
+        values: Option<&[Vec3]>,
+    ) {
+        let lanes = C::lanes(cloth);
+        // Once, and not for every number.
+        assert!(lanes.end <= P::WIDTH, "lanes of the batch");
+        let Some(values) = values else {
+            for coordinate in packs.iter_mut().flatten() {
+                coordinate.lanes_mut()[lanes.clone()].fill(0.0);
+            }
+            return;
+        };
+        let rows = values.chunks(self.columns).zip(packs.chunks_mut(self.blocks()));
+        for (values, packs) in rows {
+            for (side, pack) in values.chunks(self.side).zip(packs) {
+                for lane in lanes.clone() {
+                    let value = side.get(lane - cloth).copied().unwrap_or(Vec3::ZERO);
+                    set_lane3(pack, lane, value);
+                }
+            }
+        }
     }
 
     /// One value for each pack, given one for each particle; none where there are no more particles.

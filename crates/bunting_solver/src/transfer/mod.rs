@@ -14,6 +14,8 @@ mod motion;
 mod rows;
 mod settle;
 
+use core::slice;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -152,11 +154,7 @@ impl LevelTransfer {
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
-        let mut positions: Vec<Vec3> = self.smooth.interpolate(&coarse.positions).collect();
-        self.relief.add(&coarse.positions, &mut positions);
-        let velocities = self.smooth.interpolate(&coarse.velocities).collect();
-        let before = Side { fabric: &self.coarse, state: coarse };
-        before.arrive(&self.settlers[0], positions, velocities, material, gravity)
+        Self::prolong_through(slice::from_ref(self), coarse, material, gravity)
     }
 
     /// Fine to coarse, for a cloth of a material under a gravity along the axes of its frame, m/s².
@@ -167,10 +165,60 @@ impl LevelTransfer {
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
-        let positions = self.pick(&fine.positions).collect();
-        let velocities = self.gather_velocities(&fine.velocities);
-        let before = Side { fabric: &self.fine, state: fine };
-        before.arrive(&self.settlers[1], positions, velocities, material, gravity)
+        Self::restrict_through(slice::from_ref(self), fine, material, gravity)
+    }
+
+    /// From the coarsest to the finest fabric of a chain, the finest neighbours first. The levels between
+    /// are only passed through: strain is taken off where the cloth arrives.
+    ///
+    /// # Panics
+    ///
+    /// When the chain is empty, or not of neighbours.
+    #[must_use]
+    pub fn prolong_through(
+        chain: &[Self],
+        coarse: &ClothSnapshot,
+        material: &FabricMaterial,
+        gravity: Vec3,
+    ) -> ClothSnapshot {
+        let (mut positions, mut velocities) = (Cow::from(&coarse.positions), Cow::from(&coarse.velocities));
+        for transfer in chain.iter().rev() {
+            let mut finer: Vec<Vec3> = transfer.smooth.interpolate(&positions).collect();
+            transfer.relief.add(&positions, &mut finer);
+            hold_pins(&transfer.fine, &mut finer);
+            positions = finer.into();
+            velocities = transfer.smooth.interpolate(&velocities).collect::<Vec<_>>().into();
+        }
+        let (finest, coarsest) = (&chain[0], &chain[chain.len() - 1]);
+        let before = Side { fabric: &coarsest.coarse, state: coarse };
+        let settler = &finest.settlers[0];
+        before.arrive(settler, positions.into_owned(), velocities.into_owned(), material, gravity)
+    }
+
+    /// From the finest to the coarsest fabric of a chain, the finest neighbours first. The levels between
+    /// are only passed through: strain is taken off where the cloth arrives.
+    ///
+    /// # Panics
+    ///
+    /// When the chain is empty, or not of neighbours.
+    #[must_use]
+    pub fn restrict_through(
+        chain: &[Self],
+        fine: &ClothSnapshot,
+        material: &FabricMaterial,
+        gravity: Vec3,
+    ) -> ClothSnapshot {
+        let (mut positions, mut velocities) = (Cow::from(&fine.positions), Cow::from(&fine.velocities));
+        for transfer in chain {
+            let mut coarser: Vec<Vec3> = transfer.pick(&positions).collect();
+            hold_pins(&transfer.coarse, &mut coarser);
+            positions = coarser.into();
+            velocities = transfer.gather_velocities(&velocities).into();
+        }
+        let (finest, coarsest) = (&chain[0], &chain[chain.len() - 1]);
+        let before = Side { fabric: &finest.fine, state: fine };
+        let settler = &coarsest.settlers[1];
+        before.arrive(settler, positions.into_owned(), velocities.into_owned(), material, gravity)
     }
 
     /// Values at the fine particles, of those that are shared: one a coarse particle.
@@ -182,6 +230,13 @@ impl LevelTransfer {
     /// fine particle would show of them.
     pub fn spread<'a>(&'a self, coarse: &'a [Vec3]) -> impl Iterator<Item = Vec3> + 'a {
         self.flat.interpolate(coarse)
+    }
+}
+
+/// Puts pinned particles where they belong.
+fn hold_pins(fabric: &Fabric, positions: &mut [Vec3]) {
+    for pin in fabric.pins() {
+        positions[pin.particle as usize] = fabric.rest_positions()[pin.particle as usize];
     }
 }
 
@@ -202,11 +257,6 @@ impl Side<'_> {
         gravity: Vec3,
     ) -> ClothSnapshot {
         let fabric = &settler.fabric();
-        for (particle, position) in positions.iter_mut().enumerate() {
-            if fabric.is_pinned(particle) {
-                *position = fabric.rest_positions()[particle];
-            }
-        }
         let density = f64::from(material.area_density);
         let agitation = motion::agitation(self.fabric, &self.state.velocities);
         let had = elastic(self.fabric, material, &self.state.positions);
