@@ -5,7 +5,6 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::added_mass;
-use crate::batch::LaneSurface;
 use crate::collision::Collider;
 use crate::constraints::{Knot, Pole};
 use crate::fabric::{ABREAST, Fabric, FabricMaterial};
@@ -18,9 +17,6 @@ use crate::snapshot::{ClothSnapshot, History};
 use crate::step::{Drive, Scheme, StepSettings};
 use crate::vector::{Pack3, lane3, set_lane3, splat3};
 use crate::weave::Weave;
-
-/// Particles whose positions and normals in all lanes fit into the nearest cache, at 384 bytes each.
-const BLOCK: usize = 32;
 
 /// One cloth's place in a batch: what the lanes do not hold.
 #[derive(Clone, Debug)]
@@ -215,7 +211,11 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
 
     /// The state of a lane, past and all.
     pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
-        let read = |packs: &[Pack3<P>]| self.of_cloth(packs, lane).collect();
+        let read = |packs: &[Pack3<P>]| {
+            let mut vectors = Vec::new();
+            self.seating.read::<P, C>(packs, lane, &mut vectors);
+            vectors
+        };
         let past = self.slots[lane].as_ref().map_or_else(Past::default, |slot| slot.past);
         ClothSnapshot {
             positions: read(&self.position),
@@ -230,52 +230,15 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     }
 
     pub fn copy_positions(&self, lane: usize, into: &mut Vec<Vec3>) {
-        into.clear();
-        into.extend(self.of_cloth(&self.position, lane));
+        self.seating.read::<P, C>(&self.position, lane, into);
     }
 
     pub fn copy_velocities(&self, lane: usize, into: &mut Vec<Vec3>) {
-        into.clear();
-        into.extend(self.of_cloth(&self.velocity, lane));
+        self.seating.read::<P, C>(&self.velocity, lane, into);
     }
 
     pub fn copy_normals(&self, lane: usize, into: &mut Vec<Vec3>) {
-        into.clear();
-        into.extend(self.of_cloth(&self.normal, lane));
-    }
-
-    pub fn copy_surfaces(&self, into: &mut [LaneSurface]) {
-        let particles = self.fabric.particle_count();
-        let into = &mut into[..self.slots.len()];
-        let sums = sums(&self.position);
-        for (cloth, surface) in into.iter_mut().enumerate() {
-            if self.slots[cloth].is_some() {
-                // What is not finite makes the sum so.
-                surface.is_finite = sums.lanes()[C::lanes(cloth)].iter().all(|sum| sum.is_finite());
-                surface.positions.resize(particles, Vec3::ZERO);
-                surface.normals.resize(particles, Vec3::ZERO);
-            }
-        }
-        if C::SIDE > 1 {
-            for (cloth, surface) in
-                into.iter_mut().enumerate().filter(|(cloth, _)| self.slots[*cloth].is_some())
-            {
-                self.copy_positions(cloth, &mut surface.positions);
-                self.copy_normals(cloth, &mut surface.normals);
-            }
-            return;
-        }
-        // Particles by the block, so that each is fetched once for all lanes.
-        let mut first = 0;
-        for (positions, normals) in self.position.chunks(BLOCK).zip(self.normal.chunks(BLOCK)) {
-            for (lane, surface) in into.iter_mut().enumerate() {
-                if self.slots[lane].is_some() {
-                    read(positions, lane, &mut surface.positions[first..]);
-                    read(normals, lane, &mut surface.normals[first..]);
-                }
-            }
-            first += positions.len();
-        }
+        self.seating.read::<P, C>(&self.normal, lane, into);
     }
 
     pub fn is_finite(&self, lane: usize) -> bool {
@@ -365,25 +328,5 @@ impl<P: Pack> LaneBatch<P, P> {
             set_lane3(pack, 0, normal);
         }
         batch
-    }
-}
-
-/// The sum of all coordinates, for each lane.
-fn sums<P: Pack>(packs: &[Pack3<P>]) -> P {
-    let mut sums = P::splat(0.0);
-    for coordinate in packs.iter().flatten() {
-        for (sum, value) in sums.lanes_mut().iter_mut().zip(coordinate.lanes()) {
-            *sum += value;
-        }
-    }
-    sums
-}
-
-/// Reads one lane of a vector for each particle.
-fn read<P: Pack>(packs: &[Pack3<P>], lane: usize, into: &mut [Vec3]) {
-    // Once, and not for every number.
-    assert!(lane < P::WIDTH, "a lane of the batch");
-    for (value, pack) in into.iter_mut().zip(packs) {
-        *value = lane3(pack, lane);
     }
 }

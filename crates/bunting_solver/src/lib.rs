@@ -55,6 +55,7 @@ mod seating;
 mod snapshot;
 mod step;
 mod step_limits;
+mod surfaces;
 mod transfer;
 mod vector;
 mod velocity;

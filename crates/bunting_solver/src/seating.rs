@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::fabric::Fabric;
 use crate::lanes::Pack;
 use crate::places::{Constant, PARTS};
-use crate::vector::{Pack3, set_lane3};
+use crate::vector::{Pack3, lane3, set_lane3};
 
 /// Where particles lie among the packs of a batch.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +39,26 @@ impl Seating {
         (row * self.blocks() + column / self.side, column % self.side)
     }
 
+    /// Reads the vectors of one cloth, particle by particle.
+    pub fn read<P: Pack, C: Constant<P>>(
+        self,
+        packs: &[Pack3<P>],
+        cloth: usize,
+        into: &mut Vec<Vec3>,
+    ) {
+        // Once, and not for every number.
+        assert!(C::lanes(cloth).end <= P::WIDTH, "lanes of the batch");
+        into.resize(self.columns * self.rows, Vec3::ZERO);
+        let rows = into.chunks_mut(self.columns).zip(packs.chunks(self.blocks()));
+        for (values, packs) in rows {
+            for (side, pack) in values.chunks_mut(C::SIDE).zip(packs) {
+                for (lane, value) in (cloth..).zip(side) {
+                    *value = lane3(pack, lane);
+                }
+            }
+        }
+    }
+
     /// Writes the vectors of one cloth, particle by particle; zero where there are none, and where no
     /// particle lies.
     pub fn write<P: Pack, C: Constant<P>>(
@@ -58,7 +78,7 @@ impl Seating {
         };
         let rows = values.chunks(self.columns).zip(packs.chunks_mut(self.blocks()));
         for (values, packs) in rows {
-            for (side, pack) in values.chunks(self.side).zip(packs) {
+            for (side, pack) in values.chunks(C::SIDE).zip(packs) {
                 for lane in lanes.clone() {
                     let value = side.get(lane - cloth).copied().unwrap_or(Vec3::ZERO);
                     set_lane3(pack, lane, value);

@@ -75,6 +75,8 @@ pub struct LevelTransfer {
     relief: Relief,
     /// For each coarse particle the fine one that it is.
     shared: Vec<u32>,
+    /// For each coarse particle what it has of the fine ones' masses, in units of the density, m².
+    masses: Vec<f32>,
 }
 
 impl LevelTransfer {
@@ -98,11 +100,13 @@ impl LevelTransfer {
             .flat_map(|row| (0..coarse_grid.columns).map(move |column| (column, row)))
             .map(|(column, row)| fine_grid.index(2 * column, 2 * row))
             .collect();
+        let smooth = grid::smooth(fine_grid, coarse_grid);
         Ok(Self {
             fine: Arc::clone(fine),
             coarse: Arc::clone(coarse),
             settlers: [fine, coarse].map(|fabric| Arc::new(Settler::new(fabric))),
-            smooth: grid::smooth(fine_grid, coarse_grid),
+            masses: motion::gather_masses(&smooth, fine, coarse.particle_count()),
+            smooth,
             flat: grid::flat(fine_grid, coarse_grid),
             relief: Relief::default(),
             shared,
@@ -139,6 +143,7 @@ impl LevelTransfer {
             fine: Arc::clone(fine),
             coarse: Arc::clone(coarse),
             settlers: [fine, coarse].map(|fabric| Arc::new(Settler::new(fabric))),
+            masses: motion::gather_masses(&rows, fine, coarse.particle_count()),
             smooth: rows.clone(),
             flat: rows,
             relief,
