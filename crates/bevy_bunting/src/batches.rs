@@ -312,15 +312,28 @@ impl Seats {
         self.entities.iter().flatten().count()
     }
 
-    /// Seats a cloth, and returns its lane.
-    fn seat(&mut self, newcomer: &Newcomer) -> usize {
-        let free = self.entities.iter().position(Option::is_none);
-        let lane = free.expect("cloths are seated only where there is room");
-        self.batch
-            .replace(lane, &newcomer.snapshot, newcomer.material)
-            .expect("only valid cloths are seated");
-        self.entities[lane] = Some((newcomer.entity, newcomer.material));
-        lane
+    /// Seats newcomers as long as there is room, tells the lane of each, and lets no one ride on in a lane
+    /// whose cloth was taken out.
+    fn seat(
+        &mut self,
+        newcomers: &mut impl Iterator<Item = Newcomer>,
+        mut moved: impl FnMut(Entity, usize),
+    ) {
+        let free = (0..self.entities.len()).filter(|&lane| self.entities[lane].is_none());
+        let come: Vec<(usize, Newcomer)> = free.zip(newcomers).collect();
+        for (lane, newcomer) in &come {
+            self.entities[*lane] = Some((newcomer.entity, newcomer.material));
+            moved(newcomer.entity, *lane);
+        }
+        let left = |lane: &usize| self.entities[*lane].is_none() && self.batch.is_occupied(*lane);
+        let leave: Vec<usize> = (0..self.entities.len()).filter(left).collect();
+        let come: Vec<_> = come
+            .iter()
+            .map(|(lane, newcomer)| (*lane, &newcomer.snapshot, newcomer.material))
+            .collect();
+        if !leave.is_empty() || !come.is_empty() {
+            self.batch.exchange(&leave, &come).expect("only valid cloths are seated");
+        }
     }
 
     /// Takes everyone out.
@@ -330,16 +343,7 @@ impl Seats {
                 into.push(Newcomer { entity, snapshot: self.batch.snapshot(lane), material });
             }
         }
-        self.clear_free_lanes();
-    }
-
-    /// Lets no one ride on in a lane whose cloth was taken out.
-    fn clear_free_lanes(&mut self) {
-        for (lane, seat) in self.entities.iter().enumerate() {
-            if seat.is_none() && self.batch.is_occupied(lane) {
-                self.batch.remove(lane);
-            }
-        }
+        self.seat(&mut core::iter::empty(), |_, _| {});
     }
 }
 
@@ -380,12 +384,7 @@ impl Group {
         }
         let mut newcomers = self.newcomers.drain(..).peekable();
         for (batch, seats) in self.batches.iter_mut().enumerate() {
-            while seats.occupancy() < seats.entities.len()
-                && let Some(newcomer) = newcomers.next()
-            {
-                moved(newcomer.entity, batch, seats.seat(&newcomer));
-            }
-            seats.clear_free_lanes();
+            seats.seat(&mut newcomers, |entity, lane| moved(entity, batch, lane));
         }
         debug_assert!(newcomers.peek().is_none(), "there is a lane for everyone");
         drop(newcomers);

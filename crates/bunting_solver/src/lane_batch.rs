@@ -156,56 +156,72 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             fabric,
         };
         // Lanes without a cloth lie at rest.
-        (0..batch.slots.len()).for_each(|cloth| batch.remove(cloth));
+        let all: Vec<usize> = (0..batch.slots.len()).collect();
+        batch.exchange(&all, &[]);
         batch
     }
 
-    pub fn insert(&mut self, lane: usize, snapshot: &ClothSnapshot, material: FabricMaterial) {
-        self.slots[lane] = Some(Slot {
-            material,
-            drive: Drive::default(),
-            colliders: Vec::new(),
-            past: Past::default(),
-            applied: None,
-            contacts: Vec::new(),
-        });
-        self.restore(lane, snapshot);
-    }
-
-    /// Empties a lane; it then lies at rest, so that its arithmetic stays finite.
-    pub fn remove(&mut self, lane: usize) {
-        self.slots[lane] = None;
+    /// Empties lanes, and fills others. Empty ones lie at rest, so that their arithmetic stays finite.
+    pub fn exchange(&mut self, leave: &[usize], come: &[(usize, &ClothSnapshot, FabricMaterial)]) {
         let rest = ClothSnapshot::at_rest(&self.fabric);
-        self.restore(lane, &rest);
+        let mut states = Vec::new();
+        for &lane in leave {
+            self.slots[lane] = None;
+            states.push((lane, &rest));
+        }
+        for &(lane, snapshot, material) in come {
+            self.slots[lane] = Some(Slot {
+                material,
+                drive: Drive::default(),
+                colliders: Vec::new(),
+                past: Past::default(),
+                applied: None,
+                contacts: Vec::new(),
+            });
+            states.push((lane, snapshot));
+        }
+        self.restore(&states);
     }
 
-    /// Overwrites the state of a lane; without a history the next substep is of first order.
-    pub fn restore(&mut self, lane: usize, snapshot: &ClothSnapshot) {
+    /// Overwrites the states of lanes, all in one pass over the memory; those without a history go on with a
+    /// substep of first order.
+    pub fn restore(&mut self, states: &[(usize, &ClothSnapshot)]) {
         // Without −0, which would or would not become 0 where something of no weight is added.
-        let positions: Vec<Vec3> = snapshot.positions.iter().map(|at| *at + Vec3::ZERO).collect();
-        let history = snapshot.history.as_ref();
-        let state = [
-            (&mut self.position, Some(&positions)),
-            (&mut self.predicted, Some(&positions)),
-            (&mut self.velocity, Some(&snapshot.velocities)),
-            (&mut self.displacement, history.map(|history| &history.displacements[0])),
-            (&mut self.older_displacement, history.map(|history| &history.displacements[1])),
-            (&mut self.older_velocity, history.map(|history| &history.older_velocities[0])),
-            (&mut self.oldest_velocity, history.map(|history| &history.older_velocities[1])),
-            (&mut self.memory, history.map(|history| &history.memory)),
+        let unsigned = |state: &&ClothSnapshot| -> Vec<Vec3> {
+            state.positions.iter().map(|at| *at + Vec3::ZERO).collect()
+        };
+        let positions: Vec<Vec<Vec3>> = states.iter().map(|(_, state)| unsigned(state)).collect();
+        let shape: Vec<_> =
+            states.iter().zip(&positions).map(|(&(lane, _), at)| (lane, Some(&at[..]))).collect();
+        let velocities: Vec<_> =
+            states.iter().map(|&(lane, state)| (lane, Some(&state.velocities[..]))).collect();
+        let seating = self.seating;
+        seating.write::<P, C>(&mut self.position, &shape);
+        seating.write::<P, C>(&mut self.predicted, &shape);
+        seating.write::<P, C>(&mut self.velocity, &velocities);
+        let history: [(_, fn(&History) -> &[Vec3]); 5] = [
+            (&mut self.displacement, |history| &history.displacements[0]),
+            (&mut self.older_displacement, |history| &history.displacements[1]),
+            (&mut self.older_velocity, |history| &history.older_velocities[0]),
+            (&mut self.oldest_velocity, |history| &history.older_velocities[1]),
+            (&mut self.memory, |history| &history.memory),
         ];
-        for (packs, values) in state {
-            self.seating.write::<P, C>(packs, lane, values.map(|values| &values[..]));
+        for (packs, of) in history {
+            let values: Vec<_> =
+                states.iter().map(|&(lane, state)| (lane, state.history.as_ref().map(of))).collect();
+            seating.write::<P, C>(packs, &values);
         }
-        for pin in self.fabric.pins() {
-            let (pack, lane) = self.seating.seat(pin.particle as usize, lane);
-            set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
-        }
-        if let Some(weave) = &mut self.weave {
-            weave.begin(&positions);
-        }
-        if let Some(slot) = &mut self.slots[lane] {
-            slot.past = history.map_or_else(Past::default, |history| history.past);
+        for (&(lane, state), positions) in states.iter().zip(&positions) {
+            for pin in self.fabric.pins() {
+                let (pack, lane) = self.seating.seat(pin.particle as usize, lane);
+                set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
+            }
+            if let Some(weave) = &mut self.weave {
+                weave.begin(positions);
+            }
+            if let Some(slot) = &mut self.slots[lane] {
+                slot.past = state.history.as_ref().map_or_else(Past::default, |past| past.past);
+            }
         }
     }
 
@@ -313,7 +329,7 @@ impl<P: Pack> LaneBatch<P, P> {
         let weave = Weave::of(fabric)?;
         let mut batch = Self::new(Arc::clone(fabric));
         batch.weave = Some(Box::new(weave));
-        batch.remove(0);
+        batch.exchange(&[0], &[]);
         Some(batch)
     }
 
@@ -321,7 +337,7 @@ impl<P: Pack> LaneBatch<P, P> {
     pub fn unwoven(&self) -> LaneBatch<Pack1> {
         let mut batch = LaneBatch::new(Arc::clone(&self.fabric));
         if let Some(slot) = &self.slots[0] {
-            batch.insert(0, &self.snapshot(0), slot.material);
+            batch.exchange(&[], &[(0, &self.snapshot(0), slot.material)]);
             batch.slots[0] = Some(Slot { applied: None, ..slot.clone() });
         }
         for (pack, normal) in batch.normal.iter_mut().zip(self.of_cloth(&self.normal, 0)) {

@@ -59,29 +59,32 @@ impl Seating {
         }
     }
 
-    /// Writes the vectors of one cloth, particle by particle; zero where there are none, and where no
-    /// particle lies.
+    /// Writes the vectors of cloths, particle by particle; zero where there are none, and where no particle
+    /// lies.
     pub fn write<P: Pack, C: Constant<P>>(
         self,
         packs: &mut [Pack3<P>],
-        cloth: usize,
-        values: Option<&[Vec3]>,
+        cloths: &[(usize, Option<&[Vec3]>)],
     ) {
-        let lanes = C::lanes(cloth);
-        // Once, and not for every number.
-        assert!(lanes.end <= P::WIDTH, "lanes of the batch");
-        let Some(values) = values else {
-            for coordinate in packs.iter_mut().flatten() {
-                coordinate.lanes_mut()[lanes.clone()].fill(0.0);
+        let zero = |of: &[Vec3], at: usize| of.get(at).copied().unwrap_or(Vec3::ZERO);
+        if C::SIDE == 1 {
+            // Pack by pack, so that each is fetched once for all lanes.
+            for (particle, pack) in packs.iter_mut().enumerate() {
+                for &(lane, values) in cloths {
+                    set_lane3(pack, lane, zero(values.unwrap_or_default(), particle));
+                }
             }
             return;
-        };
-        let rows = values.chunks(self.columns).zip(packs.chunks_mut(self.blocks()));
-        for (values, packs) in rows {
-            for (side, pack) in values.chunks(C::SIDE).zip(packs) {
-                for lane in lanes.clone() {
-                    let value = side.get(lane - cloth).copied().unwrap_or(Vec3::ZERO);
-                    set_lane3(pack, lane, value);
+        }
+        for &(_, values) in cloths {
+            let values = values.unwrap_or_default();
+            for (row, packs) in packs.chunks_mut(self.blocks()).enumerate() {
+                for (block, pack) in packs.iter_mut().enumerate() {
+                    for lane in 0..C::SIDE {
+                        let column = block * C::SIDE + lane;
+                        let at = if column < self.columns { row * self.columns + column } else { usize::MAX };
+                        set_lane3(pack, lane, zero(values, at));
+                    }
                 }
             }
         }

@@ -73,6 +73,34 @@ fn momentum_is_kept_and_energy_does_not_grow() {
     }
 }
 
+/// Over several levels at once: as sound as over one, and those between are not arrived at.
+#[test]
+fn several_levels_are_crossed_at_once() {
+    let fabrics = [(17, 9), (9, 5), (5, 3)].map(|(columns, rows)| fabric(columns, rows, true));
+    let between = |pair: &[Arc<Fabric>]| LevelTransfer::between(&pair[0], &pair[1]).expect("nested");
+    let chain: Vec<LevelTransfer> = fabrics.windows(2).map(between).collect();
+    let [finest, _, coarsest] = &fabrics;
+    let (above, below) = (flown(finest), flown(coarsest));
+    let down = LevelTransfer::restrict_through(&chain, &above, &MATERIAL, GRAVITY);
+    let up = LevelTransfer::prolong_through(&chain, &below, &MATERIAL, GRAVITY);
+    for (from, before, to, after) in
+        [(finest, &above, coarsest, &down), (coarsest, &below, finest, &up)]
+    {
+        assert_eq!(after.positions.len(), to.particle_count());
+        let (had, has) = (moment(from, &before.velocities), moment(to, &after.velocities));
+        assert!(had.distance(has) < 1e-5 * had.length(), "{had} {has}");
+        let (had, has) = (energies(from, before), energies(to, after));
+        let rounding = 1e-6 * had.map(f64::abs).iter().sum::<f64>();
+        assert!(has.iter().sum::<f64>() < had.iter().sum::<f64>() + rounding, "{had:?} {has:?}");
+        assert!(has[1] < had[1] + 0.1 * had[0], "strain is left: {had:?} {has:?}");
+        let mean = |fabric: &Fabric, state: &ClothSnapshot| {
+            moment(fabric, &state.positions) / f64::from(fabric.area())
+        };
+        let moved = mean(from, before).distance(mean(to, after));
+        assert!(moved < 0.05, "it is elsewhere: {moved}");
+    }
+}
+
 /// A frame in motion: all of the cloth, pins too, has its velocity, and keeps it.
 #[test]
 fn what_moves_as_one_goes_on_as_one() {
