@@ -146,11 +146,21 @@ impl ClothBatches {
 
     /// Takes a cloth out of its lane.
     pub(crate) fn take(&mut self, slot: Slot) -> ClothSnapshot {
+        self.free(slot).snapshot(slot.lane)
+    }
+
+    /// Takes a cloth out of its lane that will not go on at its level.
+    pub(crate) fn take_away(&mut self, slot: Slot) -> ClothSnapshot {
+        self.free(slot).forgetful_snapshot(slot.lane)
+    }
+
+    /// Frees a lane. The cloth's state is there until someone takes its place.
+    fn free(&mut self, slot: Slot) -> &ClothBatch {
         let group = &mut self.groups[slot.group];
         let seats = &mut group.batches[slot.batch];
         group.changed = true;
         seats.entities[slot.lane] = None;
-        seats.batch.snapshot(slot.lane)
+        &seats.batch
     }
 
     /// Seats newcomers and closes gaps; tells where every cloth is that has taken another lane.
@@ -396,8 +406,7 @@ impl Group {
         let mut widths = Vec::new();
         while cloths > 0 {
             let scheme = self.settings.scheme;
-            let width =
-                lanes.unwrap_or_else(|| LaneCount::first_of(cloths, &self.fabric, scheme));
+            let width = lanes.unwrap_or_else(|| LaneCount::first_of(cloths, &self.fabric, scheme));
             widths.push(width);
             cloths = cloths.saturating_sub(width.get());
         }

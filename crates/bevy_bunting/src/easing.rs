@@ -15,11 +15,11 @@ use crate::state::{ClothState, Left};
 use crate::surface::ClothSurface;
 
 /// Time after which the level's own surface is shown, s.
-const DURATION: f32 = 0.3;
+const DURATION: f32 = 0.29;
 
 /// How fast the difference between the two surfaces goes, 1/s: 2 % of it is left at the end. Larger:
 /// the surface jerks. Smaller: it jumps at the end.
-const RATE: f32 = 25.0;
+const RATE: f32 = 27.0;
 
 /// The surface of a cloth while its level changes: that of the new level, and what the surface before
 /// was beyond it, which is taken off smoothly ("inertialization", Bollo 2018). It goes on as it

@@ -160,6 +160,19 @@ impl ClothLevels {
         values
     }
 
+    /// Unit vectors at the particles of a level, carried to those of another.
+    pub fn carry(&self, vectors: &[Vec3], from: usize, to: usize) -> Vec<Vec3> {
+        let mut vectors = vectors.to_vec();
+        for transfer in self.between(from, to) {
+            vectors = transfer.pick(&vectors).collect();
+        }
+        if to < from {
+            vectors = self.spread(vectors, from, to);
+            vectors.iter_mut().for_each(|vector| *vector = vector.normalize_or_zero());
+        }
+        vectors
+    }
+
     /// What lies between a level and a coarser one.
     fn between(&self, fine: usize, coarse: usize) -> &[LevelTransfer] {
         let end = coarse.min(self.transfers.len());

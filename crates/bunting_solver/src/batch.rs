@@ -328,6 +328,12 @@ impl ClothBatch {
         at_any_width!(&self.0, batch => batch.snapshot(lane))
     }
 
+    /// The state of a lane without what the integrator remembers.
+    #[must_use]
+    pub fn forgetful_snapshot(&self, lane: usize) -> ClothSnapshot {
+        at_any_width!(&self.0, batch => batch.forgetful_snapshot(lane))
+    }
+
     /// Whether every number of a lane's state is finite.
     #[must_use]
     pub fn is_finite(&self, lane: usize) -> bool {

@@ -48,12 +48,14 @@ fn along_line(fabric: &Fabric, profile: u32, particles: &[u32], positions: &[Vec
         let turn = (at(three[0]) - at(three[1])) + (at(three[2]) - at(three[1]));
         turn.length_squared()
     });
-    let sum: f64 = turns.zip(&profile.weights).map(|(turn, &weight)| f64::from(turn * weight)).sum();
+    let sum: f64 =
+        turns.zip(&profile.weights).map(|(turn, &weight)| f64::from(turn * weight)).sum();
     sum * f64::from(profile.inverse_spacing).powi(2)
 }
 
 /// Sum of area times vector over all particles, pinned or not.
 pub(crate) fn moment(fabric: &Fabric, vectors: &[Vec3]) -> DVec3 {
-    let products = fabric.particle_areas().iter().zip(vectors).map(|(&area, &vector)| vector * area);
+    let products =
+        fabric.particle_areas().iter().zip(vectors).map(|(&area, &vector)| vector * area);
     products.map(|product| product.as_dvec3()).sum()
 }

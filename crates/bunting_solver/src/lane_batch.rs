@@ -207,8 +207,10 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             (&mut self.memory, |history| &history.memory),
         ];
         for (packs, of) in history {
-            let values: Vec<_> =
-                states.iter().map(|&(lane, state)| (lane, state.history.as_ref().map(of))).collect();
+            let values: Vec<_> = states
+                .iter()
+                .map(|&(lane, state)| (lane, state.history.as_ref().map(of)))
+                .collect();
             seating.write::<P, C>(packs, &values);
         }
         for (&(lane, state), positions) in states.iter().zip(&positions) {
@@ -227,22 +229,26 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
 
     /// The state of a lane, past and all.
     pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
-        let read = |packs: &[Pack3<P>]| {
-            let mut vectors = Vec::new();
-            self.seating.read::<P, C>(packs, lane, &mut vectors);
-            vectors
-        };
         let past = self.slots[lane].as_ref().map_or_else(Past::default, |slot| slot.past);
-        ClothSnapshot {
-            positions: read(&self.position),
-            velocities: read(&self.velocity),
-            history: past.exists().then(|| History {
-                past,
-                displacements: [read(&self.displacement), read(&self.older_displacement)],
-                older_velocities: [read(&self.older_velocity), read(&self.oldest_velocity)],
-                memory: read(&self.memory),
-            }),
-        }
+        let read = |packs| self.read(packs, lane);
+        let history = past.exists().then(|| History {
+            past,
+            displacements: [read(&self.displacement), read(&self.older_displacement)],
+            older_velocities: [read(&self.older_velocity), read(&self.oldest_velocity)],
+            memory: read(&self.memory),
+        });
+        ClothSnapshot { history, ..self.forgetful_snapshot(lane) }
+    }
+
+    /// The state of a lane without its past.
+    pub fn forgetful_snapshot(&self, lane: usize) -> ClothSnapshot {
+        ClothSnapshot::new(self.read(&self.position, lane), self.read(&self.velocity, lane))
+    }
+
+    fn read(&self, packs: &[Pack3<P>], lane: usize) -> Vec<Vec3> {
+        let mut vectors = Vec::new();
+        self.seating.read::<P, C>(packs, lane, &mut vectors);
+        vectors
     }
 
     pub fn copy_positions(&self, lane: usize, into: &mut Vec<Vec3>) {

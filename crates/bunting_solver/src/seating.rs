@@ -82,7 +82,11 @@ impl Seating {
                 for (block, pack) in packs.iter_mut().enumerate() {
                     for lane in 0..C::SIDE {
                         let column = block * C::SIDE + lane;
-                        let at = if column < self.columns { row * self.columns + column } else { usize::MAX };
+                        let at = if column < self.columns {
+                            row * self.columns + column
+                        } else {
+                            usize::MAX
+                        };
                         set_lane3(pack, lane, zero(values, at));
                     }
                 }

@@ -245,7 +245,11 @@ impl ChosenItem<'_, '_> {
         self.instance.change_level(to, batches);
         let instance = &*self.instance;
         if let Some((levels, snapshot)) = instance.levels.as_ref().zip(instance.waiting()) {
-            self.state.begin(to, levels, &snapshot.positions);
+            if instance.activity == ClothActivity::Ticking && !self.paused {
+                self.state.go_on(to, levels, &snapshot.positions);
+            } else {
+                self.state.begin(to, levels, &snapshot.positions);
+            }
         }
         self.watch.changed = now;
         if let Some(candidate) = &mut self.watch.candidate {

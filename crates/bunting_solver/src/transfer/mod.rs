@@ -186,7 +186,8 @@ impl LevelTransfer {
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
-        let (mut positions, mut velocities) = (Cow::from(&coarse.positions), Cow::from(&coarse.velocities));
+        let (mut positions, mut velocities) =
+            (Cow::from(&coarse.positions), Cow::from(&coarse.velocities));
         for transfer in chain.iter().rev() {
             let mut finer: Vec<Vec3> = transfer.smooth.interpolate(&positions).collect();
             transfer.relief.add(&positions, &mut finer);
@@ -213,7 +214,8 @@ impl LevelTransfer {
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
-        let (mut positions, mut velocities) = (Cow::from(&fine.positions), Cow::from(&fine.velocities));
+        let (mut positions, mut velocities) =
+            (Cow::from(&fine.positions), Cow::from(&fine.velocities));
         for transfer in chain {
             let mut coarser: Vec<Vec3> = transfer.pick(&positions).collect();
             hold_pins(&transfer.coarse, &mut coarser);

@@ -77,7 +77,8 @@ fn momentum_is_kept_and_energy_does_not_grow() {
 #[test]
 fn several_levels_are_crossed_at_once() {
     let fabrics = [(17, 9), (9, 5), (5, 3)].map(|(columns, rows)| fabric(columns, rows, true));
-    let between = |pair: &[Arc<Fabric>]| LevelTransfer::between(&pair[0], &pair[1]).expect("nested");
+    let between =
+        |pair: &[Arc<Fabric>]| LevelTransfer::between(&pair[0], &pair[1]).expect("nested");
     let chain: Vec<LevelTransfer> = fabrics.windows(2).map(between).collect();
     let [finest, _, coarsest] = &fabrics;
     let (above, below) = (flown(finest), flown(coarsest));
