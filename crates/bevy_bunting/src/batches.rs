@@ -11,6 +11,7 @@ use bunting_solver::{
 };
 
 use crate::lod::Measured;
+use crate::seats::{Newcomer, Seats};
 
 /// Particles, counted in all lanes, from which a phase of a substep is worth the 30 µs that it
 /// takes to wake other threads.
@@ -26,32 +27,6 @@ pub(crate) struct Slot {
     group: usize,
     batch: usize,
     lane: usize,
-}
-
-/// A cloth that takes a lane.
-#[derive(Debug)]
-pub(crate) struct Newcomer {
-    pub entity: Entity,
-    pub snapshot: ClothSnapshot,
-    pub material: FabricMaterial,
-}
-
-/// Who sits in a lane, and what they are made of.
-pub(crate) type Seat = (Entity, FabricMaterial);
-
-/// A batch, and whose lanes they are.
-#[derive(Debug)]
-struct Seats {
-    batch: ClothBatch,
-    entities: Vec<Option<Seat>>,
-    /// What the lanes show, on its way to those who sit there.
-    surfaces: Vec<LaneSurface>,
-    lanes: LaneCount,
-    /// Substeps in this tick.
-    substeps: u32,
-    joins: bool,
-    /// Time that its phases have taken in this tick, where that is measured.
-    time: Duration,
 }
 
 /// Cloths that are stepped alike: of one fabric, with the same settings.
@@ -293,67 +268,6 @@ impl ClothBatches {
             .iter_mut()
             .flat_map(|group| &mut group.batches)
             .filter(move |seats| joins(seats))
-    }
-}
-
-impl Seats {
-    fn new(fabric: &Arc<Fabric>, lanes: LaneCount) -> Self {
-        Self {
-            batch: ClothBatch::new(Arc::clone(fabric), lanes),
-            entities: vec![None; lanes.get()],
-            surfaces: vec![LaneSurface::default(); lanes.get()],
-            lanes,
-            substeps: 0,
-            joins: true,
-            time: Duration::ZERO,
-        }
-    }
-
-    fn particles(&self) -> usize {
-        self.batch.fabric().particle_count() * self.batch.lane_count()
-    }
-
-    /// The lanes that are taken, and by whom.
-    fn taken(&self) -> impl Iterator<Item = (usize, Seat)> + '_ {
-        self.entities.iter().enumerate().filter_map(|(lane, seat)| Some((lane, (*seat)?)))
-    }
-
-    fn occupancy(&self) -> usize {
-        self.entities.iter().flatten().count()
-    }
-
-    /// Seats newcomers as long as there is room, tells the lane of each, and lets no one ride on in a lane
-    /// whose cloth was taken out.
-    fn seat(
-        &mut self,
-        newcomers: &mut impl Iterator<Item = Newcomer>,
-        mut moved: impl FnMut(Entity, usize),
-    ) {
-        let free = (0..self.entities.len()).filter(|&lane| self.entities[lane].is_none());
-        let come: Vec<(usize, Newcomer)> = free.zip(newcomers).collect();
-        for (lane, newcomer) in &come {
-            self.entities[*lane] = Some((newcomer.entity, newcomer.material));
-            moved(newcomer.entity, *lane);
-        }
-        let left = |lane: &usize| self.entities[*lane].is_none() && self.batch.is_occupied(*lane);
-        let leave: Vec<usize> = (0..self.entities.len()).filter(left).collect();
-        let come: Vec<_> = come
-            .iter()
-            .map(|(lane, newcomer)| (*lane, &newcomer.snapshot, newcomer.material))
-            .collect();
-        if !leave.is_empty() || !come.is_empty() {
-            self.batch.exchange(&leave, &come).expect("only valid cloths are seated");
-        }
-    }
-
-    /// Takes everyone out.
-    fn dissolve(&mut self, into: &mut Vec<Newcomer>) {
-        for (lane, seat) in self.entities.iter_mut().enumerate() {
-            if let Some((entity, material)) = seat.take() {
-                into.push(Newcomer { entity, snapshot: self.batch.snapshot(lane), material });
-            }
-        }
-        self.seat(&mut core::iter::empty(), |_, _| {});
     }
 }
 

@@ -32,6 +32,9 @@ pub(crate) struct Slot {
     pub contacts: Vec<Vec<u32>>,
 }
 
+/// One of the vectors that the integrator remembers of each particle.
+type OfHistory = fn(&History) -> &[Vec3];
+
 /// What a lane's compliances, air and damping depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Applied {
@@ -199,7 +202,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         seating.write::<P, C>(&mut self.position, &shape);
         seating.write::<P, C>(&mut self.predicted, &shape);
         seating.write::<P, C>(&mut self.velocity, &velocities);
-        let history: [(_, fn(&History) -> &[Vec3]); 5] = [
+        let history: [(_, OfHistory); 5] = [
             (&mut self.displacement, |history| &history.displacements[0]),
             (&mut self.older_displacement, |history| &history.displacements[1]),
             (&mut self.older_velocity, |history| &history.older_velocities[0]),
