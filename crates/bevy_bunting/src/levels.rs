@@ -133,7 +133,7 @@ impl ClothLevels {
     /// the axes of its frame, m/s².
     pub fn transfer(
         &self,
-        snapshot: ClothSnapshot,
+        mut snapshot: ClothSnapshot,
         (from, to): (usize, usize),
         material: &FabricMaterial,
         gravity: Vec3,
@@ -142,14 +142,14 @@ impl ClothLevels {
         if snapshot.is_at_rest(self.fabric(from)) {
             return ClothSnapshot::at_rest(self.fabric(to));
         }
-        let (coarser, finer) = (self.between(from, to), self.between(to, from));
+        let coarser = self.between(from, to);
         if !coarser.is_empty() {
-            LevelTransfer::restrict_through(coarser, &snapshot, material, gravity)
-        } else if !finer.is_empty() {
-            LevelTransfer::prolong_through(finer, &snapshot, material, gravity)
-        } else {
-            snapshot
+            return LevelTransfer::restrict_through(coarser, &snapshot, material, gravity);
         }
+        for transfer in self.between(to, from).iter().rev() {
+            snapshot = transfer.prolong(&snapshot, material, gravity);
+        }
+        snapshot
     }
 
     /// Values at the particles of a level, spread over its triangles to those of a finer level.

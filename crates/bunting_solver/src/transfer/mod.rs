@@ -159,7 +159,11 @@ impl LevelTransfer {
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
-        Self::prolong_through(slice::from_ref(self), coarse, material, gravity)
+        let mut positions: Vec<Vec3> = self.smooth.interpolate(&coarse.positions).collect();
+        self.relief.add(&coarse.positions, &mut positions);
+        let velocities = self.smooth.interpolate(&coarse.velocities).collect();
+        let before = Side { fabric: &self.coarse, state: coarse };
+        before.arrive(&self.settlers[0], positions, velocities, material, gravity)
     }
 
     /// Fine to coarse, for a cloth of a material under a gravity along the axes of its frame, m/s².
@@ -171,34 +175,6 @@ impl LevelTransfer {
         gravity: Vec3,
     ) -> ClothSnapshot {
         Self::restrict_through(slice::from_ref(self), fine, material, gravity)
-    }
-
-    /// From the coarsest to the finest fabric of a chain, the finest neighbours first. The levels between
-    /// are only passed through: strain is taken off where the cloth arrives.
-    ///
-    /// # Panics
-    ///
-    /// When the chain is empty, or not of neighbours.
-    #[must_use]
-    pub fn prolong_through(
-        chain: &[Self],
-        coarse: &ClothSnapshot,
-        material: &FabricMaterial,
-        gravity: Vec3,
-    ) -> ClothSnapshot {
-        let (mut positions, mut velocities) =
-            (Cow::from(&coarse.positions), Cow::from(&coarse.velocities));
-        for transfer in chain.iter().rev() {
-            let mut finer: Vec<Vec3> = transfer.smooth.interpolate(&positions).collect();
-            transfer.relief.add(&positions, &mut finer);
-            hold_pins(&transfer.fine, &mut finer);
-            positions = finer.into();
-            velocities = transfer.smooth.interpolate(&velocities).collect::<Vec<_>>().into();
-        }
-        let (finest, coarsest) = (&chain[0], &chain[chain.len() - 1]);
-        let before = Side { fabric: &coarsest.coarse, state: coarse };
-        let settler = &finest.settlers[0];
-        before.arrive(settler, positions.into_owned(), velocities.into_owned(), material, gravity)
     }
 
     /// From the finest to the coarsest fabric of a chain, the finest neighbours first. The levels between
@@ -217,9 +193,7 @@ impl LevelTransfer {
         let (mut positions, mut velocities) =
             (Cow::from(&fine.positions), Cow::from(&fine.velocities));
         for transfer in chain {
-            let mut coarser: Vec<Vec3> = transfer.pick(&positions).collect();
-            hold_pins(&transfer.coarse, &mut coarser);
-            positions = coarser.into();
+            positions = transfer.pick(&positions).collect::<Vec<_>>().into();
             velocities = transfer.gather_velocities(&velocities).into();
         }
         let (finest, coarsest) = (&chain[0], &chain[chain.len() - 1]);
@@ -240,13 +214,6 @@ impl LevelTransfer {
     }
 }
 
-/// Puts pinned particles where they belong.
-fn hold_pins(fabric: &Fabric, positions: &mut [Vec3]) {
-    for pin in fabric.pins() {
-        positions[pin.particle as usize] = fabric.rest_positions()[pin.particle as usize];
-    }
-}
-
 /// A cloth before its change of level.
 struct Side<'a> {
     fabric: &'a Fabric,
@@ -264,6 +231,9 @@ impl Side<'_> {
         gravity: Vec3,
     ) -> ClothSnapshot {
         let fabric = &settler.fabric();
+        for pin in fabric.pins() {
+            positions[pin.particle as usize] = fabric.rest_positions()[pin.particle as usize];
+        }
         let density = f64::from(material.area_density);
         let agitation = motion::agitation(self.fabric, &self.state.velocities);
         let had = elastic(self.fabric, material, &self.state.positions);
