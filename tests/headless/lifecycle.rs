@@ -32,7 +32,12 @@ fn spawn_change_and_despawn_while_running() {
     assert_finite(&app, first);
     assert_finite(&app, second);
     assert_eq!(app.world().resource::<ClothCounts>().0, [2]);
+    let others = [(); 2].map(|()| spawn_flag(&mut app, Vec3::Y));
+    run(&mut app, 1);
     assert_eq!(app.world().resource::<ClothBatches>().batch_count(), 1);
+    others.into_iter().for_each(|other| assert!(app.world_mut().despawn(other)));
+    run(&mut app, 1);
+    assert_eq!(app.world().resource::<ClothBatches>().batch_count(), 2, "two are faster alone");
 
     app.world_mut().entity_mut(first).insert(ClothMesh::grid(9, 9, 1.0, 1.0));
     run(&mut app, 10);

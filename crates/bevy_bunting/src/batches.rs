@@ -11,10 +11,15 @@ use bunting_solver::{
 };
 
 use crate::lod::Measured;
+use crate::seats::{Newcomer, Seats};
 
 /// Particles, counted in all lanes, from which a phase of a substep is worth the 30 µs that it
 /// takes to wake other threads.
 const PARALLEL_PARTICLES: usize = 64 * 1024;
+
+/// Empty batches of one width that are kept: making one takes longer than a tick. As many as there are
+/// cloths that ride alone.
+const SPARE: usize = 3;
 
 /// Where the state of a cloth is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,39 +29,13 @@ pub(crate) struct Slot {
     lane: usize,
 }
 
-/// A cloth that takes a lane.
-#[derive(Debug)]
-pub(crate) struct Newcomer {
-    pub entity: Entity,
-    pub snapshot: ClothSnapshot,
-    pub material: FabricMaterial,
-}
-
-/// Who sits in a lane, and what they are made of.
-pub(crate) type Seat = (Entity, FabricMaterial);
-
-/// A batch, and whose lanes they are.
-#[derive(Debug)]
-struct Seats {
-    batch: ClothBatch,
-    entities: Vec<Option<Seat>>,
-    /// What the lanes show, on its way to those who sit there.
-    surfaces: Vec<LaneSurface>,
-    lanes: LaneCount,
-    /// Substeps in this tick.
-    substeps: u32,
-    joins: bool,
-    /// Time that its phases have taken in this tick, where that is measured.
-    time: Duration,
-}
-
 /// Cloths that are stepped alike: of one fabric, with the same settings.
 #[derive(Debug)]
 struct Group {
     fabric: Arc<Fabric>,
     settings: StepSettings,
     batches: Vec<Seats>,
-    /// Empty batches, at most one of each width.
+    /// Empty batches, at most [`SPARE`] of each width.
     spare: Vec<Seats>,
     newcomers: Vec<Newcomer>,
     changed: bool,
@@ -142,11 +121,21 @@ impl ClothBatches {
 
     /// Takes a cloth out of its lane.
     pub(crate) fn take(&mut self, slot: Slot) -> ClothSnapshot {
+        self.free(slot).snapshot(slot.lane)
+    }
+
+    /// Takes a cloth out of its lane that will not go on at its level.
+    pub(crate) fn take_away(&mut self, slot: Slot) -> ClothSnapshot {
+        self.free(slot).forgetful_snapshot(slot.lane)
+    }
+
+    /// Frees a lane. The cloth's state is there until someone takes its place.
+    fn free(&mut self, slot: Slot) -> &ClothBatch {
         let group = &mut self.groups[slot.group];
         let seats = &mut group.batches[slot.batch];
         group.changed = true;
         seats.entities[slot.lane] = None;
-        seats.batch.snapshot(slot.lane)
+        &seats.batch
     }
 
     /// Seats newcomers and closes gaps; tells where every cloth is that has taken another lane.
@@ -282,63 +271,6 @@ impl ClothBatches {
     }
 }
 
-impl Seats {
-    fn new(fabric: &Arc<Fabric>, lanes: LaneCount) -> Self {
-        Self {
-            batch: ClothBatch::new(Arc::clone(fabric), lanes),
-            entities: vec![None; lanes.get()],
-            surfaces: vec![LaneSurface::default(); lanes.get()],
-            lanes,
-            substeps: 0,
-            joins: true,
-            time: Duration::ZERO,
-        }
-    }
-
-    fn particles(&self) -> usize {
-        self.batch.fabric().particle_count() * self.batch.lane_count()
-    }
-
-    /// The lanes that are taken, and by whom.
-    fn taken(&self) -> impl Iterator<Item = (usize, Seat)> + '_ {
-        self.entities.iter().enumerate().filter_map(|(lane, seat)| Some((lane, (*seat)?)))
-    }
-
-    fn occupancy(&self) -> usize {
-        self.entities.iter().flatten().count()
-    }
-
-    /// Seats a cloth, and returns its lane.
-    fn seat(&mut self, newcomer: &Newcomer) -> usize {
-        let free = self.entities.iter().position(Option::is_none);
-        let lane = free.expect("cloths are seated only where there is room");
-        self.batch
-            .replace(lane, &newcomer.snapshot, newcomer.material)
-            .expect("only valid cloths are seated");
-        self.entities[lane] = Some((newcomer.entity, newcomer.material));
-        lane
-    }
-
-    /// Takes everyone out.
-    fn dissolve(&mut self, into: &mut Vec<Newcomer>) {
-        for (lane, seat) in self.entities.iter_mut().enumerate() {
-            if let Some((entity, material)) = seat.take() {
-                into.push(Newcomer { entity, snapshot: self.batch.snapshot(lane), material });
-            }
-        }
-        self.clear_free_lanes();
-    }
-
-    /// Lets no one ride on in a lane whose cloth was taken out.
-    fn clear_free_lanes(&mut self) {
-        for (lane, seat) in self.entities.iter().enumerate() {
-            if seat.is_none() && self.batch.is_occupied(lane) {
-                self.batch.remove(lane);
-            }
-        }
-    }
-}
-
 impl Group {
     fn is_empty(&self) -> bool {
         self.batches.is_empty() && self.newcomers.is_empty()
@@ -348,7 +280,7 @@ impl Group {
     /// everyone. Tells who sits in which lane of which batch, of all that did not before.
     fn settle(&mut self, lanes: Option<LaneCount>, mut moved: impl FnMut(Entity, usize, usize)) {
         let seated: usize = self.batches.iter().map(Seats::occupancy).sum();
-        let mut missing = widths(seated + self.newcomers.len(), lanes);
+        let mut missing = self.widths(seated + self.newcomers.len(), lanes);
         let mut fullest: Vec<usize> = (0..self.batches.len()).collect();
         fullest.sort_by_key(|&batch| core::cmp::Reverse(self.batches[batch].occupancy()));
         let mut dissolved = fullest;
@@ -360,8 +292,7 @@ impl Group {
         for batch in dissolved.into_iter().rev() {
             let mut seats = self.batches.swap_remove(batch);
             seats.dissolve(&mut self.newcomers);
-            // One of each width is kept: making one takes longer than a tick.
-            if self.spare.iter().all(|spare| spare.lanes != seats.lanes) {
+            if self.spare.iter().filter(|spare| spare.lanes == seats.lanes).count() < SPARE {
                 self.spare.push(seats);
             }
             for (lane, (entity, _)) in self.batches.get(batch).into_iter().flat_map(Seats::taken) {
@@ -377,26 +308,22 @@ impl Group {
         }
         let mut newcomers = self.newcomers.drain(..).peekable();
         for (batch, seats) in self.batches.iter_mut().enumerate() {
-            while seats.occupancy() < seats.entities.len()
-                && let Some(newcomer) = newcomers.next()
-            {
-                moved(newcomer.entity, batch, seats.seat(&newcomer));
-            }
-            seats.clear_free_lanes();
+            seats.seat(&mut newcomers, |entity, lane| moved(entity, batch, lane));
         }
         debug_assert!(newcomers.peek().is_none(), "there is a lane for everyone");
         drop(newcomers);
         self.changed = false;
     }
-}
 
-/// Widths of the batches for a number of cloths.
-fn widths(mut cloths: usize, lanes: Option<LaneCount>) -> Vec<LaneCount> {
-    let mut widths = Vec::new();
-    while cloths > 0 {
-        let width = lanes.unwrap_or(LaneCount::holding(cloths));
-        widths.push(width);
-        cloths = cloths.saturating_sub(width.get());
+    /// Widths of the batches for a number of cloths.
+    fn widths(&self, mut cloths: usize, lanes: Option<LaneCount>) -> Vec<LaneCount> {
+        let mut widths = Vec::new();
+        while cloths > 0 {
+            let scheme = self.settings.scheme;
+            let width = lanes.unwrap_or_else(|| LaneCount::first_of(cloths, &self.fabric, scheme));
+            widths.push(width);
+            cloths = cloths.saturating_sub(width.get());
+        }
+        widths
     }
-    widths
 }

@@ -17,9 +17,13 @@ use crate::surface::ClothSurface;
 /// Time after which the level's own surface is shown, s.
 const DURATION: f32 = 0.25;
 
-/// How fast the difference between the two surfaces goes, 1/s: 2 % of it is left at the end. Larger:
-/// the surface jerks. Smaller: it jumps at the end.
-const RATE: f32 = 30.0;
+/// How fast the difference between the two surfaces goes, 1/s: 3 % of it is left at the end, and faded out.
+/// Larger: the surface jerks. Smaller: what changes again and again lags behind.
+const RATE: f32 = 28.0;
+
+/// Power of the time with which the rest fades out: late, so that the first frames do not notice, and not at
+/// once.
+const FADE: f32 = 4.0;
 
 /// The surface of a cloth while its level changes: that of the new level, and what the surface before
 /// was beyond it, which is taken off smoothly ("inertialization", Bollo 2018). It goes on as it
@@ -145,9 +149,10 @@ impl ClothEasing {
         let (base, normals) = (spread(&state.positions), spread(&state.normals));
         self.previous_positions = core::mem::take(&mut self.positions);
         self.previous_normals = core::mem::take(&mut self.normals);
+        let fade = 1.0 - ops::powf(self.age / DURATION, FADE);
         let decayed = |(base, decay): (Vec3, &mut Decay)| {
             decay.advance(tick);
-            base + decay.value
+            base + decay.value * fade
         };
         self.positions = base.into_iter().zip(&mut self.beyond).map(decayed).collect();
         let turned = normals.into_iter().zip(&mut self.normals_beyond).map(decayed);

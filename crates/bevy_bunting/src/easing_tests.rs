@@ -141,5 +141,6 @@ fn a_decay_goes_on_as_it_began_and_ends() {
     assert!(once.value.distance(often.value) < 1e-4 && once.rate.distance(often.rate) < 1e-2);
     let mut end = start;
     end.advance(DURATION);
-    assert!(end.value.length() < 0.025, "{end:?}");
+    // The surface fades what is left.
+    assert!(end.value.length() < 0.035, "{end:?}");
 }

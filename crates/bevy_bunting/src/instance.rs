@@ -82,7 +82,9 @@ impl ClothInstance {
 
     /// Moves the state to another level.
     pub fn change_level(&mut self, to: usize, batches: &mut ClothBatches) {
-        self.unseat(batches);
+        if let Place::Seated(slot) = self.place {
+            self.place = Place::Waiting(batches.take_away(slot));
+        }
         if let (Some(levels), Place::Waiting(snapshot)) = (&self.levels, &mut self.place) {
             let state = core::mem::take(snapshot);
             *snapshot = levels.transfer(state, (self.level, to), &self.material, self.gravity);

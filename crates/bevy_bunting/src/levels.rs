@@ -142,10 +142,11 @@ impl ClothLevels {
         if snapshot.is_at_rest(self.fabric(from)) {
             return ClothSnapshot::at_rest(self.fabric(to));
         }
-        for transfer in self.between(from, to) {
-            snapshot = transfer.restrict(&snapshot, material, gravity);
+        let coarser = self.between(from, to);
+        if !coarser.is_empty() {
+            return LevelTransfer::restrict_through(coarser, &snapshot, material, gravity);
         }
-        for transfer in self.between(to, from).rev() {
+        for transfer in self.between(to, from).iter().rev() {
             snapshot = transfer.prolong(&snapshot, material, gravity);
         }
         snapshot
@@ -153,20 +154,29 @@ impl ClothLevels {
 
     /// Values at the particles of a level, spread over its triangles to those of a finer level.
     pub fn spread(&self, mut values: Vec<Vec3>, from: usize, to: usize) -> Vec<Vec3> {
-        for transfer in self.between(to, from).rev() {
+        for transfer in self.between(to, from).iter().rev() {
             values = transfer.spread(&values).collect();
         }
         values
     }
 
+    /// Unit vectors at the particles of a level, carried to those of another.
+    pub fn carry(&self, vectors: &[Vec3], from: usize, to: usize) -> Vec<Vec3> {
+        let mut vectors = vectors.to_vec();
+        for transfer in self.between(from, to) {
+            vectors = transfer.pick(&vectors).collect();
+        }
+        if to < from {
+            vectors = self.spread(vectors, from, to);
+            vectors.iter_mut().for_each(|vector| *vector = vector.normalize_or_zero());
+        }
+        vectors
+    }
+
     /// What lies between a level and a coarser one.
-    fn between(
-        &self,
-        fine: usize,
-        coarse: usize,
-    ) -> impl DoubleEndedIterator<Item = &LevelTransfer> {
+    fn between(&self, fine: usize, coarse: usize) -> &[LevelTransfer] {
         let end = coarse.min(self.transfers.len());
-        self.transfers[fine.min(end)..end].iter()
+        &self.transfers[fine.min(end)..end]
     }
 
     /// Cuts as many levels as are asked for, or as can be.

@@ -112,6 +112,7 @@ mod render;
 mod rest;
 mod schedule;
 mod seat;
+mod seats;
 mod settings;
 mod solver;
 mod state;

@@ -5,10 +5,11 @@ use bevy_ecs::prelude::*;
 use bevy_time::Time;
 
 use crate::activity::ClothActivity;
-use crate::batches::{ClothBatches, Newcomer};
+use crate::batches::ClothBatches;
 use crate::instance::{ClothInstance, Place};
 use crate::mesh::ClothPaused;
 use crate::schedule::{ClothSystems, ClothTick};
+use crate::seats::Newcomer;
 use crate::settings::ClothSettings;
 
 /// Seats cloths in batches.

@@ -112,17 +112,33 @@ impl ClothState {
 
     /// Starts on the fabric of another level, from where its particles are simulated.
     pub(crate) fn begin(&mut self, level: usize, levels: &Arc<ClothLevels>, positions: &[Vec3]) {
+        let normals = normals(levels.fabric(level), positions);
+        self.go_over(level, levels, positions, normals);
+    }
+
+    /// The same for a cloth that ticks: until the tick ends, its normals are those that were shown.
+    pub(crate) fn go_on(&mut self, level: usize, levels: &Arc<ClothLevels>, positions: &[Vec3]) {
+        let normals = levels.carry(&self.normals, self.level, level);
+        self.go_over(level, levels, positions, normals);
+    }
+
+    fn go_over(
+        &mut self,
+        level: usize,
+        levels: &Arc<ClothLevels>,
+        positions: &[Vec3],
+        normals: Vec<Vec3>,
+    ) {
         let left = Left {
             level: self.level,
             positions: core::mem::replace(&mut self.positions, positions.to_vec()),
             previous_positions: core::mem::take(&mut self.previous_positions),
-            normals: core::mem::take(&mut self.normals),
+            normals: core::mem::replace(&mut self.normals, normals),
         };
         // Of several changes before a tick ends the first is what was seen.
         self.left.get_or_insert(left);
         self.level = level;
         self.levels = Some(Arc::clone(levels));
-        self.normals = normals(levels.fabric(level), positions);
         self.blend();
         self.previous_positions.clone_from(&self.positions);
         self.previous_normals.clone_from(&self.normals);

@@ -166,15 +166,31 @@ impl ClothBatch {
         snapshot: &ClothSnapshot,
         material: FabricMaterial,
     ) -> Result<(), BatchError> {
-        material.validate()?;
-        self.check(snapshot)?;
-        at_any_width!(&mut self.0, batch => batch.insert(lane, snapshot, material));
+        self.exchange(&[], &[(lane, snapshot, material)])
+    }
+
+    /// Takes cloths out of lanes, and puts others into lanes, in the place of any that are there: several take
+    /// hardly longer than one.
+    ///
+    /// # Errors
+    ///
+    /// A material is bad, or a state is not finite or of another fabric. The batch is then as it was.
+    pub fn exchange(
+        &mut self,
+        leave: &[usize],
+        come: &[(usize, &ClothSnapshot, FabricMaterial)],
+    ) -> Result<(), BatchError> {
+        for (_, snapshot, material) in come {
+            material.validate()?;
+            self.check(snapshot)?;
+        }
+        at_any_width!(&mut self.0, batch => batch.exchange(leave, come));
         Ok(())
     }
 
     /// Takes the cloth out of a lane.
     pub fn remove(&mut self, lane: usize) {
-        at_any_width!(&mut self.0, batch => batch.remove(lane));
+        at_any_width!(&mut self.0, batch => batch.exchange(&[lane], &[]));
     }
 
     /// Overwrites the state of a lane. A state without a past is continued by one substep of first
@@ -185,7 +201,7 @@ impl ClothBatch {
     /// The state is not finite or of another fabric. The lane is then as it was.
     pub fn restore(&mut self, lane: usize, snapshot: &ClothSnapshot) -> Result<(), BatchError> {
         self.check(snapshot)?;
-        at_any_width!(&mut self.0, batch => batch.restore(lane, snapshot));
+        at_any_width!(&mut self.0, batch => batch.restore(&[(lane, snapshot)]));
         Ok(())
     }
 
@@ -310,6 +326,12 @@ impl ClothBatch {
     #[must_use]
     pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
         at_any_width!(&self.0, batch => batch.snapshot(lane))
+    }
+
+    /// The state of a lane without what the integrator remembers.
+    #[must_use]
+    pub fn forgetful_snapshot(&self, lane: usize) -> ClothSnapshot {
+        at_any_width!(&self.0, batch => batch.forgetful_snapshot(lane))
     }
 
     /// Whether every number of a lane's state is finite.

@@ -7,8 +7,10 @@ use crate::fabric::{Fabric, FabricMaterial, Ribbon, hinge_angle};
 
 /// Elastic energy, J: of links and of bending, as the constraints have it. Links that cannot stretch
 /// store none.
+///
+/// Distances are as exact as positions are, in single precision; only sums need more.
 pub(crate) fn elastic(fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> f64 {
-    let at = |particle: u32| positions[particle as usize].as_dvec3();
+    let at = |particle: u32| positions[particle as usize];
     let stiffnesses: Vec<f64> = fabric
         .link_classes()
         .iter()
@@ -17,7 +19,8 @@ pub(crate) fn elastic(fabric: &Fabric, material: &FabricMaterial, positions: &[V
         .collect();
     let stretch = fabric.links().iter().map(|link| {
         let [a, b] = link.particles.map(at);
-        stiffnesses[link.class as usize] * (a.distance(b) - f64::from(link.rest_length)).powi(2)
+        let stretch = a.distance(b) - link.rest_length;
+        stiffnesses[link.class as usize] * f64::from(stretch * stretch)
     });
     let stretch: f64 = stretch.sum();
     let bending: f64 = if fabric.grid().is_some() {
@@ -43,12 +46,14 @@ pub(crate) fn elastic(fabric: &Fabric, material: &FabricMaterial, positions: &[V
 /// Twice the energy of a line against unit bending stiffness.
 fn along_line(fabric: &Fabric, profile: u32, particles: &[u32], positions: &[Vec3]) -> f64 {
     let profile = &fabric.bend_profiles()[profile as usize];
-    let at = |particle: u32| positions[particle as usize].as_dvec3();
+    let at = |particle: u32| positions[particle as usize];
     let turns = particles.windows(3).map(|three| {
-        let second = at(three[0]) - 2.0 * at(three[1]) + at(three[2]);
-        second.length_squared() * f64::from(profile.inverse_spacing).powi(2)
+        let turn = (at(three[0]) - at(three[1])) + (at(three[2]) - at(three[1]));
+        turn.length_squared()
     });
-    turns.zip(&profile.weights).map(|(turn, &weight)| turn * f64::from(weight)).sum()
+    let sum: f64 =
+        turns.zip(&profile.weights).map(|(turn, &weight)| f64::from(turn * weight)).sum();
+    sum * f64::from(profile.inverse_spacing).powi(2)
 }
 
 /// Twice the energy of a grid's twist against unit bending stiffness.
@@ -65,6 +70,7 @@ pub(crate) fn twist(fabric: &Fabric, positions: &[Vec3]) -> f64 {
 
 /// Sum of area times vector over all particles, pinned or not.
 pub(crate) fn moment(fabric: &Fabric, vectors: &[Vec3]) -> DVec3 {
-    let areas = fabric.particle_areas().iter().map(|&area| f64::from(area));
-    areas.zip(vectors).map(|(area, vector)| vector.as_dvec3() * area).sum()
+    let products =
+        fabric.particle_areas().iter().zip(vectors).map(|(&area, &vector)| vector * area);
+    products.map(|product| product.as_dvec3()).sum()
 }

@@ -15,7 +15,7 @@ use crate::places::Constant;
 use crate::seating::{Packed, Seating};
 use crate::snapshot::{ClothSnapshot, History};
 use crate::step::{Drive, Scheme, StepSettings};
-use crate::vector::{Pack3, fill_lanes3, set_lane3, splat3};
+use crate::vector::{Pack3, set_lane3, splat3};
 use crate::weave::Weave;
 
 /// One cloth's place in a batch: what the lanes do not hold.
@@ -33,6 +33,9 @@ pub(crate) struct Slot {
     /// For each collider, the particles that may touch it in this tick.
     pub contacts: Vec<Vec<u32>>,
 }
+
+/// One of the vectors that the integrator remembers of each particle.
+type OfHistory = fn(&History) -> &[Vec3];
 
 /// What a lane's compliances, air and damping depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -176,80 +179,70 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         }
     }
 
-    pub fn insert(&mut self, lane: usize, snapshot: &ClothSnapshot, material: FabricMaterial) {
-        self.slots[lane] = Some(Slot {
-            material,
-            drive: Drive::default(),
-            colliders: Vec::new(),
-            past: Past::default(),
-            applied: None,
-            upright: None,
-            contacts: Vec::new(),
-        });
-        self.restore(lane, snapshot);
-    }
-
-    /// Empties a lane; it then lies at rest, so that its arithmetic stays finite.
-    pub fn remove(&mut self, lane: usize) {
-        self.slots[lane] = None;
+    /// Empties lanes, and fills others. Empty ones lie at rest, so that their arithmetic stays finite.
+    pub fn exchange(&mut self, leave: &[usize], come: &[(usize, &ClothSnapshot, FabricMaterial)]) {
         let rest = ClothSnapshot::at_rest(&self.fabric);
-        self.restore(lane, &rest);
+        let mut states = Vec::new();
+        for &lane in leave {
+            self.slots[lane] = None;
+            states.push((lane, &rest));
+        }
+        for &(lane, snapshot, material) in come {
+            self.slots[lane] = Some(Slot {
+                material,
+                drive: Drive::default(),
+                colliders: Vec::new(),
+                past: Past::default(),
+                applied: None,
+                upright: None,
+                contacts: Vec::new(),
+            });
+            states.push((lane, snapshot));
+        }
+        self.restore(&states);
     }
 
-    /// Overwrites the state of a lane; without a history the next substep is of first order.
-    pub fn restore(&mut self, lane: usize, snapshot: &ClothSnapshot) {
-        let positions: Vec<Vec3> =
-            snapshot.positions.iter().copied().map(without_minus_zero).collect();
-        let history = snapshot.history.as_ref();
-        let state = [
-            (&mut self.position, Some(&positions)),
-            (&mut self.predicted, Some(&positions)),
-            (&mut self.velocity, Some(&snapshot.velocities)),
-            (&mut self.displacement, history.map(|history| &history.displacements[0])),
-            (&mut self.older_displacement, history.map(|history| &history.displacements[1])),
-            (&mut self.older_velocity, history.map(|history| &history.older_velocities[0])),
-            (&mut self.oldest_velocity, history.map(|history| &history.older_velocities[1])),
-            (&mut self.memory, history.map(|history| &history.memory)),
+    /// Overwrites the states of lanes, all in one pass over the memory; those without a history go on with a
+    /// substep of first order.
+    pub fn restore(&mut self, states: &[(usize, &ClothSnapshot)]) {
+        let unsigned = |state: &ClothSnapshot| -> Vec<Vec3> {
+            state.positions.iter().copied().map(without_minus_zero).collect()
+        };
+        let positions: Vec<Vec<Vec3>> = states.iter().map(|(_, state)| unsigned(state)).collect();
+        let shape: Vec<_> =
+            states.iter().zip(&positions).map(|(&(lane, _), at)| (lane, Some(&at[..]))).collect();
+        let velocities: Vec<_> =
+            states.iter().map(|&(lane, state)| (lane, Some(&state.velocities[..]))).collect();
+        let seating = self.seating;
+        seating.write::<P, C>(&mut self.position, &shape);
+        seating.write::<P, C>(&mut self.predicted, &shape);
+        seating.write::<P, C>(&mut self.velocity, &velocities);
+        let history: [(_, OfHistory); 5] = [
+            (&mut self.displacement, |history| &history.displacements[0]),
+            (&mut self.older_displacement, |history| &history.displacements[1]),
+            (&mut self.older_velocity, |history| &history.older_velocities[0]),
+            (&mut self.oldest_velocity, |history| &history.older_velocities[1]),
+            (&mut self.memory, |history| &history.memory),
         ];
-        let lanes = C::lanes(lane);
-        for (packs, values) in state {
-            // Particles side by side leave lanes where there is none.
-            if values.is_none() || C::SIDE > 1 {
-                for pack in packs.iter_mut() {
-                    fill_lanes3(pack, &lanes, Vec3::ZERO);
-                }
+        for (packs, of) in history {
+            let values: Vec<_> = states
+                .iter()
+                .map(|&(lane, state)| (lane, state.history.as_ref().map(of)))
+                .collect();
+            seating.write::<P, C>(packs, &values);
+        }
+        for (&(lane, state), positions) in states.iter().zip(&positions) {
+            self.square_cells_as_at_rest(C::lanes(lane));
+            for pin in self.fabric.pins() {
+                let (pack, lane) = self.seating.seat(pin.particle as usize, lane);
+                set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
             }
-            for (particle, &value) in values.into_iter().flatten().enumerate() {
-                let (pack, lane) = self.seating.seat(particle, lane);
-                set_lane3(&mut packs[pack], lane, value);
+            if let Some(weave) = &mut self.weave {
+                weave.begin(positions);
             }
-        }
-        self.square_cells_as_at_rest(lanes);
-        for pin in self.fabric.pins() {
-            let (pack, lane) = self.seating.seat(pin.particle as usize, lane);
-            set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
-        }
-        if let Some(weave) = &mut self.weave {
-            weave.begin(&positions);
-        }
-        if let Some(slot) = &mut self.slots[lane] {
-            slot.past = history.map_or_else(Past::default, |history| history.past);
-        }
-    }
-
-    /// The state of a lane, past and all.
-    pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
-        let read = |packs: &[Pack3<P>]| self.of_cloth(packs, lane).collect();
-        let past = self.slots[lane].as_ref().map_or_else(Past::default, |slot| slot.past);
-        ClothSnapshot {
-            positions: read(&self.position),
-            velocities: read(&self.velocity),
-            history: past.exists().then(|| History {
-                past,
-                displacements: [read(&self.displacement), read(&self.older_displacement)],
-                older_velocities: [read(&self.older_velocity), read(&self.oldest_velocity)],
-                memory: read(&self.memory),
-            }),
+            if let Some(slot) = &mut self.slots[lane] {
+                slot.past = state.history.as_ref().map_or_else(Past::default, |past| past.past);
+            }
         }
     }
 
@@ -332,7 +325,7 @@ impl<P: Pack> LaneBatch<P, P> {
     pub fn unwoven(&self) -> LaneBatch<Pack1> {
         let mut batch = LaneBatch::new(Arc::clone(&self.fabric));
         if let Some(slot) = &self.slots[0] {
-            batch.insert(0, &self.snapshot(0), slot.material);
+            batch.exchange(&[], &[(0, &self.snapshot(0), slot.material)]);
             batch.slots[0] = Some(Slot { applied: None, upright: None, ..slot.clone() });
         }
         for (pack, normal) in batch.normal.iter_mut().zip(self.of_cloth(&self.normal, 0)) {

@@ -57,6 +57,7 @@ mod snapshot;
 mod step;
 mod step_limits;
 mod sums;
+mod surfaces;
 mod transfer;
 mod vector;
 mod velocity;

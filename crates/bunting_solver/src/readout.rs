@@ -2,63 +2,48 @@
 
 use glam::Vec3;
 
-use crate::batch::LaneSurface;
+use crate::formula::Past;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::Pack;
 use crate::places::Constant;
+use crate::snapshot::{ClothSnapshot, History};
 use crate::vector::{Pack3, lane3};
 
-/// Particles whose positions and normals in all lanes fit into the nearest cache, at 384 bytes each.
-const BLOCK: usize = 32;
-
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
+    /// The state of a lane, past and all.
+    pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
+        let past = self.slots[lane].as_ref().map_or_else(Past::default, |slot| slot.past);
+        let read = |packs| self.read(packs, lane);
+        let history = past.exists().then(|| History {
+            past,
+            displacements: [read(&self.displacement), read(&self.older_displacement)],
+            older_velocities: [read(&self.older_velocity), read(&self.oldest_velocity)],
+            memory: read(&self.memory),
+        });
+        ClothSnapshot { history, ..self.forgetful_snapshot(lane) }
+    }
+
+    /// The state of a lane without its past.
+    pub fn forgetful_snapshot(&self, lane: usize) -> ClothSnapshot {
+        ClothSnapshot::new(self.read(&self.position, lane), self.read(&self.velocity, lane))
+    }
+
+    fn read(&self, packs: &[Pack3<P>], lane: usize) -> Vec<Vec3> {
+        let mut vectors = Vec::new();
+        self.seating.read::<P, C>(packs, lane, &mut vectors);
+        vectors
+    }
+
     pub fn copy_positions(&self, lane: usize, into: &mut Vec<Vec3>) {
-        into.clear();
-        into.extend(self.of_cloth(&self.position, lane));
+        self.seating.read::<P, C>(&self.position, lane, into);
     }
 
     pub fn copy_velocities(&self, lane: usize, into: &mut Vec<Vec3>) {
-        into.clear();
-        into.extend(self.of_cloth(&self.velocity, lane));
+        self.seating.read::<P, C>(&self.velocity, lane, into);
     }
 
     pub fn copy_normals(&self, lane: usize, into: &mut Vec<Vec3>) {
-        into.clear();
-        into.extend(self.of_cloth(&self.normal, lane));
-    }
-
-    pub fn copy_surfaces(&self, into: &mut [LaneSurface]) {
-        let particles = self.fabric.particle_count();
-        let into = &mut into[..self.slots.len()];
-        let sums = sums(&self.position);
-        for (cloth, surface) in into.iter_mut().enumerate() {
-            if self.slots[cloth].is_some() {
-                // What is not finite makes the sum so.
-                surface.is_finite = sums.lanes()[C::lanes(cloth)].iter().all(|sum| sum.is_finite());
-                surface.positions.resize(particles, Vec3::ZERO);
-                surface.normals.resize(particles, Vec3::ZERO);
-            }
-        }
-        if C::SIDE > 1 {
-            for (cloth, surface) in
-                into.iter_mut().enumerate().filter(|(cloth, _)| self.slots[*cloth].is_some())
-            {
-                self.copy_positions(cloth, &mut surface.positions);
-                self.copy_normals(cloth, &mut surface.normals);
-            }
-            return;
-        }
-        // Particles by the block, so that each is fetched once for all lanes.
-        let mut first = 0;
-        for (positions, normals) in self.position.chunks(BLOCK).zip(self.normal.chunks(BLOCK)) {
-            for (lane, surface) in into.iter_mut().enumerate() {
-                if self.slots[lane].is_some() {
-                    read(positions, lane, &mut surface.positions[first..]);
-                    read(normals, lane, &mut surface.normals[first..]);
-                }
-            }
-            first += positions.len();
-        }
+        self.seating.read::<P, C>(&self.normal, lane, into);
     }
 
     pub fn is_finite(&self, lane: usize) -> bool {
@@ -72,25 +57,5 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             let (pack, lane) = self.seating.seat(particle, cloth);
             lane3(&packs[pack], lane)
         })
-    }
-}
-
-/// The sum of all coordinates, for each lane.
-fn sums<P: Pack>(packs: &[Pack3<P>]) -> P {
-    let mut sums = P::splat(0.0);
-    for coordinate in packs.iter().flatten() {
-        for (sum, value) in sums.lanes_mut().iter_mut().zip(coordinate.lanes()) {
-            *sum += value;
-        }
-    }
-    sums
-}
-
-/// Reads one lane of a vector for each particle.
-fn read<P: Pack>(packs: &[Pack3<P>], lane: usize, into: &mut [Vec3]) {
-    // Once, and not for every number.
-    assert!(lane < P::WIDTH, "a lane of the batch");
-    for (value, pack) in into.iter_mut().zip(packs) {
-        *value = lane3(pack, lane);
     }
 }

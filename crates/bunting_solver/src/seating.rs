@@ -1,9 +1,12 @@
 //! Where particles lie among the packs of a batch, and what the fabric says of those of each.
 
+use glam::Vec3;
+
 use crate::fabric::Fabric;
 use crate::lanes::Pack;
 use crate::places::Constant;
 use crate::sums::PARTS;
+use crate::vector::{Pack3, lane3, set_lane3};
 
 /// Where particles lie among the packs of a batch.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +38,61 @@ impl Seating {
         }
         let (row, column) = (particle / self.columns, particle % self.columns);
         (row * self.blocks() + column / self.side, column % self.side)
+    }
+
+    /// Reads the vectors of one cloth, particle by particle.
+    pub fn read<P: Pack, C: Constant<P>>(
+        self,
+        packs: &[Pack3<P>],
+        cloth: usize,
+        into: &mut Vec<Vec3>,
+    ) {
+        // Once, and not for every number.
+        assert!(C::lanes(cloth).end <= P::WIDTH, "lanes of the batch");
+        into.resize(self.columns * self.rows, Vec3::ZERO);
+        let rows = into.chunks_mut(self.columns).zip(packs.chunks(self.blocks()));
+        for (values, packs) in rows {
+            for (side, pack) in values.chunks_mut(C::SIDE).zip(packs) {
+                for (lane, value) in (cloth..).zip(side) {
+                    *value = lane3(pack, lane);
+                }
+            }
+        }
+    }
+
+    /// Writes the vectors of cloths, particle by particle; zero where there are none, and where no particle
+    /// lies.
+    pub fn write<P: Pack, C: Constant<P>>(
+        self,
+        packs: &mut [Pack3<P>],
+        cloths: &[(usize, Option<&[Vec3]>)],
+    ) {
+        let zero = |of: &[Vec3], at: usize| of.get(at).copied().unwrap_or(Vec3::ZERO);
+        if C::SIDE == 1 {
+            // Pack by pack, so that each is fetched once for all lanes.
+            for (particle, pack) in packs.iter_mut().enumerate() {
+                for &(lane, values) in cloths {
+                    set_lane3(pack, lane, zero(values.unwrap_or_default(), particle));
+                }
+            }
+            return;
+        }
+        for &(_, values) in cloths {
+            let values = values.unwrap_or_default();
+            for (row, packs) in packs.chunks_mut(self.blocks()).enumerate() {
+                for (block, pack) in packs.iter_mut().enumerate() {
+                    for lane in 0..C::SIDE {
+                        let column = block * C::SIDE + lane;
+                        let at = if column < self.columns {
+                            row * self.columns + column
+                        } else {
+                            usize::MAX
+                        };
+                        set_lane3(pack, lane, zero(values, at));
+                    }
+                }
+            }
+        }
     }
 
     /// One value for each pack, given one for each particle; none where there are no more particles.

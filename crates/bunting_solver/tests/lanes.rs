@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion,
-    Grid, LaneCount, StepSettings, instruction_set, with_every_instruction_set,
+    Grid, LaneCount, LaneSurface, StepSettings, instruction_set, with_every_instruction_set,
 };
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
@@ -179,4 +179,82 @@ fn a_lane_that_went_wild_can_be_used_again() {
         batch.step(TICK, StepSettings::default());
     }
     assert!(batch.is_finite(lane));
+}
+
+/// Several at once are put where each would have been put by itself, and what leaves lies at rest.
+#[test]
+fn many_change_places_at_once() {
+    let fabric = flag();
+    let settings = EVERY_SCHEME[3];
+    for lanes in [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen] {
+        let count = lanes.get();
+        let seeds: Vec<usize> = (0..count).collect();
+        let states = fly(&fabric, lanes, &seeds, settings);
+        let begun = || {
+            let mut batch = ClothBatch::new(fabric.clone(), lanes);
+            for &seed in &seeds {
+                let rest = ClothSnapshot::at_rest(&fabric);
+                batch.insert(&rest, material(seed)).expect("a free lane");
+            }
+            batch.step(TICK, settings);
+            batch
+        };
+        let (mut at_once, mut one_by_one) = (begun(), begun());
+        let stays = |lane: &usize| lane.is_multiple_of(3);
+        let come: Vec<_> = seeds
+            .iter()
+            .copied()
+            .filter(stays)
+            .map(|lane| (lane, &states[count - 1 - lane], material(lane)))
+            .collect();
+        let leave: Vec<usize> = seeds.iter().copied().filter(|lane| !stays(lane)).collect();
+        at_once.exchange(&leave, &come).expect("good states");
+        leave.iter().for_each(|&lane| one_by_one.remove(lane));
+        for &(lane, state, material) in &come {
+            one_by_one.replace(lane, state, material).expect("a good state");
+        }
+        for batch in [&mut at_once, &mut one_by_one] {
+            (0..10).for_each(|_| batch.step(TICK, settings));
+        }
+        for lane in 0..count {
+            assert_eq!(at_once.is_occupied(lane), stays(&lane));
+            let [one, other] = [&at_once, &one_by_one].map(|batch| batch.snapshot(lane));
+            assert_eq!(bits(&one), bits(&other), "{lanes:?}, lane {lane}");
+            let pairs = one.positions.iter().zip(fabric.rest_positions());
+            let moved = pairs.map(|(at, rest)| at.distance(*rest)).fold(0.0, f32::max);
+            assert_eq!(moved > 1e-4, stays(&lane), "{lanes:?}, lane {lane}: {moved} m");
+        }
+    }
+}
+
+#[test]
+fn surfaces_are_what_the_lanes_hold() {
+    let fabric = flag();
+    for lanes in [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen] {
+        let mut batch = ClothBatch::new(fabric.clone(), lanes);
+        for seed in 0..lanes.get() {
+            let lane = batch.insert(&ClothSnapshot::at_rest(&fabric), material(seed));
+            batch.drive(lane.expect("a free lane"), drive(seed, 0));
+        }
+        batch.step(TICK, EVERY_SCHEME[3]);
+        let empty = lanes.get() / 2;
+        let untouched = vec![Vec3::ONE; 3];
+        if empty > 0 {
+            batch.remove(empty);
+        }
+        let begun = LaneSurface { positions: untouched.clone(), ..LaneSurface::default() };
+        let mut surfaces = vec![begun; lanes.get()];
+        batch.copy_surfaces(&mut surfaces);
+        for (lane, surface) in surfaces.iter().enumerate() {
+            if empty > 0 && lane == empty {
+                assert_eq!(surface.positions, untouched, "left alone");
+                continue;
+            }
+            let (mut positions, mut normals) = (Vec::new(), Vec::new());
+            batch.copy_positions(lane, &mut positions);
+            batch.copy_normals(lane, &mut normals);
+            assert!(surface.is_finite);
+            assert_eq!((&surface.positions, &surface.normals), (&positions, &normals), "{lane}");
+        }
+    }
 }

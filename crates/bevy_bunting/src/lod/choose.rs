@@ -42,6 +42,8 @@ pub(crate) struct Chooser {
     entities: Vec<Entity>,
     /// Number of the tick.
     now: u32,
+    /// Cloths that have woken at another level in this tick.
+    woken: usize,
     /// Number of cloths so far, for their turns.
     cloths: u32,
     /// What the last tick should have cost by the table besides its batches, µs.
@@ -108,6 +110,7 @@ pub(crate) fn choose_levels(
     chooser.entities.clear();
     counts.0.fill(0);
     chooser.now = chooser.now.wrapping_add(1);
+    chooser.woken = 0;
     for mut cloth in &mut cloths {
         let turn = cloth.watch.turn.wrapping_add(chooser.now).is_multiple_of(LOOKED_AT_EVERY);
         let changed = cloth.instance.is_changed() || cloth.lods.is_changed();
@@ -205,9 +208,16 @@ impl Chooser {
             let errors = &self.kinds.kinds[kind].errors;
             let finer =
                 !candidate.fixed && wanted_level(errors, &candidate, limits) < candidate.level;
-            if cloth.sleep(look.sight, finer, self.now) {
+            let to = cloth.lods.pinned.unwrap_or(errors.len() - 1);
+            let changes = to != cloth.instance.level;
+            // What sleeps and is not yet seen can wait for others to change their levels.
+            let waits = cloth.instance.activity == ClothActivity::OffScreen
+                && changes
+                && look.sight == Sight::Beside
+                && self.woken >= limits.switches;
+            if !waits && cloth.sleep(look.sight, finer, self.now) {
+                self.woken += usize::from(changes);
                 // It has settled when it is seen, and then need not wait for a finer level.
-                let to = cloth.lods.pinned.unwrap_or(errors.len() - 1);
                 cloth.change_level(to, self.now, batches, commands);
                 cloth.watch.changed = self.now.wrapping_sub(budget.dwell);
                 candidate.level = to as u32;
@@ -235,7 +245,11 @@ impl ChosenItem<'_, '_> {
         self.instance.change_level(to, batches);
         let instance = &*self.instance;
         if let Some((levels, snapshot)) = instance.levels.as_ref().zip(instance.waiting()) {
-            self.state.begin(to, levels, &snapshot.positions);
+            if instance.activity == ClothActivity::Ticking && !self.paused {
+                self.state.go_on(to, levels, &snapshot.positions);
+            } else {
+                self.state.begin(to, levels, &snapshot.positions);
+            }
         }
         self.watch.changed = now;
         if let Some(candidate) = &mut self.watch.candidate {

@@ -146,13 +146,14 @@ impl CostModel {
         self.besides * table.tick
     }
 
-    /// What batches of a level cost. `widest` is the machine's.
+    /// What batches of a level cost. `widest` is the machine's, `alone` how many ride alone.
     pub fn costs(
         &self,
         table: &CostTable,
         particles: usize,
         settings: StepSettings,
         widest: LaneCount,
+        alone: u32,
     ) -> BatchCosts {
         let cost = |lanes: LaneCount| {
             let known = self.factors.iter().find(|factor| {
@@ -164,11 +165,11 @@ impl CostModel {
         let one = cost(LaneCount::One);
         let each = self.besides * table.each(particles);
         match widest {
-            LaneCount::One => BatchCosts { one, eight: 8.0 * one, sixteen: None, each },
-            LaneCount::Eight => BatchCosts { one, eight: cost(widest), sixteen: None, each },
+            LaneCount::One => BatchCosts { one, eight: 8.0 * one, sixteen: None, alone: 8, each },
+            LaneCount::Eight => BatchCosts { one, eight: cost(widest), sixteen: None, alone, each },
             LaneCount::Sixteen => {
                 let [eight, sixteen] = [LaneCount::Eight, widest].map(cost);
-                BatchCosts { one, eight, sixteen: Some(sixteen), each }
+                BatchCosts { one, eight, sixteen: Some(sixteen), alone, each }
             }
         }
     }
@@ -207,10 +208,10 @@ mod tests {
         assert_eq!(TABLE.batch(1000, SETTINGS, LaneCount::Sixteen), 600.0);
         let passes = StepSettings { passes: 3, ..SETTINGS };
         assert_eq!(TABLE.batch(1000, passes, LaneCount::Eight), 480.0);
-        let costs = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen);
+        let costs = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1);
         let sixteen = Some(600.0);
-        assert_eq!(costs, BatchCosts { one: 200.0, eight: 400.0, sixteen, each: 2.0 });
-        let narrow = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Eight);
+        assert_eq!(costs, BatchCosts { one: 200.0, eight: 400.0, sixteen, alone: 1, each: 2.0 });
+        let narrow = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Eight, 1);
         assert_eq!(narrow.sixteen, None);
     }
 
@@ -221,7 +222,7 @@ mod tests {
             model.learn(&TABLE, [sixteen(1800.0)].into_iter());
             model.learn_besides(10.0, 40.0);
         }
-        let costs = |particles| model.costs(&TABLE, particles, SETTINGS, LaneCount::Sixteen);
+        let costs = |particles| model.costs(&TABLE, particles, SETTINGS, LaneCount::Sixteen, 1);
         assert!((costs(1000).sixteen.expect("wide") / 1800.0 - 1.0).abs() < 0.01);
         // What was never measured is as much dearer than the table as what was.
         assert!((costs(500).eight / 600.0 - 1.0).abs() < 0.01);
@@ -233,7 +234,7 @@ mod tests {
         let mut model = CostModel::default();
         (0..50).for_each(|_| model.learn(&TABLE, [sixteen(600.0)].into_iter()));
         model.learn(&TABLE, [sixteen(60_000.0)].into_iter());
-        let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen);
+        let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1);
         assert!(costs.sixteen.expect("wide") < 1.11 * 600.0);
     }
 }

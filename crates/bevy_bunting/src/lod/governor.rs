@@ -38,6 +38,8 @@ pub(crate) struct BatchCosts {
     pub eight: f32,
     /// Sixteen lanes; none where batches are not as wide.
     pub sixteen: Option<f32>,
+    /// Most cloths that ride alone, each in a batch of one, beside full ones; beside eight, one less.
+    pub alone: u32,
     /// What each cloth costs besides.
     pub each: f32,
 }
@@ -47,9 +49,9 @@ impl BatchCosts {
     fn of(&self, cloths: u32) -> f32 {
         let (width, widest) = self.widest();
         let rest = match cloths % width {
-            0 => 0.0,
-            1 => self.one,
-            2..=8 => self.eight,
+            rest if rest <= self.alone => rest as f32 * self.one,
+            ..=8 => self.eight,
+            rest if rest - 8 < self.alone => self.eight + (rest - 8) as f32 * self.one,
             _ => widest,
         };
         (cloths / width) as f32 * widest + rest + cloths as f32 * self.each

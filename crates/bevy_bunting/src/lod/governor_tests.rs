@@ -11,6 +11,7 @@ fn kind() -> Kind {
         one: 0.4 * sixteen,
         eight: 0.6 * sixteen,
         sixteen: Some(sixteen),
+        alone: 1,
         each: 0.0,
     });
     Kind { errors: vec![0.001, 0.01, 0.02, 0.04], costs: costs.to_vec() }
@@ -41,11 +42,15 @@ fn levels(cloths: &[Candidate]) -> Vec<u32> {
 
 #[test]
 fn a_part_filled_batch_costs_a_full_one() {
-    let costs = BatchCosts { one: 1.0, eight: 3.0, sixteen: Some(5.0), each: 0.5 };
+    let costs = BatchCosts { one: 1.0, eight: 3.0, sixteen: Some(5.0), alone: 1, each: 0.5 };
     let expected = [0.0, 1.5, 4.0, 7.0, 9.5, 13.0, 14.5];
     assert_eq!([0, 1, 2, 8, 9, 16, 17].map(|count| costs.of(count)), expected);
     let narrow = BatchCosts { sixteen: None, ..costs };
     assert_eq!([8, 9, 16].map(|count| narrow.of(count)), [7.0, 8.5, 14.0]);
+    let woven = BatchCosts { alone: 3, ..costs };
+    let counts = [1, 2, 3, 4, 8, 9, 10, 11, 16, 17, 19];
+    let each = counts.map(|count| woven.of(count));
+    assert_eq!(each, [1.5, 3.0, 4.5, 5.0, 7.0, 8.5, 10.0, 10.5, 13.0, 14.5, 17.5]);
 }
 
 #[test]

@@ -25,7 +25,6 @@ fn reach(fabric: &Fabric) -> f32 {
 pub(crate) struct Kinds {
     levels: Vec<Weak<ClothLevels>>,
     particles: Vec<Vec<usize>>,
-    tautness: Vec<Vec<f32>>,
     radii: Vec<f32>,
     /// Errors and costs, as the governor wants them.
     pub kinds: Vec<Kind>,
@@ -44,7 +43,6 @@ impl Kinds {
             costs: vec![Default::default(); levels.count()],
         };
         let particles = fabrics().map(|fabric| fabric.particle_count()).collect();
-        let tautness = fabrics().map(|fabric| fabric.tautness()).collect();
         // The particle in the middle may be another one at each level.
         let radius = fabrics().map(|fabric| reach(fabric)).fold(0.0, f32::max);
         let free = self.levels.iter().position(|known| known.strong_count() == 0);
@@ -52,13 +50,11 @@ impl Kinds {
         if free.is_none() {
             self.levels.push(Weak::new());
             self.particles.push(Vec::new());
-            self.tautness.push(Vec::new());
             self.radii.push(0.0);
             self.kinds.push(Kind::default());
         }
         self.levels[index] = Arc::downgrade(levels);
         self.particles[index] = particles;
-        self.tautness[index] = tautness;
         self.radii[index] = STRETCH * radius;
         self.kinds[index] = kind;
         index
@@ -91,14 +87,17 @@ impl Kinds {
         };
         let widest = settings.lanes.unwrap_or(machine);
         let gravity = settings.gravity.length();
-        let known = self.particles.iter().zip(&self.tautness);
-        for (kind, (particles, tautness)) in self.kinds.iter_mut().zip(known) {
-            let fabrics = particles.iter().zip(tautness);
-            for (level, (costs, (&particles, &tautness))) in
-                kind.costs.iter_mut().zip(fabrics).enumerate()
-            {
-                let step = settings.limits(level).of_tautness(tautness, tick, gravity);
-                *costs = model.costs(table, particles, step, widest);
+        for (kind, levels) in self.kinds.iter_mut().zip(&self.levels) {
+            // Those that are gone cost nothing.
+            let Some(levels) = levels.upgrade() else { continue };
+            for (level, costs) in kind.costs.iter_mut().enumerate() {
+                let fabric = levels.fabric(level);
+                let step = settings.limits(level).of_fabric(fabric, tick, gravity);
+                let alone = match settings.lanes {
+                    None => LaneCount::most_alone(fabric, step.scheme) as u32,
+                    Some(_) => 0,
+                };
+                *costs = model.costs(table, fabric.particle_count(), step, widest, alone);
             }
         }
     }

@@ -22,7 +22,7 @@ pub(super) fn cloth_at(
 ) -> LaneBatch<Pack1> {
     let mut batch = LaneBatch::new(Arc::new(fabric.clone()));
     batch.weave = None;
-    batch.insert(0, &ClothSnapshot::at_rest(fabric), material);
+    batch.exchange(&[], &[(0, &ClothSnapshot::at_rest(fabric), material)]);
     batch.begin_tick(STEP, StepSettings::gauss_seidel(1));
     batch.begin_substep();
     for (pack, &position) in batch.position.iter_mut().zip(positions) {

@@ -14,6 +14,8 @@ mod motion;
 mod rows;
 mod settle;
 
+use core::slice;
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use glam::Vec3;
@@ -73,6 +75,8 @@ pub struct LevelTransfer {
     relief: Relief,
     /// For each coarse particle the fine one that it is.
     shared: Vec<u32>,
+    /// For each coarse particle what it has of the fine ones' masses, in units of the density, m².
+    masses: Vec<f32>,
 }
 
 impl LevelTransfer {
@@ -96,11 +100,13 @@ impl LevelTransfer {
             .flat_map(|row| (0..coarse_grid.columns).map(move |column| (column, row)))
             .map(|(column, row)| fine_grid.index(2 * column, 2 * row))
             .collect();
+        let smooth = grid::smooth(fine_grid, coarse_grid);
         Ok(Self {
             fine: Arc::clone(fine),
             coarse: Arc::clone(coarse),
             settlers: [fine, coarse].map(|fabric| Arc::new(Settler::new(fabric))),
-            smooth: grid::smooth(fine_grid, coarse_grid),
+            masses: motion::gather_masses(&smooth, fine, coarse.particle_count()),
+            smooth,
             flat: grid::flat(fine_grid, coarse_grid),
             relief: Relief::default(),
             shared,
@@ -137,6 +143,7 @@ impl LevelTransfer {
             fine: Arc::clone(fine),
             coarse: Arc::clone(coarse),
             settlers: [fine, coarse].map(|fabric| Arc::new(Settler::new(fabric))),
+            masses: motion::gather_masses(&rows, fine, coarse.particle_count()),
             smooth: rows.clone(),
             flat: rows,
             relief,
@@ -167,10 +174,32 @@ impl LevelTransfer {
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
-        let positions = self.pick(&fine.positions).collect();
-        let velocities = self.gather_velocities(&fine.velocities);
-        let before = Side { fabric: &self.fine, state: fine };
-        before.arrive(&self.settlers[1], positions, velocities, material, gravity)
+        Self::restrict_through(slice::from_ref(self), fine, material, gravity)
+    }
+
+    /// From the finest to the coarsest fabric of a chain, the finest neighbours first. The levels between
+    /// are only passed through: strain is taken off where the cloth arrives.
+    ///
+    /// # Panics
+    ///
+    /// When the chain is empty, or not of neighbours.
+    #[must_use]
+    pub fn restrict_through(
+        chain: &[Self],
+        fine: &ClothSnapshot,
+        material: &FabricMaterial,
+        gravity: Vec3,
+    ) -> ClothSnapshot {
+        let (mut positions, mut velocities) =
+            (Cow::from(&fine.positions), Cow::from(&fine.velocities));
+        for transfer in chain {
+            positions = transfer.pick(&positions).collect::<Vec<_>>().into();
+            velocities = transfer.gather_velocities(&velocities).into();
+        }
+        let (finest, coarsest) = (&chain[0], &chain[chain.len() - 1]);
+        let before = Side { fabric: &finest.fine, state: fine };
+        let settler = &coarsest.settlers[1];
+        before.arrive(settler, positions.into_owned(), velocities.into_owned(), material, gravity)
     }
 
     /// Values at the fine particles, of those that are shared: one a coarse particle.
@@ -202,10 +231,8 @@ impl Side<'_> {
         gravity: Vec3,
     ) -> ClothSnapshot {
         let fabric = &settler.fabric();
-        for (particle, position) in positions.iter_mut().enumerate() {
-            if fabric.is_pinned(particle) {
-                *position = fabric.rest_positions()[particle];
-            }
+        for pin in fabric.pins() {
+            positions[pin.particle as usize] = fabric.rest_positions()[pin.particle as usize];
         }
         let density = f64::from(material.area_density);
         let agitation = motion::agitation(self.fabric, &self.state.velocities);

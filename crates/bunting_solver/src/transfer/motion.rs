@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::LevelTransfer;
+use super::rows::Rows;
 use crate::energy::moment;
 use crate::fabric::Fabric;
 
@@ -11,22 +12,27 @@ impl LevelTransfer {
     /// their masses: nothing is lost on the way up and down again.
     pub(super) fn gather_velocities(&self, fine: &[Vec3]) -> Vec<Vec3> {
         let mut coarse: Vec<Vec3> = self.pick(fine).collect();
-        let weights = || {
-            let free = |&inverse: &f32| if inverse > 0.0 { 1.0 / inverse } else { 0.0 };
-            self.fine.inverse_areas().iter().map(free)
-        };
-        let beyond = self.smooth.interpolate(&coarse).zip(fine).zip(weights());
-        let beyond: Vec<Vec3> =
-            beyond.map(|((smooth, &fine), weight)| (fine - smooth) * weight).collect();
+        let beyond = self.smooth.interpolate(&coarse).zip(fine).zip(free_masses(&self.fine));
+        let beyond = beyond.map(|((smooth, &fine), mass)| (fine - smooth) * mass);
         let gathered = self.smooth.gather(beyond, coarse.len());
-        let masses = self.smooth.gather(weights(), coarse.len());
         for (particle, velocity) in coarse.iter_mut().enumerate() {
-            if !self.coarse.is_pinned(particle) && masses[particle] > 0.0 {
-                *velocity += gathered[particle] / masses[particle];
+            if !self.coarse.is_pinned(particle) && self.masses[particle] > 0.0 {
+                *velocity += gathered[particle] / self.masses[particle];
             }
         }
         coarse
     }
+}
+
+/// What each coarse particle has of the masses of free fine ones, in units of the density, m².
+pub(super) fn gather_masses(smooth: &Rows, fine: &Fabric, coarse: usize) -> Vec<f32> {
+    smooth.gather(free_masses(fine), coarse)
+}
+
+/// Masses of free particles in units of the density, m²; zero for those that are not.
+fn free_masses(fabric: &Fabric) -> impl Iterator<Item = f32> + '_ {
+    let free = |&inverse: &f32| if inverse > 0.0 { 1.0 / inverse } else { 0.0 };
+    fabric.inverse_areas().iter().map(free)
 }
 
 /// Moves all free particles by one velocity, so that the momentum per density is `wanted`.

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::Vec3;
 
-use crate::batch::ClothBatch;
+use crate::batch::{BatchError, ClothBatch};
 use crate::energy::elastic;
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::lane_count::LaneCount;
@@ -55,11 +55,10 @@ impl Settler {
         let mut batch = self.lock();
         let fabric = Arc::clone(batch.fabric());
         let damped = FabricMaterial { damping: DAMPING, internal_damping: 0.0, ..*material };
-        let at_rest = vec![Vec3::ZERO; positions.len()];
-        if batch.replace(0, &ClothSnapshot::new(positions.clone(), at_rest), damped).is_err() {
+        let begin = ClothSnapshot::new(positions.clone(), vec![Vec3::ZERO; positions.len()]);
+        if place(&mut batch, &begin, damped).is_err() {
             return elastic(&fabric, material, positions);
         }
-        batch.drive(0, Drive::NONE);
         let settings = StepSettings { passes: 2, ..StepSettings::yarns(MOST_STEPS) };
         batch.begin_tick(STEP * MOST_STEPS as f32, settings);
         for step in 0..MOST_STEPS {
@@ -78,5 +77,22 @@ impl Settler {
             batch.copy_positions(0, positions);
         }
         elastic(&fabric, material, positions)
+    }
+}
+
+/// Puts a cloth into a batch, in the place of the one before: what follows from its material alone stays,
+/// if that is the same.
+fn place(
+    batch: &mut ClothBatch,
+    state: &ClothSnapshot,
+    material: FabricMaterial,
+) -> Result<(), BatchError> {
+    if batch.is_occupied(0) {
+        batch.set_material(0, material)?;
+        batch.restore(0, state)
+    } else {
+        batch.replace(0, state, material)?;
+        batch.drive(0, Drive::NONE);
+        Ok(())
     }
 }

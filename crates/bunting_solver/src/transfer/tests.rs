@@ -73,6 +73,25 @@ fn momentum_is_kept_and_energy_does_not_grow() {
     }
 }
 
+/// Over several levels at once: as sound as over one, and those between are not arrived at.
+#[test]
+fn several_levels_are_crossed_at_once() {
+    let fabrics = [(17, 9), (9, 5), (5, 3)].map(|(columns, rows)| fabric(columns, rows, true));
+    let between =
+        |pair: &[Arc<Fabric>]| LevelTransfer::between(&pair[0], &pair[1]).expect("nested");
+    let chain: Vec<LevelTransfer> = fabrics.windows(2).map(between).collect();
+    let [finest, _, coarsest] = &fabrics;
+    let before = flown(finest);
+    let after = LevelTransfer::restrict_through(&chain, &before, &MATERIAL, GRAVITY);
+    assert_eq!(after.positions.len(), coarsest.particle_count());
+    let (had, has) = (moment(finest, &before.velocities), moment(coarsest, &after.velocities));
+    assert!(had.distance(has) < 1e-5 * had.length(), "{had} {has}");
+    let (had, has) = (energies(finest, &before), energies(coarsest, &after));
+    let rounding = 1e-6 * had.map(f64::abs).iter().sum::<f64>();
+    assert!(has.iter().sum::<f64>() < had.iter().sum::<f64>() + rounding, "{had:?} {has:?}");
+    assert!(has[1] < had[1] + 0.1 * had[0], "strain is left: {had:?} {has:?}");
+}
+
 /// A frame in motion: all of the cloth, pins too, has its velocity, and keeps it.
 #[test]
 fn what_moves_as_one_goes_on_as_one() {
