@@ -13,7 +13,7 @@ use crate::lanes::{Pack, Pack1};
 use crate::parameters::Parameters;
 use crate::places::Constant;
 use crate::seating::{Packed, Seating};
-use crate::snapshot::{ClothSnapshot, History};
+use crate::snapshot::ClothSnapshot;
 use crate::step::{Drive, Scheme, StepSettings};
 use crate::vector::{Pack3, set_lane3, splat3};
 use crate::weave::Weave;
@@ -34,8 +34,8 @@ pub(crate) struct Slot {
     pub contacts: Vec<Vec<u32>>,
 }
 
-/// One of the vectors that the integrator remembers of each particle.
-type OfHistory = fn(&History) -> &[Vec3];
+/// One of the vectors of each particle, if the state has it.
+type OfState = fn(&ClothSnapshot) -> Option<&[Vec3]>;
 
 /// What a lane's compliances, air and damping depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,7 +148,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 set_lane3(&mut position[pack], lane, without_minus_zero(rest));
             }
         }
-        Self {
+        let mut batch = Self {
             slots: vec![None; cloths],
             predicted: position.clone(),
             displacement: zero.clone(),
@@ -176,16 +176,22 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             weave: None,
             clock: Clock::default(),
             fabric,
-        }
+        };
+        batch.square_cells_as_at_rest(0..P::WIDTH);
+        batch
     }
 
-    /// Empties lanes, and fills others. Empty ones lie at rest, so that their arithmetic stays finite.
+    /// Empties lanes, and fills others.
     pub fn exchange(&mut self, leave: &[usize], come: &[(usize, &ClothSnapshot, FabricMaterial)]) {
+        // Who leaves is forgotten by the next substep, for which they have no time. But what is no number
+        // would stay.
         let rest = ClothSnapshot::at_rest(&self.fabric);
         let mut states = Vec::new();
         for &lane in leave {
             self.slots[lane] = None;
-            states.push((lane, &rest));
+            if !self.is_finite(lane) {
+                states.push((lane, &rest));
+            }
         }
         for &(lane, snapshot, material) in come {
             self.slots[lane] = Some(Slot {
@@ -211,28 +217,39 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         let positions: Vec<Vec<Vec3>> = states.iter().map(|(_, state)| unsigned(state)).collect();
         let shape: Vec<_> =
             states.iter().zip(&positions).map(|(&(lane, _), at)| (lane, Some(&at[..]))).collect();
-        let velocities: Vec<_> =
-            states.iter().map(|&(lane, state)| (lane, Some(&state.velocities[..]))).collect();
+        // Without a history, what else is there counts for nothing, as long as these are numbers.
+        let counts = |&(lane, state): &(usize, &ClothSnapshot)| {
+            state.history.is_some() || C::SIDE > 1 || !self.is_finite(lane)
+        };
+        let with_past: Vec<_> = states.iter().copied().filter(counts).collect();
         let seating = self.seating;
         seating.write::<P, C>(&mut self.position, &shape);
         seating.write::<P, C>(&mut self.predicted, &shape);
-        seating.write::<P, C>(&mut self.velocity, &velocities);
-        let history: [(_, OfHistory); 5] = [
-            (&mut self.displacement, |history| &history.displacements[0]),
-            (&mut self.older_displacement, |history| &history.displacements[1]),
-            (&mut self.older_velocity, |history| &history.older_velocities[0]),
-            (&mut self.oldest_velocity, |history| &history.older_velocities[1]),
-            (&mut self.memory, |history| &history.memory),
+        let arrays: [(_, &[_], OfState); 6] = [
+            (&mut self.velocity, states, |state| Some(&state.velocities)),
+            (&mut self.memory, states, |state| Some(&state.history.as_ref()?.memory)),
+            (&mut self.displacement, &with_past, |state| {
+                Some(&state.history.as_ref()?.displacements[0])
+            }),
+            (&mut self.older_displacement, &with_past, |state| {
+                Some(&state.history.as_ref()?.displacements[1])
+            }),
+            (&mut self.older_velocity, &with_past, |state| {
+                Some(&state.history.as_ref()?.older_velocities[0])
+            }),
+            (&mut self.oldest_velocity, &with_past, |state| {
+                Some(&state.history.as_ref()?.older_velocities[1])
+            }),
         ];
-        for (packs, of) in history {
-            let values: Vec<_> = states
-                .iter()
-                .map(|&(lane, state)| (lane, state.history.as_ref().map(of)))
-                .collect();
+        for (packs, states, of) in arrays {
+            let values: Vec<_> = states.iter().map(|&(lane, state)| (lane, of(state))).collect();
             seating.write::<P, C>(packs, &values);
         }
         for (&(lane, state), positions) in states.iter().zip(&positions) {
-            self.square_cells_as_at_rest(C::lanes(lane));
+            // At the start of a tick they are found anew.
+            if (1..self.clock.settings.substeps).contains(&self.clock.done) {
+                self.square_cells_as_at_rest(C::lanes(lane));
+            }
             for pin in self.fabric.pins() {
                 let (pack, lane) = self.seating.seat(pin.particle as usize, lane);
                 set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
@@ -318,6 +335,7 @@ impl<P: Pack> LaneBatch<P, P> {
         let mut batch = Self::new(Arc::clone(fabric));
         weave.begin(fabric.rest_positions());
         batch.weave = Some(Box::new(weave));
+        batch.square_cells_as_at_rest(0..P::WIDTH);
         Some(batch)
     }
 

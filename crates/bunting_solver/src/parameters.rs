@@ -199,13 +199,15 @@ impl<P: Pack> Parameters<P> {
         }
     }
 
-    /// A lane without a cloth stands still.
+    /// A lane without a cloth stands still, and forgets how it moved.
     pub fn set_empty(&mut self, lanes: Range<usize>) {
         let set = |pack: &mut P, value: f32| pack.lanes_mut()[lanes.clone()].fill(value);
         let set3 = |pack: &mut Pack3<P>, value: Vec3| fill_lanes3(pack, &lanes, value);
         set(&mut self.step, 0.0);
         set(&mut self.inverse_step, 0.0);
         set(&mut self.moves, 0.0);
+        set(&mut self.keep, 0.0);
+        self.extrapolation.iter_mut().for_each(|part| set(part, 0.0));
         set3(&mut self.gravity_step, Vec3::ZERO);
         set3(&mut self.wind, Vec3::ZERO);
     }
