@@ -34,6 +34,16 @@ pub(crate) struct Slot {
     pub contacts: Vec<Vec<u32>>,
 }
 
+impl Slot {
+    /// Part of the wind's velocity that a cloth at rest would take on in a substep of `step` seconds, were its
+    /// drag explicit.
+    fn swept(&self, step: f32) -> f32 {
+        let Drive { wind, air_density, .. } = self.drive;
+        let coefficient = self.material.pressure_coefficient + self.material.friction_coefficient;
+        0.5 * air_density * coefficient * wind.length() * step / self.material.area_density
+    }
+}
+
 /// One of the vectors of each particle, if the state has it.
 type OfState = fn(&ClothSnapshot) -> Option<&[Vec3]>;
 
@@ -292,7 +302,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 self.parameters.set_empty(lanes);
                 continue;
             };
-            let formula = slot.past.begin(step, settings.scheme);
+            let formula = slot.past.begin(step, settings.scheme, slot.swept(step));
             let applied = Applied {
                 material: slot.material,
                 air_density: slot.drive.air_density,
