@@ -251,7 +251,7 @@ impl<P: Pack> Parameters<P> {
         let finest = spacing.fold(0.0, f32::max);
         let stiffness_number =
             16.0 * step * step * material.bend_stiffness / material.area_density * finest.powi(4);
-        set(&mut self.anticipated, anticipated(stiffness_number));
+        set(&mut self.anticipated, anticipated(fabric, stiffness_number));
         let air = 0.5 * air_density * step / material.area_density;
         set(&mut self.pressure, air * material.pressure_coefficient);
         set(&mut self.friction, air * material.friction_coefficient);

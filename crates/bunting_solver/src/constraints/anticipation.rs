@@ -4,7 +4,13 @@
 //! will move back. For limp cloth that does not matter; a stiff strip is bent by the detour: at
 //! Γ = 50 the heavy cantilever droops 1.8 % too far with three substeps. So what stretch did in the
 //! last substeps is remembered, as an acceleration, and anticipated while bending is solved.
+//!
+//! Only what warp and weft did. What a cloth does in its own plane it does slowly, against its bias, and
+//! that pushes each row of a narrow strip to and fro: anticipated, it made the strip's rows part sideways
+//! for ever. Where diagonals count as warp or weft, since cells are long, it cannot be told from these, and
+//! nothing is anticipated.
 
+use crate::fabric::Fabric;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
 use crate::parameters::Parameters;
@@ -22,8 +28,8 @@ const RENEWED: f32 = 0.5;
 const STIFF: f32 = 1.0;
 
 /// How much of its memory a lane anticipates, given its stiffness number.
-pub(crate) fn anticipated(stiffness_number: f32) -> f32 {
-    if stiffness_number > STIFF { ANTICIPATED } else { 0.0 }
+pub(crate) fn anticipated(fabric: &Fabric, stiffness_number: f32) -> f32 {
+    if fabric.squares_cells() && stiffness_number > STIFF { ANTICIPATED } else { 0.0 }
 }
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
@@ -42,7 +48,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         self.bent.copy_from_slice(&self.position);
     }
 
-    /// Remembers what stretch did in this substep.
+    /// Remembers what stretch did in this substep, but for what it did between two calls of `overlook`.
     pub fn remember_stretch(&mut self) {
         if self.anticipates() {
             P::run(Remember {
@@ -51,6 +57,15 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 bent: &self.bent,
                 memory: &mut self.memory,
             });
+        }
+    }
+
+    /// Before (`sign` −1) and after (1) what is not to be remembered: moves the places from which stretch is
+    /// counted along with it.
+    pub fn overlook(&mut self, sign: f32) {
+        if self.anticipates() {
+            self.unravel();
+            P::run(Overlook { sign, position: &self.position, bent: &mut self.bent });
         }
     }
 
@@ -85,6 +100,23 @@ impl<P: Pack> Kernel<P> for Lean<'_, P> {
         for (position, memory) in self.position.iter_mut().zip(self.memory) {
             let x: V3<L> = V3::load(token, position);
             (x + V3::load(token, memory) * scale).or_where_not(leans, x).store(position);
+        }
+    }
+}
+
+struct Overlook<'a, P: Pack> {
+    sign: f32,
+    position: &'a [Pack3<P>],
+    bent: &'a mut [Pack3<P>],
+}
+
+impl<P: Pack> Kernel<P> for Overlook<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let sign = L::splat(token, self.sign);
+        for (bent, position) in self.bent.iter_mut().zip(self.position) {
+            let from: V3<L> = V3::load(token, bent);
+            from.plus_scaled(V3::load(token, position), sign).store(bent);
         }
     }
 }

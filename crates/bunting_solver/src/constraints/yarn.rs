@@ -48,7 +48,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             if self.clock.done == 1 {
                 self.square_cells();
             }
+            self.overlook(-1.0);
             self.visit_yarns(Visit::Sheared);
+            self.overlook(1.0);
         } else {
             self.visit_yarns(Visit::Only);
         }
