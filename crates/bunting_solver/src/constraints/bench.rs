@@ -21,7 +21,6 @@ pub(super) fn cloth_at(
     positions: &[Vec3],
 ) -> LaneBatch<Pack1> {
     let mut batch = LaneBatch::new(Arc::new(fabric.clone()));
-    batch.weave = None;
     batch.exchange(&[], &[(0, &ClothSnapshot::at_rest(fabric), material)]);
     batch.begin_tick(STEP, StepSettings::gauss_seidel(1));
     batch.begin_substep();

@@ -4,9 +4,8 @@
 //! of a whole line is a pentadiagonal system with constant factors. All lines whose particles weigh
 //! and are pinned alike share one [`BendProfile`], and so one set of factors.
 
-use std::collections::HashMap;
-
 use super::Grid;
+use super::colour::{Classes, rounded_bits};
 
 /// A row or a column of a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -46,17 +45,16 @@ pub(crate) fn lines(grid: &Grid, inverse_areas: &[f32]) -> (Vec<BendLine>, Vec<B
         (particles, dy, dx * border(column, grid.columns))
     });
     let mut profiles: Vec<BendProfile> = Vec::new();
-    let mut known: HashMap<Vec<u32>, u32> = HashMap::new();
+    let mut classes = Classes::new();
     let lines =
         rows.chain(columns).filter(|(particles, ..): &(Vec<u32>, f32, f32)| particles.len() > 2);
     let lines = lines.map(|(particles, spacing, width)| {
         let profile = BendProfile::new(&particles, spacing, width, inverse_areas);
-        let key = profile.bits();
-        let profile = *known.entry(key).or_insert_with(|| {
+        let (class, is_new) = classes.class_of(profile.bits());
+        if is_new {
             profiles.push(profile);
-            profiles.len() as u32 - 1
-        });
-        BendLine { particles, profile }
+        }
+        BendLine { particles, profile: class }
     });
     (lines.collect(), profiles)
 }
@@ -79,6 +77,6 @@ impl BendProfile {
     fn bits(&self) -> Vec<u32> {
         let all =
             core::iter::once(&self.inverse_spacing).chain(&self.inverse_areas).chain(&self.weights);
-        all.map(|value| super::colour::rounded_bits(*value)).collect()
+        all.map(|value| rounded_bits(*value)).collect()
     }
 }

@@ -3,7 +3,9 @@
 //! Gauss–Seidel in row order pumps energy along the rows and chains each constraint to the last;
 //! in colour order neighbours in the stream are independent.
 
+use core::hash::Hash;
 use core::ops::Range;
+use std::collections::HashMap;
 
 /// Where each colour begins and ends in a list of constraints.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -57,9 +59,10 @@ pub(crate) fn colour<C>(
     (keyed.into_iter().map(|(_, constraint)| constraint).collect(), Colours(ranges))
 }
 
-/// Replaces values that are equal but for rounding by indices into a table of the distinct ones.
-pub(crate) struct Classes<const N: usize> {
-    keys: std::collections::HashMap<[u32; N], u32>,
+/// Replaces values that are equal but for rounding by indices into a table of the distinct ones. The keys
+/// are their [`rounded_bits`].
+pub(crate) struct Classes<K> {
+    keys: HashMap<K, u32>,
 }
 
 /// Bits of an f32 that a class ignores: values within 2⁻¹² of one another are one class.
@@ -70,15 +73,15 @@ pub(crate) fn rounded_bits(value: f32) -> u32 {
     (value.to_bits() + (1 << (CLASS_ROUNDING_BITS - 1))) >> CLASS_ROUNDING_BITS
 }
 
-impl<const N: usize> Classes<N> {
+impl<K: Eq + Hash> Classes<K> {
     pub fn new() -> Self {
-        Self { keys: std::collections::HashMap::new() }
+        Self { keys: HashMap::new() }
     }
 
     /// The class of a value, and whether it is new: then it is the next in the table.
-    pub fn class_of(&mut self, value: [f32; N]) -> (u32, bool) {
+    pub fn class_of(&mut self, key: K) -> (u32, bool) {
         let next = self.keys.len() as u32;
-        let class = *self.keys.entry(value.map(rounded_bits)).or_insert(next);
+        let class = *self.keys.entry(key).or_insert(next);
         (class, class == next)
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::colour::{Classes, Colours, colour};
+use super::colour::{Classes, Colours, colour, rounded_bits};
 use super::topology::Edge;
 
 /// A bending constraint between two triangles that share an edge.
@@ -64,7 +64,7 @@ pub(crate) fn hinges(
             let at_clamp = is_pinned(a) && is_pinned(b) && (is_pinned(c) || is_pinned(d));
             let clamp = if at_clamp { CLAMP_WEIGHT } else { 1.0 };
             let weight = clamp * HINGE_CALIBRATION * edge_squared / areas;
-            let (class, is_new) = classes.class_of([weight]);
+            let (class, is_new) = classes.class_of([rounded_bits(weight)]);
             if is_new {
                 table.push(HingeClass { weight });
             }

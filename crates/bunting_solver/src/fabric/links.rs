@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{DMat3, DVec3, Vec2, Vec3};
 
-use super::colour::{Classes, Colours, colour};
+use super::colour::{Classes, Colours, colour, rounded_bits};
 use super::material::FabricMaterial;
 
 /// A distance constraint between two particles.
@@ -173,7 +173,8 @@ pub(crate) fn finish(
                 .weights
                 .map(|weight| if weight.abs() < NO_WEIGHT { 0.0 } else { weight as f32 });
             let floor = (LEAST_LINK_STIFFNESS * link.isotropic) as f32;
-            let (class, is_new) = classes.class_of([weights[0], weights[1], weights[2], floor]);
+            let (class, is_new) =
+                classes.class_of([weights[0], weights[1], weights[2], floor].map(rounded_bits));
             if is_new {
                 table.push(LinkClass { weights, floor });
             }

@@ -5,6 +5,7 @@
 //! implicit step of a whole ribbon is a tridiagonal system with constant factors.
 
 use super::Grid;
+use super::colour::{Classes, rounded_bits};
 
 /// The cells between two neighbouring lines of a grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +36,7 @@ pub(crate) fn ribbons(grid: &Grid, inverse_areas: &[f32]) -> (Vec<Ribbon>, Vec<R
     };
     let cell = grid.width / (grid.columns - 1) as f32 * grid.height / (grid.rows - 1) as f32;
     let mut profiles: Vec<RibbonProfile> = Vec::new();
+    let mut classes = Classes::new();
     let ribbon = |line: u32| {
         let pairs: Vec<[u32; 2]> =
             (0..along).map(|place| [particle(line, place), particle(line + 1, place)]).collect();
@@ -45,12 +47,11 @@ pub(crate) fn ribbons(grid: &Grid, inverse_areas: &[f32]) -> (Vec<Ribbon>, Vec<R
                 .map(|pair| pair.map(|particle| inverse_areas[particle as usize]))
                 .collect(),
         };
-        let known = profiles.iter().position(|known| known.is_like(&profile));
-        let profile = known.unwrap_or_else(|| {
+        let (class, is_new) = classes.class_of(profile.bits());
+        if is_new {
             profiles.push(profile);
-            profiles.len() - 1
-        });
-        Ribbon { pairs, profile: profile as u32 }
+        }
+        Ribbon { pairs, profile: class }
     };
     let lines = (0..across - 1).step_by(2).chain((1..across - 1).step_by(2));
     let ribbons = lines.map(ribbon).collect();
@@ -58,12 +59,8 @@ pub(crate) fn ribbons(grid: &Grid, inverse_areas: &[f32]) -> (Vec<Ribbon>, Vec<R
 }
 
 impl RibbonProfile {
-    /// Equal but for rounding.
-    fn is_like(&self, other: &Self) -> bool {
-        let bits = |profile: &Self| -> Vec<u32> {
-            let areas = profile.inverse_areas.as_flattened();
-            areas.iter().map(|&value| super::colour::rounded_bits(value)).collect()
-        };
-        bits(self) == bits(other)
+    /// Equal for ribbons that are alike but for rounding.
+    fn bits(&self) -> Vec<u32> {
+        self.inverse_areas.as_flattened().iter().map(|&value| rounded_bits(value)).collect()
     }
 }

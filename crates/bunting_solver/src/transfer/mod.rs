@@ -230,7 +230,7 @@ impl Side<'_> {
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
-        let fabric = &settler.fabric();
+        let fabric = settler.fabric();
         for pin in fabric.pins() {
             positions[pin.particle as usize] = fabric.rest_positions()[pin.particle as usize];
         }

@@ -31,17 +31,19 @@ const DAMPING: f32 = 8.7;
 /// Where cloths of a fabric settle, one after the other.
 #[derive(Debug)]
 pub(super) struct Settler {
+    fabric: Arc<Fabric>,
     batch: Mutex<ClothBatch>,
 }
 
 impl Settler {
     pub fn new(fabric: &Arc<Fabric>) -> Self {
-        Self { batch: Mutex::new(ClothBatch::new(Arc::clone(fabric), LaneCount::One)) }
+        let batch = Mutex::new(ClothBatch::new(Arc::clone(fabric), LaneCount::One));
+        Self { fabric: Arc::clone(fabric), batch }
     }
 
     /// The fabric.
-    pub fn fabric(&self) -> Arc<Fabric> {
-        Arc::clone(self.lock().fabric())
+    pub fn fabric(&self) -> &Fabric {
+        &self.fabric
     }
 
     fn lock(&self) -> MutexGuard<'_, ClothBatch> {
@@ -53,18 +55,17 @@ impl Settler {
     /// returns how much it is. What cannot be simulated stays as it is.
     pub fn settle(&self, material: &FabricMaterial, positions: &mut Vec<Vec3>, limit: f64) -> f64 {
         let mut batch = self.lock();
-        let fabric = Arc::clone(batch.fabric());
         let damped = FabricMaterial { damping: DAMPING, internal_damping: 0.0, ..*material };
         let begin = ClothSnapshot::new(positions.clone(), vec![Vec3::ZERO; positions.len()]);
         if place(&mut batch, &begin, damped).is_err() {
-            return elastic(&fabric, material, positions);
+            return elastic(&self.fabric, material, positions);
         }
         let settings = StepSettings { passes: 2, ..StepSettings::yarns(MOST_STEPS) };
         batch.begin_tick(STEP * MOST_STEPS as f32, settings);
         for step in 0..MOST_STEPS {
             // Reckoning the energy takes half as long as a substep: after none, one, two, four, …
             if step == 0 || step.is_power_of_two() {
-                let stored = elastic(&fabric, material, positions);
+                let stored = elastic(&self.fabric, material, positions);
                 if stored <= limit {
                     return stored;
                 }
@@ -76,7 +77,7 @@ impl Settler {
             batch.update_velocities();
             batch.copy_positions(0, positions);
         }
-        elastic(&fabric, material, positions)
+        elastic(&self.fabric, material, positions)
     }
 }
 
