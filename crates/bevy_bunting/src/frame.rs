@@ -2,8 +2,7 @@
 
 use bevy_app::prelude::*;
 use bevy_app::{AnimationSystems, RunFixedMainLoop, RunFixedMainLoopSystems};
-use bevy_ecs::entity::EntityHashSet;
-use bevy_ecs::hierarchy::{ChildOf, Children};
+use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemParam;
 use bevy_math::{Isometry3d, Vec3};
@@ -15,9 +14,10 @@ use bevy_transform::helper::TransformHelper;
 use crate::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
 use crate::drive::drive_cloths;
 use crate::error::{ClothError, ClothFailed};
+use crate::follow::{Motions, end_following, follow_targets};
 use crate::instance::ClothInstance;
 use crate::mesh::ClothMesh;
-use crate::pose::PoseHistory;
+use crate::pose::{Observed, PoseHistory};
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// A collider that leaves its course by more than this was teleported, m.
@@ -34,107 +34,104 @@ impl Plugin for AttachmentPlugin {
             .register_type::<ClothEdge>()
             .register_type::<ClothCorner>()
             .register_type::<TargetLost>()
+            .init_resource::<Observed>()
+            .add_observer(end_following)
             .add_systems(
                 RunFixedMainLoop,
-                observe_frames::<true>.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+                (follow_targets, observe_frames::<true>)
+                    .chain_ignore_deferred()
+                    .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
             )
             .add_systems(
                 ClothTick,
                 (
+                    follow_targets.in_set(ClothSystems::Prepare),
                     observe_ticks.in_set(ClothSystems::Drive).before(drive_cloths),
                     place_cloths.in_set(ClothSystems::Publish),
                 ),
             )
             .add_systems(
                 PostUpdate,
-                (observe_frames::<false>, place_cloths)
-                    .chain()
+                (follow_targets, observe_frames::<false>, place_cloths)
+                    .chain_ignore_deferred()
                     .after(AnimationSystems)
                     .before(TransformSystems::Propagate),
             );
     }
 }
 
-type Followers<'w, 's> =
-    Query<'w, 's, (Entity, &'static mut PoseHistory, Option<Ref<'static, Attachment>>)>;
+type Disturbed<'w, 's> = Query<'w, 's, Entity, Changed<PoseHistory>>;
 
-type MayHaveMoved = Or<(Changed<Transform>, Changed<ChildOf>)>;
+type Observable = (&'static mut PoseHistory, Option<&'static Attachment>);
 
-/// Tells what stands where it stood when the system last ran: much less work than to ask where.
+/// What was moved, and who is observed because of that, or because it was moved of late.
 #[derive(SystemParam)]
-struct Stillness<'w, 's> {
-    changed: Query<'w, 's, Entity, MayHaveMoved>,
-    orphans: RemovedComponents<'w, 's, ChildOf>,
-    children: Query<'w, 's, &'static Children>,
-    /// What has moved, and all that hangs on it.
-    moved: Local<'s, EntityHashSet>,
-    open: Local<'s, Vec<Entity>>,
+struct Watch<'w, 's> {
+    motions: Motions<'w, 's>,
+    /// Who is new, begins anew, or will jump; and all.
+    histories: ParamSet<'w, 's, (Disturbed<'static, 'static>, Query<'static, 'static, Observable>)>,
+    /// Who did not rest yet when the system last ran.
+    restless: Local<'s, Vec<Entity>>,
 }
 
-impl Stillness<'_, '_> {
-    /// Finds out what has moved; to be called once, before anything is asked.
-    fn note(&mut self) {
-        self.moved.clear();
-        self.open.extend(self.changed.iter());
-        self.open.extend(self.orphans.read());
-        while let Some(entity) = self.open.pop() {
-            if self.moved.insert(entity)
-                && let Ok(children) = self.children.get(entity)
-            {
-                self.open.extend(children.iter());
+impl Watch<'_, '_> {
+    /// Does the same with everyone that may have moved.
+    fn for_each(&mut self, mut observe: impl FnMut(Entity, &mut PoseHistory, Option<&Attachment>)) {
+        let disturbed = self.histories.p0();
+        let moved = self.motions.find(self.restless.drain(..).chain(&disturbed));
+        let mut histories = self.histories.p1();
+        for &entity in moved {
+            let Ok((mut history, attachment)) = histories.get_mut(entity) else { continue };
+            // What is seen here is no change: everyone sees it.
+            let history = history.bypass_change_detection();
+            observe(entity, history, attachment);
+            if !history.rests() {
+                self.restless.push(entity);
             }
         }
-    }
-
-    /// Whether neither the entity nor any that it hangs on was moved.
-    fn of(&self, entity: Entity) -> bool {
-        !self.moved.contains(&entity)
     }
 }
 
 /// Notes where everything is in a frame; `EARLY`, before its ticks.
 fn observe_frames<const EARLY: bool>(
-    mut followers: Followers,
+    mut watch: Watch,
     transforms: TransformHelper,
-    mut stillness: Stillness,
     time: Res<Time<Virtual>>,
+    mut observed: ResMut<Observed>,
 ) {
-    stillness.note();
     let now = time.elapsed_secs_f64();
-    for (entity, mut history, attachment) in &mut followers {
-        let pose = rest_of(entity, &history, attachment.as_ref(), &stillness);
-        let attachment = attachment.as_deref();
-        let pose = pose.or_else(|| frame_of(entity, attachment, &transforms).filter(is_finite));
-        if let Some(pose) = pose {
-            history.observe_frame(now, pose, teleport_distance(attachment), EARLY);
+    watch.for_each(|entity, history, attachment| {
+        if let Some(pose) = frame_of(entity, attachment, &transforms).filter(is_finite) {
+            history.observe_frame(&observed, now, pose, teleport_distance(attachment), EARLY);
         }
+    });
+    if !EARLY {
+        observed.frame = now;
     }
 }
 
 /// Notes where everything is in a tick, and so how it moves in it.
 fn observe_ticks(
-    mut followers: Followers,
+    mut watch: Watch,
     mut instances: Query<&mut ClothInstance>,
     transforms: TransformHelper,
-    mut stillness: Stillness,
     time: Res<Time>,
     frames: Res<Time<Virtual>>,
+    mut observed: ResMut<Observed>,
     mut commands: Commands,
 ) {
-    stillness.note();
-    let (now, tick, frame) =
-        (time.elapsed_secs_f64(), time.delta_secs_f64(), frames.delta_secs_f64());
-    for (entity, mut history, attachment) in &mut followers {
-        let rest = rest_of(entity, &history, attachment.as_ref(), &stillness);
-        let attachment = attachment.as_deref();
-        if let Some(pose) = rest {
-            history.observe_tick(now, tick, frame, pose, teleport_distance(attachment));
-            continue;
-        }
+    let now = Observed {
+        frame_length: frames.delta_secs_f64(),
+        tick: time.elapsed_secs_f64(),
+        ticks: observed.ticks.wrapping_add(1),
+        ..*observed
+    };
+    let tick = time.delta_secs_f64();
+    watch.for_each(|entity, history, attachment| {
         let pose = frame_of(entity, attachment, &transforms);
         match pose.filter(is_finite) {
             Some(pose) => {
-                history.observe_tick(now, tick, frame, pose, teleport_distance(attachment))
+                history.observe_tick(&observed, &now, tick, pose, teleport_distance(attachment));
             }
             None => history.stay(),
         }
@@ -147,12 +144,11 @@ fn observe_ticks(
                 instance.pose_reported = bad;
             }
         }
-    }
+    });
+    *observed = now;
 }
 
-type Placed = (Entity, Option<Ref<'static, Attachment>>, Option<&'static ChildOf>);
-
-type Standing<'w, 's> = (TransformHelper<'w, 's>, Stillness<'w, 's>);
+type Placed = (Option<&'static Attachment>, Option<&'static ChildOf>);
 
 type Written<'w, 's> = Query<'w, 's, (&'static mut Transform, &'static mut GlobalTransform)>;
 
@@ -160,21 +156,16 @@ type Written<'w, 's> = Query<'w, 's, (&'static mut Transform, &'static mut Globa
 /// saw.
 fn place_cloths(
     cloths: Query<Placed, With<ClothMesh>>,
-    mut transforms: ParamSet<(Standing, Written)>,
+    new: Query<Entity, Added<ClothMesh>>,
+    mut transforms: ParamSet<((TransformHelper, Motions), Written)>,
     mut placed: Local<Vec<(Entity, Option<Transform>, GlobalTransform)>>,
 ) {
-    let (current, mut stillness) = transforms.p0();
-    stillness.note();
+    let (current, mut motions) = transforms.p0();
     placed.clear();
-    placed.extend(cloths.iter().filter_map(|(entity, attachment, parent)| {
+    placed.extend(motions.find(&new).iter().filter_map(|&entity| {
+        let (attachment, parent) = cloths.get(entity).ok()?;
         let parent = parent.map(ChildOf::parent);
-        let target = attachment.as_ref().and_then(|it| it.target_other_than(entity));
-        let unchanged = attachment.as_ref().is_none_or(|attachment| !attachment.is_changed());
-        if unchanged && stillness.of(entity) && target.is_none_or(|target| stillness.of(target)) {
-            return None;
-        }
         match attachment
-            .as_deref()
             .and_then(|attachment| Some((attachment, attachment.target_other_than(entity)?)))
         {
             Some((attachment, target)) => {
@@ -209,19 +200,6 @@ fn place_cloths(
             global_transform.set_if_neq(global);
         }
     }
-}
-
-/// The pose of a cloth's frame, or a collider's, if it rests and nothing has moved it.
-fn rest_of(
-    entity: Entity,
-    history: &PoseHistory,
-    attachment: Option<&Ref<Attachment>>,
-    stillness: &Stillness,
-) -> Option<Isometry3d> {
-    let rest = history.rest()?;
-    let followed = attachment.and_then(|attachment| attachment.target_other_than(entity));
-    let attached = attachment.is_none_or(|attachment| !attachment.is_changed());
-    (attached && stillness.of(followed.unwrap_or(entity))).then_some(rest)
 }
 
 /// The pose of a cloth's frame, or a collider's, as its entity or target stands now. None if the

@@ -61,6 +61,17 @@ impl ClothInstance {
         }
     }
 
+    /// Whether it sleeps because nobody sees it.
+    pub fn is_unseen(&self) -> bool {
+        matches!(self.activity, ClothActivity::OffScreen | ClothActivity::OutOfRange)
+    }
+
+    /// Whether it is in no lane, and lies as it was cut.
+    pub fn is_as_cut(&self) -> bool {
+        let state = self.waiting().zip(self.fabric());
+        state.is_some_and(|(state, fabric)| state.is_at_rest(fabric))
+    }
+
     /// The fabric of the cloth at its level.
     pub fn fabric(&self) -> Option<&Arc<Fabric>> {
         self.levels.as_ref().map(|levels| levels.fabric(self.level))

@@ -232,6 +232,11 @@ pub(crate) struct FabricLibrary {
 }
 
 impl FabricLibrary {
+    /// Whether fabrics are being cut beside the main thread.
+    pub fn is_cutting(&self) -> bool {
+        !self.cutting.is_empty()
+    }
+
     /// The fabrics of a cloth, cut now or before; none while they are being cut: ask again.
     ///
     /// # Errors

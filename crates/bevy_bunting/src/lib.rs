@@ -98,6 +98,7 @@ mod diagnostics;
 mod drive;
 mod easing;
 mod error;
+mod follow;
 mod frame;
 mod instance;
 mod levels;

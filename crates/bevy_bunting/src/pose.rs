@@ -133,16 +133,31 @@ pub(crate) struct PoseHistory {
     delay: f64,
     seen: Option<Isometry3d>,
     span: Option<(Isometry3d, Isometry3d)>,
-    /// Where it rests, if all samples say so: most things do, and then samples need not be touched.
+    /// Where it rests, if all samples say so: most things do, and then nobody looks at them.
     rest: Option<Rest>,
 }
 
-/// Something that rests, last seen to do so in a frame and in a tick at these times, s.
+/// When everything was last looked at that does not rest: what rests would have been there, too.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub(crate) struct Observed {
+    /// Time of the last frame, s.
+    pub frame: f64,
+    /// Length of that frame, s.
+    pub frame_length: f64,
+    /// End of the last tick, s.
+    pub tick: f64,
+    /// Number of ticks so far.
+    pub ticks: u32,
+}
+
+/// Something that rests.
 #[derive(Clone, Copy, Debug)]
 struct Rest {
     pose: Isometry3d,
-    frame: f64,
+    /// End of the tick since when it rests, s.
     tick: f64,
+    /// Number of that tick.
+    ticks: u32,
 }
 
 impl PoseHistory {
@@ -156,26 +171,32 @@ impl PoseHistory {
         self.span.map_or(Isometry3d::IDENTITY, |(_, end)| end)
     }
 
-    /// The pose of what has not moved lately: it need not be looked up if nothing moves it.
-    pub fn rest(&self) -> Option<Isometry3d> {
-        self.rest.map(|rest| rest.pose)
+    /// Whether it has not moved lately: it need not be looked at until something moves it.
+    pub fn rests(&self) -> bool {
+        self.rest.is_some()
     }
 
     /// The next change of the pose is a teleport: what follows it is carried along.
-    pub fn jump_next(&mut self) {
-        self.end_rest();
+    pub fn jump_next(&mut self, last: &Observed) {
+        self.end_rest(last);
         self.ticks.jump_next = true;
         self.frames.jump_next = true;
     }
 
     /// The pose in a frame, at the frame's time. One seen `early`, before the frame's ticks, counts
     /// only if it was moved since the last frame.
-    pub fn observe_frame(&mut self, time: f64, pose: Isometry3d, limit: f32, early: bool) {
-        if let Some(rest) = self.rest.as_mut().filter(|rest| rest.pose == pose) {
-            rest.frame = if early { rest.frame } else { time };
+    pub fn observe_frame(
+        &mut self,
+        last: &Observed,
+        time: f64,
+        pose: Isometry3d,
+        limit: f32,
+        early: bool,
+    ) {
+        if self.rest.is_some_and(|rest| rest.pose == pose) {
             return;
         }
-        self.end_rest();
+        self.end_rest(last);
         let changed = self.seen.is_some_and(|seen| seen != pose);
         if early && !changed {
             return;
@@ -192,15 +213,20 @@ impl PoseHistory {
         self.seen = Some(pose);
     }
 
-    /// The pose in a tick of `tick` seconds that ends at `time`; frames last `frame` seconds.
-    pub fn observe_tick(&mut self, time: f64, tick: f64, frame: f64, pose: Isometry3d, limit: f32) {
-        if let Some(rest) = self.rest.as_mut().filter(|rest| rest.pose == pose) {
-            rest.tick = time;
-            self.ticks_to_quiet = self.ticks_to_quiet.saturating_sub(1);
-            self.change_delay(tick, frame);
+    /// The pose in a tick of `tick` seconds, which is the one `now`.
+    pub fn observe_tick(
+        &mut self,
+        last: &Observed,
+        now: &Observed,
+        tick: f64,
+        pose: Isometry3d,
+        limit: f32,
+    ) {
+        if self.rest.is_some_and(|rest| rest.pose == pose) {
             return;
         }
-        self.end_rest();
+        self.end_rest(last);
+        let time = now.tick;
         let jump = self.ticks.push(time, pose, limit);
         if self.seen.is_some_and(|seen| seen != pose) {
             self.moved_by = MovedBy::Ticks;
@@ -209,7 +235,7 @@ impl PoseHistory {
             self.ticks_to_quiet = self.ticks_to_quiet.saturating_sub(1);
         }
         self.seen = Some(pose);
-        self.change_delay(tick, frame);
+        self.change_delay(tick, now.frame_length);
         let track = match self.moved_by {
             MovedBy::Ticks => {
                 self.carry(jump);
@@ -224,12 +250,12 @@ impl PoseHistory {
         self.frames.forget_before(sampled);
         let rests = self.span == Some((pose, pose))
             && [&self.ticks, &self.frames].iter().all(|track| track.rests_at(pose));
-        if let (true, Some(&(frame, _))) = (rests, self.frames.samples.back()) {
-            self.rest = Some(Rest { pose, frame, tick: time });
+        if rests && !self.frames.samples.is_empty() {
+            self.rest = Some(Rest { pose, tick: time, ticks: now.ticks });
         }
     }
 
-    /// Lets the delay tend to what suits how the thing is moved.
+    /// Lets the delay tend, for so many seconds, to what suits how the thing is moved.
     fn change_delay(&mut self, tick: f64, frame: f64) {
         let delay = match self.moved_by {
             MovedBy::Ticks => 0.0,
@@ -242,11 +268,14 @@ impl PoseHistory {
         };
     }
 
-    /// Brings the samples up to date, as if they had been taken all the time.
-    fn end_rest(&mut self) {
+    /// Brings everything up to date, as if it had been looked at all the time.
+    fn end_rest(&mut self, last: &Observed) {
         if let Some(rest) = self.rest.take() {
-            self.frames.extend(rest.frame);
-            self.ticks.extend(rest.tick);
+            self.frames.extend(last.frame);
+            self.ticks.extend(last.tick);
+            let ticks = last.ticks.wrapping_sub(rest.ticks);
+            self.ticks_to_quiet = self.ticks_to_quiet.saturating_sub(ticks);
+            self.change_delay(last.tick - rest.tick, last.frame_length);
         }
     }
 

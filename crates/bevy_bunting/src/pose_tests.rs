@@ -2,7 +2,7 @@
 
 use bevy_math::{Isometry3d, Quat, Vec3};
 
-use super::PoseHistory;
+use super::{Observed, PoseHistory};
 
 /// Seconds of a tick: Bevy's default.
 const TICK: f64 = 1.0 / 64.0;
@@ -20,14 +20,14 @@ fn at(x: f32) -> Isometry3d {
 /// An app's clocks: what is moved in `Update` and `FixedUpdate` is seen as the plugin sees it.
 struct Clocks {
     history: PoseHistory,
+    last: Observed,
     now: f64,
-    ticked: f64,
     pose: Isometry3d,
 }
 
 impl Clocks {
     fn new() -> Self {
-        Self { history: PoseHistory::default(), now: 0.0, ticked: 0.0, pose: at(0.0) }
+        Self { history: PoseHistory::default(), last: Observed::default(), now: 0.0, pose: at(0.0) }
     }
 
     /// One frame; gives the motion of each tick in it.
@@ -38,17 +38,21 @@ impl Clocks {
         fixed_update: impl Fn(f64) -> Option<Isometry3d>,
     ) -> Vec<f32> {
         self.now += seconds;
-        self.history.observe_frame(self.now, self.pose, LIMIT, true);
+        self.history.observe_frame(&self.last, self.now, self.pose, LIMIT, true);
         let mut motions = Vec::new();
-        while self.ticked + TICK <= self.now {
-            self.ticked += TICK;
-            self.pose = fixed_update(self.ticked).unwrap_or(self.pose);
-            self.history.observe_tick(self.ticked, TICK, seconds, self.pose, LIMIT);
+        while self.last.tick + TICK <= self.now {
+            let tick = self.last.tick + TICK;
+            self.pose = fixed_update(tick).unwrap_or(self.pose);
+            let now =
+                Observed { tick, ticks: self.last.ticks + 1, frame_length: seconds, ..self.last };
+            self.history.observe_tick(&self.last, &now, TICK, self.pose, LIMIT);
+            self.last = now;
             let (start, end) = (self.history.start(), self.history.end());
             motions.push((end.translation - start.translation).length());
         }
         self.pose = update(self.now).unwrap_or(self.pose);
-        self.history.observe_frame(self.now, self.pose, LIMIT, false);
+        self.history.observe_frame(&self.last, self.now, self.pose, LIMIT, false);
+        self.last.frame = self.now;
         motions
     }
 }
@@ -91,7 +95,7 @@ fn a_motion_in_fixed_update_is_taken_as_it_is() {
                 assert!((motion - SPEED * TICK as f32).abs() < ROUNDING, "{motion}");
             }
         }
-        if clocks.ticked > 0.0 {
+        if clocks.last.ticks > 0 {
             assert_eq!(clocks.history.end(), clocks.pose);
         }
     }
@@ -174,7 +178,7 @@ fn a_requested_jump_may_be_small() {
     for _ in 0..30 {
         clocks.frame(1.0 / 60.0, rests, rests);
     }
-    clocks.history.jump_next();
+    clocks.history.jump_next(&clocks.last);
     for _ in 0..30 {
         let motions = clocks.frame(1.0 / 60.0, |_| Some(at(1.0)), rests);
         assert!(motions.iter().all(|&motion| motion == 0.0), "{motions:?}");

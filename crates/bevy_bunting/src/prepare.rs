@@ -40,7 +40,13 @@ impl Plugin for PreparePlugin {
             .add_observer(clear_removed)
             .add_systems(
                 ClothTick,
-                (lose_targets, cut_cloths, change_materials).chain().in_set(ClothSystems::Prepare),
+                (
+                    lose_targets.run_if(any_component_removed::<Transform>),
+                    cut_cloths.run_if(may_cut),
+                    change_materials,
+                )
+                    .chain()
+                    .in_set(ClothSystems::Prepare),
             );
     }
 }
@@ -74,6 +80,18 @@ fn lose_targets(
         };
         commands.trigger(ClothTargetLost { entity, target, outcome: attachment.on_lost });
     }
+}
+
+type MayCut =
+    Or<(Changed<ClothMesh>, Changed<ClothMaterial>, Changed<LodSet>, Changed<Attachment>)>;
+
+/// Whether there may be a cloth to cut: in most ticks there is none.
+fn may_cut(
+    changed: Query<(), (With<ClothMesh>, MayCut)>,
+    mut released: RemovedComponents<Attachment>,
+    library: Res<FabricLibrary>,
+) -> bool {
+    released.read().count() > 0 || !changed.is_empty() || library.is_cutting()
 }
 
 type Cloths<'w, 's> = Query<

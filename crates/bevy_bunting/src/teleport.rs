@@ -7,7 +7,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 
 use crate::batches::ClothBatches;
 use crate::instance::ClothInstance;
-use crate::pose::PoseHistory;
+use crate::pose::{Observed, PoseHistory};
 use crate::state::ClothState;
 
 /// Asks that the next change of a cloth's frame be a teleport: trigger it in the frame or tick in
@@ -48,9 +48,10 @@ fn teleport(
     request: On<TeleportCloth>,
     mut cloths: Query<(&mut PoseHistory, &mut ClothInstance, &mut ClothState)>,
     mut batches: ResMut<ClothBatches>,
+    observed: Res<Observed>,
 ) {
     let Ok((mut history, mut instance, mut state)) = cloths.get_mut(request.entity) else { return };
-    history.jump_next();
+    history.jump_next(&observed);
     if request.mode == TeleportMode::Reset {
         instance.rest(&mut batches);
         if let Some(levels) = &instance.levels {

@@ -221,6 +221,9 @@ impl Chooser {
                 cloth.change_level(to, self.now, batches, commands);
                 cloth.watch.changed = self.now.wrapping_sub(budget.dwell);
                 candidate.level = to as u32;
+            } else if changes && cloth.instance.is_unseen() && cloth.instance.is_as_cut() {
+                // It will be seen at that level first, and takes the less memory until then.
+                cloth.change_level(to, self.now, batches, commands);
             }
         }
         cloth.watch.activity = cloth.instance.activity;
