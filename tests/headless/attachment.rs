@@ -220,3 +220,62 @@ fn a_cloth_left_behind_is_pulled_along() {
     let tip = state(&app, cloth).positions()[16];
     assert!(tip.z < -0.3, "{tip}");
 }
+
+/// Moves an entity along z for a while; how far the cloth then is from where it hung, seen from its frame, m.
+fn swing(app: &mut App, mover: Entity, vehicle: Entity, cloth: Entity) -> f32 {
+    let tip = |app: &App| state(app, cloth).positions()[16];
+    let before = tip(app);
+    for _ in 0..30 {
+        app.world_mut().get_mut::<Transform>(mover).expect("it stays").translation.z += 0.1;
+        app.update();
+        let error = error(app, vehicle, cloth);
+        assert!(error < TOLERANCE, "{error} m");
+    }
+    tip(app).distance(before)
+}
+
+/// What has rested for so long is looked at no more, until something moves it.
+const LONG: usize = 60;
+
+/// As far as the cloth must swing to have felt the motion, m.
+const FELT: f32 = 0.2;
+
+#[test]
+fn what_has_rested_is_followed_when_anything_moves_it() {
+    let mut app = app();
+    let (vehicle, cloth) = attached(&mut app, false);
+    let lorry = app.world_mut().spawn(Transform::from_xyz(1.0, 0.0, 0.0)).id();
+    app.world_mut().entity_mut(vehicle).insert(ChildOf(lorry));
+    run(&mut app, LONG);
+    let by_parent = swing(&mut app, lorry, vehicle, cloth);
+    assert!(by_parent > FELT, "{by_parent} m");
+
+    let other = app.world_mut().spawn(Transform::from_xyz(0.0, 0.5, 3.0)).id();
+    run(&mut app, LONG);
+    app.world_mut().get_mut::<Attachment>(cloth).expect("attached").target = other;
+    run(&mut app, LONG);
+    let by_other = swing(&mut app, other, other, cloth);
+    assert!(by_other > FELT, "{by_other} m");
+
+    run(&mut app, LONG);
+    app.world_mut().entity_mut(other).insert(ChildOf(lorry));
+    app.update();
+    assert!(error(&app, other, cloth) < TOLERANCE);
+    run(&mut app, LONG);
+    let by_new_parent = swing(&mut app, lorry, other, cloth);
+    assert!(by_new_parent > FELT, "{by_new_parent} m");
+    assert!(app.world().resource::<Seen<ClothFailed>>().0.is_empty());
+}
+
+#[test]
+fn what_is_attached_no_more_follows_no_more() {
+    let mut app = app();
+    let (vehicle, cloth) = attached(&mut app, false);
+    run(&mut app, LONG);
+    app.world_mut().entity_mut(cloth).remove::<Attachment>();
+    run(&mut app, 2);
+    let stood = *app.world().get::<Transform>(cloth).expect("a transform");
+    app.world_mut().get_mut::<Transform>(vehicle).expect("it stays").translation.z += 1.0;
+    run(&mut app, 2);
+    assert_eq!(app.world().get::<Transform>(cloth), Some(&stood));
+}
