@@ -129,6 +129,11 @@ impl ClothBatches {
         self.free(slot).forgetful_snapshot(slot.lane)
     }
 
+    /// Takes a cloth out of its lane that goes on with some of its particles.
+    pub(crate) fn take_some(&mut self, slot: Slot, particles: &[u32]) -> ClothSnapshot {
+        self.free(slot).snapshot_of(slot.lane, particles)
+    }
+
     /// Frees a lane. The cloth's state is there until someone takes its place.
     fn free(&mut self, slot: Slot) -> &ClothBatch {
         let group = &mut self.groups[slot.group];

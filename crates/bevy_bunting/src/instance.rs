@@ -61,17 +61,6 @@ impl ClothInstance {
         }
     }
 
-    /// Whether it sleeps because nobody sees it.
-    pub fn is_unseen(&self) -> bool {
-        matches!(self.activity, ClothActivity::OffScreen | ClothActivity::OutOfRange)
-    }
-
-    /// Whether it is in no lane, and lies as it was cut.
-    pub fn is_as_cut(&self) -> bool {
-        let state = self.waiting().zip(self.fabric());
-        state.is_some_and(|(state, fabric)| state.is_at_rest(fabric))
-    }
-
     /// The fabric of the cloth at its level.
     pub fn fabric(&self) -> Option<&Arc<Fabric>> {
         self.levels.as_ref().map(|levels| levels.fabric(self.level))
@@ -99,6 +88,22 @@ impl ClothInstance {
         if let (Some(levels), Place::Waiting(snapshot)) = (&self.levels, &mut self.place) {
             let state = core::mem::take(snapshot);
             *snapshot = levels.transfer(state, (self.level, to), &self.material, self.gravity);
+        }
+        self.level = to;
+    }
+
+    /// Moves the state to a coarser level while nobody looks: with the particles that stay, and without
+    /// regard to the others.
+    pub fn drop_to(&mut self, to: usize, batches: &mut ClothBatches) {
+        if let Some(levels) = &self.levels {
+            let shared = levels.shared(self.level, to);
+            let state = match &self.place {
+                Place::Nowhere => None,
+                Place::Waiting(snapshot) => Some(snapshot.of(&shared)),
+                Place::Seated(slot) => Some(batches.take_some(*slot, &shared)),
+            };
+            let calm = |state| Place::Waiting(levels.calm(state, to, &self.material));
+            self.place = state.map_or(Place::Nowhere, calm);
         }
         self.level = to;
     }

@@ -152,6 +152,30 @@ impl ClothLevels {
         snapshot
     }
 
+    /// For each particle of a level the one that it is at a finer level.
+    pub fn shared(&self, fine: usize, coarse: usize) -> Vec<u32> {
+        let mut particles = (0..self.fabric(coarse).particle_count() as u32).collect::<Vec<_>>();
+        for transfer in self.between(fine, coarse).iter().rev() {
+            particles.iter_mut().for_each(|at| *at = transfer.shared()[*at as usize]);
+        }
+        particles
+    }
+
+    /// A state that has only the positions and velocities of a finer level's particles, made sound.
+    pub fn calm(
+        &self,
+        snapshot: ClothSnapshot,
+        level: usize,
+        material: &FabricMaterial,
+    ) -> ClothSnapshot {
+        match self.between(0, level).last() {
+            Some(transfer) if !snapshot.is_at_rest(self.fabric(level)) => {
+                transfer.calm(snapshot, material)
+            }
+            _ => snapshot,
+        }
+    }
+
     /// Values at the particles of a level, spread over its triangles to those of a finer level.
     pub fn spread(&self, mut values: Vec<Vec3>, from: usize, to: usize) -> Vec<Vec3> {
         for transfer in self.between(to, from).iter().rev() {

@@ -334,6 +334,12 @@ impl ClothBatch {
         at_any_width!(&self.0, batch => batch.forgetful_snapshot(lane))
     }
 
+    /// Positions and velocities of some of a lane's particles, as of a coarser fabric that shares them.
+    #[must_use]
+    pub fn snapshot_of(&self, lane: usize, particles: &[u32]) -> ClothSnapshot {
+        at_any_width!(&self.0, batch => batch.snapshot_of(lane, particles))
+    }
+
     /// Whether every number of a lane's state is finite.
     #[must_use]
     pub fn is_finite(&self, lane: usize) -> bool {

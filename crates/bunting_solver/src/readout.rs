@@ -28,6 +28,15 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         ClothSnapshot::new(self.read(&self.position, lane), self.read(&self.velocity, lane))
     }
 
+    /// Positions and velocities of some of a lane's particles.
+    pub fn snapshot_of(&self, lane: usize, particles: &[u32]) -> ClothSnapshot {
+        let read = |packs: &[Pack3<P>]| {
+            let seats = particles.iter().map(|&at| self.seating.seat(at as usize, lane));
+            seats.map(|(pack, lane)| lane3(&packs[pack], lane)).collect()
+        };
+        ClothSnapshot::new(read(&self.position), read(&self.velocity))
+    }
+
     fn read(&self, packs: &[Pack3<P>], lane: usize) -> Vec<Vec3> {
         let mut vectors = Vec::new();
         self.seating.read::<P, C>(packs, lane, &mut vectors);

@@ -51,6 +51,13 @@ impl ClothSnapshot {
             && self.velocities.iter().all(|&velocity| velocity == Vec3::ZERO)
     }
 
+    /// Positions and velocities of some of the particles, as of a coarser fabric that shares them.
+    #[must_use]
+    pub fn of(&self, particles: &[u32]) -> Self {
+        let pick = |all: &[Vec3]| particles.iter().map(|&at| all[at as usize]).collect();
+        Self::new(pick(&self.positions), pick(&self.velocities))
+    }
+
     /// The same positions and velocities, without a past.
     #[must_use]
     pub fn forgetful(self) -> Self {

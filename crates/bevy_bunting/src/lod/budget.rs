@@ -24,7 +24,7 @@ pub struct ClothBudget {
     pub coarsen_below: f32,
     /// Ticks between two changes of one cloth's level, unless there is no time to wait for them.
     pub dwell: u32,
-    /// Most changes of level in a tick.
+    /// Most changes of level in a tick, and as many again of what is in nobody's picture.
     pub switches: usize,
     /// How far beside the screen cloth is awake, so that it has settled when it comes into view, rad.
     pub margin: f32,

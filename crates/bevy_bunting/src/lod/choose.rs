@@ -42,8 +42,6 @@ pub(crate) struct Chooser {
     entities: Vec<Entity>,
     /// Number of the tick.
     now: u32,
-    /// Cloths that have woken at another level in this tick.
-    woken: usize,
     /// Number of cloths so far, for their turns.
     cloths: u32,
     /// What the last tick should have cost by the table besides its batches, µs.
@@ -110,7 +108,6 @@ pub(crate) fn choose_levels(
     chooser.entities.clear();
     counts.0.fill(0);
     chooser.now = chooser.now.wrapping_add(1);
-    chooser.woken = 0;
     for mut cloth in &mut cloths {
         let turn = cloth.watch.turn.wrapping_add(chooser.now).is_multiple_of(LOOKED_AT_EVERY);
         let changed = cloth.instance.is_changed() || cloth.lods.is_changed();
@@ -146,7 +143,8 @@ pub(crate) fn choose_levels(
         if let Ok(mut cloth) = cloths.get_mut(chooser.entities[index]) {
             counts.0[cloth.instance.level] -= 1;
             counts.add(to);
-            cloth.change_level(to, chooser.now, &mut batches, &mut commands);
+            let seen = cloth.watch.candidate.is_none_or(|candidate| candidate.seen);
+            cloth.change_level(to, seen, chooser.now, &mut batches, &mut commands);
         }
     }
 }
@@ -195,7 +193,8 @@ impl Chooser {
             // Without a viewer all is as near as can be.
             cloth.lods.level_at(nearest.unwrap_or(0.0), cloth.instance.level)
         };
-        cloth.change_level(to, self.now, batches, commands);
+        let seen = look.as_ref().is_none_or(|look| look.sight == Sight::Seen);
+        cloth.change_level(to, seen, self.now, batches, commands);
         let mut candidate = Candidate {
             kind: kind as u32,
             level: to as u32,
@@ -203,27 +202,21 @@ impl Chooser {
             weight: look.map_or(0.0, |look| weight(&look, cloth.watch.radius)),
             ready: false,
             fixed: look.is_none() || cloth.lods.pinned.is_some(),
+            seen,
         };
         if let Some(look) = look.filter(|_| !cloth.paused) {
             let errors = &self.kinds.kinds[kind].errors;
             let finer =
                 !candidate.fixed && wanted_level(errors, &candidate, limits) < candidate.level;
             let to = cloth.lods.pinned.unwrap_or(errors.len() - 1);
-            let changes = to != cloth.instance.level;
-            // What sleeps and is not yet seen can wait for others to change their levels.
-            let waits = cloth.instance.activity == ClothActivity::OffScreen
-                && changes
-                && look.sight == Sight::Beside
-                && self.woken >= limits.switches;
-            if !waits && cloth.sleep(look.sight, finer, self.now) {
-                self.woken += usize::from(changes);
+            if cloth.sleep(look.sight, finer, self.now) {
                 // It has settled when it is seen, and then need not wait for a finer level.
-                cloth.change_level(to, self.now, batches, commands);
+                cloth.change_level(to, seen, self.now, batches, commands);
                 cloth.watch.changed = self.now.wrapping_sub(budget.dwell);
                 candidate.level = to as u32;
-            } else if changes && cloth.instance.is_unseen() && cloth.instance.is_as_cut() {
-                // It will be seen at that level first, and takes the less memory until then.
-                cloth.change_level(to, self.now, batches, commands);
+            } else if cloth.instance.activity == ClothActivity::OffScreen {
+                // That is how it will be seen next. Until then it takes the less memory.
+                cloth.change_level(to, seen, self.now, batches, commands);
             }
         }
         cloth.watch.activity = cloth.instance.activity;
@@ -233,10 +226,11 @@ impl Chooser {
 }
 
 impl ChosenItem<'_, '_> {
-    /// Moves the cloth to another level.
+    /// Moves the cloth to another level; without care, if nobody sees it become coarser.
     fn change_level(
         &mut self,
         to: usize,
+        seen: bool,
         now: u32,
         batches: &mut ClothBatches,
         commands: &mut Commands,
@@ -245,10 +239,17 @@ impl ChosenItem<'_, '_> {
         if to == from {
             return;
         }
-        self.instance.change_level(to, batches);
+        let unseen = !seen && to > from;
+        if unseen {
+            self.instance.drop_to(to, batches);
+        } else {
+            self.instance.change_level(to, batches);
+        }
         let instance = &*self.instance;
         if let Some((levels, snapshot)) = instance.levels.as_ref().zip(instance.waiting()) {
-            if instance.activity == ClothActivity::Ticking && !self.paused {
+            if unseen {
+                self.state.begin_anew(to, levels, &snapshot.positions);
+            } else if instance.activity == ClothActivity::Ticking && !self.paused {
                 self.state.go_on(to, levels, &snapshot.positions);
             } else {
                 self.state.begin(to, levels, &snapshot.positions);

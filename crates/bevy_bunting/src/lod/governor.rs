@@ -92,6 +92,8 @@ pub(crate) struct Candidate {
     pub ready: bool,
     /// Whether its level is not ours to choose: it only costs.
     pub fixed: bool,
+    /// Whether it is in a picture.
+    pub seen: bool,
 }
 
 /// What the choice keeps to.
@@ -103,7 +105,7 @@ pub(crate) struct Limits {
     pub refine_above: f32,
     /// Error below which a coarser level does, px.
     pub coarsen_below: f32,
-    /// Most changes in a tick.
+    /// Most changes in a tick of what is seen, and of what is not, which cost little.
     pub switches: usize,
 }
 
@@ -242,27 +244,29 @@ impl Governor {
     fn switch(&mut self, kinds: &[Kind], cloths: &[Candidate], limits: &Limits) {
         let switches = &mut self.choice.switches;
         switches.clear();
+        let mut left = [limits.switches; 2];
         let mut cost = self.counts.count(kinds, cloths, cloths.iter().map(|cloth| cloth.level));
         for (index, (cloth, &to)) in cloths.iter().zip(&self.chosen).enumerate() {
             let may = cloth.ready || cost > limits.budget;
-            if to > cloth.level && may && switches.len() < limits.switches {
+            let left = &mut left[usize::from(cloth.seen)];
+            if to > cloth.level && may && *left > 0 {
+                *left -= 1;
                 cost += self.counts.difference(kinds, cloth.kind, cloth.level, to);
                 self.counts.shift(cloth.kind, cloth.level, to);
                 switches.push((index, to as usize));
             }
         }
         for step in &self.sorted {
-            if switches.len() == limits.switches {
-                break;
-            }
             let (cloth, to) = (&cloths[step.cloth as usize], self.chosen[step.cloth as usize]);
+            let left = &mut left[usize::from(cloth.seen)];
             // Each cloth once: at the step that begins at its level.
-            if step.to + 1 != cloth.level || to >= cloth.level || !cloth.ready {
+            if step.to + 1 != cloth.level || to >= cloth.level || !cloth.ready || *left == 0 {
                 continue;
             }
             let more = self.counts.difference(kinds, cloth.kind, cloth.level, to);
             if more <= 0.0 || cost + more <= limits.budget {
                 cost += more;
+                *left -= 1;
                 self.counts.shift(cloth.kind, cloth.level, to);
                 switches.push((step.cloth as usize, to as usize));
             }

@@ -18,7 +18,15 @@ fn kind() -> Kind {
 }
 
 fn cloth(level: u32, scale: f32) -> Candidate {
-    Candidate { kind: 0, level, scale, weight: scale * scale, ready: true, fixed: false }
+    Candidate {
+        kind: 0,
+        level,
+        scale,
+        weight: scale * scale,
+        ready: true,
+        fixed: false,
+        seen: true,
+    }
 }
 
 /// Chooses again and again, as the cloths follow; the levels in the end.
@@ -109,6 +117,18 @@ fn over_the_budget_cloths_become_coarser_at_once() {
     let choice = settle(&mut cloths, &limits);
     assert!(choice.cost <= limits.budget);
     assert!(choice.held_back > 0);
+}
+
+#[test]
+fn what_nobody_sees_changes_in_turns_of_its_own() {
+    let unseen = |index: usize| index % 2 == 0;
+    let cloths: Vec<Candidate> =
+        (0..8).map(|index| Candidate { seen: !unseen(index), ..cloth(0, 1.0) }).collect();
+    let limits = Limits { switches: 2, ..LIMITS };
+    let choice = Governor::default().choose(&[kind()], &cloths, &limits).clone();
+    let (of_unseen, of_seen): (Vec<usize>, Vec<usize>) =
+        choice.switches.iter().map(|&(index, _)| index).partition(|&index| unseen(index));
+    assert_eq!((of_unseen, of_seen), (vec![0, 2], vec![1, 3]));
 }
 
 #[test]

@@ -202,6 +202,24 @@ impl LevelTransfer {
         before.arrive(settler, positions.into_owned(), velocities.into_owned(), material, gravity)
     }
 
+    /// For each coarse particle the fine one that it is.
+    #[must_use]
+    pub fn shared(&self) -> &[u32] {
+        &self.shared
+    }
+
+    /// Takes the strain off a coarse state that has only the shared particles' positions and velocities,
+    /// until it stores hardly more than moves. For what nobody sees: much cheaper than
+    /// [`restrict`](Self::restrict), but neither momentum nor energy are those of the fine cloth.
+    #[must_use]
+    pub fn calm(&self, coarse: ClothSnapshot, material: &FabricMaterial) -> ClothSnapshot {
+        let ClothSnapshot { mut positions, velocities, .. } = coarse;
+        let moves =
+            0.5 * f64::from(material.area_density) * motion::agitation(&self.coarse, &velocities);
+        self.settlers[1].settle(material, &mut positions, PAID * moves);
+        ClothSnapshot::new(positions, velocities)
+    }
+
     /// Values at the fine particles, of those that are shared: one a coarse particle.
     pub fn pick<'a>(&'a self, fine: &'a [Vec3]) -> impl Iterator<Item = Vec3> + 'a {
         self.shared.iter().map(|&particle| fine[particle as usize])
