@@ -45,6 +45,8 @@ struct Group {
 #[derive(Resource, Debug, Default)]
 pub struct ClothBatches {
     groups: Vec<Group>,
+    /// Time that the last [`settle`](Self::settle) took.
+    pub(crate) settling: Duration,
     /// Whether the time of each batch is measured in this tick.
     pub(crate) measures: bool,
 }
@@ -145,12 +147,14 @@ impl ClothBatches {
 
     /// Seats newcomers and closes gaps; tells where every cloth is that has taken another lane.
     pub(crate) fn settle(&mut self, lanes: Option<LaneCount>, mut moved: impl FnMut(Entity, Slot)) {
+        let began = Instant::now();
         for (index, group) in self.groups.iter_mut().enumerate().filter(|(_, group)| group.changed)
         {
             group.settle(lanes, |entity, batch, lane| {
                 moved(entity, Slot { group: index, batch, lane });
             });
         }
+        self.settling = began.elapsed();
     }
 
     /// Everyone who sits in a lane, each with the surface that [`copy_surfaces`](Self::copy_surfaces)

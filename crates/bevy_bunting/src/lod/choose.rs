@@ -46,6 +46,10 @@ pub(crate) struct Chooser {
     cloths: u32,
     /// What the last tick should have cost by the table besides its batches, µs.
     besides: f32,
+    /// Particles of the finer levels of its changes in somebody's picture.
+    changed: usize,
+    /// Time that changes took that nobody and that somebody saw, without seats.
+    changing: [Duration; 2],
 }
 
 /// A cloth, as the choice sees it.
@@ -108,6 +112,7 @@ pub(crate) fn choose_levels(
     chooser.entities.clear();
     counts.0.fill(0);
     chooser.now = chooser.now.wrapping_add(1);
+    (chooser.changed, chooser.changing) = (0, [Duration::ZERO; 2]);
     for mut cloth in &mut cloths {
         let turn = cloth.watch.turn.wrapping_add(chooser.now).is_multiple_of(LOOKED_AT_EVERY);
         let changed = cloth.instance.is_changed() || cloth.lods.is_changed();
@@ -137,21 +142,27 @@ pub(crate) fn choose_levels(
     report.expected = Duration::from_secs_f32(1e-6 * (choice.cost + chooser.model.tick(&table)));
     report.held_back = choice.held_back;
     report.switches = choice.switches.len();
-    report.choice = began.elapsed();
+    report.choice = began.elapsed() - chooser.changing.iter().sum::<Duration>();
 
-    for &(index, to) in &choice.switches {
+    let switches = choice.switches.clone();
+    for (index, to) in switches {
         if let Ok(mut cloth) = cloths.get_mut(chooser.entities[index]) {
             counts.0[cloth.instance.level] -= 1;
             counts.add(to);
             let seen = cloth.watch.candidate.is_none_or(|candidate| candidate.seen);
-            cloth.change_level(to, seen, chooser.now, &mut batches, &mut commands);
+            chooser.change(&mut cloth, to, seen, &mut batches, &mut commands);
         }
     }
 }
 
 impl Chooser {
-    /// Learns from the last tick, if it was measured.
+    /// Learns from the last tick, as far as it was measured.
     fn learn(&mut self, table: &CostTable, batches: &ClothBatches, timings: Option<&ClothTimings>) {
+        let in_changes = match self.changed {
+            0 => 0.0,
+            _ => (self.changing[1] + batches.settling).as_secs_f32() * 1e6,
+        };
+        self.model.learn_changes(table.change(self.changed), in_changes);
         if !batches.measures {
             return;
         }
@@ -159,7 +170,28 @@ impl Chooser {
         self.model.learn(table, batches.measured());
         if let Some(timings) = timings {
             let total = timings.total().as_secs_f32() * 1e6;
-            self.model.learn_besides(self.besides, total - in_batches);
+            self.model.learn_besides(self.besides, total - in_batches - in_changes);
+        }
+    }
+
+    /// Moves a cloth to another level, and notes what that costs.
+    fn change(
+        &mut self,
+        cloth: &mut ChosenItem,
+        to: usize,
+        seen: bool,
+        batches: &mut ClothBatches,
+        commands: &mut Commands,
+    ) {
+        let from = cloth.instance.level;
+        if from == to {
+            return;
+        }
+        let began = Instant::now();
+        cloth.change_level(to, seen, self.now, batches, commands);
+        self.changing[usize::from(seen)] += began.elapsed();
+        if let (true, Some(levels)) = (seen, &cloth.instance.levels) {
+            self.changed += levels.fabric(from.min(to)).particle_count();
         }
     }
 
@@ -194,7 +226,7 @@ impl Chooser {
             cloth.lods.level_at(nearest.unwrap_or(0.0), cloth.instance.level)
         };
         let seen = look.as_ref().is_none_or(|look| look.sight == Sight::Seen);
-        cloth.change_level(to, seen, self.now, batches, commands);
+        self.change(cloth, to, seen, batches, commands);
         let mut candidate = Candidate {
             kind: kind as u32,
             level: to as u32,
@@ -211,12 +243,12 @@ impl Chooser {
             let to = cloth.lods.pinned.unwrap_or(errors.len() - 1);
             if cloth.sleep(look.sight, finer, self.now) {
                 // It has settled when it is seen, and then need not wait for a finer level.
-                cloth.change_level(to, seen, self.now, batches, commands);
+                self.change(cloth, to, seen, batches, commands);
                 cloth.watch.changed = self.now.wrapping_sub(budget.dwell);
                 candidate.level = to as u32;
             } else if cloth.instance.activity == ClothActivity::OffScreen {
                 // That is how it will be seen next. Until then it takes the less memory.
-                cloth.change_level(to, seen, self.now, batches, commands);
+                self.change(cloth, to, seen, batches, commands);
             }
         }
         cloth.watch.activity = cloth.instance.activity;
@@ -236,9 +268,6 @@ impl ChosenItem<'_, '_> {
         commands: &mut Commands,
     ) {
         let from = self.instance.level;
-        if to == from {
-            return;
-        }
         let unseen = !seen && to > from;
         if unseen {
             self.instance.drop_to(to, batches);

@@ -10,6 +10,9 @@ use super::governor::BatchCosts;
 /// that it expects what most ticks do not exceed rather than their mean.
 const RATES: [f32; 2] = [0.2, 0.05];
 
+/// Part of what was known of changes of level that is kept when there is a new one: some twenty count.
+const KEPT: f32 = 0.95;
+
 /// A measurement counts for at most this many times what was expected: a tick in which the machine
 /// did something else says nothing of the cloths.
 const GREATEST_SURPRISE: f32 = 1.5;
@@ -29,6 +32,8 @@ pub struct CostTable {
     pub cloth: f32,
     /// A tick, whatever is in it, µs.
     pub tick: f32,
+    /// A change of level in somebody's picture, ns a particle of the finer of the two.
+    pub change: f32,
 }
 
 impl Default for CostTable {
@@ -40,6 +45,7 @@ impl Default for CostTable {
             publish: 2.0,
             cloth: 200.0,
             tick: 20.0,
+            change: 170.0,
         }
     }
 }
@@ -52,6 +58,11 @@ impl CostTable {
         let passes = settings.passes.saturating_sub(1) as f32;
         let substep = self.substep[width] + passes * self.pass[width];
         1e-3 * particles as f32 * settings.substeps as f32 * substep
+    }
+
+    /// A change between a level and a coarser one, µs; particles of the finer.
+    pub fn change(&self, particles: usize) -> f32 {
+        1e-3 * self.change * particles as f32
     }
 
     /// A cloth in a tick, besides its part of a batch, µs.
@@ -93,13 +104,15 @@ pub(crate) struct CostModel {
     factors: Vec<Factor>,
     /// Of batches that were not measured yet.
     general: f32,
-    /// Of everything besides batches.
+    /// Of everything besides batches and changes of level.
     besides: f32,
+    /// What the table expected of changes of level, and what they took, µs: those of late count more.
+    changes: [f32; 2],
 }
 
 impl Default for CostModel {
     fn default() -> Self {
-        Self { factors: Vec::new(), general: 1.0, besides: 1.0 }
+        Self { factors: Vec::new(), general: 1.0, besides: 1.0, changes: [1.0; 2] }
     }
 }
 
@@ -141,6 +154,21 @@ impl CostModel {
         }
     }
 
+    /// Learns what the changes of level in a tick took, µs, where the table says `expected`.
+    pub fn learn_changes(&mut self, expected: f32, time: f32) {
+        if expected > 0.0 && time.is_finite() {
+            let surprise = GREATEST_SURPRISE * self.change() * expected;
+            for (sum, new) in self.changes.iter_mut().zip([expected, time.min(surprise)]) {
+                *sum = KEPT * *sum + new;
+            }
+        }
+    }
+
+    /// How many times more than the table says a change of level costs.
+    fn change(&self) -> f32 {
+        self.changes[1] / self.changes[0]
+    }
+
     /// What a tick costs whatever is in it, µs.
     pub fn tick(&self, table: &CostTable) -> f32 {
         self.besides * table.tick
@@ -164,12 +192,17 @@ impl CostModel {
         };
         let one = cost(LaneCount::One);
         let each = self.besides * table.each(particles);
+        let change = self.change() * table.change(particles);
         match widest {
-            LaneCount::One => BatchCosts { one, eight: 8.0 * one, sixteen: None, alone: 8, each },
-            LaneCount::Eight => BatchCosts { one, eight: cost(widest), sixteen: None, alone, each },
+            LaneCount::One => {
+                BatchCosts { one, eight: 8.0 * one, sixteen: None, alone: 8, each, change }
+            }
+            LaneCount::Eight => {
+                BatchCosts { one, eight: cost(widest), sixteen: None, alone, each, change }
+            }
             LaneCount::Sixteen => {
                 let [eight, sixteen] = [LaneCount::Eight, widest].map(cost);
-                BatchCosts { one, eight, sixteen: Some(sixteen), alone, each }
+                BatchCosts { one, eight, sixteen: Some(sixteen), alone, each, change }
             }
         }
     }
@@ -196,6 +229,7 @@ mod tests {
         publish: 2.0,
         cloth: 0.0,
         tick: 10.0,
+        change: 50.0,
     };
     const SETTINGS: StepSettings = StepSettings::yarns(2);
 
@@ -210,7 +244,9 @@ mod tests {
         assert_eq!(TABLE.batch(1000, passes, LaneCount::Eight), 480.0);
         let costs = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1);
         let sixteen = Some(600.0);
-        assert_eq!(costs, BatchCosts { one: 200.0, eight: 400.0, sixteen, alone: 1, each: 2.0 });
+        let expected =
+            BatchCosts { one: 200.0, eight: 400.0, sixteen, alone: 1, each: 2.0, change: 50.0 };
+        assert_eq!(costs, expected);
         let narrow = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Eight, 1);
         assert_eq!(narrow.sixteen, None);
     }
@@ -221,12 +257,14 @@ mod tests {
         for _ in 0..200 {
             model.learn(&TABLE, [sixteen(1800.0)].into_iter());
             model.learn_besides(10.0, 40.0);
+            model.learn_changes(30.0, 60.0);
         }
         let costs = |particles| model.costs(&TABLE, particles, SETTINGS, LaneCount::Sixteen, 1);
         assert!((costs(1000).sixteen.expect("wide") / 1800.0 - 1.0).abs() < 0.01);
         // What was never measured is as much dearer than the table as what was.
         assert!((costs(500).eight / 600.0 - 1.0).abs() < 0.01);
         assert!((model.tick(&TABLE) / 40.0 - 1.0).abs() < 0.01);
+        assert!((costs(1000).change / 100.0 - 1.0).abs() < 0.01);
     }
 
     #[test]

@@ -10,7 +10,8 @@
 //!    of whole batches: the ninth cloth of a batch of sixteen lanes is free, and what is free goes to
 //!    the next in line.
 //! 3. Cloths move towards these levels, at most so many a tick and none too soon after its last
-//!    change, the coarser first; none becomes finer while there is no room for it.
+//!    change, the coarser first; none becomes finer while there is no room for it. A change costs
+//!    time, too: as long as any is due, the levels leave room for the dearest.
 
 /// How many times more a step is worth that is taken already, so that two cloths of the same worth
 /// do not take turns. What a step is worth goes with the fifth power of the distance: this is a quarter
@@ -20,6 +21,9 @@ const LOYALTY: f32 = 3.0;
 /// Part of the budget that what is not simulated yet may fill, so that costs that waver do not open
 /// and close a batch by turns.
 const NEW_PART: f32 = 0.95;
+
+/// Part of the budget that changes are given room at most: those that cost more come all the same.
+const MOST_RESERVED: f32 = 0.25;
 
 /// Bits of a gain over cost that are dropped to make its bucket: leaves the exponent and four bits, a
 /// resolution of 1/16.
@@ -42,29 +46,34 @@ pub(crate) struct BatchCosts {
     pub alone: u32,
     /// What each cloth costs besides.
     pub each: f32,
+    /// What it costs, once, to change between this level and a coarser one in somebody's picture.
+    pub change: f32,
 }
 
 impl BatchCosts {
     /// Cost of so many cloths, µs.
     fn of(&self, cloths: u32) -> f32 {
-        let (width, widest) = self.widest();
-        let rest = match cloths % width {
+        let (bits, widest) = self.widest();
+        // Asked so often that a division would count.
+        let full = cloths >> bits;
+        let rest = match cloths - (full << bits) {
             rest if rest <= self.alone => rest as f32 * self.one,
             ..=8 => self.eight,
             rest if rest - 8 < self.alone => self.eight + (rest - 8) as f32 * self.one,
             _ => widest,
         };
-        (cloths / width) as f32 * widest + rest + cloths as f32 * self.each
+        full as f32 * widest + rest + cloths as f32 * self.each
     }
 
     /// Cost of a cloth among many, µs.
     fn share(&self) -> f32 {
-        let (width, cost) = self.widest();
-        cost / width as f32 + self.each
+        let (bits, cost) = self.widest();
+        cost / (1 << bits) as f32 + self.each
     }
 
+    /// The widest batch: the binary logarithm of its lanes, and its cost, µs.
     fn widest(&self) -> (u32, f32) {
-        self.sixteen.map_or((8, self.eight), |sixteen| (16, sixteen))
+        self.sixteen.map_or((3, self.eight), |sixteen| (4, sixteen))
     }
 }
 
@@ -114,7 +123,7 @@ pub(crate) struct Limits {
 pub(crate) struct Choice {
     /// Which cloths change, and to which level.
     pub switches: Vec<(usize, usize)>,
-    /// Sum of costs after that, µs.
+    /// Sum of costs in this tick, µs.
     pub cost: f32,
     /// Cloths that are coarser than they should be for want of time.
     pub held_back: usize,
@@ -150,7 +159,11 @@ impl Governor {
         self.appraise(kinds);
         self.collect_steps(kinds, cloths, limits);
         self.sort_steps();
-        self.take_steps(kinds, cloths, limits);
+        self.take_steps(kinds, cloths, limits.budget);
+        let due = self.dearest_change(kinds, cloths).min(MOST_RESERVED * limits.budget);
+        if due > 0.0 {
+            self.take_steps(kinds, cloths, limits.budget - due);
+        }
         self.switch(kinds, cloths, limits);
         &self.choice
     }
@@ -178,18 +191,15 @@ impl Governor {
     fn collect_steps(&mut self, kinds: &[Kind], cloths: &[Candidate], limits: &Limits) {
         self.steps.clear();
         self.wanted.clear();
-        self.chosen.clear();
         for (index, cloth) in cloths.iter().enumerate() {
             let errors = &kinds[cloth.kind as usize].errors;
             if cloth.fixed {
                 self.wanted.push(cloth.level);
-                self.chosen.push(cloth.level);
                 continue;
             }
             let wanted = wanted_level(errors, cloth, limits);
             let coarsest = errors.len() as u32 - 1;
             self.wanted.push(wanted);
-            self.chosen.push(coarsest);
             let importance = cloth.scale * cloth.weight;
             for to in (wanted..coarsest).rev() {
                 let loyalty = if cloth.level <= to { LOYALTY } else { 1.0 };
@@ -221,7 +231,11 @@ impl Governor {
         }
     }
 
-    fn take_steps(&mut self, kinds: &[Kind], cloths: &[Candidate], limits: &Limits) {
+    fn take_steps(&mut self, kinds: &[Kind], cloths: &[Candidate], budget: f32) {
+        let coarsest = |cloth: &Candidate| kinds[cloth.kind as usize].errors.len() as u32 - 1;
+        let first = |cloth: &Candidate| if cloth.fixed { cloth.level } else { coarsest(cloth) };
+        self.chosen.clear();
+        self.chosen.extend(cloths.iter().map(first));
         let mut cost = self.counts.count(kinds, cloths, self.chosen.iter().copied());
         for step in &self.sorted {
             let index = step.cloth as usize;
@@ -231,7 +245,7 @@ impl Governor {
             let cloth = &cloths[index];
             let part = if cloth.level <= step.to { 1.0 } else { NEW_PART };
             let more = self.counts.difference(kinds, cloth.kind, step.to + 1, step.to);
-            if more <= 0.0 || cost + more <= part * limits.budget {
+            if more <= 0.0 || cost + more <= part * budget {
                 cost += more;
                 self.counts.shift(cloth.kind, step.to + 1, step.to);
                 self.chosen[index] = step.to;
@@ -241,16 +255,23 @@ impl Governor {
         self.choice.held_back = pairs.filter(|(chosen, wanted)| chosen > wanted).count();
     }
 
+    /// The greatest cost of any change that is due.
+    fn dearest_change(&self, kinds: &[Kind], cloths: &[Candidate]) -> f32 {
+        let pairs = cloths.iter().zip(&self.chosen);
+        pairs.map(|(cloth, &to)| cloth.cost_of_change(kinds, to)).fold(0.0, f32::max)
+    }
+
     fn switch(&mut self, kinds: &[Kind], cloths: &[Candidate], limits: &Limits) {
         let switches = &mut self.choice.switches;
         switches.clear();
-        let mut left = [limits.switches; 2];
+        let (mut left, mut changes) = ([limits.switches; 2], 0.0);
         let mut cost = self.counts.count(kinds, cloths, cloths.iter().map(|cloth| cloth.level));
         for (index, (cloth, &to)) in cloths.iter().zip(&self.chosen).enumerate() {
             let may = cloth.ready || cost > limits.budget;
             let left = &mut left[usize::from(cloth.seen)];
             if to > cloth.level && may && *left > 0 {
                 *left -= 1;
+                changes += cloth.cost_of_change(kinds, to);
                 cost += self.counts.difference(kinds, cloth.kind, cloth.level, to);
                 self.counts.shift(cloth.kind, cloth.level, to);
                 switches.push((index, to as usize));
@@ -264,14 +285,25 @@ impl Governor {
                 continue;
             }
             let more = self.counts.difference(kinds, cloth.kind, cloth.level, to);
-            if more <= 0.0 || cost + more <= limits.budget {
+            let change = cloth.cost_of_change(kinds, to);
+            let room = limits.budget - (changes + change).min(MOST_RESERVED * limits.budget);
+            if more <= 0.0 || cost + more <= room {
                 cost += more;
+                changes += change;
                 *left -= 1;
                 self.counts.shift(cloth.kind, cloth.level, to);
                 switches.push((step.cloth as usize, to as usize));
             }
         }
-        self.choice.cost = cost;
+        self.choice.cost = cost + changes;
+    }
+}
+
+impl Candidate {
+    /// What it costs, once, to go to another level, µs. What nobody sees is changed without care.
+    fn cost_of_change(&self, kinds: &[Kind], to: u32) -> f32 {
+        let finer = &kinds[self.kind as usize].costs[self.level.min(to) as usize];
+        if self.seen && self.level != to { finer.change } else { 0.0 }
     }
 }
 

@@ -13,6 +13,7 @@ fn kind() -> Kind {
         sixteen: Some(sixteen),
         alone: 1,
         each: 0.0,
+        change: 0.0,
     });
     Kind { errors: vec![0.001, 0.01, 0.02, 0.04], costs: costs.to_vec() }
 }
@@ -50,7 +51,8 @@ fn levels(cloths: &[Candidate]) -> Vec<u32> {
 
 #[test]
 fn a_part_filled_batch_costs_a_full_one() {
-    let costs = BatchCosts { one: 1.0, eight: 3.0, sixteen: Some(5.0), alone: 1, each: 0.5 };
+    let costs =
+        BatchCosts { one: 1.0, eight: 3.0, sixteen: Some(5.0), alone: 1, each: 0.5, change: 0.0 };
     let expected = [0.0, 1.5, 4.0, 7.0, 9.5, 13.0, 14.5];
     assert_eq!([0, 1, 2, 8, 9, 16, 17].map(|count| costs.of(count)), expected);
     let narrow = BatchCosts { sixteen: None, ..costs };
@@ -117,6 +119,29 @@ fn over_the_budget_cloths_become_coarser_at_once() {
     let choice = settle(&mut cloths, &limits);
     assert!(choice.cost <= limits.budget);
     assert!(choice.held_back > 0);
+}
+
+#[test]
+fn there_is_room_for_changes() {
+    let mut kind = kind();
+    for (costs, change) in kind.costs.iter_mut().zip([200.0, 50.0, 10.0, 0.0]) {
+        costs.change = change;
+    }
+    let limits = Limits { switches: 1, ..LIMITS };
+    let mut governor = Governor::default();
+    let mut cloths: Vec<Candidate> = (0..40).map(|index| cloth(3, 900.0 - index as f32)).collect();
+    let mut changes = 0;
+    for tick in 0..400 {
+        // The one that counts most is another all the time.
+        cloths[tick / 20].scale = 2000.0;
+        let choice = governor.choose(core::slice::from_ref(&kind), &cloths, &limits).clone();
+        assert!(choice.cost <= limits.budget, "{} in tick {tick}", choice.cost);
+        for &(cloth, to) in &choice.switches {
+            changes += usize::from(to == 0);
+            cloths[cloth].level = to as u32;
+        }
+    }
+    assert!(changes >= 16, "{changes}");
 }
 
 #[test]
