@@ -37,16 +37,6 @@ pub(crate) struct Slot {
     pub contacts: Vec<Vec<u32>>,
 }
 
-impl Slot {
-    /// Part of the wind's velocity that a cloth at rest would take on in a substep of `step` seconds, were its
-    /// drag explicit.
-    fn swept(&self, step: f32) -> f32 {
-        let Drive { wind, air_density, .. } = self.drive;
-        let coefficient = self.material.pressure_coefficient + self.material.friction_coefficient;
-        0.5 * air_density * coefficient * wind.length() * step / self.material.area_density
-    }
-}
-
 /// One of the vectors of each particle, if the state has it.
 type OfState = fn(&ClothSnapshot) -> Option<&[Vec3]>;
 
@@ -81,9 +71,9 @@ pub(crate) struct LaneBatch<P: Pack, C = f32> {
     pub displacement: Vec<Pack3<P>>,
     /// Change of position in the substep before, m.
     pub older_displacement: Vec<Pack3<P>>,
-    /// Velocities a substep earlier, m/s.
+    /// Velocities a substep earlier, m/s, and what the air has changed them by since.
     pub older_velocity: Vec<Pack3<P>>,
-    /// Velocities two substeps earlier, m/s.
+    /// The same of two substeps earlier, m/s.
     pub oldest_velocity: Vec<Pack3<P>>,
     /// Unit normals.
     pub normal: Vec<Pack3<P>>,
@@ -311,7 +301,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 self.parameters.set_empty(lanes);
                 continue;
             };
-            let formula = slot.past.begin(step, settings.scheme, slot.swept(step));
+            let formula = slot.past.begin(step, settings.scheme);
             let applied = Applied {
                 material: slot.material,
                 air_density: slot.drive.air_density,

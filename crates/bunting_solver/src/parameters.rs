@@ -149,6 +149,8 @@ pub(crate) struct Parameters<P: Pack> {
     pub gravity_step: Pack3<P>,
     /// Air velocity, m/s.
     pub wind: Pack3<P>,
+    /// See [`Formula::foresight`](crate::formula::Formula::foresight).
+    pub foresight: P,
     /// ½ ρ C_n h/σ, s/m.
     pub pressure: P,
     /// ½ ρ C_t h/σ, s/m.
@@ -186,6 +188,7 @@ impl<P: Pack> Parameters<P> {
             anticipated: nothing,
             gravity_step: splat3(Vec3::ZERO),
             wind: splat3(Vec3::ZERO),
+            foresight: nothing,
             pressure: nothing,
             friction: nothing,
             keep: P::splat(1.0),
@@ -220,6 +223,7 @@ impl<P: Pack> Parameters<P> {
         for (pack, part) in self.extrapolation.iter_mut().zip(formula.extrapolation) {
             set(pack, part);
         }
+        set(&mut self.foresight, formula.foresight());
         set(&mut self.step, step);
         set(&mut self.inverse_step, 1.0 / step);
         let compliance = |stiffness: f32| {
@@ -252,7 +256,7 @@ impl<P: Pack> Parameters<P> {
         let stiffness_number =
             16.0 * step * step * material.bend_stiffness / material.area_density * finest.powi(4);
         set(&mut self.anticipated, anticipated(fabric, stiffness_number));
-        let air = 0.5 * air_density * step / material.area_density;
+        let air = 0.5 * air_density * applied.step / material.area_density;
         set(&mut self.pressure, air * material.pressure_coefficient);
         set(&mut self.friction, air * material.friction_coefficient);
         // The rigid motion of a pinned cloth is its frame's.
