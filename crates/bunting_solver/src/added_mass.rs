@@ -4,12 +4,14 @@
 //! taut link, ω² = T/(m l), is explicit, and unstable beyond h² T/(m l) ≈ ⅓. Yarns and bias, solved one
 //! after the other, do not agree either where what they hold is heavier than what they move. A point
 //! support carries a whole cloth on a few light particles, and so does the upper end of an upright
-//! pole. There the inertia is raised to what the substep can follow, from static bounds alone; gravity
-//! acts on the true mass, so that rest states are exact.
+//! pole, and pins that are too far apart strain the cloth between them whatever it weighs. There the
+//! inertia is raised to what the substep can follow, from static bounds alone; gravity acts on the true
+//! mass, so that rest states are exact.
 
-use crate::constants::GRAVITY;
+use crate::constants::{GRAVITY, LEAST_LINK_COMPLIANCE};
 use crate::constraints::Pole;
-use crate::fabric::Fabric;
+use crate::fabric::{Fabric, FabricMaterial};
+use crate::overstretch::Overstretch;
 
 /// Inertia that a particle needs, in units of (β h)² T/l: 4.2 was found to calm a cloth hung by two
 /// corners, with some to spare, up to 65 × 65 at three substeps.
@@ -30,6 +32,33 @@ pub(crate) struct Weights {
     pub across: Vec<f32>,
     /// How much less they are of one that does, 1/m².
     pub eased: Vec<f32>,
+}
+
+/// What the weights of one cloth depend on besides the substep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Hung {
+    /// How far its pole stands upright, see [`Pole::uprightness`].
+    pub upright: f32,
+    /// Inertia that its particles need where pins that are too far apart strain it by one, m².
+    pub inertia_per_strain: f32,
+}
+
+impl Hung {
+    /// Of a cloth in substeps of the effective length `step`, s.
+    pub fn new(
+        upright: f32,
+        overstretch: &Overstretch,
+        fabric: &Fabric,
+        material: &FabricMaterial,
+        step: f32,
+    ) -> Self {
+        let inertia_per_strain = if overstretch.strains.is_empty() {
+            0.0
+        } else {
+            inertia_per_strain(fabric, material, step)
+        };
+        Self { upright, inertia_per_strain }
+    }
 }
 
 impl Weights {
@@ -71,16 +100,31 @@ impl Weights {
         weights
     }
 
-    /// Those of a cloth whose pole stands so far upright, 1/m²; zero where it is pinned.
-    pub fn hung(&self, upright: f32) -> Vec<f32> {
+    /// Those of one cloth, 1/m²; zero where it is pinned.
+    pub fn of_lane(&self, hung: Hung, overstretch: &Overstretch) -> Vec<f32> {
         let pairs = self.across.iter().zip(&self.eased);
-        pairs.map(|(across, eased)| across - eased * upright).collect()
+        let mut weights: Vec<f32> =
+            pairs.map(|(across, eased)| across - eased * hung.upright).collect();
+        for (weight, strain) in weights.iter_mut().zip(&overstretch.strains) {
+            *weight = weight.min(1.0 / (hung.inertia_per_strain * strain));
+        }
+        weights
     }
 }
 
 /// One over each weight, and zero for zero.
 pub(crate) fn inertias(weights: &[f32]) -> Vec<f32> {
     weights.iter().map(|&weight| if weight > 0.0 { 1.0 / weight } else { 0.0 }).collect()
+}
+
+/// The inertia that a particle needs about which the cloth is strained by one, m².
+///
+/// Of a strip as wide as its links are long the tension over that length is the strain times the
+/// stiffness, at every resolution.
+fn inertia_per_strain(fabric: &Fabric, material: &FabricMaterial, step: f32) -> f32 {
+    let stiffest = material.warp_stiffness.max(material.weft_stiffness);
+    let most = fabric.particle_areas()[0] / LEAST_LINK_COMPLIANCE;
+    INERTIA_PER_TENSION * (step * step * stiffest / material.area_density).min(most)
 }
 
 /// The inertia that each particle needs, m², given where a load, m³/s², is carried.

@@ -22,6 +22,13 @@ impl Formula {
     /// more of BDF3 it would make undamped oscillations grow (BDF2OPT, Vatsa, Carpenter and Lockard
     /// 2010, has 0.48 of BDF3 where this has 0.5).
     pub const BDF2_OPT: Self = Self { extrapolation: [0.5, -0.1], weight: 0.6 };
+
+    /// What is extrapolated times this is the whole of a steady change; zero where little is known, as the
+    /// first change after a beginning is not like those that follow.
+    pub fn foresight(&self) -> f32 {
+        let [last, before] = self.extrapolation;
+        if before == 0.0 { 0.0 } else { 1.0 / (last + before) }
+    }
 }
 
 /// Velocities of which the first or the second difference is this many times larger, all squared and
@@ -30,11 +37,6 @@ impl Formula {
 /// cloth at once, it would turn it round. A flag in a strong wind at two substeps exceeds 1 in one of a
 /// thousand.
 const ROUGH: f32 = 2.0;
-
-/// Part of the wind's velocity that it gives to a resting cloth in a substep, explicitly, beyond which velocities
-/// are not worth extrapolating: the air lets go within the substep of what it did before, and what is
-/// extrapolated overtakes the wind. It does beyond 2.4; a flag in a storm has 1.
-const SWEPT: f32 = 2.0;
 
 /// Speeds that do not matter, in units of what gravity gives in a substep. Cloth at rest is not rough.
 const SLOW: f32 = 5.0;
@@ -54,10 +56,9 @@ impl Past {
         self.step > 0.0
     }
 
-    /// Begins a substep of `step` seconds, and chooses its formula: the best that the past allows. Wind that
-    /// would change a cloth's velocity by the part `swept` of its own leaves it no past.
-    pub fn begin(&mut self, step: f32, scheme: Scheme, swept: f32) -> Formula {
-        if self.step != step || swept > SWEPT {
+    /// Begins a substep of `step` seconds, and chooses its formula: the best that the past allows.
+    pub fn begin(&mut self, step: f32, scheme: Scheme) -> Formula {
+        if self.step != step {
             *self = Self { step, substeps: 0 };
         }
         self.substeps = self.substeps.saturating_add(1);
@@ -102,7 +103,7 @@ mod tests {
     fn after(substeps: u32) -> Past {
         let mut past = Past::default();
         (0..substeps).for_each(|_| {
-            past.begin(STEP, Scheme::Yarns, 0.0);
+            past.begin(STEP, Scheme::Yarns);
         });
         past
     }
@@ -130,20 +131,12 @@ mod tests {
     #[test]
     fn the_order_rises_as_the_past_grows() {
         let mut past = Past::default();
-        let formulas: Vec<Formula> = (0..4).map(|_| past.begin(STEP, Scheme::Yarns, 0.0)).collect();
+        let formulas: Vec<Formula> = (0..4).map(|_| past.begin(STEP, Scheme::Yarns)).collect();
         let expected =
             [Formula::BACKWARD_EULER, Formula::BDF2, Formula::BDF2_OPT, Formula::BDF2_OPT];
         assert_eq!(formulas, expected);
-        assert_eq!(past.begin(2.0 * STEP, Scheme::Yarns, 0.0), Formula::BACKWARD_EULER);
-        assert_eq!(past.begin(2.0 * STEP, Scheme::GaussSeidel, 0.0), Formula::BACKWARD_EULER);
-    }
-
-    #[test]
-    fn what_the_wind_sweeps_along_has_no_past() {
-        let mut past = after(3);
-        assert_eq!(past.begin(STEP, Scheme::Yarns, 3.0), Formula::BACKWARD_EULER);
-        assert_eq!(past.begin(STEP, Scheme::Yarns, 3.0), Formula::BACKWARD_EULER);
-        assert_eq!(past.begin(STEP, Scheme::Yarns, 1.0), Formula::BDF2);
+        assert_eq!(past.begin(2.0 * STEP, Scheme::Yarns), Formula::BACKWARD_EULER);
+        assert_eq!(past.begin(2.0 * STEP, Scheme::GaussSeidel), Formula::BACKWARD_EULER);
     }
 
     #[test]
@@ -163,7 +156,7 @@ mod tests {
         ] {
             let mut past = after(substeps);
             past.judge(unrest, 1);
-            assert_eq!(past.begin(STEP, Scheme::Yarns, 0.0), next, "{substeps} {unrest:?}");
+            assert_eq!(past.begin(STEP, Scheme::Yarns), next, "{substeps} {unrest:?}");
         }
     }
 }

@@ -6,6 +6,7 @@
 
 use core::mem::swap;
 
+use crate::aerodynamics::Response;
 use crate::formula::Unrest;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
@@ -68,6 +69,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             displacement: &self.displacement,
             older_displacement: &mut self.older_displacement,
             velocity: &mut self.velocity,
+            past: [&mut self.older_velocity, &mut self.oldest_velocity],
             feels_air,
         });
         swap(&mut self.displacement, &mut self.older_displacement);
@@ -205,7 +207,7 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Extrapolate<'_, P, C> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let [last, before] = extrapolation::<L>(token, self.parameters);
-        let keep = L::load(token, &self.parameters.keep);
+        let lost = L::splat(token, 1.0) - L::load(token, &self.parameters.keep);
         let motion = Motion::<L>::load(token, self.parameters);
         let any_moves = motion.moves.any();
         let frame_rate = L::splat(token, self.frame_rate);
@@ -231,17 +233,16 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Extrapolate<'_, P, C> {
             motions.add(part, inverse_area.choose(token, v.dot(v), nothing));
             changes.add(part, inverse_area.choose(token, change.dot(change), nothing));
             shakes.add(part, inverse_area.choose(token, shake.dot(shake), nothing));
-            let unchanged = v;
-            let v = v.plus_scaled(change, last).plus_scaled(change_before, before);
+            let extrapolated = v.plus_scaled(change, last).plus_scaled(change_before, before);
             // Damping acts on the motion relative to the frame, whose point at x has this velocity.
-            let damped = if any_moves {
+            let relative = if any_moves {
                 let x = V3::load(token, position);
-                let frame = (motion.swept(x, half) * frame_rate).or_where_not(motion.moves, zero);
-                frame.plus_scaled(v - frame, keep).or_where_not(motion.moves, v * keep)
+                v - (motion.swept(x, half) * frame_rate).or_where_not(motion.moves, zero)
             } else {
-                v * keep
+                v
             };
-            inverse_area.choose3(token, damped, unchanged).store(oldest);
+            let damped = extrapolated.minus_scaled(relative, lost);
+            inverse_area.choose3(token, damped, v).store(oldest);
         }
         motions.total::<C>(token).store(&mut self.unrest.motion);
         changes.total::<C>(token).store(&mut self.unrest.change);
@@ -267,6 +268,9 @@ struct Predict<'a, P: Pack, C> {
     displacement: &'a [Pack3<P>],
     older_displacement: &'a mut [Pack3<P>],
     velocity: &'a mut [Pack3<P>],
+    /// Velocities at the start of the substep and of the one before. The air's changes are not to be
+    /// extrapolated, so they are carried along with what it does now.
+    past: [&'a mut [Pack3<P>]; 2],
     /// Whether there are impulses of the air where predicted positions will be.
     feels_air: bool,
 }
@@ -278,12 +282,15 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
         let [last, before] = extrapolation::<L>(token, self.parameters);
         let gravity: V3<L> = V3::load(token, &self.parameters.gravity_step);
         let places = self.position.iter_mut().zip(self.predicted);
+        let [last_velocities, older_velocities] = self.past;
+        let past = last_velocities.iter_mut().zip(older_velocities);
+        let response = Response::<L>::load(token, self.parameters);
         let changes = self.displacement.iter().zip(self.older_displacement);
         let inertia = self.weights.iter().zip(self.areas).zip(self.inverse_areas);
         for (
             (((position, predicted), (displacement, older)), velocity),
-            ((weight, area), constant),
-        ) in places.zip(changes).zip(self.velocity).zip(inertia)
+            (((weight, area), constant), (last_velocity, older_velocity)),
+        ) in places.zip(changes).zip(self.velocity).zip(inertia.zip(past))
         {
             if constant.is_zero() {
                 *predicted = *position;
@@ -294,7 +301,15 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
             // Gravity acts on the true mass, whatever inertia is added to it.
             let falling = unchanged.plus_scaled(gravity, weight * area.load(token));
             let v = if self.feels_air {
-                falling.plus_scaled(V3::load(token, predicted), weight)
+                let last: V3<L> = V3::load(token, last_velocity);
+                let blown = V3::load(token, predicted) * weight;
+                let change = response.to(blown, weight * area.load(token), last, unchanged);
+                for velocity in [last_velocity, older_velocity] {
+                    let past: V3<L> = V3::load(token, velocity);
+                    let carried = (past + change).or_where_not(response.blows, past);
+                    constant.choose3(token, carried, past).store(velocity);
+                }
+                falling + change
             } else {
                 falling
             };

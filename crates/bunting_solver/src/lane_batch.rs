@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::added_mass::{self, Weights};
+use crate::added_mass::{self, Hung, Weights};
 use crate::collision::Collider;
 use crate::constraints::{Knot, Pole};
 use crate::fabric::{ABREAST, Fabric, FabricMaterial};
 use crate::formula::{Formula, Past};
 use crate::lanes::{Pack, Pack1};
+use crate::overstretch::Overstretch;
 use crate::parameters::Parameters;
 use crate::places::Constant;
 use crate::seating::{Packed, Seating};
@@ -28,20 +29,12 @@ pub(crate) struct Slot {
     pub past: Past,
     /// What the lane's parameters were last computed from.
     pub applied: Option<Applied>,
-    /// How upright its pole stood when its weights were last computed.
-    pub upright: Option<f32>,
+    /// What its pins strain it by.
+    pub overstretch: Overstretch,
+    /// What its weights were last computed from.
+    pub hung: Option<Hung>,
     /// For each collider, the particles that may touch it in this tick.
     pub contacts: Vec<Vec<u32>>,
-}
-
-impl Slot {
-    /// Part of the wind's velocity that a cloth at rest would take on in a substep of `step` seconds, were its
-    /// drag explicit.
-    fn swept(&self, step: f32) -> f32 {
-        let Drive { wind, air_density, .. } = self.drive;
-        let coefficient = self.material.pressure_coefficient + self.material.friction_coefficient;
-        0.5 * air_density * coefficient * wind.length() * step / self.material.area_density
-    }
 }
 
 /// One of the vectors of each particle, if the state has it.
@@ -78,9 +71,9 @@ pub(crate) struct LaneBatch<P: Pack, C = f32> {
     pub displacement: Vec<Pack3<P>>,
     /// Change of position in the substep before, m.
     pub older_displacement: Vec<Pack3<P>>,
-    /// Velocities a substep earlier, m/s.
+    /// Velocities a substep earlier, m/s, and what the air has changed them by since.
     pub older_velocity: Vec<Pack3<P>>,
-    /// Velocities two substeps earlier, m/s.
+    /// The same of two substeps earlier, m/s.
     pub oldest_velocity: Vec<Pack3<P>>,
     /// Unit normals.
     pub normal: Vec<Pack3<P>>,
@@ -210,7 +203,8 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 colliders: Vec::new(),
                 past: Past::default(),
                 applied: None,
-                upright: None,
+                overstretch: Overstretch::default(),
+                hung: None,
                 contacts: Vec::new(),
             });
             states.push((lane, snapshot));
@@ -269,6 +263,11 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             }
             if let Some(slot) = &mut self.slots[lane] {
                 slot.past = state.history.as_ref().map_or_else(Past::default, |past| past.past);
+                let overstretch = Overstretch::of(&self.fabric, positions);
+                if slot.overstretch != overstretch {
+                    slot.overstretch = overstretch;
+                    slot.hung = None;
+                }
             }
         }
     }
@@ -287,7 +286,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         if self.weights_step != weights_step {
             self.weights_step = weights_step;
             self.weights = Weights::new(&self.fabric, weights_step);
-            self.slots.iter_mut().flatten().for_each(|slot| slot.upright = None);
+            self.slots.iter_mut().flatten().for_each(|slot| slot.hung = None);
         }
         self.gather_contacts(tick);
     }
@@ -302,7 +301,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 self.parameters.set_empty(lanes);
                 continue;
             };
-            let formula = slot.past.begin(step, settings.scheme, slot.swept(step));
+            let formula = slot.past.begin(step, settings.scheme);
             let applied = Applied {
                 material: slot.material,
                 air_density: slot.drive.air_density,
@@ -317,8 +316,15 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 }
             }
             let upright = self.pole.map_or(0.0, |pole| pole.uprightness(slot.drive.gravity));
-            if slot.upright.replace(upright) != Some(upright) {
-                let weights = self.weights.hung(upright);
+            let hung = Hung::new(
+                upright,
+                &slot.overstretch,
+                &self.fabric,
+                &slot.material,
+                self.weights_step,
+            );
+            if slot.hung.replace(hung) != Some(hung) {
+                let weights = self.weights.of_lane(hung, &slot.overstretch);
                 let inertias = added_mass::inertias(&weights);
                 self.seating.put(cloth, &weights, &mut self.lane_weights);
                 self.seating.put(cloth, &inertias, &mut self.lane_inertias);
@@ -331,7 +337,15 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 Some(grid) if !self.fabric.has_pins() => grid.width.max(grid.height),
                 _ => self.fabric.reach(),
             };
-            self.parameters.set_drive(lanes, &slot.material, &slot.drive, reach, &self.clock);
+            let apart = slot.overstretch.greatest;
+            self.parameters.set_drive(
+                lanes,
+                &slot.material,
+                &slot.drive,
+                reach,
+                apart,
+                &self.clock,
+            );
         }
         // One substep more than the motion lasts, so that pinned particles come to rest.
         self.parameters.carries = moved || self.parameters.moves_any();
@@ -354,7 +368,7 @@ impl<P: Pack> LaneBatch<P, P> {
         let mut batch = LaneBatch::new(Arc::clone(&self.fabric));
         if let Some(slot) = &self.slots[0] {
             batch.exchange(&[], &[(0, &self.snapshot(0), slot.material)]);
-            batch.slots[0] = Some(Slot { applied: None, upright: None, ..slot.clone() });
+            batch.slots[0] = Some(Slot { applied: None, hung: None, ..slot.clone() });
         }
         for (pack, normal) in batch.normal.iter_mut().zip(self.of_cloth(&self.normal, 0)) {
             set_lane3(pack, 0, normal);

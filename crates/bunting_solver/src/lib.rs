@@ -49,6 +49,7 @@ mod lane_batch;
 mod lane_count;
 mod lanes;
 mod normals;
+mod overstretch;
 mod parameters;
 mod places;
 mod readout;

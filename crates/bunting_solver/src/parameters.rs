@@ -149,6 +149,8 @@ pub(crate) struct Parameters<P: Pack> {
     pub gravity_step: Pack3<P>,
     /// Air velocity, m/s.
     pub wind: Pack3<P>,
+    /// See [`Formula::foresight`](crate::formula::Formula::foresight).
+    pub foresight: P,
     /// ½ ρ C_n h/σ, s/m.
     pub pressure: P,
     /// ½ ρ C_t h/σ, s/m.
@@ -158,10 +160,10 @@ pub(crate) struct Parameters<P: Pack> {
     /// Part of the non-rigid velocity that internal damping leaves in a substep, for cloth without
     /// pins.
     pub keep_internal: P,
-    /// Length that tethers have, in units of that at rest: twice what the loads may stretch, which they must
-    /// not hide.
+    /// Length that tethers have, in units of that at rest: twice what the loads and the pins stretch, which
+    /// they must not hide.
     pub tether_stretch: P,
-    /// Length that the loads may stretch the bias to, in units of that at rest.
+    /// Length that the loads and the pins may stretch the bias to, in units of that at rest.
     pub bias_stretch: P,
     /// The frame's motion in this substep, see [`Carry`](crate::frame::Carry).
     pub turn: [Pack3<P>; 3],
@@ -186,6 +188,7 @@ impl<P: Pack> Parameters<P> {
             anticipated: nothing,
             gravity_step: splat3(Vec3::ZERO),
             wind: splat3(Vec3::ZERO),
+            foresight: nothing,
             pressure: nothing,
             friction: nothing,
             keep: P::splat(1.0),
@@ -220,6 +223,7 @@ impl<P: Pack> Parameters<P> {
         for (pack, part) in self.extrapolation.iter_mut().zip(formula.extrapolation) {
             set(pack, part);
         }
+        set(&mut self.foresight, formula.foresight());
         set(&mut self.step, step);
         set(&mut self.inverse_step, 1.0 / step);
         let compliance = |stiffness: f32| {
@@ -252,7 +256,7 @@ impl<P: Pack> Parameters<P> {
         let stiffness_number =
             16.0 * step * step * material.bend_stiffness / material.area_density * finest.powi(4);
         set(&mut self.anticipated, anticipated(fabric, stiffness_number));
-        let air = 0.5 * air_density * step / material.area_density;
+        let air = 0.5 * air_density * applied.step / material.area_density;
         set(&mut self.pressure, air * material.pressure_coefficient);
         set(&mut self.friction, air * material.friction_coefficient);
         // The rigid motion of a pinned cloth is its frame's.
@@ -265,13 +269,15 @@ impl<P: Pack> Parameters<P> {
         set(&mut self.keep_internal, libm::expf(-free * step));
     }
 
-    /// Gravity, wind, what they stretch the cloth by, and the frame's motion in the coming substep.
+    /// Gravity, wind, what they stretch the cloth by, and the frame's motion in the coming substep. `apart` is
+    /// the part by which pins are too far apart.
     pub fn set_drive(
         &mut self,
         lanes: Range<usize>,
         material: &FabricMaterial,
         drive: &Drive,
         reach: f32,
+        apart: f32,
         clock: &Clock,
     ) {
         let (index, count) = (clock.done, clock.settings.substeps);
@@ -281,8 +287,8 @@ impl<P: Pack> Parameters<P> {
         set3(&mut self.gravity_step, turned(drive.gravity) * self.step.lanes()[lanes.start]);
         set3(&mut self.wind, turned(drive.wind));
         let [hung, blown] = greatest_strains(material, drive, reach);
-        set(&mut self.tether_stretch, 1.0 + 2.0 * (hung + blown));
-        set(&mut self.bias_stretch, 1.0 + hung + blown.min(MOST_BLOWN));
+        set(&mut self.tether_stretch, 1.0 + 2.0 * (apart + hung + blown));
+        set(&mut self.bias_stretch, 1.0 + apart + hung + blown.min(MOST_BLOWN));
         let carry = drive.motion.carry(index, count);
         for (pack, row) in self.turn.iter_mut().zip(carry.turn.rows) {
             set3(pack, row);

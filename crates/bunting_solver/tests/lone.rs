@@ -138,3 +138,26 @@ fn another_scheme_from_one_tick_to_the_next() {
     });
     assert_eq!(alone, shared);
 }
+
+#[test]
+fn pins_too_far_apart() {
+    let grid = FabricBuilder::grid(Grid::new(13, 11, 1.0, 1.0)).pin([0, 12, 136]);
+    let fabric = Arc::new(grid.build().expect("a good fabric"));
+    let mut wide = ClothSnapshot::at_rest(&fabric);
+    wide.positions.iter_mut().for_each(|position| *position *= 1.05);
+    let [alone, shared] = [LaneCount::One, LaneCount::Eight].map(|lanes| {
+        let mut batch = ClothBatch::new(fabric.clone(), lanes);
+        // A neighbour of which nothing is asked.
+        if lanes != LaneCount::One {
+            let rest = ClothSnapshot::at_rest(&fabric);
+            batch.insert(&rest, FabricMaterial::DENIM).expect("a free lane");
+        }
+        let lane = batch.insert(&wide, FabricMaterial::SILK).expect("a free lane");
+        for tick in 0..90 {
+            batch.drive(lane, drive(tick));
+            batch.step(TICK, yarns(2, 2));
+        }
+        batch.snapshot(lane)
+    });
+    assert_eq!(alone, shared);
+}

@@ -118,6 +118,49 @@ fn broadside_fall_reaches_terminal_speed() {
 }
 
 #[test]
+fn drag_alone_slows_as_it_must() {
+    let material = FabricMaterial { area_density: 0.1, pressure_coefficient: 1.2, ..STANDARD };
+    let fabric = square(3, |_| false);
+    let mut start = ClothSnapshot::at_rest(&fabric);
+    start.velocities.fill(Vec3::new(0.0, 0.0, 20.0));
+    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+    batch.insert(&start, material).expect("a free lane");
+    batch.drive(0, Drive { gravity: Vec3::ZERO, ..Drive::default() });
+    for tick in 1..=60 {
+        batch.step(TICK, StepSettings::yarns(2));
+        // dv/dt = −k v²
+        let k = 0.5 * 1.225 * 1.2 / 0.1;
+        let expected = 20.0 / (1.0 + k * 20.0 * tick as f32 * TICK);
+        let velocity = batch.snapshot(0).velocities[4].z;
+        assert!((velocity / expected - 1.0).abs() < 1e-4, "tick {tick}: {velocity} {expected}");
+    }
+}
+
+/// A sheet that hangs in a steady wind stands at the slope θ at which ½ρCW² cos²θ = σg sin θ, whatever the
+/// step: drag made implicit as if nothing held the cloth would lose a seventh.
+#[test]
+fn what_is_held_feels_all_of_the_wind() {
+    let fabric = square(3, |at| at.y == 0.0);
+    let material = FabricMaterial {
+        area_density: 0.1,
+        pressure_coefficient: 1.2,
+        bend_stiffness: 0.0,
+        damping: 2.0,
+        ..STANDARD
+    };
+    let (wind, lightness) = (1.5_f32, 0.1 * GRAVITY / (0.5 * 1.225 * 1.2));
+    let slope = lightness / (2.0 * wind * wind);
+    let expected = (1.0 + slope * slope).sqrt() - slope;
+    for substeps in [1, 2, 4] {
+        let drive = Drive { wind: Vec3::new(0.0, 0.0, wind), ..Drive::default() };
+        let mut batch = lone(&fabric, material, drive);
+        (0..600).for_each(|_| batch.step(TICK, StepSettings::yarns(substeps)));
+        let out = batch.snapshot(0).positions[7].z;
+        assert!((out / expected - 1.0).abs() < 5e-3, "{substeps} substeps: {out} {expected}");
+    }
+}
+
+#[test]
 fn strong_wind_never_overshoots() {
     let fabric = square(3, |_| false);
     let material = FabricMaterial { area_density: 0.02, pressure_coefficient: 1.2, ..STANDARD };

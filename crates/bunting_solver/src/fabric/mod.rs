@@ -252,6 +252,12 @@ impl Fabric {
         &self.pins
     }
 
+    /// How far each particle is from a pin at rest, along the cloth, m.
+    pub(crate) fn distances_from(&self, pin: Pin) -> Vec<f32> {
+        let edges = self.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        tethers::distances(&self.rest, edges, pin, self.grid.is_some())
+    }
+
     /// The grid that the fabric was made from, if it was.
     #[must_use]
     pub fn grid(&self) -> Option<&Grid> {

@@ -50,6 +50,7 @@ pub(crate) fn pins(edges: &[Edge], pinned: &[bool]) -> Vec<Pin> {
 /// The tether of each free particle that a pin can be reached from. `flat` says that the shortest
 /// way between two particles at rest is straight.
 pub(crate) fn tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -> Vec<Tether> {
+    let edges = edges.iter().map(|edge| edge.ends);
     let nearest =
         if flat { nearest_straight(rest, pins) } else { nearest_along(rest, edges, pins) };
     (0..)
@@ -78,10 +79,26 @@ fn nearest_straight(rest: &[Vec3], pins: &[Pin]) -> Vec<Option<(f32, usize)>> {
         .collect()
 }
 
+/// The distance of each particle from a pin at rest; infinite where no way leads. `flat` and edges as above.
+pub(crate) fn distances(
+    rest: &[Vec3],
+    edges: impl Iterator<Item = [u32; 2]>,
+    pin: Pin,
+    flat: bool,
+) -> Vec<f32> {
+    let nearest =
+        if flat { nearest_straight(rest, &[pin]) } else { nearest_along(rest, edges, &[pin]) };
+    nearest.into_iter().map(|nearest| nearest.map_or(f32::INFINITY, |(length, _)| length)).collect()
+}
+
 /// The same along the edges of the mesh (Dijkstra 1959): no shorter than the way across them.
-fn nearest_along(rest: &[Vec3], edges: &[Edge], pins: &[Pin]) -> Vec<Option<(f32, usize)>> {
+fn nearest_along(
+    rest: &[Vec3],
+    edges: impl Iterator<Item = [u32; 2]>,
+    pins: &[Pin],
+) -> Vec<Option<(f32, usize)>> {
     let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); rest.len()];
-    for [a, b] in edges.iter().map(|edge| edge.ends) {
+    for [a, b] in edges {
         neighbours[a as usize].push(b);
         neighbours[b as usize].push(a);
     }

@@ -63,14 +63,17 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
             format!("drag alone from {FAST} m/s, ticks not turned round, {}", label(settings));
         cases.push(Case::new(name, 1.0, onward(mount, settings), 0.0));
     }
-    for scheme in [StepSettings::yarns as Substeps, StepSettings::gauss_seidel] {
+    // Of what the air does, only who has a past knows more than the first order.
+    for (scheme, expected) in
+        [(StepSettings::yarns as Substeps, 2.0), (StepSettings::gauss_seidel, 1.0)]
+    {
         let errors = [2, 4, 8].map(|substeps| {
             let mut specimen = start(mount, GRAVITY, 0.0, scheme(substeps));
             run(specimen.as_mut(), 1.0);
             -mean(specimen.positions()).y - FALL.depth(1.0)
         });
         let name = format!("broadside fall y(1), order in the step, {}", label(scheme(8)));
-        cases.push(order(name, 1.0, &errors));
+        cases.push(order(name, expected, &errors));
     }
     cases
 }
