@@ -162,7 +162,7 @@ fn place_cloths(
 ) {
     let (current, mut motions) = transforms.p0();
     placed.clear();
-    placed.extend(motions.find(&new).iter().filter_map(|&entity| {
+    placed.extend(motions.find(new).iter().filter_map(|&entity| {
         let (attachment, parent) = cloths.get(entity).ok()?;
         let parent = parent.map(ChildOf::parent);
         match attachment

@@ -146,7 +146,7 @@ fn there_is_room_for_changes() {
 
 #[test]
 fn what_nobody_sees_changes_in_turns_of_its_own() {
-    let unseen = |index: usize| index % 2 == 0;
+    let unseen = |index: usize| index.is_multiple_of(2);
     let cloths: Vec<Candidate> =
         (0..8).map(|index| Candidate { seen: !unseen(index), ..cloth(0, 1.0) }).collect();
     let limits = Limits { switches: 2, ..LIMITS };
