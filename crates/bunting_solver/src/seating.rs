@@ -6,7 +6,7 @@ use crate::fabric::Fabric;
 use crate::lanes::Pack;
 use crate::places::Constant;
 use crate::sums::PARTS;
-use crate::vector::{Pack3, lane3, set_lane3};
+use crate::vector::{Pack3, lane3, set_lane3, splat3};
 
 /// Where particles lie among the packs of a batch.
 #[derive(Clone, Copy, Debug)]
@@ -78,18 +78,13 @@ impl Seating {
             return;
         }
         for &(_, values) in cloths {
+            // Not a lane, but all of a pack is the cloth's.
+            packs.fill(splat3(Vec3::ZERO));
             let values = values.unwrap_or_default();
-            for (row, packs) in packs.chunks_mut(self.blocks()).enumerate() {
-                for (block, pack) in packs.iter_mut().enumerate() {
-                    for lane in 0..C::SIDE {
-                        let column = block * C::SIDE + lane;
-                        let at = if column < self.columns {
-                            row * self.columns + column
-                        } else {
-                            usize::MAX
-                        };
-                        set_lane3(pack, lane, zero(values, at));
-                    }
+            let rows = values.chunks(self.columns).zip(packs.chunks_mut(self.blocks()));
+            for (side, pack) in rows.flat_map(|(row, packs)| row.chunks(C::SIDE).zip(packs)) {
+                for (lane, &value) in side.iter().enumerate() {
+                    set_lane3(pack, lane, value);
                 }
             }
         }

@@ -216,7 +216,7 @@ impl LevelTransfer {
         let ClothSnapshot { mut positions, velocities, .. } = coarse;
         let moves =
             0.5 * f64::from(material.area_density) * motion::agitation(&self.coarse, &velocities);
-        self.settlers[1].settle(material, &mut positions, PAID * moves);
+        self.settlers[1].settle(material, &mut positions, PAID * moves, true);
         ClothSnapshot::new(positions, velocities)
     }
 
@@ -256,8 +256,10 @@ impl Side<'_> {
         let agitation = motion::agitation(self.fabric, &self.state.velocities);
         let had = elastic(self.fabric, material, &self.state.positions);
         // So little more that the motion hardly notices when it pays.
-        let limit = had + PAID * (had + 0.5 * density * agitation);
-        let stretched = settler.settle(material, &mut positions, limit) - had;
+        let moves = 0.5 * density * agitation;
+        let limit = had + PAID * (had + moves);
+        // What flies is folded, and folds strain what is new or has nowhere to go.
+        let stretched = settler.settle(material, &mut positions, limit, moves > had) - had;
         let height = moment(self.fabric, &self.state.positions) - moment(fabric, &positions);
         let gained = stretched / density + height.dot(gravity.as_dvec3());
         motion::match_momentum(

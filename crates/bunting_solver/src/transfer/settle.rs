@@ -52,8 +52,15 @@ impl Settler {
     }
 
     /// Lets positions come to at most so much elastic energy, J, or as near to that as they come, and
-    /// returns how much it is. What cannot be simulated stays as it is.
-    pub fn settle(&self, material: &FabricMaterial, positions: &mut Vec<Vec3>, limit: f64) -> f64 {
+    /// returns how much it is. Where they are `creased` they have more, which need not be reckoned. What
+    /// cannot be simulated stays as it is.
+    pub fn settle(
+        &self,
+        material: &FabricMaterial,
+        positions: &mut Vec<Vec3>,
+        limit: f64,
+        creased: bool,
+    ) -> f64 {
         let mut batch = self.lock();
         let damped = FabricMaterial { damping: DAMPING, internal_damping: 0.0, ..*material };
         let begin = ClothSnapshot::new(positions.clone(), vec![Vec3::ZERO; positions.len()]);
@@ -64,7 +71,7 @@ impl Settler {
         batch.begin_tick(STEP * MOST_STEPS as f32, settings);
         for step in 0..MOST_STEPS {
             // Reckoning the energy takes half as long as a substep: after none, one, two, four, …
-            if step == 0 || step.is_power_of_two() {
+            if (step == 0 && !creased) || step.is_power_of_two() {
                 let stored = elastic(&self.fabric, material, positions);
                 if stored <= limit {
                     return stored;
