@@ -14,9 +14,9 @@
 //!    time, too: as long as any is due, the levels leave room for the dearest.
 
 /// How many times more a step is worth that is taken already, so that two cloths of the same worth
-/// do not take turns. What a step is worth goes with the fifth power of the distance: this is a quarter
-/// of it.
-const LOYALTY: f32 = 3.0;
+/// do not take turns: changes cost time. What a step is worth goes with the fifth power of the distance:
+/// this is half of it.
+const LOYALTY: f32 = 8.0;
 
 /// Part of the budget that what is not simulated yet may fill, so that costs that waver do not open
 /// and close a batch by turns.
