@@ -279,3 +279,36 @@ fn what_is_attached_no_more_follows_no_more() {
     run(&mut app, 2);
     assert_eq!(app.world().get::<Transform>(cloth), Some(&stood));
 }
+
+/// Frames so short that several pass from one tick to the next.
+const SHORT: Duration = Duration::from_millis(2);
+
+#[test]
+fn between_two_ticks_nothing_is_missed_however_many_frames_pass() {
+    let mut app = app_at(SHORT);
+    let (vehicle, cloth) = attached(&mut app, false);
+    let lorry = app.world_mut().spawn(Transform::from_xyz(1.0, 0.0, 0.0)).id();
+    app.world_mut().entity_mut(vehicle).insert(ChildOf(lorry));
+    let (lost, other) = attached(&mut app, false);
+    let (_, released) = attached(&mut app, false);
+    for frame in 0..8 {
+        run(&mut app, 8 * LONG + frame);
+        let hung = state(&app, cloth).positions()[16];
+        let mut world = app.world_mut().entity_mut(vehicle);
+        if frame % 2 == 0 {
+            world.remove::<ChildOf>()
+        } else {
+            world.insert(ChildOf(lorry))
+        };
+        run(&mut app, 20);
+        assert!(error(&app, vehicle, cloth) < TOLERANCE);
+        let left_behind = state(&app, cloth).positions()[16].distance(hung);
+        assert!(left_behind > FELT, "the frame has jumped by a metre: {left_behind} m");
+    }
+    app.world_mut().entity_mut(released).remove::<Attachment>();
+    app.world_mut().despawn(lost);
+    run(&mut app, 20);
+    assert!(app.world().get::<ClothPaused>(other).is_some());
+    let fabric = state(&app, released).fabric().expect("a fabric");
+    assert!(!fabric.has_pins(), "it has let go");
+}

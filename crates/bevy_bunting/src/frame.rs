@@ -38,9 +38,7 @@ impl Plugin for AttachmentPlugin {
             .add_observer(end_following)
             .add_systems(
                 RunFixedMainLoop,
-                (follow_targets, observe_frames::<true>)
-                    .chain_ignore_deferred()
-                    .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+                observe_frames::<true>.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
             )
             .add_systems(
                 ClothTick,
@@ -82,11 +80,14 @@ impl Watch<'_, '_> {
         let mut histories = self.histories.p1();
         for &entity in moved {
             let Ok((mut history, attachment)) = histories.get_mut(entity) else { continue };
-            // What is seen here is no change: everyone sees it.
-            let history = history.bypass_change_detection();
-            observe(entity, history, attachment);
+            // What is seen here is no change, as everyone sees it; but not all may have seen a rest end.
+            let rested = history.rests();
+            observe(entity, history.bypass_change_detection(), attachment);
             if !history.rests() {
                 self.restless.push(entity);
+                if rested {
+                    history.set_changed();
+                }
             }
         }
     }

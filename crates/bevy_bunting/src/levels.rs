@@ -253,14 +253,11 @@ pub(crate) struct FabricLibrary {
     cut: HashMap<Vec<u32>, Weak<ClothLevels>>,
     /// What is being cut beside the main thread.
     cutting: HashMap<Vec<u32>, Task<Result<ClothLevels, FabricError>>>,
+    /// Whether a cloth waits for its fabrics, or for others than it has.
+    pub awaited: bool,
 }
 
 impl FabricLibrary {
-    /// Whether fabrics are being cut beside the main thread.
-    pub fn is_cutting(&self) -> bool {
-        !self.cutting.is_empty()
-    }
-
     /// The fabrics of a cloth, cut now or before; none while they are being cut: ask again.
     ///
     /// # Errors

@@ -38,13 +38,10 @@ impl Plugin for PreparePlugin {
             .register_type::<ClothMaterial>()
             .init_resource::<FabricLibrary>()
             .add_observer(clear_removed)
+            .add_observer(note_release)
             .add_systems(
                 ClothTick,
-                (
-                    lose_targets.run_if(any_component_removed::<Transform>),
-                    cut_cloths.run_if(may_cut),
-                    change_materials,
-                )
+                (lose_targets, cut_cloths.run_if(may_cut), change_materials)
                     .chain()
                     .in_set(ClothSystems::Prepare),
             );
@@ -61,6 +58,12 @@ fn clear_removed(
         instance.clear(&mut batches);
         *state = ClothState::default();
     }
+}
+
+/// A cloth that has let go is cut anew. Messages of removals would be gone after two frames, and a tick may
+/// take longer to come.
+fn note_release(_: On<Remove, Attachment>, mut library: ResMut<FabricLibrary>) {
+    library.awaited = true;
 }
 
 fn lose_targets(
@@ -86,12 +89,8 @@ type MayCut =
     Or<(Changed<ClothMesh>, Changed<ClothMaterial>, Changed<LodSet>, Changed<Attachment>)>;
 
 /// Whether there may be a cloth to cut: in most ticks there is none.
-fn may_cut(
-    changed: Query<(), (With<ClothMesh>, MayCut)>,
-    mut released: RemovedComponents<Attachment>,
-    library: Res<FabricLibrary>,
-) -> bool {
-    released.read().count() > 0 || !changed.is_empty() || library.is_cutting()
+fn may_cut(changed: Query<(), (With<ClothMesh>, MayCut)>, library: Res<FabricLibrary>) -> bool {
+    !changed.is_empty() || library.awaited
 }
 
 type Cloths<'w, 's> = Query<
@@ -118,6 +117,7 @@ fn cut_cloths(
     mut batches: ResMut<ClothBatches>,
     mut commands: Commands,
 ) {
+    library.awaited = false;
     for (entity, mesh, material, lods, attachment, mut instance, mut state, mut history) in
         &mut cloths
     {
@@ -142,7 +142,10 @@ fn cut_cloths(
             _ => library.levels(entity, &mesh, attachment.as_deref(), &lods),
         };
         match levels {
-            Ok(None) => instance.cutting = true,
+            Ok(None) => {
+                instance.cutting = true;
+                library.awaited = true;
+            }
             Ok(Some(levels)) => {
                 instance.cutting = false;
                 if instance.target != target {

@@ -149,7 +149,7 @@ pub(crate) fn choose_levels(
         if let Ok(mut cloth) = cloths.get_mut(chooser.entities[index]) {
             counts.0[cloth.instance.level] -= 1;
             counts.add(to);
-            let seen = cloth.watch.candidate.is_none_or(|candidate| candidate.seen);
+            let seen = chooser.candidates[index].seen;
             chooser.change(&mut cloth, to, seen, &mut batches, &mut commands);
         }
     }
