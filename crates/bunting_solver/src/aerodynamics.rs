@@ -29,7 +29,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         if C::SIDE > 1
             && let Some(weave) = &mut self.weave
         {
-            let (position, velocity) = (&self.position, &self.older_velocity);
+            let (position, velocity) = (&self.position, &self.velocity);
             weave.gather_air(&self.parameters, position, velocity, &mut self.predicted);
             return;
         }
@@ -37,7 +37,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             fabric: &self.fabric,
             parameters: &self.parameters,
             position: &self.position,
-            velocity: &self.older_velocity,
+            velocity: &self.velocity,
             impulse: &mut self.predicted,
         });
     }

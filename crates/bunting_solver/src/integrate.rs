@@ -39,40 +39,33 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 ],
             });
         }
-        let nothing = P::splat(0.0);
-        let mut unrest = Unrest { motion: nothing, change: nothing, shake: nothing };
-        P::run(Extrapolate {
-            inverse_areas: &self.packs.inverse_areas,
-            parts: &self.parts,
-            parameters: &self.parameters,
-            frame_rate: -1.0 / self.clock.step,
-            position: &self.position,
-            velocity: &self.velocity,
-            older_velocity: &self.older_velocity,
-            oldest_velocity: &mut self.oldest_velocity,
-            unrest: &mut unrest,
-        });
-        swap(&mut self.velocity, &mut self.oldest_velocity);
-        swap(&mut self.older_velocity, &mut self.oldest_velocity);
-        self.judge(&unrest);
         let feels_air = self.parameters.feels_air();
         if feels_air {
             self.gather_air();
         }
+        let nothing = P::splat(0.0);
+        let mut unrest = Unrest { motion: nothing, change: nothing, shake: nothing };
         P::run(Predict {
             areas: &self.packs.areas,
             inverse_areas: &self.packs.inverse_areas,
             weights: &self.lane_weights,
+            parts: &self.parts,
             parameters: &self.parameters,
+            frame_rate: -1.0 / self.clock.step,
             position: &mut self.position,
             predicted: &mut self.predicted,
             displacement: &self.displacement,
             older_displacement: &mut self.older_displacement,
             velocity: &mut self.velocity,
-            past: [&mut self.older_velocity, &mut self.oldest_velocity],
+            older_velocity: &mut self.older_velocity,
+            oldest_velocity: &mut self.oldest_velocity,
             feels_air,
+            unrest: &mut unrest,
         });
+        swap(&mut self.velocity, &mut self.oldest_velocity);
+        swap(&mut self.older_velocity, &mut self.oldest_velocity);
         swap(&mut self.displacement, &mut self.older_displacement);
+        self.judge(&unrest);
         self.clock.done += 1;
     }
 
@@ -187,142 +180,110 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for CarryState<'_, P, C> {
     }
 }
 
-/// Extrapolates velocities and damps them, writing them over the oldest. Gravity and air come after,
-/// undamped, so that rest states are exact.
-struct Extrapolate<'a, P: Pack, C> {
+/// Extrapolates velocities and damps them, adds what air and gravity do, and moves the particles to where
+/// they would go unconstrained. Gravity and air come after damping, so that rest states are exact.
+struct Predict<'a, P: Pack, C> {
+    areas: &'a [C],
     inverse_areas: &'a [C],
+    weights: &'a [P],
     /// Into which part of the sums each pack goes.
     parts: &'a [u8],
     parameters: &'a Parameters<P>,
     /// −1/h, 1/s.
     frame_rate: f32,
-    position: &'a [Pack3<P>],
-    velocity: &'a [Pack3<P>],
-    older_velocity: &'a [Pack3<P>],
-    oldest_velocity: &'a mut [Pack3<P>],
-    unrest: &'a mut Unrest<P>,
-}
-
-impl<P: Pack, C: Constant<P>> Kernel<P> for Extrapolate<'_, P, C> {
-    #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let [last, before] = extrapolation::<L>(token, self.parameters);
-        let lost = L::splat(token, 1.0) - L::load(token, &self.parameters.keep);
-        let motion = Motion::<L>::load(token, self.parameters);
-        let any_moves = motion.moves.any();
-        let frame_rate = L::splat(token, self.frame_rate);
-        let zero = V3::splat(token, 0.0);
-        let half = L::splat(token, 0.5);
-        let nothing = L::splat(token, 0.0);
-        let mut motions = Sum::new(token);
-        let mut changes = Sum::new(token);
-        let mut shakes = Sum::new(token);
-        let speeds = self.velocity.iter().zip(self.older_velocity).zip(self.oldest_velocity);
-        for (((((velocity, older), oldest), position), inverse_area), &part) in
-            speeds.zip(self.position).zip(self.inverse_areas).zip(self.parts)
-        {
-            if inverse_area.is_zero() {
-                *oldest = *velocity;
-                continue;
-            }
-            let v: V3<L> = V3::load(token, velocity);
-            let older: V3<L> = V3::load(token, older);
-            let change = v - older;
-            let change_before = older - V3::load(token, oldest);
-            let shake = change - change_before;
-            motions.add(part, inverse_area.choose(token, v.dot(v), nothing));
-            changes.add(part, inverse_area.choose(token, change.dot(change), nothing));
-            shakes.add(part, inverse_area.choose(token, shake.dot(shake), nothing));
-            let extrapolated = v.plus_scaled(change, last).plus_scaled(change_before, before);
-            // Damping acts on the motion relative to the frame, whose point at x has this velocity.
-            let relative = if any_moves {
-                let x = V3::load(token, position);
-                v - (motion.swept(x, half) * frame_rate).or_where_not(motion.moves, zero)
-            } else {
-                v
-            };
-            let damped = extrapolated.minus_scaled(relative, lost);
-            inverse_area.choose3(token, damped, v).store(oldest);
-        }
-        motions.total::<C>(token).store(&mut self.unrest.motion);
-        changes.total::<C>(token).store(&mut self.unrest.change);
-        shakes.total::<C>(token).store(&mut self.unrest.shake);
-    }
-}
-
-/// γ₁ and γ₂.
-#[inline(always)]
-fn extrapolation<L: Lane>(token: L::Token, parameters: &Parameters<L::Pack>) -> [L; 2] {
-    let [last, before] = &parameters.extrapolation;
-    [L::load(token, last), L::load(token, before)]
-}
-
-/// Adds what air and gravity do, and moves the particles to where they would go unconstrained.
-struct Predict<'a, P: Pack, C> {
-    areas: &'a [C],
-    inverse_areas: &'a [C],
-    weights: &'a [P],
-    parameters: &'a Parameters<P>,
     position: &'a mut [Pack3<P>],
+    /// Before, what the air does.
     predicted: &'a mut [Pack3<P>],
     displacement: &'a [Pack3<P>],
+    /// Overwritten by the displacement of this substep.
     older_displacement: &'a mut [Pack3<P>],
+    /// These two are carried along with what the air does now, for its changes are not to be extrapolated.
     velocity: &'a mut [Pack3<P>],
-    /// Velocities at the start of the substep and of the one before. The air's changes are not to be
-    /// extrapolated, so they are carried along with what it does now.
-    past: [&'a mut [Pack3<P>]; 2],
+    older_velocity: &'a mut [Pack3<P>],
+    /// Overwritten by the velocity of this substep.
+    oldest_velocity: &'a mut [Pack3<P>],
     /// Whether there are impulses of the air where predicted positions will be.
     feels_air: bool,
+    unrest: &'a mut Unrest<P>,
 }
 
 impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let step = L::load(token, &self.parameters.step);
-        let [last, before] = extrapolation::<L>(token, self.parameters);
+        let [last, before] = &self.parameters.extrapolation;
+        let [last, before] = [L::load(token, last), L::load(token, before)];
+        let lost = L::splat(token, 1.0) - L::load(token, &self.parameters.keep);
         let gravity: V3<L> = V3::load(token, &self.parameters.gravity_step);
-        let places = self.position.iter_mut().zip(self.predicted);
-        let [last_velocities, older_velocities] = self.past;
-        let past = last_velocities.iter_mut().zip(older_velocities);
         let response = Response::<L>::load(token, self.parameters);
-        let changes = self.displacement.iter().zip(self.older_displacement);
-        let inertia = self.weights.iter().zip(self.areas).zip(self.inverse_areas);
+        let motion = Motion::<L>::load(token, self.parameters);
+        let any_moves = motion.moves.any();
+        let frame_rate = L::splat(token, self.frame_rate);
+        let half = L::splat(token, 0.5);
+        let nothing = L::splat(token, 0.0);
+        let still = V3::splat(token, 0.0);
+        let mut unrest = [Sum::new(token), Sum::new(token), Sum::new(token)];
+        let [motions, changes, shakes] = &mut unrest;
+        let places = self.position.iter_mut().zip(self.predicted);
+        let displacements = self.displacement.iter().zip(self.older_displacement);
+        let velocities = self.velocity.iter_mut().zip(self.older_velocity);
+        let constants = self.weights.iter().zip(self.areas).zip(self.inverse_areas).zip(self.parts);
         for (
-            (((position, predicted), (displacement, older)), velocity),
-            (((weight, area), constant), (last_velocity, older_velocity)),
-        ) in places.zip(changes).zip(self.velocity).zip(inertia.zip(past))
+            (((position, predicted), (displacement, older_displacement)), (velocities, oldest)),
+            (((weight, area), constant), &part),
+        ) in places.zip(displacements).zip(velocities.zip(self.oldest_velocity)).zip(constants)
         {
+            let (velocity, older) = velocities;
             if constant.is_zero() {
                 *predicted = *position;
+                *oldest = *velocity;
                 continue;
             }
-            let weight = L::load(token, weight);
-            let unchanged: V3<L> = V3::load(token, velocity);
-            // Gravity acts on the true mass, whatever inertia is added to it.
-            let falling = unchanged.plus_scaled(gravity, weight * area.load(token));
-            let v = if self.feels_air {
-                let last: V3<L> = V3::load(token, last_velocity);
-                let blown = V3::load(token, predicted) * weight;
-                let change = response.to(blown, weight * area.load(token), last, unchanged);
-                for velocity in [last_velocity, older_velocity] {
-                    let past: V3<L> = V3::load(token, velocity);
-                    let carried = (past + change).or_where_not(response.blows, past);
-                    constant.choose3(token, carried, past).store(velocity);
-                }
-                falling + change
+            let x: V3<L> = V3::load(token, position);
+            let v: V3<L> = V3::load(token, velocity);
+            let v_before: V3<L> = V3::load(token, older);
+            let change = v - v_before;
+            let change_before = v_before - V3::load(token, oldest);
+            let shake = change - change_before;
+            motions.add(part, constant.choose(token, v.dot(v), nothing));
+            changes.add(part, constant.choose(token, change.dot(change), nothing));
+            shakes.add(part, constant.choose(token, shake.dot(shake), nothing));
+            let extrapolated = v.plus_scaled(change, last).plus_scaled(change_before, before);
+            // Damping acts on the motion relative to the frame, whose point at x has this velocity.
+            let relative = if any_moves {
+                v - (motion.swept(x, half) * frame_rate).or_where_not(motion.moves, still)
             } else {
-                falling
+                v
             };
-            constant.choose3(token, v, unchanged).store(velocity);
-            let oldest: V3<L> = V3::load(token, older);
-            let change = (v * step)
+            let damped = extrapolated.minus_scaled(relative, lost);
+
+            let weight = L::load(token, weight);
+            // Gravity acts on the true mass, whatever inertia is added to it.
+            let lightness = weight * area.load(token);
+            let mut forced = damped.plus_scaled(gravity, lightness);
+            if self.feels_air {
+                let blown = V3::load(token, predicted) * weight;
+                let blown = response.to(blown, lightness, v, damped);
+                forced = forced + blown;
+                for (past, place) in [(v, velocity), (v_before, older)] {
+                    let carried = (past + blown).or_where_not(response.blows, past);
+                    constant.choose3(token, carried, past).store(place);
+                }
+            }
+            constant.choose3(token, forced, v).store(oldest);
+
+            let oldest: V3<L> = V3::load(token, older_displacement);
+            let moved = (forced * step)
                 .plus_scaled(V3::load(token, displacement), last)
                 .plus_scaled(oldest, before);
-            constant.choose3(token, change, oldest).store(older);
-            let from: V3<L> = V3::load(token, position);
-            let x = constant.choose3(token, from + change, from);
+            constant.choose3(token, moved, oldest).store(older_displacement);
+            let x = constant.choose3(token, x + moved, x);
             x.store(predicted);
             x.store(position);
         }
+        let [motions, changes, shakes] = unrest;
+        motions.total::<C>(token).store(&mut self.unrest.motion);
+        changes.total::<C>(token).store(&mut self.unrest.change);
+        shakes.total::<C>(token).store(&mut self.unrest.shake);
     }
 }
