@@ -54,9 +54,10 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         } else {
             self.visit_yarns(Visit::Only);
         }
-        for _ in 0..passes {
+        for _ in 1..passes {
             self.visit_yarns(Visit::Again);
         }
+        self.visit_yarns(if passes > 1 { Visit::Again } else { Visit::Last });
     }
 
     fn visit_yarns(&mut self, visit: Visit) {
@@ -105,6 +106,8 @@ enum Visit {
     First,
     /// To warp and weft.
     Again,
+    /// To warp and weft; nobody asks for their targets afterwards.
+    Last,
     /// To the bias. Nobody asks for its targets.
     Only,
     /// To the bias of a grid, whose targets are known.
@@ -134,7 +137,7 @@ impl<P: Pack, S: Places<P>> Kernel<P> for Yarns<'_, P, S> {
             Visit::First => self.solve_all::<L, false, true>(token),
             Visit::Again => self.solve_all::<L, true, true>(token),
             Visit::Only => self.solve_all::<L, false, false>(token),
-            Visit::Sheared => self.solve_all::<L, true, false>(token),
+            Visit::Last | Visit::Sheared => self.solve_all::<L, true, false>(token),
         }
     }
 }
