@@ -48,6 +48,17 @@ pub(crate) struct Past {
     step: f32,
     /// Substeps of this length since the integrator began anew.
     substeps: u32,
+    /// What the last substep's corrections have turned the cloth by about its pole, to be taken out again.
+    pub creep: Creep,
+}
+
+/// A turn about the pole.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Creep {
+    /// rad.
+    pub angle: f32,
+    /// rad/s.
+    pub rate: f32,
 }
 
 impl Past {
@@ -59,7 +70,7 @@ impl Past {
     /// Begins a substep of `step` seconds, and chooses its formula: the best that the past allows.
     pub fn begin(&mut self, step: f32, scheme: Scheme) -> Formula {
         if self.step != step {
-            *self = Self { step, substeps: 0 };
+            *self = Self { step, ..Self::default() };
         }
         self.substeps = self.substeps.saturating_add(1);
         match (scheme, self.substeps) {

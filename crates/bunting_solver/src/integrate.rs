@@ -7,6 +7,7 @@
 use core::mem::swap;
 
 use crate::aerodynamics::Response;
+use crate::constraints::{Axis, Pole};
 use crate::formula::Unrest;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
@@ -50,10 +51,11 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             inverse_areas: &self.packs.inverse_areas,
             weights: &self.lane_weights,
             parts: &self.parts,
+            pole: self.pole,
             parameters: &self.parameters,
             frame_rate: -1.0 / self.clock.step,
-            position: &mut self.position,
-            predicted: &mut self.predicted,
+            position: &self.position,
+            next: &mut self.start,
             displacement: &self.displacement,
             older_displacement: &mut self.older_displacement,
             velocity: &mut self.velocity,
@@ -62,6 +64,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             feels_air,
             unrest: &mut unrest,
         });
+        swap(&mut self.position, &mut self.start);
         swap(&mut self.velocity, &mut self.oldest_velocity);
         swap(&mut self.older_velocity, &mut self.oldest_velocity);
         swap(&mut self.displacement, &mut self.older_displacement);
@@ -188,12 +191,13 @@ struct Predict<'a, P: Pack, C> {
     weights: &'a [P],
     /// Into which part of the sums each pack goes.
     parts: &'a [u8],
+    pole: Option<Pole>,
     parameters: &'a Parameters<P>,
     /// −1/h, 1/s.
     frame_rate: f32,
-    position: &'a mut [Pack3<P>],
-    /// Before, what the air does.
-    predicted: &'a mut [Pack3<P>],
+    position: &'a [Pack3<P>],
+    /// Where the particles would go; before, what the air does.
+    next: &'a mut [Pack3<P>],
     displacement: &'a [Pack3<P>],
     /// Overwritten by the displacement of this substep.
     older_displacement: &'a mut [Pack3<P>],
@@ -202,7 +206,7 @@ struct Predict<'a, P: Pack, C> {
     older_velocity: &'a mut [Pack3<P>],
     /// Overwritten by the velocity of this substep.
     oldest_velocity: &'a mut [Pack3<P>],
-    /// Whether there are impulses of the air where predicted positions will be.
+    /// Whether there are impulses of the air where the next positions will be.
     feels_air: bool,
     unrest: &'a mut Unrest<P>,
 }
@@ -222,20 +226,23 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
         let half = L::splat(token, 0.5);
         let nothing = L::splat(token, 0.0);
         let still = V3::splat(token, 0.0);
+        let axis = self.pole.map(|pole| Axis::<L>::of(token, &pole));
+        let [angle, rate] = &self.parameters.creep;
+        let [angle, rate] = [L::load(token, angle), L::load(token, rate)];
         let mut unrest = [Sum::new(token), Sum::new(token), Sum::new(token)];
         let [motions, changes, shakes] = &mut unrest;
-        let places = self.position.iter_mut().zip(self.predicted);
+        let places = self.position.iter().zip(self.next);
         let displacements = self.displacement.iter().zip(self.older_displacement);
         let velocities = self.velocity.iter_mut().zip(self.older_velocity);
         let constants = self.weights.iter().zip(self.areas).zip(self.inverse_areas).zip(self.parts);
         for (
-            (((position, predicted), (displacement, older_displacement)), (velocities, oldest)),
+            (((position, next), (displacement, older_displacement)), (velocities, oldest)),
             (((weight, area), constant), &part),
         ) in places.zip(displacements).zip(velocities.zip(self.oldest_velocity)).zip(constants)
         {
             let (velocity, older) = velocities;
             if constant.is_zero() {
-                *predicted = *position;
+                *next = *position;
                 *oldest = *velocity;
                 continue;
             }
@@ -256,13 +263,19 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
                 v
             };
             let damped = extrapolated.minus_scaled(relative, lost);
+            // What the corrections have turned is taken out; its changes are small.
+            let round = match &axis {
+                Some(axis) => axis.round(x),
+                None => still,
+            };
+            let damped = damped.minus_scaled(round, rate);
 
             let weight = L::load(token, weight);
             // Gravity acts on the true mass, whatever inertia is added to it.
             let lightness = weight * area.load(token);
             let mut forced = damped.plus_scaled(gravity, lightness);
             if self.feels_air {
-                let blown = V3::load(token, predicted) * weight;
+                let blown = V3::load(token, next) * weight;
                 let blown = response.to(blown, lightness, v, damped);
                 forced = forced + blown;
                 for (past, place) in [(v, velocity), (v_before, older)] {
@@ -275,11 +288,10 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
             let oldest: V3<L> = V3::load(token, older_displacement);
             let moved = (forced * step)
                 .plus_scaled(V3::load(token, displacement), last)
-                .plus_scaled(oldest, before);
+                .plus_scaled(oldest, before)
+                .minus_scaled(round, angle);
             constant.choose3(token, moved, oldest).store(older_displacement);
-            let x = constant.choose3(token, x + moved, x);
-            x.store(predicted);
-            x.store(position);
+            constant.choose3(token, x + moved, x).store(next);
         }
         let [motions, changes, shakes] = unrest;
         motions.total::<C>(token).store(&mut self.unrest.motion);

@@ -33,6 +33,8 @@ pub(crate) struct Slot {
     pub overstretch: Overstretch,
     /// What its weights were last computed from.
     pub hung: Option<Hung>,
+    /// Moment about the pole of what its contacts did in this substep, in units of the density, m⁴.
+    pub contact_moment: f32,
     /// For each collider, the particles that may touch it in this tick.
     pub contacts: Vec<Vec<u32>>,
 }
@@ -61,10 +63,10 @@ pub(crate) struct LaneBatch<P: Pack, C = f32> {
 
     /// Positions in the cloth's frame, m.
     pub position: Vec<Pack3<P>>,
-    /// Positions as predicted at the start of the substep, before any correction, m. Until then, for
-    /// each particle the sum over its triangles of area times what the air changes of their velocity,
-    /// m³/s: one array less to pass through the cache.
-    pub predicted: Vec<Pack3<P>>,
+    /// Positions at the start of the substep, m. Those predicted, before any correction, are these and the
+    /// displacements as predicted. Before the substep, for each particle the sum over its triangles of
+    /// area times what the air changes of their velocity, m³/s: one array less to pass through the cache.
+    pub start: Vec<Pack3<P>>,
     /// Velocities relative to the world along the frame's axes, m/s.
     pub velocity: Vec<Pack3<P>>,
     /// Change of position in the last substep, or so far in this one, m.
@@ -153,7 +155,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         }
         let mut batch = Self {
             slots: vec![None; cloths],
-            predicted: position.clone(),
+            start: position.clone(),
             displacement: zero.clone(),
             bent: zero.clone(),
             memory: zero.clone(),
@@ -205,6 +207,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 applied: None,
                 overstretch: Overstretch::default(),
                 hung: None,
+                contact_moment: 0.0,
                 contacts: Vec::new(),
             });
             states.push((lane, snapshot));
@@ -228,7 +231,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         let with_past: Vec<_> = states.iter().copied().filter(counts).collect();
         let seating = self.seating;
         seating.write::<P, C>(&mut self.position, &shape);
-        seating.write::<P, C>(&mut self.predicted, &shape);
+        seating.write::<P, C>(&mut self.start, &shape);
         let arrays: [(_, &[_], OfState); 6] = [
             (&mut self.velocity, states, |state| Some(&state.velocities)),
             (&mut self.memory, states, |state| Some(&state.history.as_ref()?.memory)),
@@ -302,6 +305,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 continue;
             };
             let formula = slot.past.begin(step, settings.scheme);
+            self.parameters.set_creep(lanes.clone(), slot.past.creep);
             let applied = Applied {
                 material: slot.material,
                 air_density: slot.drive.air_density,

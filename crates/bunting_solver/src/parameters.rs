@@ -7,6 +7,7 @@ use glam::Vec3;
 use crate::constants::{GREATEST_COMPLIANCE, LEAST_LINK_COMPLIANCE};
 use crate::constraints::{anticipated, resists_twist};
 use crate::fabric::{BendProfile, Fabric, FabricMaterial, RibbonProfile};
+use crate::formula::Creep;
 use crate::lane_batch::{Applied, Clock};
 use crate::lanes::Pack;
 use crate::step::{Drive, Scheme};
@@ -155,6 +156,9 @@ pub(crate) struct Parameters<P: Pack> {
     pub pressure: P,
     /// ½ ρ C_t h/σ, s/m.
     pub friction: P,
+    /// What the cloth was turned by about its pole in the substep before, rad and rad/s: see
+    /// [`Creep`].
+    pub creep: [P; 2],
     /// Part of the velocity relative to the frame that damping leaves in a substep.
     pub keep: P,
     /// Part of the non-rigid velocity that internal damping leaves in a substep, for cloth without
@@ -191,6 +195,7 @@ impl<P: Pack> Parameters<P> {
             foresight: nothing,
             pressure: nothing,
             friction: nothing,
+            creep: [nothing; 2],
             keep: P::splat(1.0),
             keep_internal: P::splat(1.0),
             tether_stretch: P::splat(1.0),
@@ -210,9 +215,16 @@ impl<P: Pack> Parameters<P> {
         set(&mut self.inverse_step, 0.0);
         set(&mut self.moves, 0.0);
         set(&mut self.keep, 0.0);
-        self.extrapolation.iter_mut().for_each(|part| set(part, 0.0));
+        self.extrapolation.iter_mut().chain(&mut self.creep).for_each(|part| set(part, 0.0));
         set3(&mut self.gravity_step, Vec3::ZERO);
         set3(&mut self.wind, Vec3::ZERO);
+    }
+
+    /// What is to be taken out again of the substep before.
+    pub fn set_creep(&mut self, lanes: Range<usize>, creep: Creep) {
+        let [angle, rate] = &mut self.creep;
+        angle.lanes_mut()[lanes.clone()].fill(creep.angle);
+        rate.lanes_mut()[lanes].fill(creep.rate);
     }
 
     /// Integration formula, compliances, air and damping.

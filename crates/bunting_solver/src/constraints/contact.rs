@@ -18,8 +18,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         // `integrate` has counted this substep already.
         let index = done - 1;
         let part = |substep: u32| substep as f32 / settings.substeps as f32;
-        for (cloth, slot) in self.slots.iter().enumerate() {
+        for (cloth, slot) in self.slots.iter_mut().enumerate() {
             let Some(slot) = slot else { continue };
+            slot.contact_moment = 0.0;
             let effective_step = self.parameters.step.lanes()[C::lanes(cloth).start];
             let carry = slot.drive.motion.carry(index, settings.substeps);
             for (collider, candidates) in slot.colliders.iter().zip(&slot.contacts) {
@@ -34,14 +35,21 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                     let (pack, lane) = self.seating.seat(particle as usize, cloth);
                     let position = &mut self.position[pack];
                     let velocity = &mut self.velocity[pack];
-                    let predicted = lane3(&self.predicted[pack], lane);
-                    let old = predicted - lane3(&self.displacement[pack], lane);
+                    let old = lane3(&self.start[pack], lane);
                     // Both ends of the particle's way in the collider's own frame, so that it is
                     // relative to the surface; the old end as it stood before the frame moved.
                     let from = old_pose.inverse_transform_point(carry.back(old));
                     let to = pose.inverse_transform_point(lane3(position, lane));
                     let Some(push) = surface.push(from, to) else { continue };
-                    set_lane3(position, lane, pose.transform_point(push.to));
+                    let before = lane3(position, lane);
+                    let after = pose.transform_point(push.to);
+                    set_lane3(position, lane, after);
+                    if let Some(pole) = self.pole {
+                        let inertia = self.lane_inertias[pack].lanes()[lane];
+                        let predicted = old + lane3(&self.displacement[pack], lane);
+                        let moment = |at: Vec3| pole.moment(inertia, at, at - predicted);
+                        slot.contact_moment += moment(after) - moment(before);
+                    }
                     if let Some(thrown) = push.thrown {
                         let slowed =
                             lane3(velocity, lane) - pose.rotation * thrown / effective_step;

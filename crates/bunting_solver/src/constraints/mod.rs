@@ -21,7 +21,7 @@ mod twist;
 mod yarn;
 
 pub(crate) use anticipation::anticipated;
-pub(crate) use pole::Pole;
+pub(crate) use pole::{Axis, Moment, Pole};
 pub(crate) use twist::resists_twist;
 pub(crate) use yarn::Knot;
 
@@ -73,7 +73,6 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             self.polish();
         }
         self.unravel();
-        self.still_turn();
         self.remember_stretch();
         self.solve_contacts();
     }

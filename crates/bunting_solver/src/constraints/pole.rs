@@ -5,16 +5,16 @@
 //! itself has no moment; but those that come later find particles moved by those that came before,
 //! and of two pulls the cross product is left. It is small and always of one sign: a flag that hangs
 //! from its pole in folds goes round it for ever. So the moment of all corrections about the pole is
-//! taken out again, by a turn as of a rigid body.
+//! taken out again, by a turn as of a rigid body: with the next prediction, when all particles are moved
+//! anyway. What contacts do is no error, and has a moment of its own.
 
 use glam::Vec3;
 
 use crate::fabric::Fabric;
-use crate::lane_batch::LaneBatch;
-use crate::lanes::{Kernel, Lane, Pack};
+use crate::lanes::Lane;
 use crate::places::Constant;
 use crate::sums::Sum;
-use crate::vector::{Pack3, V3, splat3};
+use crate::vector::{V3, splat3};
 
 /// How far pins may lie off the line through them, as a part of its length.
 const STRAIGHT: f32 = 1e-3;
@@ -59,60 +59,57 @@ impl Pole {
         const STEPS: f32 = 32.0;
         libm::roundf(STEPS * gravity.normalize_or_zero().dot(self.along).abs()) / STEPS
     }
-}
 
-impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
-    /// Takes the moment about the pole out of what this substep has corrected.
-    pub fn still_turn(&mut self) {
-        let Some(pole) = self.pole else { return };
-        P::run(StillTurn {
-            pole,
-            inverse_areas: &self.packs.inverse_areas,
-            inertias: &self.lane_inertias,
-            parts: &self.parts,
-            predicted: &self.predicted,
-            position: &mut self.position,
-        });
+    /// Moment about it of what a particle was corrected by to where it is, m⁴ given its inertia in m².
+    pub fn moment(&self, inertia: f32, at: Vec3, correction: Vec3) -> f32 {
+        inertia * self.along.cross(at - self.at).dot(correction)
     }
 }
 
-struct StillTurn<'a, P: Pack, C> {
-    pole: Pole,
-    inverse_areas: &'a [C],
-    /// Each particle's inertia, in units of the density, m²; zero where it is pinned.
-    inertias: &'a [P],
-    /// Into which part of the sums each pack goes.
-    parts: &'a [u8],
-    predicted: &'a [Pack3<P>],
-    position: &'a mut [Pack3<P>],
+/// A pole in registers.
+#[derive(Clone, Copy)]
+pub(crate) struct Axis<L> {
+    at: V3<L>,
+    along: V3<L>,
 }
 
-impl<P: Pack, C: Constant<P>> Kernel<P> for StillTurn<'_, P, C> {
+impl<L: Lane> Axis<L> {
     #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let at: V3<L> = V3::load(token, &splat3(self.pole.at));
-        let along: V3<L> = V3::load(token, &splat3(self.pole.along));
-        let mut moment = Sum::new(token);
-        let mut inertia = Sum::new(token);
-        let places = self.position.iter().zip(self.predicted).zip(self.inertias).zip(self.parts);
-        for (((position, predicted), mass), &part) in places {
-            let x: V3<L> = V3::load(token, position);
-            let mass = L::load(token, mass);
-            // How fast the particle would go round at a radian per second.
-            let round = along.cross(x - at);
-            let way = round.dot(x - V3::load(token, predicted));
-            moment.add_product(part, mass, way);
-            inertia.add_product(part, mass, round.dot(round));
-        }
-        let inertia = inertia.total::<C>(token) + L::splat(token, f32::MIN_POSITIVE);
-        let turn = moment.total::<C>(token) / inertia;
-        for (position, inverse_area) in self.position.iter_mut().zip(self.inverse_areas) {
-            if inverse_area.is_zero() {
-                continue;
-            }
-            let x: V3<L> = V3::load(token, position);
-            let turned = x.minus_scaled(along.cross(x - at), turn);
-            inverse_area.choose3(token, turned, x).store(position);
-        }
+    pub fn of(token: L::Token, pole: &Pole) -> Self {
+        Self { at: V3::load(token, &splat3(pole.at)), along: V3::load(token, &splat3(pole.along)) }
+    }
+
+    /// What a point is moved by for each radian of a turn about the pole.
+    #[inline(always)]
+    pub fn round(&self, point: V3<L>) -> V3<L> {
+        self.along.cross(point - self.at)
+    }
+}
+
+/// Moment and inertia about the pole, in units of the density, m⁴.
+pub(crate) struct Moment<L> {
+    moment: Sum<L>,
+    inertia: Sum<L>,
+}
+
+impl<L: Lane> Moment<L> {
+    #[inline(always)]
+    pub fn new(token: L::Token) -> Self {
+        Self { moment: Sum::new(token), inertia: Sum::new(token) }
+    }
+
+    /// Adds that of a pack's particles, given their inertias, what they move by for each radian, and what
+    /// they were corrected by.
+    #[inline(always)]
+    pub fn add(&mut self, part: u8, inertia: L, round: V3<L>, correction: V3<L>) {
+        self.moment.add_product(part, inertia, round.dot(correction));
+        self.inertia.add_product(part, inertia, round.dot(round));
+    }
+
+    /// The turn that it makes, rad, but for a moment that is no error.
+    #[inline(always)]
+    pub fn turn<C: Constant<L::Pack>>(self, token: L::Token, but: L) -> L {
+        let inertia = self.inertia.total::<C>(token) + L::splat(token, f32::MIN_POSITIVE);
+        (self.moment.total::<C>(token) - but) / inertia
     }
 }
