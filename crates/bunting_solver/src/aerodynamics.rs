@@ -30,7 +30,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             && let Some(weave) = &mut self.weave
         {
             let (position, velocity) = (&self.position, &self.velocity);
-            weave.gather_air(&self.parameters, position, velocity, &mut self.start);
+            weave.gather_air(&self.parameters, position, velocity, &mut self.scratch);
             return;
         }
         P::run(Air {
@@ -38,7 +38,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             parameters: &self.parameters,
             position: &self.position,
             velocity: &self.velocity,
-            impulse: &mut self.start,
+            impulse: &mut self.scratch,
         });
     }
 }

@@ -55,7 +55,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             parameters: &self.parameters,
             frame_rate: -1.0 / self.clock.step,
             position: &self.position,
-            next: &mut self.start,
+            next: &mut self.scratch,
             displacement: &self.displacement,
             older_displacement: &mut self.older_displacement,
             velocity: &mut self.velocity,
@@ -64,7 +64,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             feels_air,
             unrest: &mut unrest,
         });
-        swap(&mut self.position, &mut self.start);
+        swap(&mut self.position, &mut self.scratch);
         swap(&mut self.velocity, &mut self.oldest_velocity);
         swap(&mut self.older_velocity, &mut self.oldest_velocity);
         swap(&mut self.displacement, &mut self.older_displacement);

@@ -63,10 +63,10 @@ pub(crate) struct LaneBatch<P: Pack, C = f32> {
 
     /// Positions in the cloth's frame, m.
     pub position: Vec<Pack3<P>>,
-    /// Positions at the start of the substep, m. Those predicted, before any correction, are these and the
-    /// displacements as predicted. Before the substep, for each particle the sum over its triangles of
-    /// area times what the air changes of their velocity, m³/s: one array less to pass through the cache.
-    pub start: Vec<Pack3<P>>,
+    /// What is needed for a while only, as fewer arrays leave more room in the cache. Within a substep the
+    /// positions at its start, m. Before that, for each particle the sum over its triangles of area times
+    /// what the air changes of their velocity, m³/s. Once computed, and up to the next substep, unit normals.
+    pub scratch: Vec<Pack3<P>>,
     /// Velocities relative to the world along the frame's axes, m/s.
     pub velocity: Vec<Pack3<P>>,
     /// Change of position in the last substep, or so far in this one, m.
@@ -77,8 +77,6 @@ pub(crate) struct LaneBatch<P: Pack, C = f32> {
     pub older_velocity: Vec<Pack3<P>>,
     /// The same of two substeps earlier, m/s.
     pub oldest_velocity: Vec<Pack3<P>>,
-    /// Unit normals.
-    pub normal: Vec<Pack3<P>>,
 
     /// The length that each link has under the tension found so far in a substep, l − α̃ λ, m. In the
     /// order in which the scheme solves links.
@@ -155,7 +153,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         }
         let mut batch = Self {
             slots: vec![None; cloths],
-            start: position.clone(),
+            scratch: zero.clone(),
             displacement: zero.clone(),
             bent: zero.clone(),
             memory: zero.clone(),
@@ -163,8 +161,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             older_velocity: zero.clone(),
             oldest_velocity: zero.clone(),
             position,
-            velocity: zero.clone(),
-            normal: zero,
+            velocity: zero,
             link_target: vec![nothing; fabric.strands().target_count()],
             hinge_multiplier: vec![nothing; fabric.hinges().len()],
             moments: vec![splat3(Vec3::ZERO); longest_line],
@@ -231,7 +228,6 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         let with_past: Vec<_> = states.iter().copied().filter(counts).collect();
         let seating = self.seating;
         seating.write::<P, C>(&mut self.position, &shape);
-        seating.write::<P, C>(&mut self.start, &shape);
         let arrays: [(_, &[_], OfState); 6] = [
             (&mut self.velocity, states, |state| Some(&state.velocities)),
             (&mut self.memory, states, |state| Some(&state.history.as_ref()?.memory)),
@@ -374,7 +370,7 @@ impl<P: Pack> LaneBatch<P, P> {
             batch.exchange(&[], &[(0, &self.snapshot(0), slot.material)]);
             batch.slots[0] = Some(Slot { applied: None, hung: None, ..slot.clone() });
         }
-        for (pack, normal) in batch.normal.iter_mut().zip(self.of_cloth(&self.normal, 0)) {
+        for (pack, normal) in batch.scratch.iter_mut().zip(self.of_cloth(&self.scratch, 0)) {
             set_lane3(pack, 0, normal);
         }
         batch

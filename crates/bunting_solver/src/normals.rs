@@ -13,13 +13,13 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         if C::SIDE > 1
             && let Some(weave) = &mut self.weave
         {
-            weave.compute_normals(&self.position, &mut self.normal);
+            weave.compute_normals(&self.position, &mut self.scratch);
             return;
         }
         P::run(Normals {
             patches: self.fabric.patches(),
             position: &self.position,
-            normal: &mut self.normal,
+            normal: &mut self.scratch,
         });
     }
 }

@@ -52,7 +52,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     }
 
     pub fn copy_normals(&self, lane: usize, into: &mut Vec<Vec3>) {
-        self.seating.read::<P, C>(&self.normal, lane, into);
+        self.seating.read::<P, C>(&self.scratch, lane, into);
     }
 
     pub fn is_finite(&self, lane: usize) -> bool {

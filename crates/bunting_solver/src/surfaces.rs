@@ -44,7 +44,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     #[inline(always)]
     fn copy_by_quads<S: Simd>(&self, token: S, into: &mut [LaneSurface]) {
         let mut unseen = [[Vec3::ZERO; BLOCK]; QUAD];
-        let blocks = self.position.chunks(BLOCK).zip(self.normal.chunks(BLOCK));
+        let blocks = self.position.chunks(BLOCK).zip(self.scratch.chunks(BLOCK));
         for (index, (positions, normals)) in blocks.enumerate() {
             let part = index * BLOCK..index * BLOCK + positions.len();
             for (quad, surfaces) in into.chunks_exact_mut(QUAD).enumerate() {

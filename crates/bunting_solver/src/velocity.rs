@@ -34,7 +34,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             inverse_areas: &self.packs.inverse_areas,
             inverse_step: &self.parameters.inverse_step,
             position: &self.position,
-            start: &self.start,
+            start: &self.scratch,
             displacement: &mut self.displacement,
             velocity: &mut self.velocity,
         });

@@ -35,7 +35,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                     let (pack, lane) = self.seating.seat(particle as usize, cloth);
                     let position = &mut self.position[pack];
                     let velocity = &mut self.velocity[pack];
-                    let old = lane3(&self.start[pack], lane);
+                    let old = lane3(&self.scratch[pack], lane);
                     // Both ends of the particle's way in the collider's own frame, so that it is
                     // relative to the surface; the old end as it stood before the frame moved.
                     let from = old_pose.inverse_transform_point(carry.back(old));
