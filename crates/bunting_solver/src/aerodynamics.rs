@@ -15,6 +15,7 @@
 //! With c limited to u, j is never more than 2u, and so never adds energy in still air.
 
 use crate::constants::LEAST_AREA_SQUARED;
+use crate::corners::{Giver, sum_corners};
 use crate::fabric::{Fabric, Patch};
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
@@ -38,6 +39,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             parameters: &self.parameters,
             position: &self.position,
             velocity: &self.velocity,
+            below: &mut self.below,
             impulse: &mut self.scratch,
         });
     }
@@ -48,39 +50,39 @@ struct Air<'a, P: Pack> {
     parameters: &'a Parameters<P>,
     position: &'a [Pack3<P>],
     velocity: &'a [Pack3<P>],
+    below: &'a mut [Pack3<P>],
     impulse: &'a mut [Pack3<P>],
 }
 
 impl<P: Pack> Kernel<P> for Air<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let air = Stream::<L>::load(token, self.parameters);
-        for sum in self.impulse.iter_mut() {
-            V3::<L>::splat(token, 0.0).store(sum);
-        }
-        for &Patch { corners: [a, b, c, d], shares } in self.fabric.patches() {
-            let (a, b, c, d) = (a as usize, b as usize, c as usize, d as usize);
-            let [first, second] = air.blow(
-                [
-                    V3::load(token, &self.position[a]),
-                    V3::load(token, &self.position[b]),
-                    V3::load(token, &self.position[c]),
-                    V3::load(token, &self.position[d]),
-                ],
-                [
-                    V3::load(token, &self.velocity[a]),
-                    V3::load(token, &self.velocity[b]),
-                    V3::load(token, &self.velocity[c]),
-                    V3::load(token, &self.velocity[d]),
-                ],
-                [L::splat(token, shares[0]), L::splat(token, shares[1])],
-            );
-            let both = first + second;
-            both.add_to(token, &mut self.impulse[a]);
-            first.add_to(token, &mut self.impulse[b]);
-            both.add_to(token, &mut self.impulse[c]);
-            second.add_to(token, &mut self.impulse[d]);
-        }
+        let Self { fabric, parameters, position, velocity, below, impulse } = self;
+        let stream = Stream::<L>::load(token, parameters);
+        sum_corners(token, fabric, &Blown { stream, position, velocity }, below, impulse);
+    }
+}
+
+struct Blown<'a, L: Lane> {
+    stream: Stream<L>,
+    position: &'a [Pack3<L::Pack>],
+    velocity: &'a [Pack3<L::Pack>],
+}
+
+impl<L: Lane> Giver<L> for Blown<'_, L> {
+    #[inline(always)]
+    fn give(&self, token: L::Token, patch: &Patch) -> [V3<L>; 2] {
+        let [first, second] = patch.shares;
+        self.stream.blow(
+            patch.load(token, self.position),
+            patch.load(token, self.velocity),
+            [L::splat(token, first), L::splat(token, second)],
+        )
+    }
+
+    #[inline(always)]
+    fn finish(&self, _: L::Token, sum: V3<L>) -> V3<L> {
+        sum
     }
 }
 

@@ -88,6 +88,8 @@ pub(crate) struct LaneBatch<P: Pack, C = f32> {
     pub bent: Vec<Pack3<P>>,
     /// What stretch does to each particle, as a remembered acceleration, m/s².
     pub memory: Vec<Pack3<P>>,
+    /// Room for what the cells of a row of a grid give to the particles below them.
+    pub below: Vec<Pack3<P>>,
     /// Room for the bending moments of a line.
     pub moments: Vec<Pack3<P>>,
     /// Room for the links of yarns side by side.
@@ -164,6 +166,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             velocity: zero,
             link_target: vec![nothing; fabric.strands().target_count()],
             hinge_multiplier: vec![nothing; fabric.hinges().len()],
+            below: vec![splat3(Vec3::ZERO); fabric.columns_of_cells().unwrap_or(0)],
             moments: vec![splat3(Vec3::ZERO); longest_line],
             knots: vec![Knot::new(); ABREAST * longest_yarn],
             weights: Weights::bare(&fabric),

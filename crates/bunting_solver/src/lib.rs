@@ -38,6 +38,7 @@ mod batch;
 mod collision;
 mod constants;
 mod constraints;
+mod corners;
 mod damping;
 mod energy;
 mod fabric;

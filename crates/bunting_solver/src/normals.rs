@@ -1,7 +1,8 @@
 //! Normals of the surface: each particle's is the area-weighted mean of its triangles'.
 
 use crate::constants::LEAST_AREA_SQUARED;
-use crate::fabric::Patch;
+use crate::corners::{Giver, sum_corners};
+use crate::fabric::{Fabric, Patch};
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
 use crate::places::Constant;
@@ -17,43 +18,42 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             return;
         }
         P::run(Normals {
-            patches: self.fabric.patches(),
+            fabric: &self.fabric,
             position: &self.position,
+            below: &mut self.below,
             normal: &mut self.scratch,
         });
     }
 }
 
 struct Normals<'a, P: Pack> {
-    patches: &'a [Patch],
+    fabric: &'a Fabric,
     position: &'a [Pack3<P>],
+    below: &'a mut [Pack3<P>],
     normal: &'a mut [Pack3<P>],
 }
 
 impl<P: Pack> Kernel<P> for Normals<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        for sum in self.normal.iter_mut() {
-            V3::<L>::splat(token, 0.0).store(sum);
-        }
-        for patch in self.patches {
-            let [a, b, c, d] = patch.corners;
-            let (a, b, c, d) = (a as usize, b as usize, c as usize, d as usize);
-            let [first, second] = face::<L>([
-                V3::load(token, &self.position[a]),
-                V3::load(token, &self.position[b]),
-                V3::load(token, &self.position[c]),
-                V3::load(token, &self.position[d]),
-            ]);
-            let both = first + second;
-            both.add_to(token, &mut self.normal[a]);
-            first.add_to(token, &mut self.normal[b]);
-            both.add_to(token, &mut self.normal[c]);
-            second.add_to(token, &mut self.normal[d]);
-        }
-        for normal in self.normal {
-            normalised(token, V3::<L>::load(token, normal)).store(normal);
-        }
+        let Self { fabric, position, below, normal } = self;
+        sum_corners::<L, _>(token, fabric, &Faces { position }, below, normal);
+    }
+}
+
+struct Faces<'a, P: Pack> {
+    position: &'a [Pack3<P>],
+}
+
+impl<L: Lane> Giver<L> for Faces<'_, L::Pack> {
+    #[inline(always)]
+    fn give(&self, token: L::Token, patch: &Patch) -> [V3<L>; 2] {
+        face(patch.load(token, self.position))
+    }
+
+    #[inline(always)]
+    fn finish(&self, token: L::Token, sum: V3<L>) -> V3<L> {
+        normalised(token, sum)
     }
 }
 

@@ -211,12 +211,15 @@ impl FabricBuilder {
         }
         let (hinges, hinge_classes, hinge_colours) = hinges::hinges(&rest, &edges, &pinned);
 
+        let patches = patches::patches(&triangles, &triangle_areas);
+        let cells = self.grid.filter(|grid| patches::are_cells(&patches, grid));
         let reach = tethers.iter().map(|tether| tether.length).fold(0.0, f32::max);
         let tautness = reach.sqrt() / links::shortest(&links);
         Ok(Fabric {
             rest,
             uv,
-            patches: patches::patches(&triangles, &triangle_areas),
+            patches,
+            columns_of_cells: cells.map(|grid| grid.columns as usize),
             triangles,
             triangle_areas,
             particle_of_vertex: welded.particle_of_vertex,

@@ -47,6 +47,7 @@ pub struct Fabric {
     triangles: Vec<[u32; 3]>,
     triangle_areas: Vec<f32>,
     patches: Vec<Patch>,
+    columns_of_cells: Option<usize>,
     particle_of_vertex: Vec<u32>,
     areas: Vec<f32>,
     inverse_areas: Vec<f32>,
@@ -98,6 +99,11 @@ impl Fabric {
 
     pub(crate) fn patches(&self) -> &[Patch] {
         &self.patches
+    }
+
+    /// Particles in a row of a grid whose patches are its cells, row by row.
+    pub(crate) fn columns_of_cells(&self) -> Option<usize> {
+        self.columns_of_cells
     }
 
     /// The particle that each vertex of the source mesh was welded into.

@@ -5,6 +5,10 @@
 
 use std::collections::HashMap;
 
+use super::Grid;
+use crate::lanes::Lane;
+use crate::vector::{Pack3, V3};
+
 /// Two triangles (a, b, c) and (a, c, d).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Patch {
@@ -12,6 +16,36 @@ pub(crate) struct Patch {
     pub corners: [u32; 4],
     /// A third of each triangle's area, m²: what falls to each of its corners.
     pub shares: [f32; 2],
+}
+
+impl Patch {
+    /// Of what there is at each particle, that at its corners.
+    #[inline(always)]
+    pub fn load<L: Lane>(&self, token: L::Token, of: &[Pack3<L::Pack>]) -> [V3<L>; 4] {
+        let [a, b, c, d] = self.corners;
+        [
+            V3::load(token, &of[a as usize]),
+            V3::load(token, &of[b as usize]),
+            V3::load(token, &of[c as usize]),
+            V3::load(token, &of[d as usize]),
+        ]
+    }
+}
+
+/// Whether patches are the cells of a grid, row by row.
+pub(crate) fn are_cells(patches: &[Patch], grid: &Grid) -> bool {
+    let [across, down] = [grid.columns - 1, grid.rows - 1];
+    let cells = (0..down).flat_map(|row| {
+        (0..across).map(move |column| {
+            let at = |right, below| grid.index(column + right, row + below);
+            if (column + row) % 2 == 0 {
+                [at(0, 0), at(0, 1), at(1, 1), at(1, 0)]
+            } else {
+                [at(1, 0), at(0, 0), at(0, 1), at(1, 1)]
+            }
+        })
+    });
+    cells.eq(patches.iter().map(|patch| patch.corners))
 }
 
 /// Pairs each triangle with the first of its neighbours that is free and faces the same way.

@@ -63,22 +63,8 @@ impl<L: Lane> Corners<L> {
 impl<P: Pack> Cells<P> {
     /// None unless the fabric's patches are its cells, row by row.
     pub fn of(fabric: &Fabric, stride: usize) -> Option<Self> {
-        let grid = fabric.grid()?;
-        let [across, down] = [grid.columns - 1, grid.rows - 1];
-        let expected = (0..down).flat_map(|row| {
-            (0..across).map(move |column| {
-                let at = |right, below| grid.index(column + right, row + below);
-                if (column + row) % 2 == 0 {
-                    [at(0, 0), at(0, 1), at(1, 1), at(1, 0)]
-                } else {
-                    [at(1, 0), at(0, 0), at(0, 1), at(1, 1)]
-                }
-            })
-        });
-        if !expected.eq(fabric.patches().iter().map(|patch| patch.corners)) {
-            return None;
-        }
-        let rows = fabric.patches().chunks(across as usize);
+        let across = fabric.columns_of_cells()? - 1;
+        let rows = fabric.patches().chunks(across);
         let shares = rows.flat_map(|row| {
             (0..stride).step_by(P::WIDTH).map(|first| {
                 [0, 1].map(|half| {
