@@ -167,6 +167,8 @@ pub(crate) struct Parameters<P: Pack> {
     /// Length that tethers have, in units of that at rest: twice what the loads and the pins stretch, which
     /// they must not hide.
     pub tether_stretch: P,
+    /// The same of tethers to the farthest pin, along the bias.
+    pub far_tether_stretch: P,
     /// Length that the loads and the pins may stretch the bias to, in units of that at rest.
     pub bias_stretch: P,
     /// The frame's motion in this substep, see [`Carry`](crate::frame::Carry).
@@ -199,6 +201,7 @@ impl<P: Pack> Parameters<P> {
             keep: P::splat(1.0),
             keep_internal: P::splat(1.0),
             tether_stretch: P::splat(1.0),
+            far_tether_stretch: P::splat(1.0),
             bias_stretch: P::splat(1.0),
             turn: [splat3(Vec3::ZERO); 3],
             shift: splat3(Vec3::ZERO),
@@ -298,8 +301,11 @@ impl<P: Pack> Parameters<P> {
         let set3 = |pack: &mut Pack3<P>, value: Vec3| fill_lanes3(pack, &lanes, value);
         set3(&mut self.gravity_step, turned(drive.gravity) * self.step.lanes()[lanes.start]);
         set3(&mut self.wind, turned(drive.wind));
-        let [hung, blown] = greatest_strains(material, drive, reach);
+        let softness = 1.0 / material.warp_stiffness.min(material.weft_stiffness);
+        let [hung, blown] = greatest_strains(material, drive, reach, softness);
         set(&mut self.tether_stretch, 1.0 + 2.0 * (apart + hung + blown));
+        let along_bias = greatest_strains(material, drive, reach, bias_softness(material));
+        set(&mut self.far_tether_stretch, 1.0 + 2.0 * (apart + along_bias[0] + along_bias[1]));
         set(&mut self.bias_stretch, 1.0 + apart + hung + blown.min(MOST_BLOWN));
         let carry = drive.motion.carry(index, count);
         for (pack, row) in self.turn.iter_mut().zip(carry.turn.rows) {
@@ -331,11 +337,22 @@ impl<P: Pack> Parameters<P> {
 /// a storm overstretches is not held by the bias. Smaller: what wind holds taut stretches too little.
 const MOST_BLOWN: f32 = 0.01;
 
-/// How much gravity and wind may stretch the top of a cloth that hangs by a length of `reach` metres.
-fn greatest_strains(material: &FabricMaterial, drive: &Drive, reach: f32) -> [f32; 2] {
-    let softer = material.warp_stiffness.min(material.weft_stiffness);
+/// Strain of the bias for each N/m, m/N: that of warp and weft and of their shear.
+fn bias_softness(material: &FabricMaterial) -> f32 {
+    let FabricMaterial { warp_stiffness, weft_stiffness, shear_stiffness, .. } = *material;
+    0.25 * (1.0 / warp_stiffness + 1.0 / weft_stiffness + 1.0 / shear_stiffness)
+}
+
+/// How much gravity and wind may stretch the top of a cloth that hangs by a length of `reach` metres, given its
+/// strain for each N/m.
+fn greatest_strains(
+    material: &FabricMaterial,
+    drive: &Drive,
+    reach: f32,
+    softness: f32,
+) -> [f32; 2] {
     let weight = material.area_density * drive.gravity.length();
     let coefficients = material.pressure_coefficient + material.friction_coefficient;
     let pressure = 0.5 * drive.air_density * coefficients * drive.wind.length_squared();
-    [weight * reach / softer, pressure * reach / softer]
+    [weight * reach * softness, pressure * reach * softness]
 }

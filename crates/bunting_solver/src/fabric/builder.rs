@@ -200,7 +200,9 @@ impl FabricBuilder {
             links::finish(&rest, &pinned, geometry.into_values());
         let (yarns, yarn_colours) = yarns::yarns(&rest, &links);
         let pins = tethers::pins(&edges, &pinned);
-        let tethers = tethers::tethers(&rest, &edges, &pins, self.grid.is_some());
+        let flat = self.grid.is_some();
+        let tethers = tethers::tethers(&rest, &edges, &pins, flat);
+        let far_tethers = tethers::far_tethers(&rest, &edges, &pins, &tethers, flat);
         let (bend_lines, bend_profiles) =
             self.grid.map(|grid| bending::lines(&grid, &inverse_areas)).unwrap_or_default();
         let (ribbons, ribbon_profiles) =
@@ -243,6 +245,7 @@ impl FabricBuilder {
             reach,
             tautness,
             tethers: if self.tethered { tethers } else { Vec::new() },
+            far_tethers: if self.tethered { far_tethers } else { Vec::new() },
             grid: self.grid,
         })
     }

@@ -67,6 +67,7 @@ pub struct Fabric {
     ribbon_profiles: Vec<RibbonProfile>,
     pins: Vec<Pin>,
     tethers: Vec<Tether>,
+    far_tethers: Vec<Tether>,
     reach: f32,
     tautness: f32,
     grid: Option<Grid>,
@@ -239,6 +240,13 @@ impl Fabric {
     #[must_use]
     pub fn tethers(&self) -> &[Tether] {
         &self.tethers
+    }
+
+    /// What keeps free particles within reach of the pin that is farthest from them at rest, of those that lie
+    /// further from it than any lies from its nearest.
+    #[must_use]
+    pub fn far_tethers(&self) -> &[Tether] {
+        &self.far_tethers
     }
 
     /// Greatest distance of any particle from its nearest pin, m.

@@ -1,7 +1,7 @@
-//! How far each particle may be from the pin that is nearest to it.
+//! How far each particle may be from the pin that is nearest to it, and from the one that is farthest.
 
 use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use std::collections::{BTreeMap, BinaryHeap};
 
 use glam::Vec3;
 
@@ -21,9 +21,9 @@ pub struct Tether {
 /// Slack of a tether to a pin among pins, as a part of its length: more than a cloth's own strain.
 const LINE_SLACK: f32 = 0.005;
 
-/// Slack of a tether to a pin that stands alone: a cloth that hangs by points shears, and lies
-/// further from them than its rest shape says.
-const POINT_SLACK: f32 = 0.05;
+/// Slack of a tether along the bias, to a pin that stands alone or to the farthest: a cloth that hangs by
+/// points shears, and lies further from them than its rest shape says.
+const BIAS_SLACK: f32 = 0.05;
 
 /// A pinned particle, and whether it stands alone: no edge joins it to another pinned one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +58,7 @@ pub(crate) fn tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -
         .filter_map(|(particle, nearest)| {
             let (length, pin) = nearest?;
             let Pin { particle: pin, alone } = pins[pin];
-            let slack = if alone { POINT_SLACK } else { LINE_SLACK };
+            let slack = if alone { BIAS_SLACK } else { LINE_SLACK };
             (pin != particle && length > 0.0).then_some(Tether {
                 particle,
                 pin,
@@ -66,6 +66,37 @@ pub(crate) fn tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -
             })
         })
         .collect()
+}
+
+/// The tethers of free particles to the pins that are farthest from them at rest: to the nearest alone, the
+/// lower corner of a flag may come to lie beneath its pole. Only of those that lie further from it than any
+/// lies from its nearest; they hold the others. Given the tethers to the nearest, and `flat` as above.
+pub(crate) fn far_tethers(
+    rest: &[Vec3],
+    edges: &[Edge],
+    pins: &[Pin],
+    near: &[Tether],
+    flat: bool,
+) -> Vec<Tether> {
+    let mut of_pins: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+    for &Tether { particle, .. } in near {
+        let distance = |pin: &Pin| rest[particle as usize].distance(rest[pin.particle as usize]);
+        let distances = pins.iter().map(distance).enumerate();
+        if let Some((farthest, _)) = distances.max_by(|one, other| one.1.total_cmp(&other.1)) {
+            of_pins.entry(farthest).or_default().push(particle);
+        }
+    }
+    let reach = near.iter().map(|tether| tether.length).fold(0.0, f32::max);
+    let of_pin = |(pin, particles): (usize, Vec<u32>)| {
+        let lengths = distances(rest, edges.iter().map(|edge| edge.ends), pins[pin], flat);
+        let pin = pins[pin].particle;
+        particles.into_iter().filter_map(move |particle| {
+            let length = lengths[particle as usize];
+            let far = length > reach && length.is_finite();
+            far.then_some(Tether { particle, pin, length: length * (1.0 + BIAS_SLACK) })
+        })
+    };
+    of_pins.into_iter().flat_map(of_pin).collect()
 }
 
 /// For each particle the distance to the nearest pin, and which it is.
@@ -127,7 +158,7 @@ fn nearest_along(
 mod tests {
     use glam::Vec3;
 
-    use crate::fabric::{FabricBuilder, Grid};
+    use crate::fabric::{Fabric, FabricBuilder, Grid};
 
     #[test]
     fn a_flag_is_tethered_to_its_pole_and_a_hammock_to_its_corners() {
@@ -144,8 +175,19 @@ mod tests {
         let lowest = hung.tethers().iter().find(|tether| tether.particle == 15).expect("tethered");
         assert!((lowest.length / 1.5 - 1.05).abs() < 1e-4);
         assert!(FabricBuilder::grid(grid).build().expect("good").tethers().is_empty());
+        let lengths = |fabric: &Fabric, particle: u32| -> Vec<(u32, f32)> {
+            let of = fabric.far_tethers().iter().filter(|tether| tether.particle == particle);
+            of.map(|tether| (tether.pin, tether.length / 1.05)).collect()
+        };
+        let [(0, length)] = lengths(&flag, 19)[..] else { panic!("the lower corner") };
+        assert!((length - 2.5).abs() < 1e-4, "{length}");
+        // The upper end of the pole is not so far.
+        assert!(lengths(&flag, 16).is_empty());
+        let [(4, length)] = lengths(&hung, 15)[..] else { panic!("a lower corner") };
+        assert!((length - 2.5).abs() < 1e-4, "{length}");
         let untethered = FabricBuilder::grid(grid).pin([0, 4]).tethered(false);
-        assert!(untethered.build().expect("good").tethers().is_empty());
+        let untethered = untethered.build().expect("good");
+        assert!(untethered.tethers().is_empty() && untethered.far_tethers().is_empty());
     }
 
     #[test]
@@ -159,5 +201,9 @@ mod tests {
         let fabric = FabricBuilder::new(positions, indices).pin([0, 1]).build().expect("good");
         let far = fabric.tethers().iter().find(|tether| tether.particle == 4).expect("tethered");
         assert!((far.length / 2.0 - 1.005).abs() < 1e-4, "{}", far.length);
+        // The shortest way along the edges: a diagonal of one of the squares, and a side of the other.
+        let far = fabric.far_tethers().iter().find(|tether| tether.particle == 4).expect("far");
+        let way = 1.0 + core::f32::consts::SQRT_2;
+        assert!((far.length / way - 1.05).abs() < 1e-4, "{}", far.length);
     }
 }

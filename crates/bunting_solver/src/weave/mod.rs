@@ -65,6 +65,7 @@ pub(crate) struct Weave<P: Pack> {
     pub moments: Vec<Pack3<P>>,
 
     pub tethers: PackedTethers<P>,
+    pub far_tethers: PackedTethers<P>,
     cells: Cells<P>,
     velocity: Plane,
 }
@@ -88,7 +89,8 @@ impl<P: Pack> Weave<P> {
             bend_factors: profiles.iter().map(|of| bend_lines::factors(fabric, of)).collect(),
             moments: vec![splat3(Vec3::ZERO); grid.columns.max(grid.rows) as usize],
             ribbons: Ribbons::of(fabric, &sheets),
-            tethers: PackedTethers::of(fabric),
+            tethers: PackedTethers::of(fabric, fabric.tethers()),
+            far_tethers: PackedTethers::of(fabric, fabric.far_tethers()),
             velocity: sheets.plane(),
             cells,
             sheets,
@@ -106,6 +108,7 @@ impl<P: Pack> Weave<P> {
     pub fn begin(&mut self, positions: &[Vec3]) {
         self.sheets.clear();
         self.tethers.set_pins(positions);
+        self.far_tethers.set_pins(positions);
     }
 
     /// Takes over what is constant over many substeps.

@@ -116,9 +116,9 @@ impl Sheets {
         self.straight().clone()
     }
 
-    /// Where the packs of rows begin, one after the other.
-    pub fn packs<P: Pack>() -> impl Iterator<Item = u32> {
-        (MARGIN as u32..).step_by(P::WIDTH)
+    /// Where a pack of a row begins, all rows' one after the other.
+    pub fn pack<P: Pack>(index: usize) -> u32 {
+        (MARGIN + index * P::WIDTH) as u32
     }
 
     /// Where a pack begins, given its line and the place of its first lane on it.

@@ -2,40 +2,52 @@
 
 use glam::Vec3;
 
-use crate::fabric::Fabric;
+use super::Sheets;
+use crate::fabric::{Fabric, Tether};
 use crate::lanes::Pack;
 use crate::seating::Seating;
 use crate::vector::{Pack3, set_lane3, splat3};
 
-/// For each pack of particles, where the pins are to which they are tethered.
+/// Packs of particles with tethers, and where the pins are to which they are tethered.
 #[derive(Clone, Debug)]
 pub(crate) struct PackedTethers<P: Pack> {
-    /// Positions, m.
+    /// Where the packs begin.
+    pub at: Vec<u32>,
+    /// Positions of the pins, m.
     pub pins: Vec<Pack3<P>>,
     /// Lengths at rest, m; infinite where there is no tether.
     pub lengths: Vec<P>,
-    /// The seats of particles, and the pins to which they are tethered.
+    /// The seats of tethers among these, and their pins.
     seats: Vec<((usize, usize), u32)>,
 }
 
 impl<P: Pack> PackedTethers<P> {
-    pub fn of(fabric: &Fabric) -> Self {
+    pub fn of(fabric: &Fabric, tethers: &[Tether]) -> Self {
         let seating = Seating::of::<P, P>(fabric);
-        let packs = seating.parts().len();
-        let mut lengths = vec![P::splat(f32::INFINITY); packs];
+        let seat = |tether: &Tether| seating.seat(tether.particle as usize, 0);
+        let mut packs: Vec<usize> = tethers.iter().map(|tether| seat(tether).0).collect();
+        packs.sort_unstable();
+        packs.dedup();
+        let mut lengths = vec![P::splat(f32::INFINITY); packs.len()];
         let mut seats = Vec::new();
-        for tether in fabric.tethers() {
-            let (pack, lane) = seating.seat(tether.particle as usize, 0);
-            lengths[pack].lanes_mut()[lane] = tether.length;
-            seats.push(((pack, lane), tether.pin));
+        for tether in tethers {
+            let (pack, lane) = seat(tether);
+            let index = packs.partition_point(|&other| other < pack);
+            lengths[index].lanes_mut()[lane] = tether.length;
+            seats.push(((index, lane), tether.pin));
         }
-        Self { pins: vec![splat3(Vec3::ZERO); packs], lengths, seats }
+        Self {
+            at: packs.iter().map(|&pack| Sheets::pack::<P>(pack)).collect(),
+            pins: vec![splat3(Vec3::ZERO); packs.len()],
+            lengths,
+            seats,
+        }
     }
 
     /// Pins stay where they are until the cloth's state is overwritten.
     pub fn set_pins(&mut self, positions: &[Vec3]) {
-        for &((pack, lane), pin) in &self.seats {
-            set_lane3(&mut self.pins[pack], lane, positions[pin as usize]);
+        for &((index, lane), pin) in &self.seats {
+            set_lane3(&mut self.pins[index], lane, positions[pin as usize]);
         }
     }
 }
