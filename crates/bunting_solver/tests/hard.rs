@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, Grid, LaneCount,
-    StepSettings,
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion, Grid,
+    LaneCount, StepSettings,
 };
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 const TICK: f32 = 1.0 / 60.0;
 
@@ -143,4 +143,29 @@ fn pins_too_far_apart_hold_the_cloth_still() {
             assert!(off.abs() < 1e-3, "{substeps} substeps, {stretch}: {off} m");
         }
     }
+}
+
+#[test]
+fn a_shaken_flag_stays_within_its_reach_of_both_ends_of_the_pole() {
+    let fabric = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)).pin_where(|_, uv| uv.x == 0.0);
+    let fabric = Arc::new(fabric.build().expect("a good fabric"));
+    let mut batch = cloth(&fabric, |at| at + 1e-3 * at.x * Vec3::Z);
+    let pose = |tick: u32| {
+        let time = f64::from(tick) / 60.0;
+        let sway = 0.5 * libm::sin(10.0 * core::f64::consts::TAU * time);
+        (Vec3::X * sway as f32, Quat::IDENTITY)
+    };
+    let mut positions = Vec::new();
+    let mut reach = 0.0_f32;
+    for tick in 0..120 {
+        let motion = FrameMotion::between(pose(tick), pose(tick + 1));
+        batch.drive(0, Drive { motion, air_density: 0.0, ..Drive::default() });
+        batch.step(TICK, StepSettings::yarns(2));
+        batch.copy_positions(0, &mut positions);
+        reach = positions.iter().map(|at| at.distance(positions[0])).fold(reach, f32::max);
+    }
+    // The diagonal, the slack of what shears, and twice what its weight may shear it by. With tethers to the
+    // nearest pins alone it was 1.8 m.
+    let most = core::f32::consts::SQRT_2 * (1.05 + 2.0 * 0.02);
+    assert!((1.3..1.01 * most).contains(&reach), "{reach} {most}");
 }
