@@ -49,12 +49,12 @@ pub(crate) struct Past {
     /// Substeps of this length since the integrator began anew.
     substeps: u32,
     /// What the last substep's corrections have turned the cloth by about its pole, to be taken out again.
-    pub creep: Creep,
+    pub turned: Turned,
 }
 
 /// A turn about the pole.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Creep {
+pub(crate) struct Turned {
     /// rad.
     pub angle: f32,
     /// rad/s.

@@ -227,7 +227,7 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
         let nothing = L::splat(token, 0.0);
         let still = V3::splat(token, 0.0);
         let axis = self.pole.map(|pole| Axis::<L>::of(token, &pole));
-        let [angle, rate] = &self.parameters.creep;
+        let [angle, rate] = &self.parameters.turned;
         let [angle, rate] = [L::load(token, angle), L::load(token, rate)];
         let mut unrest = [Sum::new(token), Sum::new(token), Sum::new(token)];
         let [motions, changes, shakes] = &mut unrest;

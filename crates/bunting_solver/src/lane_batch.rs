@@ -304,7 +304,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 continue;
             };
             let formula = slot.past.begin(step, settings.scheme);
-            self.parameters.set_creep(lanes.clone(), slot.past.creep);
+            self.parameters.set_turned(lanes.clone(), slot.past.turned);
             let applied = Applied {
                 material: slot.material,
                 air_density: slot.drive.air_density,

@@ -7,7 +7,7 @@ use glam::Vec3;
 use crate::constants::{GREATEST_COMPLIANCE, LEAST_LINK_COMPLIANCE};
 use crate::constraints::{anticipated, resists_twist};
 use crate::fabric::{BendProfile, Fabric, FabricMaterial, RibbonProfile};
-use crate::formula::Creep;
+use crate::formula::Turned;
 use crate::lane_batch::{Applied, Clock};
 use crate::lanes::Pack;
 use crate::step::{Drive, Scheme};
@@ -157,8 +157,8 @@ pub(crate) struct Parameters<P: Pack> {
     /// ½ ρ C_t h/σ, s/m.
     pub friction: P,
     /// What the cloth was turned by about its pole in the substep before, rad and rad/s: see
-    /// [`Creep`].
-    pub creep: [P; 2],
+    /// [`Turned`].
+    pub turned: [P; 2],
     /// Part of the velocity relative to the frame that damping leaves in a substep.
     pub keep: P,
     /// Part of the non-rigid velocity that internal damping leaves in a substep, for cloth without
@@ -197,7 +197,7 @@ impl<P: Pack> Parameters<P> {
             foresight: nothing,
             pressure: nothing,
             friction: nothing,
-            creep: [nothing; 2],
+            turned: [nothing; 2],
             keep: P::splat(1.0),
             keep_internal: P::splat(1.0),
             tether_stretch: P::splat(1.0),
@@ -218,16 +218,16 @@ impl<P: Pack> Parameters<P> {
         set(&mut self.inverse_step, 0.0);
         set(&mut self.moves, 0.0);
         set(&mut self.keep, 0.0);
-        self.extrapolation.iter_mut().chain(&mut self.creep).for_each(|part| set(part, 0.0));
+        self.extrapolation.iter_mut().chain(&mut self.turned).for_each(|part| set(part, 0.0));
         set3(&mut self.gravity_step, Vec3::ZERO);
         set3(&mut self.wind, Vec3::ZERO);
     }
 
     /// What is to be taken out again of the substep before.
-    pub fn set_creep(&mut self, lanes: Range<usize>, creep: Creep) {
-        let [angle, rate] = &mut self.creep;
-        angle.lanes_mut()[lanes.clone()].fill(creep.angle);
-        rate.lanes_mut()[lanes].fill(creep.rate);
+    pub fn set_turned(&mut self, lanes: Range<usize>, turned: Turned) {
+        let [angle, rate] = &mut self.turned;
+        angle.lanes_mut()[lanes.clone()].fill(turned.angle);
+        rate.lanes_mut()[lanes].fill(turned.rate);
     }
 
     /// Integration formula, compliances, air and damping.

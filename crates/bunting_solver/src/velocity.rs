@@ -5,7 +5,7 @@
 //! whatever accelerates by less.
 
 use crate::constraints::{Axis, Moment, Pole};
-use crate::formula::Creep;
+use crate::formula::Turned;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
 use crate::places::Constant;
@@ -44,7 +44,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                     let lane = C::lanes(cloth).start;
                     let angle = turn.lanes()[lane];
                     let rate = angle * self.parameters.inverse_step.lanes()[lane];
-                    slot.past.creep = Creep { angle, rate };
+                    slot.past.turned = Turned { angle, rate };
                 }
             }
         }
