@@ -155,6 +155,8 @@ pub(crate) struct Parameters<P: Pack> {
     pub pressure: P,
     /// ½ ρ C_t h/σ, s/m.
     pub friction: P,
+    /// 1 in lanes that hardly move, else 0.
+    pub creeps: P,
     /// Part of the velocity relative to the frame that damping leaves in a substep.
     pub keep: P,
     /// Part of the non-rigid velocity that internal damping leaves in a substep, for cloth without
@@ -191,6 +193,7 @@ impl<P: Pack> Parameters<P> {
             foresight: nothing,
             pressure: nothing,
             friction: nothing,
+            creeps: nothing,
             keep: P::splat(1.0),
             keep_internal: P::splat(1.0),
             tether_stretch: P::splat(1.0),
@@ -209,6 +212,7 @@ impl<P: Pack> Parameters<P> {
         set(&mut self.step, 0.0);
         set(&mut self.inverse_step, 0.0);
         set(&mut self.moves, 0.0);
+        set(&mut self.creeps, 0.0);
         set(&mut self.keep, 0.0);
         self.extrapolation.iter_mut().for_each(|part| set(part, 0.0));
         set3(&mut self.gravity_step, Vec3::ZERO);
@@ -307,6 +311,21 @@ impl<P: Pack> Parameters<P> {
     pub fn twists(&self) -> bool {
         let first = self.twist_factors.first().and_then(|factors| factors.cells.first());
         first.is_some_and(|cell| cell.inverse.lanes().iter().any(|&inverse| inverse != 0.0))
+    }
+
+    /// Says whether the lanes of a cloth hardly move.
+    pub fn set_creeps(&mut self, lanes: Range<usize>, creeps: bool) {
+        self.creeps.lanes_mut()[lanes].fill(if creeps { 1.0 } else { 0.0 });
+    }
+
+    /// Whether they do.
+    pub fn creeps(&self, lanes: Range<usize>) -> bool {
+        self.creeps.lanes()[lanes.start] == 1.0
+    }
+
+    /// Whether any lane hardly moves.
+    pub fn creeps_any(&self) -> bool {
+        self.creeps.lanes().contains(&1.0)
     }
 
     /// Whether the frame of any lane moves in this substep.

@@ -23,6 +23,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             displacement: &mut self.displacement,
             velocity: &mut self.velocity,
         });
+        self.calm_tremor();
         self.damp_internally();
     }
 }
