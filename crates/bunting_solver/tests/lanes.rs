@@ -1,5 +1,6 @@
 //! A lane's bits depend on its own history only.
 
+use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -303,9 +304,16 @@ fn what_trembles_is_calmed_by_the_same_bits() {
     let rest = ClothSnapshot::at_rest(&fabric);
     let mut rippled = rest.clone();
     for at in &mut rippled.positions {
-        at.z += 1e-3 * libm::sinf(6.0 * at.x) * libm::sinf(5.0 * at.y);
+        at.z += 1e-3 * libm::sinf(TAU * at.x) * libm::sinf(0.75 * TAU * at.y);
     }
-    let material = FabricMaterial { damping: 2.0, ..FabricMaterial::COTTON };
+    let material = FabricMaterial {
+        warp_stiffness: 1e4,
+        weft_stiffness: 1e4,
+        shear_stiffness: 200.0,
+        bend_stiffness: 2e-5,
+        damping: 2.0,
+        ..FabricMaterial::COTTON
+    };
     let mut shared = ClothBatch::new(fabric.clone(), LaneCount::Eight);
     let mut batches = [LaneCount::One, LaneCount::Sixteen]
         .map(|lanes| (ClothBatch::new(fabric.clone(), lanes), 0))

@@ -1,5 +1,6 @@
 //! The yarn scheme against closed forms.
 
+use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -264,7 +265,7 @@ fn what_hangs_by_two_corners_comes_to_rest() {
     let mut batch = lone(&fabric, FabricMaterial { damping: 2.0, ..STANDARD }, drive);
     let mut rippled = ClothSnapshot::at_rest(&fabric);
     for at in &mut rippled.positions {
-        at.z += 1e-3 * libm::sinf(6.28 * at.x) * libm::sinf(4.71 * at.y);
+        at.z += 1e-3 * libm::sinf(TAU * at.x) * libm::sinf(0.75 * TAU * at.y);
     }
     batch.restore(0, &rippled).expect("a good state");
     for _ in 0..480 {
