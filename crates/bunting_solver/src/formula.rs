@@ -41,6 +41,10 @@ const ROUGH: f32 = 2.0;
 /// Speeds that do not matter, in units of what gravity gives in a substep. Cloth at rest is not rough.
 const SLOW: f32 = 5.0;
 
+/// RMS speed below which a cloth hardly moves, in units of what gravity gives in a substep. Limp flags tremble
+/// with 0.7 to 1.2, and with 3 one that flies in a light wind would be held.
+const CREEPING: f32 = 2.0;
+
 /// What a lane remembers of its last substeps besides the particles' past.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Past {
@@ -78,6 +82,12 @@ impl Past {
             (Scheme::Yarns, 2) => Formula::BDF2,
             (Scheme::Yarns, _) => Formula::BDF2_OPT,
         }
+    }
+
+    /// Whether the lane hardly moves, and has for as long as velocities are remembered.
+    pub fn creeps(&self, unrest: Unrest<f32>, particles: usize) -> bool {
+        let slow = CREEPING * GRAVITY * self.step;
+        self.substeps > 2 && unrest.motion < particles as f32 * slow * slow
     }
 
     /// Begins anew where the motion is rough: backward Euler takes the heat out.
@@ -148,6 +158,15 @@ mod tests {
         assert_eq!(formulas, expected);
         assert_eq!(past.begin(2.0 * STEP, Scheme::Yarns), Formula::BACKWARD_EULER);
         assert_eq!(past.begin(2.0 * STEP, Scheme::GaussSeidel), Formula::BACKWARD_EULER);
+    }
+
+    #[test]
+    fn what_is_slow_for_long_enough_creeps() {
+        let of = |speed: f32| Unrest { motion: 4.0 * speed * speed, ..Unrest::default() };
+        // 9.81 m/s² in a hundredth of a second.
+        assert!(after(3).creeps(of(0.19), 4));
+        assert!(!after(3).creeps(of(0.20), 4));
+        assert!(!after(2).creeps(of(0.0), 4));
     }
 
     #[test]

@@ -13,6 +13,7 @@ use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Mask, Pack};
 use crate::parameters::Parameters;
 use crate::places::Constant;
+use crate::step::Scheme;
 use crate::sums::Sum;
 use crate::vector::{Pack3, V3};
 
@@ -72,19 +73,24 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         self.clock.done += 1;
     }
 
-    /// Lets lanes whose motion is rough begin anew.
+    /// Lets lanes whose motion is rough begin anew, and finds which hardly move.
     fn judge(&mut self, unrest: &Unrest<P>) {
         let particles = self.fabric.particle_count();
-        for (cloth, slot) in self.slots.iter_mut().enumerate() {
-            if let Some(slot) = slot {
-                let of_lane = |sum: &P| sum.lanes()[C::lanes(cloth).start];
-                let unrest = Unrest {
-                    motion: of_lane(&unrest.motion),
-                    change: of_lane(&unrest.change),
-                    shake: of_lane(&unrest.shake),
-                };
-                slot.past.judge(unrest, particles);
+        let yarns = self.clock.settings.scheme == Scheme::Yarns;
+        for cloth in 0..self.slots.len() {
+            let Some(slot) = &mut self.slots[cloth] else { continue };
+            let of_lane = |sum: &P| sum.lanes()[C::lanes(cloth).start];
+            let unrest = Unrest {
+                motion: of_lane(&unrest.motion),
+                change: of_lane(&unrest.change),
+                shake: of_lane(&unrest.shake),
+            };
+            let creeps = yarns && slot.past.creeps(unrest, particles);
+            slot.past.judge(unrest, particles);
+            if self.parameters.creeps(C::lanes(cloth)) && !creeps {
+                self.forget_tremor(cloth);
             }
+            self.parameters.set_creeps(C::lanes(cloth), creeps);
         }
     }
 }

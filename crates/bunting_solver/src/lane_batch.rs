@@ -77,6 +77,8 @@ pub(crate) struct LaneBatch<P: Pack, C = f32> {
     pub older_velocity: Vec<Pack3<P>>,
     /// The same of two substeps earlier, m/s.
     pub oldest_velocity: Vec<Pack3<P>>,
+    /// What part of what changes its velocity each particle follows: less than all of it where it trembles.
+    pub share: Vec<P>,
 
     /// The length that each link has under the tension found so far in a substep, l − α̃ λ, m. In the
     /// order in which the scheme solves links.
@@ -170,6 +172,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             moments: vec![splat3(Vec3::ZERO); longest_line],
             knots: vec![Knot::new(); ABREAST * longest_yarn],
             weights: Weights::bare(&fabric),
+            share: vec![P::splat(1.0); parts.len()],
             lane_weights: vec![nothing; parts.len()],
             lane_inertias: vec![nothing; parts.len()],
             packs: Packed::new(seating, &fabric),
@@ -252,6 +255,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             seating.write::<P, C>(packs, &values);
         }
         for (&(lane, state), positions) in states.iter().zip(&positions) {
+            self.set_shares(lane, state.history.as_ref().map_or(&[], |past| &past.shares));
             // At the start of a tick they are found anew.
             if (1..self.clock.settings.substeps).contains(&self.clock.done) {
                 self.square_cells_as_at_rest(C::lanes(lane));

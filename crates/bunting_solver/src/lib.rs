@@ -61,6 +61,7 @@ mod step_limits;
 mod sums;
 mod surfaces;
 mod transfer;
+mod tremor;
 mod vector;
 mod velocity;
 mod weave;

@@ -159,6 +159,8 @@ pub(crate) struct Parameters<P: Pack> {
     /// What the cloth was turned by about its pole in the substep before, rad and rad/s: see
     /// [`Turned`].
     pub turned: [P; 2],
+    /// 1 in lanes that hardly move, else 0.
+    pub creeps: P,
     /// Part of the velocity relative to the frame that damping leaves in a substep.
     pub keep: P,
     /// Part of the non-rigid velocity that internal damping leaves in a substep, for cloth without
@@ -198,6 +200,7 @@ impl<P: Pack> Parameters<P> {
             pressure: nothing,
             friction: nothing,
             turned: [nothing; 2],
+            creeps: nothing,
             keep: P::splat(1.0),
             keep_internal: P::splat(1.0),
             tether_stretch: P::splat(1.0),
@@ -217,6 +220,7 @@ impl<P: Pack> Parameters<P> {
         set(&mut self.step, 0.0);
         set(&mut self.inverse_step, 0.0);
         set(&mut self.moves, 0.0);
+        set(&mut self.creeps, 0.0);
         set(&mut self.keep, 0.0);
         self.extrapolation.iter_mut().chain(&mut self.turned).for_each(|part| set(part, 0.0));
         set3(&mut self.gravity_step, Vec3::ZERO);
@@ -325,6 +329,21 @@ impl<P: Pack> Parameters<P> {
     pub fn twists(&self) -> bool {
         let first = self.twist_factors.first().and_then(|factors| factors.cells.first());
         first.is_some_and(|cell| cell.inverse.lanes().iter().any(|&inverse| inverse != 0.0))
+    }
+
+    /// Says whether the lanes of a cloth hardly move.
+    pub fn set_creeps(&mut self, lanes: Range<usize>, creeps: bool) {
+        self.creeps.lanes_mut()[lanes].fill(if creeps { 1.0 } else { 0.0 });
+    }
+
+    /// Whether they do.
+    pub fn creeps(&self, lanes: Range<usize>) -> bool {
+        self.creeps.lanes()[lanes.start] == 1.0
+    }
+
+    /// Whether any lane hardly moves.
+    pub fn creeps_any(&self) -> bool {
+        self.creeps.lanes().contains(&1.0)
     }
 
     /// Whether the frame of any lane moves in this substep.

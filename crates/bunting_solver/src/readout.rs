@@ -19,6 +19,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             displacements: [read(&self.displacement), read(&self.older_displacement)],
             older_velocities: [read(&self.older_velocity), read(&self.oldest_velocity)],
             memory: read(&self.memory),
+            shares: self.shares(lane),
         });
         ClothSnapshot { history, ..self.forgetful_snapshot(lane) }
     }

@@ -29,6 +29,8 @@ pub(crate) struct History {
     pub older_velocities: [Vec<Vec3>; 2],
     /// What stretch does to each particle, m/s².
     pub memory: Vec<Vec3>,
+    /// What part of what changes its velocity each particle follows; empty where all follow wholly.
+    pub shares: Vec<f32>,
 }
 
 impl ClothSnapshot {

@@ -19,13 +19,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             return;
         }
         let pole = self.pole.filter(|_| self.clock.settings.scheme == Scheme::Yarns);
-        let mut turn = P::splat(0.0);
-        if pole.is_some() {
-            for (cloth, slot) in self.slots.iter().enumerate() {
-                let moment = slot.as_ref().map_or(0.0, |slot| slot.contact_moment);
-                turn.lanes_mut()[C::lanes(cloth)].fill(moment);
-            }
-        }
+        let mut turn = self.contact_moments();
         P::run(UpdateVelocities {
             pole,
             turn: &mut turn,
@@ -39,16 +33,33 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             velocity: &mut self.velocity,
         });
         if pole.is_some() {
-            for (cloth, slot) in self.slots.iter_mut().enumerate() {
-                if let Some(slot) = slot {
-                    let lane = C::lanes(cloth).start;
-                    let angle = turn.lanes()[lane];
-                    let rate = angle * self.parameters.inverse_step.lanes()[lane];
-                    slot.past.turned = Turned { angle, rate };
-                }
+            self.remember_turn(&turn);
+        }
+        self.calm_tremor();
+        self.damp_internally();
+    }
+
+    /// Moments of contacts about the pole.
+    fn contact_moments(&self) -> P {
+        let mut moments = P::splat(0.0);
+        for (cloth, slot) in self.slots.iter().enumerate() {
+            if let Some(slot) = slot {
+                moments.lanes_mut()[C::lanes(cloth)].fill(slot.contact_moment);
             }
         }
-        self.damp_internally();
+        moments
+    }
+
+    /// Remembers what cloths have been turned by, rad.
+    fn remember_turn(&mut self, turn: &P) {
+        for (cloth, slot) in self.slots.iter_mut().enumerate() {
+            if let Some(slot) = slot {
+                let lane = C::lanes(cloth).start;
+                let angle = turn.lanes()[lane];
+                let rate = angle * self.parameters.inverse_step.lanes()[lane];
+                slot.past.turned = Turned { angle, rate };
+            }
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! A lane's bits depend on its own history only.
 
+use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -289,6 +290,59 @@ fn surfaces_are_what_the_lanes_hold() {
             batch.copy_normals(lane, &mut normals);
             assert!(surface.is_finite);
             assert_eq!((&surface.positions, &surface.normals), (&positions, &normals), "{lane}");
+        }
+    }
+}
+
+/// A cloth hung by two corners in still air trembles at one substep, and is calmed: by the same bits alone, beside
+/// cloths that fly, and in another batch.
+#[test]
+fn what_trembles_is_calmed_by_the_same_bits() {
+    const SETTINGS: StepSettings = StepSettings { passes: 4, ..StepSettings::yarns(1) };
+    let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)).pin([0, 16]);
+    let fabric = Arc::new(grid.build().expect("a good fabric"));
+    let rest = ClothSnapshot::at_rest(&fabric);
+    let mut rippled = rest.clone();
+    for at in &mut rippled.positions {
+        at.z += 1e-3 * libm::sinf(TAU * at.x) * libm::sinf(0.75 * TAU * at.y);
+    }
+    let material = FabricMaterial {
+        warp_stiffness: 1e4,
+        weft_stiffness: 1e4,
+        shear_stiffness: 200.0,
+        bend_stiffness: 2e-5,
+        damping: 2.0,
+        ..FabricMaterial::COTTON
+    };
+    let mut shared = ClothBatch::new(fabric.clone(), LaneCount::Eight);
+    let mut batches = [LaneCount::One, LaneCount::Sixteen]
+        .map(|lanes| (ClothBatch::new(fabric.clone(), lanes), 0))
+        .to_vec();
+    shared.insert(&rest, FabricMaterial::SILK).expect("a free lane");
+    batches.push((shared, 1));
+    for (batch, lane) in &mut batches {
+        assert_eq!(batch.insert(&rippled, material), Ok(*lane));
+    }
+    for tick in 0..300 {
+        for (batch, lane) in &mut batches {
+            let still = Drive { air_density: 0.0, ..Drive::default() };
+            batch.drive(*lane, still);
+            if *lane == 1 {
+                batch.drive(0, drive(1, tick));
+                // What is moved to another batch goes on as if it had not been.
+                let moving = batch.snapshot(1);
+                let mut other = ClothBatch::new(fabric.clone(), LaneCount::Eight);
+                other.insert(&batch.snapshot(0), FabricMaterial::SILK).expect("a free lane");
+                other.insert(&moving, material).expect("a free lane");
+                other.drive(0, drive(1, tick));
+                other.drive(1, still);
+                *batch = other;
+            }
+            batch.step(TICK, SETTINGS);
+        }
+        let [first, others @ ..] = &batches[..] else { unreachable!() };
+        for (batch, lane) in others {
+            assert_eq!(bits(&first.0.snapshot(0)), bits(&batch.snapshot(*lane)), "tick {tick}");
         }
     }
 }

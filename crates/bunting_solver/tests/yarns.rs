@@ -1,5 +1,6 @@
 //! The yarn scheme against closed forms.
 
+use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -252,4 +253,26 @@ fn a_flag_does_not_boil() {
         }
     }
     assert!(fastest < 2.5, "{fastest} m/s RMS");
+}
+
+/// Taut links whose directions are frozen push what lies across them to and fro for ever: by 2 mm/s RMS, all of
+/// it in a few particles, until these follow only in part.
+#[test]
+fn what_hangs_by_two_corners_comes_to_rest() {
+    let fabric = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)).pin([0, 16]).build();
+    let fabric = Arc::new(fabric.expect("a good fabric"));
+    let drive = Drive { air_density: 0.0, ..Drive::default() };
+    let mut batch = lone(&fabric, FabricMaterial { damping: 2.0, ..STANDARD }, drive);
+    let mut rippled = ClothSnapshot::at_rest(&fabric);
+    for at in &mut rippled.positions {
+        at.z += 1e-3 * libm::sinf(TAU * at.x) * libm::sinf(0.75 * TAU * at.y);
+    }
+    batch.restore(0, &rippled).expect("a good state");
+    for _ in 0..480 {
+        batch.step(TICK, StepSettings { passes: 4, ..StepSettings::yarns(1) });
+    }
+    let velocities = batch.snapshot(0).velocities;
+    let squares: f32 = velocities.iter().map(|velocity| velocity.length_squared()).sum();
+    let speed = (squares / velocities.len() as f32).sqrt();
+    assert!(speed < 5e-4, "{speed} m/s RMS");
 }
