@@ -13,9 +13,10 @@
 //! What keeps its velocity keeps it, and at rest nothing changes, so that rest states are exact.
 
 use crate::lane_batch::LaneBatch;
-use crate::lanes::{Kernel, Lane, Mask, Pack};
+use crate::lanes::{Lane, Mask, Pack};
+use crate::parameters::Parameters;
 use crate::places::Constant;
-use crate::vector::{Pack3, V3};
+use crate::vector::V3;
 
 /// Speed below which going to and fro is let be, m/s: half of what counts as at rest, and more than rounding
 /// makes of 4,000 substeps a second.
@@ -35,23 +36,6 @@ const LEAST_SHARE: f32 = 1.0 / 32.0;
 const KEPT: f32 = 0.9;
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
-    /// Calms what goes to and fro in each substep, in lanes that hardly move.
-    pub fn calm_tremor(&mut self) {
-        if !self.parameters.creeps_any() {
-            return;
-        }
-        P::run(CalmTremor {
-            inverse_areas: &self.packs.inverse_areas,
-            creeps: &self.parameters.creeps,
-            past: [&self.older_velocity, &self.oldest_velocity],
-            older_displacement: &self.older_displacement,
-            share: &mut self.share,
-            position: &mut self.position,
-            displacement: &mut self.displacement,
-            velocity: &mut self.velocity,
-        });
-    }
-
     /// What part each particle of a cloth follows; empty where it does not creep, and all follow wholly.
     pub fn shares(&self, cloth: usize) -> Vec<f32> {
         if !self.parameters.creeps(C::lanes(cloth)) {
@@ -76,62 +60,65 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     }
 }
 
-struct CalmTremor<'a, P: Pack, C> {
-    inverse_areas: &'a [C],
-    creeps: &'a P,
-    /// Velocities at the start of the substep and of the one before.
-    past: [&'a [Pack3<P>]; 2],
-    older_displacement: &'a [Pack3<P>],
-    share: &'a mut [P],
-    position: &'a mut [Pack3<P>],
-    displacement: &'a mut [Pack3<P>],
-    velocity: &'a mut [Pack3<P>],
+/// What calms it, in registers.
+pub(crate) struct Calm<L: Lane> {
+    creeps: L::Mask,
+    /// Scalar product of velocities that are opposed, m²/s².
+    opposed: L,
+    kept: L,
+    one: L,
 }
 
-impl<P: Pack, C: Constant<P>> Kernel<P> for CalmTremor<'_, P, C> {
+/// How a particle lags behind.
+pub(crate) struct Lag<L: Lane> {
+    /// Where it does.
+    lags: L::Mask,
+    /// Part that it does not follow.
+    missing: L,
+    kept: L,
+}
+
+impl<L: Lane> Calm<L> {
+    /// None if no lane hardly moves.
     #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let one = L::splat(token, 1.0);
-        let creeps = L::splat(token, 0.0).lt(L::load(token, self.creeps));
-        let opposed = L::splat(token, -UNSEEN * UNSEEN);
-        let kept = L::splat(token, KEPT);
-        let [older_velocity, oldest_velocity] = self.past;
-        let speeds = self.velocity.iter_mut().zip(older_velocity).zip(oldest_velocity);
-        let changes = self.displacement.iter_mut().zip(self.older_displacement);
-        let places = self.position.iter_mut().zip(changes);
-        for (
-            (((velocity, older), oldest), share),
-            ((position, (displacement, older_displacement)), inverse_area),
-        ) in speeds.zip(self.share).zip(places.zip(self.inverse_areas))
-        {
-            if inverse_area.is_zero() {
-                continue;
-            }
-            let v: V3<L> = V3::load(token, velocity);
-            let older: V3<L> = V3::load(token, older);
-            let turns =
-                v.dot(older).lt(opposed) & older.dot(V3::load(token, oldest)).lt(opposed) & creeps;
-            let last = L::load(token, share);
-            if !(turns | last.lt(one)).any() {
-                continue;
-            }
-            let woken = last * L::splat(token, WOKEN);
-            let woken = one.or_where_not(one.lt(woken), woken);
-            let eased = (last * L::splat(token, EASED)).max(L::splat(token, LEAST_SHARE));
-            let part = eased.or_where_not(turns, woken).or_where_not(creeps, last);
-            part.store(share);
-            let lags = part.lt(one) & creeps;
-            let missing = one - part;
-            let change: V3<L> = V3::load(token, displacement);
-            let before: V3<L> = V3::load(token, older_displacement);
-            let excess = (change - before * kept) * missing;
-            let x: V3<L> = V3::load(token, position);
-            let lagged = (x - excess).or_where_not(lags, x);
-            inverse_area.choose3(token, lagged, x).store(position);
-            let lagged = (change - excess).or_where_not(lags, change);
-            inverse_area.choose3(token, lagged, change).store(displacement);
-            let lagged = v.minus_scaled(v - older * kept, missing).or_where_not(lags, v);
-            inverse_area.choose3(token, lagged, v).store(velocity);
+    pub fn load(token: L::Token, parameters: &Parameters<L::Pack>) -> Option<Self> {
+        parameters.creeps_any().then(|| Self {
+            creeps: L::splat(token, 0.0).lt(L::load(token, &parameters.creeps)),
+            opposed: L::splat(token, -UNSEEN * UNSEEN),
+            kept: L::splat(token, KEPT),
+            one: L::splat(token, 1.0),
+        })
+    }
+
+    /// How a particle lags, if it does in any lane, given its last three velocities and its share.
+    #[inline(always)]
+    pub fn lag(
+        &self,
+        token: L::Token,
+        [v, older, oldest]: [V3<L>; 3],
+        share: &mut L::Pack,
+    ) -> Option<Lag<L>> {
+        let turns =
+            v.dot(older).lt(self.opposed) & older.dot(oldest).lt(self.opposed) & self.creeps;
+        let last = L::load(token, share);
+        if !(turns | last.lt(self.one)).any() {
+            return None;
         }
+        let woken = last * L::splat(token, WOKEN);
+        let woken = self.one.or_where_not(self.one.lt(woken), woken);
+        let eased = (last * L::splat(token, EASED)).max(L::splat(token, LEAST_SHARE));
+        let part = eased.or_where_not(turns, woken).or_where_not(self.creeps, last);
+        part.store(share);
+        let lags = part.lt(self.one) & self.creeps;
+        Some(Lag { lags, missing: self.one - part, kept: self.kept })
+    }
+}
+
+impl<L: Lane> Lag<L> {
+    /// What is to be taken off what has become of something, given what it was; nothing where it follows.
+    #[inline(always)]
+    pub fn excess(&self, token: L::Token, now: V3<L>, before: V3<L>) -> V3<L> {
+        let excess = (now - before * self.kept) * self.missing;
+        excess.or_where_not(self.lags, V3::splat(token, 0.0))
     }
 }

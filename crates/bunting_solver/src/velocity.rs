@@ -35,7 +35,6 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         if pole.is_some() {
             self.remember_turn(&turn);
         }
-        self.calm_tremor();
         self.damp_internally();
     }
 
