@@ -15,7 +15,6 @@ use crate::parameters::Parameters;
 use crate::places::Constant;
 use crate::step::Scheme;
 use crate::sums::Sum;
-use crate::tremor::Calm;
 use crate::vector::{Pack3, V3};
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
@@ -56,10 +55,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             pole: self.pole,
             parameters: &self.parameters,
             frame_rate: -1.0 / self.clock.step,
-            position: &mut self.position,
+            position: &self.position,
             next: &mut self.scratch,
-            share: &mut self.share,
-            displacement: &mut self.displacement,
+            displacement: &self.displacement,
             older_displacement: &mut self.older_displacement,
             velocity: &mut self.velocity,
             older_velocity: &mut self.older_velocity,
@@ -203,12 +201,10 @@ struct Predict<'a, P: Pack, C> {
     parameters: &'a Parameters<P>,
     /// −1/h, 1/s.
     frame_rate: f32,
-    position: &'a mut [Pack3<P>],
+    position: &'a [Pack3<P>],
     /// Where the particles would go; before, what the air does.
     next: &'a mut [Pack3<P>],
-    /// What part of its changes each particle follows.
-    share: &'a mut [P],
-    displacement: &'a mut [Pack3<P>],
+    displacement: &'a [Pack3<P>],
     /// Overwritten by the displacement of this substep.
     older_displacement: &'a mut [Pack3<P>],
     /// These two are carried along with what the air does now, for its changes are not to be extrapolated.
@@ -239,17 +235,15 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
         let axis = self.pole.map(|pole| Axis::<L>::of(token, &pole));
         let [angle, rate] = &self.parameters.turned;
         let [angle, rate] = [L::load(token, angle), L::load(token, rate)];
-        let calm = Calm::<L>::load(token, self.parameters);
         let mut unrest = [Sum::new(token), Sum::new(token), Sum::new(token)];
         let [motions, changes, shakes] = &mut unrest;
-        let places = self.position.iter_mut().zip(self.next);
-        let displacements = self.displacement.iter_mut().zip(self.older_displacement);
+        let places = self.position.iter().zip(self.next);
+        let displacements = self.displacement.iter().zip(self.older_displacement);
         let velocities = self.velocity.iter_mut().zip(self.older_velocity);
         let constants = self.weights.iter().zip(self.areas).zip(self.inverse_areas).zip(self.parts);
-        let constants = constants.zip(self.share);
         for (
             (((position, next), (displacement, older_displacement)), (velocities, oldest)),
-            ((((weight, area), constant), &part), share),
+            (((weight, area), constant), &part),
         ) in places.zip(displacements).zip(velocities.zip(self.oldest_velocity)).zip(constants)
         {
             let (velocity, older) = velocities;
@@ -258,24 +252,11 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
                 *oldest = *velocity;
                 continue;
             }
-            let mut x: V3<L> = V3::load(token, position);
-            let mut v: V3<L> = V3::load(token, velocity);
+            let x: V3<L> = V3::load(token, position);
+            let v: V3<L> = V3::load(token, velocity);
             let v_before: V3<L> = V3::load(token, older);
-            let v_oldest: V3<L> = V3::load(token, oldest);
-            if let Some(calm) = &calm
-                && let Some(lag) = calm.lag(token, [v, v_before, v_oldest], share)
-            {
-                let moved: V3<L> = V3::load(token, displacement);
-                let excess = lag.excess(token, moved, V3::load(token, older_displacement));
-                x = constant.choose3(token, x - excess, x);
-                x.store(position);
-                constant.choose3(token, moved - excess, moved).store(displacement);
-                let lagged = v - lag.excess(token, v, v_before);
-                v = constant.choose3(token, lagged, v);
-                v.store(velocity);
-            }
             let change = v - v_before;
-            let change_before = v_before - v_oldest;
+            let change_before = v_before - V3::load(token, oldest);
             let shake = change - change_before;
             motions.add(part, constant.choose(token, v.dot(v), nothing));
             changes.add(part, constant.choose(token, change.dot(change), nothing));

@@ -16,7 +16,7 @@ use crate::lane_batch::LaneBatch;
 use crate::lanes::{Lane, Mask, Pack};
 use crate::parameters::Parameters;
 use crate::places::Constant;
-use crate::vector::V3;
+use crate::vector::{Pack3, V3};
 
 /// Speed below which going to and fro is let be, m/s: half of what counts as at rest, and more than rounding
 /// makes of 4,000 substeps a second.
@@ -90,20 +90,23 @@ impl<L: Lane> Calm<L> {
         })
     }
 
-    /// How a particle lags, if it does in any lane, given its last three velocities and its share.
+    /// How a particle lags, if it does in any lane, given its velocity, the two before, and its share.
     #[inline(always)]
     pub fn lag(
         &self,
         token: L::Token,
-        [v, older, oldest]: [V3<L>; 3],
+        velocity: V3<L>,
+        (older, oldest): (&Pack3<L::Pack>, &Pack3<L::Pack>),
         share: &mut L::Pack,
     ) -> Option<Lag<L>> {
-        let turns =
-            v.dot(older).lt(self.opposed) & older.dot(oldest).lt(self.opposed) & self.creeps;
+        let older: V3<L> = V3::load(token, older);
+        let turns = velocity.dot(older).lt(self.opposed) & self.creeps;
         let last = L::load(token, share);
+        // Seldom true of any lane, so that what is older need seldom be read.
         if !(turns | last.lt(self.one)).any() {
             return None;
         }
+        let turns = turns & older.dot(V3::load(token, oldest)).lt(self.opposed);
         let woken = last * L::splat(token, WOKEN);
         let woken = self.one.or_where_not(self.one.lt(woken), woken);
         let eased = (last * L::splat(token, EASED)).max(L::splat(token, LEAST_SHARE));

@@ -8,8 +8,10 @@ use crate::constraints::{Axis, Moment, Pole};
 use crate::formula::Turned;
 use crate::lane_batch::LaneBatch;
 use crate::lanes::{Kernel, Lane, Pack};
+use crate::parameters::Parameters;
 use crate::places::Constant;
 use crate::step::Scheme;
+use crate::tremor::Calm;
 use crate::vector::{Pack3, V3};
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
@@ -26,11 +28,14 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             inertias: &self.lane_inertias,
             parts: &self.parts,
             inverse_areas: &self.packs.inverse_areas,
-            inverse_step: &self.parameters.inverse_step,
-            position: &self.position,
+            parameters: &self.parameters,
+            share: &mut self.share,
+            position: &mut self.position,
             start: &self.scratch,
             displacement: &mut self.displacement,
+            older_displacement: &self.older_displacement,
             velocity: &mut self.velocity,
+            past: [&self.older_velocity, &self.oldest_velocity],
         });
         if pole.is_some() {
             self.remember_turn(&turn);
@@ -71,38 +76,57 @@ struct UpdateVelocities<'a, P: Pack, C> {
     /// Into which part of the sums each pack goes.
     parts: &'a [u8],
     inverse_areas: &'a [C],
-    inverse_step: &'a P,
-    position: &'a [Pack3<P>],
+    parameters: &'a Parameters<P>,
+    /// What part of its changes each particle follows.
+    share: &'a mut [P],
+    position: &'a mut [Pack3<P>],
     start: &'a [Pack3<P>],
     displacement: &'a mut [Pack3<P>],
+    older_displacement: &'a [Pack3<P>],
     velocity: &'a mut [Pack3<P>],
+    /// Velocities at the start of the substep and of the one before.
+    past: [&'a [Pack3<P>]; 2],
 }
 
 impl<P: Pack, C: Constant<P>> Kernel<P> for UpdateVelocities<'_, P, C> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let inverse_step = L::load(token, self.inverse_step);
-        let places = self.position.iter().zip(self.start);
-        let changes = self.displacement.iter_mut().zip(self.velocity);
+        let inverse_step = L::load(token, &self.parameters.inverse_step);
         let axis = self.pole.map(|pole| Axis::<L>::of(token, &pole));
         let mut moment = Moment::new(token);
+        let calm = Calm::<L>::load(token, self.parameters);
+        let [older_velocity, oldest_velocity] = self.past;
+        let places = self.position.iter_mut().zip(self.start);
+        let displacements = self.displacement.iter_mut().zip(self.older_displacement);
+        let velocities = self.velocity.iter_mut().zip(older_velocity.iter().zip(oldest_velocity));
         let constants = self.inverse_areas.iter().zip(self.inertias).zip(self.parts);
-        for (((position, start), (displacement, velocity)), ((inverse_area, inertia), &part)) in
-            places.zip(changes).zip(constants)
+        for (
+            (((position, start), (displacement, older_displacement)), (velocity, past)),
+            (((inverse_area, inertia), &part), share),
+        ) in places.zip(displacements).zip(velocities).zip(constants.zip(self.share))
         {
             if inverse_area.is_zero() {
                 continue;
             }
             let x: V3<L> = V3::load(token, position);
-            let change: V3<L> = V3::load(token, displacement);
-            let correction = x - (V3::load(token, start) + change);
-            inverse_area.choose3(token, change + correction, change).store(displacement);
+            let moved: V3<L> = V3::load(token, displacement);
+            let v: V3<L> = V3::load(token, velocity);
+            let correction = x - (V3::load(token, start) + moved);
             if let Some(axis) = &axis {
                 moment.add(part, L::load(token, inertia), axis.round(x), correction);
             }
-            let v: V3<L> = V3::load(token, velocity);
-            let corrected = v.plus_scaled(correction, inverse_step);
-            inverse_area.choose3(token, corrected, v).store(velocity);
+            let mut change = moved + correction;
+            let mut speed = v.plus_scaled(correction, inverse_step);
+            if let Some(calm) = &calm
+                && let Some(lag) = calm.lag(token, speed, past, share)
+            {
+                let excess = lag.excess(token, change, V3::load(token, older_displacement));
+                inverse_area.choose3(token, x - excess, x).store(position);
+                change = change - excess;
+                speed = speed - lag.excess(token, speed, V3::load(token, past.0));
+            }
+            inverse_area.choose3(token, change, moved).store(displacement);
+            inverse_area.choose3(token, speed, v).store(velocity);
         }
         if axis.is_some() {
             moment.turn::<C>(token, L::load(token, self.turn)).store(self.turn);
