@@ -40,8 +40,8 @@ impl Default for CostTable {
     /// One core of a server Xeon with AVX-512, in 2026, of a 33 × 33 flag in the wind.
     fn default() -> Self {
         Self {
-            substep: [26.0, 97.0, 165.0],
-            pass: [4.5, 16.0, 26.0],
+            substep: [21.0, 80.0, 137.0],
+            pass: [4.8, 17.5, 31.0],
             publish: 2.0,
             cloth: 200.0,
             tick: 20.0,
