@@ -110,6 +110,11 @@ impl Carry {
     pub const NONE: Self =
         Self { turn: Turn { rows: [Vec3::ZERO; 3] }, shift: Vec3::ZERO, moves: false };
 
+    /// The new coordinates of a point that stays in the world.
+    pub fn forth(&self, point: Vec3) -> Vec3 {
+        point + (Vec3::from_array(self.turn.rows.map(|row| row.dot(point))) + self.shift)
+    }
+
     /// The old coordinates of a point that stays in the world.
     pub fn back(&self, point: Vec3) -> Vec3 {
         // The transpose of 1 + turn is its inverse.
@@ -125,8 +130,7 @@ mod tests {
 
     /// What the lanes do with a carry.
     fn carried(carry: &Carry, point: Vec3) -> Vec3 {
-        let carried =
-            point + (Vec3::from_array(carry.turn.rows.map(|row| row.dot(point))) + carry.shift);
+        let carried = carry.forth(point);
         assert!(carry.back(carried).distance(point) < 1e-6);
         carried
     }

@@ -181,3 +181,54 @@ fn a_cloth_that_starts_inside_is_put_out_without_being_thrown() {
     // tension, which the push has put into it.
     assert!(fastest < 3.0, "{fastest} m/s");
 }
+
+/// The turn that constraints make about a pole is taken out again; what a contact makes is not.
+#[test]
+fn what_is_pushed_turns_about_its_pole() {
+    let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0));
+    let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build().expect("a good fabric"));
+    let mut batch = cloth(&fabric, material());
+    batch.drive(0, Drive::NONE);
+    let shape = SharedShape::cuboid(0.4, 0.6, 0.05);
+    let at = |tick: usize| Vec3::new(0.6, -0.5, -0.06 + TICK * tick as f32);
+    for tick in 0..6 {
+        let [from, to] = [tick, tick + 1].map(|tick| (at(tick), Quat::IDENTITY));
+        let plate = Collider { from, to, ..Collider::fixed(shape.clone(), at(tick), to.1) };
+        batch.set_colliders(0, [plate]);
+        batch.step(TICK, StepSettings::yarns(2));
+    }
+    batch.set_colliders(0, []);
+    batch.step(TICK, StepSettings::yarns(2));
+    let state = batch.snapshot(0);
+    let areas = fabric.particle_areas();
+    let moving = state.positions.iter().zip(&state.velocities).zip(areas);
+    let momentum: f32 = moving.map(|((at, v), area)| area * (at.x * v.z - at.z * v.x)).sum();
+    let inertia: f32 = state.positions.iter().zip(areas).map(|(at, area)| area * at.x * at.x).sum();
+    // All of it at a metre a second would turn at 1.5 rad/s.
+    let rate = momentum / inertia;
+    assert!((1.0..2.0).contains(&rate), "{rate} rad/s");
+}
+
+/// It bounced with nine tenths of its speed while the integrator extrapolated blows.
+#[test]
+fn what_falls_on_a_floor_stays_there() {
+    for (substeps, passes) in [(1, 4), (2, 2), (4, 2)] {
+        let fabric = horizontal(9, false);
+        let mut batch = cloth(&fabric, material());
+        batch.drive(0, Drive { air_density: 0.0, ..fall() });
+        let floor =
+            Collider::fixed(SharedShape::halfspace(Vec3::Z), -0.3 * Vec3::Z, Quat::IDENTITY);
+        batch.set_colliders(0, [floor]);
+        let mut fastest = 0.0_f32;
+        for _ in 0..40 {
+            batch.step(TICK, StepSettings { passes, ..StepSettings::yarns(substeps) });
+            let state = batch.snapshot(0);
+            let rises = state.velocities.iter().map(|v| v.z).fold(f32::MIN, f32::max);
+            fastest = fastest.max(rises);
+        }
+        // It falls at 2.4 m/s.
+        assert!(fastest < 0.05, "{substeps} × {passes}: {fastest} m/s");
+        let lowest = batch.snapshot(0).positions.iter().map(|p| p.z).fold(f32::MAX, f32::min);
+        assert!((lowest + 0.3 - THICKNESS).abs() < 1e-3, "{lowest} m");
+    }
+}

@@ -1,4 +1,4 @@
-//! Fast colliders.
+//! Fast colliders, and a floor.
 
 use bunting_solver::Collider;
 use glam::{Quat, Vec3};
@@ -37,7 +37,27 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     ]
     .into_iter()
     .flat_map(|(name, shape, turn)| shot(name, n, &shape, turn))
+    .chain([dropped(17)])
     .collect()
+}
+
+/// A level sheet falls on a floor. Cloth does not bounce.
+fn dropped(n: usize) -> HardCase {
+    const HEIGHT: f32 = 0.3;
+    const GRAVITY: f32 = 9.81;
+    let scene = Scene { pose: Pose::Vertical, pins: Pins::Free, ..Scene::hang_top(n) };
+    let mut cloth = start(&scene);
+    cloth.drive.gravity = -GRAVITY * Vec3::Z;
+    let floor = SharedShape::halfspace(Vec3::Z);
+    cloth.touch(&[Collider::fixed(floor, -HEIGHT * Vec3::Z, Quat::IDENTITY)]);
+    let impact = (2.0 * GRAVITY * HEIGHT).sqrt();
+    let mut rebound = 0.0;
+    for _ in 0..60 {
+        cloth.tick();
+        let rising = cloth.velocities().iter().map(|velocity| velocity.z).sum::<f32>();
+        rebound = worse(rebound, (rising / scene.vertices() as f32 / impact).into());
+    }
+    HardCase::new("drop on a floor", n, "speed of rebound over that of impact", rebound, 0.05)
 }
 
 /// The shape flies through the middle of a sheet that nothing holds; what it meets must be pushed ahead of

@@ -34,26 +34,34 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                 for &particle in candidates {
                     let (pack, lane) = self.seating.seat(particle as usize, cloth);
                     let position = &mut self.position[pack];
-                    let velocity = &mut self.velocity[pack];
                     let old = lane3(&self.scratch[pack], lane);
+                    let before = lane3(position, lane);
                     // Both ends of the particle's way in the collider's own frame, so that it is
                     // relative to the surface; the old end as it stood before the frame moved.
                     let from = old_pose.inverse_transform_point(carry.back(old));
-                    let to = pose.inverse_transform_point(lane3(position, lane));
+                    let to = pose.inverse_transform_point(before);
                     let Some(push) = surface.push(from, to) else { continue };
-                    let before = lane3(position, lane);
                     let after = pose.transform_point(push.to);
                     set_lane3(position, lane, after);
+
+                    // A surface takes a particle along, but does not throw it off.
+                    let was = carry.forth(old_pose.transform_point(push.to));
+                    let of_surface = (after - was) / self.clock.step;
+                    let normal = pose.rotation * push.normal;
+                    let predicted = old + lane3(&self.displacement[pack], lane);
+                    let velocity = lane3(&self.velocity[pack], lane);
+                    let given = (after - before) / effective_step;
+                    let leaves = velocity + (after - predicted) / effective_step - of_surface;
+                    let thrown = leaves.dot(normal).min(given.dot(normal)).max(0.0) * normal;
+                    set_lane3(&mut self.velocity[pack], lane, velocity - thrown);
+                    // A blow is not to be extrapolated: the past is carried along with it.
+                    for past in [&mut self.older_velocity[pack], &mut self.oldest_velocity[pack]] {
+                        set_lane3(past, lane, lane3(past, lane) + (given - thrown));
+                    }
                     if let Some(pole) = self.pole {
                         let inertia = self.lane_inertias[pack].lanes()[lane];
-                        let predicted = old + lane3(&self.displacement[pack], lane);
                         let moment = |at: Vec3| pole.moment(inertia, at, at - predicted);
                         slot.contact_moment += moment(after) - moment(before);
-                    }
-                    if let Some(thrown) = push.thrown {
-                        let slowed =
-                            lane3(velocity, lane) - pose.rotation * thrown / effective_step;
-                        set_lane3(velocity, lane, slowed);
                     }
                 }
             }
@@ -80,20 +88,18 @@ struct Touch {
 /// Where a contact puts a particle.
 struct Push {
     to: Vec3,
-    /// The part of the push that must not become velocity, m.
-    thrown: Option<Vec3>,
+    /// Out of the surface.
+    normal: Vec3,
 }
 
 impl Surface<'_> {
     /// Pushes a particle that goes from one point to another out of the shape, if it is in it.
     fn push(&self, from: Vec3, to: Vec3) -> Option<Push> {
-        let (out, normal) = match self.crossing(from, to) {
+        let (to, normal) = match self.crossing(from, to) {
             Some(hit) => hit,
             None => self.slide(from, to)?,
         };
-        // A particle that was inside to begin with is put outside without being thrown.
-        let thrown = (out - from).dot(normal) - (to - from).dot(normal).max(0.0);
-        Some(Push { to: out, thrown: (thrown > 0.0).then(|| normal * thrown) })
+        Some(Push { to, normal })
     }
 
     /// Where a particle stays whose way enters the shape from outside, and the normal there. What a fast
