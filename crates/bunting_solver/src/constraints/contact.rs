@@ -54,9 +54,13 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                     let leaves = velocity + (after - predicted) / effective_step - of_surface;
                     let thrown = leaves.dot(normal).min(given.dot(normal)).max(0.0) * normal;
                     set_lane3(&mut self.velocity[pack], lane, velocity - thrown);
-                    // A blow is not to be extrapolated: the past is carried along with it.
+                    // A blow is not to be extrapolated: the past is carried along with it. What presses
+                    // on a surface is, for it goes on.
+                    let arrived = lane3(&self.older_velocity[pack], lane);
+                    let approach = (of_surface - arrived).dot(normal);
+                    let blow = approach.min((given - thrown).dot(normal)).max(0.0) * normal;
                     for past in [&mut self.older_velocity[pack], &mut self.oldest_velocity[pack]] {
-                        set_lane3(past, lane, lane3(past, lane) + (given - thrown));
+                        set_lane3(past, lane, lane3(past, lane) + blow);
                     }
                     if let Some(pole) = self.pole {
                         let inertia = self.lane_inertias[pack].lanes()[lane];
