@@ -232,7 +232,7 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
         let half = L::splat(token, 0.5);
         let nothing = L::splat(token, 0.0);
         let still = V3::splat(token, 0.0);
-        let axis = self.pole.map(|pole| Axis::<L>::of(token, &pole));
+        let axis = Axis::<L>::of(token, self.pole);
         let [angle, rate] = &self.parameters.turned;
         let [angle, rate] = [L::load(token, angle), L::load(token, rate)];
         let mut unrest = [Sum::new(token), Sum::new(token), Sum::new(token)];
@@ -242,11 +242,10 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
         let velocities = self.velocity.iter_mut().zip(self.older_velocity);
         let constants = self.weights.iter().zip(self.areas).zip(self.inverse_areas).zip(self.parts);
         for (
-            (((position, next), (displacement, older_displacement)), (velocities, oldest)),
+            (((position, next), (displacement, older_displacement)), ((velocity, older), oldest)),
             (((weight, area), constant), &part),
         ) in places.zip(displacements).zip(velocities.zip(self.oldest_velocity)).zip(constants)
         {
-            let (velocity, older) = velocities;
             if constant.is_zero() {
                 *next = *position;
                 *oldest = *velocity;

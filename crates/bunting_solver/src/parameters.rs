@@ -305,11 +305,12 @@ impl<P: Pack> Parameters<P> {
         let set3 = |pack: &mut Pack3<P>, value: Vec3| fill_lanes3(pack, &lanes, value);
         set3(&mut self.gravity_step, turned(drive.gravity) * self.step.lanes()[lanes.start]);
         set3(&mut self.wind, turned(drive.wind));
+        let tensions = greatest_tensions(material, drive, reach);
         let softness = 1.0 / material.warp_stiffness.min(material.weft_stiffness);
-        let [hung, blown] = greatest_strains(material, drive, reach, softness);
+        let [hung, blown] = tensions.map(|tension| tension * softness);
         set(&mut self.tether_stretch, 1.0 + 2.0 * (apart + hung + blown));
-        let along_bias = greatest_strains(material, drive, reach, bias_softness(material));
-        set(&mut self.far_tether_stretch, 1.0 + 2.0 * (apart + along_bias[0] + along_bias[1]));
+        let [hung_askew, blown_askew] = tensions.map(|tension| tension * bias_softness(material));
+        set(&mut self.far_tether_stretch, 1.0 + 2.0 * (apart + hung_askew + blown_askew));
         set(&mut self.bias_stretch, 1.0 + apart + hung + blown.min(MOST_BLOWN));
         let carry = drive.motion.carry(index, count);
         for (pack, row) in self.turn.iter_mut().zip(carry.turn.rows) {
@@ -362,16 +363,10 @@ fn bias_softness(material: &FabricMaterial) -> f32 {
     0.25 * (1.0 / warp_stiffness + 1.0 / weft_stiffness + 1.0 / shear_stiffness)
 }
 
-/// How much gravity and wind may stretch the top of a cloth that hangs by a length of `reach` metres, given its
-/// strain for each N/m.
-fn greatest_strains(
-    material: &FabricMaterial,
-    drive: &Drive,
-    reach: f32,
-    softness: f32,
-) -> [f32; 2] {
+/// How much gravity and wind may pull at the top of a cloth that hangs by a length of `reach` metres, N/m.
+fn greatest_tensions(material: &FabricMaterial, drive: &Drive, reach: f32) -> [f32; 2] {
     let weight = material.area_density * drive.gravity.length();
     let coefficients = material.pressure_coefficient + material.friction_coefficient;
     let pressure = 0.5 * drive.air_density * coefficients * drive.wind.length_squared();
-    [weight * reach * softness, pressure * reach * softness]
+    [weight * reach, pressure * reach]
 }

@@ -65,7 +65,6 @@ pub(crate) struct Calm<L: Lane> {
     creeps: L::Mask,
     /// Scalar product of velocities that are opposed, m²/s².
     opposed: L,
-    kept: L,
     one: L,
 }
 
@@ -75,17 +74,18 @@ pub(crate) struct Lag<L: Lane> {
     lags: L::Mask,
     /// Part that it does not follow.
     missing: L,
-    kept: L,
 }
 
 impl<L: Lane> Calm<L> {
     /// None if no lane hardly moves.
     #[inline(always)]
     pub fn load(token: L::Token, parameters: &Parameters<L::Pack>) -> Option<Self> {
-        parameters.creeps_any().then(|| Self {
+        if !parameters.creeps_any() {
+            return None;
+        }
+        Some(Self {
             creeps: L::splat(token, 0.0).lt(L::load(token, &parameters.creeps)),
             opposed: L::splat(token, -UNSEEN * UNSEEN),
-            kept: L::splat(token, KEPT),
             one: L::splat(token, 1.0),
         })
     }
@@ -113,7 +113,7 @@ impl<L: Lane> Calm<L> {
         let part = eased.or_where_not(turns, woken).or_where_not(self.creeps, last);
         part.store(share);
         let lags = part.lt(self.one) & self.creeps;
-        Some(Lag { lags, missing: self.one - part, kept: self.kept })
+        Some(Lag { lags, missing: self.one - part })
     }
 }
 
@@ -121,7 +121,7 @@ impl<L: Lane> Lag<L> {
     /// What is to be taken off what has become of something, given what it was; nothing where it follows.
     #[inline(always)]
     pub fn excess(&self, token: L::Token, now: V3<L>, before: V3<L>) -> V3<L> {
-        let excess = (now - before * self.kept) * self.missing;
+        let excess = (now - before * L::splat(token, KEPT)) * self.missing;
         excess.or_where_not(self.lags, V3::splat(token, 0.0))
     }
 }

@@ -92,7 +92,7 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for UpdateVelocities<'_, P, C> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let inverse_step = L::load(token, &self.parameters.inverse_step);
-        let axis = self.pole.map(|pole| Axis::<L>::of(token, &pole));
+        let axis = Axis::<L>::of(token, self.pole);
         let mut moment = Moment::new(token);
         let calm = Calm::<L>::load(token, self.parameters);
         let [older_velocity, oldest_velocity] = self.past;

@@ -75,8 +75,9 @@ pub(crate) struct Axis<L> {
 
 impl<L: Lane> Axis<L> {
     #[inline(always)]
-    pub fn of(token: L::Token, pole: &Pole) -> Self {
-        Self { at: V3::load(token, &splat3(pole.at)), along: V3::load(token, &splat3(pole.along)) }
+    pub fn of(token: L::Token, pole: Option<Pole>) -> Option<Self> {
+        let Pole { at, along } = pole?;
+        Some(Self { at: V3::load(token, &splat3(at)), along: V3::load(token, &splat3(along)) })
     }
 
     /// What a point is moved by for each radian of a turn about the pole.

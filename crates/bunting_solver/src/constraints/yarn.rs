@@ -54,10 +54,11 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         } else {
             self.visit_yarns(Visit::Only);
         }
-        for _ in 1..passes {
-            self.visit_yarns(Visit::Again);
+        // After the last pass only the polish asks for targets, and there is none with a single pass.
+        let visit = if passes > 1 { Visit::Again } else { Visit::Last };
+        for _ in 0..passes {
+            self.visit_yarns(visit);
         }
-        self.visit_yarns(if passes > 1 { Visit::Again } else { Visit::Last });
     }
 
     fn visit_yarns(&mut self, visit: Visit) {

@@ -202,7 +202,13 @@ impl FabricBuilder {
         let pins = tethers::pins(&edges, &pinned);
         let flat = self.grid.is_some();
         let tethers = tethers::tethers(&rest, &edges, &pins, flat);
-        let far_tethers = tethers::far_tethers(&rest, &edges, &pins, &tethers, flat);
+        let reach = tethers.iter().map(|tether| tether.length).fold(0.0, f32::max);
+        let (tethers, far_tethers) = if self.tethered {
+            let far = tethers::far_tethers(&rest, &edges, &pins, &tethers, reach, flat);
+            (tethers, far)
+        } else {
+            (Vec::new(), Vec::new())
+        };
         let (bend_lines, bend_profiles) =
             self.grid.map(|grid| bending::lines(&grid, &inverse_areas)).unwrap_or_default();
         let (ribbons, ribbon_profiles) =
@@ -215,7 +221,6 @@ impl FabricBuilder {
 
         let patches = patches::patches(&triangles, &triangle_areas);
         let cells = self.grid.filter(|grid| patches::are_cells(&patches, grid));
-        let reach = tethers.iter().map(|tether| tether.length).fold(0.0, f32::max);
         let tautness = reach.sqrt() / links::shortest(&links);
         Ok(Fabric {
             rest,
@@ -244,8 +249,8 @@ impl FabricBuilder {
             pins,
             reach,
             tautness,
-            tethers: if self.tethered { tethers } else { Vec::new() },
-            far_tethers: if self.tethered { far_tethers } else { Vec::new() },
+            tethers,
+            far_tethers,
             grid: self.grid,
         })
     }

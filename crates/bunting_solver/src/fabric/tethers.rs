@@ -70,12 +70,14 @@ pub(crate) fn tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -
 
 /// The tethers of free particles to the pins that are farthest from them at rest: to the nearest alone, the
 /// lower corner of a flag may come to lie beneath its pole. Only of those that lie further from it than any
-/// lies from its nearest; they hold the others. Given the tethers to the nearest, and `flat` as above.
+/// lies from its nearest, the `reach`; they hold the others. Given the tethers to the nearest, and `flat` as
+/// above.
 pub(crate) fn far_tethers(
     rest: &[Vec3],
     edges: &[Edge],
     pins: &[Pin],
     near: &[Tether],
+    reach: f32,
     flat: bool,
 ) -> Vec<Tether> {
     let mut of_pins: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
@@ -86,7 +88,6 @@ pub(crate) fn far_tethers(
             of_pins.entry(farthest).or_default().push(particle);
         }
     }
-    let reach = near.iter().map(|tether| tether.length).fold(0.0, f32::max);
     let of_pin = |(pin, particles): (usize, Vec<u32>)| {
         let lengths = distances(rest, edges.iter().map(|edge| edge.ends), pins[pin], flat);
         let pin = pins[pin].particle;
