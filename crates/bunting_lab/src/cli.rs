@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-use crate::commands::{budget, lod, oracles, pareto, report, schedule, stability};
+use crate::commands::{budget, gate, lod, oracles, pareto, report, schedule, stability};
 use crate::output::Outcome;
 
 /// Measures the cloth against references.
@@ -42,6 +42,8 @@ enum Command {
     Schedule,
     /// Other engines on the same scenes.
     Peers,
+    /// Hashes, closed forms and quick hard cases against the committed lists; exits with 1 where they differ.
+    Gate(gate::Options),
     /// All of it, as one HTML page.
     Report,
 }
@@ -61,6 +63,11 @@ impl Arguments {
             Command::Budget => budget::run(self.quick),
             Command::Oracles => oracles::run(),
             Command::Stability => stability::run(self.quick),
+            Command::Gate(options) => {
+                return gate::run(options, |outcome| {
+                    outcome.present(self.json, self.out.as_deref())
+                });
+            }
             Command::Report => report::run(self.quick, self.out.as_deref())?,
         };
         outcome.present(self.json, self.out.as_deref())

@@ -11,6 +11,7 @@ pub mod commands;
 pub mod contender;
 pub mod fleet;
 pub mod game;
+pub mod golden;
 pub mod levels;
 pub mod observation;
 pub mod oracles;

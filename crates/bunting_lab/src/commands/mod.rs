@@ -2,6 +2,7 @@
 
 pub mod ablation;
 pub mod budget;
+pub mod gate;
 pub mod lod;
 pub mod oracles;
 pub mod pareto;

@@ -17,6 +17,19 @@ use crate::{
 /// Runs every trial.
 #[must_use]
 pub fn run() -> Outcome {
+    let cases = measure();
+    let plots = [plot(&cases), cantilevers(&cases)].into_iter().flatten().collect();
+    Outcome { json: json!({ "cases": cases }), tables: vec![table(&cases)], plots }
+}
+
+/// Names of the cases that fail.
+#[must_use]
+pub fn failing() -> Vec<String> {
+    let failing = measure().into_iter().filter(|case| !case.pass);
+    failing.map(|case| format!("oracles: {}", case.name)).collect()
+}
+
+fn measure() -> Vec<Case> {
     let bar = progress(trials::ALL.len());
     let mut cases = Vec::new();
     for (name, trial) in trials::ALL {
@@ -25,8 +38,7 @@ pub fn run() -> Outcome {
         bar.inc(1);
     }
     bar.finish_and_clear();
-    let plots = [plot(&cases), cantilevers(&cases)].into_iter().flatten().collect();
-    Outcome { json: json!({ "cases": cases }), tables: vec![table(&cases)], plots }
+    cases
 }
 
 fn plot(cases: &[Case]) -> Option<Plot> {

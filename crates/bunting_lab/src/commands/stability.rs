@@ -16,6 +16,20 @@ use crate::{
 /// Runs every family of hard cases.
 #[must_use]
 pub fn run(quick: bool) -> Outcome {
+    let cases = measure(quick);
+    let plots = plot(&cases).into_iter().collect();
+    Outcome { json: json!({ "cases": cases }), tables: vec![table(&cases)], plots }
+}
+
+/// Names and sizes of the cases that were run and fail.
+#[must_use]
+pub fn failing(quick: bool) -> Vec<String> {
+    let failing = measure(quick).into_iter();
+    let failing = failing.filter(|case| case.status == Status::Built && !case.pass);
+    failing.map(|case| format!("stability: {}, n = {}", case.name, case.n)).collect()
+}
+
+fn measure(quick: bool) -> Vec<HardCase> {
     let bar = progress(stability::ALL.len());
     let mut cases = Vec::new();
     for (name, family) in stability::ALL {
@@ -24,8 +38,7 @@ pub fn run(quick: bool) -> Outcome {
         bar.inc(1);
     }
     bar.finish_and_clear();
-    let plots = plot(&cases).into_iter().collect();
-    Outcome { json: json!({ "cases": cases }), tables: vec![table(&cases)], plots }
+    cases
 }
 
 fn plot(cases: &[HardCase]) -> Option<Plot> {

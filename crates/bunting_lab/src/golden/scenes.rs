@@ -1,0 +1,234 @@
+//! The six scenes: each takes another way through the solver.
+
+use std::{sync::Arc, time::Duration};
+
+use bevy_app::App;
+use bevy_bunting::{ClothPlugins, ClothSettings, ClothState};
+use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
+use bevy_transform::TransformPlugin;
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion,
+    Grid, LaneCount, LevelTransfer, StepSettings,
+};
+use glam::{Quat, Vec3};
+use parry3d::shape::SharedShape;
+
+use super::StateHash;
+use crate::product::TICK;
+
+/// Ticks of every scene.
+const TICKS: u32 = 600;
+/// Ticks from one state that is hashed to the next.
+const INTERVAL: u32 = 60;
+
+/// Runs a scene in a batch of this width and hashes its states.
+pub type Run = fn(LaneCount) -> u64;
+
+/// Every scene with its name.
+pub const ALL: [(&str, Run); 6] = [
+    ("flag on a vehicle", flag_on_a_vehicle),
+    ("stiff sheet by two corners", stiff_sheet),
+    ("mesh with a hole in wind", mesh_in_wind),
+    ("Gauss–Seidel curtain on a ball", gauss_seidel),
+    ("free sheet on a floor, level changes", free_sheet),
+    ("eight flags through the plugin", plugin),
+];
+
+/// One cloth in the last lane of a batch, and another in the first to which other things happen.
+struct Pair {
+    batch: ClothBatch,
+    lane: usize,
+    settings: StepSettings,
+    hash: StateHash,
+}
+
+impl Pair {
+    fn new(
+        fabric: &Arc<Fabric>,
+        lanes: LaneCount,
+        material: FabricMaterial,
+        settings: StepSettings,
+    ) -> Self {
+        let mut batch = ClothBatch::new(Arc::clone(fabric), lanes);
+        let lane = lanes.get() - 1;
+        let start = ClothSnapshot::at_rest(fabric);
+        batch.replace(0, &start, FabricMaterial::SILK).expect("a good material");
+        batch.replace(lane, &start, material).expect("a good material");
+        Self { batch, lane, settings, hash: StateHash::new() }
+    }
+
+    fn tick(&mut self, drive: Drive) {
+        self.batch.drive(0, Drive { wind: Vec3::new(3.0, 1.0, -7.0), ..Drive::default() });
+        self.batch.drive(self.lane, drive);
+        self.batch.step(TICK, self.settings);
+    }
+
+    fn hash(&mut self) {
+        let mut vectors = Vec::new();
+        let state = self.batch.snapshot(self.lane);
+        self.hash.add(&state.positions);
+        self.hash.add(&state.velocities);
+        self.batch.copy_normals(self.lane, &mut vectors);
+        self.hash.add(&vectors);
+    }
+
+    /// Ticks of the scene, driven as given.
+    fn run(mut self, drive: impl Fn(u32) -> Drive) -> u64 {
+        for tick in 0..TICKS {
+            self.tick(drive(tick));
+            if (tick + 1).is_multiple_of(INTERVAL) {
+                self.hash();
+            }
+        }
+        self.hash.value()
+    }
+}
+
+/// Wind of about 6 m/s whose strength and direction change, m/s.
+fn gusts(tick: u32) -> Vec3 {
+    let time = tick as f32 * TICK;
+    Vec3::new(6.0 + 1.5 * libm::sinf(3.1 * time), 0.3, 2.0 * libm::sinf(1.7 * time + 0.5))
+}
+
+fn yarns(substeps: u32, passes: u32) -> StepSettings {
+    StepSettings { passes, ..StepSettings::yarns(substeps) }
+}
+
+fn flag_on_a_vehicle(lanes: LaneCount) -> u64 {
+    let grid = FabricBuilder::grid(Grid::new(33, 23, 1.5, 1.0));
+    let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build().expect("a flag"));
+    Pair::new(&fabric, lanes, FabricMaterial::FLAG_POLYESTER, StepSettings::default()).run(|tick| {
+        let turn = 0.01 * libm::sinf(0.05 * tick as f32);
+        let motion = FrameMotion {
+            rotation: Quat::from_xyzw(0.0, libm::sinf(turn), 0.0, libm::cosf(turn)),
+            translation: Vec3::new(0.02, 0.0, -0.15) * libm::sinf(0.02 * tick as f32),
+        };
+        Drive { motion, wind: gusts(tick), ..Drive::default() }
+    })
+}
+
+fn stiff_sheet(lanes: LaneCount) -> u64 {
+    let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)).pin([0, 16]);
+    let fabric = Arc::new(grid.build().expect("a sheet"));
+    let stiff = FabricMaterial { bend_stiffness: 0.05, ..FabricMaterial::COTTON };
+    Pair::new(&fabric, lanes, stiff, yarns(3, 2)).run(|tick| {
+        let wind = if tick < 200 { gusts(tick) } else { Vec3::ZERO };
+        Drive { wind, ..Drive::default() }
+    })
+}
+
+/// A sheet of plain triangles with a round hole.
+fn holed_mesh() -> FabricBuilder {
+    let grid = Grid::new(21, 17, 1.2, 1.0);
+    let pattern = FabricBuilder::grid(grid);
+    let all: Vec<Vec3> = pattern.positions().to_vec();
+    let in_hole = |vertex: u32| all[vertex as usize].distance(Vec3::new(0.7, -0.5, 0.0)) < 0.2;
+    let kept: Vec<u32> = pattern
+        .indices()
+        .chunks_exact(3)
+        .filter(|corners| !corners.iter().any(|&corner| in_hole(corner)))
+        .flatten()
+        .copied()
+        .collect();
+    let mut used = kept.clone();
+    used.sort_unstable();
+    used.dedup();
+    let place = |vertex: u32| used.binary_search(&vertex).expect("it is used") as u32;
+    FabricBuilder::new(
+        used.iter().map(|&vertex| all[vertex as usize]).collect(),
+        kept.into_iter().map(place).collect(),
+    )
+    .pin_where(|at, _| at.x == 0.0)
+}
+
+fn mesh_in_wind(lanes: LaneCount) -> u64 {
+    let fabric = Arc::new(holed_mesh().build().expect("a mesh"));
+    Pair::new(&fabric, lanes, FabricMaterial::COTTON, yarns(3, 2))
+        .run(|tick| Drive { wind: gusts(tick), ..Drive::default() })
+}
+
+fn gauss_seidel(lanes: LaneCount) -> u64 {
+    let grid = FabricBuilder::grid(Grid::new(17, 13, 1.0, 1.0));
+    let fabric = Arc::new(grid.pin_where(|_, uv| uv.y == 0.0).build().expect("a curtain"));
+    let settings = StepSettings { passes: 2, ..StepSettings::gauss_seidel(5) };
+    let mut pair = Pair::new(&fabric, lanes, FabricMaterial::DENIM, settings);
+    let ball = Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.5, -0.6, 0.1), Quat::IDENTITY);
+    pair.batch.set_colliders(pair.lane, [ball]);
+    pair.run(|tick| Drive { wind: 0.5 * gusts(tick), ..Drive::default() })
+}
+
+fn free_sheet(lanes: LaneCount) -> u64 {
+    let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0));
+    let coarse =
+        Arc::new(grid.coarser().expect("a coarser grid").builder.build().expect("a sheet"));
+    let fine = Arc::new(grid.build().expect("a sheet"));
+    let transfer = LevelTransfer::between(&fine, &coarse).expect("levels of a grid");
+    let material = FabricMaterial { internal_damping: 1.0, ..FabricMaterial::FLAG_POLYESTER };
+    let mut pair = Pair::new(&fine, lanes, material, yarns(2, 2));
+    let mut other = Pair::new(&coarse, lanes, material, yarns(1, 2));
+    let floor = Collider::fixed(
+        SharedShape::cuboid(2.0, 0.1, 2.0),
+        Vec3::new(0.5, -1.6, 0.0),
+        Quat::IDENTITY,
+    );
+    let post = Collider::fixed(
+        SharedShape::capsule_y(0.3, 0.1),
+        Vec3::new(0.5, -1.2, 0.05),
+        Quat::IDENTITY,
+    );
+    let gravity = Drive::default().gravity;
+    for it in [&mut pair, &mut other] {
+        it.batch.set_colliders(it.lane, [floor.clone(), post.clone()]);
+    }
+    for tick in 0..TICKS {
+        if tick == 150 || tick == 450 {
+            let state = transfer.restrict(&pair.batch.snapshot(pair.lane), &material, gravity);
+            other.batch.restore(other.lane, &state).expect("a state of the coarser level");
+        }
+        if tick == 300 {
+            let state = transfer.prolong(&other.batch.snapshot(other.lane), &material, gravity);
+            pair.batch.restore(pair.lane, &state).expect("a state of the finer level");
+        }
+        for it in [&mut pair, &mut other] {
+            it.tick(Drive { wind: 0.3 * gusts(tick), ..Drive::default() });
+            if (tick + 1).is_multiple_of(INTERVAL) {
+                it.hash();
+            }
+        }
+    }
+    let mut hash = pair.hash;
+    hash.add(&other.batch.snapshot(other.lane).positions);
+    hash.value()
+}
+
+/// The scene of the example `flags`.
+const FLAGS: &str = include_str!("../../../../assets/scenes/flags.ron");
+
+fn plugin(lanes: LaneCount) -> u64 {
+    let scene = bunting_scenes::parse(FLAGS, "flags.ron".as_ref()).expect("a good scene");
+    let tick = Duration::from_secs_f32(TICK);
+    let mut app = App::new();
+    app.add_plugins((TimePlugin, TransformPlugin, ClothPlugins::default()))
+        .insert_resource(Time::<Fixed>::from_duration(tick))
+        .insert_resource(TimeUpdateStrategy::ManualDuration(tick))
+        .insert_resource(ClothSettings { lanes: Some(lanes), ..ClothSettings::default() })
+        .add_systems(bevy_app::FixedUpdate, bunting_scenes::follow_tracks);
+    bunting_scenes::spawn(&mut app.world_mut().commands(), &scene);
+    app.finish();
+    app.cleanup();
+    let mut hash = StateHash::new();
+    for update in 1..=TICKS {
+        app.update();
+        if update.is_multiple_of(INTERVAL) {
+            let world = app.world_mut();
+            let mut states: Vec<_> =
+                world.query::<(bevy_ecs::entity::Entity, &ClothState)>().iter(world).collect();
+            states.sort_unstable_by_key(|(entity, _)| *entity);
+            for (_, state) in states {
+                hash.add(state.positions());
+                hash.add(state.normals());
+            }
+        }
+    }
+    hash.value()
+}
