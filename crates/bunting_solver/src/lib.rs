@@ -32,50 +32,27 @@
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
-mod added_mass;
-mod aerodynamics;
 mod batch;
-mod collision;
 mod constants;
 mod constraints;
-mod corners;
-mod damping;
-mod energy;
+mod contact;
 mod fabric;
-mod formula;
-mod frame;
-mod instruction_set;
-mod integrate;
-mod lane_batch;
-mod lane_count;
-mod lanes;
-mod normals;
-mod overstretch;
-mod parameters;
-mod places;
-mod readout;
-mod seating;
-mod snapshot;
+mod geometry;
+mod simd;
+mod stability;
 mod step;
-mod step_limits;
-mod sums;
-mod surfaces;
 mod transfer;
-mod tremor;
-mod vector;
-mod velocity;
-mod weave;
 
+pub use batch::lane_count::LaneCount;
+pub use batch::snapshot::ClothSnapshot;
 pub use batch::{BatchError, ClothBatch, LaneSurface};
-pub use collision::Collider;
+pub use contact::collider::Collider;
 pub use fabric::{
     BendLine, BendProfile, Coarser, Colours, Fabric, FabricBuilder, FabricError, FabricMaterial,
     Grid, Hinge, HingeClass, Link, LinkClass, LinkFamily, Tether, Yarn,
 };
-pub use frame::FrameMotion;
-pub use instruction_set::{instruction_set, with_every_instruction_set};
-pub use lane_count::LaneCount;
-pub use snapshot::ClothSnapshot;
+pub use simd::level::{instruction_set, with_every_instruction_set};
+pub use step::frame::FrameMotion;
+pub use step::limits::StepLimits;
 pub use step::{Drive, Scheme, StepSettings};
-pub use step_limits::StepLimits;
 pub use transfer::{LevelTransfer, TransferError};

@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::snapshot::ClothSnapshot;
 use crate::fabric::{Fabric, FabricMaterial};
-use crate::lane_batch::LaneBatch;
-use crate::lanes::Pack1;
-use crate::snapshot::ClothSnapshot;
+use crate::simd::lane::Pack1;
+use crate::simd::vec3::{lane3, set_lane3};
 use crate::step::StepSettings;
-use crate::vector::{lane3, set_lane3};
 
 /// Length of the substep, s.
 pub(super) const STEP: f32 = 1.0 / 120.0;

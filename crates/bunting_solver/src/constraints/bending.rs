@@ -5,13 +5,13 @@
 //! and z: it is factorised once as L D Lᵀ. Solved before stretch it passes the heavy cantilever with
 //! three substeps, where Gauss–Seidel needs hundreds.
 
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::places::{Cloths, Constant, Places};
+use crate::batch::single_cloth::Weave;
 use crate::fabric::BendLine;
-use crate::lane_batch::LaneBatch;
-use crate::lanes::{Kernel, Lane, Pack};
-use crate::parameters::BendFactors;
-use crate::places::{Cloths, Constant, Places};
-use crate::vector::{Pack3, V3};
-use crate::weave::Weave;
+use crate::simd::lane::{Kernel, Lane, Pack};
+use crate::simd::vec3::{Pack3, V3};
+use crate::step::parameters::BendFactors;
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Solves every line once.

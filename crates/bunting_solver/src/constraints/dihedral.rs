@@ -7,12 +7,12 @@
 //! both momenta. The correction is scaled by the gradients and masses (thesis, eq. 4.13 and 4.14:
 //! its 4.34 holds for equal masses only).
 
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::places::Constant;
 use crate::constants::{LEAST_AREA_SQUARED, LEAST_LENGTH};
 use crate::fabric::Fabric;
-use crate::lane_batch::LaneBatch;
-use crate::lanes::{Kernel, Lane, Pack};
-use crate::places::Constant;
-use crate::vector::{Pack3, V3};
+use crate::simd::lane::{Kernel, Lane, Pack};
+use crate::simd::vec3::{Pack3, V3};
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Projects every hinge once.
@@ -160,8 +160,8 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::lanes::Pack1;
-    use crate::vector::{lane3, splat3};
+    use crate::simd::lane::Pack1;
+    use crate::simd::vec3::{lane3, splat3};
 
     /// Runs a function of lanes on single floats.
     struct OnSingles<'a> {

@@ -1,11 +1,11 @@
 //! Distance: C = |x₂ − x₁| − l (thesis, eq. 4.15 to 4.18), along warp, weft and bias.
 
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::places::Constant;
 use crate::constants::LEAST_LENGTH;
 use crate::fabric::Link;
-use crate::lane_batch::LaneBatch;
-use crate::lanes::{Kernel, Lane, Pack};
-use crate::places::Constant;
-use crate::vector::{Pack3, V3};
+use crate::simd::lane::{Kernel, Lane, Pack};
+use crate::simd::vec3::{Pack3, V3};
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Projects every link once.

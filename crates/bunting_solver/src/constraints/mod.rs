@@ -6,28 +6,25 @@
 //! thesis's eq. 4.13 and 4.14). Inverse masses are w/σ with w one over the particle's area, so all
 //! of it is multiplied through by the density σ: the compliances here are σ/(k h²).
 
-mod anticipation;
 #[cfg(test)]
 mod bench;
 mod bending;
-mod bias;
-mod contact;
+mod chain;
 mod dihedral;
 mod distance;
-mod pole;
-mod polish;
+mod predicted_stretch;
+mod shear;
+mod sweep;
 mod tether;
 mod twist;
-mod yarn;
 
-pub(crate) use anticipation::anticipated;
-pub(crate) use pole::{Axis, Moment, Pole};
+pub(crate) use chain::Knot;
+pub(crate) use predicted_stretch::anticipated;
 pub(crate) use twist::resists_twist;
-pub(crate) use yarn::Knot;
 
-use crate::lane_batch::LaneBatch;
-use crate::lanes::Pack;
-use crate::places::Constant;
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::places::Constant;
+use crate::simd::lane::Pack;
 use crate::step::Scheme;
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {

@@ -8,13 +8,13 @@
 //! substeps, 1.49 so). They are longer than at rest by the strain that the loads may cause, and by a slack,
 //! so that they do not hide what the material gives.
 
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::places::{Constant, Places};
+use crate::batch::single_cloth::{Facing, PackedTethers, Weave};
 use crate::constants::LEAST_LENGTH;
 use crate::fabric::Tether;
-use crate::lane_batch::LaneBatch;
-use crate::lanes::{Kernel, Lane, Mask, Pack};
-use crate::places::{Constant, Places};
-use crate::vector::{Pack3, V3};
-use crate::weave::{Facing, PackedTethers, Weave};
+use crate::simd::lane::{Kernel, Lane, Mask, Pack};
+use crate::simd::vec3::{Pack3, V3};
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// Projects every tether once.

@@ -4,14 +4,14 @@
 //! The XPBD system of a ribbon is tridiagonal, constant, and the same for x, y and z. Cell by cell it
 //! would take as many sweeps as a strip has cells to hold it on edge.
 
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::places::{Cloths, Constant, Places};
+use crate::batch::single_cloth::Weave;
 use crate::constants::GRAVITY;
 use crate::fabric::{Fabric, FabricMaterial, Ribbon};
-use crate::lane_batch::LaneBatch;
-use crate::lanes::{Kernel, Lane, Pack};
-use crate::parameters::TwistFactors;
-use crate::places::{Cloths, Constant, Places};
-use crate::vector::{Pack3, V3};
-use crate::weave::Weave;
+use crate::simd::lane::{Kernel, Lane, Pack};
+use crate::simd::vec3::{Pack3, V3};
+use crate::step::parameters::TwistFactors;
 
 /// Γ = σ g L³/B from which on cloth is limp: held level by its edge, it reaches out by a twentieth of its
 /// length, and twist is small beside its weight. A flag of a metre has 100,000.
@@ -134,8 +134,8 @@ mod tests {
     use glam::Vec3;
 
     use crate::constraints::bench::{cloth_at, positions, soft_step};
-    use crate::energy::twist;
     use crate::fabric::{Fabric, FabricBuilder, FabricMaterial, Grid};
+    use crate::geometry::energy::twist;
 
     const STIFF: FabricMaterial =
         FabricMaterial { bend_stiffness: 1e-3, ..FabricMaterial::FLAG_POLYESTER };

@@ -6,8 +6,8 @@
 use std::collections::HashMap;
 
 use super::Grid;
-use crate::lanes::Lane;
-use crate::vector::{Pack3, V3};
+use crate::simd::lane::Lane;
+use crate::simd::vec3::{Pack3, V3};
 
 /// Two triangles (a, b, c) and (a, c, d).
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -79,8 +79,8 @@ mod tests {
 
     use glam::{Quat, Vec3};
 
+    use crate::batch::snapshot::ClothSnapshot;
     use crate::fabric::{Coarser, FabricBuilder, FabricMaterial, Grid};
-    use crate::snapshot::ClothSnapshot;
     use crate::transfer::LevelTransfer;
 
     /// A quarter of a tube, as plain triangles, held along one side, and its next level.

@@ -20,9 +20,9 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::energy::{elastic, moment};
+use crate::batch::snapshot::ClothSnapshot;
 use crate::fabric::{Fabric, FabricMaterial};
-use crate::snapshot::ClothSnapshot;
+use crate::geometry::energy::{elastic, moment};
 use mesh::Relief;
 use rows::Rows;
 use settle::Settler;

@@ -4,8 +4,8 @@ use glam::{DVec3, Vec3};
 
 use super::LevelTransfer;
 use super::rows::Rows;
-use crate::energy::moment;
 use crate::fabric::Fabric;
+use crate::geometry::energy::moment;
 
 impl LevelTransfer {
     /// What shared particles have, and the mean of what the fine ones about them have beyond that, by

@@ -9,11 +9,11 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use glam::Vec3;
 
+use crate::batch::lane_count::LaneCount;
+use crate::batch::snapshot::ClothSnapshot;
 use crate::batch::{BatchError, ClothBatch};
-use crate::energy::elastic;
 use crate::fabric::{Fabric, FabricMaterial};
-use crate::lane_count::LaneCount;
-use crate::snapshot::ClothSnapshot;
+use crate::geometry::energy::elastic;
 use crate::step::{Drive, StepSettings};
 
 /// Length of a substep, s. Shorter: it takes more of them. Longer: soft cloth shrinks, for its weight

@@ -6,10 +6,10 @@ use glam::{DVec3, Vec3};
 
 use super::LevelTransfer;
 use crate::batch::ClothBatch;
-use crate::energy::{elastic, moment};
+use crate::batch::lane_count::LaneCount;
+use crate::batch::snapshot::ClothSnapshot;
 use crate::fabric::{Fabric, FabricBuilder, FabricMaterial, Grid};
-use crate::lane_count::LaneCount;
-use crate::snapshot::ClothSnapshot;
+use crate::geometry::energy::{elastic, moment};
 use crate::step::{Drive, StepSettings};
 
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);

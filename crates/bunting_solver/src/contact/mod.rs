@@ -1,0 +1,4 @@
+//! What a cloth may touch.
+
+pub(crate) mod collider;
+mod solve;

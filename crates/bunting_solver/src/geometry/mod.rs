@@ -1,0 +1,5 @@
+//! What is computed from positions: normals, sums over triangles, energies.
+
+pub(crate) mod corners;
+pub(crate) mod energy;
+pub(crate) mod normals;

@@ -1,0 +1,13 @@
+//! One substep: from forces to predicted positions, and from corrected positions to velocities.
+
+pub(crate) mod air;
+pub(crate) mod bdf;
+mod damping;
+pub(crate) mod frame;
+mod integrate;
+pub(crate) mod limits;
+pub(crate) mod parameters;
+mod settings;
+mod velocity;
+
+pub use settings::{Drive, Scheme, StepSettings};
