@@ -16,13 +16,11 @@ use parry3d::shape::SharedShape;
 use super::StateHash;
 use crate::product::TICK;
 
-/// Ticks of every scene.
-const TICKS: u32 = 600;
 /// Ticks from one state that is hashed to the next.
 const INTERVAL: u32 = 60;
 
-/// Runs a scene in a batch of this width and hashes its states.
-pub type Run = fn(LaneCount) -> u64;
+/// Runs a scene for some ticks in a batch of this width and hashes its states.
+pub type Run = fn(LaneCount, u32) -> u64;
 
 /// Every scene with its name.
 pub const ALL: [(&str, Run); 6] = [
@@ -73,8 +71,8 @@ impl Pair {
     }
 
     /// Ticks of the scene, driven as given.
-    fn run(mut self, drive: impl Fn(u32) -> Drive) -> u64 {
-        for tick in 0..TICKS {
+    fn run(mut self, ticks: u32, drive: impl Fn(u32) -> Drive) -> u64 {
+        for tick in 0..ticks {
             self.tick(drive(tick));
             if (tick + 1).is_multiple_of(INTERVAL) {
                 self.hash();
@@ -94,24 +92,27 @@ fn yarns(substeps: u32, passes: u32) -> StepSettings {
     StepSettings { passes, ..StepSettings::yarns(substeps) }
 }
 
-fn flag_on_a_vehicle(lanes: LaneCount) -> u64 {
+fn flag_on_a_vehicle(lanes: LaneCount, ticks: u32) -> u64 {
     let grid = FabricBuilder::grid(Grid::new(33, 23, 1.5, 1.0));
     let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build().expect("a flag"));
-    Pair::new(&fabric, lanes, FabricMaterial::FLAG_POLYESTER, StepSettings::default()).run(|tick| {
-        let turn = 0.01 * libm::sinf(0.05 * tick as f32);
-        let motion = FrameMotion {
-            rotation: Quat::from_xyzw(0.0, libm::sinf(turn), 0.0, libm::cosf(turn)),
-            translation: Vec3::new(0.02, 0.0, -0.15) * libm::sinf(0.02 * tick as f32),
-        };
-        Drive { motion, wind: gusts(tick), ..Drive::default() }
-    })
+    Pair::new(&fabric, lanes, FabricMaterial::FLAG_POLYESTER, StepSettings::default()).run(
+        ticks,
+        |tick| {
+            let turn = 0.01 * libm::sinf(0.05 * tick as f32);
+            let motion = FrameMotion {
+                rotation: Quat::from_xyzw(0.0, libm::sinf(turn), 0.0, libm::cosf(turn)),
+                translation: Vec3::new(0.02, 0.0, -0.15) * libm::sinf(0.02 * tick as f32),
+            };
+            Drive { motion, wind: gusts(tick), ..Drive::default() }
+        },
+    )
 }
 
-fn stiff_sheet(lanes: LaneCount) -> u64 {
+fn stiff_sheet(lanes: LaneCount, ticks: u32) -> u64 {
     let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)).pin([0, 16]);
     let fabric = Arc::new(grid.build().expect("a sheet"));
     let stiff = FabricMaterial { bend_stiffness: 0.05, ..FabricMaterial::COTTON };
-    Pair::new(&fabric, lanes, stiff, yarns(3, 2)).run(|tick| {
+    Pair::new(&fabric, lanes, stiff, yarns(3, 2)).run(ticks, |tick| {
         let wind = if tick < 200 { gusts(tick) } else { Vec3::ZERO };
         Drive { wind, ..Drive::default() }
     })
@@ -141,23 +142,23 @@ fn holed_mesh() -> FabricBuilder {
     .pin_where(|at, _| at.x == 0.0)
 }
 
-fn mesh_in_wind(lanes: LaneCount) -> u64 {
+fn mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
     let fabric = Arc::new(holed_mesh().build().expect("a mesh"));
     Pair::new(&fabric, lanes, FabricMaterial::COTTON, yarns(3, 2))
-        .run(|tick| Drive { wind: gusts(tick), ..Drive::default() })
+        .run(ticks, |tick| Drive { wind: gusts(tick), ..Drive::default() })
 }
 
-fn gauss_seidel(lanes: LaneCount) -> u64 {
+fn gauss_seidel(lanes: LaneCount, ticks: u32) -> u64 {
     let grid = FabricBuilder::grid(Grid::new(17, 13, 1.0, 1.0));
     let fabric = Arc::new(grid.pin_where(|_, uv| uv.y == 0.0).build().expect("a curtain"));
     let settings = StepSettings { passes: 2, ..StepSettings::gauss_seidel(5) };
     let mut pair = Pair::new(&fabric, lanes, FabricMaterial::DENIM, settings);
     let ball = Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.5, -0.6, 0.1), Quat::IDENTITY);
     pair.batch.set_colliders(pair.lane, [ball]);
-    pair.run(|tick| Drive { wind: 0.5 * gusts(tick), ..Drive::default() })
+    pair.run(ticks, |tick| Drive { wind: 0.5 * gusts(tick), ..Drive::default() })
 }
 
-fn free_sheet(lanes: LaneCount) -> u64 {
+fn free_sheet(lanes: LaneCount, ticks: u32) -> u64 {
     let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0));
     let coarse =
         Arc::new(grid.coarser().expect("a coarser grid").builder.build().expect("a sheet"));
@@ -180,7 +181,7 @@ fn free_sheet(lanes: LaneCount) -> u64 {
     for it in [&mut pair, &mut other] {
         it.batch.set_colliders(it.lane, [floor.clone(), post.clone()]);
     }
-    for tick in 0..TICKS {
+    for tick in 0..ticks {
         if tick == 150 || tick == 450 {
             let state = transfer.restrict(&pair.batch.snapshot(pair.lane), &material, gravity);
             other.batch.restore(other.lane, &state).expect("a state of the coarser level");
@@ -204,7 +205,7 @@ fn free_sheet(lanes: LaneCount) -> u64 {
 /// The scene of the example `flags`.
 const FLAGS: &str = include_str!("../../../../assets/scenes/flags.ron");
 
-fn plugin(lanes: LaneCount) -> u64 {
+fn plugin(lanes: LaneCount, ticks: u32) -> u64 {
     let scene = bunting_scenes::parse(FLAGS, "flags.ron".as_ref()).expect("a good scene");
     let tick = Duration::from_secs_f32(TICK);
     let mut app = App::new();
@@ -217,7 +218,7 @@ fn plugin(lanes: LaneCount) -> u64 {
     app.finish();
     app.cleanup();
     let mut hash = StateHash::new();
-    for update in 1..=TICKS {
+    for update in 1..=ticks {
         app.update();
         if update.is_multiple_of(INTERVAL) {
             let world = app.world_mut();
