@@ -3,6 +3,7 @@
 mod attachment;
 mod determinism;
 mod errors;
+mod first_hour;
 mod governor;
 mod levels;
 mod lifecycle;

@@ -1,12 +1,13 @@
 //! What a cloth may touch: parry shapes, and which particles are near them in a tick.
 
 use glam::{Quat, Vec3};
-use parry3d::bounding_volume::Aabb;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Pose;
 use parry3d::shape::SharedShape;
 
 use crate::batch::lane_batch::{LaneBatch, Slot};
 use crate::batch::places::Constant;
+use crate::contact::near::swept_box;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::lane3;
 use crate::step::frame::FrameMotion;
@@ -70,15 +71,23 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             let gained = drive.gravity.length() * tick * tick + drive.wind.length() * tick;
             for (collider, candidates) in colliders.iter().zip(contacts) {
                 candidates.clear();
-                let swept = swept_box(collider);
                 // What the collider has caught draws the rest along.
                 let drawn = collider.from.0.distance(collider.to.0);
                 let keep = material.thickness + collider.margin + frame_reach + gained + drawn;
                 let particles = 0..self.fabric.particle_count();
-                candidates.extend(particles.filter_map(|particle| {
+                let place_and_reach = |particle: usize| {
                     let (pack, lane) = self.seating.seat(particle, cloth);
                     let reach = keep + lane3(&self.velocity[pack], lane).length() * tick;
-                    let at = lane3(&self.position[pack], lane);
+                    (lane3(&self.position[pack], lane), reach)
+                };
+                let around = || {
+                    let boxes = particles.clone().map(place_and_reach);
+                    let boxes = boxes.map(|(at, reach)| Aabb::new(at - reach, at + reach));
+                    boxes.reduce(|one, other| one.merged(&other))
+                };
+                let Some(swept) = swept_box(collider, around) else { continue };
+                candidates.extend(particles.clone().filter_map(|particle| {
+                    let (at, reach) = place_and_reach(particle);
                     let outside = (swept.mins - at).max(at - swept.maxs).max_element();
                     (outside <= reach && !self.fabric.is_pinned(particle))
                         .then_some(particle as u32)
@@ -86,14 +95,4 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             }
         }
     }
-}
-
-/// The box around a collider over the whole tick.
-fn swept_box(collider: &Collider) -> Aabb {
-    let mut swept = collider.shape.compute_aabb(&collider.pose_at(0.0));
-    for part in [0.25, 0.5, 0.75, 1.0] {
-        let other = collider.shape.compute_aabb(&collider.pose_at(part));
-        swept = Aabb::new(swept.mins.min(other.mins), swept.maxs.max(other.maxs));
-    }
-    swept
 }

@@ -3,11 +3,12 @@
 
 use glam::Vec3;
 use parry3d::query::Ray;
-use parry3d::shape::Shape;
+use parry3d::shape::{HeightField, Shape};
 
 use crate::batch::lane_batch::{Clock, LaneBatch};
 use crate::batch::places::Constant;
 use crate::constants::{LEAST_CLEARANCE, LEAST_LENGTH};
+use crate::contact::ground;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
 
@@ -28,6 +29,8 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
                     (collider.pose_at(part(index)), collider.pose_at(part(done)));
                 let surface = Surface {
                     shape: &*collider.shape.0,
+                    ground: collider.shape.as_heightfield(),
+                    rise: ground::RISE * self.clock.step,
                     keep: (slot.material.thickness + collider.margin).max(LEAST_CLEARANCE),
                     friction: (slot.material.surface_friction * collider.friction).sqrt(),
                 };
@@ -76,6 +79,10 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
 /// A collider as a particle meets it, in the collider's frame.
 struct Surface<'a> {
     shape: &'a dyn Shape,
+    /// The shape, if it is a heightfield.
+    ground: Option<&'a HeightField>,
+    /// How far a particle deep under ground rises in this substep, m.
+    rise: f32,
     /// Distance to keep, m.
     keep: f32,
     /// Coulomb friction coefficient.
@@ -110,7 +117,7 @@ impl Surface<'_> {
     /// shape overtakes goes with it, and does not slide: a slide as long as the way would let the particle
     /// slip round the shape within the substep.
     fn crossing(&self, from: Vec3, to: Vec3) -> Option<(Vec3, Vec3)> {
-        if self.shape.contains_local_point(from) {
+        if self.contains(from) {
             return None;
         }
         let way = Ray::new(from, to - from);
@@ -137,7 +144,10 @@ impl Surface<'_> {
 
     /// The surface nearest to `to`, if it is nearer than the distance to keep.
     fn overlap(&self, from: Vec3, to: Vec3) -> Option<Touch> {
-        let nearest = self.shape.project_local_point(to, false);
+        let nearest = match self.ground {
+            Some(field) => ground::project(field, to, self.keep)?,
+            None => self.shape.project_local_point(to, false),
+        };
         let away = if nearest.is_inside { nearest.point - to } else { to - nearest.point };
         let distance = away.length();
         let signed = if nearest.is_inside { -distance } else { distance };
@@ -147,6 +157,15 @@ impl Surface<'_> {
         // On the surface itself, or at the centre of a ball, the way it came tells the side.
         let normal =
             if distance > LEAST_LENGTH { away / distance } else { (from - to).try_normalize()? };
-        Some(Touch { normal, depth: self.keep - signed })
+        let depth = self.keep - signed;
+        let rises = self.ground.is_some() && nearest.is_inside;
+        Some(Touch { normal, depth: if rises { depth.min(self.rise) } else { depth } })
+    }
+
+    fn contains(&self, at: Vec3) -> bool {
+        match self.ground {
+            Some(field) => ground::depth(field, at).is_some_and(|depth| depth > 0.0),
+            None => self.shape.contains_local_point(at),
+        }
     }
 }

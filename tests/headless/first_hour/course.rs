@@ -1,0 +1,49 @@
+//! Item 11: colliders that move in `Update` act where they are seen.
+
+use std::time::Duration;
+
+use bevy_app::prelude::*;
+use bevy_bunting::prelude::*;
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_time::Time;
+use bevy_transform::prelude::*;
+use bunting_tests::{app_at, state};
+
+/// Speed of the ball, m/s.
+const SPEED: f32 = 20.0;
+
+const RADIUS: f32 = 0.3;
+
+/// A curtain of 4 m × 4 m in the plane z = 0; a ball comes from behind. How far the ball stood out of
+/// the cloth, at most, when the curtain first moved, m; zero if the cloth moved before.
+fn lateness(rate: f64) -> f32 {
+    let mut app = app_at(Duration::from_secs_f64(1.0 / rate));
+    app.world_mut().resource_mut::<ClothSettings>().gravity = Vec3::ZERO;
+    let held = Attachment::in_place(ClothEdge::Top);
+    let curtain = app.world_mut().spawn((ClothMesh::grid(33, 33, 4.0, 4.0), held)).id();
+    let ball = Transform::from_xyz(2.0, -2.0, -8.0);
+    let ball = app.world_mut().spawn((ClothCollider::ball(RADIUS), ball)).id();
+    app.add_systems(Update, move |mut balls: Query<&mut Transform>, time: Res<Time>| {
+        balls.get_mut(ball).expect("it stays").translation.z += SPEED * time.delta_secs();
+    });
+    for _ in 0..rate as usize {
+        app.update();
+        let moved = state(&app, curtain).positions().iter().any(|position| position.z > 0.02);
+        if moved {
+            let front = app.world().get::<Transform>(ball).expect("it stays").translation.z;
+            return (front + RADIUS).max(0.0);
+        }
+    }
+    panic!("the curtain never moved")
+}
+
+#[test]
+fn colliders_act_where_they_are_seen() {
+    for rate in [30.0, 47.0, 60.0, 144.0] {
+        let late = lateness(rate);
+        // A tick sees the frame before; after that follows at most the rest of a tick.
+        let frame = 1.0 / rate as f32 + 1.0 / 64.0;
+        assert!(late < SPEED * frame, "{late} m late at {rate} Hz");
+    }
+}

@@ -1,0 +1,54 @@
+//! Item 4: equal flags in a row move differently, and alike in every run.
+
+use bevy_bunting::prelude::*;
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_transform::prelude::*;
+use bunting_tests::{Bits, FLAG, app, bits, run, state};
+
+/// Distance between two flags of the row, m.
+const SPACING: f32 = 3.0;
+
+/// Nine flags in a row along the wind, spawned in the given order; in the order of the row.
+fn row(order: [usize; 9], wind: WindField, ticks: usize) -> (bevy_app::App, Vec<Entity>) {
+    let mut app = app();
+    app.world_mut().spawn(wind);
+    let mut flags = [Entity::PLACEHOLDER; 9];
+    for index in order {
+        let pole = Transform::from_xyz(SPACING * index as f32, 0.0, 0.0);
+        let held = Attachment::in_place(ClothEdge::Left);
+        flags[index] = app.world_mut().spawn((FLAG, held, pole)).id();
+    }
+    run(&mut app, ticks);
+    (app, flags.to_vec())
+}
+
+const GUSTY: WindField = WindField::steady(Vec3::new(6.0, 0.0, 0.0)).with_gusts(2.0, 0.5, 1);
+
+#[test]
+fn equal_flags_in_a_row_move_differently() {
+    let (app, flags) = row([0, 1, 2, 3, 4, 5, 6, 7, 8], GUSTY, 64 * 20);
+    for pair in flags.windows(2) {
+        let [one, other] = [pair[0], pair[1]].map(|flag| state(&app, flag).positions());
+        let apart = one.iter().zip(other).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        assert!(apart > 0.05, "two neighbours differ by {apart} m at most");
+    }
+}
+
+#[test]
+fn flags_differ_without_wind_too() {
+    let calm = WindField::steady(Vec3::new(0.0, 0.0, 0.0));
+    let (app, flags) = row([0, 1, 2, 3, 4, 5, 6, 7, 8], calm, 64 * 2);
+    for pair in flags.windows(2) {
+        assert_ne!(bits(&app, pair[0]), bits(&app, pair[1]));
+    }
+}
+
+#[test]
+fn the_order_of_spawning_changes_no_bit() {
+    let all = |order| -> Vec<Bits> {
+        let (app, flags) = row(order, GUSTY, 64);
+        flags.iter().map(|&flag| bits(&app, flag)).collect()
+    };
+    assert_eq!(all([0, 1, 2, 3, 4, 5, 6, 7, 8]), all([4, 8, 1, 0, 7, 2, 3, 6, 5]));
+}

@@ -1,0 +1,73 @@
+//! Item 2: frames of uneven length do not shake a target that moves evenly.
+
+use std::time::Duration;
+
+use bevy_app::prelude::*;
+use bevy_bunting::prelude::*;
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_time::{Time, TimeUpdateStrategy};
+use bevy_transform::prelude::*;
+use bunting_tests::{FLAG, app, greatest_speed, state};
+
+use super::strain;
+
+/// Speed of the pole, m/s.
+const SPEED: f32 = 20.0;
+
+/// Frames, of 1/60 s each in the mean.
+const FRAMES: usize = 900;
+
+/// How a ride at constant speed looks.
+#[derive(Debug)]
+struct Ride {
+    /// Mean over time of the mean strain.
+    strain: f32,
+    /// Mean over time of the greatest speed in the flag's frame, m/s.
+    speed: f32,
+}
+
+/// Rides along x, with frames that are shorter and longer by at most this part.
+fn ride(jitter: f32) -> Ride {
+    #[derive(Component)]
+    struct Pole;
+    let mut app = app();
+    let pole = app.world_mut().spawn((Pole, Transform::default())).id();
+    let flag = app.world_mut().spawn((FLAG, Attachment::new(pole, ClothEdge::Left))).id();
+    app.add_systems(Update, |mut poles: Query<&mut Transform, With<Pole>>, time: Res<Time>| {
+        for mut pole in &mut poles {
+            pole.translation.x -= SPEED * time.delta_secs();
+        }
+    });
+    let mut ride = Ride { strain: 0.0, speed: 0.0 };
+    let mut random = 1_u32;
+    for frame in 0..FRAMES {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        let uneven = (random >> 8) as f32 / (1 << 23) as f32 - 1.0;
+        let frame_length = Duration::from_secs_f32((1.0 + jitter * uneven) / 60.0);
+        app.insert_resource(TimeUpdateStrategy::ManualDuration(frame_length));
+        app.update();
+        let drawn = app.world().get::<GlobalTransform>(flag).expect("placed").translation();
+        let pole = app.world().get::<Transform>(pole).expect("it stays").translation;
+        if frame > 0 {
+            assert!(drawn.distance(pole) < 1e-5, "off its pole by {} m", drawn.distance(pole));
+            assert_eq!(state(&app, flag).positions()[0], Vec3::ZERO);
+        }
+        if frame >= FRAMES / 3 {
+            ride.strain += strain(&app, flag).mean;
+            ride.speed += greatest_speed(&app, flag);
+        }
+    }
+    let counted = (FRAMES - FRAMES / 3) as f32;
+    Ride { strain: ride.strain / counted, speed: ride.speed / counted }
+}
+
+#[test]
+fn uneven_frames_look_like_even_ones() {
+    let even = ride(0.0);
+    for jitter in [0.03, 0.1, 0.2] {
+        let uneven = ride(jitter);
+        assert!(uneven.strain < 1.05 * even.strain, "± {jitter}: {uneven:?}, even: {even:?}");
+        assert!(uneven.speed < 1.05 * even.speed, "± {jitter}: {uneven:?}, even: {even:?}");
+    }
+}

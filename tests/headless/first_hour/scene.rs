@@ -1,0 +1,120 @@
+//! Item 9: all components of a cloth reflect fully, and make the round trip through a scene file.
+
+use bevy_bunting::bunting_solver::FabricMaterial;
+use bevy_bunting::parry3d::shape::SharedShape;
+use bevy_bunting::prelude::*;
+use bevy_ecs::prelude::*;
+use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
+use bevy_math::{Vec2, Vec3};
+use bevy_reflect::serde::{ReflectDeserializer, ReflectSerializer};
+use bevy_reflect::{GetPath, PartialReflect, ReflectRef, TypeRegistry};
+use bevy_transform::prelude::*;
+use bunting_tests::{app, run, state};
+use serde::de::DeserializeSeed;
+
+/// All components of an entity that a scene would hold, as RON.
+fn save(world: &World, entity: Entity) -> Vec<String> {
+    let types = world.resource::<AppTypeRegistry>().read();
+    let entity = world.entity(entity);
+    let reflected = types.iter().filter_map(|registered| {
+        let value = registered.data::<ReflectComponent>()?.reflect(entity)?;
+        Some(value.as_partial_reflect())
+    });
+    reflected
+        .map(|value| {
+            ron::to_string(&ReflectSerializer::new(value, &types))
+                .unwrap_or_else(|error| panic!("{}: {error}", value.reflect_type_path()))
+        })
+        .collect()
+}
+
+fn load(world: &mut World, components: &[String]) -> Entity {
+    let types = world.resource::<AppTypeRegistry>().clone();
+    let types = types.read();
+    let entity = world.spawn_empty().id();
+    for text in components {
+        let value = read(text, &types);
+        let path = value.get_represented_type_info().expect("a type").type_path();
+        let registered = types.get_with_type_path(path).expect("registered");
+        let component = registered.data::<ReflectComponent>().expect("a component");
+        component.insert(&mut world.entity_mut(entity), &*value, &types);
+    }
+    entity
+}
+
+fn read(text: &str, types: &TypeRegistry) -> Box<dyn PartialReflect> {
+    let mut reader = ron::Deserializer::from_str(text).expect("RON");
+    ReflectDeserializer::new(types)
+        .deserialize(&mut reader)
+        .unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+fn weighted() -> ClothMesh {
+    let weights = (0..45).map(|vertex| if vertex % 9 < 3 { 0.0 } else { 1.0 }).collect();
+    ClothMesh::grid(9, 5, 1.0, 0.6).with_weights(weights)
+}
+
+#[test]
+fn cloths_make_the_round_trip() {
+    let material = FabricMaterial { damping: 0.7, ..FabricMaterial::SILK };
+    let vertices = [
+        AttachedVertices::Edge(ClothEdge::Top),
+        AttachedVertices::Corners(vec![ClothCorner::TopLeft, ClothCorner::BottomRight]),
+        AttachedVertices::List(vec![0, 9, 18]),
+        AttachedVertices::Within { low: Vec2::ZERO, high: Vec2::new(0.2, 1.0) },
+        AttachedVertices::Rigid,
+    ];
+    for vertices in vertices {
+        let mesh = match vertices {
+            AttachedVertices::Rigid => weighted(),
+            _ => ClothMesh::grid(9, 5, 1.0, 0.6),
+        };
+        let held = Attachment::in_place(vertices).with_offset(Transform::from_xyz(0.0, 1.0, 0.0));
+        let mut first = app();
+        let cloth = (mesh, ClothMaterial(material), LodSet::new([8.0]), held, ClothPaused);
+        let cloth = first.world_mut().spawn(cloth).id();
+        run(&mut first, 5);
+        let saved = save(first.world(), cloth);
+        let mut second = app();
+        let loaded = load(second.world_mut(), &saved);
+        assert_eq!(save(second.world(), loaded), saved);
+        let of = |entity, world: &World| world.get::<ClothMaterial>(entity).copied();
+        assert_eq!(of(loaded, second.world()), of(cloth, first.world()));
+        second.world_mut().entity_mut(loaded).remove::<ClothPaused>();
+        run(&mut second, 5);
+        assert!(!state(&second, loaded).positions().is_empty());
+    }
+}
+
+#[test]
+fn colliders_winds_and_viewers_make_the_round_trip() {
+    let mut first = app();
+    let shapes = [
+        SharedShape::ball(0.5),
+        SharedShape::capsule_y(1.0, 0.2),
+        SharedShape::cuboid(1.0, 2.0, 3.0),
+        SharedShape::trimesh(vec![Vec3::ZERO, Vec3::X, Vec3::Z], vec![[0, 1, 2]]).expect("a mesh"),
+    ];
+    for shape in shapes {
+        let collider = ClothCollider { margin: 0.01, friction: 0.4, ..ClothCollider::new(shape) };
+        let wind = WindField::steady(Vec3::X).with_gusts(2.0, 0.5, 3);
+        let all = first.world_mut().spawn((collider, wind, LodViewer::default())).id();
+        run(&mut first, 2);
+        let saved = save(first.world(), all);
+        let mut second = app();
+        let loaded = load(second.world_mut(), &saved);
+        assert_eq!(save(second.world(), loaded), saved);
+        let collider = second.world().get::<ClothCollider>(loaded).expect("a collider");
+        let original = first.world().get::<ClothCollider>(all).expect("a collider");
+        assert_eq!(collider.shape.shape_type(), original.shape.shape_type());
+        assert_eq!(collider.shape.compute_local_aabb(), original.shape.compute_local_aabb());
+    }
+}
+
+#[test]
+fn an_inspector_sees_the_fields_of_a_material() {
+    let material = ClothMaterial(FabricMaterial::SILK);
+    let ReflectRef::TupleStruct(_) = material.reflect_ref() else { panic!("opaque") };
+    let density = material.path::<f32>(".0.area_density").expect("a field");
+    assert_eq!(*density, FabricMaterial::SILK.area_density);
+}
