@@ -90,73 +90,55 @@
 //! and by default measures what they cost; with [`LodCosts::Fixed`] it, too, chooses alike on every
 //! machine.
 
-mod activity;
-mod attachment;
-mod batches;
-mod collider;
+mod batch;
+mod cloth;
 mod diagnostics;
-mod drive;
-mod easing;
-mod error;
-mod follow;
-mod frame;
-mod instance;
-mod levels;
+mod display;
+mod environment;
+mod fabric;
 mod lod;
-mod mesh;
-mod part;
-mod pose;
-mod prepare;
-mod publish;
+mod motion;
 #[cfg(feature = "render")]
 mod render;
-mod rest;
 mod schedule;
-mod seat;
-mod seats;
 mod settings;
-mod solver;
-mod state;
-mod surface;
-mod teleport;
-mod wind;
 
 use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::intern::Interned;
 use bevy_ecs::schedule::ScheduleLabel;
 
-pub use activity::ClothActivity;
-pub use attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
-pub use batches::ClothBatches;
+pub use batch::assign::SeatPlugin;
+pub use batch::batches::ClothBatches;
+pub use batch::publish::PublishPlugin;
+pub use batch::solve::SolverPlugin;
 pub use bunting_solver;
-pub use collider::{ClothCollider, ColliderPlugin};
+pub use cloth::activity::ClothActivity;
+pub use cloth::error::{ClothError, ClothFailed};
+pub use cloth::mesh::{ClothMaterial, ClothMesh, ClothPaused};
+pub use cloth::state::ClothState;
 pub use diagnostics::{ClothCounts, ClothDiagnosticsPlugin, ClothTimings};
-pub use drive::DrivePlugin;
-pub use easing::EasingPlugin;
-pub use error::{ClothError, ClothFailed};
-pub use frame::AttachmentPlugin;
+pub use display::easing::EasingPlugin;
+pub use display::surface::{ClothSurface, SurfacePlugin};
+pub use environment::collider::{ClothCollider, ColliderPlugin};
+pub use environment::drive::DrivePlugin;
+pub use environment::wind::{TickWind, WindField, WindPlugin};
+pub use fabric::part::WeightsError;
+pub use fabric::prepare::{ClothTargetLost, PreparePlugin};
+pub use lod::sleep::RestPlugin;
 pub use lod::{
     ClothBudget, ClothLevelChanged, CostTable, Lens, LodChoice, LodCosts, LodPlugin, LodReport,
     LodSet, LodViewer,
 };
-pub use mesh::{ClothMaterial, ClothMesh, ClothPaused};
+pub use motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
+pub use motion::frame::AttachmentPlugin;
+pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
-pub use part::WeightsError;
-pub use prepare::{ClothTargetLost, PreparePlugin};
-pub use publish::PublishPlugin;
 #[cfg(feature = "render")]
 pub use render::{ClothDebugPlugin, ClothGizmos, ClothRenderPlugin, ClothRenderSystems};
-pub use rest::RestPlugin;
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
-pub use seat::SeatPlugin;
 pub use settings::ClothSettings;
-pub use solver::SolverPlugin;
-pub use state::ClothState;
-pub use surface::{ClothSurface, SurfacePlugin};
-pub use teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
-pub use wind::{TickWind, WindField, WindPlugin};
 
 /// Everything that one usually needs.
 pub mod prelude {

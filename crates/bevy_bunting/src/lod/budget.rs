@@ -7,7 +7,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
 use super::costs::CostTable;
-use crate::activity::ClothActivity;
+use crate::cloth::activity::ClothActivity;
 
 /// What all cloths together may cost, for those whose levels are chosen automatically; see
 /// [`LodSet::automatic`](crate::LodSet::automatic). It may be changed at any time.

@@ -14,14 +14,14 @@ use super::governor::{Candidate, Governor, Limits, wanted_level};
 use super::kinds::Kinds;
 use super::viewer::{LodViewer, Look, Sight, View};
 use super::{ClothLevelChanged, LodChoice, LodSet};
-use crate::activity::{ClothActivity, ClothWatch};
-use crate::batches::ClothBatches;
+use crate::batch::batches::ClothBatches;
+use crate::cloth::activity::{ClothActivity, ClothWatch};
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::mesh::ClothPaused;
+use crate::cloth::state::ClothState;
 use crate::diagnostics::{ClothCounts, ClothTimings};
-use crate::instance::ClothInstance;
-use crate::mesh::ClothPaused;
-use crate::pose::PoseHistory;
+use crate::motion::pose::PoseHistory;
 use crate::settings::ClothSettings;
-use crate::state::ClothState;
 
 /// Ticks from one in which costs are measured to the next: clocks cost time, too.
 const MEASURED_EVERY: u32 = 8;

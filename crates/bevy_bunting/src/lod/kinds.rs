@@ -7,7 +7,7 @@ use bunting_solver::{Fabric, LaneCount, instruction_set};
 use super::costs::{CostModel, CostTable};
 use super::error::level_error;
 use super::governor::Kind;
-use crate::levels::ClothLevels;
+use crate::fabric::levels::ClothLevels;
 use crate::settings::ClothSettings;
 
 /// A cloth reaches farther from its middle than at rest by at most this part: it stretches little.

@@ -5,9 +5,9 @@ use bevy_camera::visibility::NoAutoAabb;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3A;
 
-use super::dress::LevelMeshes;
-use crate::easing::ClothEasing;
-use crate::state::ClothState;
+use super::assign_meshes::LevelMeshes;
+use crate::cloth::state::ClothState;
+use crate::display::easing::ClothEasing;
 
 type Bounded = (
     &'static ClothState,

@@ -15,9 +15,9 @@ use bevy_transform::TransformSystems;
 use bevy_transform::components::GlobalTransform;
 use bunting_solver::LinkFamily;
 
-use crate::state::ClothState;
-use crate::surface::ClothSurface;
-use crate::wind::TickWind;
+use crate::cloth::state::ClothState;
+use crate::display::surface::ClothSurface;
+use crate::environment::wind::TickWind;
 
 /// Half the size of the cross on an attached particle, m.
 const CROSS: f32 = 0.02;

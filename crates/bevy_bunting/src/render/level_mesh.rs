@@ -4,9 +4,9 @@ use bevy_asset::RenderAssetUsages;
 use bevy_math::{Vec2, Vec3};
 use bevy_mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues};
 
-use crate::levels::ClothLevels;
-use crate::mesh::ClothMesh;
-use crate::part::RigidPart;
+use crate::cloth::mesh::ClothMesh;
+use crate::fabric::levels::ClothLevels;
+use crate::fabric::part::RigidPart;
 
 /// What the mesh of a level consists of.
 #[derive(Clone, Debug)]

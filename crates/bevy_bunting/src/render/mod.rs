@@ -1,11 +1,11 @@
 //! Cloth to look at: meshes, bounds, levels of detail by camera, gizmos.
 
+mod assign_meshes;
 mod bounds;
+mod camera_lens;
 mod debug;
-mod dress;
 mod level_mesh;
 mod tangents;
-mod view;
 mod write;
 
 use bevy_app::{App, Plugin, PostUpdate, RunFixedMainLoop, RunFixedMainLoopSystems};
@@ -71,7 +71,8 @@ impl Plugin for ClothRenderPlugin {
         app.add_observer(view_levels)
             .add_systems(
                 RunFixedMainLoop,
-                view::view_through_cameras.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+                camera_lens::view_through_cameras
+                    .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
             )
             .configure_sets(
                 PostUpdate,
@@ -88,8 +89,8 @@ impl Plugin for ClothRenderPlugin {
                 PostUpdate,
                 (
                     (
-                        dress::dress_cloths,
-                        dress::switch_levels,
+                        assign_meshes::dress_cloths,
+                        assign_meshes::switch_levels,
                         bounds::bound_cloths,
                         write::write_visible,
                     )

@@ -8,12 +8,12 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
 
-use super::dress::{LevelMeshes, MeshOrigin, check};
+use super::assign_meshes::{LevelMeshes, MeshOrigin, check};
 use super::tangents::TangentScratch;
-use crate::error::{ClothError, ClothFailed};
-use crate::levels::ClothLevels;
-use crate::state::ClothState;
-use crate::surface::ClothSurface;
+use crate::cloth::error::{ClothError, ClothFailed};
+use crate::cloth::state::ClothState;
+use crate::display::surface::ClothSurface;
+use crate::fabric::levels::ClothLevels;
 
 type Shown = (
     Entity,

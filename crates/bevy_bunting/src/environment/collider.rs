@@ -9,10 +9,10 @@ use bunting_solver::Collider;
 use parry3d::math::Vector;
 use parry3d::shape::SharedShape;
 
-use crate::batches::ClothBatches;
-use crate::drive::{drive_cloths, pose_parts};
-use crate::instance::ClothInstance;
-use crate::pose::PoseHistory;
+use crate::batch::batches::ClothBatches;
+use crate::cloth::instance::ClothInstance;
+use crate::environment::drive::{drive_cloths, pose_parts};
+use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// A shape that no cloth can enter. It moves with its entity, pushes cloth and is not pushed.

@@ -11,13 +11,13 @@ use bevy_transform::TransformSystems;
 use bevy_transform::components::{GlobalTransform, Transform};
 use bevy_transform::helper::TransformHelper;
 
-use crate::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
-use crate::drive::drive_cloths;
-use crate::error::{ClothError, ClothFailed};
-use crate::follow::{Motions, end_following, follow_targets};
-use crate::instance::ClothInstance;
-use crate::mesh::ClothMesh;
-use crate::pose::{Observed, PoseHistory};
+use crate::cloth::error::{ClothError, ClothFailed};
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::mesh::ClothMesh;
+use crate::environment::drive::drive_cloths;
+use crate::motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
+use crate::motion::follow::{Motions, end_following, follow_targets};
+use crate::motion::pose::{Observed, PoseHistory};
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// A collider that leaves its course by more than this was teleported, m.

@@ -5,12 +5,12 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
 use bunting_solver::{Drive, FrameMotion};
 
-use crate::batches::ClothBatches;
-use crate::instance::ClothInstance;
-use crate::pose::PoseHistory;
+use crate::batch::batches::ClothBatches;
+use crate::cloth::instance::ClothInstance;
+use crate::environment::wind::TickWind;
+use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
-use crate::wind::TickWind;
 
 /// Drives cloths.
 #[derive(Debug, Default)]

@@ -7,9 +7,9 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_time::{Time, Virtual};
 
-use crate::easing::ClothEasing;
+use crate::cloth::state::ClothState;
+use crate::display::easing::ClothEasing;
 use crate::schedule::{ClothSystems, ClothTick};
-use crate::state::ClothState;
 
 /// The surface of a cloth for display, in the cloth's frame: [`ClothState`] between its last two
 /// ticks, by how far the frame is past the last.

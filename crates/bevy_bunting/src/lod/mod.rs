@@ -6,6 +6,7 @@ mod costs;
 mod error;
 mod governor;
 mod kinds;
+pub mod sleep;
 mod viewer;
 
 use bevy_app::{App, Plugin};
@@ -13,10 +14,10 @@ use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
+use crate::batch::assign::seat_cloths;
+use crate::cloth::error::ClothError;
 use crate::diagnostics::ClothCounts;
-use crate::error::ClothError;
 use crate::schedule::{ClothSystems, ClothTick};
-use crate::seat::seat_cloths;
 
 pub use budget::{ClothBudget, LodCosts, LodReport};
 pub(crate) use choose::choose_levels;
@@ -184,5 +185,4 @@ impl Plugin for LodPlugin {
 }
 
 #[cfg(test)]
-#[path = "lod_tests.rs"]
 mod tests;

@@ -3,7 +3,7 @@
 use bevy_math::Vec3;
 use bunting_solver::{Fabric, FabricBuilder, FabricError};
 
-use crate::mesh::ClothMesh;
+use crate::cloth::mesh::ClothMesh;
 
 /// Why weights cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

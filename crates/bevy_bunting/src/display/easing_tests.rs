@@ -8,13 +8,13 @@ use bevy_math::Vec3;
 use bevy_time::{TimePlugin, TimeUpdateStrategy};
 
 use super::{DURATION, Decay};
-use crate::attachment::{Attachment, ClothEdge};
-use crate::instance::ClothInstance;
-use crate::levels::ClothLevels;
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::mesh::ClothMesh;
+use crate::cloth::state::ClothState;
+use crate::display::surface::ClothSurface;
+use crate::fabric::levels::ClothLevels;
 use crate::lod::LodSet;
-use crate::mesh::ClothMesh;
-use crate::state::ClothState;
-use crate::surface::ClothSurface;
+use crate::motion::attachment::{Attachment, ClothEdge};
 use crate::{ClothPlugins, WindField};
 
 const TICK: f32 = 1.0 / 64.0;

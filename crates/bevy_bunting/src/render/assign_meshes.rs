@@ -10,11 +10,11 @@ use bevy_ecs::prelude::*;
 use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
 
 use super::level_mesh;
-use crate::error::{ClothError, ClothFailed};
-use crate::instance::ClothInstance;
-use crate::levels::ClothLevels;
-use crate::mesh::ClothMesh;
-use crate::surface::ClothSurface;
+use crate::cloth::error::{ClothError, ClothFailed};
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::mesh::ClothMesh;
+use crate::display::surface::ClothSurface;
+use crate::fabric::levels::ClothLevels;
 
 /// The meshes that show a cloth.
 #[derive(Component, Debug)]

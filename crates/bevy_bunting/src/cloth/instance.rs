@@ -6,9 +6,9 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bunting_solver::{ClothSnapshot, Fabric, FabricMaterial};
 
-use crate::activity::ClothActivity;
-use crate::batches::{ClothBatches, Slot};
-use crate::levels::{ClothLevels, hold_pins};
+use crate::batch::batches::{ClothBatches, Slot};
+use crate::cloth::activity::ClothActivity;
+use crate::fabric::levels::{ClothLevels, hold_pins};
 
 /// Where the state of a cloth is.
 #[derive(Clone, Debug, Default)]

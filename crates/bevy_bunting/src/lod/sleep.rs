@@ -6,17 +6,17 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_time::Time;
 
-use crate::activity::{ClothActivity, ClothRest, ClothWatch};
-use crate::collider::ClothCollider;
-use crate::easing::ease_surfaces;
-use crate::instance::ClothInstance;
+use crate::batch::publish::publish_states;
+use crate::cloth::activity::{ClothActivity, ClothRest, ClothWatch};
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::state::ClothState;
+use crate::display::easing::ease_surfaces;
+use crate::environment::collider::ClothCollider;
+use crate::environment::wind::TickWind;
 use crate::lod::choose_levels;
-use crate::pose::PoseHistory;
-use crate::publish::publish_states;
+use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
-use crate::state::ClothState;
-use crate::wind::TickWind;
 
 /// Root mean square speed of a cloth at rest, m/s: a millimetre in a second is seen by no one.
 const REST_SPEED: f32 = 1e-3;

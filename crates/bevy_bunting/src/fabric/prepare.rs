@@ -6,16 +6,16 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
 
-use crate::attachment::{Attachment, TargetLost};
-use crate::batches::ClothBatches;
-use crate::error::{ClothError, ClothFailed};
-use crate::instance::ClothInstance;
-use crate::levels::FabricLibrary;
+use crate::batch::batches::ClothBatches;
+use crate::cloth::error::{ClothError, ClothFailed};
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::mesh::{ClothMaterial, ClothMesh, ClothPaused};
+use crate::cloth::state::ClothState;
+use crate::fabric::levels::FabricLibrary;
 use crate::lod::LodSet;
-use crate::mesh::{ClothMaterial, ClothMesh, ClothPaused};
-use crate::pose::PoseHistory;
+use crate::motion::attachment::{Attachment, TargetLost};
+use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
-use crate::state::ClothState;
 
 /// The target of a cloth's attachment was despawned.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]

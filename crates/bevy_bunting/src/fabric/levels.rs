@@ -10,11 +10,11 @@ use bunting_solver::{
     ClothSnapshot, Fabric, FabricBuilder, FabricError, FabricMaterial, LevelTransfer,
 };
 
-use crate::attachment::Attachment;
-use crate::error::ClothError;
+use crate::cloth::error::ClothError;
+use crate::cloth::mesh::ClothMesh;
+use crate::fabric::part::{Blend, RigidPart, SimulatedPart, check_weights};
 use crate::lod::LodSet;
-use crate::mesh::ClothMesh;
-use crate::part::{Blend, RigidPart, SimulatedPart, check_weights};
+use crate::motion::attachment::Attachment;
 #[cfg(feature = "render")]
 use crate::render::LevelMesh;
 
@@ -326,7 +326,7 @@ fn key(mesh: &ClothMesh, pinned: Option<&[u32]>, lods: &LodSet) -> Vec<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::attachment::ClothEdge;
+    use crate::motion::attachment::ClothEdge;
 
     const FLAG: ClothMesh = ClothMesh::grid(9, 5, 1.5, 1.0);
 

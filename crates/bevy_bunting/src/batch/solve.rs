@@ -5,7 +5,7 @@ use bevy_ecs::prelude::*;
 use bevy_time::Time;
 use bunting_solver::ClothBatch;
 
-use crate::batches::ClothBatches;
+use crate::batch::batches::ClothBatches;
 use crate::schedule::{ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick};
 
 /// Systems that this plugin has in [`ClothSubstep`].

@@ -6,8 +6,8 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bunting_solver::Fabric;
 
-use crate::activity::ClothActivity;
-use crate::levels::ClothLevels;
+use crate::cloth::activity::ClothActivity;
+use crate::fabric::levels::ClothLevels;
 
 /// The simulated surface of a cloth, as of the last tick; read only.
 ///

@@ -10,8 +10,8 @@ use bunting_solver::{
     StepSettings,
 };
 
+use crate::batch::occupancy::{Newcomer, Seats};
 use crate::lod::Measured;
-use crate::seats::{Newcomer, Seats};
 
 /// Particles, counted in all lanes, from which a phase of a substep is worth the 30 µs that it
 /// takes to wake other threads.

@@ -3,11 +3,11 @@
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
-use crate::batches::ClothBatches;
-use crate::error::{ClothError, ClothFailed};
-use crate::instance::ClothInstance;
+use crate::batch::batches::ClothBatches;
+use crate::cloth::error::{ClothError, ClothFailed};
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::state::ClothState;
 use crate::schedule::{ClothSystems, ClothTick};
-use crate::state::ClothState;
 
 /// Publishes the state of cloths.
 #[derive(Debug, Default)]

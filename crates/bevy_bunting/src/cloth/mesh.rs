@@ -7,11 +7,11 @@ use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
 use bunting_solver::{FabricBuilder, FabricMaterial, Grid};
 
-use crate::activity::{ClothRest, ClothWatch};
-use crate::instance::ClothInstance;
+use crate::cloth::activity::{ClothRest, ClothWatch};
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::state::ClothState;
 use crate::lod::LodSet;
-use crate::pose::PoseHistory;
-use crate::state::ClothState;
+use crate::motion::pose::PoseHistory;
 
 /// The shape of a cloth at rest. This component alone makes an entity a cloth: the others that it
 /// needs come with it.

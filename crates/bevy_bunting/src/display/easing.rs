@@ -7,12 +7,12 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Vec3, ops};
 use bevy_time::Time;
 
-use crate::instance::ClothInstance;
-use crate::levels::ClothLevels;
-use crate::publish::publish_states;
+use crate::batch::publish::publish_states;
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::state::{ClothState, Left};
+use crate::display::surface::ClothSurface;
+use crate::fabric::levels::ClothLevels;
 use crate::schedule::{ClothSystems, ClothTick};
-use crate::state::{ClothState, Left};
-use crate::surface::ClothSurface;
 
 /// Time after which the level's own surface is shown, s.
 const DURATION: f32 = 0.25;

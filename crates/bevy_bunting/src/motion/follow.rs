@@ -6,7 +6,7 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemParam;
 use bevy_transform::components::Transform;
 
-use crate::attachment::Attachment;
+use crate::motion::attachment::Attachment;
 
 /// A cloth that is attached to another entity, and so moves with it.
 #[derive(Component, Debug)]

@@ -9,10 +9,10 @@ use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bunting_solver::ClothSnapshot;
 
 use super::{LodSet, seat_cloths};
-use crate::attachment::{Attachment, ClothEdge};
-use crate::batches::ClothBatches;
-use crate::instance::ClothInstance;
-use crate::mesh::ClothMesh;
+use crate::batch::batches::ClothBatches;
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::mesh::ClothMesh;
+use crate::motion::attachment::{Attachment, ClothEdge};
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::{ClothPlugins, WindField};
 

@@ -3,7 +3,7 @@
 use bevy_ecs::prelude::*;
 use bunting_solver::FabricError;
 
-use crate::part::WeightsError;
+use crate::fabric::part::WeightsError;
 
 /// Why a cloth is not simulated as asked. Other cloths go on undisturbed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]

@@ -4,12 +4,12 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_time::Time;
 
-use crate::activity::ClothActivity;
-use crate::batches::ClothBatches;
-use crate::instance::{ClothInstance, Place};
-use crate::mesh::ClothPaused;
+use crate::batch::batches::ClothBatches;
+use crate::batch::occupancy::Newcomer;
+use crate::cloth::activity::ClothActivity;
+use crate::cloth::instance::{ClothInstance, Place};
+use crate::cloth::mesh::ClothPaused;
 use crate::schedule::{ClothSystems, ClothTick};
-use crate::seats::Newcomer;
 use crate::settings::ClothSettings;
 
 /// Seats cloths in batches.

@@ -5,10 +5,10 @@ use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
-use crate::batches::ClothBatches;
-use crate::instance::ClothInstance;
-use crate::pose::{Observed, PoseHistory};
-use crate::state::ClothState;
+use crate::batch::batches::ClothBatches;
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::state::ClothState;
+use crate::motion::pose::{Observed, PoseHistory};
 
 /// Asks that the next change of a cloth's frame be a teleport: trigger it in the frame or tick in
 /// which the target is moved, before or after, but before the next tick of the cloth.

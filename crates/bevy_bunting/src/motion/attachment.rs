@@ -188,7 +188,7 @@ fn nearest(uv: &[Vec2], corner: Vec2) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::ClothMesh;
+    use crate::cloth::mesh::ClothMesh;
 
     #[test]
     fn edges_corners_and_predicates() {

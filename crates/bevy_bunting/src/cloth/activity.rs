@@ -7,7 +7,7 @@ use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
-use crate::levels::ClothLevels;
+use crate::fabric::levels::ClothLevels;
 use crate::lod::Candidate;
 
 /// Whether a cloth is simulated or asleep. A sleeping cloth keeps its shape, goes with its frame, and

@@ -1,0 +1,7 @@
+//! What a cloth is: its mesh, its material, its state.
+
+pub mod activity;
+pub mod error;
+pub mod instance;
+pub mod mesh;
+pub mod state;

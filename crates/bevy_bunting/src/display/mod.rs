@@ -1,0 +1,4 @@
+//! The surface that is shown: between two ticks, and across changes of level.
+
+pub mod easing;
+pub mod surface;

@@ -1,0 +1,7 @@
+//! What carries a cloth: attachments, and the motion of their targets.
+
+pub mod attachment;
+pub mod follow;
+pub mod frame;
+pub mod pose;
+pub mod teleport;
