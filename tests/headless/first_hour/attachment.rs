@@ -42,8 +42,9 @@ fn edit(app: &mut App, flag: Entity, edit: impl FnOnce(&mut Attachment)) {
 
 fn hung() -> (App, Entity) {
     let mut app = app();
+    app.world_mut().spawn(WindField::steady(Vec3::new(0.5, 0.0, 1.0)));
     let flag = spawn_flag(&mut app, Vec3::ZERO);
-    run(&mut app, 64);
+    run(&mut app, 64 * 4);
     (app, flag)
 }
 

@@ -15,8 +15,8 @@ const SPEED: f32 = 20.0;
 
 const RADIUS: f32 = 0.3;
 
-/// A curtain of 4 m × 4 m in the plane z = 0; a ball comes from behind. How far the ball stood out of
-/// the cloth, at most, when the curtain first moved, m; zero if the cloth moved before.
+/// A curtain of 4 m × 4 m in the plane z = 0; a ball comes from behind. How far it stands out of the cloth
+/// that it pushes, at most, m.
 fn lateness(rate: f64) -> f32 {
     let mut app = app_at(Duration::from_secs_f64(1.0 / rate));
     app.world_mut().resource_mut::<ClothSettings>().gravity = Vec3::ZERO;
@@ -27,23 +27,24 @@ fn lateness(rate: f64) -> f32 {
     app.add_systems(Update, move |mut balls: Query<&mut Transform>, time: Res<Time>| {
         balls.get_mut(ball).expect("it stays").translation.z += SPEED * time.delta_secs();
     });
+    let mut worst: Option<f32> = None;
     for _ in 0..rate as usize {
         app.update();
-        let moved = state(&app, curtain).positions().iter().any(|position| position.z > 0.02);
-        if moved {
-            let front = app.world().get::<Transform>(ball).expect("it stays").translation.z;
-            return (front + RADIUS).max(0.0);
+        let front = app.world().get::<Transform>(ball).expect("it stays").translation.z + RADIUS;
+        let pushed = state(&app, curtain).positions()[16 * 33 + 16].z;
+        if pushed > 0.2 && front < 1.5 {
+            worst = Some(worst.unwrap_or(f32::MIN).max(front - pushed));
         }
     }
-    panic!("the curtain never moved")
+    worst.expect("the curtain never moved")
 }
 
 #[test]
 fn colliders_act_where_they_are_seen() {
     for rate in [30.0, 47.0, 60.0, 144.0] {
         let late = lateness(rate);
-        // A tick sees the frame before; after that follows at most the rest of a tick.
-        let frame = 1.0 / rate as f32 + 1.0 / 64.0;
-        assert!(late < SPEED * frame, "{late} m late at {rate} Hz");
+        println!("{late} m at {rate} Hz");
+        // Up to a tick may pass between the last tick and the frame.
+        assert!(late < SPEED / 64.0 + 0.02, "{late} m late at {rate} Hz");
     }
 }

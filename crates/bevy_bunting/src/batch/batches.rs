@@ -121,6 +121,13 @@ impl ClothBatches {
         self.groups[index].newcomers.push(newcomer);
     }
 
+    /// The state in a lane, if the cloth in it is another one than this.
+    pub(crate) fn of_another(&self, slot: Slot, cloth: Entity) -> Option<ClothSnapshot> {
+        let seats = self.groups.get(slot.group)?.batches.get(slot.batch)?;
+        let (owner, _) = seats.entities.get(slot.lane)?.as_ref()?;
+        (*owner != cloth).then(|| seats.batch.snapshot(slot.lane))
+    }
+
     /// Takes a cloth out of its lane.
     pub(crate) fn take(&mut self, slot: Slot) -> ClothSnapshot {
         self.free(slot).snapshot(slot.lane)

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
+use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::*;
+use bevy_ecs::world::DeferredWorld;
 use bevy_math::Vec3;
 use bunting_solver::{ClothSnapshot, Fabric, FabricMaterial};
 
@@ -24,6 +26,7 @@ pub(crate) enum Place {
 
 /// The simulated side of a [`ClothMesh`](crate::ClothMesh).
 #[derive(Component, Clone, Debug, Default)]
+#[component(on_insert = take_state)]
 pub(crate) struct ClothInstance {
     pub levels: Option<Arc<ClothLevels>>,
     pub level: usize,
@@ -42,6 +45,20 @@ pub(crate) struct ClothInstance {
     pub target_lost: bool,
     /// The pose to follow is not finite, and that was reported.
     pub pose_reported: bool,
+}
+
+/// A clone has a state of its own: that of its original, copied out of the lane that both believe to be in.
+fn take_state(mut world: DeferredWorld, context: HookContext) {
+    let instance = world.get::<ClothInstance>(context.entity);
+    let Some(slot) = instance.and_then(ClothInstance::slot) else { return };
+    let batches = world.get_resource::<ClothBatches>();
+    let Some(snapshot) = batches.and_then(|batches| batches.of_another(slot, context.entity))
+    else {
+        return;
+    };
+    if let Some(mut instance) = world.get_mut::<ClothInstance>(context.entity) {
+        instance.place = Place::Waiting(snapshot);
+    }
 }
 
 impl ClothInstance {

@@ -76,7 +76,8 @@ impl Plugin for ColliderPlugin {
 }
 
 /// Gives each cloth every collider, in the cloth's frame: as it stood then at the start of the
-/// tick, as it stands now at the end.
+/// tick, as it stands now at the end. What is moved in frames is extrapolated to the time of the tick: cloth
+/// and colliders alike, so that those that ride along rest.
 fn drive_colliders(
     colliders: Query<(&ClothCollider, &PoseHistory)>,
     cloths: Query<(&ClothInstance, &PoseHistory)>,
@@ -90,13 +91,17 @@ fn drive_colliders(
     *were_any = are_any;
     for (instance, frame) in &cloths {
         let Some(slot) = instance.slot() else { continue };
-        let (start, end) = (frame.start().inverse(), frame.end().inverse());
-        let seen = colliders.iter().map(|(collider, pose)| Collider {
-            shape: collider.shape.clone(),
-            from: seen_from(start, pose.start()),
-            to: seen_from(end, pose.end()),
-            margin: collider.margin,
-            friction: collider.friction,
+        let (start, end) = frame.ahead();
+        let (start, end) = (start.inverse(), end.inverse());
+        let seen = colliders.iter().map(|(collider, pose)| {
+            let (from, to) = pose.ahead();
+            Collider {
+                shape: collider.shape.clone(),
+                from: seen_from(start, from),
+                to: seen_from(end, to),
+                margin: collider.margin,
+                friction: collider.friction,
+            }
         });
         batches.lane(slot).set_colliders(seen);
     }

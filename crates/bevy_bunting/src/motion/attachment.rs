@@ -6,9 +6,9 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
 
-/// Default of [`Attachment::teleport_distance`], m: no vehicle leaves its course by that much
-/// between two frames.
-const TELEPORT_DISTANCE: f32 = 2.0;
+/// Default of [`Attachment::teleport_speed`], m/s: no vehicle brakes or starts by as much between two frames.
+/// A flag that is pulled off by that is stretched by a quarter for a moment, and goes on.
+pub(crate) const TELEPORT_SPEED: f32 = 25.0;
 
 /// How far from the extreme texture coordinate a vertex still lies on an edge.
 const EDGE_TOLERANCE: f32 = 1e-4;
@@ -34,9 +34,11 @@ pub struct Attachment {
     pub offset: Transform,
     /// What happens when the target is despawned.
     pub on_lost: TargetLost,
-    /// A target that leaves its course by more than this between two observations was teleported,
-    /// m: the cloth goes along without being swung. The same goes for a turn of more than 90°.
-    pub teleport_distance: f32,
+    /// A target whose velocity changes by more than this between two observations, frames or ticks, was
+    /// teleported, m/s: the cloth goes along without being swung. At 60 frames a second, 25 m/s is to leave
+    /// its course by 0.4 m. The same goes for a turn that moves by as much what is a metre away, and for any
+    /// of more than 90°.
+    pub teleport_speed: f32,
 }
 
 impl Attachment {
@@ -48,7 +50,7 @@ impl Attachment {
             vertices: vertices.into(),
             offset: Transform::IDENTITY,
             on_lost: TargetLost::default(),
-            teleport_distance: TELEPORT_DISTANCE,
+            teleport_speed: TELEPORT_SPEED,
         }
     }
 

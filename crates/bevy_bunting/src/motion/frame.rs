@@ -15,13 +15,11 @@ use crate::cloth::error::{ClothError, ClothFailed};
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::environment::drive::drive_cloths;
-use crate::motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
+use crate::motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TELEPORT_SPEED, TargetLost};
 use crate::motion::follow::{Motions, end_following, follow_targets};
 use crate::motion::pose::{Observed, PoseHistory};
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// A collider that leaves its course by more than this was teleported, m.
-const COLLIDER_TELEPORT_DISTANCE: f32 = 2.0;
 
 /// Follows the targets of attachments, and places cloths on them.
 #[derive(Debug, Default)]
@@ -101,9 +99,12 @@ fn observe_frames<const EARLY: bool>(
     mut observed: ResMut<Observed>,
 ) {
     let now = time.elapsed_secs_f64();
+    if EARLY {
+        observed.note_frame(time.delta_secs_f64());
+    }
     watch.for_each(|entity, history, attachment| {
         if let Some(pose) = frame_of(entity, attachment, &transforms).filter(is_finite) {
-            history.observe_frame(&observed, now, pose, teleport_distance(attachment), EARLY);
+            history.observe_frame(&observed, now, pose, teleport_speed(attachment), EARLY);
         }
     });
     if !EARLY {
@@ -117,12 +118,10 @@ fn observe_ticks(
     mut instances: Query<&mut ClothInstance>,
     transforms: TransformHelper,
     time: Res<Time>,
-    frames: Res<Time<Virtual>>,
     mut observed: ResMut<Observed>,
     mut commands: Commands,
 ) {
     let now = Observed {
-        frame_length: frames.delta_secs_f64(),
         tick: time.elapsed_secs_f64(),
         ticks: observed.ticks.wrapping_add(1),
         ..*observed
@@ -132,7 +131,7 @@ fn observe_ticks(
         let pose = frame_of(entity, attachment, &transforms);
         match pose.filter(is_finite) {
             Some(pose) => {
-                history.observe_tick(&observed, &now, tick, pose, teleport_distance(attachment));
+                history.observe_tick(&observed, &now, tick, pose, teleport_speed(attachment));
             }
             None => history.stay(),
         }
@@ -226,8 +225,8 @@ fn frame_on(target: &GlobalTransform, offset: &Transform) -> Isometry3d {
     Isometry3d::new(target.transform_point(offset.translation), rotation)
 }
 
-fn teleport_distance(attachment: Option<&Attachment>) -> f32 {
-    attachment.map_or(COLLIDER_TELEPORT_DISTANCE, |attachment| attachment.teleport_distance)
+fn teleport_speed(attachment: Option<&Attachment>) -> f32 {
+    attachment.map_or(TELEPORT_SPEED, |attachment| attachment.teleport_speed)
 }
 
 fn is_finite(pose: &Isometry3d) -> bool {

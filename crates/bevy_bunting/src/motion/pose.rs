@@ -8,14 +8,21 @@ use bevy_math::{Isometry3d, Quat};
 /// Poses kept of one thing: at 250 frames a second, the longest delay that Bevy's clock allows.
 const MOST_SAMPLES: usize = 64;
 
-/// A turn between two observations of more than this is a teleport, rad.
+/// Lever at which a change of angular velocity counts as one of velocity, m: the size of a flag.
+const LEVER: f32 = 1.0;
+
+/// A turn between two observations of more than this is a teleport, however far apart they are, rad.
 const TELEPORT_ANGLE: f32 = core::f32::consts::FRAC_PI_2;
+
+/// Least time between two observations, s: a change within none would be of infinite speed.
+const LEAST_INTERVAL: f64 = 1e-3;
 
 /// How far a course is followed past the last pose seen, s: Bevy's clock allows no longer frame.
 const LONGEST_COURSE: f64 = 0.25;
 
-/// How fast the delay may change, seconds a second: the motion seems that much faster or slower.
-const DELAY_RATE: f64 = 0.1;
+/// How fast the delay may change, seconds a second: the motion seems that much faster or slower. At 0.1 a
+/// flag at 20 m/s feels a change of its pole's speed by 2 m/s with each frame that is longer than the last.
+const DELAY_RATE: f64 = 0.02;
 
 /// Ticks without a change between them after which what changes in frames is moved by frames.
 const QUIET_TICKS: u32 = 4;
@@ -29,18 +36,23 @@ struct Track {
 }
 
 impl Track {
-    /// Adds a pose. If it is off the course by more than `limit` metres, the past is carried along,
-    /// as if it had been there all the time, and the change of coordinates returned.
+    /// Adds a pose. If it is off the course by a change of velocity of more than `limit` m/s, the past is
+    /// carried along, as if it had been there all the time, and the change of coordinates returned.
     fn push(&mut self, time: f64, pose: Isometry3d, limit: f32) -> Option<Isometry3d> {
+        let mut replaced = None;
+        while self.samples.back().is_some_and(|&(newest, _)| newest >= time) {
+            replaced = self.samples.pop_back();
+        }
+        if self.samples.is_empty() {
+            // All that is known of its course.
+            self.samples.extend(replaced.map(|(_, pose)| (time - LEAST_INTERVAL, pose)));
+        }
         let jump = self.jump(time, pose, limit);
         if let Some(jump) = jump {
             self.jump_next = false;
             for (_, past) in &mut self.samples {
                 *past = jump * *past;
             }
-        }
-        while self.samples.back().is_some_and(|&(newest, _)| newest >= time) {
-            self.samples.pop_back();
         }
         self.samples.push_back((time, pose));
         if self.samples.len() > MOST_SAMPLES {
@@ -50,11 +62,13 @@ impl Track {
     }
 
     fn jump(&self, time: f64, pose: Isometry3d, limit: f32) -> Option<Isometry3d> {
-        let &(_, last) = self.samples.back()?;
+        let &(before, last) = self.samples.back()?;
         let expected = self.pose_at(time)?;
+        let distance = limit * (time - before).max(LEAST_INTERVAL) as f32;
+        let angle = (distance / LEVER).min(TELEPORT_ANGLE);
         let off = |from: Isometry3d| {
-            from.translation.distance(pose.translation) > limit
-                || from.rotation.angle_between(pose.rotation) > TELEPORT_ANGLE
+            from.translation.distance(pose.translation) > distance
+                || from.rotation.angle_between(pose.rotation) > angle
         };
         let jumps = (self.jump_next && pose != last) || (off(last) && off(expected));
         jumps.then(|| pose * expected.inverse())
@@ -121,7 +135,8 @@ enum MovedBy {
 ///
 /// What is moved in a fixed schedule has one pose a tick: that one is taken. What is moved in
 /// `Update` shows none or two changes between ticks: its poses, known at the times of frames, are
-/// resampled one frame's length ago, so that a steady motion stays steady.
+/// resampled one frame's length ago, so that a steady motion stays steady. That length is one of the longest
+/// of late, as a delay that followed each frame would shake what moves evenly.
 #[derive(Component, Clone, Debug, Default)]
 pub(crate) struct PoseHistory {
     ticks: Track,
@@ -133,6 +148,8 @@ pub(crate) struct PoseHistory {
     delay: f64,
     seen: Option<Isometry3d>,
     span: Option<(Isometry3d, Isometry3d)>,
+    /// The same without a delay: where the course leads since the last frame.
+    ahead: Option<(Isometry3d, Isometry3d)>,
     /// Where it rests, if all samples say so: most things do, and then nobody looks at them.
     rest: Option<Rest>,
 }
@@ -142,7 +159,9 @@ pub(crate) struct PoseHistory {
 pub(crate) struct Observed {
     /// Time of the last frame, s.
     pub frame: f64,
-    /// Length of that frame, s.
+    /// Mean length of frames of late, s.
+    pub mean_frame: f64,
+    /// Length of the longest frames of late, hitches apart, s.
     pub frame_length: f64,
     /// End of the last tick, s.
     pub tick: f64,
@@ -160,6 +179,29 @@ struct Rest {
     ticks: u32,
 }
 
+/// Times in which the mean length of frames and the longest of late follow those of frames, s.
+const MEAN_TIME: f64 = 0.5;
+const LONGEST_TIME: f64 = 2.0;
+
+/// A frame of more than this many times the mean length is a hitch: motion after it is extrapolated.
+const HITCH: f64 = 1.5;
+
+impl Observed {
+    /// Notes the length of a frame, s.
+    pub fn note_frame(&mut self, length: f64) {
+        if length <= 0.0 {
+            return;
+        }
+        if self.mean_frame == 0.0 {
+            (self.mean_frame, self.frame_length) = (length, length);
+        }
+        self.mean_frame += (length - self.mean_frame) * (length / MEAN_TIME).min(1.0);
+        let excess = self.frame_length - self.mean_frame;
+        let eased = self.frame_length - excess * (length / LONGEST_TIME).min(1.0);
+        self.frame_length = eased.max(length.min(HITCH * self.mean_frame));
+    }
+}
+
 impl PoseHistory {
     /// The pose at the start of the tick.
     pub fn start(&self) -> Isometry3d {
@@ -169,6 +211,12 @@ impl PoseHistory {
     /// The pose at the end of the tick.
     pub fn end(&self) -> Isometry3d {
         self.span.map_or(Isometry3d::IDENTITY, |(_, end)| end)
+    }
+
+    /// Poses at the start and the end of the tick without a delay, extrapolated since the last frame: where
+    /// things are relative to one another. Two that move alike are extrapolated alike.
+    pub fn ahead(&self) -> (Isometry3d, Isometry3d) {
+        self.ahead.unwrap_or_default()
     }
 
     /// Whether it has not moved lately: it need not be looked at until something moves it.
@@ -227,6 +275,10 @@ impl PoseHistory {
         }
         self.end_rest(last);
         let time = now.tick;
+        if self.frames.samples.is_empty() {
+            // What is moved in this frame was here before.
+            self.frames.push(now.frame, pose, limit);
+        }
         let jump = self.ticks.push(time, pose, limit);
         if self.seen.is_some_and(|seen| seen != pose) {
             self.moved_by = MovedBy::Ticks;
@@ -246,9 +298,12 @@ impl PoseHistory {
         let sampled = time - self.delay;
         let end = track.pose_at(sampled).unwrap_or(pose);
         self.span = Some((self.end_or(end), end));
+        let end = track.pose_at(time).unwrap_or(pose);
+        self.ahead = Some((self.ahead.map_or(end, |(_, end)| end), end));
         self.ticks.forget_before(sampled);
         self.frames.forget_before(sampled);
         let rests = self.span == Some((pose, pose))
+            && self.ahead == self.span
             && [&self.ticks, &self.frames].iter().all(|track| track.rests_at(pose));
         if rests && !self.frames.samples.is_empty() {
             self.rest = Some(Rest { pose, tick: time, ticks: now.ticks });
@@ -282,6 +337,7 @@ impl PoseHistory {
     /// Stays where it is, as what has no pose to be observed.
     pub fn stay(&mut self) {
         self.span = self.span.map(|(_, end)| (end, end));
+        self.ahead = self.ahead.map(|(_, end)| (end, end));
     }
 
     fn end_or(&self, other: Isometry3d) -> Isometry3d {
@@ -289,7 +345,8 @@ impl PoseHistory {
     }
 
     fn carry(&mut self, jump: Option<Isometry3d>) {
-        if let (Some(jump), Some((_, end))) = (jump, &mut self.span) {
+        let Some(jump) = jump else { return };
+        for (_, end) in [&mut self.span, &mut self.ahead].into_iter().flatten() {
             *end = jump * *end;
             end.rotation = Quat::normalize(end.rotation);
         }

@@ -13,8 +13,8 @@ use crate::motion::pose::{Observed, PoseHistory};
 /// Asks that the next change of a cloth's frame be a teleport: trigger it in the frame or tick in
 /// which the target is moved, before or after, but before the next tick of the cloth.
 ///
-/// A jump of more than [`Attachment::teleport_distance`](crate::Attachment::teleport_distance) is
-/// one without asking.
+/// A jump that would take more than [`Attachment::teleport_speed`](crate::Attachment::teleport_speed) is one
+/// without asking.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TeleportCloth {
     /// The cloth.
