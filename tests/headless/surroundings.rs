@@ -22,8 +22,9 @@ fn winds_add_up() {
     app.world_mut().spawn(gusty);
     run(&mut app, 20);
     let seconds = app.world().resource::<Time<Fixed>>().elapsed_secs_f64();
-    let sum = Vec3::new(3.0, 0.0, 1.0) + gusty.velocity_at(seconds);
-    assert_eq!(app.world().resource::<TickWind>().0, sum);
+    let place = Vec3::new(1.0, 2.0, 3.0);
+    let sum = Vec3::new(3.0, 0.0, 1.0) + gusty.velocity_at(place, seconds);
+    assert_eq!(app.world().resource::<TickWind>().at(place), sum);
 }
 
 #[test]
@@ -34,7 +35,8 @@ fn wind_blows_the_cloth_however_it_is_turned() {
         let held = Attachment::in_place(ClothEdge::Left);
         let cloth = app.world_mut().spawn((FLAG, held, turned)).id();
         run(&mut app, 60);
-        assert_eq!(state(&app, cloth).positions()[16].z, 0.0);
+        let tip = state(&app, cloth).positions()[16];
+        assert!(tip.z.abs() < 0.2, "{tip} without wind");
         let from_the_front = turned.rotation * Vec3::new(0.0, 0.0, -8.0);
         app.world_mut().spawn(WindField::steady(from_the_front));
         run(&mut app, 100);
@@ -51,7 +53,7 @@ fn gusts_do_not_depend_on_the_frame_rate() {
         let mut app = app_at(Duration::from_secs_f64(1.0 / rate));
         app.init_resource::<Winds>()
             .add_systems(FixedLast, |wind: Res<TickWind>, mut winds: ResMut<Winds>| {
-                winds.0.push(wind.0)
+                winds.0.push(wind.at(Vec3::X))
             });
         app.world_mut().spawn(WindField::default().with_gusts(4.0, 2.0, 9));
         run(&mut app, rate as usize);

@@ -114,6 +114,7 @@ pub use batch::solve::SolverPlugin;
 pub use bunting_solver;
 pub use cloth::activity::ClothActivity;
 pub use cloth::error::{ClothError, ClothFailed};
+pub use cloth::imperfection::ClothSeed;
 pub use cloth::mesh::{ClothMaterial, ClothMesh, ClothPaused};
 pub use cloth::state::ClothState;
 pub use diagnostics::{ClothCounts, ClothDiagnosticsPlugin, ClothTimings};
@@ -145,9 +146,9 @@ pub mod prelude {
     pub use crate::{
         AttachedVertices, Attachment, ClothActivity, ClothBudget, ClothCollider, ClothCorner,
         ClothEdge, ClothError, ClothFailed, ClothLevelChanged, ClothMaterial, ClothMesh,
-        ClothPaused, ClothPlugins, ClothSettings, ClothState, ClothSurface, ClothSystems,
-        ClothTargetLost, ClothTick, LodSet, LodViewer, TargetLost, TeleportCloth, TeleportMode,
-        WeightsError, WindField,
+        ClothPaused, ClothPlugins, ClothSeed, ClothSettings, ClothState, ClothSurface,
+        ClothSystems, ClothTargetLost, ClothTick, LodSet, LodViewer, TargetLost, TeleportCloth,
+        TeleportMode, WeightsError, WindField,
     };
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }

@@ -31,7 +31,7 @@ fn lateness(rate: f64) -> f32 {
     for _ in 0..rate as usize {
         app.update();
         let front = app.world().get::<Transform>(ball).expect("it stays").translation.z + RADIUS;
-        let pushed = state(&app, curtain).positions()[16 * 33 + 16].z;
+        let pushed = state(&app, curtain).positions().get(16 * 33 + 16).map_or(0.0, |at| at.z);
         if pushed > 0.2 && front < 1.5 {
             worst = Some(worst.unwrap_or(f32::MIN).max(front - pushed));
         }

@@ -52,3 +52,17 @@ fn the_order_of_spawning_changes_no_bit() {
     };
     assert_eq!(all([0, 1, 2, 3, 4, 5, 6, 7, 8]), all([4, 8, 1, 0, 7, 2, 3, 6, 5]));
 }
+#[test]
+fn a_gust_is_carried_along_by_the_mean_wind() {
+    let at = |x: f32, seconds: f64| GUSTY.velocity_at(Vec3::new(x, 0.0, 0.0), seconds);
+    for tick in 0..200 {
+        let seconds = f64::from(tick) / 10.0;
+        let (here, there) = (at(0.0, seconds), at(12.0, seconds + 2.0));
+        assert!(here.distance(there) < 1e-2, "{here} m/s, and 12 m downwind 2 s later {there}");
+    }
+    let differences = (0..200).map(|tick| {
+        let seconds = f64::from(tick) / 10.0;
+        at(0.0, seconds).distance(at(12.0, seconds))
+    });
+    assert!(differences.fold(0.0, f32::max) > 1.0, "it blows alike everywhere");
+}

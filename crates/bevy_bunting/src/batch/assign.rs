@@ -76,6 +76,7 @@ pub(crate) fn seat_cloths(
     batches.settle(settings.lanes, |entity, slot| {
         if let Ok((_, mut instance, _)) = cloths.get_mut(entity) {
             instance.place = Place::Seated(slot);
+            instance.unmoved = false;
         }
     });
 }

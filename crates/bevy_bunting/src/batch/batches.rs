@@ -75,10 +75,14 @@ impl LaneMut<'_> {
         }
     }
 
-    /// Puts the cloth back to rest.
-    pub fn rest(&mut self) {
-        let rest = ClothSnapshot::at_rest(self.seats.batch.fabric());
-        self.seats.batch.restore(self.lane, &rest).expect("a fabric's own rest fits it");
+    /// The state of the cloth.
+    pub fn snapshot(&self) -> ClothSnapshot {
+        self.seats.batch.snapshot(self.lane)
+    }
+
+    /// Overwrites the state of the cloth with one of its fabric.
+    pub fn restore(&mut self, state: &ClothSnapshot) {
+        self.seats.batch.restore(self.lane, state).expect("a finite state of the same fabric");
     }
 }
 

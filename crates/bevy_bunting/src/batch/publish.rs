@@ -25,7 +25,7 @@ impl Plugin for PublishPlugin {
 /// Surfaces are copied batch by batch, as the lanes of a batch lie side by side in memory, into the
 /// memory of what was shown before the last tick.
 pub(crate) fn publish_states(
-    instances: Query<&ClothInstance>,
+    mut instances: Query<&mut ClothInstance>,
     mut cloths: Query<&mut ClothState>,
     mut batches: ResMut<ClothBatches>,
     mut diverged: Local<Vec<Entity>>,
@@ -53,13 +53,11 @@ pub(crate) fn publish_states(
         }
     }
     for entity in diverged.drain(..) {
-        let (Ok(instance), Ok(mut state)) = (instances.get(entity), cloths.get_mut(entity)) else {
+        let (Ok(mut instance), Ok(mut state)) = (instances.get_mut(entity), cloths.get_mut(entity))
+        else {
             continue;
         };
-        if let (Some(slot), Some(levels)) = (instance.slot(), &instance.levels) {
-            batches.lane(slot).rest();
-            let rest = levels.fabric(instance.level).rest_positions();
-            state.begin_anew(instance.level, levels, rest);
+        if instance.slot().is_some() && instance.put_to_rest(&mut state, &mut batches) {
             ClothFailed::report(&mut commands, entity, ClothError::Diverged { entity });
         }
     }

@@ -10,7 +10,9 @@ use bunting_solver::{ClothSnapshot, Fabric, FabricMaterial};
 
 use crate::batch::batches::{ClothBatches, Slot};
 use crate::cloth::activity::ClothActivity;
-use crate::fabric::levels::{ClothLevels, hold_pins};
+use crate::cloth::imperfection::{ClothSeed, almost_at_rest};
+use crate::cloth::state::ClothState;
+use crate::fabric::levels::ClothLevels;
 
 /// Where the state of a cloth is.
 #[derive(Clone, Debug, Default)]
@@ -31,6 +33,10 @@ pub(crate) struct ClothInstance {
     pub levels: Option<Arc<ClothLevels>>,
     pub level: usize,
     pub place: Place,
+    /// Chooses its imperfection.
+    pub seed: ClothSeed,
+    /// It is as it was cut, almost at rest, and has not been in a lane since.
+    pub unmoved: bool,
     /// Its fabrics are being cut.
     pub cutting: bool,
     pub activity: ClothActivity,
@@ -78,6 +84,12 @@ impl ClothInstance {
         }
     }
 
+    /// Where the particle in the middle is at rest, in the cloth's frame, m.
+    pub fn rest_middle(&self) -> Vec3 {
+        let rest = self.fabric().map_or(&[][..], |fabric| fabric.rest_positions());
+        rest.get(rest.len() / 2).copied().unwrap_or_default()
+    }
+
     /// The fabric of the cloth at its level.
     pub fn fabric(&self) -> Option<&Arc<Fabric>> {
         self.levels.as_ref().map(|levels| levels.fabric(self.level))
@@ -102,7 +114,10 @@ impl ClothInstance {
         if let Place::Seated(slot) = self.place {
             self.place = Place::Waiting(batches.take_away(slot));
         }
-        if let (Some(levels), Place::Waiting(snapshot)) = (&self.levels, &mut self.place) {
+        if self.unmoved {
+            self.level = to;
+            self.begin_at_rest();
+        } else if let (Some(levels), Place::Waiting(snapshot)) = (&self.levels, &mut self.place) {
             let state = core::mem::take(snapshot);
             *snapshot = levels.transfer(state, (self.level, to), &self.material, self.gravity);
         }
@@ -112,7 +127,10 @@ impl ClothInstance {
     /// Moves the state to a coarser level while nobody looks: with the particles that stay, and without
     /// regard to the others.
     pub fn drop_to(&mut self, to: usize, batches: &mut ClothBatches) {
-        if let Some(levels) = &self.levels {
+        if self.unmoved {
+            self.level = to;
+            self.begin_at_rest();
+        } else if let Some(levels) = &self.levels {
             let shared = levels.shared(self.level, to);
             let state = match &self.place {
                 Place::Nowhere => None,
@@ -125,31 +143,44 @@ impl ClothInstance {
         self.level = to;
     }
 
-    /// Takes other fabrics. The state is kept if it fits, as when only the pins change; else the
-    /// cloth begins at rest.
-    pub fn recut(&mut self, levels: Arc<ClothLevels>, batches: &mut ClothBatches) {
+    /// Takes other fabrics. The state is kept if it fits, as when only the pins change, and then told whether
+    /// it was: its pins are where they were. Else the cloth begins at rest.
+    pub fn recut(&mut self, levels: Arc<ClothLevels>, batches: &mut ClothBatches) -> bool {
         self.wake();
         self.unseat(batches);
         let level = self.level.min(levels.count() - 1);
         let fits = level == self.level
+            && !self.unmoved
             && self
                 .fabric()
                 .is_some_and(|old| old.rest_positions() == levels.fabric(level).rest_positions());
-        match &mut self.place {
-            Place::Waiting(snapshot) if fits => hold_pins(snapshot, levels.fabric(level)),
-            place => *place = Place::Waiting(ClothSnapshot::at_rest(levels.fabric(level))),
-        }
         self.level = level;
         self.levels = Some(levels);
+        let kept = fits && matches!(self.place, Place::Waiting(_));
+        if !kept {
+            self.begin_at_rest();
+        }
+        kept
     }
 
-    /// Puts the cloth back to rest.
-    pub fn rest(&mut self, batches: &mut ClothBatches) {
+    /// Puts the cloth back to rest, and shows it so. Whether there is a cloth.
+    pub fn put_to_rest(&mut self, state: &mut ClothState, batches: &mut ClothBatches) -> bool {
         self.wake();
-        if let Place::Seated(slot) = self.place {
-            batches.lane(slot).rest();
-        } else if let Some(fabric) = self.fabric() {
-            self.place = Place::Waiting(ClothSnapshot::at_rest(fabric));
+        let Some(levels) = self.levels.clone() else { return false };
+        let rest = almost_at_rest(levels.fabric(self.level), self.seed);
+        state.begin_anew(self.level, &levels, &rest.positions);
+        match self.place {
+            Place::Seated(slot) => batches.lane(slot).restore(&rest),
+            _ => self.begin_at_rest(),
+        }
+        true
+    }
+
+    /// Lets the cloth wait for a lane, almost at rest.
+    fn begin_at_rest(&mut self) {
+        if let Some(fabric) = self.fabric() {
+            self.place = Place::Waiting(almost_at_rest(fabric, self.seed));
+            self.unmoved = true;
         }
     }
 

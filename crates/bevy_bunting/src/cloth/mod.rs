@@ -2,6 +2,7 @@
 
 pub mod activity;
 pub mod error;
+pub mod imperfection;
 pub mod instance;
 pub mod mesh;
 pub mod state;

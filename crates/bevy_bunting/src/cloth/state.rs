@@ -153,7 +153,7 @@ impl ClothState {
 }
 
 /// Unit normals, weighted by area.
-fn normals(fabric: &Fabric, positions: &[Vec3]) -> Vec<Vec3> {
+pub(crate) fn normals(fabric: &Fabric, positions: &[Vec3]) -> Vec<Vec3> {
     let mut normals = vec![Vec3::ZERO; positions.len()];
     for corners in fabric.triangles() {
         let [a, b, c] = corners.map(|corner| positions[corner as usize]);

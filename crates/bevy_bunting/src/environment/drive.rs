@@ -37,10 +37,11 @@ pub(crate) fn drive_cloths(
         let gravity = inverse * settings.gravity;
         // No change that anyone should look at: it is noted in every tick.
         instance.bypass_change_detection().gravity = gravity;
+        let place = end * instance.rest_middle();
         batches.lane(slot).drive(Drive {
             motion: FrameMotion::between(pose_parts(start), pose_parts(end)),
             gravity,
-            wind: inverse * wind.0,
+            wind: inverse * wind.at(place),
             air_density: settings.air_density,
         });
     }

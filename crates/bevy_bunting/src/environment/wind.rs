@@ -10,9 +10,15 @@ use fastnoise_lite::{FastNoiseLite, NoiseType};
 
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// Air that moves alike everywhere. Several fields add up.
+/// Least length of a gust, m: about that of a flag, as a cloth feels the wind at its middle.
+const LEAST_GUST: f32 = 2.0;
+
+/// Moving air. Several fields add up.
 ///
-/// Gusts are noise over the time of the tick, so they depend on the seed and not on the frame rate.
+/// Gusts are noise that is carried along by the mean wind (Taylor's hypothesis of frozen turbulence): one
+/// gust is as long as the mean wind goes in 1/`gust_frequency`, at least 2 m, and what stands downwind feels
+/// it later. They depend on place, time and seed, and not on the frame rate. A cloth feels the air at its
+/// middle.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct WindField {
@@ -42,18 +48,23 @@ impl WindField {
         self
     }
 
-    /// Velocity of the air after `seconds`, m/s.
+    /// Velocity of the air at a place in the world (m) after `seconds`, m/s.
     #[must_use]
-    pub fn velocity_at(&self, seconds: f64) -> Vec3 {
+    pub fn velocity_at(&self, place: Vec3, seconds: f64) -> Vec3 {
         if self.gust_strength == 0.0 {
             return self.velocity;
         }
         let mut noise = FastNoiseLite::with_seed(self.seed);
         noise.set_noise_type(Some(NoiseType::OpenSimplex2));
         noise.set_frequency(Some(1.0));
-        let phase = (seconds * f64::from(self.gust_frequency)) as f32;
+        let speed = self.velocity.length();
+        let length = (speed / self.gust_frequency).max(LEAST_GUST);
+        // In a light wind gusts go faster than the air, lest they come more seldom.
+        let hurry = (self.gust_frequency * length - speed).max(0.0) * Vec3::X;
+        let carried = (self.velocity + hurry).as_dvec3() * seconds;
+        let at = ((place.as_dvec3() - carried) / f64::from(length)).as_vec3();
         // Rows of the noise far apart are independent.
-        let axis = |row: f32| noise.get_noise_2d(phase, 100.0 * row);
+        let axis = |row: f32| noise.get_noise_3d(at.x, at.y + 100.0 * row, at.z);
         self.velocity + self.gust_strength * Vec3::new(axis(1.0), axis(2.0), axis(3.0))
     }
 }
@@ -64,12 +75,32 @@ impl Default for WindField {
     }
 }
 
-/// Velocity of the air in this tick, m/s: the sum of all fields.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+/// The air in this tick: all fields.
+#[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
-pub struct TickWind(pub Vec3);
+pub struct TickWind {
+    fields: Vec<WindField>,
+    /// End of the tick, s.
+    seconds: f64,
+}
 
-/// Adds up the [`WindField`]s.
+impl TickWind {
+    /// Velocity of the air at a place in the world (m), m/s: the sum of all fields. One that is not finite
+    /// counts for nothing.
+    #[must_use]
+    pub fn at(&self, place: Vec3) -> Vec3 {
+        let velocities = self.fields.iter().map(|field| field.velocity_at(place, self.seconds));
+        velocities.filter(|velocity| velocity.is_finite()).sum()
+    }
+
+    /// Whether the air blows otherwise than in another tick.
+    pub(crate) fn differs_from(&self, other: &Self) -> bool {
+        let gusty = self.fields.iter().any(|field| field.gust_strength != 0.0);
+        self.fields != other.fields || (gusty && self.seconds != other.seconds)
+    }
+}
+
+/// Shows the [`WindField`]s to the cloths.
 #[derive(Debug, Default)]
 pub struct WindPlugin;
 
@@ -78,15 +109,14 @@ impl Plugin for WindPlugin {
         app.register_type::<WindField>()
             .register_type::<TickWind>()
             .init_resource::<TickWind>()
-            .add_systems(ClothTick, add_up_winds.in_set(ClothSystems::Prepare));
+            .add_systems(ClothTick, note_winds.in_set(ClothSystems::Prepare));
     }
 }
 
-fn add_up_winds(fields: Query<&WindField>, time: Res<Time>, mut wind: ResMut<TickWind>) {
-    let seconds = time.elapsed_secs_f64();
-    let sum: Vec3 = fields.iter().map(|field| field.velocity_at(seconds)).sum();
-    // A field that is not finite must not reach the cloths.
-    wind.0 = if sum.is_finite() { sum } else { Vec3::ZERO };
+fn note_winds(fields: Query<&WindField>, time: Res<Time>, mut wind: ResMut<TickWind>) {
+    wind.seconds = time.elapsed_secs_f64();
+    wind.fields.clear();
+    wind.fields.extend(&fields);
 }
 
 #[cfg(test)]
@@ -99,13 +129,14 @@ mod tests {
         let other = WindField { seed: 8, ..wind };
         let mut greatest = 0.0_f32;
         for tick in 0..6400 {
-            let at = |tick: i32| wind.velocity_at(f64::from(tick) / 64.0);
+            let at = |tick: i32| wind.velocity_at(Vec3::Y, f64::from(tick) / 64.0);
             let gust = at(tick) - Vec3::X;
             assert!(gust.abs().max_element() <= 2.0);
             assert!(at(tick).distance(at(tick + 1)) < 0.2);
             greatest = greatest.max(gust.length());
         }
         assert!(greatest > 1.0, "{greatest}");
-        assert_ne!(wind.velocity_at(1.3), other.velocity_at(1.3));
+        let at = |wind: WindField| wind.velocity_at(Vec3::Y, 1.3);
+        assert_ne!(at(wind), at(other));
     }
 }

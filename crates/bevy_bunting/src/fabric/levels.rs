@@ -238,15 +238,6 @@ impl ClothLevels {
     }
 }
 
-/// Puts pinned particles where they belong, to the last bit.
-pub(crate) fn hold_pins(snapshot: &mut ClothSnapshot, fabric: &Fabric) {
-    for (particle, position) in snapshot.positions.iter_mut().enumerate() {
-        if fabric.is_pinned(particle) {
-            *position = fabric.rest_positions()[particle];
-        }
-    }
-}
-
 /// All fabrics in use, by content: what is cut alike is cut once.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct FabricLibrary {

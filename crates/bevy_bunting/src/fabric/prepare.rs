@@ -4,17 +4,22 @@ use std::sync::Arc;
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
+use bevy_math::Isometry3d;
 use bevy_transform::components::Transform;
+use bevy_transform::helper::TransformHelper;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::error::{ClothError, ClothFailed};
-use crate::cloth::instance::ClothInstance;
+use crate::cloth::imperfection::ClothSeed;
+use crate::cloth::instance::{ClothInstance, Place};
 use crate::cloth::mesh::{ClothMaterial, ClothMesh, ClothPaused};
 use crate::cloth::state::ClothState;
 use crate::fabric::levels::FabricLibrary;
 use crate::lod::LodSet;
 use crate::motion::attachment::{Attachment, TargetLost};
+use crate::motion::frame::{frame_of, is_finite};
 use crate::motion::pose::PoseHistory;
+use crate::motion::take_up::TakingUp;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// The target of a cloth's attachment was despawned.
@@ -36,6 +41,7 @@ impl Plugin for PreparePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<ClothMesh>()
             .register_type::<ClothMaterial>()
+            .register_type::<ClothSeed>()
             .init_resource::<FabricLibrary>()
             .add_observer(clear_removed)
             .add_observer(note_release)
@@ -102,6 +108,7 @@ type Cloths<'w, 's> = Query<
         Ref<'static, ClothMaterial>,
         Ref<'static, LodSet>,
         Option<Ref<'static, Attachment>>,
+        Option<&'static ClothSeed>,
         &'static mut ClothInstance,
         &'static mut ClothState,
         &'static mut PoseHistory,
@@ -113,12 +120,13 @@ type Cloths<'w, 's> = Query<
 fn cut_cloths(
     mut cloths: Cloths,
     targets: Query<(), With<Transform>>,
+    transforms: TransformHelper,
     mut library: ResMut<FabricLibrary>,
     mut batches: ResMut<ClothBatches>,
     mut commands: Commands,
 ) {
     library.awaited = false;
-    for (entity, mesh, material, lods, attachment, mut instance, mut state, mut history) in
+    for (entity, mesh, material, lods, attachment, seed, mut instance, mut state, mut history) in
         &mut cloths
     {
         let target = attachment
@@ -148,24 +156,40 @@ fn cut_cloths(
             }
             Ok(Some(levels)) => {
                 instance.cutting = false;
+                let pose = frame_of(entity, attachment.as_deref(), &transforms);
+                let mut change = Isometry3d::IDENTITY;
                 if instance.target != target {
+                    let before = history.is_known().then(|| history.end());
+                    if let (Some(before), Some(now)) = (before, pose) {
+                        change = now.inverse() * before;
+                    }
                     *history = PoseHistory::default();
                     instance.target = target;
                     instance.target_lost = false;
                 }
-                if instance.levels.as_ref().is_none_or(|old| !Arc::ptr_eq(old, &levels)) {
-                    if instance.levels.is_none() {
-                        instance.material = material.0;
-                    }
-                    if let Some(lack) = levels.lack(entity, &mesh) {
-                        ClothFailed::report(&mut commands, entity, lack);
-                    }
-                    instance.recut(levels, &mut batches);
-                    if let Some((levels, snapshot)) =
-                        instance.levels.as_ref().zip(instance.waiting())
-                    {
-                        state.begin_anew(instance.level, levels, &snapshot.positions);
-                    }
+                if instance.levels.as_ref().is_some_and(|old| Arc::ptr_eq(old, &levels)) {
+                    continue;
+                }
+                if instance.levels.is_none() {
+                    instance.material = material.0;
+                    instance.seed = seed.copied().unwrap_or_else(|| {
+                        pose.as_ref().map_or(ClothSeed::default(), ClothSeed::of_pose)
+                    });
+                }
+                if let Some(lack) = levels.lack(entity, &mesh) {
+                    ClothFailed::report(&mut commands, entity, lack);
+                }
+                let fabric = Arc::clone(levels.fabric(instance.level));
+                let kept = instance.recut(levels, &mut batches);
+                if let (true, Place::Waiting(snapshot)) = (kept, &mut instance.place) {
+                    let change = if is_finite(&change) { change } else { Isometry3d::IDENTITY };
+                    match TakingUp::begin(snapshot, &fabric, change) {
+                        Some(way) => commands.entity(entity).insert(way),
+                        None => commands.entity(entity).remove::<TakingUp>(),
+                    };
+                }
+                if let Some((levels, snapshot)) = instance.levels.as_ref().zip(instance.waiting()) {
+                    state.begin_anew(instance.level, levels, &snapshot.positions);
                 }
             }
             Err(error) => {

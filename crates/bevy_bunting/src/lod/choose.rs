@@ -21,6 +21,7 @@ use crate::cloth::mesh::ClothPaused;
 use crate::cloth::state::ClothState;
 use crate::diagnostics::{ClothCounts, ClothTimings};
 use crate::motion::pose::PoseHistory;
+use crate::motion::take_up::TakingUp;
 use crate::settings::ClothSettings;
 
 /// Ticks from one in which costs are measured to the next: clocks cost time, too.
@@ -63,6 +64,8 @@ pub(crate) struct Chosen {
     state: &'static mut ClothState,
     watch: &'static mut ClothWatch,
     paused: Has<ClothPaused>,
+    /// Its vertices are on the way to where they are attached: another level would have others there.
+    taking_up: Has<TakingUp>,
 }
 
 #[expect(clippy::too_many_arguments, reason = "a system")]
@@ -225,6 +228,7 @@ impl Chooser {
             // Without a viewer all is as near as can be.
             cloth.lods.level_at(nearest.unwrap_or(0.0), cloth.instance.level)
         };
+        let to = if cloth.taking_up { cloth.instance.level } else { to };
         let seen = look.as_ref().is_none_or(|look| look.sight == Sight::Seen);
         self.change(cloth, to, seen, batches, commands);
         let mut candidate = Candidate {
@@ -233,10 +237,10 @@ impl Chooser {
             scale: look.map_or(0.0, |look| look.scale * cloth.lods.bias),
             weight: look.map_or(0.0, |look| weight(&look, cloth.watch.radius)),
             ready: false,
-            fixed: look.is_none() || cloth.lods.pinned.is_some(),
+            fixed: look.is_none() || cloth.lods.pinned.is_some() || cloth.taking_up,
             seen,
         };
-        if let Some(look) = look.filter(|_| !cloth.paused) {
+        if let Some(look) = look.filter(|_| !cloth.paused && !cloth.taking_up) {
             let errors = &self.kinds.kinds[kind].errors;
             let finer =
                 !candidate.fixed && wanted_level(errors, &candidate, limits) < candidate.level;

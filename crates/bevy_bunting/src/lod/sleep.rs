@@ -83,8 +83,8 @@ fn note_changes(
     mut changes: ResMut<Changes>,
 ) {
     let changes = &mut *changes;
-    changes.everywhere = settings.is_changed() || changes.wind != *wind;
-    changes.wind = *wind;
+    changes.everywhere = settings.is_changed() || wind.differs_from(&changes.wind);
+    changes.wind.clone_from(&wind);
     for entity in removed.read() {
         changes.collider_poses.remove(&entity);
         changes.everywhere = true;

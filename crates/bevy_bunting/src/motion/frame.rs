@@ -15,11 +15,13 @@ use crate::cloth::error::{ClothError, ClothFailed};
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::environment::drive::drive_cloths;
-use crate::motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TELEPORT_SPEED, TargetLost};
+use crate::motion::attachment::{
+    AttachedVertices, Attachment, ClothCorner, ClothEdge, TELEPORT_SPEED, TargetLost,
+};
 use crate::motion::follow::{Motions, end_following, follow_targets};
 use crate::motion::pose::{Observed, PoseHistory};
+use crate::motion::take_up::lead_pins;
 use crate::schedule::{ClothSystems, ClothTick};
-
 
 /// Follows the targets of attachments, and places cloths on them.
 #[derive(Debug, Default)]
@@ -43,6 +45,7 @@ impl Plugin for AttachmentPlugin {
                 (
                     follow_targets.in_set(ClothSystems::Prepare),
                     observe_ticks.in_set(ClothSystems::Drive).before(drive_cloths),
+                    lead_pins.in_set(ClothSystems::Drive).before(drive_cloths).after(observe_ticks),
                     place_cloths.in_set(ClothSystems::Publish),
                 ),
             )
@@ -204,7 +207,7 @@ fn place_cloths(
 
 /// The pose of a cloth's frame, or a collider's, as its entity or target stands now. None if the
 /// target is gone.
-fn frame_of(
+pub(crate) fn frame_of(
     entity: Entity,
     attachment: Option<&Attachment>,
     transforms: &TransformHelper,
@@ -229,6 +232,6 @@ fn teleport_speed(attachment: Option<&Attachment>) -> f32 {
     attachment.map_or(TELEPORT_SPEED, |attachment| attachment.teleport_speed)
 }
 
-fn is_finite(pose: &Isometry3d) -> bool {
+pub(crate) fn is_finite(pose: &Isometry3d) -> bool {
     Vec3::from(pose.translation).is_finite() && pose.rotation.is_finite()
 }

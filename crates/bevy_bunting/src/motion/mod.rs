@@ -4,4 +4,5 @@ pub mod attachment;
 pub mod follow;
 pub mod frame;
 pub mod pose;
+pub mod take_up;
 pub mod teleport;

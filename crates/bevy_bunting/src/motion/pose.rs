@@ -203,6 +203,11 @@ impl Observed {
 }
 
 impl PoseHistory {
+    /// Whether there was a tick.
+    pub fn is_known(&self) -> bool {
+        self.span.is_some()
+    }
+
     /// The pose at the start of the tick.
     pub fn start(&self) -> Isometry3d {
         self.span.map_or(Isometry3d::IDENTITY, |(start, _)| start)

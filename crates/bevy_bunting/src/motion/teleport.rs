@@ -53,10 +53,6 @@ fn teleport(
     let Ok((mut history, mut instance, mut state)) = cloths.get_mut(request.entity) else { return };
     history.jump_next(&observed);
     if request.mode == TeleportMode::Reset {
-        instance.rest(&mut batches);
-        if let Some(levels) = &instance.levels {
-            let rest = levels.fabric(instance.level).rest_positions();
-            state.begin_anew(instance.level, levels, rest);
-        }
+        instance.put_to_rest(&mut state, &mut batches);
     }
 }

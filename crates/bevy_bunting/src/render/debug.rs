@@ -106,7 +106,7 @@ fn draw_cloths(cloths: Query<Drawn>, wind: Option<Res<TickWind>>, mut gizmos: Gi
         }
         if let (true, Some(wind)) = (what.wind, &wind) {
             let middle = position(fabric.particle_count() / 2);
-            gizmos.arrow(middle, middle + ARROW_TIME * wind.0, AQUA);
+            gizmos.arrow(middle, middle + ARROW_TIME * wind.at(middle), AQUA);
         }
     }
 }

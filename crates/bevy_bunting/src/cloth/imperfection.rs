@@ -1,0 +1,109 @@
+//! What tells a cloth from all others that are cut alike: a perfect plane, loaded along itself, never buckles.
+
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Vec3};
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+use bunting_solver::{ClothSnapshot, Fabric};
+
+use crate::cloth::state::normals;
+
+/// Greatest distance of a particle from its place at rest when a cloth is spawned, m. Folds grow from it by
+/// some e in a tenth of a second: with a hundredth of it they are a third of a second late.
+const AMPLITUDE: f32 = 1e-4;
+
+/// Places of two cloths that differ by less are one for their seeds, m.
+const SAME_PLACE: f32 = 1e-3;
+
+/// Waves that add up to the imperfection, as many to the extent of the cloth.
+const WAVES: [f32; 4] = [1.3, 2.1, 3.4, 5.5];
+
+/// Chooses the imperfection of a cloth, a tenth of a millimetre of its shape when it is spawned, from which
+/// its folds grow. Optional: without it, it follows from where the cloth first stands in the world.
+///
+/// Read when the cloth is first simulated.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
+pub struct ClothSeed(pub u32);
+
+impl ClothSeed {
+    /// The seed of a cloth that is first seen in a pose: the same in every run and any order of spawning.
+    pub(crate) fn of_pose(pose: &Isometry3d) -> Self {
+        let place = (Vec3::from(pose.translation) / SAME_PLACE).round().as_ivec3();
+        Self(place.to_array().into_iter().fold(1, |hash, part| mix(hash ^ part as u32)))
+    }
+}
+
+/// A bijection that spreads each bit over all (Wellons' lowbias32).
+fn mix(mut bits: u32) -> u32 {
+    bits ^= bits >> 16;
+    bits = bits.wrapping_mul(0x7feb_352d);
+    bits ^= bits >> 15;
+    bits = bits.wrapping_mul(0x846c_a68b);
+    bits ^ (bits >> 16)
+}
+
+/// The fabric at rest as no cloth is quite: off its plane by at most [`AMPLITUDE`], but for its pins.
+pub(crate) fn almost_at_rest(fabric: &Fabric, seed: ClothSeed) -> ClothSnapshot {
+    let mut snapshot = ClothSnapshot::at_rest(fabric);
+    let rest = fabric.rest_positions();
+    let normals = normals(fabric, rest);
+    let extent = fabric.area().sqrt();
+    let mut hash = mix(seed.0);
+    let mut random = || {
+        hash = mix(hash.wrapping_add(0x9e37_79b9));
+        (hash >> 8) as f32 / (1 << 24) as f32
+    };
+    let waves = WAVES.map(|count| {
+        let direction = Vec3::from([(); 3].map(|()| 2.0 * random() - 1.0)).normalize_or(Vec3::ONE);
+        (direction * (count / extent), random())
+    });
+    for (particle, position) in snapshot.positions.iter_mut().enumerate() {
+        if fabric.is_pinned(particle) {
+            continue;
+        }
+        let at = rest[particle];
+        let sum: f32 = waves.iter().map(|(wave, phase)| hump(wave.dot(at) + phase)).sum();
+        *position += normals[particle] * (AMPLITUDE / WAVES.len() as f32 * sum);
+    }
+    snapshot
+}
+
+/// A sine of period 1, of parabolas: the same bits on all machines.
+fn hump(phase: f32) -> f32 {
+    let part = phase - phase.floor();
+    let half = 2.0 * part - 1.0;
+    4.0 * half * (half.abs() - 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bunting_solver::{FabricBuilder, Grid};
+
+    #[test]
+    fn an_imperfection_is_small_seeded_and_alike_at_all_levels() {
+        let of = |n: u32, seed: u32| {
+            let grid = FabricBuilder::grid(Grid::new(n, n, 1.0, 1.0)).pin([0]);
+            let fabric = grid.build().expect("a good fabric");
+            almost_at_rest(&fabric, ClothSeed(seed)).positions
+        };
+        let fine = of(33, 7);
+        assert!(fine.iter().all(|at| at.z.abs() <= AMPLITUDE));
+        assert!(fine.iter().any(|at| at.z.abs() > 0.2 * AMPLITUDE));
+        assert_eq!(fine[0], Vec3::ZERO, "what is held is in its place");
+        assert_ne!(fine, of(33, 8));
+        let coarse = of(17, 7);
+        for (index, at) in coarse.iter().enumerate() {
+            let (row, column) = (index / 17, index % 17);
+            assert!(at.distance(fine[2 * row * 33 + 2 * column]) < 1e-7);
+        }
+    }
+
+    #[test]
+    fn neighbouring_places_have_seeds_of_their_own() {
+        let seed = |x: f32| ClothSeed::of_pose(&Isometry3d::from_translation(Vec3::X * x));
+        assert_ne!(seed(0.0), seed(0.01));
+        assert_eq!(seed(0.0), seed(1e-5));
+    }
+}
