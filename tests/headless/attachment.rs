@@ -124,7 +124,7 @@ fn a_steady_ride_looks_alike_whoever_moves_the_target() {
         // its frame.
         let calm = FabricMaterial { damping: 5.0, ..FabricMaterial::FLAG_POLYESTER };
         app.world_mut().entity_mut(cloth).insert(ClothMaterial(calm));
-        run(&mut app, 200);
+        run(&mut app, 1200);
         let greatest = (0..40).map(|_| {
             app.update();
             greatest_speed(&app, cloth)
@@ -288,7 +288,8 @@ const SHORT: Duration = Duration::from_millis(2);
 fn between_two_ticks_nothing_is_missed_however_many_frames_pass() {
     let mut app = app_at(SHORT);
     let (vehicle, cloth) = attached(&mut app, false);
-    let lorry = app.world_mut().spawn(Transform::from_xyz(1.0, 0.0, 0.0)).id();
+    // A jump within a tick that is no teleport.
+    let lorry = app.world_mut().spawn(Transform::from_xyz(0.35, 0.0, 0.0)).id();
     app.world_mut().entity_mut(vehicle).insert(ChildOf(lorry));
     let (lost, other) = attached(&mut app, false);
     let (_, released) = attached(&mut app, false);
@@ -304,7 +305,7 @@ fn between_two_ticks_nothing_is_missed_however_many_frames_pass() {
         run(&mut app, 20);
         assert!(error(&app, vehicle, cloth) < TOLERANCE);
         let left_behind = state(&app, cloth).positions()[16].distance(hung);
-        assert!(left_behind > FELT, "the frame has jumped by a metre: {left_behind} m");
+        assert!(left_behind > FELT, "the frame has jumped: {left_behind} m");
     }
     app.world_mut().entity_mut(released).remove::<Attachment>();
     app.world_mut().despawn(lost);

@@ -18,6 +18,9 @@ const SPEED: f32 = 20.0;
 /// Frames, of 1/60 s each in the mean.
 const FRAMES: usize = 1800;
 
+/// Flags, which differ by their seeds.
+const FLAGS: u32 = 16;
+
 /// How a ride at constant speed looks.
 #[derive(Debug)]
 struct Ride {
@@ -35,7 +38,13 @@ fn ride(jitter: f32) -> Ride {
     // So that it flutters out of its plane.
     app.world_mut().spawn(WindField::steady(Vec3::new(0.0, 0.0, 2.0)));
     let pole = app.world_mut().spawn((Pole, Transform::default())).id();
-    let flag = app.world_mut().spawn((FLAG, Attachment::new(pole, ClothEdge::Left))).id();
+    // A flag's means over half a minute of flutter differ by some percent from another's.
+    let flags: Vec<Entity> = (0..FLAGS)
+        .map(|seed| {
+            let held = Attachment::new(pole, ClothEdge::Left);
+            app.world_mut().spawn((FLAG, held, ClothSeed(seed))).id()
+        })
+        .collect();
     app.add_systems(Update, |mut poles: Query<&mut Transform, With<Pole>>, time: Res<Time>| {
         for mut pole in &mut poles {
             pole.translation.x -= SPEED * time.delta_secs();
@@ -49,18 +58,18 @@ fn ride(jitter: f32) -> Ride {
         let frame_length = Duration::from_secs_f32((1.0 + jitter * uneven) / 60.0);
         app.insert_resource(TimeUpdateStrategy::ManualDuration(frame_length));
         app.update();
-        let drawn = app.world().get::<GlobalTransform>(flag).expect("placed").translation();
+        let drawn = app.world().get::<GlobalTransform>(flags[0]).expect("placed").translation();
         let pole = app.world().get::<Transform>(pole).expect("it stays").translation;
         if frame > 0 {
             assert!(drawn.distance(pole) < 1e-5, "off its pole by {} m", drawn.distance(pole));
-            assert_eq!(state(&app, flag).positions()[0], Vec3::ZERO);
+            assert_eq!(state(&app, flags[0]).positions()[0], Vec3::ZERO);
         }
         if frame >= FRAMES / 3 {
-            ride.strain += strain(&app, flag).mean;
-            ride.speed += greatest_speed(&app, flag);
+            ride.strain += flags.iter().map(|&flag| strain(&app, flag).mean).sum::<f32>();
+            ride.speed += flags.iter().map(|&flag| greatest_speed(&app, flag)).sum::<f32>();
         }
     }
-    let counted = (FRAMES - FRAMES / 3) as f32;
+    let counted = FLAGS as f32 * (FRAMES - FRAMES / 3) as f32;
     Ride { strain: ride.strain / counted, speed: ride.speed / counted }
 }
 

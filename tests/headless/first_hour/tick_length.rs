@@ -11,7 +11,7 @@ use super::strain;
 fn mean_strain(tick: f64) -> f32 {
     let mut app = app_at(std::time::Duration::from_secs_f64(tick));
     app.insert_resource(Time::<Fixed>::from_seconds(tick));
-    app.world_mut().spawn(WindField::steady(Vec3::new(6.0, 0.0, 2.0)));
+    app.world_mut().spawn(WindField::steady(Vec3::new(6.0, 0.0, 2.0)).with_gusts(2.0, 0.5, 1));
     let held = Attachment::in_place(ClothEdge::Left);
     let flag = app.world_mut().spawn((ClothMesh::grid(33, 23, 1.5, 1.0), held)).id();
     run(&mut app, (4.0 / tick) as usize);

@@ -49,6 +49,10 @@ pub(crate) struct ClothInstance {
     pub target: Option<Entity>,
     /// The target is gone, and that was dealt with.
     pub target_lost: bool,
+    /// It was paused for that.
+    pub frozen: bool,
+    /// There was never a target, and that was reported: it is looked for in each tick.
+    pub awaits_target: Option<Entity>,
     /// The pose to follow is not finite, and that was reported.
     pub pose_reported: bool,
 }

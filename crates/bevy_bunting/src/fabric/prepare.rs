@@ -73,18 +73,21 @@ fn note_release(_: On<Remove, Attachment>, mut library: ResMut<FabricLibrary>) {
 }
 
 fn lose_targets(
-    mut cloths: Query<(Entity, &Attachment, &mut ClothInstance)>,
+    mut cloths: Query<(Entity, &Attachment, &mut ClothInstance, Has<ClothPaused>)>,
     targets: Query<(), With<Transform>>,
     mut commands: Commands,
 ) {
-    for (entity, attachment, mut instance) in &mut cloths {
+    for (entity, attachment, mut instance, paused) in &mut cloths {
         let Some(target) = attachment.target_other_than(entity) else { continue };
         if instance.target_lost || instance.target != Some(target) || targets.contains(target) {
             continue;
         }
         instance.target_lost = true;
         match attachment.on_lost {
-            TargetLost::Freeze => commands.entity(entity).insert(ClothPaused),
+            TargetLost::Freeze => {
+                instance.frozen = !paused;
+                commands.entity(entity).insert(ClothPaused)
+            }
             TargetLost::Release => commands.entity(entity).remove::<Attachment>(),
         };
         commands.trigger(ClothTargetLost { entity, target, outcome: attachment.on_lost });
@@ -133,6 +136,7 @@ fn cut_cloths(
             .as_deref()
             .map(|attachment| attachment.target_other_than(entity).unwrap_or(entity));
         let changed = instance.cutting
+            || instance.awaits_target.is_some()
             || mesh.is_changed()
             || lods.is_changed()
             || attachment.as_ref().is_some_and(|attachment| attachment.is_changed())
@@ -156,6 +160,7 @@ fn cut_cloths(
             }
             Ok(Some(levels)) => {
                 instance.cutting = false;
+                instance.awaits_target = None;
                 let pose = frame_of(entity, attachment.as_deref(), &transforms);
                 let mut change = Isometry3d::IDENTITY;
                 if instance.target != target {
@@ -166,6 +171,9 @@ fn cut_cloths(
                     *history = PoseHistory::default();
                     instance.target = target;
                     instance.target_lost = false;
+                    if core::mem::take(&mut instance.frozen) {
+                        commands.entity(entity).remove::<ClothPaused>();
+                    }
                 }
                 if instance.levels.as_ref().is_some_and(|old| Arc::ptr_eq(old, &levels)) {
                     continue;
@@ -192,8 +200,17 @@ fn cut_cloths(
                     state.begin_anew(instance.level, levels, &snapshot.positions);
                 }
             }
+            Err(ClothError::MissingTarget { target, .. })
+                if instance.awaits_target == Some(target) =>
+            {
+                library.awaited = true;
+            }
             Err(error) => {
                 instance.clear(&mut batches);
+                if let ClothError::MissingTarget { target, .. } = error {
+                    instance.awaits_target = Some(target);
+                    library.awaited = true;
+                }
                 *state = ClothState::default();
                 ClothFailed::report(&mut commands, entity, error);
             }

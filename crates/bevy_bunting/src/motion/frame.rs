@@ -2,14 +2,15 @@
 
 use bevy_app::prelude::*;
 use bevy_app::{AnimationSystems, RunFixedMainLoop, RunFixedMainLoopSystems};
-use bevy_ecs::hierarchy::ChildOf;
+use bevy_ecs::hierarchy::{ChildOf, Children};
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemParam;
-use bevy_math::{Isometry3d, Vec3};
+use bevy_math::{Isometry3d, Mat3A, Vec3};
 use bevy_time::{Time, Virtual};
 use bevy_transform::TransformSystems;
 use bevy_transform::components::{GlobalTransform, Transform};
 use bevy_transform::helper::TransformHelper;
+use bevy_transform::systems::{propagate_parent_transforms, sync_simple_transforms};
 
 use crate::cloth::error::{ClothError, ClothFailed};
 use crate::cloth::instance::ClothInstance;
@@ -55,6 +56,13 @@ impl Plugin for AttachmentPlugin {
                     .chain_ignore_deferred()
                     .after(AnimationSystems)
                     .before(TransformSystems::Propagate),
+            )
+            .add_systems(
+                PostUpdate,
+                unscale_cloths
+                    .in_set(TransformSystems::Propagate)
+                    .after(propagate_parent_transforms)
+                    .after(sync_simple_transforms),
             );
     }
 }
@@ -191,7 +199,11 @@ fn place_cloths(
                     global,
                 ))
             }
-            None => Some((entity, None, current.compute_global_transform(entity).ok()?)),
+            None => {
+                let frame =
+                    frame_on(&current.compute_global_transform(entity).ok()?, &Transform::IDENTITY);
+                Some((entity, None, GlobalTransform::from_isometry(frame)))
+            }
         }
     }));
     let mut written = transforms.p1();
@@ -201,6 +213,49 @@ fn place_cloths(
                 transform.set_if_neq(local);
             }
             global_transform.set_if_neq(global);
+        }
+    }
+}
+
+/// How far the axes of a frame may be from unit vectors at right angles before the scale is taken out.
+const RIGID: f32 = 1e-4;
+
+type Hierarchy<'w, 's> =
+    Query<'w, 's, (&'static Transform, Option<&'static Children>, &'static mut GlobalTransform)>;
+
+type Propagated<'w, 's> = Query<
+    'w,
+    's,
+    (Entity, Option<&'static Attachment>, &'static GlobalTransform),
+    (With<ClothMesh>, Changed<GlobalTransform>),
+>;
+
+/// Takes the scale of parents, targets and of the cloth's own [`Transform`] out of what Bevy has propagated: a
+/// frame has none, and a local transform cannot undo a scale along turned axes.
+fn unscale_cloths(
+    mut transforms: ParamSet<((TransformHelper, Propagated), Hierarchy)>,
+    mut found: Local<Vec<(Entity, GlobalTransform)>>,
+) {
+    let (helper, cloths) = transforms.p0();
+    found.extend(cloths.iter().filter_map(|(entity, attachment, propagated)| {
+        let axes = propagated.affine().matrix3;
+        let product = axes.transpose() * axes;
+        if product.abs_diff_eq(Mat3A::IDENTITY, RIGID) {
+            return None;
+        }
+        let frame = frame_of(entity, attachment, &helper).filter(is_finite)?;
+        Some((entity, GlobalTransform::from_isometry(frame)))
+    }));
+    let mut hierarchy = transforms.p1();
+    // Each with its children, whose places have changed with it.
+    while let Some((entity, global)) = found.pop() {
+        let Ok((_, children, mut written)) = hierarchy.get_mut(entity) else { continue };
+        *written = global;
+        let children: Vec<Entity> = children.into_iter().flat_map(|all| all.iter()).collect();
+        for child in children {
+            if let Ok((local, ..)) = hierarchy.get(child) {
+                found.push((child, global * *local));
+            }
         }
     }
 }

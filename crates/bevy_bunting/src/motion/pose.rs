@@ -14,8 +14,9 @@ const LEVER: f32 = 1.0;
 /// A turn between two observations of more than this is a teleport, however far apart they are, rad.
 const TELEPORT_ANGLE: f32 = core::f32::consts::FRAC_PI_2;
 
-/// Least time between two observations, s: a change within none would be of infinite speed.
-const LEAST_INTERVAL: f64 = 1e-3;
+/// Least time in which a change between two observations came about, s: what is moved at the rate of ticks by a
+/// loop of its own makes its steps within one of several short frames.
+const LEAST_INTERVAL: f64 = 1.0 / 64.0;
 
 /// How far a course is followed past the last pose seen, s: Bevy's clock allows no longer frame.
 const LONGEST_COURSE: f64 = 0.25;
