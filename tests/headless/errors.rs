@@ -85,8 +85,9 @@ fn bad_levels_and_attachments_are_named() {
     let not_nested = world.spawn((ClothMesh::grid(12, 12, 1.0, 1.0), LodSet::new([5.0]))).id();
     let unordered = world.spawn((FLAG, LodSet::new([5.0, 4.0]))).id();
     let pinned = world.spawn((FLAG, LodSet::new([5.0]).pinned_to(2))).id();
-    let nothing =
-        world.spawn((FLAG, Attachment::in_place(AttachedVertices::Where(|_| false)))).id();
+    let nothing = world
+        .spawn((FLAG, Attachment::in_place(AttachedVertices::list_where(&FLAG, |_| false))))
+        .id();
     let no_target = world.spawn((FLAG, Attachment::new(missing, ClothEdge::Left))).id();
     let odd = Attachment::in_place(AttachedVertices::List(vec![1]));
     let lost_pins = world.spawn((FLAG, LodSet::new([5.0]), odd)).id();

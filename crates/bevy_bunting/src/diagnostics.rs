@@ -1,10 +1,11 @@
 //! What the cloths cost.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use bevy_app::{App, Plugin};
 use bevy_diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic};
 use bevy_ecs::prelude::*;
+use bevy_platform::time::Instant;
 
 use crate::lod::LodReport;
 use crate::schedule::{ClothSystems, ClothTick};

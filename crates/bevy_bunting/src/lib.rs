@@ -116,6 +116,7 @@ pub use cloth::activity::ClothActivity;
 pub use cloth::error::{ClothError, ClothFailed};
 pub use cloth::imperfection::ClothSeed;
 pub use cloth::mesh::{ClothMaterial, ClothMesh, ClothPaused};
+pub use cloth::preroll::{ClothPreroll, PrerollPlugin};
 pub use cloth::state::ClothState;
 pub use diagnostics::{ClothCounts, ClothDiagnosticsPlugin, ClothTimings};
 pub use display::easing::EasingPlugin;
@@ -146,7 +147,7 @@ pub mod prelude {
     pub use crate::{
         AttachedVertices, Attachment, ClothActivity, ClothBudget, ClothCollider, ClothCorner,
         ClothEdge, ClothError, ClothFailed, ClothLevelChanged, ClothMaterial, ClothMesh,
-        ClothPaused, ClothPlugins, ClothSeed, ClothSettings, ClothState, ClothSurface,
+        ClothPaused, ClothPlugins, ClothPreroll, ClothSeed, ClothSettings, ClothState, ClothSurface,
         ClothSystems, ClothTargetLost, ClothTick, LodSet, LodViewer, TargetLost, TeleportCloth,
         TeleportMode, WeightsError, WindField,
     };
@@ -183,6 +184,7 @@ impl PluginGroup for ClothPlugins {
             .add(PreparePlugin)
             .add(LodPlugin)
             .add(RestPlugin)
+            .add(PrerollPlugin)
             .add(SeatPlugin)
             .add(WindPlugin)
             .add(AttachmentPlugin)

@@ -1,9 +1,10 @@
 //! The batches that hold the state of all cloths, one lane a cloth.
 
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use bevy_ecs::prelude::*;
+use bevy_platform::time::Instant;
 use bevy_tasks::ComputeTaskPool;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricMaterial, LaneCount, LaneSurface,

@@ -22,6 +22,9 @@ pub enum ClothActivity {
     OffScreen,
     /// It is out of every viewer's range.
     OutOfRange,
+    /// It is hidden by its `Visibility` or that of what it is a child of; with the feature `render`. It goes on from
+    /// where it was.
+    Hidden,
     /// It hangs still. It goes on when anything changes that acts on it: its frame, its material, the
     /// wind, gravity, a collider near it, or when a finer level is wanted.
     AtRest,

@@ -9,6 +9,7 @@ use bunting_solver::{FabricBuilder, FabricMaterial, Grid};
 
 use crate::cloth::activity::{ClothRest, ClothWatch};
 use crate::cloth::instance::ClothInstance;
+use crate::cloth::reflect::FabricMaterialReflect;
 use crate::cloth::state::ClothState;
 use crate::lod::LodSet;
 use crate::motion::pose::PoseHistory;
@@ -167,10 +168,10 @@ impl From<Grid> for ClothMesh {
 /// What a cloth is made of; flag polyester by default. It may be changed at any time: each cloth
 /// has its own, whatever it shares a fabric with.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
-#[reflect(opaque)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothMaterial(
     /// The material's values, in SI units.
+    #[reflect(remote = FabricMaterialReflect)]
     pub FabricMaterial,
 );
 

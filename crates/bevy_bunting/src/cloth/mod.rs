@@ -5,4 +5,6 @@ pub mod error;
 pub mod imperfection;
 pub mod instance;
 pub mod mesh;
+pub mod preroll;
+pub mod reflect;
 pub mod state;

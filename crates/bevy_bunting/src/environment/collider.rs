@@ -11,17 +11,18 @@ use parry3d::shape::SharedShape;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
+use crate::cloth::reflect::SharedShapeReflect;
 use crate::environment::drive::{drive_cloths, pose_parts};
 use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// A shape that no cloth can enter. It moves with its entity, pushes cloth and is not pushed.
 #[derive(Component, Clone, Reflect)]
-#[reflect(opaque)]
 #[reflect(Component, Clone)]
 #[require(Transform, PoseHistory)]
 pub struct ClothCollider {
     /// The shape in the entity's frame, m; the entity's scale is ignored.
+    #[reflect(remote = SharedShapeReflect)]
     pub shape: SharedShape,
     /// Distance that cloth keeps in addition to its thickness, m. It rounds edges: a box with a
     /// margin is a round box, and cheaper than parry's, whose nearest points are searched for.
@@ -68,7 +69,7 @@ pub struct ColliderPlugin;
 
 impl Plugin for ColliderPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<ClothCollider>().add_systems(
+        app.register_type::<ClothCollider>().register_type::<SharedShapeReflect>().add_systems(
             ClothTick,
             drive_colliders.in_set(ClothSystems::Drive).after(drive_cloths),
         );

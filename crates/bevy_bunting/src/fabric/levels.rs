@@ -22,6 +22,11 @@ use crate::render::LevelMesh;
 /// some ticks then.
 const LARGE: usize = 8192;
 
+/// Vertices of different cloths that are cut on the main thread in a tick, the first cloth apart: a flag of
+/// 33 × 33 with its levels takes some milliseconds. The others are cut beside it or, without threads, in the ticks
+/// after.
+const SLICE: usize = 1024;
+
 /// The fabrics of one cloth, the finest first, and how state moves between neighbours.
 #[derive(Debug)]
 pub(crate) struct ClothLevels {
@@ -244,11 +249,19 @@ pub(crate) struct FabricLibrary {
     cut: HashMap<Vec<u32>, Weak<ClothLevels>>,
     /// What is being cut beside the main thread.
     cutting: HashMap<Vec<u32>, Task<Result<ClothLevels, FabricError>>>,
+    /// Vertices cut on the main thread in this tick.
+    spent: usize,
     /// Whether a cloth waits for its fabrics, or for others than it has.
     pub awaited: bool,
 }
 
 impl FabricLibrary {
+    /// Begins a tick.
+    pub fn begin_tick(&mut self) {
+        self.awaited = false;
+        self.spent = 0;
+    }
+
     /// The fabrics of a cloth, cut now or before; none while they are being cut: ask again.
     ///
     /// # Errors
@@ -274,15 +287,21 @@ impl FabricLibrary {
         }
         let asked = lods.levels();
         let attached = pinned.unwrap_or_default();
+        let vertices = mesh.vertex_count();
+        let is_small = vertices < LARGE && (self.spent == 0 || self.spent + vertices <= SLICE);
         let cut = match (self.cutting.get_mut(&key), AsyncComputeTaskPool::try_get()) {
             (Some(task), _) => check_ready(task),
-            (None, Some(pool)) if mesh.vertex_count() >= LARGE => {
+            (None, Some(pool)) if !is_small => {
                 let mesh = mesh.clone();
                 let task = pool.spawn(async move { ClothLevels::cut(&mesh, &attached, asked) });
                 self.cutting.insert(key.clone(), task);
                 None
             }
-            _ => Some(ClothLevels::cut(mesh, &attached, asked)),
+            (None, None) if !is_small && self.spent > 0 => None,
+            _ => {
+                self.spent += vertices;
+                Some(ClothLevels::cut(mesh, &attached, asked))
+            }
         };
         let Some(cut) = cut else { return Ok(None) };
         self.cutting.remove(&key);

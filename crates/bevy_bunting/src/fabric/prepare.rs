@@ -128,7 +128,7 @@ fn cut_cloths(
     mut batches: ResMut<ClothBatches>,
     mut commands: Commands,
 ) {
-    library.awaited = false;
+    library.begin_tick();
     for (entity, mesh, material, lods, attachment, seed, mut instance, mut state, mut history) in
         &mut cloths
     {

@@ -72,6 +72,8 @@ pub struct LodReport {
     pub off_screen: usize,
     /// Cloths asleep because they are out of every viewer's range.
     pub out_of_range: usize,
+    /// Cloths asleep because they are hidden.
+    pub hidden: usize,
     /// Cloths asleep because they have come to rest.
     pub at_rest: usize,
 }
@@ -80,7 +82,7 @@ impl LodReport {
     /// Number of cloths that are asleep.
     #[must_use]
     pub fn asleep(&self) -> usize {
-        self.off_screen + self.out_of_range + self.at_rest
+        self.off_screen + self.out_of_range + self.hidden + self.at_rest
     }
 
     pub(crate) fn count(&mut self, activity: ClothActivity) {
@@ -88,6 +90,7 @@ impl LodReport {
             ClothActivity::Ticking => {}
             ClothActivity::OffScreen => self.off_screen += 1,
             ClothActivity::OutOfRange => self.out_of_range += 1,
+            ClothActivity::Hidden => self.hidden += 1,
             ClothActivity::AtRest => self.at_rest += 1,
         }
     }

@@ -1,10 +1,11 @@
 //! The choice of levels, and of who sleeps because nobody looks.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use bevy_math::Vec3;
+use bevy_platform::time::Instant;
 use bevy_time::Time;
 use bevy_transform::helper::TransformHelper;
 
@@ -125,6 +126,7 @@ pub(crate) fn choose_levels(
         if let Some(candidate) = cloth.watch.candidate {
             chooser.candidates.push(Candidate {
                 ready: chooser.now.wrapping_sub(cloth.watch.changed) > budget.dwell,
+                fresh: cloth.instance.unmoved,
                 ..candidate
             });
             chooser.entities.push(cloth.entity);
@@ -237,6 +239,7 @@ impl Chooser {
             scale: look.map_or(0.0, |look| look.scale * cloth.lods.bias),
             weight: look.map_or(0.0, |look| weight(&look, cloth.watch.radius)),
             ready: false,
+            fresh: false,
             fixed: look.is_none() || cloth.lods.pinned.is_some() || cloth.taking_up,
             seen,
         };

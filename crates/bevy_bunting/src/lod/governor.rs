@@ -11,7 +11,8 @@
 //!    the next in line.
 //! 3. Cloths move towards these levels, at most so many a tick and none too soon after its last
 //!    change, the coarser first; none becomes finer while there is no room for it. A change costs
-//!    time, too: as long as any is due, the levels leave room for the dearest.
+//!    time, too: as long as any is due, the levels leave room for the dearest. Cloths that have not been
+//!    simulated yet begin at these levels.
 
 /// How many times more a step is worth that is taken already, so that two cloths of the same worth
 /// do not take turns: changes cost time. What a step is worth goes with the fifth power of the distance:
@@ -101,6 +102,8 @@ pub(crate) struct Candidate {
     pub ready: bool,
     /// Whether its level is not ours to choose: it only costs.
     pub fixed: bool,
+    /// Whether it has not been simulated yet: it begins at the level that is chosen, which is no change.
+    pub fresh: bool,
     /// Whether it is in a picture.
     pub seen: bool,
 }
@@ -267,6 +270,16 @@ impl Governor {
         let (mut left, mut changes) = ([limits.switches; 2], 0.0);
         let mut cost = self.counts.count(kinds, cloths, cloths.iter().map(|cloth| cloth.level));
         for (index, (cloth, &to)) in cloths.iter().zip(&self.chosen).enumerate() {
+            if cloth.fresh && to != cloth.level {
+                cost += self.counts.difference(kinds, cloth.kind, cloth.level, to);
+                self.counts.shift(cloth.kind, cloth.level, to);
+                switches.push((index, to as usize));
+            }
+        }
+        for (index, (cloth, &to)) in cloths.iter().zip(&self.chosen).enumerate() {
+            if cloth.fresh {
+                continue;
+            }
             let may = cloth.ready || cost > limits.budget;
             let left = &mut left[usize::from(cloth.seen)];
             if to > cloth.level && may && *left > 0 {
@@ -281,7 +294,8 @@ impl Governor {
             let (cloth, to) = (&cloths[step.cloth as usize], self.chosen[step.cloth as usize]);
             let left = &mut left[usize::from(cloth.seen)];
             // Each cloth once: at the step that begins at its level.
-            if step.to + 1 != cloth.level || to >= cloth.level || !cloth.ready || *left == 0 {
+            let may = cloth.ready && !cloth.fresh;
+            if step.to + 1 != cloth.level || to >= cloth.level || !may || *left == 0 {
                 continue;
             }
             let more = self.counts.difference(kinds, cloth.kind, cloth.level, to);
@@ -303,7 +317,7 @@ impl Candidate {
     /// What it costs, once, to go to another level, µs. What nobody sees is changed without care.
     fn cost_of_change(&self, kinds: &[Kind], to: u32) -> f32 {
         let finer = &kinds[self.kind as usize].costs[self.level.min(to) as usize];
-        if self.seen && self.level != to { finer.change } else { 0.0 }
+        if self.seen && !self.fresh && self.level != to { finer.change } else { 0.0 }
     }
 }
 

@@ -25,6 +25,7 @@ fn cloth(level: u32, scale: f32) -> Candidate {
         scale,
         weight: scale * scale,
         ready: true,
+        fresh: false,
         fixed: false,
         seen: true,
     }

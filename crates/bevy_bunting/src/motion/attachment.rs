@@ -6,6 +6,8 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
 
+use crate::cloth::mesh::ClothMesh;
+
 /// Default of [`Attachment::teleport_speed`], m/s: no vehicle brakes or starts by as much between two frames.
 /// A flag that is pulled off by that is stretched by a quarter for a moment, and goes on.
 pub(crate) const TELEPORT_SPEED: f32 = 25.0;
@@ -116,9 +118,8 @@ pub enum ClothCorner {
 /// Which vertices an [`Attachment`] holds.
 ///
 /// At a coarser level of detail those of them are held that the level has.
-#[derive(Clone, Debug, Reflect)]
-#[reflect(opaque)]
-#[reflect(Debug, Clone)]
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[reflect(Debug, PartialEq, Clone)]
 pub enum AttachedVertices {
     /// All vertices on an edge.
     Edge(ClothEdge),
@@ -127,14 +128,28 @@ pub enum AttachedVertices {
     /// Vertices of the [`ClothMesh`](crate::ClothMesh) by index; of a grid, by `row * columns +
     /// column`.
     List(Vec<u32>),
-    /// All vertices for whose texture coordinate a predicate holds.
-    Where(fn(Vec2) -> bool),
+    /// All vertices whose texture coordinate lies in a rectangle, borders and all. For any other choice, see
+    /// [`AttachedVertices::list_where`].
+    Within {
+        /// Least u and v.
+        low: Vec2,
+        /// Greatest u and v.
+        high: Vec2,
+    },
     /// None but those that are rigid in any case: of weight 0, see
     /// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
     Rigid,
 }
 
 impl AttachedVertices {
+    /// The [`List`](Self::List) of a mesh's vertices for whose texture coordinate a predicate holds. A mesh without
+    /// texture coordinates has none.
+    #[must_use]
+    pub fn list_where(mesh: &ClothMesh, holds: impl Fn(Vec2) -> bool) -> Self {
+        let all = (0..).zip(mesh.uvs()).filter(|&(_, uv)| holds(uv));
+        Self::List(all.map(|(vertex, _)| vertex).collect())
+    }
+
     /// The indices of the vertices, given the texture coordinates of all.
     pub(crate) fn choose(&self, uv: &[Vec2]) -> Vec<u32> {
         let low = uv.iter().copied().reduce(Vec2::min).unwrap_or_default();
@@ -151,7 +166,9 @@ impl AttachedVertices {
                 corners.iter().filter_map(|corner| nearest(uv, corner.of(low, high))).collect()
             }
             Self::List(vertices) => vertices.clone(),
-            Self::Where(predicate) => all_where(predicate),
+            Self::Within { low, high } => {
+                all_where(&|at: Vec2| at.cmpge(*low).all() && at.cmple(*high).all())
+            }
             Self::Rigid => Vec::new(),
         }
     }
@@ -190,7 +207,6 @@ fn nearest(uv: &[Vec2], corner: Vec2) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cloth::mesh::ClothMesh;
 
     #[test]
     fn edges_corners_and_predicates() {
@@ -202,7 +218,11 @@ mod tests {
         assert_eq!(choose(ClothEdge::Bottom.into()), [3, 4, 5]);
         assert_eq!(choose(ClothCorner::TopRight.into()), [2]);
         assert_eq!(choose(ClothCorner::BottomLeft.into()), [3]);
-        assert_eq!(choose(AttachedVertices::Where(|uv| uv.x > 0.4 && uv.y > 0.5)), [4, 5]);
+        let within = AttachedVertices::Within { low: Vec2::splat(0.5), high: Vec2::ONE };
+        assert_eq!(choose(within), [4, 5]);
+        let mesh = ClothMesh::grid(3, 2, 1.0, 1.0);
+        let list = AttachedVertices::list_where(&mesh, |uv| uv.x > 0.4 && uv.y > 0.5);
+        assert_eq!(choose(list), [4, 5]);
         assert_eq!(choose(AttachedVertices::List(vec![4])), [4]);
     }
 }

@@ -17,8 +17,10 @@ use crate::display::surface::ClothSurface;
 use crate::fabric::levels::ClothLevels;
 
 /// The meshes that show a cloth.
-#[derive(Component, Debug)]
+#[derive(Component, Clone, Debug)]
 pub struct LevelMeshes {
+    /// The cloth that they were made for: a clone of it needs its own.
+    cloth: Entity,
     /// What they were made for.
     pub levels: Arc<ClothLevels>,
     /// One a level, the finest first.
@@ -61,7 +63,7 @@ pub fn dress_cloths(
     for (entity, shape, instance, worn, dressed) in &cloths {
         let Some(levels) = &instance.levels else { continue };
         let own = dressed.filter(|own| worn.is_some_and(|worn| own.contains(worn.id())));
-        if own.is_some_and(|own| Arc::ptr_eq(&own.levels, levels)) {
+        if own.is_some_and(|own| own.cloth == entity && Arc::ptr_eq(&own.levels, levels)) {
             continue;
         }
         let given = match own {
@@ -104,7 +106,7 @@ pub fn dress_cloths(
         let mut cloth = commands.entity(entity);
         cloth.insert((
             Mesh3d(shown),
-            LevelMeshes { levels: Arc::clone(levels), meshes: all, origin },
+            LevelMeshes { cloth: entity, levels: Arc::clone(levels), meshes: all, origin },
         ));
         if origin != MeshOrigin::Refused {
             cloth.insert(NoAutoAabb).insert_if_new((

@@ -4,6 +4,8 @@ mod assign_meshes;
 mod bounds;
 mod camera_lens;
 mod debug;
+mod from_mesh;
+mod hidden;
 mod level_mesh;
 mod tangents;
 mod write;
@@ -15,7 +17,8 @@ use bevy_camera::visibility::VisibilitySystems;
 use bevy_ecs::prelude::*;
 use bevy_mesh::Mesh;
 
-use crate::lod::LodViewer;
+use crate::lod::{LodViewer, choose_levels};
+use crate::schedule::{ClothSystems, ClothTick};
 
 pub use debug::{ClothDebugPlugin, ClothGizmos};
 pub(crate) use level_mesh::LevelMesh;
@@ -73,6 +76,10 @@ impl Plugin for ClothRenderPlugin {
                 RunFixedMainLoop,
                 camera_lens::view_through_cameras
                     .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+            )
+            .add_systems(
+                ClothTick,
+                hidden::hide_cloths.in_set(ClothSystems::SelectLod).before(choose_levels),
             )
             .configure_sets(
                 PostUpdate,

@@ -1,5 +1,6 @@
 //! Meshes without a renderer: assets, cameras and visibility are all that it takes.
 
+mod first_hour;
 mod parts;
 
 use std::time::{Duration, Instant};

@@ -1,0 +1,31 @@
+//! Types of other crates as components show them: to inspectors, and in scene files.
+
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize, reflect_remote};
+use bunting_solver::FabricMaterial;
+use parry3d::shape::SharedShape;
+use serde::{Deserialize, Serialize};
+
+/// [`FabricMaterial`], field by field.
+#[reflect_remote(FabricMaterial)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[reflect(Debug, PartialEq, Clone)]
+pub struct FabricMaterialReflect {
+    pub area_density: f32,
+    pub warp_stiffness: f32,
+    pub weft_stiffness: f32,
+    pub shear_stiffness: f32,
+    pub bend_stiffness: f32,
+    pub damping: f32,
+    pub internal_damping: f32,
+    pub pressure_coefficient: f32,
+    pub friction_coefficient: f32,
+    pub thickness: f32,
+    pub surface_friction: f32,
+}
+
+/// [`SharedShape`], which parry saves as a whole.
+#[reflect_remote(SharedShape)]
+#[derive(Clone, Serialize, Deserialize)]
+#[reflect(opaque)]
+#[reflect(Clone, Serialize, Deserialize)]
+pub struct SharedShapeReflect;

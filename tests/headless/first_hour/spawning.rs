@@ -1,0 +1,105 @@
+//! Item 10: spawning many different flags.
+
+use bevy_bunting::prelude::*;
+use bevy_bunting::{CostTable, LodCosts, LodReport};
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_transform::prelude::*;
+use bunting_tests::{FLAG, Seen, app, greatest_speed, run, state};
+
+/// Flags, no two of a size.
+const FLAGS: usize = 60;
+
+/// Flags in rows, seen from one end.
+fn furnish(app: &mut bevy_app::App) -> Vec<Entity> {
+    let world = app.world_mut();
+    world.spawn((LodViewer::default(), Transform::from_xyz(0.0, 0.0, 6.0)));
+    world.resource_mut::<ClothBudget>().costs = LodCosts::Fixed(CostTable::default());
+    world.spawn(WindField::steady(Vec3::new(6.0, 0.0, 2.0)).with_gusts(2.0, 0.5, 1));
+    (0..FLAGS)
+        .map(|index| {
+            let size = 1.5 + 0.001 * index as f32;
+            let place = Vec3::new(2.0 * (index % 6) as f32 - 6.0, 0.0, -2.0 * (index / 6) as f32);
+            let held = Attachment::in_place(ClothEdge::Left);
+            let levels = LodSet::automatic(4);
+            let mesh = ClothMesh::grid(33, 33, size, 1.0);
+            world.spawn((mesh, levels, held, Transform::from_translation(place))).id()
+        })
+        .collect()
+}
+
+#[test]
+fn different_flags_are_cut_in_slices() {
+    let mut app = app();
+    let flags = furnish(&mut app);
+    let mut cut = 0;
+    for _ in 0..2 * FLAGS {
+        app.update();
+        let now = flags.iter().filter(|&&flag| !state(&app, flag).positions().is_empty()).count();
+        assert!(now - cut <= 1, "{} flags of 1,089 vertices in a tick", now - cut);
+        cut = now;
+    }
+    assert_eq!(cut, FLAGS);
+}
+
+#[test]
+fn cloths_begin_within_the_budget() {
+    let mut app = app();
+    let flags = furnish(&mut app);
+    let budget = app.world().resource::<ClothBudget>().tick;
+    for tick in 0..2 * FLAGS {
+        app.update();
+        let report = app.world().resource::<LodReport>();
+        assert!(report.expected <= budget, "{:?} in tick {tick}", report.expected);
+    }
+    let simulated = flags.iter().filter(|&&flag| !state(&app, flag).positions().is_empty());
+    assert_eq!(simulated.count(), FLAGS);
+}
+
+#[test]
+fn cloths_begin_at_their_levels() {
+    let mut app = app();
+    app.world_mut().spawn((LodViewer::default(), Transform::from_xyz(0.0, 0.0, 200.0)));
+    let held = || Attachment::in_place(ClothEdge::Left);
+    let mesh = || ClothMesh::grid(33, 33, 1.5, 1.0);
+    let flags: Vec<Entity> = (0..10)
+        .map(|_| app.world_mut().spawn((mesh(), LodSet::automatic(4), held())).id())
+        .collect();
+    run(&mut app, 2);
+    for flag in flags {
+        assert_eq!(state(&app, flag).level(), 3);
+    }
+}
+
+#[test]
+fn a_cloth_may_have_hung_for_a_while() {
+    let mut app = app();
+    app.world_mut().spawn(WindField::steady(Vec3::new(1.0, 0.0, 1.0)));
+    let turned = Transform::from_xyz(1.0, 2.0, 3.0)
+        .with_rotation(bevy_math::Quat::from_rotation_y(0.8));
+    let held = || Attachment::in_place(ClothEdge::Left);
+    let mut spawn = |extra: Option<ClothPreroll>| {
+        let mut flag = app.world_mut().spawn((FLAG, held(), ClothSeed(1), turned));
+        if let Some(preroll) = extra {
+            flag.insert(preroll);
+        }
+        flag.id()
+    };
+    let (rolled, other) = (spawn(Some(ClothPreroll::seconds(2.0))), spawn(None));
+    let mut first = None;
+    for _ in 0..20 {
+        app.update();
+        if !state(&app, rolled).positions().is_empty() && first.is_none() {
+            first = Some((state(&app, rolled).positions().to_vec(), greatest_speed(&app, rolled)));
+        }
+    }
+    let (first, speed) = first.expect("it is simulated");
+    assert!(first[16].y < -0.3, "as it was cut: {}", first[16]);
+    assert!(speed < 5.0, "{speed} m/s");
+    run(&mut app, 128 - 20);
+    // What was simulated in advance is what the other went through.
+    let apart = state(&app, other).positions()[16].distance(first[16]);
+    assert!(apart < 0.2, "{apart} m");
+    assert!(app.world().get::<ClothPreroll>(rolled).is_none());
+    assert!(app.world().resource::<Seen<ClothFailed>>().0.is_empty());
+}
