@@ -11,7 +11,7 @@
 //!
 //! All are of a full batch of the widest lanes, per cloth.
 
-use bunting_solver::{LaneCount, Scheme, StepSettings};
+use bunting_solver::{LaneCount, Link, LinkFamily, Scheme, StepSettings};
 use serde::Serialize;
 
 use super::Effort;
@@ -64,8 +64,11 @@ fn ns_per_constraint(settings: StepSettings, effort: &Effort) -> f64 {
     let mut fleet = flags(Scene::flag(SIZE), settings, effort);
     let fabric = fleet.fabric();
     let projections = match settings.scheme {
-        Scheme::GaussSeidel => 2 * (fabric.links().len() + fabric.hinges().len()),
-        Scheme::Yarns => 3 * fabric.stretch_link_count(),
+        Scheme::GaussSeidel => 2 * (fabric.links().len() + fabric.hinge_count()),
+        Scheme::Yarns => {
+            let diagonal = |link: &&Link| link.family == LinkFamily::Diagonal;
+            3 * (fabric.links().len() - fabric.links().iter().filter(diagonal).count())
+        }
     };
     let mut times: [Timing; PASSES.len()] = Default::default();
     // In turn, so that both see the same machine.

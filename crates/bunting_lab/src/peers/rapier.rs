@@ -58,7 +58,7 @@ impl Rapier {
             if fabric.is_pinned(particle) { 0.0 } else { masses[particle].recip() }
         };
         let softness = |link: &bunting_solver::Link| {
-            let stiffness = fabric.link_classes()[link.class as usize].stiffness(&material);
+            let stiffness = fabric.link_stiffness(link, &material);
             let [a, b] = link.particles;
             let rate = (stiffness * (inverse(a) + inverse(b))).sqrt();
             SpringCoefficients::new(rate / TAU, DAMPING_RATIO)

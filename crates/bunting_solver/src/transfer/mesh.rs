@@ -80,7 +80,7 @@ mod tests {
     use glam::{Quat, Vec3};
 
     use crate::batch::snapshot::ClothSnapshot;
-    use crate::fabric::{Coarser, FabricBuilder, FabricMaterial, Grid};
+    use crate::fabric::{CoarserMesh, FabricBuilder, FabricMaterial, Grid};
     use crate::transfer::LevelTransfer;
 
     /// A quarter of a tube, as plain triangles, held along one side, and its next level.
@@ -94,7 +94,7 @@ mod tests {
         let triangles = grid.triangles(false).into_iter().flatten().collect();
         let fine = FabricBuilder::new(positions, triangles).uv(grid.uvs());
         let fine = fine.pin_where(|_, uv| uv.y == 0.0);
-        let Coarser { builder, vertices } = fine.coarser().expect("a level");
+        let CoarserMesh { builder, vertices } = fine.coarser().expect("a level");
         let fine = Arc::new(fine.build().expect("a cape"));
         let coarse = Arc::new(builder.build().expect("a cape"));
         let transfer = LevelTransfer::nested(&fine, &coarse, &vertices).expect("nested");

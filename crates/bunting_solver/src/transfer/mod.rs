@@ -22,7 +22,7 @@ use glam::Vec3;
 
 use crate::batch::snapshot::ClothSnapshot;
 use crate::fabric::{Fabric, FabricMaterial};
-use crate::geometry::energy::{elastic, moment};
+use crate::geometry::energy::{area_moment, elastic};
 use mesh::Relief;
 use rows::Rows;
 use settle::Settler;
@@ -260,11 +260,12 @@ impl Side<'_> {
         let limit = had + PAID * (had + moves);
         // What flies is folded, and folds strain what is new or has nowhere to go.
         let stretched = settler.settle(material, &mut positions, limit, moves > had) - had;
-        let height = moment(self.fabric, &self.state.positions) - moment(fabric, &positions);
+        let height =
+            area_moment(self.fabric, &self.state.positions) - area_moment(fabric, &positions);
         let gained = stretched / density + height.dot(gravity.as_dvec3());
         motion::match_momentum(
             fabric,
-            moment(self.fabric, &self.state.velocities),
+            area_moment(self.fabric, &self.state.velocities),
             &mut velocities,
         );
         motion::calm(fabric, agitation - 2.0 * gained.max(0.0), &mut velocities);

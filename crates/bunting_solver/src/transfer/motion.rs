@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use super::LevelTransfer;
 use super::rows::Rows;
 use crate::fabric::Fabric;
-use crate::geometry::energy::moment;
+use crate::geometry::energy::area_moment;
 
 impl LevelTransfer {
     /// What shared particles have, and the mean of what the fine ones about them have beyond that, by
@@ -44,7 +44,7 @@ pub(super) fn match_momentum(fabric: &Fabric, wanted: DVec3, velocities: &mut [V
     }
     // Twice: what rounding leaves of the first.
     for _ in 0..2 {
-        let missing = ((wanted - moment(fabric, velocities)) / mass).as_vec3();
+        let missing = ((wanted - area_moment(fabric, velocities)) / mass).as_vec3();
         for (velocity, _) in velocities.iter_mut().zip(&free).filter(|(_, area)| **area > 0.0) {
             *velocity += missing;
         }
@@ -53,7 +53,7 @@ pub(super) fn match_momentum(fabric: &Fabric, wanted: DVec3, velocities: &mut [V
 
 /// Twice the kinetic energy per density, in the frame that moves with the centre of mass.
 pub(super) fn agitation(fabric: &Fabric, velocities: &[Vec3]) -> f64 {
-    let mean = moment(fabric, velocities) / f64::from(fabric.area());
+    let mean = area_moment(fabric, velocities) / f64::from(fabric.area());
     let areas = fabric.particle_areas().iter().map(|&area| f64::from(area));
     areas.zip(velocities).map(|(area, v)| area * (v.as_dvec3() - mean).length_squared()).sum()
 }
