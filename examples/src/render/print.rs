@@ -1,15 +1,42 @@
-//! Prints a flag's design onto its cloth.
+//! Prints a cloth's design onto it.
 
 use bevy::asset::RenderAssetUsages;
 use bevy::prelude::*;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
+use bevy_bunting::prelude::*;
 use bunting_scenes::Design;
 
-/// Pixels a metre.
+/// Resolution of a print, pixels/m.
 const RESOLUTION: f32 = 128.0;
 
-/// The picture of a design upon a flag of this size in m.
-pub fn picture(design: &Design, size: Vec2) -> Image {
+/// Size of a print on a cloth of triangles, m: stripes across any such cloth are sharp enough.
+const TRIANGLES_SIZE: Vec2 = Vec2::new(8.0, 0.1);
+
+/// Gives each cloth with a [`Design`] this material, printed with the design. The plugin of the
+/// cloth gives it a mesh.
+pub fn plugin(material: StandardMaterial) -> impl Plugin {
+    move |app: &mut App| {
+        let material = material.clone();
+        let print = move |mut commands: Commands,
+                          cloths: Query<(Entity, &ClothMesh, &Design), Added<Design>>,
+                          mut images: ResMut<Assets<Image>>,
+                          mut materials: ResMut<Assets<StandardMaterial>>| {
+            for (cloth, mesh, design) in &cloths {
+                let size = match *mesh {
+                    ClothMesh::Grid { width, height, .. } => Vec2::new(width, height),
+                    ClothMesh::Triangles { .. } => TRIANGLES_SIZE,
+                };
+                let base_color_texture = Some(images.add(image(design, size)));
+                let printed = StandardMaterial { base_color_texture, ..material.clone() };
+                commands.entity(cloth).insert(MeshMaterial3d(materials.add(printed)));
+            }
+        };
+        app.add_systems(Update, print);
+    }
+}
+
+/// The image of a design on a flag of this size in m.
+pub fn image(design: &Design, size: Vec2) -> Image {
     let pixels = (size * RESOLUTION).as_uvec2();
     let colours = (0..pixels.y).flat_map(|row| {
         (0..pixels.x).flat_map(move |column| {
@@ -29,8 +56,8 @@ pub fn picture(design: &Design, size: Vec2) -> Image {
 
 /// The colour at a point in m from the top of the pole.
 fn colour(design: &Design, point: Vec2, size: Vec2) -> [u8; 3] {
-    let stripe = |colours: &[[u8; 3]], part: f32| {
-        colours[(part * colours.len() as f32) as usize % colours.len()]
+    let stripe = |colours: &[[u8; 3]], fraction: f32| {
+        colours[(fraction * colours.len() as f32) as usize % colours.len()]
     };
     match design {
         Design::Pales(colours) => stripe(colours, point.x / size.x),

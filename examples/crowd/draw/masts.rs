@@ -1,31 +1,16 @@
-//! What surrounds the cloths: sky, ground, light and poles.
-
-use std::f32::consts::FRAC_PI_3;
+//! Draws masts.
 
 use bevy::prelude::*;
-
-use bunting_examples::stage::{self, Stage};
+use bunting_examples::render::stage;
 
 use crate::plaza::Mast;
 
-/// The plaza at noon.
-pub const STAGE: Stage = Stage {
-    ground: Color::srgb(0.52, 0.50, 0.46),
-    extent: 2000.0,
-    haze: [100.0, 700.0],
-    field_of_view: FRAC_PI_3,
-    sun: Vec3::new(-1.0, 1.0, 0.55),
-    cascades: 2,
-    shadows: [20.0, 80.0],
-};
-
-/// Shows the surroundings.
+/// Gives each [`Mast`] a shaft: one mesh for all, scaled.
 pub fn plugin(app: &mut App) {
-    app.add_plugins(STAGE).add_systems(PostStartup, raise_masts);
+    app.add_systems(PostStartup, draw_masts);
 }
 
-/// All masts are one mesh, scaled.
-fn raise_masts(
+fn draw_masts(
     mut commands: Commands,
     masts: Query<(Entity, &Mast)>,
     mut meshes: ResMut<Assets<Mesh>>,

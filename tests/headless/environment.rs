@@ -9,9 +9,9 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec2, Vec3};
 use bevy_time::{Fixed, Time};
 use bevy_transform::prelude::*;
-use bunting_tests::{FLAG, app, app_at, assert_finite, run, state};
+use bunting_tests::{FLAG, app, app_at, assert_finite, greatest, run, state};
 
-/// How deep a particle may be inside of a collider at the end of a tick, m.
+/// Greatest depth of a particle in a collider at the end of a tick, m.
 const DEPTH: f32 = 5e-3;
 
 #[test]
@@ -27,16 +27,16 @@ fn winds_add_up() {
 }
 
 #[test]
-fn wind_blows_the_cloth_however_it_is_turned() {
+fn wind_is_in_world_space() {
     for turn in [0.0, 1.0, 3.0] {
         let mut app = app();
         let turned = Transform::from_rotation(Quat::from_rotation_y(turn));
         let held = Attachment::in_place(ClothEdge::Left);
         let cloth = app.world_mut().spawn((FLAG, held, turned)).id();
         run(&mut app, 60);
-        assert_eq!(state(&app, cloth).positions()[16].z, 0.0);
-        let from_the_front = turned.rotation * Vec3::new(0.0, 0.0, -8.0);
-        app.world_mut().spawn(WindField::steady(from_the_front));
+        assert_eq!(state(&app, cloth).positions()[16].z, 0.0, "without wind it stays in its plane");
+        let along_its_normal = turned.rotation * Vec3::new(0.0, 0.0, -8.0);
+        app.world_mut().spawn(WindField::steady(along_its_normal));
         run(&mut app, 100);
         let tip = state(&app, cloth).positions()[16];
         assert!(tip.z < -0.5, "{tip}");
@@ -65,8 +65,8 @@ fn gusts_do_not_depend_on_the_frame_rate() {
 }
 
 #[test]
-fn cloth_lies_on_what_it_may_touch() {
-    // The same fall onto the same ball on the ground, told from frames that are turned.
+fn cloth_lies_on_colliders() {
+    // The same fall onto a ball on the ground, in frames that are turned about the vertical.
     let flat = Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2);
     for turn in [0.0, 1.0, 2.0] {
         let rotation = Quat::from_rotation_y(turn) * flat;
@@ -110,40 +110,39 @@ fn a_moving_collider_pushes() {
     let top = Attachment::in_place(ClothEdge::Top);
     let curtain = app.world_mut().spawn((ClothMesh::grid(17, 17, 1.0, 1.0), top)).id();
     run(&mut app, 180);
-    let pushed =
-        state(&app, curtain).positions().iter().map(|position| position.z).fold(0.0, f32::max);
+    let pushed = greatest(state(&app, curtain).positions().iter().map(|position| position.z));
     assert!(pushed > 0.5, "{pushed} m");
     assert_finite(&app, curtain);
 }
 
 #[test]
-fn a_collider_that_rides_along_is_as_one_at_rest() {
+fn a_collider_that_moves_with_the_cloth_is_as_one_at_rest() {
     let pushed = |speed: f32| {
         let mut app = app();
         app.world_mut().resource_mut::<ClothSettings>().air_density = 0.0;
         let curtain = ClothMesh::grid(17, 17, 1.0, 1.0);
         let held = Attachment::in_place(ClothEdge::Top);
-        let calm = ClothMaterial(FabricMaterial { damping: 3.0, ..FabricMaterial::DENIM });
-        let curtain = app.world_mut().spawn((curtain, calm, held)).id();
+        let damped = ClothMaterial(FabricMaterial { damping: 3.0, ..FabricMaterial::DENIM });
+        let curtain = app.world_mut().spawn((curtain, damped, held)).id();
         let ball = Transform::from_xyz(0.5, -0.7, -0.1);
         let ball = app.world_mut().spawn((ClothCollider::ball(0.3), ball)).id();
         app.add_systems(
             FixedUpdate,
             move |mut transforms: Query<&mut Transform>, time: Res<Time>| {
-                for rider in [curtain, ball] {
-                    let mut transform = transforms.get_mut(rider).expect("a rider");
+                for entity in [curtain, ball] {
+                    let mut transform = transforms.get_mut(entity).expect("a transform");
                     transform.translation.x += speed * time.delta_secs();
                 }
             },
         );
         run(&mut app, 300);
-        // Wrinkles beside the ball may fall to either side; the bulge before it does not.
+        // Wrinkles beside the ball may fold to either side; only the bulge in front of it is compared.
         let centre = Vec2::new(0.5, -0.7);
-        let before_ball = |position: &&Vec3| position.truncate().distance(centre) < 0.15;
-        let bulge = state(&app, curtain).positions().iter().filter(before_ball);
-        bulge.map(|position| position.z).fold(0.0, f32::max)
+        let in_front = |position: &&Vec3| position.truncate().distance(centre) < 0.15;
+        let bulge = state(&app, curtain).positions().iter().filter(in_front);
+        greatest(bulge.map(|position| position.z))
     };
-    let (resting, riding) = (pushed(0.0), pushed(20.0));
+    let (resting, moving) = (pushed(0.0), pushed(20.0));
     assert!(resting > 0.1, "{resting}");
-    assert!((resting - riding).abs() < 4.0 * DEPTH, "{resting} {riding}");
+    assert!((resting - moving).abs() < 4.0 * DEPTH, "{resting} {moving}");
 }

@@ -1,23 +1,23 @@
-//! The sky: a dome, pale at the horizon and blue overhead.
+//! The sky: a dome, pale at the horizon and blue at the zenith.
 
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
 
-/// Colour at the horizon, and of all that is far away.
+/// Colour at the horizon, and of distant haze.
 pub const HORIZON: Color = Color::srgb(0.74, 0.82, 0.89);
 
-/// Colour overhead.
+/// Colour at the zenith.
 const ZENITH: Color = Color::srgb(0.22, 0.44, 0.74);
 
-/// Beyond the haze, m, and within what a camera sees.
+/// Radius of the dome, m: beyond the haze, and before the camera's far plane.
 const RADIUS: f32 = 900.0;
 
-/// Spans the dome.
+/// Adds the dome.
 pub fn plugin(app: &mut App) {
-    app.insert_resource(ClearColor(HORIZON)).add_systems(Startup, span);
+    app.insert_resource(ClearColor(HORIZON)).add_systems(Startup, spawn_dome);
 }
 
-fn span(
+fn spawn_dome(
     mut commands: Commands,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
@@ -34,7 +34,7 @@ fn span(
     commands.spawn((Mesh3d(meshes.add(dome)), MeshMaterial3d(materials.add(air)), NotShadowCaster));
 }
 
-/// The colour where the sine of the angle above the horizon is this.
+/// The colour at a sine of the angle above the horizon.
 fn colour(sine: f32) -> LinearRgba {
     let [horizon, zenith] = [HORIZON, ZENITH].map(LinearRgba::from);
     horizon.mix(&zenith, sine.max(0.0).sqrt())

@@ -1,7 +1,8 @@
-//! Pictures without a window.
+//! Writes pictures without a window.
 
 use std::fs;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 use bevy::app::PluginGroupBuilder;
 use bevy::camera::RenderTarget;
@@ -16,22 +17,23 @@ use bevy::time::TimeUpdateStrategy;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
 use bevy::world_serialization::WorldInstanceReady;
-use bevy_bunting::prelude::*;
 use bunting_scenes::Model;
 use clap::Args;
 
-use crate::{ASSETS, ONE_TICK};
+use crate::headless::{self, ONE_TICK};
+use crate::render::viewer;
+use crate::{ASSETS, Example, Options};
 
-/// Frames after which a model or a picture that has not come will never come.
-const PATIENCE: u32 = 10_000;
+/// Frames after which a model or a picture that is not ready is given up.
+const MAX_FRAMES: u32 = 10_000;
 
-/// Which pictures to take, and where they go.
+/// Which pictures to write, and where.
 #[derive(Clone, Debug, Args)]
-pub struct Album {
+pub struct PictureOptions {
     /// Write pictures as PNG into this directory.
     #[arg(long, value_name = "DIR", requires = "headless")]
     pictures: Option<PathBuf>,
-    /// When to take them, in seconds.
+    /// Simulated times of the pictures, in seconds.
     #[arg(
         long,
         value_name = "SECONDS",
@@ -45,11 +47,11 @@ pub struct Album {
     width: u32,
 }
 
-impl Album {
-    /// Makes ready to take pictures, whose names begin with `name`. None if none are wanted, or none
-    /// can be taken; it then says why.
+impl PictureOptions {
+    /// Prepares pictures whose names begin with `name`. None if none are wanted, or if none can be
+    /// written: the reason is printed.
     #[must_use]
-    pub fn open(&self, name: &'static str) -> Option<Pictures> {
+    pub fn open(&self, name: &str) -> Option<Pictures> {
         let directory = self.pictures.clone()?;
         if !any_driver() {
             eprintln!("no pictures: there is no Vulkan driver");
@@ -62,8 +64,22 @@ impl Album {
         let mut times = self.at.clone();
         times.sort_by(|a, b| b.total_cmp(a));
         let size = UVec2::new(self.width, self.width * 9 / 16);
-        Some(Pictures { directory, name, times, size })
+        Some(Pictures { directory, name: name.to_lowercase(), times, size })
     }
+}
+
+/// Simulates an example, prints its measurements and writes pictures of it. Fails if a measurement
+/// exceeds its limit.
+pub fn run(example: &impl Example, options: &Options, mut pictures: Pictures) -> ExitCode {
+    let mut app = App::new();
+    let stage = example.stage();
+    let camera = stage.camera();
+    app.add_plugins(windowless().set(headless::task_pools(options)).set(headless::warnings()))
+        .add_plugins((count_models, stage));
+    example.draw(&mut app);
+    headless::start(&mut app, example);
+    pictures.set_up(&mut app, camera);
+    headless::simulate(&mut app, example, options, |app, now| pictures.take_due(app, now))
 }
 
 /// Whether any Vulkan driver is installed; one in software counts.
@@ -73,8 +89,7 @@ fn any_driver() -> bool {
 }
 
 /// Bevy's plugins for rendering without a window.
-#[must_use]
-pub fn windowless() -> PluginGroupBuilder {
+fn windowless() -> PluginGroupBuilder {
     let settings = WgpuSettings { backends: Some(Backends::VULKAN), ..default() };
     DefaultPlugins
         .set(AssetPlugin { file_path: ASSETS.to_owned(), ..default() })
@@ -85,7 +100,7 @@ pub fn windowless() -> PluginGroupBuilder {
         })
         .set(RenderPlugin {
             render_creation: settings.into(),
-            // Else the first frames lack what is not compiled yet.
+            // Otherwise the first frames lack meshes whose pipelines are not compiled yet.
             synchronous_pipeline_compilation: true,
             ..default()
         })
@@ -93,77 +108,66 @@ pub fn windowless() -> PluginGroupBuilder {
         .disable::<PipelinedRenderingPlugin>()
 }
 
-/// Counts the models that are there to be seen.
-pub fn plugin(app: &mut App) {
+/// Counts the models that are loaded.
+fn count_models(app: &mut App) {
     app.init_resource::<LoadedModels>();
     app.add_observer(|_: On<WorldInstanceReady>, mut loaded: ResMut<LoadedModels>| loaded.0 += 1);
 }
 
-/// Number of models that are there to be seen.
+/// Number of models that are loaded.
 #[derive(Resource, Debug, Default)]
 struct LoadedModels(usize);
 
-/// Pictures still to be taken.
+/// Pictures still to be written.
 #[derive(Debug)]
 pub struct Pictures {
     directory: PathBuf,
-    name: &'static str,
-    /// The next last, s.
+    name: String,
+    /// Simulated times, s, descending.
     times: Vec<f64>,
+    /// Pixels.
     size: UVec2,
 }
 
 impl Pictures {
     /// Gives the viewer a camera and waits until all models are loaded.
-    ///
-    /// # Panics
-    ///
-    /// Unless the world has one [`LodViewer`].
-    pub fn set_up(&self, app: &mut App, camera: impl Bundle) {
+    fn set_up(&self, app: &mut App, camera: impl Bundle) {
+        let viewer = viewer(app);
         let world = app.world_mut();
-        let target = Image::new_target_texture(
-            self.size.x,
-            self.size.y,
-            TextureFormat::Rgba8UnormSrgb,
-            None,
-        );
+        let UVec2 { x: width, y: height } = self.size;
+        let target = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
         let target = RenderTarget::Image(world.resource_mut::<Assets<Image>>().add(target).into());
-        let viewer = world
-            .query_filtered::<Entity, With<LodViewer>>()
-            .single(world)
-            .expect("a scene has one viewer");
         let camera = (camera, Camera { is_active: false, ..default() }, target);
         world.entity_mut(viewer).insert(camera);
         let models = world.query::<&Model>().iter(world).count();
         draw_until(app, |world| world.resource::<LoadedModels>().0 == models);
     }
 
-    /// Takes the pictures that are due after `now` seconds.
-    pub fn take_due(&mut self, app: &mut App, now: f64) {
+    /// Writes the pictures that are due after `now` simulated seconds.
+    fn take_due(&mut self, app: &mut App, now: f64) {
         while let Some(time) = self.times.pop_if(|time| *time <= now) {
-            let target = self.open_shutter(app.world_mut(), true);
+            let target = activate_camera(app.world_mut(), true);
             let file = self.directory.join(format!("{}_{time:05.2}_s.png", self.name));
             let shot = app.world_mut().spawn(Screenshot(target)).observe(save_to_disk(file)).id();
             draw_until(app, |world| world.get_entity(shot).is_err());
-            self.open_shutter(app.world_mut(), false);
+            activate_camera(app.world_mut(), false);
         }
-    }
-
-    /// Lets the camera draw or not, and tells where it draws to.
-    fn open_shutter(&self, world: &mut World, open: bool) -> RenderTarget {
-        let mut cameras = world.query::<(&mut Camera, &RenderTarget)>();
-        let (mut camera, target) =
-            cameras.single_mut(world).expect("the viewer has the only camera");
-        camera.is_active = open;
-        target.clone()
     }
 }
 
-/// Draws frames while time stands still, until something has happened.
-fn draw_until(app: &mut App, happened: impl Fn(&World) -> bool) {
+/// Turns the only camera on or off, and returns its target.
+fn activate_camera(world: &mut World, active: bool) -> RenderTarget {
+    let mut cameras = world.query::<(&mut Camera, &RenderTarget)>();
+    let (mut camera, target) = cameras.single_mut(world).expect("the viewer has the only camera");
+    camera.is_active = active;
+    target.clone()
+}
+
+/// Draws frames without simulating, until a condition holds.
+fn draw_until(app: &mut App, done: impl Fn(&World) -> bool) {
     app.insert_resource(TimeUpdateStrategy::FixedTimesteps(0));
-    for _ in 0..PATIENCE {
-        if happened(app.world()) {
+    for _ in 0..MAX_FRAMES {
+        if done(app.world()) {
             break;
         }
         app.update();

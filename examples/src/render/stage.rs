@@ -1,4 +1,4 @@
-//! What surrounds a scene: sky, ground and light.
+//! Sky, ground and light around a scene.
 
 use std::f32::consts::FRAC_PI_4;
 
@@ -6,35 +6,35 @@ use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::light::CascadeShadowConfigBuilder;
 use bevy::prelude::*;
 
-use crate::sky;
+use crate::render::sky;
 
-/// Light from the whole sky, on both sides of everything, cd/m².
+/// Luminance of the sky, from all directions, cd/m².
 const SKYLIGHT: f32 = 1_500.0;
 
-/// Light of the sun, lx.
+/// Illuminance of the sun, lx.
 const SUNLIGHT: f32 = 5_000.0;
 
-/// The plugin that shows what surrounds a scene.
+/// The plugin that draws sky, ground and light.
 #[derive(Clone, Resource)]
 pub struct Stage {
     /// Colour of the ground.
     pub ground: Color,
     /// Width of the ground, m.
     pub extent: f32,
-    /// Distances at which haze begins, and hides all else, m: the ground ends where the sky begins.
+    /// Distances at which haze begins and is opaque, m: it hides the edge of the ground.
     pub haze: [f32; 2],
     /// Vertical field of view, rad.
     pub field_of_view: f32,
-    /// Whence the sun shines.
+    /// Position of the sun relative to the origin; only its direction counts.
     pub sun: Vec3,
-    /// Cascades of the shadows.
+    /// Number of shadow cascades.
     pub cascades: usize,
-    /// Distances at which the first cascade and the shadows end, m.
+    /// Distances at which the first cascade and the last end, m.
     pub shadows: [f32; 2],
 }
 
 impl Stage {
-    /// For a scene of some metres.
+    /// The stage of a scene of a few metres.
     pub const SMALL: Self = Self {
         ground: Color::srgb(0.60, 0.56, 0.49),
         extent: 1000.0,
@@ -45,7 +45,7 @@ impl Stage {
         shadows: [8.0, 30.0],
     };
 
-    /// What a camera needs to show it well.
+    /// A camera with this field of view and haze.
     #[must_use]
     pub fn camera(&self) -> impl Bundle + use<> {
         let lens = PerspectiveProjection { fov: self.field_of_view, ..default() };
@@ -62,15 +62,15 @@ impl Stage {
 impl Plugin for Stage {
     fn build(&self, app: &mut App) {
         let skylight = Color::srgb(0.80, 0.90, 0.96);
-        let everywhere = GlobalAmbientLight { color: skylight, brightness: SKYLIGHT, ..default() };
+        let ambient = GlobalAmbientLight { color: skylight, brightness: SKYLIGHT, ..default() };
         app.add_plugins(sky::plugin)
-            .insert_resource(everywhere)
+            .insert_resource(ambient)
             .insert_resource(self.clone())
-            .add_systems(Startup, (pave, light));
+            .add_systems(Startup, (spawn_ground, spawn_sun));
     }
 }
 
-/// Cloth of a colour, or of a printed one: light shines through it, and both faces are seen.
+/// Material of woven cloth: both faces are drawn, and some light passes through.
 #[must_use]
 pub fn cloth() -> StandardMaterial {
     StandardMaterial {
@@ -83,13 +83,13 @@ pub fn cloth() -> StandardMaterial {
     }
 }
 
-/// Cloth of a flag, which is smoother.
+/// Material of flags: smoother.
 #[must_use]
-pub fn bunting() -> StandardMaterial {
+pub fn flag_cloth() -> StandardMaterial {
     StandardMaterial { perceptual_roughness: 0.8, reflectance: 0.25, ..cloth() }
 }
 
-/// Paint of poles and masts.
+/// Material of painted poles.
 #[must_use]
 pub fn paint() -> StandardMaterial {
     StandardMaterial {
@@ -99,7 +99,7 @@ pub fn paint() -> StandardMaterial {
     }
 }
 
-fn pave(
+fn spawn_ground(
     mut commands: Commands,
     stage: Res<Stage>,
     mut meshes: ResMut<Assets<Mesh>>,
@@ -117,7 +117,7 @@ fn pave(
     ));
 }
 
-fn light(mut commands: Commands, stage: Res<Stage>) {
+fn spawn_sun(mut commands: Commands, stage: Res<Stage>) {
     let [first_cascade_far_bound, maximum_distance] = stage.shadows;
     commands.spawn((
         DirectionalLight {

@@ -1,4 +1,4 @@
-//! What has weight 0 is rigid and costs nothing, and the rest blends into it.
+//! Vertices of weight 0 are rigid and have no particles; weights between 0 and 1 blend.
 
 use bevy_app::prelude::*;
 use bevy_bunting::prelude::*;
@@ -11,16 +11,16 @@ use bunting_tests::{Seen, app, assert_finite, bits, run, spawn_flag, state};
 /// Vertices along an edge of the square that most tests use.
 const EDGE: usize = 17;
 
-/// Columns of it that are rigid.
+/// Rigid columns of the square.
 const RIGID: usize = 6;
 
-/// Columns over which it becomes cloth.
+/// Columns over which the weight grows from 0 to 1.
 const BLENDED: usize = 4;
 
-/// How far a vertex may be from where the target has it, m: rounding at 10 m from the origin.
+/// Greatest distance of a vertex from its place on the target, m: rounding at 10 m from the origin.
 const TOLERANCE: f32 = 1e-5;
 
-/// Rounding of what is computed in two ways, m.
+/// Greatest difference of a position that is computed in two ways, m.
 const ROUNDING: f32 = 1e-6;
 
 /// A square metre, rigid on the left, whose weights grow from 0 to 1 to the right.
@@ -38,7 +38,7 @@ fn weighted(weight: impl Fn(usize) -> f32) -> ClothMesh {
     ClothMesh::grid(edge, edge, 1.0, 1.0).with_weights((0..EDGE * EDGE).map(weight).collect())
 }
 
-/// The same square with all of its moving part shown where it is simulated.
+/// The same square without blending: each weight is 0 or 1.
 fn unblended() -> ClothMesh {
     weighted(|vertex| weight(vertex % EDGE).ceil())
 }
@@ -55,7 +55,7 @@ fn errors(app: &App) -> Vec<ClothError> {
 #[derive(Component)]
 struct Vehicle;
 
-/// Drives a circle of 10 m at 20 m/s and spins twice a second about a tilted axis.
+/// Moves vehicles along a circle of 10 m at 20 m/s and spins them twice a second about a tilted axis.
 fn drive(mut vehicles: Query<&mut Transform, With<Vehicle>>, time: Res<Time>) {
     for mut transform in &mut vehicles {
         let (angle, turn) = (2.0 * time.elapsed_secs(), 12.566 * time.elapsed_secs());
@@ -91,17 +91,17 @@ fn a_rigid_vertex_is_in_its_place_on_a_fast_spinning_target() {
             }
         }
     }
-    assert!(moved > 0.2, "{moved} m: the rest moves");
+    assert!(moved > 0.2, "{moved} m: the simulated vertices move");
     assert_finite(&app, cloth);
 }
 
 #[test]
-fn what_is_rigid_has_no_particles() {
+fn rigid_vertices_have_no_particles() {
     let mut app = app();
     let cloth = app.world_mut().spawn(square()).id();
     run(&mut app, 3);
     let state = state(&app, cloth);
-    // One column of the rigid part holds the rest.
+    // One rigid column remains: it pins the simulated part.
     assert_eq!(state.positions().len(), EDGE * (EDGE - RIGID + 1));
     let fabric = state.fabric().expect("a fabric");
     assert_eq!(fabric.triangles().len(), 2 * (EDGE - 1) * (EDGE - RIGID));
@@ -132,7 +132,7 @@ fn the_surface_blends_from_rigid_to_simulated() {
             *column = column.max(shown.distance(rest(vertex)));
         }
     }
-    // Each column follows the wind a little more than the one before.
+    // Each column moves more in the wind than the one before.
     assert!(furthest[..RIGID].iter().all(|&moved| moved == 0.0), "{furthest:?}");
     assert!(furthest[RIGID - 1..].windows(2).all(|pair| pair[0] < pair[1]), "{furthest:?}");
     assert!(furthest[EDGE - 1] > 0.3, "{furthest:?}");
@@ -211,7 +211,7 @@ fn bad_weights_are_named_and_the_others_go_on() {
 }
 
 #[test]
-fn what_has_nothing_rigid_must_be_attached_elsewhere() {
+fn an_attachment_of_rigid_vertices_needs_some() {
     let mut app = app();
     let rigid = Attachment::in_place(AttachedVertices::Rigid);
     let nothing = app.world_mut().spawn((weighted(|_| 1.0), rigid.clone())).id();

@@ -1,23 +1,23 @@
-//! A camera that circles around a point: drag to turn, scroll to come closer.
+//! A camera on an orbit: drag to turn, scroll to change the distance.
 
 use std::f32::consts::FRAC_PI_2;
 
 use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll};
 use bevy::prelude::*;
 
-/// Radians a pixel that the mouse is dragged.
+/// Turn per pixel that the mouse is dragged, rad.
 const TURN: f32 = 0.005;
 
-/// Part of the distance that a step of the wheel covers.
-const APPROACH: f32 = 0.1;
+/// Relative change of the distance per step of the wheel.
+const ZOOM: f32 = 0.1;
 
-/// Nearest and farthest, m.
+/// Least and greatest distance, m.
 const DISTANCES: (f32, f32) = (2.0, 200.0);
 
-/// Lowest and highest, rad above the horizon: above the ground, and not past the zenith.
+/// Least and greatest pitch, rad above the horizon: above the ground, and not past the zenith.
 const PITCHES: (f32, f32) = (-0.05, FRAC_PI_2 - 0.01);
 
-/// Where a camera circles.
+/// The orbit of a camera.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
     centre: Vec3,
@@ -30,27 +30,25 @@ pub struct Orbit {
 }
 
 impl Orbit {
-    /// Twenty-four metres from a point, in front of it.
+    /// An orbit through `eye` around a centre.
     #[must_use]
-    pub const fn around(centre: Vec3) -> Self {
-        Self { centre, distance: 24.0, yaw: 0.0, pitch: 0.0 }
-    }
-
-    /// Around a point, beginning at another.
-    #[must_use]
-    pub fn from(eye: Vec3, centre: Vec3) -> Self {
-        let away = eye - centre;
-        let pitch = away.y.atan2(away.xz().length());
-        Self { centre, distance: away.length(), yaw: away.x.atan2(away.z), pitch }
+    pub fn new(eye: Vec3, centre: Vec3) -> Self {
+        let from_centre = eye - centre;
+        Self {
+            centre,
+            distance: from_centre.length(),
+            yaw: from_centre.x.atan2(from_centre.z),
+            pitch: from_centre.y.atan2(from_centre.xz().length()),
+        }
     }
 }
 
-/// Moves cameras around their points.
+/// Moves cameras along their orbits.
 pub fn plugin(app: &mut App) {
-    app.add_systems(Update, circle);
+    app.add_systems(Update, move_cameras);
 }
 
-fn circle(
+fn move_cameras(
     mut cameras: Query<(&mut Orbit, &mut Transform)>,
     buttons: Res<ButtonInput<MouseButton>>,
     motion: Res<AccumulatedMouseMotion>,
@@ -61,10 +59,10 @@ fn circle(
             orbit.yaw -= TURN * motion.delta.x;
             orbit.pitch = (orbit.pitch + TURN * motion.delta.y).clamp(PITCHES.0, PITCHES.1);
         }
-        let distance = orbit.distance * (-APPROACH * scroll.delta.y.clamp(-1.0, 1.0)).exp();
+        let distance = orbit.distance * (-ZOOM * scroll.delta.y.clamp(-1.0, 1.0)).exp();
         orbit.distance = distance.clamp(DISTANCES.0, DISTANCES.1);
         let rotation = Quat::from_euler(EulerRot::YXZ, orbit.yaw, -orbit.pitch, 0.0);
-        let place = orbit.centre + rotation * (orbit.distance * Vec3::Z);
-        *transform = Transform { translation: place, rotation, ..default() };
+        let translation = orbit.centre + rotation * (orbit.distance * Vec3::Z);
+        *transform = Transform { translation, rotation, ..default() };
     }
 }
