@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-use crate::commands::{budget, gate, lod, oracles, pareto, report, schedule, stability};
+use crate::commands::{budget, gate, lod, memory, oracles, pareto, report, schedule, stability};
 use crate::output::Outcome;
 
 /// Measures the cloth against references.
@@ -36,6 +36,8 @@ enum Command {
     Budget,
     /// Agreement of the levels of detail, and the jumps between them.
     Lod,
+    /// Bytes of a chain of levels and of batches.
+    Memory,
     /// The hard cases.
     Stability,
     /// Cost of the schedule over plain calls.
@@ -61,6 +63,7 @@ impl Arguments {
             Command::Peers => peers(self.quick)?,
             Command::Schedule => schedule::run(self.quick),
             Command::Budget => budget::run(self.quick),
+            Command::Memory => memory::run(),
             Command::Oracles => oracles::run(),
             Command::Stability => stability::run(self.quick),
             Command::Gate(options) => {

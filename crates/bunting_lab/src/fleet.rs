@@ -7,7 +7,7 @@ use bunting_solver::{ClothBatch, ClothSnapshot, Drive, Fabric, LaneCount, StepSe
 use glam::Vec3;
 
 use crate::{
-    budget::Effort,
+    effort::Effort,
     product::{self, TICK},
     scenes::{Scene, TICK_RATE},
     timing::Timing,
@@ -32,7 +32,16 @@ impl Fleet {
     /// Never: every scene is a good cloth, and every cloth finds its lane.
     #[must_use]
     pub fn new(scene: Scene, cloths: usize, settings: StepSettings) -> Self {
-        let fabric = product::fabric(&scene);
+        Self::of(product::fabric(&scene), scene, cloths, settings)
+    }
+
+    /// The same of a fabric of the scene's particles that was cut otherwise.
+    ///
+    /// # Panics
+    ///
+    /// When the fabric has other particles than the scene.
+    #[must_use]
+    pub fn of(fabric: Arc<Fabric>, scene: Scene, cloths: usize, settings: StepSettings) -> Self {
         let positions: Vec<Vec3> = scene.positions().iter().map(|x| x.as_vec3()).collect();
         let velocities = vec![Vec3::ZERO; positions.len()];
         let start = ClothSnapshot::new(positions, velocities);
@@ -80,6 +89,12 @@ impl Fleet {
     #[must_use]
     pub fn fabric(&self) -> &Arc<Fabric> {
         self.batches[0].fabric()
+    }
+
+    /// Scheme, substeps and passes.
+    #[must_use]
+    pub fn settings(&self) -> StepSettings {
+        self.settings
     }
 
     /// The batches.

@@ -20,16 +20,17 @@ const GUST: f32 = 1.0;
 /// How often gusts come, 1/s.
 const GUST_RATE: f32 = 0.3;
 
-/// An app on one core whose every update is one tick of the standard flag's wind.
-pub fn app(settings: StepSettings) -> App {
+/// An app on one core whose every update is one tick of the standard flag's wind. Settings are those of
+/// each level, the finest first; the last holds for all levels after it.
+pub fn app(settings: impl IntoIterator<Item = StepSettings>) -> App {
     let mut app = calm_app(settings);
     let wind = Vec3::from_array(Scene::flag(2).air.wind.map(|speed| speed as f32));
     app.world_mut().spawn(WindField::steady(wind).with_gusts(GUST, GUST_RATE, 1));
     app
 }
 
-/// An app on one core whose every update is one tick in still air.
-pub fn calm_app(settings: StepSettings) -> App {
+/// The same in still air.
+pub fn calm_app(settings: impl IntoIterator<Item = StepSettings>) -> App {
     // Batches keep to the thread that ticks them when the pool has only one.
     ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
     let tick = Duration::from_secs_f32(product::TICK);
@@ -42,7 +43,10 @@ pub fn calm_app(settings: StepSettings) -> App {
     ))
     .insert_resource(Time::<Fixed>::from_duration(tick))
     .insert_resource(TimeUpdateStrategy::ManualDuration(tick))
-    .insert_resource(ClothSettings { steps: vec![settings.into()], ..ClothSettings::default() });
+    .insert_resource(ClothSettings {
+        steps: settings.into_iter().map(Into::into).collect(),
+        ..ClothSettings::default()
+    });
     app
 }
 

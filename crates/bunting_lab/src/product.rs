@@ -13,9 +13,9 @@ use glam::{DVec3, Vec3};
 
 use crate::{
     contender::Contender,
-    oracles::specimen::Specimen,
     scenes::{self, Scene, TICK_RATE},
     simulation::Simulation,
+    specimen::Specimen,
 };
 
 /// Density of the air in the scenes, kg/m³: they give only its product with a coefficient.

@@ -82,7 +82,7 @@ fn no_change_of_level_is_seen() {
 #[test]
 fn every_engine_hangs_a_cloth() {
     use bunting_lab::{
-        peers::{Engine, measurement::hang},
+        peers::{engine::Engine, measurement::hang},
         scenes::Scene,
     };
     let scene = Scene { seconds: 3.0, ..Scene::hang_top(5) };

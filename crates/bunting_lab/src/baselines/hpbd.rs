@@ -14,10 +14,10 @@
 use glam::Vec3;
 
 use super::{
-    Stepper,
     pbd::{Bending, Pbd},
     projection::project,
     sheet::{Link, Sheet},
+    stepper::Stepper,
 };
 use crate::scenes::Scene;
 

@@ -5,8 +5,12 @@ use std::thread;
 use bunting_solver::StepSettings;
 use serde::Serialize;
 
-use super::{Effort, LEVELS, scheme_name, schemes};
-use crate::{fleet::Fleet, scenes::Scene};
+use crate::{
+    effort::Effort,
+    fleet::Fleet,
+    scenes::Scene,
+    settings::{LEVELS, scheme_name, schemes},
+};
 
 /// Numbers of flags.
 const CLOTHS: [usize; 6] = [1, 8, 16, 64, 256, 1000];

@@ -5,13 +5,13 @@ use serde_json::json;
 
 use super::progress;
 use crate::{
-    budget::{scheme_name, schemes},
     levels::{agreement::Agreement, pops::Pop, resolution::Resolution, switches::Switch},
     output::{
         Outcome,
         plot::{Axes, Mark, Plot, Series},
         table::{Table, figure},
     },
+    settings::{scheme_name, schemes},
 };
 
 /// Vertices along each side of the levels that are compared, the finest first.

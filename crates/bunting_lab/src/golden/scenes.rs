@@ -13,7 +13,7 @@ use bunting_solver::{
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
 
-use super::StateHash;
+use super::hash::StateHash;
 use crate::product::TICK;
 
 /// Ticks from one state that is hashed to the next.

@@ -9,12 +9,12 @@ use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use crate::{
-    budget::scheme_name,
     fleet::Fleet,
     levels::{FLAGS, INTERVAL, SETTLING, pops::PIXELS},
     product,
     reference::grid::Grid,
     scenes::{Scene, ticks},
+    settings::scheme_name,
     stats,
 };
 

@@ -3,11 +3,12 @@
 use bunting_solver::{Scheme, StepSettings};
 use glam::DVec3;
 
-use super::{Case, specimen::Specimen};
+use super::Case;
 use crate::{
     product::DEFAULT,
     reference::grid::Grid,
     scenes::{Fabric, Pins, Pose, Scene, TICK_RATE},
+    specimen::Specimen,
 };
 
 /// The scheme under trial as users meet it.

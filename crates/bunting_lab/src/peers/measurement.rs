@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::Serialize;
 
-use super::{Engine, Peer};
+use super::{engine::Engine, peer::Peer};
 use crate::{
     reference::grid::Grid,
     scenes::{Scene, TICK_RATE, ticks},

@@ -3,13 +3,13 @@
 use glam::{DVec3, Vec3, dvec3};
 
 use super::{
-    HardCase,
+    case::HardCase,
     rig::{reach, run, speed, start, strain},
 };
 use crate::{
-    oracles::specimen::Specimen,
     scenes::{Pose, Scene},
     simulation::Simulation,
+    specimen::Specimen,
     stats::worse,
 };
 

@@ -6,14 +6,14 @@ use bunting_solver::{ClothSnapshot, FrameMotion};
 use glam::{DVec3, Quat, Vec3};
 
 use super::{
-    HardCase,
+    case::HardCase,
     rig::{positions, reach, run, speed, start, strain},
 };
 use crate::{
-    oracles::specimen::Specimen,
     product::{Cloth, TICK, fabric},
     scenes::{Pins, Pose, Scene, ticks},
     simulation::Simulation,
+    specimen::Specimen,
     stats::{rms_distance, worse},
 };
 

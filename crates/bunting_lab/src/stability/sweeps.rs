@@ -3,15 +3,16 @@
 use bunting_solver::StepSettings;
 
 use super::{
-    HardCase,
+    case::HardCase,
     rig::{SETTINGS, energy, run, speed, start, strain},
 };
 use crate::{
-    oracles::{rig::strip, specimen::Specimen, trials},
+    oracles::{rig::strip, trials},
     product::{Cloth, Product},
     reference::grid::Grid,
     scenes::{Fabric, Pins, Pose, Scene, ticks},
     simulation::Simulation,
+    specimen::Specimen,
     stats::{crossing_frequency, rms_distance, worse},
 };
 

@@ -1,7 +1,7 @@
 //! Wind, weights, and a fabric that changes.
 
 use super::{
-    HardCase,
+    case::HardCase,
     rig::{SETTINGS, positions, reach, run, start},
 };
 use crate::{

@@ -10,10 +10,10 @@ use crate::{
         Case,
         bending::{LATERAL_BUCKLING, SELF_WEIGHT_COLUMN, column_of_links},
         rig::{YARNS, chains, label, order, row, strip},
-        specimen::Mount,
     },
     reference::grid::Grid,
     scenes::{Fabric, GRAVITY, Pins, Pose, Scene, ticks},
+    specimen::Mount,
 };
 
 /// Links along the free metre of a column.

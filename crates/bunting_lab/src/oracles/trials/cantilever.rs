@@ -7,9 +7,9 @@ use crate::{
         Case,
         bending::Cantilever,
         rig::{YARNS, label, order, row, run, strip},
-        specimen::{Mount, Specimen},
     },
     scenes::{Fabric, GRAVITY, Pins, Pose, Scene, ticks},
+    specimen::{Mount, Specimen},
 };
 
 /// Γ = σgL³/B, as tabulated by Romero et al. 2021.

@@ -7,9 +7,9 @@ use crate::{
         Case,
         catenary::{Catenary, sag_of_chain},
         rig::{YARNS, chains, column_masses, label, order, row, run, strip, substep},
-        specimen::{Mount, Specimen},
     },
     scenes::{GRAVITY, Pins, Pose, Scene},
+    specimen::{Mount, Specimen},
 };
 
 /// Stiffness of a strip as good as inextensible, N/m: it strains by 4e-6.

@@ -8,9 +8,9 @@ use crate::{
         Case,
         drag::BroadsideFall,
         rig::{Substeps, YARNS, label, order, run, substep},
-        specimen::{Mount, Specimen},
     },
     scenes::{Air, Fabric, GRAVITY, Pins, Scene, TICK_RATE},
+    specimen::{Mount, Specimen},
 };
 
 /// σ = 0.1 kg/m², C_d = 1.2, ρ = 1.225 kg/m³.

@@ -6,9 +6,9 @@ use crate::{
     oracles::{
         Case, free_fall,
         rig::{Substeps, label, order, run, substep},
-        specimen::Mount,
     },
     scenes::{GRAVITY, Pins, Scene, TICK_RATE},
+    specimen::Mount,
 };
 
 /// Length of the fall, s.

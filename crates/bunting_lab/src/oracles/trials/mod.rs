@@ -14,7 +14,8 @@ mod pendulum;
 mod spin;
 mod stretch;
 
-use super::{Case, specimen::Mount};
+use super::Case;
+use crate::specimen::Mount;
 
 /// A family of cases of one closed form.
 pub type Trial = fn(&Mount) -> Vec<Case>;

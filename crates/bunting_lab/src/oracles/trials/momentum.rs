@@ -8,10 +8,10 @@ use crate::{
         Case,
         dumbbell::{Formula, spin_left},
         rig::{GAUSS_SEIDEL, Substeps, YARNS, label, order, run, substep},
-        specimen::{Mount, Specimen},
     },
     reference::grid::Grid,
     scenes::{Fabric, Pins, Pose, Scene},
+    specimen::{Mount, Specimen},
 };
 
 /// Corrections round to a unit in the last place of a position, 6e-8 m, in each of at most 1200

@@ -6,10 +6,10 @@ use crate::{
     oracles::{
         Case,
         rig::{GAUSS_SEIDEL, YARNS, chains, label, row, run, strip, substep},
-        specimen::Mount,
         stretch::hung_strip,
     },
     scenes::{Fabric, GRAVITY, Pins, Pose, Scene},
+    specimen::Mount,
 };
 
 /// Time to come to rest, s: at 5/s the oscillation is down to e⁻²⁰.

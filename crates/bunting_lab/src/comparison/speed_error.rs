@@ -1,6 +1,6 @@
 //! Plots of error over time.
 
-use super::pareto::Row;
+use super::row::Row;
 use crate::{
     contender::Contender,
     observation::COMPARED_TICKS,
@@ -24,6 +24,7 @@ const FIGURE: [(&str, Option<usize>, &str); 8] = [
 /// Error over time of every method on a scene, one colour a method, of one cloth alone and of as many
 /// as can be had at once, and the front of what no other setting beats. A contender has its colour on
 /// every scene. None where no method has an error.
+#[must_use]
 pub fn plot(scene: &Scene, rows: &[Row], contenders: &[Contender]) -> Option<Plot> {
     let widest = contenders.iter().map(|it| it.lanes).max()?;
     let mut kinds: Vec<(&str, usize)> = Vec::new();
@@ -47,6 +48,7 @@ pub fn plot(scene: &Scene, rows: &[Row], contenders: &[Contender]) -> Option<Plo
 }
 
 /// Error over time of the position-based methods on a scene.
+#[must_use]
 pub fn figure(scene: &Scene, rows: &[Row]) -> Plot {
     let series = FIGURE.iter().filter_map(|&(method, lanes, name)| {
         let of_method = rows.iter().filter(|row| {
