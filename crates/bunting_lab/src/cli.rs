@@ -46,8 +46,8 @@ enum Command {
     Peers,
     /// Hashes, closed forms and quick hard cases against the committed lists; exits with 1 where they differ.
     Gate(gate::Options),
-    /// All of it, as one HTML page.
-    Report,
+    /// All of it, as one HTML page and as `docs/measurements.md`.
+    Report(report::Options),
 }
 
 impl Arguments {
@@ -71,7 +71,7 @@ impl Arguments {
                     outcome.present(self.json, self.out.as_deref())
                 });
             }
-            Command::Report => report::run(self.quick, self.out.as_deref())?,
+            Command::Report(options) => report::run(&options, self.quick, self.out.as_deref())?,
         };
         outcome.present(self.json, self.out.as_deref())
     }

@@ -54,7 +54,7 @@ pub fn distance_plot(distances: &[AtDistance]) -> Plot {
 /// Figure B.1: a stacked bar a level. Parts below the noise count as nothing.
 #[must_use]
 pub fn part_plot(parts: &[Part]) -> Plot {
-    let of_level = |n: u32| parts.iter().filter(move |part| part.n == n);
+    let of_level = |n: u32| parts.iter().filter(move |it| it.n == n && PARTS.contains(&it.part));
     let up_to = |n: u32, last: usize| {
         let whole: f64 = of_level(n).map(|part| part.us.max(0.0)).sum();
         let below = of_level(n).filter(|part| PARTS[..=last].contains(&part.part));

@@ -4,7 +4,12 @@ use bevy_bunting::ClothSystems;
 use bunting_solver::instruction_set;
 
 use super::{
-    distance::AtDistance, kernels::Kernels, parts::Part, phases::Phase, sheets::Sheet, thesis,
+    distance::AtDistance,
+    kernels::Kernels,
+    parts::{EXTRAS, Part},
+    phases::Phase,
+    sheets::Sheet,
+    thesis,
     thousand::Thousand,
 };
 use crate::{
@@ -173,14 +178,16 @@ pub fn distance_table(distances: &[AtDistance]) -> Table {
 #[must_use]
 pub fn part_table(parts: &[Part]) -> Table {
     let cells = |it: &Part| {
-        let fraction = format!("{:.1} %", 100.0 * it.fraction);
+        let sign = if EXTRAS.contains(&it.part) && it.fraction > 0.0 { "+" } else { "" };
+        let fraction = format!("{sign}{:.1} %", 100.0 * it.fraction);
         vec![format!("{n} × {n}", n = it.n), it.part.into(), fraction, figure(it.us)]
     };
     Table {
         name: "budget_parts".into(),
         title: format!(
-            "Parts of the tick of a full batch; the thesis's damping of all but rigid motion takes {:.0} % \
-             there",
+            "Parts of the tick of a full batch of flags; {} are added to it where they are used (of the \
+             thesis's frame internal damping takes {:.0} %)",
+            EXTRAS.join(" and "),
             100.0 * thesis::INTERNAL_DAMPING
         ),
         headers: vec!["level", "part", "of the tick", "µs/tick"],

@@ -29,7 +29,9 @@ pub struct Finding {
 }
 
 impl Finding {
-    fn new(good: bool, text: String) -> Self {
+    /// A finding.
+    #[must_use]
+    pub fn new(good: bool, text: String) -> Self {
         Self { good, text }
     }
 }
