@@ -13,7 +13,7 @@ use crate::{
     product::{self, Cloth, DEFAULT, Product},
     reference::{Reference, grid::Grid},
     scenes::{Air, Scene},
-    simulation::Simulation,
+    simulation::{Simulation, in_double},
     timing::Timing,
 };
 
@@ -126,8 +126,7 @@ fn run(scene: &Scene, variant: &Variant) -> (Observation, Timing) {
     let mut time = Timing::default();
     for _ in 0..scene.ticks() {
         time.time(|| cloth.tick());
-        let double = |vectors: &[Vec3]| vectors.iter().map(|x| x.as_dvec3()).collect::<Vec<_>>();
-        observer.observe(&double(cloth.positions()), &double(cloth.velocities()));
+        observer.observe(&in_double(cloth.positions()), &in_double(cloth.velocities()));
     }
     (observer.finish(), time)
 }

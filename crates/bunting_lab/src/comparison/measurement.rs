@@ -7,6 +7,7 @@ use crate::{
     product::Product,
     reference::grid::Grid,
     scenes::Scene,
+    simulation::in_double,
     timing::Timing,
 };
 
@@ -43,8 +44,8 @@ pub fn measure(
         }
         let timing = if tick < WARM_UP { &mut warm_up } else { &mut time };
         timing.time(|| simulation.tick());
-        let positions: Vec<_> = simulation.positions().iter().map(|x| x.as_dvec3()).collect();
-        let velocities: Vec<_> = simulation.velocities().iter().map(|v| v.as_dvec3()).collect();
+        let [positions, velocities] =
+            [simulation.positions(), simulation.velocities()].map(in_double);
         if !observer.observe(&positions, &velocities) {
             break;
         }

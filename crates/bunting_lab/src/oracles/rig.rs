@@ -56,13 +56,6 @@ pub fn column_masses(scene: &Scene) -> Vec<f64> {
     Grid::new(scene).masses.into_iter().step_by(scene.columns).skip(1).collect()
 }
 
-/// Advances by `seconds`.
-pub fn run(specimen: &mut dyn Specimen, seconds: f64) {
-    for _ in 0..(seconds * f64::from(TICK_RATE)).round() as usize {
-        specimen.tick();
-    }
-}
-
 /// Length of a substep, s.
 #[must_use]
 pub fn substep(settings: StepSettings) -> f64 {

@@ -1,12 +1,12 @@
 //! What is measured of each engine.
 
-use glam::DVec3;
 use serde::Serialize;
 
 use super::{engine::Engine, peer::Peer};
 use crate::{
     reference::grid::Grid,
     scenes::{Scene, TICK_RATE, ticks},
+    simulation::in_double,
     stats::{self, Strain},
     timing::Timing,
 };
@@ -87,7 +87,6 @@ pub fn hang(engine: &Engine, scene: &Scene) -> Row {
             largest = largest.max(strain.max);
         }
     }
-    let speeds: Vec<DVec3> = cloth.velocities().iter().map(|v| v.as_dvec3()).collect();
     Row {
         engine: engine.name,
         constraints: engine.constraints,
@@ -99,7 +98,7 @@ pub fn hang(engine: &Engine, scene: &Scene) -> Row {
         ms_min: time.min() * 1e-3 / engine.lanes as f64,
         mean_stretch: finite(stats::mean(&means)),
         max_stretch: finite(largest),
-        final_speed: finite(stats::rms_length(&speeds)),
+        final_speed: finite(stats::rms_length(&in_double(cloth.velocities()))),
     }
 }
 
@@ -151,8 +150,7 @@ fn shock(
 }
 
 fn strain(grid: &Grid, cloth: &dyn Peer) -> Strain {
-    let positions: Vec<DVec3> = cloth.positions().iter().map(|x| x.as_dvec3()).collect();
-    Strain::of(grid.strains(&positions))
+    Strain::of(grid.strains(&in_double(cloth.positions())))
 }
 
 fn finite(value: f64) -> Option<f64> {

@@ -208,7 +208,7 @@ fn lod(json: &Value) -> Vec<Finding> {
             let finest = levels.iter().find(|other| other["scheme"] == level["scheme"])?;
             Some((number(level, key) / number(finest, key) - 1.0).abs())
         });
-        let worst = off.fold(0.0, f64::max);
+        let worst = off.fold(0.0, worse);
         let sentence = format!("the levels' {what} differs by up to {:.1} %", 100.0 * worst);
         findings.push(Finding::new(worst <= LEVELS_AGREE, sentence));
     }
@@ -225,7 +225,7 @@ fn lod(json: &Value) -> Vec<Finding> {
 
 fn schedule(json: &Value) -> Vec<Finding> {
     let finest = rows(json, "rows").iter().filter(|row| row["n"] == 33);
-    let worst = finest.map(|row| number(row, "ratio")).fold(0.0, f64::max);
+    let worst = finest.map(|row| number(row, "ratio")).fold(0.0, worse);
     let sentence =
         format!("the plugin takes {} × the time of plain calls, eight flags of 33²", figure(worst));
     vec![Finding::new(worst <= 1.0 + SCHEDULE, sentence)]

@@ -61,11 +61,8 @@ fn push(text: &mut String, paragraph: &str) {
 fn push_section(text: &mut String, section: &Section) {
     push(text, &format!("## {}: {}", section.command, section.measures));
     let seconds = section.took.as_secs_f64();
-    let command = format!("cargo run --release -p bunting_lab -- {}", section.command_line);
-    push(
-        text,
-        &format!("`{command}`, {seconds:.0} s. `--out DIR` also writes its tables and plots."),
-    );
+    let command = &section.command_line;
+    push(text, &format!("`{command}`, {seconds:.0} s; `--out DIR` writes its tables and plots."));
     for finding in section.findings() {
         let sign = if finding.good { "✓" } else { "✗" };
         writeln!(text, "- {sign} {}", finding.text).expect("a string takes all");
@@ -153,7 +150,7 @@ mod tests {
         write(&folder, &[section(Ok(outcome()))], &Machine::here(), true).expect("a document");
         let text = fs::read_to_string(folder.join("measurements.md")).expect("the document");
         for part in [
-            "bunting_lab -- oracles --some`",
+            "`oracles --some`",
             "![Dots](measurements/dots.svg)",
             "| \\|a\\| &lt; b |",
             "A quick run",

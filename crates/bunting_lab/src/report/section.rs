@@ -10,7 +10,7 @@ use crate::output::Outcome;
 pub struct Section {
     /// Name of the command.
     pub command: &'static str,
-    /// The command with its options, as it measures the same by itself.
+    /// How the command is run to measure the same by itself.
     pub command_line: String,
     /// What it measures, in a sentence.
     pub measures: &'static str,

@@ -4,17 +4,15 @@ use glam::{DVec3, Vec3, dvec3};
 
 use super::{
     case::HardCase,
-    rig::{reach, run, speed, start, strain},
+    rig::{REACH, RECOVERED, reach, speed, start, strain},
 };
 use crate::{
     scenes::{Pose, Scene},
-    simulation::Simulation,
+    simulation::{Simulation, run},
     specimen::Specimen,
     stats::worse,
 };
 
-/// Largest 95th percentile of strain of a cloth that has recovered, %.
-const RECOVERED: f64 = 1.0;
 /// Fastest that it may still move, m/s RMS.
 const CALM: f64 = 0.1;
 /// Time to recover, s.
@@ -79,7 +77,7 @@ fn finite(name: &str, n: usize, place: impl Fn(DVec3) -> DVec3) -> HardCase {
         .collect();
     cloth.place(&at, &vec![DVec3::ZERO; at.len()]);
     run(&mut cloth, 1.0);
-    HardCase::new(format!("degenerate: {name}"), n, "reach, m", reach(&cloth), 1.6)
+    HardCase::new(format!("degenerate: {name}"), n, "reach, m", reach(&cloth), REACH)
 }
 
 /// A flat cloth along the wind feels no pressure, and no division by nothing.

@@ -12,6 +12,7 @@ use super::case::HardCase;
 use crate::{
     game, product,
     scenes::{Scene, ticks},
+    simulation::in_double,
     stats::rms_distance,
 };
 
@@ -55,5 +56,5 @@ fn state(app: &App, sheet: Entity) -> &ClothState {
 }
 
 fn positions(app: &App, sheet: Entity) -> Vec<DVec3> {
-    state(app, sheet).positions().iter().map(|x| x.as_dvec3()).collect()
+    in_double(state(app, sheet).positions())
 }

@@ -10,6 +10,7 @@ use crate::{
         Case,
         bending::{LATERAL_BUCKLING, SELF_WEIGHT_COLUMN, column_of_links},
         rig::{YARNS, chains, label, order, row, strip},
+        root::bisect_times,
     },
     reference::grid::Grid,
     scenes::{Fabric, GRAVITY, Pins, Pose, Scene, ticks},
@@ -121,16 +122,8 @@ pub fn on_edge_grows(mount: &Mount, segments: usize, part: f64) -> bool {
 
 /// The load σgL³/B between those under which a touch of the tip grows and does not, by bisection.
 fn critical_load(mount: &Mount, form: &Form, segments: usize, settings: StepSettings) -> f64 {
-    let (mut low, mut high) = (0.0, 2.0 * form.critical);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if grows(mount, form, segments, settings, middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    0.5 * (low + high)
+    let grows = |load| grows(mount, form, segments, settings, load);
+    bisect_times(HALVINGS, 0.0, 2.0 * form.critical, grows)
 }
 
 /// Whether a strip under a load σgL³/B leaves a touch behind that bends it as its first mode.

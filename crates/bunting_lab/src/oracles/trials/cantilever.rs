@@ -6,9 +6,10 @@ use crate::{
     oracles::{
         Case,
         bending::Cantilever,
-        rig::{YARNS, label, order, row, run, strip},
+        rig::{YARNS, label, order, row, strip},
     },
     scenes::{Fabric, GRAVITY, Pins, Pose, Scene, ticks},
+    simulation::run,
     specimen::{Mount, Specimen},
 };
 

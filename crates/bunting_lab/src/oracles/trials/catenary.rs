@@ -6,9 +6,10 @@ use crate::{
     oracles::{
         Case,
         catenary::{Catenary, sag_of_chain},
-        rig::{YARNS, chains, column_masses, label, order, row, run, strip, substep},
+        rig::{YARNS, chains, column_masses, label, order, row, strip, substep},
     },
     scenes::{GRAVITY, Pins, Pose, Scene},
+    simulation::run,
     specimen::{Mount, Specimen},
 };
 

@@ -7,9 +7,10 @@ use crate::{
     oracles::{
         Case,
         drag::BroadsideFall,
-        rig::{Substeps, YARNS, label, order, run, substep},
+        rig::{Substeps, YARNS, label, order, substep},
     },
-    scenes::{Air, Fabric, GRAVITY, Pins, Scene, TICK_RATE},
+    scenes::{Air, Fabric, GRAVITY, Pins, Scene, ticks},
+    simulation::run,
     specimen::{Mount, Specimen},
 };
 
@@ -89,7 +90,7 @@ fn dragged(mount: &Mount, settings: StepSettings) -> f64 {
 /// in steps longer than 2σ/(ρ C_d v), 6.8 ms, and beyond twice that diverges.
 fn onward(mount: &Mount, settings: StepSettings) -> f64 {
     let mut specimen = start(mount, 0.0, FAST, settings);
-    let ticks = (DRAGGED * f64::from(TICK_RATE)).round() as usize;
+    let ticks = ticks(DRAGGED);
     let onward = (0..ticks).filter(|_| {
         specimen.tick();
         mean(specimen.velocities()).y > 0.0

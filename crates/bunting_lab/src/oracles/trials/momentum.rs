@@ -7,10 +7,11 @@ use crate::{
     oracles::{
         Case,
         dumbbell::{Formula, spin_left},
-        rig::{GAUSS_SEIDEL, Substeps, YARNS, label, order, run, substep},
+        rig::{GAUSS_SEIDEL, Substeps, YARNS, label, order, substep},
     },
     reference::grid::Grid,
     scenes::{Fabric, Pins, Pose, Scene},
+    simulation::run,
     specimen::{Mount, Specimen},
 };
 

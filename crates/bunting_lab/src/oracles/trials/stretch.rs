@@ -5,10 +5,11 @@ use bunting_solver::StepSettings;
 use crate::{
     oracles::{
         Case,
-        rig::{GAUSS_SEIDEL, YARNS, chains, label, row, run, strip, substep},
+        rig::{GAUSS_SEIDEL, YARNS, chains, label, row, strip, substep},
         stretch::hung_strip,
     },
     scenes::{Fabric, GRAVITY, Pins, Pose, Scene},
+    simulation::run,
     specimen::Mount,
 };
 
