@@ -13,7 +13,7 @@ use crate::{
     timing::Timing,
 };
 
-/// By how much later each cloth meets the gusts than the one before it, s, so that no two move alike.
+/// Delay of each cloth's gusts against those of the cloth before it, s, so that no two move alike.
 const GUST_LAG: f64 = 0.618;
 
 /// Cloths of one scene, each in gusts of its own, side by side in batches.
@@ -25,7 +25,7 @@ pub struct Fleet {
 }
 
 impl Fleet {
-    /// `cloths` cloths as the scene begins, in the widest batches that pay.
+    /// `cloths` cloths in the scene's initial state, in the widest batches that save time.
     ///
     /// # Panics
     ///
@@ -124,7 +124,7 @@ impl Fleet {
 
     /// Times ticks of all cloths, on this thread alone and on others, in turn so that all see the same
     /// machine. A tick sets the wind, steps and computes normals. As in the plugin each batch is a task
-    /// of a pool, and this thread does its share of them.
+    /// of a pool, and this thread runs some of them.
     #[must_use]
     pub fn time_ticks(&mut self, cores: &[usize], effort: &Effort) -> Vec<Timing> {
         self.advance(effort.warm_up);

@@ -1,4 +1,4 @@
-//! The binary as a user meets it.
+//! The binary's exit codes, its JSON and its files.
 
 use std::process::{Command, Output};
 
@@ -16,7 +16,7 @@ fn bad_arguments_exit_with_two() {
         &[],
         &["pareto", "--sizes", "1"],
         &["pareto", "--scenes", "moon"],
-        &["pareto", "--patience", "0"],
+        &["pareto", "--time-limit", "0"],
     ] {
         let output = lab(arguments);
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
@@ -83,7 +83,7 @@ fn pareto_prints_one_json_object_and_writes_files() {
 #[test]
 fn a_method_that_takes_too_long_is_left_out_and_named() {
     let output =
-        lab(&["pareto", "--quick", "--scenes", "swing", "--json", "--patience", "0.000001"]);
+        lab(&["pareto", "--quick", "--scenes", "swing", "--json", "--time-limit", "0.000001"]);
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
     assert_eq!(json["rows"].as_array().map(Vec::len), Some(0));
     let left_out = json["left_out"].as_array().expect("all of them");

@@ -39,7 +39,7 @@ fn rows<'a>(json: &'a Value, key: &str) -> &'a Vec<Value> {
 fn budget_has_its_schema() {
     let json = budget::run(true).json;
     assert!(json["instruction_set"].is_string());
-    for sheet in rows(&json, "sheets") {
+    for sheet in rows(&json, "many_flags") {
         assert_positive(sheet, &["n", "cloths", "cores", "ms_per_tick", "over_one_core"]);
         assert!(sheet["cores"] != 1 || sheet["over_one_core"] == 1.0, "{sheet}");
     }
@@ -52,7 +52,7 @@ fn budget_has_its_schema() {
     let us = |phase: &Value| phase["us"].as_f64().expect("a time");
     let phases_us: f64 = phases[..PHASES.len()].iter().map(us).sum();
     let lanes = LaneCount::holding(usize::MAX).get();
-    let sheet = rows(&json, "sheets").iter().find(|it| it["n"] == 33 && it["cloths"] == lanes);
+    let sheet = rows(&json, "many_flags").iter().find(|it| it["n"] == 33 && it["cloths"] == lanes);
     let sheet_us = 1e3 * sheet.expect("a full batch")["ms_per_tick"].as_f64().expect("a time");
     let ratio = phases_us / sheet_us;
     assert!((1.0 / BUSY..BUSY).contains(&ratio), "{phases_us} µs and {sheet_us} µs");

@@ -45,7 +45,7 @@ pub fn measure(quick: bool) -> Vec<AtDistance> {
 }
 
 fn at(distance: f32, ticks: usize) -> AtDistance {
-    let mut app = game::app(steps_of_levels());
+    let mut app = game::app_in_wind(steps_of_levels());
     app.insert_resource(ClothBudget { tick: BUDGET, ..ClothBudget::default() });
     let levels = LEVELS.len();
     // Two rows of four, a metre and a half apart, in the middle of the picture.

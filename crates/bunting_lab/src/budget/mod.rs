@@ -3,10 +3,10 @@
 
 pub mod distance;
 pub mod kernels;
+pub mod many_flags;
 pub mod parts;
 pub mod phases;
 pub mod plots;
-pub mod sheets;
 pub mod tables;
 pub mod thesis;
 pub mod thousand;

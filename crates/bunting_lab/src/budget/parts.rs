@@ -53,7 +53,7 @@ pub struct Part {
     pub fraction: f64,
 }
 
-/// All parts at all levels, by the settings that users meet.
+/// All parts at all levels, by default settings.
 #[must_use]
 pub fn measure(effort: &Effort) -> Vec<Part> {
     LEVELS.into_iter().flat_map(|n| of_level(n, effort)).collect()

@@ -2,8 +2,8 @@
 
 use super::{
     distance::AtDistance,
+    many_flags::ManyFlags,
     parts::{PARTS, Part},
-    sheets::Sheet,
     thesis,
 };
 use crate::{
@@ -13,11 +13,11 @@ use crate::{
 
 /// Figure 6.2: one line a level and number of cores.
 #[must_use]
-pub fn sheet_plot(sheets: &[Sheet], scheme: &str) -> Plot {
+pub fn many_flags_plot(many_flags: &[ManyFlags], scheme: &str) -> Plot {
     let mut series: Vec<Series> = Vec::new();
-    for sheet in sheets.iter().filter(|sheet| sheet.scheme == scheme) {
-        let name = format!("{n} × {n}, {} cores", sheet.cores, n = sheet.n);
-        let point = (sheet.cloths as f64, sheet.ms_per_tick);
+    for it in many_flags.iter().filter(|it| it.scheme == scheme) {
+        let name = format!("{n} × {n}, {} cores", it.cores, n = it.n);
+        let point = (it.cloths as f64, it.ms_per_tick);
         match series.iter_mut().find(|series| series.name == name) {
             Some(found) => found.points.push(point),
             None => series.push(Series { name, points: vec![point], mark: Mark::Line }),
@@ -30,7 +30,7 @@ pub fn sheet_plot(sheets: &[Sheet], scheme: &str) -> Plot {
         series.push(Series { name: name.into(), points: vec![(flags, ms)], mark: Mark::Dots });
     }
     Plot {
-        name: format!("budget_sheets_{scheme}"),
+        name: format!("budget_many_flags_{scheme}"),
         title: format!("Time of a tick, wind on, {scheme} (thesis, fig. 6.2)"),
         labels: ["flags".into(), "ms".into()],
         axes: Axes::Logarithmic,

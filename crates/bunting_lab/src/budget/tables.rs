@@ -6,9 +6,9 @@ use bunting_solver::instruction_set;
 use super::{
     distance::AtDistance,
     kernels::Kernels,
+    many_flags::ManyFlags,
     parts::{EXTRAS, Part},
     phases::Phase,
-    sheets::Sheet,
     thesis,
     thousand::Thousand,
 };
@@ -19,21 +19,21 @@ use crate::{
 
 /// Every number of flags at every level.
 #[must_use]
-pub fn sheet_table(sheets: &[Sheet]) -> Table {
-    let cells = |sheet: &Sheet| {
+pub fn many_flags_table(many_flags: &[ManyFlags]) -> Table {
+    let cells = |it: &ManyFlags| {
         vec![
-            sheet.scheme.into(),
-            sheet.n.to_string(),
-            sheet.cloths.to_string(),
-            sheet.cores.to_string(),
-            figure(sheet.ms_per_tick),
-            figure(sheet.ms_min),
-            figure(sheet.ms_per_tick * 1e3 / sheet.cloths as f64),
-            figure(sheet.over_one_core),
+            it.scheme.into(),
+            it.n.to_string(),
+            it.cloths.to_string(),
+            it.cores.to_string(),
+            figure(it.ms_per_tick),
+            figure(it.ms_min),
+            figure(it.ms_per_tick * 1e3 / it.cloths as f64),
+            figure(it.over_one_core),
         ]
     };
     Table {
-        name: "budget_sheets".into(),
+        name: "budget_many_flags".into(),
         title: format!("Flags in the wind, {}", instruction_set()),
         headers: vec![
             "scheme",
@@ -45,7 +45,7 @@ pub fn sheet_table(sheets: &[Sheet]) -> Table {
             "µs/cloth",
             "over one core",
         ],
-        rows: sheets.iter().map(cells).collect(),
+        rows: many_flags.iter().map(cells).collect(),
     }
 }
 
@@ -126,12 +126,12 @@ pub fn thousand_table(thousand: &Thousand) -> Table {
     }
 }
 
-/// The eight flags of the thesis's figure 6.2 at its finest and coarsest level, beside ours by the settings
-/// that users meet, on one core.
+/// The eight flags of the thesis's figure 6.2 at its finest and coarsest level, beside ours by default
+/// settings, on one core.
 #[must_use]
-pub fn eight_flags_table(sheets: &[Sheet]) -> Table {
+pub fn eight_flags_table(many_flags: &[ManyFlags]) -> Table {
     let ours = |n: u32| {
-        let eight = sheets.iter().find(|it| {
+        let eight = many_flags.iter().find(|it| {
             it.n == n && it.cloths == thesis::FLAGS && it.cores == 1 && it.scheme == "yarns"
         });
         eight.map_or(f64::NAN, |it| it.ms_per_tick)

@@ -99,7 +99,7 @@ pub struct Thousand {
 #[must_use]
 pub fn measure(quick: bool) -> Thousand {
     let steps = steps_of_levels();
-    let mut app = game::app(steps.clone());
+    let mut app = game::app_in_wind(steps.clone());
     let places: Vec<Vec3> = (0..FLAGS).map(place).collect();
     for &at in &places {
         game::spawn_flag(&mut app, LEVELS[0], at, LodSet::automatic(LEVELS.len()));

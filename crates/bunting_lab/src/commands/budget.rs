@@ -5,13 +5,13 @@ use serde_json::json;
 
 use super::progress;
 use crate::{
-    budget::{distance, kernels, parts, phases, plots, sheets, tables, thousand},
+    budget::{distance, kernels, many_flags, parts, phases, plots, tables, thousand},
     effort::Effort,
     output::Outcome,
     settings::{scheme_name, schemes},
 };
 
-/// Measurements besides those of [`sheets`].
+/// Number of measurements other than [`many_flags`].
 const OTHERS: usize = 5;
 
 /// Measures many flags at once, flags at a distance, the phases and parts of a tick, kernels, and a
@@ -19,9 +19,9 @@ const OTHERS: usize = 5;
 #[must_use]
 pub fn run(quick: bool) -> Outcome {
     let effort = Effort::of(quick);
-    let bar = progress(sheets::count(&effort) + OTHERS);
+    let bar = progress(many_flags::count(&effort) + OTHERS);
     bar.set_message("many flags");
-    let sheets = sheets::measure(&effort, || bar.inc(1));
+    let many_flags = many_flags::measure(&effort, || bar.inc(1));
     bar.set_message("flags at a distance");
     let distances = distance::measure(quick);
     bar.inc(1);
@@ -37,13 +37,16 @@ pub fn run(quick: bool) -> Outcome {
     bar.set_message("a thousand flags");
     let thousand = thousand::measure(quick);
     bar.finish_and_clear();
-    let mut all_plots: Vec<_> =
-        schemes().map(scheme_name).iter().map(|it| plots::sheet_plot(&sheets, it)).collect();
+    let mut all_plots: Vec<_> = schemes()
+        .map(scheme_name)
+        .iter()
+        .map(|it| plots::many_flags_plot(&many_flags, it))
+        .collect();
     all_plots.extend([plots::distance_plot(&distances), plots::part_plot(&parts)]);
     Outcome {
         json: json!({
             "instruction_set": instruction_set(),
-            "sheets": sheets,
+            "many_flags": many_flags,
             "distances": distances,
             "phases": phases,
             "parts": parts,
@@ -51,11 +54,11 @@ pub fn run(quick: bool) -> Outcome {
             "thousand": thousand,
         }),
         tables: vec![
-            tables::eight_flags_table(&sheets),
+            tables::eight_flags_table(&many_flags),
             tables::distance_table(&distances),
             tables::part_table(&parts),
             tables::thousand_table(&thousand),
-            tables::sheet_table(&sheets),
+            tables::many_flags_table(&many_flags),
             tables::phase_table(&phases),
             tables::kernel_table(&kernels),
         ],

@@ -143,7 +143,7 @@ fn resolution_table(resolutions: &[Resolution]) -> Table {
 }
 
 fn switch_table(switches: &[Switch]) -> Table {
-    let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+    let percent = |fraction: f64| format!("{:.2} %", 100.0 * fraction);
     let cells = |switch: &Switch| {
         vec![
             switch.scheme.into(),

@@ -21,12 +21,13 @@ use crate::{
         Outcome,
         table::{Table, figure, figure_or_dash},
     },
+    parallel,
     reference::Reference,
     scenes::{Measure, Scene},
 };
 
 /// Time after which a method that would take longer on a scene is left out, s.
-const PATIENCE: f64 = 15.0;
+const TIME_LIMIT: f64 = 15.0;
 /// Largest n of the flag, whose reference takes minutes beyond it.
 const LARGEST_FLAG: usize = 33;
 /// Vertices along each side of the cloth whose parts are left out one by one; the second where quick.
@@ -47,8 +48,8 @@ pub struct Selection {
     #[arg(long, value_delimiter = ',', default_values_t = [9, 17, 33, 65], value_parser = parse_size)]
     sizes: Vec<usize>,
     /// Leave out a method that would take longer than this on a scene, s.
-    #[arg(long, default_value_t = PATIENCE, value_parser = parse_patience)]
-    patience: f64,
+    #[arg(long, default_value_t = TIME_LIMIT, value_parser = parse_time_limit)]
+    time_limit: f64,
     /// Also draw error over time of the position-based methods, on the last selected scene, as SVG.
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
@@ -57,16 +58,16 @@ pub struct Selection {
 impl Selection {
     /// These scenes at these sizes.
     #[must_use]
-    pub fn new(scenes: &[&str], sizes: Vec<usize>, patience: f64) -> Self {
+    pub fn new(scenes: &[&str], sizes: Vec<usize>, time_limit: f64) -> Self {
         let scenes = scenes.iter().map(|&name| name.to_owned()).collect();
-        Self { scenes, sizes, patience, figure: None }
+        Self { scenes, sizes, time_limit, figure: None }
     }
 }
 
-fn parse_patience(text: &str) -> Result<f64, String> {
+fn parse_time_limit(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if seconds > 0.0 => Ok(seconds),
-        _ => Err("patience is a number of seconds above zero".into()),
+        _ => Err("the limit is a number of seconds above zero".into()),
     }
 }
 
@@ -88,21 +89,22 @@ pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
     let bar = progress(scenes.len() * contenders.len());
     let mut outcome = Outcome { json: json!(null), tables: Vec::new(), plots: Vec::new() };
     let (mut all, mut left_out, mut references) = (Vec::new(), Vec::new(), Vec::new());
-    for scene in &scenes {
-        bar.set_message(format!("reference of {} {}", scene.name, scene.columns));
-        let reference = Reference::of(scene);
+    bar.set_message("references");
+    // All of them before any time is taken.
+    let converged = parallel::map(&scenes, Reference::of);
+    for (scene, reference) in scenes.iter().zip(&converged) {
         let mut rows = Vec::new();
         for contender in &contenders {
             bar.set_message(format!("{} {} {}", scene.name, scene.columns, contender.method));
-            match measure(scene, contender, selection.patience) {
+            match measure(scene, contender, selection.time_limit) {
                 Some((seen, time)) => {
-                    rows.push(Row::new(scene, contender, &seen, &time, &reference));
+                    rows.push(Row::new(scene, contender, &seen, &time, reference));
                 }
                 None => left_out.push(LeftOut::new(scene, contender)),
             }
             bar.inc(1);
         }
-        outcome.tables.push(table(scene, &rows, &reference));
+        outcome.tables.push(table(scene, &rows, reference));
         outcome.plots.extend(speed_error::plot(scene, &rows, &contenders));
         references.push(json!({
             "scene": scene.name,

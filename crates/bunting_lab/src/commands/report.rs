@@ -36,7 +36,7 @@ const SCENES: [&str; 5] = ["swing", "hang_top", "hang_side", "hang_corners", "fl
 /// The same where it is to be quick.
 const QUICK_SCENES: [&str; 2] = ["swing", "hang_corners"];
 /// Time after which a method that would take longer on a scene is left out, s.
-const PATIENCE: f64 = 2.0;
+const TIME_LIMIT: f64 = 2.0;
 
 /// How the lab is run with what it is now built with.
 const PROGRAM: &str = if cfg!(feature = "peers") {
@@ -78,10 +78,10 @@ pub fn run(options: &Options, quick: bool, folder: Option<&Path>) -> Result<Outc
 
 fn measure(quick: bool) -> Vec<Section> {
     let scenes = if quick { &QUICK_SCENES[..] } else { &SCENES };
-    let selection = pareto::Selection::new(scenes, SIZES.to_vec(), PATIENCE);
+    let selection = pareto::Selection::new(scenes, SIZES.to_vec(), TIME_LIMIT);
     let pareto = || pareto::run(&selection, quick);
     let pareto_options =
-        format!("--scenes {} --sizes {} --patience {PATIENCE}", scenes.join(","), SIZES[0]);
+        format!("--scenes {} --sizes {} --time-limit {TIME_LIMIT}", scenes.join(","), SIZES[0]);
     let mut sections = vec![
         section("budget", "", quick, "time of flags and where it goes, beside the thesis", || {
             Ok(budget::run(quick))

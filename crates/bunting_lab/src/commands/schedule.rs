@@ -109,7 +109,7 @@ fn compare(n: u32, settings: StepSettings, ticks: usize) -> Row {
 }
 
 fn flags(n: u32, settings: StepSettings) -> App {
-    let mut app = game::app([settings]);
+    let mut app = game::app_in_wind([settings]);
     for flag in 0..FLAGS {
         game::spawn_flag(&mut app, n, Vec3::X * flag as f32, LodSet::default());
     }

@@ -31,7 +31,7 @@ pub fn contenders(quick: bool) -> Vec<Contender> {
 pub fn measure(
     scene: &Scene,
     contender: &Contender,
-    patience: f64,
+    time_limit: f64,
 ) -> Option<(Observation, Timing)> {
     let grid = Grid::new(scene);
     let mut observer = Observer::new(scene, &grid);
@@ -39,7 +39,7 @@ pub fn measure(
     let (mut warm_up, mut time) = (Timing::default(), Timing::default());
     for tick in 0..scene.ticks() {
         // The shortest tick, since others may have had to wait for the processor.
-        if tick == WARM_UP && warm_up.min() * scene.ticks() as f64 > patience * 1e6 {
+        if tick == WARM_UP && warm_up.min() * scene.ticks() as f64 > time_limit * 1e6 {
             return None;
         }
         let timing = if tick < WARM_UP { &mut warm_up } else { &mut time };

@@ -27,17 +27,17 @@ const FIGURE: [(&str, Option<usize>, &str); 8] = [
 #[must_use]
 pub fn plot(scene: &Scene, rows: &[Row], contenders: &[Contender]) -> Option<Plot> {
     let widest = contenders.iter().map(|it| it.lanes).max()?;
-    let mut kinds: Vec<(&str, usize)> = Vec::new();
-    for kind in contenders.iter().map(|it| (it.method.as_str(), it.lanes)) {
-        if (kind.1 == 1 || kind.1 == widest) && !kinds.contains(&kind) {
-            kinds.push(kind);
+    let mut methods: Vec<(&str, usize)> = Vec::new();
+    for it in contenders.iter().map(|contender| (contender.method.as_str(), contender.lanes)) {
+        if (it.1 == 1 || it.1 == widest) && !methods.contains(&it) {
+            methods.push(it);
         }
     }
-    let series: Vec<Series> = kinds
+    let series: Vec<Series> = methods
         .into_iter()
         .map(|(method, lanes)| {
-            let of_kind = rows.iter().filter(|row| row.method == method && row.lanes == lanes);
-            let points = of_kind.filter_map(|row| point(scene, row)).collect();
+            let of_method = rows.iter().filter(|row| row.method == method && row.lanes == lanes);
+            let points = of_method.filter_map(|row| point(scene, row)).collect();
             let name = if lanes == 1 { method.to_owned() } else { format!("{method}, of {lanes}") };
             Series { name, points, mark: Mark::Dots }
         })

@@ -1,4 +1,4 @@
-//! What the trials have in common: strips, and how they are read.
+//! Strips, their readings, and labels that the trials share.
 
 use bunting_solver::{Scheme, StepSettings};
 use glam::DVec3;
@@ -11,7 +11,7 @@ use crate::{
     specimen::Specimen,
 };
 
-/// The scheme under trial as users meet it.
+/// The scheme under trial, by default settings.
 pub const YARNS: StepSettings = DEFAULT;
 /// The thesis's scheme, with enough substeps to be compared.
 pub const GAUSS_SEIDEL: StepSettings = StepSettings::gauss_seidel(20);

@@ -6,7 +6,7 @@ use crate::{output::table::figure, product::DEFAULT, stats::worse};
 
 /// Time that cloth may take of a frame, ms.
 const BUDGET: f64 = 1.0;
-/// Part of a length or a frequency by which levels may differ before anybody sees it.
+/// Part of a length or a frequency by which levels may differ before it is visible.
 const LEVELS_AGREE: f64 = 0.05;
 /// Largest pop that is not seen, pixels.
 const POP: f64 = 1.0;
@@ -183,7 +183,7 @@ fn budget(json: &Value) -> Vec<Finding> {
             figure(worst),
         ),
     )];
-    let within = rows(json, "sheets")
+    let within = rows(json, "many_flags")
         .iter()
         .filter(|sheet| sheet["n"] == 33 && sheet["cores"] == 1)
         .map(|sheet| (BUDGET / number(sheet, "ms_per_tick") * number(sheet, "cloths"), sheet))

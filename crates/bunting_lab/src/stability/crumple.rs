@@ -1,4 +1,4 @@
-//! Starts that no cloth should have.
+//! Crumpled and degenerate initial states.
 
 use glam::{DVec3, Vec3, dvec3};
 
@@ -13,8 +13,8 @@ use crate::{
     stats::worse,
 };
 
-/// Fastest that it may still move, m/s RMS.
-const CALM: f64 = 0.1;
+/// Largest RMS speed of a cloth that has recovered, m/s.
+const AT_REST: f64 = 0.1;
 /// Time to recover, s.
 const SECONDS: f64 = 6.0;
 
@@ -40,7 +40,7 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     cases
 }
 
-/// A cloth hung from its top that starts elsewhere.
+/// A cloth held by its top edge, from other initial positions.
 fn recovers(name: &str, n: usize, start_at: impl Fn(usize, DVec3) -> DVec3) -> [HardCase; 2] {
     let scene = Scene::hang_top(n);
     let mut cloth = start(&scene);
@@ -61,7 +61,7 @@ fn recovers(name: &str, n: usize, start_at: impl Fn(usize, DVec3) -> DVec3) -> [
             left,
             RECOVERED,
         ),
-        HardCase::new(format!("{name}: calms down"), n, "RMS speed, m/s", speed(&cloth), CALM),
+        HardCase::new(format!("{name}: calms down"), n, "RMS speed, m/s", speed(&cloth), AT_REST),
     ]
 }
 

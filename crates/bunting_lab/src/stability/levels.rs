@@ -1,4 +1,4 @@
-//! Switching levels, riding in lanes and threads, and bad input.
+//! Changes of level, independence of lanes and threads, and bad input.
 
 use std::thread;
 

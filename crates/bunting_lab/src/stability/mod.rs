@@ -1,7 +1,7 @@
 //! The hard cases: what breaks cloth in games, and how badly.
 //!
-//! Every case runs the product as users meet it and reduces to one figure, its worst, that must not
-//! pass a limit.
+//! Every case runs the product by default settings and reduces to one figure, its worst, that must not
+//! exceed a limit.
 
 mod case;
 mod crumple;

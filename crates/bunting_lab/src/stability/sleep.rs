@@ -28,7 +28,7 @@ const DRIFT: f64 = 1e-4;
 /// A sheet hung by two corners: how soon it sleeps, and how far it then drifts.
 pub fn cases(_quick: bool) -> Vec<HardCase> {
     let scene = Scene::hang_corners(SIZE);
-    let mut app = game::calm_app([StepSettings::default()]);
+    let mut app = game::app_in_still_air([StepSettings::default()]);
     let corners = vec![ClothCorner::TopLeft, ClothCorner::TopRight];
     let size = SIZE as u32;
     let sheet = (

@@ -75,7 +75,7 @@ fn tick_lengths(rate: u32) -> impl Iterator<Item = f32> {
     })
 }
 
-/// Every setting of the sweep: passes at 60 Hz, then rates by the settings that users meet.
+/// Every setting of the sweep: passes at 60 Hz, then rates by default settings.
 fn sweep() -> impl Iterator<Item = (StepSettings, u32)> {
     let passes = [1, 2, 4, 8].map(|passes| (StepSettings { passes, ..DEFAULT }, 60));
     let rates = [30, 144, 240, 0].map(|rate| (DEFAULT, rate));
@@ -208,7 +208,7 @@ fn stiff_bending() -> HardCase {
     HardCase::new("stiff bending, Γ = 0.01", 32, "error of H/W = Γ/8, of one", aspect, 0.02)
 }
 
-/// A stiff clamped strip without load that is nudged in its plane swings and comes back. Its cells are
+/// A stiff clamped strip without load, displaced in its plane, must oscillate about its rest. Its cells are
 /// `aspect` times as wide as long.
 fn nudged_strip(aspect: f64) -> HardCase {
     const SEGMENTS: usize = 32;
