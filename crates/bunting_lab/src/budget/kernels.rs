@@ -11,11 +11,12 @@
 //!
 //! All are of a full batch of the widest lanes, per cloth.
 
-use bunting_solver::{LaneCount, Link, LinkFamily, Scheme, StepSettings};
+use bunting_solver::{Link, LinkFamily, Scheme, StepSettings};
 use serde::Serialize;
 
-use super::Effort;
+use super::phases::full_batch;
 use crate::{
+    effort::Effort,
     fleet::Fleet,
     product::TICK,
     scenes::{Air, Scene},
@@ -51,13 +52,9 @@ pub fn measure(effort: &Effort) -> Kernels {
 }
 
 fn flags(scene: Scene, settings: StepSettings, effort: &Effort) -> Fleet {
-    let mut fleet = Fleet::new(scene, lanes(), settings);
+    let mut fleet = Fleet::new(scene, full_batch(), settings);
     fleet.advance(effort.warm_up);
     fleet
-}
-
-fn lanes() -> usize {
-    LaneCount::holding(usize::MAX).get()
 }
 
 fn ns_per_constraint(settings: StepSettings, effort: &Effort) -> f64 {
@@ -85,7 +82,7 @@ fn ns_per_constraint(settings: StepSettings, effort: &Effort) -> f64 {
         }
     }
     let [few, many] = times.map(|time| time.median());
-    (many - few) * 1e3 / (projections * lanes()) as f64
+    (many - few) * 1e3 / (projections * full_batch()) as f64
 }
 
 fn ns_per_wind_triangle(settings: StepSettings, effort: &Effort) -> f64 {
@@ -108,5 +105,5 @@ fn ns_per_wind_triangle(settings: StepSettings, effort: &Effort) -> f64 {
         }
     }
     let [with_air, without] = times.map(|time| time.median());
-    (with_air - without) * 1e3 / (triangles * lanes()) as f64
+    (with_air - without) * 1e3 / (triangles * full_batch()) as f64
 }

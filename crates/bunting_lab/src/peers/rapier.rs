@@ -10,7 +10,7 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 use rapier3d::prelude::*;
 
-use super::Peer;
+use super::peer::Peer;
 use crate::{product, scenes::Scene, simulation::Simulation};
 
 /// Damping ratio of rapier's default material.
