@@ -3,7 +3,6 @@
 use std::process::ExitCode;
 
 use bevy::app::{TaskPoolOptions, TaskPoolPlugin, TaskPoolThreadAssignmentPolicy};
-use bevy::log::{Level, LogPlugin};
 use bevy::prelude::*;
 use bevy::time::TimeUpdateStrategy;
 use bevy_bunting::prelude::*;
@@ -16,8 +15,9 @@ pub const ONE_TICK: TimeUpdateStrategy = TimeUpdateStrategy::FixedTimesteps(1);
 
 /// Simulates an example and prints its measurements. Fails if one exceeds its limit.
 pub fn run(example: &impl Example, options: &Options) -> ExitCode {
+    env_logger::Builder::new().filter_level(log::LevelFilter::Warn).init();
     let mut app = App::new();
-    app.add_plugins((MinimalPlugins.set(task_pools(options)), TransformPlugin, warnings()));
+    app.add_plugins((MinimalPlugins.set(task_pools(options)), TransformPlugin));
     start(&mut app, example);
     simulate(&mut app, example, options, |_, _| {})
 }
@@ -34,12 +34,6 @@ pub fn task_pools(options: &Options) -> TaskPoolPlugin {
         on_thread_destroy: None,
     };
     TaskPoolPlugin { task_pool_options: TaskPoolOptions { compute, ..default() } }
-}
-
-/// A log of warnings and errors only.
-#[must_use]
-pub fn warnings() -> LogPlugin {
-    LogPlugin { level: Level::WARN, ..default() }
 }
 
 /// Adds an example to an app that has Bevy's plugins, and finishes all plugins.

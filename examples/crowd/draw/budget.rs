@@ -20,15 +20,12 @@ pub fn plugin(app: &mut App) {
 }
 
 fn read_keys(keys: Res<ButtonInput<KeyCode>>, mut budget: ResMut<ClothBudget>) {
-    let scale = |factor: f32| {
-        let milliseconds = factor * budget.tick.as_secs_f32() * 1e3;
-        Duration::from_secs_f32(1e-3 * milliseconds.clamp(BUDGETS.0, BUDGETS.1))
-    };
-    if keys.just_pressed(KeyCode::ArrowUp) {
-        budget.tick = scale(STEP);
-    }
-    if keys.just_pressed(KeyCode::ArrowDown) {
-        budget.tick = scale(STEP.recip());
+    for (key, factor) in [(KeyCode::ArrowUp, STEP), (KeyCode::ArrowDown, STEP.recip())] {
+        if keys.just_pressed(key) {
+            let milliseconds = factor * budget.tick.as_secs_f32() * 1e3;
+            let milliseconds = milliseconds.clamp(BUDGETS.0, BUDGETS.1);
+            budget.tick = Duration::from_secs_f32(1e-3 * milliseconds);
+        }
     }
 }
 

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use bevy::app::PluginGroupBuilder;
 use bevy::camera::RenderTarget;
+use bevy::log::{Level, LogPlugin};
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
@@ -74,8 +75,12 @@ pub fn run(example: &impl Example, options: &Options, mut pictures: Pictures) ->
     let mut app = App::new();
     let stage = example.stage();
     let camera = stage.camera();
-    app.add_plugins(windowless().set(headless::task_pools(options)).set(headless::warnings()))
-        .add_plugins((count_models, stage));
+    app.add_plugins(
+        windowless()
+            .set(headless::task_pools(options))
+            .set(LogPlugin { level: Level::WARN, ..default() }),
+    )
+    .add_plugins((count_models, stage));
     example.draw(&mut app);
     headless::start(&mut app, example);
     pictures.set_up(&mut app, camera);
