@@ -55,3 +55,29 @@ pub(super) fn colour<C>(
     }
     (keyed.into_iter().map(|(_, constraint)| constraint).collect(), Colours(ranges))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::colour;
+
+    #[test]
+    fn constraints_of_one_colour_share_no_particle() {
+        // A fan and a path: pairs and a triple.
+        let constraints: Vec<Vec<u32>> =
+            vec![vec![0, 1], vec![0, 2], vec![0, 3], vec![1, 2, 3], vec![3, 4], vec![4, 5]];
+        let rank = |constraint: &Vec<u32>| u32::from(constraint.len() != 2);
+        let (sorted, colours) = colour(6, constraints.clone(), |constraint| constraint, rank);
+        let covered: usize = colours.ranges().iter().map(ExactSizeIterator::len).sum();
+        assert_eq!(covered, constraints.len());
+        assert!(constraints.iter().all(|constraint| sorted.contains(constraint)));
+        assert_eq!(sorted[5], [1, 2, 3], "of the higher rank");
+        assert_eq!(colours.ranges().len(), 4);
+        for range in colours.ranges() {
+            let mut particles: Vec<u32> = sorted[range.clone()].concat();
+            let all = particles.len();
+            particles.sort_unstable();
+            particles.dedup();
+            assert_eq!(particles.len(), all);
+        }
+    }
+}

@@ -177,11 +177,6 @@ impl Fabric {
         &self.links.classes
     }
 
-    /// Runs of links that share no particle.
-    pub(crate) fn link_colours(&self) -> &Colours {
-        &self.links.colours
-    }
-
     /// The links in straight paths, colour by colour.
     pub(crate) fn yarns(&self) -> &[Yarn] {
         &self.yarns.list
@@ -211,11 +206,6 @@ impl Fabric {
     /// Stiffnesses that hinges refer to.
     pub(crate) fn hinge_classes(&self) -> &[HingeClass] {
         &self.hinges.classes
-    }
-
-    /// Runs of hinges that share no particle.
-    pub(crate) fn hinge_colours(&self) -> &Colours {
-        &self.hinges.colours
     }
 
     /// Rows and columns along which a grid bends; none of other meshes, which bend at their hinges.

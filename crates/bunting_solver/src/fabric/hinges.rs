@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::clamp::CLAMP_FACTOR;
 use super::classes::{Classes, rounded_bits};
-use super::colour::{Colours, colour};
+use super::colour::colour;
 use super::material::FabricMaterial;
 use super::mesh::RestMesh;
 use super::topology::Edge;
@@ -45,8 +45,6 @@ pub(crate) struct Hinges {
     pub list: Vec<Hinge>,
     /// Stiffnesses that hinges refer to.
     pub classes: Vec<HingeClass>,
-    /// Runs of hinges that share no particle.
-    pub colours: Colours,
 }
 
 impl Hinges {
@@ -71,9 +69,9 @@ impl Hinges {
             Some(Hinge { particles, rest_angle: angle(corners), class })
         };
         let hinges = edges.iter().filter_map(hinge).collect();
-        let (list, colours) =
+        let (list, _) =
             colour(mesh.positions.len(), hinges, |hinge: &Hinge| &hinge.particles, |_| 0);
-        Self { list, classes: table, colours }
+        Self { list, classes: table }
     }
 }
 

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use glam::{DMat3, DVec3, Vec3};
 
 use super::classes::{Classes, rounded_bits};
-use super::colour::{Colours, colour};
+use super::colour::colour;
 use super::grid::Grid;
 use super::material::FabricMaterial;
 use super::mesh::RestMesh;
@@ -104,8 +104,6 @@ pub(crate) struct Links {
     pub list: Vec<Link>,
     /// Stiffnesses that links refer to.
     pub classes: Vec<LinkClass>,
-    /// Runs of links that share no particle.
-    pub colours: Colours,
 }
 
 impl Links {
@@ -141,13 +139,13 @@ impl Links {
             let [a, b] = mesh.positions_of(particles);
             Link { particles, rest_length: a.distance(b), class, family: sum.family() }
         });
-        let (list, colours) = colour(
+        let (list, _) = colour(
             mesh.positions.len(),
             links.collect(),
             |link: &Link| &link.particles,
             |link| link.family as u32,
         );
-        Self { list, classes: table, colours }
+        Self { list, classes: table }
     }
 
     /// Length of the shortest link of warp and weft, m.

@@ -1,4 +1,4 @@
-//! What a change of level keeps.
+//! What a change of level conserves: momentum, energy, shape.
 
 use std::sync::Arc;
 

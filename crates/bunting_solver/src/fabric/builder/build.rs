@@ -68,30 +68,4 @@ mod tests {
             .expect("a good fabric");
         assert!(fabric.links().is_empty() && fabric.hinges().is_empty());
     }
-
-    #[test]
-    fn colours_share_no_particle() {
-        let fabric = FabricBuilder::grid(Grid::new(9, 6, 1.0, 1.0)).build().expect("a good fabric");
-        let lists = [
-            (
-                fabric.link_colours(),
-                fabric.links().iter().map(|link| link.particles.to_vec()).collect::<Vec<_>>(),
-            ),
-            (
-                fabric.hinge_colours(),
-                fabric.hinges().iter().map(|hinge| hinge.particles.to_vec()).collect(),
-            ),
-        ];
-        for (colours, constraints) in lists {
-            let covered: usize = colours.ranges().iter().map(ExactSizeIterator::len).sum();
-            assert_eq!(covered, constraints.len());
-            for range in colours.ranges() {
-                let mut particles: Vec<u32> = constraints[range.clone()].concat();
-                let all = particles.len();
-                particles.sort_unstable();
-                particles.dedup();
-                assert_eq!(particles.len(), all);
-            }
-        }
-    }
 }
