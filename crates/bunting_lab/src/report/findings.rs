@@ -215,7 +215,7 @@ fn lod(json: &Value) -> Vec<Finding> {
     let worst = |list: &str, key: &str| {
         rows(json, list).iter().map(|change| number(change, key)).fold(0.0, worse)
     };
-    let (pop, energy) = (worst("pops", "worst_px"), worst("switches", "energy_jump"));
+    let (pop, energy) = (worst("pops", "worst_px"), worst("switches", "energy_worst"));
     let sentence = format!("a change of level pops by {} pixels at most", figure(pop));
     findings.push(Finding::new(pop <= POP, sentence));
     let sentence = format!("a change of level adds up to {} × the kinetic energy", figure(energy));
