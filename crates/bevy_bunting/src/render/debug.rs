@@ -87,7 +87,7 @@ fn draw_cloths(cloths: Query<Drawn>, wind: Option<Res<TickWind>>, mut gizmos: Gi
         let position = |particle: usize| frame.transform_point(surface.positions[particle]);
         if what.levels {
             let colour = LEVEL_COLOURS[state.level().min(LEVEL_COLOURS.len() - 1)];
-            for link in fabric.links().iter().filter(|link| link.family != LinkFamily::Bias) {
+            for link in fabric.links().iter().filter(|link| link.family != LinkFamily::Diagonal) {
                 let [from, to] = link.particles.map(|particle| position(particle as usize));
                 gizmos.line(from, to, colour);
             }

@@ -1,6 +1,6 @@
 //! Plots of error over time.
 
-use super::pareto::Row;
+use super::row::Row;
 use crate::{
     contender::Contender,
     observation::COMPARED_TICKS,
@@ -24,19 +24,20 @@ const FIGURE: [(&str, Option<usize>, &str); 8] = [
 /// Error over time of every method on a scene, one colour a method, of one cloth alone and of as many
 /// as can be had at once, and the front of what no other setting beats. A contender has its colour on
 /// every scene. None where no method has an error.
+#[must_use]
 pub fn plot(scene: &Scene, rows: &[Row], contenders: &[Contender]) -> Option<Plot> {
     let widest = contenders.iter().map(|it| it.lanes).max()?;
-    let mut kinds: Vec<(&str, usize)> = Vec::new();
-    for kind in contenders.iter().map(|it| (it.method.as_str(), it.lanes)) {
-        if (kind.1 == 1 || kind.1 == widest) && !kinds.contains(&kind) {
-            kinds.push(kind);
+    let mut methods: Vec<(&str, usize)> = Vec::new();
+    for it in contenders.iter().map(|contender| (contender.method.as_str(), contender.lanes)) {
+        if (it.1 == 1 || it.1 == widest) && !methods.contains(&it) {
+            methods.push(it);
         }
     }
-    let series: Vec<Series> = kinds
+    let series: Vec<Series> = methods
         .into_iter()
         .map(|(method, lanes)| {
-            let of_kind = rows.iter().filter(|row| row.method == method && row.lanes == lanes);
-            let points = of_kind.filter_map(|row| point(scene, row)).collect();
+            let of_method = rows.iter().filter(|row| row.method == method && row.lanes == lanes);
+            let points = of_method.filter_map(|row| point(scene, row)).collect();
             let name = if lanes == 1 { method.to_owned() } else { format!("{method}, of {lanes}") };
             Series { name, points, mark: Mark::Dots }
         })
@@ -47,6 +48,7 @@ pub fn plot(scene: &Scene, rows: &[Row], contenders: &[Contender]) -> Option<Plo
 }
 
 /// Error over time of the position-based methods on a scene.
+#[must_use]
 pub fn figure(scene: &Scene, rows: &[Row]) -> Plot {
     let series = FIGURE.iter().filter_map(|&(method, lanes, name)| {
         let of_method = rows.iter().filter(|row| {

@@ -5,15 +5,19 @@ use std::thread;
 use bunting_solver::StepSettings;
 use serde::Serialize;
 
-use super::{Effort, LEVELS, scheme_name, schemes};
-use crate::{fleet::Fleet, scenes::Scene};
+use crate::{
+    effort::Effort,
+    fleet::Fleet,
+    scenes::Scene,
+    settings::{LEVELS, scheme_name, schemes},
+};
 
 /// Numbers of flags.
 const CLOTHS: [usize; 6] = [1, 8, 16, 64, 256, 1000];
 
 /// Flags of one level, all ticked once.
 #[derive(Clone, Debug, Serialize)]
-pub struct Sheet {
+pub struct ManyFlags {
     /// Vertices along each side.
     pub n: u32,
     /// Number of flags.
@@ -33,17 +37,17 @@ pub struct Sheet {
 }
 
 /// Every number of flags at every level with every scheme, on one core and on all.
-pub fn measure(effort: &Effort, mut done: impl FnMut()) -> Vec<Sheet> {
-    let mut sheets = Vec::new();
+pub fn measure(effort: &Effort, mut done: impl FnMut()) -> Vec<ManyFlags> {
+    let mut many_flags = Vec::new();
     for settings in schemes() {
         for n in LEVELS {
             for cloths in CLOTHS.into_iter().filter(|&cloths| cloths <= effort.most_cloths) {
-                sheets.extend(on_all_cores(n, cloths, settings, effort));
+                many_flags.extend(on_all_cores(n, cloths, settings, effort));
                 done();
             }
         }
     }
-    sheets
+    many_flags
 }
 
 /// How often `measure` says that it is done with a part.
@@ -60,11 +64,11 @@ fn core_counts() -> Vec<usize> {
 }
 
 /// The same flags on one core and on all.
-fn on_all_cores(n: u32, cloths: usize, settings: StepSettings, effort: &Effort) -> Vec<Sheet> {
+fn on_all_cores(n: u32, cloths: usize, settings: StepSettings, effort: &Effort) -> Vec<ManyFlags> {
     let cores = core_counts();
     let times = Fleet::new(Scene::flag(n as usize), cloths, settings).time_ticks(&cores, effort);
     let alone = times[0].min();
-    let sheets = cores.iter().zip(&times).map(|(&cores, time)| Sheet {
+    let many_flags = cores.iter().zip(&times).map(|(&cores, time)| ManyFlags {
         n,
         cloths,
         cores,
@@ -74,5 +78,5 @@ fn on_all_cores(n: u32, cloths: usize, settings: StepSettings, effort: &Effort) 
         ms_min: time.min() * 1e-3,
         over_one_core: alone / time.min(),
     });
-    sheets.collect()
+    many_flags.collect()
 }
