@@ -1,4 +1,4 @@
-//! Moving air.
+//! Wind: the velocity of the air.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
@@ -10,30 +10,31 @@ use fastnoise_lite::{FastNoiseLite, NoiseType};
 
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// Air that moves alike everywhere. Several fields add up.
+/// Air with the same velocity everywhere. The velocities of several fields are added up.
 ///
-/// Gusts are noise over the time of the tick, so they depend on the seed and not on the frame rate.
+/// Gusts are simplex noise over the time of the tick, so they depend on the seed and not on the frame
+/// rate.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct WindField {
     /// Mean velocity of the air relative to the world, m/s.
     pub velocity: Vec3,
-    /// Greatest departure from the mean along each axis, m/s.
+    /// Greatest difference from the mean velocity along each axis, m/s.
     pub gust_strength: f32,
-    /// How often gusts come, 1/s.
+    /// Frequency of gusts, 1/s.
     pub gust_frequency: f32,
-    /// Chooses the gusts.
+    /// Seed of the noise: fields with different seeds have independent gusts.
     pub seed: i32,
 }
 
 impl WindField {
-    /// Wind without gusts, m/s.
+    /// Wind of a velocity (m/s) without gusts.
     #[must_use]
     pub const fn steady(velocity: Vec3) -> Self {
         Self { velocity, gust_strength: 0.0, gust_frequency: 0.5, seed: 0 }
     }
 
-    /// The same, with gusts of a strength (m/s) and frequency (1/s).
+    /// The same, with gusts of a strength (m/s), a frequency (1/s) and a seed.
     #[must_use]
     pub const fn with_gusts(mut self, strength: f32, frequency: f32, seed: i32) -> Self {
         self.gust_strength = strength;
@@ -42,7 +43,7 @@ impl WindField {
         self
     }
 
-    /// Velocity of the air after `seconds`, m/s.
+    /// Velocity of the air (m/s) at a time (s).
     #[must_use]
     pub fn velocity_at(&self, seconds: f64) -> Vec3 {
         if self.gust_strength == 0.0 {
@@ -52,7 +53,7 @@ impl WindField {
         noise.set_noise_type(Some(NoiseType::OpenSimplex2));
         noise.set_frequency(Some(1.0));
         let phase = (seconds * f64::from(self.gust_frequency)) as f32;
-        // Rows of the noise far apart are independent.
+        // Rows of the noise at great distance are independent: one for each axis.
         let axis = |row: f32| noise.get_noise_2d(phase, 100.0 * row);
         self.velocity + self.gust_strength * Vec3::new(axis(1.0), axis(2.0), axis(3.0))
     }
@@ -64,7 +65,7 @@ impl Default for WindField {
     }
 }
 
-/// Velocity of the air in this tick, m/s: the sum of all fields.
+/// Velocity of the air in this tick, m/s: the sum of all [`WindField`]s.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct TickWind(pub Vec3);
@@ -85,7 +86,7 @@ impl Plugin for WindPlugin {
 fn add_up_winds(fields: Query<&WindField>, time: Res<Time>, mut wind: ResMut<TickWind>) {
     let seconds = time.elapsed_secs_f64();
     let sum: Vec3 = fields.iter().map(|field| field.velocity_at(seconds)).sum();
-    // A field that is not finite must not reach the cloths.
+    // A field that is not finite counts as no wind at all.
     wind.0 = if sum.is_finite() { sum } else { Vec3::ZERO };
 }
 

@@ -1,4 +1,4 @@
-//! What holds a cloth: chosen vertices stay on another entity.
+//! Attachments: chosen vertices of a cloth stay on another entity.
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec2;
@@ -6,21 +6,22 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
 
-/// Default of [`Attachment::teleport_distance`], m: no vehicle leaves its course by that much
-/// between two frames.
+/// Default of [`Attachment::teleport_distance`], m: no vehicle departs from its extrapolated motion by
+/// that much between two frames. Smaller: hard manoeuvres count as teleports, and swing no cloth.
 const TELEPORT_DISTANCE: f32 = 2.0;
 
-/// How far from the extreme texture coordinate a vertex still lies on an edge.
+/// Greatest difference from the extreme texture coordinate of vertices on an edge. Smaller: rounding
+/// excludes vertices. Larger: an edge has several rows of fine meshes.
 const EDGE_TOLERANCE: f32 = 1e-4;
 
-/// Holds chosen vertices of a cloth on a target, wherever it goes.
+/// Holds chosen vertices of a cloth on a target that may move.
 ///
-/// The cloth's frame is the target's pose times [`offset`](Self::offset): the vertices rest there
-/// where the [`ClothMesh`](crate::ClothMesh) has them, and never leave. The cloth's own
-/// [`Transform`] is overwritten with that frame, be the cloth a child of its target or not.
+/// The cloth's frame is the target's pose times [`offset`](Self::offset). The held vertices stay in
+/// that frame where the [`ClothMesh`](crate::ClothMesh) has them. The cloth's own [`Transform`] is
+/// overwritten with the frame, whether the cloth is a child of its target or not.
 ///
-/// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. Its scale moves
-/// the offset and is otherwise ignored.
+/// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. Its scale scales
+/// the offset's translation and is otherwise ignored.
 #[derive(Component, Clone, Debug, Reflect)]
 #[reflect(Component, Debug, Clone)]
 pub struct Attachment {
@@ -34,8 +35,9 @@ pub struct Attachment {
     pub offset: Transform,
     /// What happens when the target is despawned.
     pub on_lost: TargetLost,
-    /// A target that leaves its course by more than this between two observations was teleported,
-    /// m: the cloth goes along without being swung. The same goes for a turn of more than 90°.
+    /// A target that departs from its extrapolated motion by more than this between two frames or ticks,
+    /// in m, was teleported: the cloth moves with it rigidly, without being accelerated. The same holds
+    /// for a turn of more than 90°.
     pub teleport_distance: f32,
 }
 
@@ -75,11 +77,11 @@ impl Attachment {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum TargetLost {
-    /// The cloth stands still: it gets [`ClothPaused`](crate::ClothPaused). Without that marker it
-    /// hangs from where the target was.
+    /// The cloth is paused: it gets [`ClothPaused`](crate::ClothPaused). If that component is removed,
+    /// the cloth hangs from the last pose of its target.
     #[default]
     Freeze,
-    /// The cloth lets go: its [`Attachment`] is removed.
+    /// The cloth falls: its [`Attachment`] is removed.
     Release,
 }
 
@@ -113,7 +115,7 @@ pub enum ClothCorner {
 
 /// Which vertices an [`Attachment`] holds.
 ///
-/// At a coarser level of detail those of them are held that the level has.
+/// A coarser level of detail holds those of them that it has.
 #[derive(Clone, Debug, Reflect)]
 #[reflect(opaque)]
 #[reflect(Debug, Clone)]
@@ -127,7 +129,7 @@ pub enum AttachedVertices {
     List(Vec<u32>),
     /// All vertices for whose texture coordinate a predicate holds.
     Where(fn(Vec2) -> bool),
-    /// None but those that are rigid in any case: of weight 0, see
+    /// No vertices besides the rigid ones of weight 0, see
     /// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
     Rigid,
 }
@@ -187,12 +189,13 @@ fn nearest(uv: &[Vec2], corner: Vec2) -> Option<u32> {
 
 #[cfg(test)]
 mod tests {
+    use bunting_solver::Grid;
+
     use super::*;
-    use crate::cloth::mesh::ClothMesh;
 
     #[test]
     fn edges_corners_and_predicates() {
-        let uv = ClothMesh::grid(3, 2, 1.0, 1.0).uvs();
+        let uv = Grid::new(3, 2, 1.0, 1.0).uvs();
         let choose = |vertices: AttachedVertices| vertices.choose(&uv);
         assert_eq!(choose(ClothEdge::Left.into()), [0, 3]);
         assert_eq!(choose(ClothEdge::Right.into()), [2, 5]);

@@ -59,12 +59,14 @@ impl Grid {
         self.nodes(|u, v| Vec3::new(u * self.width, -v * self.height, 0.0))
     }
 
-    pub(crate) fn uvs(&self) -> Vec<Vec2> {
+    /// Texture coordinates of all particles, from 0 to 1 along rows (u) and columns (v).
+    #[must_use]
+    pub fn uvs(&self) -> Vec<Vec2> {
         self.nodes(Vec2::new)
     }
 
     fn nodes<T>(&self, node: impl Fn(f32, f32) -> T) -> Vec<T> {
-        let fraction = |index: u32, count: u32| index as f32 / (count - 1) as f32;
+        let fraction = |index: u32, count: u32| index as f32 / (count.max(2) - 1) as f32;
         (0..self.rows)
             .flat_map(|row| (0..self.columns).map(move |column| (column, row)))
             .map(|(column, row)| node(fraction(column, self.columns), fraction(row, self.rows)))

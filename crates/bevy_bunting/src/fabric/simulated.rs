@@ -1,100 +1,31 @@
-//! Which part of a mesh is simulated, what stays rigid, and how the one blends into the other.
+//! The simulated part of a mesh, cut from it by the weights of its vertices (thesis, 6.1).
 
-use bevy_math::Vec3;
-use bunting_solver::{Fabric, FabricBuilder, FabricError};
+use bunting_solver::{FabricBuilder, FabricError};
 
 use crate::cloth::mesh::ClothMesh;
+use crate::fabric::rigid::{RestVertex, RigidPart};
 
-/// Why weights cannot be used.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum WeightsError {
-    /// There must be one weight a vertex.
-    #[error("{weights} weights for {vertices} vertices: give one a vertex, or none")]
-    Count {
-        /// Number of weights given.
-        weights: usize,
-        /// Number of vertices.
-        vertices: usize,
-    },
-    /// A weight is not a number from 0 to 1.
-    #[error("vertex {vertex} has the weight {weight}: give it one from 0, rigid, to 1, simulated")]
-    OutOfRange {
-        /// The vertex.
-        vertex: usize,
-        /// Its weight.
-        weight: f32,
-    },
-    /// Nothing would be simulated.
-    #[error("all weights are 0: give what should move a greater one, or leave out the ClothMesh")]
-    AllRigid,
-}
-
-/// Checks the weights of a mesh.
-///
-/// # Errors
-///
-/// They are too few, too many, out of range or all zero.
-pub(crate) fn check_weights(mesh: &ClothMesh) -> Result<(), WeightsError> {
-    let (weights, vertices) = (mesh.weights(), mesh.vertex_count());
-    if weights.is_empty() {
-        return Ok(());
-    }
-    if weights.len() != vertices {
-        return Err(WeightsError::Count { weights: weights.len(), vertices });
-    }
-    if let Some(vertex) = weights.iter().position(|weight| !(0.0..=1.0).contains(weight)) {
-        return Err(WeightsError::OutOfRange { vertex, weight: weights[vertex] });
-    }
-    if weights.iter().all(|&weight| weight == 0.0) {
-        return Err(WeightsError::AllRigid);
-    }
-    Ok(())
-}
-
-/// A vertex at rest.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct RestVertex {
-    /// Its index in the mesh.
-    pub vertex: u32,
-    /// m.
-    pub position: Vec3,
-    /// Unit normal of the whole mesh.
-    pub normal: Vec3,
-}
-
-/// What stays in its place.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct RigidPart {
-    /// The vertices that are not simulated.
-    pub vertices: Vec<RestVertex>,
-    /// The triangles that are not simulated, as vertices of the mesh.
-    pub triangles: Vec<[u32; 3]>,
-    /// Vertices that are simulated, but not shown quite where they are; with their weights.
-    pub blended: Vec<(RestVertex, f32)>,
-    /// The least and greatest coordinates of all these vertices, m; none where there are none.
-    pub bounds: Option<[Vec3; 2]>,
-}
-
-/// The part of a mesh that is simulated.
+/// The simulated part of a mesh, and the rigid rest of it.
 #[derive(Clone, Debug)]
 pub(crate) struct SimulatedPart {
-    /// The part, with its pins.
+    /// Builder of the part's fabric, with its pins.
     pub builder: FabricBuilder,
-    /// Its vertices in the mesh, ascending.
+    /// The part's vertices as indices in the mesh, ascending.
     pub vertices: Vec<u32>,
-    /// Its triangles in the mesh; empty where it is all of the mesh.
+    /// The part's triangles as indices in the mesh; empty where the part is the whole mesh.
     triangles: Vec<usize>,
     /// The rest of the mesh.
     pub rigid: RigidPart,
 }
 
 impl SimulatedPart {
-    /// Cuts a mesh, whose weights are good, with attached vertices.
+    /// Cuts the simulated part out of a mesh with valid weights, and pins attached vertices. Triangles
+    /// whose corners all have weight 0 are left out; vertices of weight 0 on the other triangles are
+    /// pinned.
     ///
     /// # Errors
     ///
-    /// The lists of the mesh do not fit one another.
+    /// The lists of the mesh do not fit one another, or a position is not finite.
     pub fn of(mesh: &ClothMesh, attached: &[u32]) -> Result<Self, FabricError> {
         let whole = mesh.builder().pin(attached.iter().copied());
         let weights = mesh.weights();
@@ -104,48 +35,39 @@ impl SimulatedPart {
             return Ok(Self { builder: whole, vertices, triangles, rigid });
         }
         let normals = whole.rest_normals()?;
-        let mut rigid = RigidPart::default();
-        let mut triangles = Vec::new();
+        let corners = whole.indices().as_chunks::<3>().0;
+        let is_rigid = |corners: &[u32; 3]| corners.iter().all(|&it| weights[it as usize] == 0.0);
+        let (rigid_triangles, triangles): (Vec<usize>, Vec<usize>) =
+            (0..corners.len()).partition(|&triangle| is_rigid(&corners[triangle]));
         let mut is_simulated: Vec<bool> = weights.iter().map(|&weight| weight > 0.0).collect();
-        for (triangle, corners) in whole.indices().as_chunks::<3>().0.iter().enumerate() {
-            if corners.iter().all(|&corner| weights[corner as usize] == 0.0) {
-                rigid.triangles.push(*corners);
-            } else {
-                triangles.push(triangle);
-                corners.iter().for_each(|&corner| is_simulated[corner as usize] = true);
-            }
+        for &corner in triangles.iter().flat_map(|&triangle| &corners[triangle]) {
+            is_simulated[corner as usize] = true;
         }
+        let mut rigid = RigidPart {
+            triangles: rigid_triangles.iter().map(|&triangle| corners[triangle]).collect(),
+            ..RigidPart::default()
+        };
         let mut vertices = Vec::new();
         for (vertex, (&position, &normal)) in whole.positions().iter().zip(&normals).enumerate() {
             let rest = RestVertex { vertex: vertex as u32, position, normal };
-            if weights[vertex] < 1.0 {
-                let [low, high] = rigid.bounds.unwrap_or([position; 2]);
-                rigid.bounds = Some([low.min(position), high.max(position)]);
+            let weight = weights[vertex];
+            if weight < 1.0 {
+                rigid.extend_bounds(position);
             }
             if !is_simulated[vertex] {
                 rigid.vertices.push(rest);
                 continue;
             }
             vertices.push(rest.vertex);
-            if weights[vertex] < 1.0 {
-                rigid.blended.push((rest, weights[vertex]));
+            if weight < 1.0 {
+                rigid.blended.push((rest, weight));
             }
         }
-        let place = |vertex: &u32| vertices.binary_search(vertex).ok().map(|at| at as u32);
-        let corners = triangles.iter().flat_map(|triangle| &whole.indices()[3 * triangle..][..3]);
-        let uv = mesh.uvs();
-        let held = rigid.blended.iter().filter(|(_, weight)| *weight == 0.0);
-        let held = held.filter_map(|(rest, _)| place(&rest.vertex));
-        let builder = FabricBuilder::new(
-            vertices.iter().map(|&vertex| whole.positions()[vertex as usize]).collect(),
-            corners.filter_map(place).collect(),
-        )
-        .uv(vertices.iter().filter_map(|&vertex| uv.get(vertex as usize).copied()).collect())
-        .pin(attached.iter().filter_map(place).chain(held));
+        let builder = part_builder(mesh, &whole, attached, (&vertices, &triangles), &rigid);
         Ok(Self { builder, vertices, triangles, rigid })
     }
 
-    /// An error of the part's fabric, in the numbers of the mesh.
+    /// An error of the part's fabric, with the indices of the mesh instead of the part's.
     pub fn renumber(&self, error: FabricError) -> FabricError {
         let vertex = |of_part: usize| self.vertices.get(of_part).map_or(of_part, |&v| v as usize);
         match error {
@@ -164,43 +86,34 @@ impl SimulatedPart {
     }
 }
 
-/// A particle that is shown between its place at rest and where it is.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Blend {
-    particle: usize,
-    weight: f32,
-    rest: RestVertex,
-}
-
-impl Blend {
-    /// Those of a level, which has some of the mesh's vertices. Of vertices that are one particle the
-    /// first counts.
-    pub fn all(rigid: &RigidPart, vertices: &[u32], fabric: &Fabric) -> Vec<Self> {
-        let mut blends: Vec<Self> = rigid
-            .blended
-            .iter()
-            .filter_map(|&(rest, weight)| {
-                let at = vertices.binary_search(&rest.vertex).ok()?;
-                let particle = fabric.particle_of_vertex()[at] as usize;
-                Some(Self { particle, weight, rest })
-            })
-            .collect();
-        blends.sort_by_key(|blend| blend.particle);
-        blends.dedup_by_key(|blend| blend.particle);
-        blends
-    }
-
-    /// Shows the particle where it should be seen.
-    pub fn apply(&self, positions: &mut [Vec3], normals: &mut [Vec3]) {
-        let (position, normal) = (&mut positions[self.particle], &mut normals[self.particle]);
-        *position = self.rest.position.lerp(*position, self.weight);
-        *normal = self.rest.normal.lerp(*normal, self.weight).normalize_or_zero();
-    }
+/// The builder of some vertices and triangles of a mesh, both ascending. Attached vertices and those of
+/// weight 0 are pinned.
+fn part_builder(
+    mesh: &ClothMesh,
+    whole: &FabricBuilder,
+    attached: &[u32],
+    (vertices, triangles): (&[u32], &[usize]),
+    rigid: &RigidPart,
+) -> FabricBuilder {
+    let index = |vertex: &u32| vertices.binary_search(vertex).ok().map(|index| index as u32);
+    let corners = triangles.iter().flat_map(|triangle| &whole.indices()[3 * triangle..][..3]);
+    let uv = mesh.uvs();
+    let held = rigid.blended.iter().filter(|(_, weight)| *weight == 0.0);
+    let held = held.filter_map(|(rest, _)| index(&rest.vertex));
+    FabricBuilder::new(
+        vertices.iter().map(|&vertex| whole.positions()[vertex as usize]).collect(),
+        corners.filter_map(index).collect(),
+    )
+    .uv(vertices.iter().filter_map(|&vertex| uv.get(vertex as usize).copied()).collect())
+    .pin(attached.iter().filter_map(index).chain(held))
 }
 
 #[cfg(test)]
 mod tests {
+    use bevy_math::Vec3;
+
     use super::*;
+    use crate::fabric::rigid::Blend;
 
     /// A strip of four squares along x, the first two of them rigid.
     fn strip() -> ClothMesh {
@@ -217,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_moves_is_cut() {
+    fn the_part_has_the_triangles_with_a_simulated_corner() {
         let part = SimulatedPart::of(&strip(), &[0, 4]).expect("a part");
         assert_eq!(part.vertices, [2, 3, 4, 7, 8, 9]);
         assert_eq!(part.rigid.triangles.len(), 4);
@@ -232,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_of_a_part_are_told_in_the_numbers_of_the_mesh() {
+    fn errors_of_a_part_have_the_indices_of_the_mesh() {
         let error = |mesh: ClothMesh| {
             let part = SimulatedPart::of(&mesh, &[])?;
             part.builder.clone().build().map_err(|error| part.renumber(error)).map(|_| ())

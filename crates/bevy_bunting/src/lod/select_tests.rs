@@ -1,4 +1,4 @@
-//! Levels of detail, and what a change of level does to the state.
+//! The state of a cloth before and after a change of level.
 
 use std::time::Duration;
 
@@ -8,25 +8,14 @@ use bevy_math::Vec3;
 use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bunting_solver::ClothSnapshot;
 
-use super::{LodSet, seat_cloths};
+use crate::batch::assign::assign_lanes;
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
+use crate::lod::lod_set::LodSet;
 use crate::motion::attachment::{Attachment, ClothEdge};
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::{ClothPlugins, WindField};
-
-#[test]
-fn levels_have_hysteresis() {
-    let lods = LodSet::new([10.0, 20.0, 40.0]);
-    assert_eq!(lods.level_at(5.0, 0), 0);
-    assert_eq!(lods.level_at(10.5, 0), 0);
-    assert_eq!(lods.level_at(10.5, 1), 1);
-    assert_eq!(lods.level_at(11.5, 0), 1);
-    assert_eq!(lods.level_at(100.0, 0), 3);
-    assert_eq!(lods.level_at(1.0, 3), 0);
-    assert_eq!(lods.pinned_to(2).level_at(1.0, 3), 2);
-}
 
 /// The state before the choice of levels, and after it.
 #[derive(Resource, Default)]
@@ -36,13 +25,12 @@ struct Moved {
 }
 
 fn snapshot(cloths: &Query<&ClothInstance>, batches: &ClothBatches) -> ClothSnapshot {
-    let slot = cloths.single().ok().and_then(ClothInstance::slot);
-    slot.map(|slot| batches.at(slot))
-        .map_or_else(ClothSnapshot::default, |(batch, lane)| batch.snapshot(lane))
+    let lane = cloths.single().ok().and_then(ClothInstance::lane);
+    lane.map_or_else(ClothSnapshot::default, |lane| batches.batch(lane).snapshot(lane.lane))
 }
 
 #[test]
-fn new_particles_move_as_those_about_them() {
+fn a_change_of_level_transfers_positions_and_velocities() {
     let mut app = App::new();
     app.add_plugins((TimePlugin, ClothPlugins::default()))
         .insert_resource(TimeUpdateStrategy::ManualDuration(Duration::from_micros(15_625)))
@@ -62,7 +50,7 @@ fn new_particles_move_as_those_about_them() {
                   mut moved: ResMut<Moved>| {
                     moved.after = snapshot(&cloths, &batches);
                 })
-                .after(seat_cloths)
+                .after(assign_lanes)
                 .before(ClothSystems::Drive),
             ),
         );

@@ -1,4 +1,4 @@
-//! What is seen of a change of level.
+//! The displayed surface across changes of level.
 
 use std::time::Duration;
 
@@ -7,13 +7,13 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_time::{TimePlugin, TimeUpdateStrategy};
 
-use super::{DURATION, Decay};
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::state::ClothState;
+use crate::display::easing::DURATION;
 use crate::display::surface::ClothSurface;
 use crate::fabric::levels::ClothLevels;
-use crate::lod::LodSet;
+use crate::lod::lod_set::LodSet;
 use crate::motion::attachment::{Attachment, ClothEdge};
 use crate::{ClothPlugins, WindField};
 
@@ -49,7 +49,7 @@ fn levels(app: &App, flag: Entity) -> &ClothLevels {
 /// The surface with the vertices of the finest level.
 fn seen(app: &App, flag: Entity) -> Vec<Vec3> {
     let surface = app.world().get::<ClothSurface>(flag).expect("a surface");
-    levels(app, flag).spread(surface.positions.clone(), surface.level(), 0)
+    levels(app, flag).interpolate(surface.positions.clone(), surface.level(), 0)
 }
 
 /// How far the vertex that strays most is from where it would be had it gone on as it moved, m.
@@ -97,7 +97,7 @@ fn the_new_level_is_shown_in_time_and_without_a_jump() {
         assert_eq!(eased(&app), 0, "the finer level's vertices");
         for frame in 0..(DURATION / TICK) as usize + 2 {
             let state = app.world().get::<ClothState>(flag).expect("a state");
-            let bare = levels(&app, flag).spread(state.previous_positions().to_vec(), to, 0);
+            let bare = levels(&app, flag).interpolate(state.previous_positions().to_vec(), to, 0);
             let shown = seen(&app, flag);
             let apart = shown.iter().zip(&bare).map(|(shown, bare)| shown.distance(*bare));
             let apart = apart.fold(0.0, f32::max);
@@ -113,7 +113,7 @@ fn the_new_level_is_shown_in_time_and_without_a_jump() {
 }
 
 #[test]
-fn what_thrashes_stays_near() {
+fn a_surface_whose_level_changes_in_every_tick_stays_near_the_cloth() {
     let mut app = app();
     let flag = flag(&mut app, 0);
     for frame in 0..300 {
@@ -127,20 +127,4 @@ fn what_thrashes_stays_near() {
             assert!(apart < 0.4, "frame {frame}: {apart}");
         }
     }
-}
-
-#[test]
-fn a_decay_goes_on_as_it_began_and_ends() {
-    let start = Decay { value: Vec3::X, rate: Vec3::Y, acceleration: Vec3::ZERO };
-    let mut soon = start;
-    soon.advance(1e-3);
-    assert!(soon.value.distance(Vec3::X + 1e-3 * Vec3::Y) < 2e-5, "{soon:?}");
-    let (mut once, mut often) = (start, start);
-    once.advance(0.1);
-    (0..100).for_each(|_| often.advance(1e-3));
-    assert!(once.value.distance(often.value) < 1e-4 && once.rate.distance(often.rate) < 1e-2);
-    let mut end = start;
-    end.advance(DURATION);
-    // The surface fades what is left.
-    assert!(end.value.length() < 0.035, "{end:?}");
 }
