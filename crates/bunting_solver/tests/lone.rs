@@ -62,7 +62,7 @@ fn agrees(fabric: FabricBuilder, material: FabricMaterial, settings: StepSetting
     let alone = fly(&fabric, LaneCount::One, material, settings);
     let shared = fly(&fabric, LaneCount::Eight, material, settings);
     let first = alone.iter().zip(&shared).position(|(alone, shared)| alone != shared);
-    assert_eq!(first, None, "{:?} {settings:?}", fabric.grid());
+    assert_eq!(first, None, "{} particles, {settings:?}", fabric.particle_count());
 }
 
 #[test]

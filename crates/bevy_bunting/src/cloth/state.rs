@@ -116,7 +116,7 @@ impl ClothState {
         levels: &Arc<ClothLevels>,
         positions: &[Vec3],
     ) {
-        let normals = normals(levels.fabric(level), positions);
+        let normals = levels.fabric(level).normals(positions);
         self.replace_surface(level, levels, positions, normals);
     }
 
@@ -160,17 +160,4 @@ impl ClothState {
             levels.blend(self.level, &mut self.positions, &mut self.normals);
         }
     }
-}
-
-/// Unit normals of a fabric's particles at positions (m): those of the triangles, weighted by area.
-fn normals(fabric: &Fabric, positions: &[Vec3]) -> Vec<Vec3> {
-    let mut normals = vec![Vec3::ZERO; positions.len()];
-    for corners in fabric.triangles() {
-        let [a, b, c] = corners.map(|corner| positions[corner as usize]);
-        let normal = (b - a).cross(c - a);
-        for &corner in corners {
-            normals[corner as usize] += normal;
-        }
-    }
-    normals.into_iter().map(Vec3::normalize_or_zero).collect()
 }

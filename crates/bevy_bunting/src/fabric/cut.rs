@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bunting_solver::{Coarser, Fabric, FabricBuilder, FabricError, LevelTransfer};
+use bunting_solver::{CoarserMesh, Fabric, FabricBuilder, FabricError, LevelTransfer};
 
 use crate::cloth::mesh::ClothMesh;
 use crate::fabric::levels::{ClothLevels, Level, Shortage};
@@ -49,7 +49,7 @@ pub(super) fn cut_levels(
 fn coarsen(
     builder: &FabricBuilder,
     fabric: &Arc<Fabric>,
-) -> Option<(Coarser, Arc<Fabric>, LevelTransfer)> {
+) -> Option<(CoarserMesh, Arc<Fabric>, LevelTransfer)> {
     let coarser = builder.coarser()?;
     let coarse_fabric = Arc::new(coarser.builder.clone().build().ok()?);
     let transfer = LevelTransfer::nested(fabric, &coarse_fabric, &coarser.vertices).ok()?;

@@ -50,7 +50,7 @@ impl ClothLevels {
     ) -> ClothSnapshot {
         match self.between(0, level).last() {
             Some(transfer) if !snapshot.is_at_rest(self.fabric(level)) => {
-                transfer.calm(snapshot, material)
+                transfer.settle(snapshot, material)
             }
             _ => snapshot,
         }

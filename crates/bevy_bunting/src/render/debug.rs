@@ -83,32 +83,32 @@ fn draw_cloths(
     mut gizmos: Gizmos<ClothGizmos>,
 ) {
     for (state, surface, frame, visibility, own) in &cloths {
-        let what = *own.unwrap_or(gizmos.config_ext);
+        let drawn = *own.unwrap_or(gizmos.config_ext);
         let Some(fabric) = state.fabric() else { continue };
         if !visibility.get() || surface.positions.len() != fabric.particle_count() {
             continue;
         }
         let position = |particle: usize| frame.transform_point(surface.positions[particle]);
-        if what.levels {
+        if drawn.levels {
             let colour = LEVEL_COLOURS[state.level().min(LEVEL_COLOURS.len() - 1)];
-            for link in fabric.links().iter().filter(|link| link.family != LinkFamily::Bias) {
+            for link in fabric.links().iter().filter(|link| link.family != LinkFamily::Diagonal) {
                 let [from, to] = link.particles.map(|particle| position(particle as usize));
                 gizmos.line(from, to, colour);
             }
         }
-        if what.strain {
+        if drawn.strain {
             for link in fabric.links() {
                 let [from, to] = link.particles.map(|particle| position(particle as usize));
                 let strain = from.distance(to) / link.rest_length - 1.0;
                 gizmos.line(from, to, strain_colour(strain));
             }
         }
-        if what.attachments {
+        if drawn.attachments {
             for particle in (0..fabric.particle_count()).filter(|&each| fabric.is_pinned(each)) {
                 gizmos.cross(Isometry3d::from_translation(position(particle)), CROSS, MAGENTA);
             }
         }
-        if let (true, Some(wind)) = (what.wind, &wind) {
+        if let (true, Some(wind)) = (drawn.wind, &wind) {
             let middle = position(fabric.particle_count() / 2);
             gizmos.arrow(middle, middle + ARROW_TIME * wind.0, AQUA);
         }

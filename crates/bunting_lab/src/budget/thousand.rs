@@ -3,17 +3,20 @@
 use std::f32::consts::TAU;
 
 use bevy_app::App;
-use bevy_bunting::{
-    ClothCounts, ClothSettings, ClothSystems, ClothTimings, LodReport, LodSet, LodViewer,
-};
+use bevy_bunting::{ClothCounts, ClothSystems, ClothTimings, LodReport, LodSet, LodViewer};
 use bevy_ecs::entity::Entity;
 use bevy_transform::components::Transform;
 use bunting_solver::StepSettings;
 use glam::{Quat, Vec3};
 use serde::Serialize;
 
-use super::LEVELS;
-use crate::{game, product::DEFAULT, scenes::TICK_RATE, stats, timing::Timing};
+use crate::{
+    game,
+    scenes::TICK_RATE,
+    settings::{LEVELS, steps_of_levels},
+    stats,
+    timing::Timing,
+};
 
 /// Flags in the field.
 const FLAGS: usize = 1000;
@@ -37,13 +40,6 @@ const WARM_UP: usize = 3;
 const SECONDS: usize = 25;
 /// The same where it is to be quick.
 const QUICK_SECONDS: usize = 2;
-
-/// How finely each level is solved, the finest first: what flies far away is solved more coarsely.
-#[must_use]
-pub fn steps() -> Vec<StepSettings> {
-    let coarse = StepSettings { substeps: 1, ..DEFAULT };
-    vec![DEFAULT, coarse, coarse, coarse]
-}
 
 /// What was measured in each tick.
 #[derive(Default)]
@@ -102,10 +98,8 @@ pub struct Thousand {
 /// Flies the camera once round.
 #[must_use]
 pub fn measure(quick: bool) -> Thousand {
-    let steps = steps();
-    let mut app = game::app(steps[0]);
-    app.world_mut().resource_mut::<ClothSettings>().steps =
-        steps.iter().map(|&step| step.into()).collect();
+    let steps = steps_of_levels();
+    let mut app = game::app_in_wind(steps.clone());
     let places: Vec<Vec3> = (0..FLAGS).map(place).collect();
     for &at in &places {
         game::spawn_flag(&mut app, LEVELS[0], at, LodSet::automatic(LEVELS.len()));

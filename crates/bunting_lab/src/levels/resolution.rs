@@ -6,11 +6,11 @@ use bunting_solver::{LevelTransfer, StepSettings};
 use serde::Serialize;
 
 use crate::{
-    budget::scheme_name,
     fleet::Fleet,
     levels::{FLAGS, INTERVAL, SETTLING},
     product,
     scenes::{Scene, ticks},
+    settings::scheme_name,
     stats,
 };
 

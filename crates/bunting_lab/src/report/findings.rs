@@ -6,7 +6,7 @@ use crate::{output::table::figure, product::DEFAULT, stats::worse};
 
 /// Time that cloth may take of a frame, ms.
 const BUDGET: f64 = 1.0;
-/// Part of a length or a frequency by which levels may differ before anybody sees it.
+/// Part of a length or a frequency by which levels may differ before it is visible.
 const LEVELS_AGREE: f64 = 0.05;
 /// Largest pop that is not seen, pixels.
 const POP: f64 = 1.0;
@@ -29,7 +29,9 @@ pub struct Finding {
 }
 
 impl Finding {
-    fn new(good: bool, text: String) -> Self {
+    /// A finding.
+    #[must_use]
+    pub fn new(good: bool, text: String) -> Self {
         Self { good, text }
     }
 }
@@ -181,7 +183,7 @@ fn budget(json: &Value) -> Vec<Finding> {
             figure(worst),
         ),
     )];
-    let within = rows(json, "sheets")
+    let within = rows(json, "many_flags")
         .iter()
         .filter(|sheet| sheet["n"] == 33 && sheet["cores"] == 1)
         .map(|sheet| (BUDGET / number(sheet, "ms_per_tick") * number(sheet, "cloths"), sheet))
@@ -206,7 +208,7 @@ fn lod(json: &Value) -> Vec<Finding> {
             let finest = levels.iter().find(|other| other["scheme"] == level["scheme"])?;
             Some((number(level, key) / number(finest, key) - 1.0).abs())
         });
-        let worst = off.fold(0.0, f64::max);
+        let worst = off.fold(0.0, worse);
         let sentence = format!("the levels' {what} differs by up to {:.1} %", 100.0 * worst);
         findings.push(Finding::new(worst <= LEVELS_AGREE, sentence));
     }
@@ -223,7 +225,7 @@ fn lod(json: &Value) -> Vec<Finding> {
 
 fn schedule(json: &Value) -> Vec<Finding> {
     let finest = rows(json, "rows").iter().filter(|row| row["n"] == 33);
-    let worst = finest.map(|row| number(row, "ratio")).fold(0.0, f64::max);
+    let worst = finest.map(|row| number(row, "ratio")).fold(0.0, worse);
     let sentence =
         format!("the plugin takes {} × the time of plain calls, eight flags of 33²", figure(worst));
     vec![Finding::new(worst <= 1.0 + SCHEDULE, sentence)]

@@ -4,7 +4,7 @@ use bunting_solver::Collider;
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
 
-use super::{HardCase, rig::start};
+use super::{case::HardCase, rig::start};
 use crate::{
     product::TICK,
     scenes::{Pins, Pose, Scene},

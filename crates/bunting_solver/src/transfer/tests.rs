@@ -1,4 +1,4 @@
-//! What a change of level keeps.
+//! What a change of level conserves: momentum, energy, shape.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::batch::ClothBatch;
 use crate::batch::lane_count::LaneCount;
 use crate::batch::snapshot::ClothSnapshot;
 use crate::fabric::{Fabric, FabricBuilder, FabricMaterial, Grid};
-use crate::geometry::energy::{elastic, moment};
+use crate::geometry::energy::{area_moment, elastic};
 use crate::step::{Drive, StepSettings};
 
 const GRAVITY: Vec3 = Vec3::new(0.0, -9.81, 0.0);
@@ -48,7 +48,7 @@ fn energies(fabric: &Fabric, state: &ClothSnapshot) -> [f64; 3] {
     let moving = fabric.particle_areas().iter().zip(&state.velocities);
     let kinetic: f64 =
         moving.map(|(&area, v)| f64::from(area) * v.as_dvec3().length_squared()).sum();
-    let height = -moment(fabric, &state.positions).dot(GRAVITY.as_dvec3());
+    let height = -area_moment(fabric, &state.positions).dot(GRAVITY.as_dvec3());
     [0.5 * density * kinetic, elastic(fabric, &MATERIAL, &state.positions), density * height]
 }
 
@@ -61,7 +61,7 @@ fn momentum_is_kept_and_energy_does_not_grow() {
             (&fine, &above, &coarse, transfer.restrict(&above, &MATERIAL, GRAVITY)),
             (&coarse, &below, &fine, transfer.prolong(&below, &MATERIAL, GRAVITY)),
         ] {
-            let momentum = |fabric, state: &ClothSnapshot| moment(fabric, &state.velocities);
+            let momentum = |fabric, state: &ClothSnapshot| area_moment(fabric, &state.velocities);
             let (had, has) = (momentum(from, before), momentum(to, &after));
             assert!(had.distance(has) < 1e-5 * had.length(), "pinned {pinned}: {had} {has}");
             let (had, has) = (energies(from, before), energies(to, &after));
@@ -84,7 +84,8 @@ fn several_levels_are_crossed_at_once() {
     let before = flown(finest);
     let after = LevelTransfer::restrict_through(&chain, &before, &MATERIAL, GRAVITY);
     assert_eq!(after.positions.len(), coarsest.particle_count());
-    let (had, has) = (moment(finest, &before.velocities), moment(coarsest, &after.velocities));
+    let (had, has) =
+        (area_moment(finest, &before.velocities), area_moment(coarsest, &after.velocities));
     assert!(had.distance(has) < 1e-5 * had.length(), "{had} {has}");
     let (had, has) = (energies(finest, &before), energies(coarsest, &after));
     let rounding = 1e-6 * had.map(f64::abs).iter().sum::<f64>();
@@ -217,7 +218,7 @@ fn thrashing_is_harmless() {
             transfer.prolong(&state, &MATERIAL, GRAVITY)
         };
         let momentum = |level: usize, state: &ClothSnapshot| -> DVec3 {
-            moment(&fabrics[level], &state.velocities)
+            area_moment(&fabrics[level], &state.velocities)
         };
         let (had, has) = (momentum(level, &state), momentum(1 - level, &moved));
         assert!(had.distance(has) < 1e-5 * had.length().max(1e-2), "tick {tick}: {had} {has}");
