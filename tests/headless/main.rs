@@ -2,12 +2,14 @@
 
 mod attachment;
 mod determinism;
+mod environment;
 mod errors;
 mod first_hour;
 mod governor;
 mod levels;
 mod lifecycle;
 mod order;
-mod parts;
 mod rest;
-mod surroundings;
+mod thread_probe;
+mod threads;
+mod weights;

@@ -75,8 +75,8 @@ fn cloths_begin_at_their_levels() {
 fn a_cloth_may_have_hung_for_a_while() {
     let mut app = app();
     app.world_mut().spawn(WindField::steady(Vec3::new(1.0, 0.0, 1.0)));
-    let turned = Transform::from_xyz(1.0, 2.0, 3.0)
-        .with_rotation(bevy_math::Quat::from_rotation_y(0.8));
+    let turned =
+        Transform::from_xyz(1.0, 2.0, 3.0).with_rotation(bevy_math::Quat::from_rotation_y(0.8));
     let held = || Attachment::in_place(ClothEdge::Left);
     let mut spawn = |extra: Option<ClothPreroll>| {
         let mut flag = app.world_mut().spawn((FLAG, held(), ClothSeed(1), turned));

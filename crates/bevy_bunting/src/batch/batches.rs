@@ -1,4 +1,4 @@
-//! The batches that hold the state of all cloths, one lane a cloth.
+//! The batches that hold the state of all simulated cloths, one cloth a lane.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -6,85 +6,34 @@ use std::time::Duration;
 use bevy_ecs::prelude::*;
 use bevy_platform::time::Instant;
 use bevy_tasks::ComputeTaskPool;
-use bunting_solver::{
-    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricMaterial, LaneCount, LaneSurface,
-    StepSettings,
-};
+use bunting_solver::{ClothBatch, ClothSnapshot, Fabric, LaneCount, LaneSurface, StepSettings};
 
-use crate::batch::occupancy::{Newcomer, Seats};
-use crate::lod::Measured;
+use crate::batch::group::Group;
+use crate::batch::lane_handle::LaneHandle;
+use crate::batch::occupancy::{LaneMut, OccupiedBatch, PendingCloth};
 
-/// Particles, counted in all lanes, from which a phase of a substep is worth the 30 µs that it
-/// takes to wake other threads.
+/// Number of particles, counted in all lanes, from which a phase of a substep is spread over threads:
+/// it then outweighs the 30 µs that it takes to wake them. Fewer: small crowds are slowed down.
 const PARALLEL_PARTICLES: usize = 64 * 1024;
 
-/// Empty batches of one width that are kept: making one takes longer than a tick. As many as there are
-/// cloths that ride alone.
-const SPARE: usize = 3;
-
-/// Where the state of a cloth is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Slot {
-    group: usize,
-    batch: usize,
-    lane: usize,
-}
-
-/// Cloths that are stepped alike: of one fabric, with the same settings.
-#[derive(Debug)]
-struct Group {
-    fabric: Arc<Fabric>,
-    settings: StepSettings,
-    batches: Vec<Seats>,
-    /// Empty batches, at most [`SPARE`] of each width.
-    spare: Vec<Seats>,
-    newcomers: Vec<Newcomer>,
-    changed: bool,
-}
-
-/// All cloths that are simulated.
+/// The batches that hold the state of all simulated cloths.
 #[derive(Resource, Debug, Default)]
 pub struct ClothBatches {
     groups: Vec<Group>,
-    /// Time that the last [`settle`](Self::settle) took.
-    pub(crate) settling: Duration,
+    /// Time that the last [`assign_lanes`](Self::assign_lanes) took.
+    pub(crate) assignment_time: Duration,
     /// Whether the time of each batch is measured in this tick.
-    pub(crate) measures: bool,
+    pub(crate) is_timed: bool,
 }
 
-/// One cloth in its batch.
-pub(crate) struct LaneMut<'a> {
-    seats: &'a mut Seats,
-    lane: usize,
-}
-
-impl LaneMut<'_> {
-    pub fn drive(&mut self, drive: Drive) {
-        self.seats.batch.drive(self.lane, drive);
-    }
-
-    pub fn set_colliders(&mut self, colliders: impl IntoIterator<Item = Collider>) {
-        self.seats.batch.set_colliders(self.lane, colliders);
-    }
-
-    /// Changes the material, which must be valid.
-    pub fn set_material(&mut self, material: FabricMaterial) {
-        if self.seats.batch.set_material(self.lane, material).is_ok()
-            && let Some((_, kept)) = &mut self.seats.entities[self.lane]
-        {
-            *kept = material;
-        }
-    }
-
-    /// The state of the cloth.
-    pub fn snapshot(&self) -> ClothSnapshot {
-        self.seats.batch.snapshot(self.lane)
-    }
-
-    /// Overwrites the state of the cloth with one of its fabric.
-    pub fn restore(&mut self, state: &ClothSnapshot) {
-        self.seats.batch.restore(self.lane, state).expect("a finite state of the same fabric");
-    }
+/// Time that a batch took in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BatchTiming {
+    pub particles: usize,
+    pub settings: StepSettings,
+    pub lanes: LaneCount,
+    /// µs.
+    pub time: f32,
 }
 
 impl ClothBatches {
@@ -94,114 +43,121 @@ impl ClothBatches {
         self.groups.iter().map(|group| group.batches.len()).sum()
     }
 
-    /// Substeps of the finest group.
+    /// Number of substeps in a tick of the batches that have most.
     pub(crate) fn substeps(&self) -> u32 {
-        let substeps = self.groups.iter().filter(|group| !group.batches.is_empty());
-        substeps.map(|group| group.settings.substeps).max().unwrap_or(0)
+        let groups = self.groups.iter().filter(|group| !group.batches.is_empty());
+        groups.map(|group| group.settings.substeps).max().unwrap_or(0)
     }
 
-    /// Lets a cloth take a lane at the next [`settle`](Self::settle).
-    pub(crate) fn add(&mut self, fabric: &Arc<Fabric>, settings: StepSettings, newcomer: Newcomer) {
-        let same = |group: &Group| Arc::ptr_eq(&group.fabric, fabric) && group.settings == settings;
-        let found = self.groups.iter().position(same);
-        let index = found
-            .or_else(|| self.groups.iter().position(Group::is_empty))
-            .unwrap_or(self.groups.len());
-        if found.is_none() {
-            let group = Group {
-                fabric: Arc::clone(fabric),
-                settings,
-                batches: Vec::new(),
-                spare: Vec::new(),
-                newcomers: Vec::new(),
-                changed: true,
-            };
-            if index == self.groups.len() {
-                self.groups.push(group);
-            } else {
-                self.groups[index] = group;
+    /// Adds a cloth, which gets a lane at the next [`assign_lanes`](Self::assign_lanes).
+    pub(crate) fn add(
+        &mut self,
+        fabric: &Arc<Fabric>,
+        settings: StepSettings,
+        cloth: PendingCloth,
+    ) {
+        let found = self.groups.iter().position(|group| group.is_of(fabric, settings));
+        let index = found.unwrap_or_else(|| {
+            let group = Group::new(fabric, settings);
+            match self.groups.iter().position(Group::is_empty) {
+                Some(unused) => {
+                    self.groups[unused] = group;
+                    unused
+                }
+                None => {
+                    self.groups.push(group);
+                    self.groups.len() - 1
+                }
             }
-        }
+        });
         self.groups[index].changed = true;
-        self.groups[index].newcomers.push(newcomer);
+        self.groups[index].pending.push(cloth);
     }
 
     /// The state in a lane, if the cloth in it is another one than this.
-    pub(crate) fn of_another(&self, slot: Slot, cloth: Entity) -> Option<ClothSnapshot> {
-        let seats = self.groups.get(slot.group)?.batches.get(slot.batch)?;
-        let (owner, _) = seats.entities.get(slot.lane)?.as_ref()?;
-        (*owner != cloth).then(|| seats.batch.snapshot(slot.lane))
+    pub(crate) fn state_of_other(&self, lane: LaneHandle, cloth: Entity) -> Option<ClothSnapshot> {
+        let batch = self.groups.get(lane.group)?.batches.get(lane.batch)?;
+        let occupant = batch.occupants.get(lane.lane)?.as_ref()?;
+        (occupant.entity != cloth).then(|| batch.batch.snapshot(lane.lane))
     }
 
-    /// Takes a cloth out of its lane.
-    pub(crate) fn take(&mut self, slot: Slot) -> ClothSnapshot {
-        self.free(slot).snapshot(slot.lane)
+    /// Removes a cloth from its lane.
+    pub(crate) fn remove(&mut self, lane: LaneHandle) -> ClothSnapshot {
+        self.free(lane).snapshot(lane.lane)
     }
 
-    /// Takes a cloth out of its lane that will not go on at its level.
-    pub(crate) fn take_away(&mut self, slot: Slot) -> ClothSnapshot {
-        self.free(slot).forgetful_snapshot(slot.lane)
+    /// Removes a cloth from its lane, without the integrator's history: it belongs to this level.
+    pub(crate) fn remove_without_history(&mut self, lane: LaneHandle) -> ClothSnapshot {
+        self.free(lane).forgetful_snapshot(lane.lane)
     }
 
-    /// Takes a cloth out of its lane that goes on with some of its particles.
-    pub(crate) fn take_some(&mut self, slot: Slot, particles: &[u32]) -> ClothSnapshot {
-        self.free(slot).snapshot_of(slot.lane, particles)
+    /// Removes a cloth from its lane, with the positions and velocities of some particles only.
+    pub(crate) fn remove_particles(
+        &mut self,
+        lane: LaneHandle,
+        particles: &[u32],
+    ) -> ClothSnapshot {
+        self.free(lane).snapshot_of(lane.lane, particles)
     }
 
-    /// Frees a lane. The cloth's state is there until someone takes its place.
-    fn free(&mut self, slot: Slot) -> &ClothBatch {
-        let group = &mut self.groups[slot.group];
-        let seats = &mut group.batches[slot.batch];
+    /// Frees a lane. The cloth's state can be read until another cloth gets the lane.
+    fn free(&mut self, lane: LaneHandle) -> &ClothBatch {
+        let group = &mut self.groups[lane.group];
+        let batch = &mut group.batches[lane.batch];
         group.changed = true;
-        seats.entities[slot.lane] = None;
-        &seats.batch
+        batch.occupants[lane.lane] = None;
+        &batch.batch
     }
 
-    /// Seats newcomers and closes gaps; tells where every cloth is that has taken another lane.
-    pub(crate) fn settle(&mut self, lanes: Option<LaneCount>, mut moved: impl FnMut(Entity, Slot)) {
+    /// Gives every pending cloth a lane and closes gaps. Calls `assigned` with each cloth whose lane is
+    /// another, and that lane.
+    pub(crate) fn assign_lanes(
+        &mut self,
+        width: Option<LaneCount>,
+        mut assigned: impl FnMut(Entity, LaneHandle),
+    ) {
         let began = Instant::now();
-        for (index, group) in self.groups.iter_mut().enumerate().filter(|(_, group)| group.changed)
-        {
-            group.settle(lanes, |entity, batch, lane| {
-                moved(entity, Slot { group: index, batch, lane });
+        let changed = self.groups.iter_mut().enumerate().filter(|(_, group)| group.changed);
+        for (index, group) in changed {
+            group.assign_lanes(width, |entity, batch, lane| {
+                assigned(entity, LaneHandle { group: index, batch, lane });
             });
         }
-        self.settling = began.elapsed();
+        self.assignment_time = began.elapsed();
     }
 
-    /// Everyone who sits in a lane, each with the surface that [`copy_surfaces`](Self::copy_surfaces)
-    /// writes.
+    /// The cloths in all lanes, each with the surface that [`copy_surfaces`](Self::copy_surfaces) writes.
     pub(crate) fn surfaces(&mut self) -> impl Iterator<Item = (Entity, &mut LaneSurface)> {
-        self.joining(|_| true).flat_map(|seats| {
-            let lanes = seats.entities.iter().zip(&mut seats.surfaces);
-            lanes.filter_map(|(seat, surface)| Some((seat.as_ref()?.0, surface)))
+        self.batches_where(|_| true).flat_map(|batch| {
+            let lanes = batch.occupants.iter().zip(&mut batch.surfaces);
+            lanes.filter_map(|(occupant, surface)| Some((occupant.as_ref()?.entity, surface)))
         })
     }
 
-    /// Copies what every lane shows out of its batch.
+    /// Copies the surfaces of all lanes out of the batches.
     pub(crate) fn copy_surfaces(&mut self) {
-        self.spread(|_| true, |seats| seats.batch.copy_surfaces(&mut seats.surfaces));
+        self.spread(|_| true, |batch| batch.batch.copy_surfaces(&mut batch.surfaces));
     }
 
-    /// The batch and lane of a cloth.
+    /// The batch of a lane.
     #[cfg(test)]
-    pub(crate) fn at(&self, slot: Slot) -> (&ClothBatch, usize) {
-        (&self.groups[slot.group].batches[slot.batch].batch, slot.lane)
+    pub(crate) fn batch(&self, lane: LaneHandle) -> &ClothBatch {
+        &self.groups[lane.group].batches[lane.batch].batch
     }
 
-    /// The lane of a cloth, to be written.
-    pub(crate) fn lane(&mut self, slot: Slot) -> LaneMut<'_> {
-        LaneMut { seats: &mut self.groups[slot.group].batches[slot.batch], lane: slot.lane }
+    /// Write access to a cloth.
+    pub(crate) fn lane(&mut self, lane: LaneHandle) -> LaneMut<'_> {
+        LaneMut { occupied: &mut self.groups[lane.group].batches[lane.batch], lane: lane.lane }
     }
 
-    /// What every batch cost in the last tick, if it was measured.
-    pub(crate) fn measured(&self) -> impl Iterator<Item = Measured> + '_ {
+    /// The time that each batch took in the last tick, if it was measured.
+    pub(crate) fn timings(&self) -> impl Iterator<Item = BatchTiming> + '_ {
         self.groups.iter().flat_map(|group| {
-            group.batches.iter().map(|seats| Measured {
+            group.batches.iter().map(|batch| BatchTiming {
                 particles: group.fabric.particle_count(),
                 settings: group.settings,
-                lanes: seats.lanes,
-                time: seats.time.as_secs_f32() * 1e6,
+                lanes: batch.width,
+                time: batch.time.as_secs_f32() * 1e6,
             })
         })
     }
@@ -210,141 +166,94 @@ impl ClothBatches {
     pub(crate) fn begin_tick(&mut self, tick: f32) {
         for group in &mut self.groups {
             let settings = group.settings;
-            for seats in &mut group.batches {
-                seats.time = Duration::ZERO;
-                seats.substeps = settings.substeps;
-                seats.batch.begin_tick(tick, settings);
+            for batch in &mut group.batches {
+                batch.time = Duration::ZERO;
+                batch.substeps = settings.substeps;
+                batch.batch.begin_tick(tick, settings);
             }
         }
     }
 
-    /// Begins substep `index` of `count`: a batch of fewer joins as often as it needs, evenly
-    /// spread.
+    /// Begins substep `index` of `count`. A batch of fewer substeps takes part in as many of them as it
+    /// has, evenly spread.
     pub(crate) fn begin_substep(&mut self, index: u32, count: u32) {
         for group in &mut self.groups {
             let done = |index: u32| index * group.settings.substeps / count;
             let joins = done(index + 1) > done(index);
-            for seats in &mut group.batches {
-                seats.joins = joins;
+            for batch in &mut group.batches {
+                batch.joins = joins;
             }
         }
     }
 
-    /// Does the same with all batches that join in the substep.
+    /// Runs a phase on all batches that take part in the current substep.
     pub(crate) fn for_each_joining(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
-        self.for_each_where(|seats| seats.joins, |seats| phase(&mut seats.batch));
+        self.for_each_where(|batch| batch.joins, |batch| phase(&mut batch.batch));
     }
 
-    /// Does the same with all batches.
+    /// Runs a phase on all batches.
     pub(crate) fn for_each(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
-        self.for_each_where(|_| true, |seats| phase(&mut seats.batch));
+        self.for_each_where(|_| true, |batch| phase(&mut batch.batch));
     }
 
-    /// Does the same as often as each batch has substeps.
+    /// Runs all substeps of the tick, batch by batch.
     pub(crate) fn for_each_substep(&mut self, substep: impl Fn(&mut ClothBatch) + Sync) {
-        let all = |seats: &mut Seats| (0..seats.substeps).for_each(|_| substep(&mut seats.batch));
+        let all = |batch: &mut OccupiedBatch| {
+            (0..batch.substeps).for_each(|_| substep(&mut batch.batch));
+        };
         self.for_each_where(|_| true, all);
     }
 
-    /// Does a phase of the tick, and measures it where that is wanted.
+    /// Runs a phase on some batches, and adds its time to theirs where that is measured.
     fn for_each_where(
         &mut self,
-        joins: impl Fn(&Seats) -> bool,
-        phase: impl Fn(&mut Seats) + Sync,
+        takes_part: impl Fn(&OccupiedBatch) -> bool,
+        phase: impl Fn(&mut OccupiedBatch) + Sync,
     ) {
-        let measures = self.measures;
-        self.spread(joins, |seats| {
-            if measures {
+        let is_timed = self.is_timed;
+        self.spread(takes_part, |batch| {
+            if is_timed {
                 let began = Instant::now();
-                phase(seats);
-                seats.time += began.elapsed();
+                phase(batch);
+                batch.time += began.elapsed();
             } else {
-                phase(seats);
+                phase(batch);
             }
         });
     }
 
-    /// On all threads if that pays. Batches share nothing that is written, so the order does not
-    /// matter.
-    fn spread(&mut self, joins: impl Fn(&Seats) -> bool, work: impl Fn(&mut Seats) + Sync) {
-        let particles: usize = self.joining(&joins).map(|seats| seats.particles()).sum();
+    /// Runs work on some batches, on all threads if there are enough particles. Batches share nothing
+    /// that is written, so the order does not matter.
+    fn spread(
+        &mut self,
+        takes_part: impl Fn(&OccupiedBatch) -> bool,
+        work: impl Fn(&mut OccupiedBatch) + Sync,
+    ) {
+        let batches = self.batches_where(&takes_part);
+        let particles: usize = batches.map(|batch| batch.particle_count()).sum();
         let pool = ComputeTaskPool::try_get().filter(|pool| pool.thread_num() > 1);
         match pool {
             Some(pool) if particles >= PARALLEL_PARTICLES => {
                 let work = &work;
                 pool.scope(|scope| {
-                    for seats in self.joining(&joins) {
-                        scope.spawn(async move { work(seats) });
+                    for batch in self.batches_where(&takes_part) {
+                        scope.spawn(async move { work(batch) });
                     }
                 });
             }
             _ => {
-                self.joining(&joins).for_each(work);
+                self.batches_where(&takes_part).for_each(work);
             }
         }
     }
 
-    fn joining(&mut self, joins: impl Fn(&Seats) -> bool) -> impl Iterator<Item = &mut Seats> {
+    fn batches_where(
+        &mut self,
+        takes_part: impl Fn(&OccupiedBatch) -> bool,
+    ) -> impl Iterator<Item = &mut OccupiedBatch> {
         self.groups
             .iter_mut()
             .flat_map(|group| &mut group.batches)
-            .filter(move |seats| joins(seats))
-    }
-}
-
-impl Group {
-    fn is_empty(&self) -> bool {
-        self.batches.is_empty() && self.newcomers.is_empty()
-    }
-
-    /// Full batches first: keeps those that fit, fullest first, dissolves the others, and seats
-    /// everyone. Tells who sits in which lane of which batch, of all that did not before.
-    fn settle(&mut self, lanes: Option<LaneCount>, mut moved: impl FnMut(Entity, usize, usize)) {
-        let seated: usize = self.batches.iter().map(Seats::occupancy).sum();
-        let mut missing = self.widths(seated + self.newcomers.len(), lanes);
-        let mut fullest: Vec<usize> = (0..self.batches.len()).collect();
-        fullest.sort_by_key(|&batch| core::cmp::Reverse(self.batches[batch].occupancy()));
-        let mut dissolved = fullest;
-        dissolved.retain(|&batch| {
-            let fitting = missing.iter().position(|&width| width == self.batches[batch].lanes);
-            fitting.map(|index| missing.swap_remove(index)).is_none()
-        });
-        dissolved.sort_unstable();
-        for batch in dissolved.into_iter().rev() {
-            let mut seats = self.batches.swap_remove(batch);
-            seats.dissolve(&mut self.newcomers);
-            if self.spare.iter().filter(|spare| spare.lanes == seats.lanes).count() < SPARE {
-                self.spare.push(seats);
-            }
-            for (lane, (entity, _)) in self.batches.get(batch).into_iter().flat_map(Seats::taken) {
-                moved(entity, batch, lane);
-            }
-        }
-        for width in missing {
-            let spare = self.spare.iter().position(|spare| spare.lanes == width);
-            self.batches.push(match spare {
-                Some(index) => self.spare.swap_remove(index),
-                None => Seats::new(&self.fabric, width),
-            });
-        }
-        let mut newcomers = self.newcomers.drain(..).peekable();
-        for (batch, seats) in self.batches.iter_mut().enumerate() {
-            seats.seat(&mut newcomers, |entity, lane| moved(entity, batch, lane));
-        }
-        debug_assert!(newcomers.peek().is_none(), "there is a lane for everyone");
-        drop(newcomers);
-        self.changed = false;
-    }
-
-    /// Widths of the batches for a number of cloths.
-    fn widths(&self, mut cloths: usize, lanes: Option<LaneCount>) -> Vec<LaneCount> {
-        let mut widths = Vec::new();
-        while cloths > 0 {
-            let scheme = self.settings.scheme;
-            let width = lanes.unwrap_or_else(|| LaneCount::first_of(cloths, &self.fabric, scheme));
-            widths.push(width);
-            cloths = cloths.saturating_sub(width.get());
-        }
-        widths
+            .filter(move |batch| takes_part(batch))
     }
 }

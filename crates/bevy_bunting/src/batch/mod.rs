@@ -1,7 +1,9 @@
-//! Batches, in whose lanes the state of all cloths lives, and the systems that step them.
+//! Batches, whose lanes hold the state of all simulated cloths, and the systems that step them.
 
 pub mod assign;
 pub mod batches;
+pub mod group;
+pub mod lane_handle;
 pub mod occupancy;
 pub mod publish;
 pub mod solve;

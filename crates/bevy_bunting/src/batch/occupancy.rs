@@ -1,94 +1,150 @@
-//! A batch, and whose lanes they are.
+//! The occupancy of a batch: which cloth each of its lanes holds.
 
 use std::sync::Arc;
 use std::time::Duration;
 
 use bevy_ecs::prelude::*;
-use bunting_solver::{ClothBatch, ClothSnapshot, Fabric, FabricMaterial, LaneCount, LaneSurface};
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricMaterial, LaneCount, LaneSurface,
+};
 
-/// A cloth that takes a lane.
+/// A cloth that waits for a lane.
 #[derive(Debug)]
-pub(crate) struct Newcomer {
+pub(crate) struct PendingCloth {
     pub entity: Entity,
     pub snapshot: ClothSnapshot,
     pub material: FabricMaterial,
 }
 
-/// Who sits in a lane, and what they are made of.
-pub(crate) type Seat = (Entity, FabricMaterial);
+/// The cloth in a lane, and its material.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Occupant {
+    pub entity: Entity,
+    pub material: FabricMaterial,
+}
 
-/// A batch, and whose lanes they are.
+/// A batch and the cloths in its lanes.
 #[derive(Debug)]
-pub(crate) struct Seats {
+pub(crate) struct OccupiedBatch {
     pub batch: ClothBatch,
-    pub entities: Vec<Option<Seat>>,
-    /// What the lanes show, on its way to those who sit there.
+    /// One a lane; none for a free lane.
+    pub occupants: Vec<Option<Occupant>>,
+    /// Surfaces of the lanes, on their way from the batch to the cloths' states.
     pub surfaces: Vec<LaneSurface>,
-    pub lanes: LaneCount,
-    /// Substeps in this tick.
+    pub width: LaneCount,
+    /// Number of substeps in this tick.
     pub substeps: u32,
+    /// Whether the batch takes part in the current substep.
     pub joins: bool,
-    /// Time that its phases have taken in this tick, where that is measured.
+    /// Time that the batch has taken in this tick, where that is measured.
     pub time: Duration,
 }
 
-impl Seats {
-    pub fn new(fabric: &Arc<Fabric>, lanes: LaneCount) -> Self {
+impl OccupiedBatch {
+    /// A batch with free lanes only.
+    pub fn new(fabric: &Arc<Fabric>, width: LaneCount) -> Self {
         Self {
-            batch: ClothBatch::new(Arc::clone(fabric), lanes),
-            entities: vec![None; lanes.get()],
-            surfaces: vec![LaneSurface::default(); lanes.get()],
-            lanes,
+            batch: ClothBatch::new(Arc::clone(fabric), width),
+            occupants: vec![None; width.get()],
+            surfaces: vec![LaneSurface::default(); width.get()],
+            width,
             substeps: 0,
             joins: true,
             time: Duration::ZERO,
         }
     }
 
-    pub fn particles(&self) -> usize {
+    /// Number of particles in all lanes, whether occupied or not.
+    pub fn particle_count(&self) -> usize {
         self.batch.fabric().particle_count() * self.batch.lane_count()
     }
 
-    /// The lanes that are taken, and by whom.
-    pub fn taken(&self) -> impl Iterator<Item = (usize, Seat)> + '_ {
-        self.entities.iter().enumerate().filter_map(|(lane, seat)| Some((lane, (*seat)?)))
+    /// The occupied lanes and their cloths.
+    pub fn occupied(&self) -> impl Iterator<Item = (usize, Occupant)> + '_ {
+        let lanes = self.occupants.iter().enumerate();
+        lanes.filter_map(|(lane, occupant)| Some((lane, (*occupant)?)))
     }
 
-    pub fn occupancy(&self) -> usize {
-        self.entities.iter().flatten().count()
+    /// Number of occupied lanes.
+    pub fn occupied_count(&self) -> usize {
+        self.occupants.iter().flatten().count()
     }
 
-    /// Seats newcomers as long as there is room, tells the lane of each, and lets no one ride on in a lane
-    /// whose cloth was taken out.
-    pub fn seat(
+    /// Fills free lanes with pending cloths as long as there are any of both, calls `assigned` with each
+    /// cloth and its lane, and clears lanes whose cloths were removed.
+    pub fn fill(
         &mut self,
-        newcomers: &mut impl Iterator<Item = Newcomer>,
-        mut moved: impl FnMut(Entity, usize),
+        pending: &mut impl Iterator<Item = PendingCloth>,
+        mut assigned: impl FnMut(Entity, usize),
     ) {
-        let free = (0..self.entities.len()).filter(|&lane| self.entities[lane].is_none());
-        let come: Vec<(usize, Newcomer)> = free.zip(newcomers).collect();
-        for (lane, newcomer) in &come {
-            self.entities[*lane] = Some((newcomer.entity, newcomer.material));
-            moved(newcomer.entity, *lane);
+        let free = (0..self.occupants.len()).filter(|&lane| self.occupants[lane].is_none());
+        let entering: Vec<(usize, PendingCloth)> = free.zip(pending).collect();
+        for (lane, PendingCloth { entity, material, .. }) in &entering {
+            self.occupants[*lane] = Some(Occupant { entity: *entity, material: *material });
+            assigned(*entity, *lane);
         }
-        let left = |lane: &usize| self.entities[*lane].is_none() && self.batch.is_occupied(*lane);
-        let leave: Vec<usize> = (0..self.entities.len()).filter(left).collect();
-        let come: Vec<_> = come
-            .iter()
-            .map(|(lane, newcomer)| (*lane, &newcomer.snapshot, newcomer.material))
-            .collect();
-        if !leave.is_empty() || !come.is_empty() {
-            self.batch.exchange(&leave, &come).expect("only valid cloths are seated");
+        let is_left =
+            |lane: &usize| self.occupants[*lane].is_none() && self.batch.is_occupied(*lane);
+        let leaving: Vec<usize> = (0..self.occupants.len()).filter(is_left).collect();
+        let entering: Vec<_> =
+            entering.iter().map(|(lane, cloth)| (*lane, &cloth.snapshot, cloth.material)).collect();
+        if !leaving.is_empty() || !entering.is_empty() {
+            self.batch.exchange(&leaving, &entering).expect("pending cloths are valid");
         }
     }
 
-    /// Takes everyone out.
-    pub fn dissolve(&mut self, into: &mut Vec<Newcomer>) {
-        for (lane, seat) in self.entities.iter_mut().enumerate() {
-            if let Some((entity, material)) = seat.take() {
-                into.push(Newcomer { entity, snapshot: self.batch.snapshot(lane), material });
+    /// Frees all lanes; their cloths wait for other ones.
+    pub fn dissolve(&mut self, pending: &mut Vec<PendingCloth>) {
+        for (lane, occupant) in self.occupants.iter_mut().enumerate() {
+            if let Some(Occupant { entity, material }) = occupant.take() {
+                pending.push(PendingCloth {
+                    entity,
+                    snapshot: self.batch.snapshot(lane),
+                    material,
+                });
             }
         }
-        self.seat(&mut core::iter::empty(), |_, _| {});
+        self.fill(&mut core::iter::empty(), |_, _| {});
+    }
+}
+
+/// Write access to one cloth in its batch.
+pub(crate) struct LaneMut<'a> {
+    pub occupied: &'a mut OccupiedBatch,
+    pub lane: usize,
+}
+
+impl LaneMut<'_> {
+    /// Sets what acts on the cloth in the next tick.
+    pub fn drive(&mut self, drive: Drive) {
+        self.occupied.batch.drive(self.lane, drive);
+    }
+
+    /// Sets the shapes that the cloth may touch in the next tick.
+    pub fn set_colliders(&mut self, colliders: impl IntoIterator<Item = Collider>) {
+        self.occupied.batch.set_colliders(self.lane, colliders);
+    }
+
+    /// Changes the material, which must be valid.
+    pub fn set_material(&mut self, material: FabricMaterial) {
+        if self.occupied.batch.set_material(self.lane, material).is_ok()
+            && let Some(occupant) = &mut self.occupied.occupants[self.lane]
+        {
+            occupant.material = material;
+        }
+    }
+
+    /// The state of the cloth.
+    pub fn snapshot(&self) -> ClothSnapshot {
+        self.occupied.batch.snapshot(self.lane)
+    }
+
+    /// Overwrites the state of the cloth.
+    ///
+    /// # Panics
+    ///
+    /// If the state is not finite, or of another fabric.
+    pub fn restore(&mut self, state: &ClothSnapshot) {
+        self.occupied.batch.restore(self.lane, state).expect("a finite state of the same fabric");
     }
 }

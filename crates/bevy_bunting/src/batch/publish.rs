@@ -1,10 +1,11 @@
-//! Writes what the tick brought to [`ClothState`].
+//! Writes the state of each cloth after a tick to its [`ClothState`].
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
 use crate::batch::batches::ClothBatches;
-use crate::cloth::error::{ClothError, ClothFailed};
+use crate::cloth::error::ClothError;
+use crate::cloth::events::ClothFailed;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
 use crate::schedule::{ClothSystems, ClothTick};
@@ -17,19 +18,36 @@ impl Plugin for PublishPlugin {
     fn build(&self, app: &mut App) {
         app.add_systems(
             ClothTick,
-            (still_states, publish_states).chain().in_set(ClothSystems::Publish),
-        );
+            (stop_states, publish_states, reset_diverged).chain().in_set(ClothSystems::Publish),
+        )
+        .init_resource::<Diverged>();
     }
 }
 
-/// Surfaces are copied batch by batch, as the lanes of a batch lie side by side in memory, into the
-/// memory of what was shown before the last tick.
-pub(crate) fn publish_states(
-    mut instances: Query<&mut ClothInstance>,
+/// Cloths whose positions were not finite after this tick.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Diverged(Vec<Entity>);
+
+/// Publishes the activity of cloths, and gives those that are no longer simulated a previous surface
+/// equal to the current one, so that nothing is interpolated.
+fn stop_states(mut cloths: Query<(&ClothInstance, &mut ClothState), Changed<ClothInstance>>) {
+    for (instance, mut state) in &mut cloths {
+        state.activity = instance.activity;
+        if instance.lane().is_none() && state.moved {
+            let state = &mut *state;
+            state.moved = false;
+            state.previous_positions.clone_from(&state.positions);
+            state.previous_normals.clone_from(&state.normals);
+        }
+    }
+}
+
+/// Copies surfaces batch by batch, as the lanes of a batch lie side by side in memory. Each is written
+/// into the memory of the surface before the last tick, so that nothing is allocated.
+fn publish_states(
     mut cloths: Query<&mut ClothState>,
     mut batches: ResMut<ClothBatches>,
-    mut diverged: Local<Vec<Entity>>,
-    mut commands: Commands,
+    mut diverged: ResMut<Diverged>,
 ) {
     for (entity, surface) in batches.surfaces() {
         if let Ok(mut state) = cloths.get_mut(entity) {
@@ -48,30 +66,24 @@ pub(crate) fn publish_states(
             state.blend();
             state.moved = true;
             if !surface.is_finite {
-                diverged.push(entity);
+                diverged.0.push(entity);
             }
-        }
-    }
-    for entity in diverged.drain(..) {
-        let (Ok(mut instance), Ok(mut state)) = (instances.get_mut(entity), cloths.get_mut(entity))
-        else {
-            continue;
-        };
-        if instance.slot().is_some() && instance.put_to_rest(&mut state, &mut batches) {
-            ClothFailed::report(&mut commands, entity, ClothError::Diverged { entity });
         }
     }
 }
 
-/// What stands still is not between two places.
-fn still_states(mut cloths: Query<(&ClothInstance, &mut ClothState), Changed<ClothInstance>>) {
-    for (instance, mut state) in &mut cloths {
-        state.activity = instance.activity;
-        if instance.slot().is_none() && state.moved {
-            let state = &mut *state;
-            state.moved = false;
-            state.previous_positions.clone_from(&state.positions);
-            state.previous_normals.clone_from(&state.normals);
+/// Puts cloths that are not finite back to their rest shape, and reports them.
+pub(crate) fn reset_diverged(
+    mut cloths: Query<(&mut ClothInstance, &mut ClothState)>,
+    mut batches: ResMut<ClothBatches>,
+    mut diverged: ResMut<Diverged>,
+    mut commands: Commands,
+) {
+    for entity in diverged.0.drain(..) {
+        let Ok((mut instance, mut state)) = cloths.get_mut(entity) else { continue };
+        if instance.lane().is_some() {
+            instance.reset(&mut state, &mut batches);
+            ClothFailed::report(&mut commands, entity, ClothError::Diverged { entity });
         }
     }
 }

@@ -8,7 +8,7 @@ use bunting_solver::ClothBatch;
 use crate::batch::batches::ClothBatches;
 use crate::schedule::{ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick};
 
-/// Systems that this plugin has in [`ClothSubstep`].
+/// Number of this plugin's systems in [`ClothSubstep`].
 const OWN_SYSTEMS: usize = 3;
 
 /// Steps all batches.
@@ -43,7 +43,7 @@ fn run_substeps(world: &mut World) {
     let count = batches.substeps();
     world.schedule_scope(ClothSubstep, |world, schedule| {
         if schedule.systems_len() == OWN_SYSTEMS {
-            // Nobody looks on: batch by batch, so that each stays in the cache.
+            // Without systems of the user, batch by batch: each stays in the cache.
             world.resource_mut::<ClothBatches>().for_each_substep(|batch| {
                 batch.integrate();
                 batch.solve_constraints();

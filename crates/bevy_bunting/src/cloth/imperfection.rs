@@ -6,8 +6,6 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bunting_solver::{ClothSnapshot, Fabric};
 
-use crate::cloth::state::normals;
-
 /// Greatest distance of a particle from its place at rest when a cloth is spawned, m. Folds grow from it by
 /// some e in a tenth of a second: with a hundredth of it they are a third of a second late.
 const AMPLITUDE: f32 = 1e-4;
@@ -28,7 +26,7 @@ pub struct ClothSeed(pub u32);
 
 impl ClothSeed {
     /// The seed of a cloth that is first seen in a pose: the same in every run and any order of spawning.
-    pub(crate) fn of_pose(pose: &Isometry3d) -> Self {
+    pub(crate) fn of_frame(pose: &Isometry3d) -> Self {
         let place = (Vec3::from(pose.translation) / SAME_PLACE).round().as_ivec3();
         Self(place.to_array().into_iter().fold(1, |hash, part| mix(hash ^ part as u32)))
     }
@@ -47,7 +45,7 @@ fn mix(mut bits: u32) -> u32 {
 pub(crate) fn almost_at_rest(fabric: &Fabric, seed: ClothSeed) -> ClothSnapshot {
     let mut snapshot = ClothSnapshot::at_rest(fabric);
     let rest = fabric.rest_positions();
-    let normals = normals(fabric, rest);
+    let normals = fabric.normals(rest);
     let extent = fabric.area().sqrt();
     let mut hash = mix(seed.0);
     let mut random = || {
@@ -102,7 +100,7 @@ mod tests {
 
     #[test]
     fn neighbouring_places_have_seeds_of_their_own() {
-        let seed = |x: f32| ClothSeed::of_pose(&Isometry3d::from_translation(Vec3::X * x));
+        let seed = |x: f32| ClothSeed::of_frame(&Isometry3d::from_translation(Vec3::X * x));
         assert_ne!(seed(0.0), seed(0.01));
         assert_eq!(seed(0.0), seed(1e-5));
     }

@@ -1,27 +1,26 @@
-//! What a cloth is: its shape at rest and what it is made of.
+//! The shape of a cloth at rest.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Vec2, Vec3};
 use bevy_reflect::Reflect;
-use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
-use bunting_solver::{FabricBuilder, FabricMaterial, Grid};
+use bunting_solver::{FabricBuilder, Grid};
 
-use crate::cloth::activity::{ClothRest, ClothWatch};
 use crate::cloth::instance::ClothInstance;
-use crate::cloth::reflect::FabricMaterialReflect;
+use crate::cloth::material::ClothMaterial;
 use crate::cloth::state::ClothState;
-use crate::lod::LodSet;
+use crate::lod::lod_set::LodSet;
+use crate::lod::record::{LodRecord, RestTimer};
 use crate::motion::pose::PoseHistory;
 
-/// The shape of a cloth at rest. This component alone makes an entity a cloth: the others that it
-/// needs come with it.
+/// The shape of a cloth at rest. This component alone makes an entity a cloth: the others that a
+/// cloth needs are required components and come with it.
 ///
 /// Positions are in the cloth's frame: the entity's own [`Transform`] or, with an
-/// [`Attachment`](crate::Attachment), the pose of its target. A frame has no scale: bake it into
-/// the mesh.
+/// [`Attachment`](crate::Attachment), the pose of its target times its offset. A frame has no scale:
+/// bake it into the mesh.
 ///
-/// What cannot be simulated is reported in a [`ClothFailed`](crate::ClothFailed) event.
+/// A mesh that cannot be simulated is reported in a [`ClothFailed`](crate::ClothFailed) event.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Debug, PartialEq, Clone)]
 #[require(
@@ -30,8 +29,8 @@ use crate::motion::pose::PoseHistory;
     LodSet,
     ClothState,
     ClothInstance,
-    ClothWatch,
-    ClothRest,
+    LodRecord,
+    RestTimer,
     PoseHistory
 )]
 pub enum ClothMesh {
@@ -53,10 +52,10 @@ pub enum ClothMesh {
         positions: Vec<Vec3>,
         /// Three vertices a triangle, counter-clockwise seen from the front.
         indices: Vec<u32>,
-        /// Texture coordinates, one a vertex or none: the warp runs along u.
+        /// Texture coordinates, one a vertex or none at all: the warp runs along u.
         uv: Vec<Vec2>,
-        /// How far each vertex is simulated, from 0 to 1, one a vertex or none: all of it. See
-        /// [`with_weights`](ClothMesh::with_weights).
+        /// Weights from 0 (rigid) to 1 (simulated), one a vertex or none at all: then all vertices
+        /// are simulated. See [`with_weights`](ClothMesh::with_weights).
         weights: Vec<f32>,
     },
 }
@@ -69,31 +68,31 @@ impl ClothMesh {
     }
 
     /// A mesh of triangles: positions in metres, three indices a triangle, and texture coordinates,
-    /// one a vertex or none.
+    /// one a vertex or none at all.
     #[must_use]
     pub const fn triangles(positions: Vec<Vec3>, indices: Vec<u32>, uv: Vec<Vec2>) -> Self {
         Self::Triangles { positions, indices, uv, weights: Vec::new() }
     }
 
-    /// Simulates only what moves: a weight for each vertex, from 0 to 1.
+    /// Simulates only a part of the mesh: a weight for each vertex, from 0 to 1.
     ///
-    /// | Weight | |
+    /// | Weight w | Vertex |
     /// | --- | --- |
     /// | 1 | simulated |
-    /// | between | simulated, and shown between there and its place: that part of the way |
-    /// | 0 | rigid: stays in its place in the cloth's frame, to the last bit |
+    /// | between | simulated, and shown at (1 − w) × its position at rest + w × its simulated position |
+    /// | 0 | rigid: stays where the mesh has it in the cloth's frame, exactly |
     ///
-    /// Triangles of which all vertices have weight 0 are no cloth: they have no particles and cost
-    /// no tick anything. A vertex of weight 0 on other triangles is pinned, so that the simulated
-    /// part hangs on the rigid one.
+    /// Triangles of which all vertices have weight 0 are rigid: they have no particles and cost no
+    /// time in a tick. A vertex of weight 0 on any other triangle is pinned, so that the simulated part
+    /// is attached to the rigid one.
     ///
-    /// A grid becomes triangles, which bend less exactly. Weights that cannot be used are reported in
-    /// a [`ClothFailed`](crate::ClothFailed) event.
+    /// A grid becomes triangles, whose bending is less exact than a grid's. Weights that cannot be used
+    /// are reported in a [`ClothFailed`](crate::ClothFailed) event.
     #[must_use]
     pub fn with_weights(self, weights: Vec<f32>) -> Self {
         let builder = self.builder();
         if builder.positions().is_empty() {
-            // A grid that is none, to be reported as such.
+            // An invalid grid stays one, to be reported as such when it is cut.
             return self;
         }
         Self::Triangles {
@@ -104,7 +103,7 @@ impl ClothMesh {
         }
     }
 
-    /// Weights of all vertices; none where everything is simulated.
+    /// Weights of all vertices; empty where all vertices are simulated.
     pub(crate) fn weights(&self) -> &[f32] {
         match self {
             Self::Grid { .. } => &[],
@@ -112,7 +111,7 @@ impl ClothMesh {
         }
     }
 
-    /// The grid, if it is one.
+    /// The grid; none of triangles.
     pub(crate) fn as_grid(&self) -> Option<Grid> {
         match *self {
             Self::Grid { columns, rows, width, height } => {
@@ -130,23 +129,17 @@ impl ClothMesh {
         }
     }
 
-    /// Texture coordinates of all vertices; none for triangles without.
+    /// Texture coordinates of all vertices; empty for triangles without.
     pub(crate) fn uvs(&self) -> Vec<Vec2> {
         match self {
-            Self::Grid { columns, rows, .. } => {
-                let fraction = |index: u32, count: u32| index as f32 / (count.max(2) - 1) as f32;
-                (0..*rows)
-                    .flat_map(|row| (0..*columns).map(move |column| (column, row)))
-                    .map(|(column, row)| {
-                        Vec2::new(fraction(column, *columns), fraction(row, *rows))
-                    })
-                    .collect()
+            Self::Grid { columns, rows, width, height } => {
+                Grid::new(*columns, *rows, *width, *height).uvs()
             }
             Self::Triangles { uv, .. } => uv.clone(),
         }
     }
 
-    /// The builder of the fabric that it is cut from, without pins.
+    /// A builder of the fabric of the whole mesh, without pins.
     pub(crate) fn builder(&self) -> FabricBuilder {
         match self {
             Self::Grid { columns, rows, width, height } => {
@@ -164,32 +157,3 @@ impl From<Grid> for ClothMesh {
         Self::grid(grid.columns, grid.rows, grid.width, grid.height)
     }
 }
-
-/// What a cloth is made of; flag polyester by default. It may be changed at any time: each cloth
-/// has its own, whatever it shares a fabric with.
-#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
-#[reflect(Component, Default, Debug, PartialEq, Clone)]
-pub struct ClothMaterial(
-    /// The material's values, in SI units.
-    #[reflect(remote = FabricMaterialReflect)]
-    pub FabricMaterial,
-);
-
-impl ClothMaterial {
-    /// [`FabricMaterial::FLAG_POLYESTER`].
-    pub const FLAG_POLYESTER: Self = Self(FabricMaterial::FLAG_POLYESTER);
-    /// [`FabricMaterial::NYLON`].
-    pub const NYLON: Self = Self(FabricMaterial::NYLON);
-    /// [`FabricMaterial::COTTON`].
-    pub const COTTON: Self = Self(FabricMaterial::COTTON);
-    /// [`FabricMaterial::SILK`].
-    pub const SILK: Self = Self(FabricMaterial::SILK);
-    /// [`FabricMaterial::DENIM`].
-    pub const DENIM: Self = Self(FabricMaterial::DENIM);
-}
-
-/// Stops a cloth while it is there: the cloth keeps its shape, goes with its frame, and costs
-/// nothing. Removed, the cloth goes on from where it was.
-#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
-#[reflect(Component, Default, Debug, PartialEq, Clone)]
-pub struct ClothPaused;

@@ -1,10 +1,13 @@
-//! What a cloth is: its mesh, its material, its state.
+//! A cloth: its mesh, material and state, and what can be wrong with them.
 
 pub mod activity;
 pub mod error;
+pub mod events;
 pub mod imperfection;
 pub mod instance;
+pub mod material;
 pub mod mesh;
 pub mod preroll;
 pub mod reflect;
 pub mod state;
+pub mod weights;

@@ -13,11 +13,11 @@ use bunting_solver::{
     ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, FrameMotion, LaneCount, StepSettings,
 };
 
-use crate::batch::assign::seat_cloths;
-use crate::cloth::instance::{ClothInstance, Place};
+use crate::batch::assign::assign_lanes;
+use crate::cloth::instance::{ClothInstance, StateStorage};
 use crate::cloth::state::ClothState;
 use crate::environment::wind::TickWind;
-use crate::lod::choose_levels;
+use crate::lod::select::select_levels;
 use crate::motion::attachment::Attachment;
 use crate::motion::frame::frame_of;
 use crate::schedule::{ClothSystems, ClothTick};
@@ -62,8 +62,8 @@ impl Plugin for PrerollPlugin {
             (begin_prerolls, end_prerolls)
                 .chain()
                 .in_set(ClothSystems::SelectLod)
-                .after(choose_levels)
-                .before(seat_cloths),
+                .after(select_levels)
+                .before(assign_lanes),
         );
     }
 }
@@ -107,13 +107,8 @@ impl Preroll {
     }
 }
 
-type New<'a> = (
-    Entity,
-    &'a ClothPreroll,
-    &'a mut ClothInstance,
-    &'a mut ClothState,
-    Option<&'a Attachment>,
-);
+type New<'a> =
+    (Entity, &'a ClothPreroll, &'a mut ClothInstance, &'a mut ClothState, Option<&'a Attachment>);
 
 fn begin_prerolls(
     mut cloths: Query<New>,
@@ -127,13 +122,15 @@ fn begin_prerolls(
     for (entity, preroll, mut instance, mut state, attachment) in &mut cloths {
         // What has been simulated already is too late.
         if !instance.unmoved {
-            if instance.slot().is_some() {
+            if instance.lane().is_some() {
                 commands.entity(entity).remove::<ClothPreroll>();
             }
             continue;
         }
         let Some(fabric) = instance.fabric().cloned() else { continue };
-        let Place::Waiting(snapshot) = core::mem::take(&mut instance.place) else { continue };
+        let StateStorage::Snapshot(snapshot) = core::mem::take(&mut instance.storage) else {
+            continue;
+        };
         instance.unmoved = false;
         *state = ClothState::default();
         let frame = frame_of(entity, attachment, &transforms).unwrap_or_default();
@@ -158,7 +155,10 @@ fn begin_prerolls(
             Some(pool) => RollingTask::Running(pool.spawn(async move { preroll.run() })),
             None => RollingTask::Done(preroll.run()),
         };
-        commands.entity(entity).remove::<ClothPreroll>().insert(Rolling { level: instance.level, task });
+        commands
+            .entity(entity)
+            .remove::<ClothPreroll>()
+            .insert(Rolling { level: instance.level, task });
     }
 }
 
@@ -176,11 +176,11 @@ fn end_prerolls(
         // Cut anew in the meantime, it begins as that cloth does.
         let Some(levels) = instance.levels.clone() else { continue };
         let fits = levels.fabric(rolling.level).particle_count() == snapshot.positions.len();
-        if !fits || !matches!(instance.place, Place::Nowhere) {
+        if !fits || !matches!(instance.storage, StateStorage::None) {
             continue;
         }
         instance.level = rolling.level;
-        state.begin_anew(rolling.level, &levels, &snapshot.positions);
-        instance.place = Place::Waiting(snapshot);
+        state.restart(rolling.level, &levels, &snapshot.positions);
+        instance.storage = StateStorage::Snapshot(snapshot);
     }
 }

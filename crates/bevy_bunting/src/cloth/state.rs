@@ -1,4 +1,4 @@
-//! Read access to what a cloth does.
+//! The simulated surface of a cloth, to be read.
 
 use std::sync::Arc;
 
@@ -9,17 +9,17 @@ use bunting_solver::Fabric;
 use crate::cloth::activity::ClothActivity;
 use crate::fabric::levels::ClothLevels;
 
-/// The simulated surface of a cloth, as of the last tick; read only.
+/// The simulated surface of a cloth after the last tick; read only.
 ///
-/// Everything is in the cloth's frame, whose pose in the world is the entity's `GlobalTransform`:
-/// the pose of the attachment's target times its offset or, without an
+/// Positions and normals are in the cloth's frame, whose pose in the world is the entity's
+/// `GlobalTransform`: the pose of the attachment's target times its offset or, without an
 /// [`Attachment`](crate::Attachment), the entity's own. After [`ClothSystems::Publish`] and after
-/// each frame the `GlobalTransform` is that of the target as it stands.
+/// each frame the `GlobalTransform` is that of the target's current pose.
 ///
-/// There is one particle for each vertex of a grid; of triangles, vertices that lie on one another
-/// are one particle, and rigid ones none, see [`particle_of_vertex`](Self::particle_of_vertex).
-/// Particles of a weight below 1 are where they are shown, between their places and where they are
-/// simulated, see [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
+/// A grid has one particle for each vertex. In a mesh of triangles, vertices at the same position are
+/// one particle, and rigid ones have none, see [`particle_of_vertex`](Self::particle_of_vertex).
+/// Particles of a weight below 1 are blended with their position at rest, see
+/// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights): what is read here is the blended surface.
 ///
 /// [`ClothSystems::Publish`]: crate::ClothSystems::Publish
 #[derive(Component, Clone, Debug, Default)]
@@ -30,18 +30,20 @@ pub struct ClothState {
     pub(crate) previous_normals: Vec<Vec3>,
     pub(crate) level: usize,
     pub(crate) activity: ClothActivity,
-    /// Whether it has moved in the last tick.
+    /// Whether the cloth was simulated in the last tick.
     pub(crate) moved: bool,
     pub(crate) levels: Option<Arc<ClothLevels>>,
-    /// What was shown before a change of level, until it is eased.
-    pub(crate) left: Option<Left>,
+    /// The surface before a change of level, until the change is eased.
+    pub(crate) replaced: Option<ReplacedSurface>,
 }
 
-/// The surface that a change of level left behind.
+/// The surface of a cloth before a change of level, in the cloth's frame.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Left {
+pub(crate) struct ReplacedSurface {
     pub level: usize,
+    /// Positions after the last tick, m.
     pub positions: Vec<Vec3>,
+    /// Positions before that tick, m.
     pub previous_positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
 }
@@ -54,7 +56,7 @@ impl ClothState {
         &self.positions
     }
 
-    /// Positions of the same particles before the last tick, in the frame as it stood then, m.
+    /// Positions of the same particles before the last tick, in the cloth's frame of that time, m.
     #[must_use]
     pub fn previous_positions(&self) -> &[Vec3] {
         &self.previous_positions
@@ -84,59 +86,67 @@ impl ClothState {
         self.activity
     }
 
-    /// The fabric that the cloth is cut from at its level: triangles, texture coordinates, pins.
-    /// None until the first tick, and while the cloth cannot be simulated.
+    /// The fabric of the cloth at its level: triangles, texture coordinates, pins. None until the
+    /// first tick, and while the cloth cannot be simulated.
     #[must_use]
     pub fn fabric(&self) -> Option<&Arc<Fabric>> {
         self.levels.as_ref().map(|levels| levels.fabric(self.level))
     }
 
-    /// The particle that a vertex of the [`ClothMesh`](crate::ClothMesh) is at the cloth's level.
-    /// None where the level does not have it, and where it is rigid: it then stays where the mesh
-    /// has it.
+    /// The particle of a vertex of the [`ClothMesh`](crate::ClothMesh) at the cloth's level: an index
+    /// into [`positions`](Self::positions). None where the level leaves the vertex out, and where the
+    /// vertex is rigid: it then stays where the mesh has it.
     #[must_use]
     pub fn particle_of_vertex(&self, vertex: u32) -> Option<usize> {
         self.levels.as_ref()?.particle(self.level, vertex)
     }
 
-    /// Starts anew at a level, where nothing that was shown goes on.
-    pub(crate) fn begin_anew(
+    /// Sets the surface, from simulated positions (m) of a level's particles, without easing: nothing of
+    /// what was shown before is continued.
+    pub(crate) fn restart(&mut self, level: usize, levels: &Arc<ClothLevels>, positions: &[Vec3]) {
+        self.change_level(level, levels, positions);
+        self.replaced = None;
+    }
+
+    /// Changes the level of a cloth that is not simulated in this tick: normals are computed from the
+    /// simulated positions (m) of the new level's particles.
+    pub(crate) fn change_level(
         &mut self,
         level: usize,
         levels: &Arc<ClothLevels>,
         positions: &[Vec3],
     ) {
-        self.begin(level, levels, positions);
-        self.left = None;
+        let normals = levels.fabric(level).normals(positions);
+        self.replace_surface(level, levels, positions, normals);
     }
 
-    /// Starts on the fabric of another level, from where its particles are simulated.
-    pub(crate) fn begin(&mut self, level: usize, levels: &Arc<ClothLevels>, positions: &[Vec3]) {
-        let normals = normals(levels.fabric(level), positions);
-        self.go_over(level, levels, positions, normals);
+    /// Changes the level of a cloth that is simulated in this tick: until the tick ends, the normals
+    /// are those that were shown, interpolated to the new level's particles.
+    pub(crate) fn change_level_in_motion(
+        &mut self,
+        level: usize,
+        levels: &Arc<ClothLevels>,
+        positions: &[Vec3],
+    ) {
+        let normals = levels.transfer_directions(&self.normals, self.level, level);
+        self.replace_surface(level, levels, positions, normals);
     }
 
-    /// The same for a cloth that ticks: until the tick ends, its normals are those that were shown.
-    pub(crate) fn go_on(&mut self, level: usize, levels: &Arc<ClothLevels>, positions: &[Vec3]) {
-        let normals = levels.carry(&self.normals, self.level, level);
-        self.go_over(level, levels, positions, normals);
-    }
-
-    fn go_over(
+    fn replace_surface(
         &mut self,
         level: usize,
         levels: &Arc<ClothLevels>,
         positions: &[Vec3],
         normals: Vec<Vec3>,
     ) {
-        let left = Left {
+        let replaced = ReplacedSurface {
             level: self.level,
             positions: core::mem::replace(&mut self.positions, positions.to_vec()),
             previous_positions: core::mem::take(&mut self.previous_positions),
             normals: core::mem::replace(&mut self.normals, normals),
         };
-        // Of several changes before a tick ends the first is what was seen.
-        self.left.get_or_insert(left);
+        // Of several changes before a tick ends, the surface before the first is the one that was shown.
+        self.replaced.get_or_insert(replaced);
         self.level = level;
         self.levels = Some(Arc::clone(levels));
         self.blend();
@@ -144,23 +154,10 @@ impl ClothState {
         self.previous_normals.clone_from(&self.normals);
     }
 
-    /// Takes the surface from where it is simulated to where it is shown.
+    /// Blends simulated positions and normals with those at rest, for particles of a weight below 1.
     pub(crate) fn blend(&mut self) {
         if let Some(levels) = &self.levels {
             levels.blend(self.level, &mut self.positions, &mut self.normals);
         }
     }
-}
-
-/// Unit normals, weighted by area.
-pub(crate) fn normals(fabric: &Fabric, positions: &[Vec3]) -> Vec<Vec3> {
-    let mut normals = vec![Vec3::ZERO; positions.len()];
-    for corners in fabric.triangles() {
-        let [a, b, c] = corners.map(|corner| positions[corner as usize]);
-        let normal = (b - a).cross(c - a);
-        for &corner in corners {
-            normals[corner as usize] += normal;
-        }
-    }
-    normals.into_iter().map(Vec3::normalize_or_zero).collect()
 }

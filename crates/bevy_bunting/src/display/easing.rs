@@ -1,189 +1,138 @@
-//! Eases the displayed surface across a change of level.
+//! The eased surface of a cloth while its level changes.
 
 use std::sync::Arc;
 
-use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_math::{Vec3, ops};
-use bevy_time::Time;
 
-use crate::batch::publish::publish_states;
-use crate::cloth::instance::ClothInstance;
-use crate::cloth::state::{ClothState, Left};
-use crate::display::surface::ClothSurface;
+use crate::cloth::state::{ClothState, ReplacedSurface};
+use crate::display::decay::Decay;
 use crate::fabric::levels::ClothLevels;
-use crate::schedule::{ClothSystems, ClothTick};
 
-/// Time after which the level's own surface is shown, s.
-const DURATION: f32 = 0.25;
+/// Time after which the new level's own surface is shown, s. Shorter: changes of level are seen as jerks.
+/// Longer: they cost more, and the shown surface lags behind the simulated one.
+pub(super) const DURATION: f32 = 0.25;
 
-/// How fast the difference between the two surfaces goes, 1/s: 3 % of it is left at the end, and faded out.
-/// Larger: the surface jerks. Smaller: what changes again and again lags behind.
-const RATE: f32 = 28.0;
-
-/// Power of the time with which the rest fades out: late, so that the first frames do not notice, and not at
-/// once.
+/// Power of the time by which the offsets are faded out in addition to their decay: high enough that the
+/// first frames do not change, low enough that the last ones do not jerk.
 const FADE: f32 = 4.0;
 
-/// The surface of a cloth while its level changes: that of the new level, and what the surface before
-/// was beyond it, which is taken off smoothly ("inertialization", Bollo 2018). It goes on as it
-/// moved, so nothing pops, and however often the level changes it stays near.
+/// The surface of a cloth while its level changes: that of the new level, plus offsets that decay to zero
+/// ("inertialization", Bollo 2018).
 ///
-/// It is shown with the vertices of the finest level that takes part.
+/// At the change, the offsets are the differences between the surface that was shown and that of the new
+/// level, and decay at first at the rate at which the two move apart: so neither positions nor velocities
+/// of what is shown jump. The surface has the vertices of the finest level that takes part.
 #[derive(Component, Debug, Default)]
 pub(crate) struct ClothEasing {
-    /// The chain, while there is something to ease.
+    /// The levels of the cloth while a change is eased; none at other times.
     levels: Option<Arc<ClothLevels>>,
-    /// The level whose vertices are shown.
+    /// The level whose vertices the surface has.
     level: usize,
-    /// Since the last change of level, s.
+    /// Time since the last change of level, s.
     age: f32,
-    beyond: Vec<Decay>,
-    normals_beyond: Vec<Decay>,
+    /// Offsets of positions (m), one a particle.
+    offsets: Vec<Decay>,
+    normal_offsets: Vec<Decay>,
+    /// Positions after the last tick, m.
     pub positions: Vec<Vec3>,
+    /// Positions before it, m.
     pub previous_positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
     pub previous_normals: Vec<Vec3>,
 }
 
-/// Eases surfaces.
-#[derive(Debug, Default)]
-pub struct EasingPlugin;
-
-impl Plugin for EasingPlugin {
-    fn build(&self, app: &mut App) {
-        app.add_systems(
-            ClothTick,
-            ease_surfaces.in_set(ClothSystems::Publish).after(publish_states),
-        );
-    }
-}
-
-pub(crate) fn ease_surfaces(
-    mut cloths: Query<(&ClothInstance, &mut ClothState, &mut ClothEasing), With<ClothSurface>>,
-    time: Res<Time>,
-) {
-    for (instance, mut state, mut easing) in &mut cloths {
-        let Some(levels) = &instance.levels else {
-            easing.levels = None;
-            continue;
-        };
-        if easing.levels.as_ref().is_some_and(|eased| !Arc::ptr_eq(eased, levels)) {
-            easing.levels = None;
-        }
-        if state.left.is_some() {
-            let left = state.bypass_change_detection().left.take();
-            left.into_iter().for_each(|left| easing.begin(left, levels, &state, time.delta_secs()));
-        }
-        if easing.is_active() {
-            easing.advance(levels, &state, time.delta_secs());
-        }
-    }
-}
-
 impl ClothEasing {
-    /// The level whose vertices are shown, while there is something to ease.
+    /// The level whose vertices the surface has; none while no change is eased.
     pub fn level(&self) -> Option<usize> {
         self.is_active().then_some(self.level)
     }
 
-    fn is_active(&self) -> bool {
+    pub(super) fn is_active(&self) -> bool {
         self.levels.is_some()
     }
 
-    /// The level has changed in this tick of `tick` seconds.
-    fn begin(&mut self, left: Left, levels: &Arc<ClothLevels>, state: &ClothState, tick: f32) {
+    /// Ends the easing unless it is of these levels.
+    pub(super) fn keep_only_for(&mut self, levels: Option<&Arc<ClothLevels>>) {
+        let is_same = |eased: &Arc<ClothLevels>| levels.is_some_and(|it| Arc::ptr_eq(eased, it));
+        self.levels = self.levels.take().filter(is_same);
+    }
+
+    /// Begins to ease a change of level, after which a tick of `tick` seconds was simulated.
+    pub(super) fn begin(
+        &mut self,
+        replaced: ReplacedSurface,
+        levels: &Arc<ClothLevels>,
+        state: &ClothState,
+        tick: f32,
+    ) {
         if !self.is_active() {
-            self.level = left.level;
-            self.positions = left.positions;
-            self.previous_positions = left.previous_positions;
-            self.normals = left.normals;
-            self.beyond.clear();
-            self.normals_beyond.clear();
+            self.level = replaced.level;
+            self.positions = replaced.positions;
+            self.previous_positions = replaced.previous_positions;
+            self.normals = replaced.normals;
+            self.offsets.clear();
+            self.normal_offsets.clear();
         }
-        let shown = self.level.min(state.level);
-        let raise = |values: &[Vec3], from: usize| levels.spread(values.to_vec(), from, shown);
-        let [now, before, normals] = [&self.positions, &self.previous_positions, &self.normals]
-            .map(|v| raise(v, self.level));
-        let [start, end, bare] =
+        // From here on at the finer of the two levels.
+        let finer = self.level.min(state.level);
+        let refine =
+            |values: &[Vec3], from: usize| levels.interpolate(values.to_vec(), from, finer);
+        let [shown, shown_before, shown_normals] =
+            [&self.positions, &self.previous_positions, &self.normals]
+                .map(|values| refine(values, self.level));
+        let [new_before, new, new_normals] =
             [&state.previous_positions, &state.positions, &state.previous_normals]
-                .map(|values| raise(values, state.level));
-        let kept = |decays: &[Decay]| {
-            let accelerations: Vec<Vec3> = decays.iter().map(|decay| decay.acceleration).collect();
+                .map(|values| refine(values, state.level));
+        let accelerations = |offsets: &[Decay]| {
+            let accelerations: Vec<Vec3> = offsets.iter().map(|it| it.acceleration).collect();
             if accelerations.is_empty() {
-                vec![Vec3::ZERO; now.len()]
+                vec![Vec3::ZERO; shown.len()]
             } else {
-                raise(&accelerations, self.level)
+                refine(&accelerations, self.level)
             }
         };
-        let (kept_beyond, kept_normals) = (kept(&self.beyond), kept(&self.normals_beyond));
-        self.beyond = (0..now.len())
+        let (acceleration, normal_acceleration) =
+            (accelerations(&self.offsets), accelerations(&self.normal_offsets));
+        self.offsets = (0..shown.len())
             .map(|at| Decay {
-                value: now[at] - start[at],
-                rate: ((now[at] - before[at]) - (end[at] - start[at])) / tick,
-                acceleration: kept_beyond[at],
+                value: shown[at] - new_before[at],
+                rate: ((shown[at] - shown_before[at]) - (new[at] - new_before[at])) / tick,
+                acceleration: acceleration[at],
             })
             .collect();
-        self.normals_beyond = (0..now.len())
+        self.normal_offsets = (0..shown.len())
             .map(|at| Decay {
-                value: normals[at] - bare[at],
+                value: shown_normals[at] - new_normals[at],
                 rate: Vec3::ZERO,
-                acceleration: kept_normals[at],
+                acceleration: normal_acceleration[at],
             })
             .collect();
-        self.positions = now;
-        self.normals = normals;
-        self.level = shown;
+        self.positions = shown;
+        self.normals = shown_normals;
+        self.level = finer;
         self.age = 0.0;
         self.levels = Some(Arc::clone(levels));
     }
 
-    /// The surface at the end of a tick of `tick` seconds.
-    fn advance(&mut self, levels: &ClothLevels, state: &ClothState, tick: f32) {
+    /// Computes the surface at the end of a tick of `tick` seconds.
+    pub(super) fn advance(&mut self, levels: &ClothLevels, state: &ClothState, tick: f32) {
         if self.age + tick > DURATION {
             self.levels = None;
             return;
         }
         self.age += tick;
-        let spread = |values: &[Vec3]| levels.spread(values.to_vec(), state.level, self.level);
-        let (base, normals) = (spread(&state.positions), spread(&state.normals));
+        let refine = |values: &[Vec3]| levels.interpolate(values.to_vec(), state.level, self.level);
+        let (positions, normals) = (refine(&state.positions), refine(&state.normals));
         self.previous_positions = core::mem::take(&mut self.positions);
         self.previous_normals = core::mem::take(&mut self.normals);
         let fade = 1.0 - ops::powf(self.age / DURATION, FADE);
-        let decayed = |(base, decay): (Vec3, &mut Decay)| {
-            decay.advance(tick);
-            base + decay.value * fade
+        let eased = |(value, offset): (Vec3, &mut Decay)| {
+            offset.advance(tick);
+            value + offset.value * fade
         };
-        self.positions = base.into_iter().zip(&mut self.beyond).map(decayed).collect();
-        let turned = normals.into_iter().zip(&mut self.normals_beyond).map(decayed);
-        self.normals = turned.map(Vec3::normalize_or_zero).collect();
+        self.positions = positions.into_iter().zip(&mut self.offsets).map(eased).collect();
+        let normals = normals.into_iter().zip(&mut self.normal_offsets).map(eased);
+        self.normals = normals.map(Vec3::normalize_or_zero).collect();
     }
 }
-
-/// What goes to zero, smoothly even where it is pushed anew: x‴ = −3ω x″ − 3ω² x′ − ω³ x.
-#[derive(Clone, Copy, Debug)]
-struct Decay {
-    value: Vec3,
-    /// 1/s.
-    rate: Vec3,
-    /// 1/s².
-    acceleration: Vec3,
-}
-
-impl Decay {
-    /// Exactly, for a time in seconds: (a + b t + c t²) exp(−ω t).
-    fn advance(&mut self, time: f32) {
-        let (a, w) = (self.value, RATE);
-        let b = self.rate + a * w;
-        let c = 0.5 * (self.acceleration + 2.0 * w * self.rate + w * w * a);
-        let left = ops::exp(-w * time);
-        let (x, dx, ddx) = (a + (b + c * time) * time, b + 2.0 * c * time, 2.0 * c);
-        self.value = x * left;
-        self.rate = (dx - x * w) * left;
-        self.acceleration = (ddx - dx * (2.0 * w) + x * (w * w)) * left;
-    }
-}
-
-#[cfg(test)]
-#[path = "easing_tests.rs"]
-mod tests;

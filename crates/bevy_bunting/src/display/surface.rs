@@ -1,4 +1,4 @@
-//! The surface for display, between two ticks.
+//! The surface for display between two ticks.
 
 use bevy_app::{App, Plugin, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::prelude::*;
@@ -11,16 +11,16 @@ use crate::cloth::state::ClothState;
 use crate::display::easing::ClothEasing;
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// The surface of a cloth for display, in the cloth's frame: [`ClothState`] between its last two
-/// ticks, by how far the frame is past the last.
+/// The surface of a cloth for display, in the cloth's frame: [`ClothState`] interpolated between its last
+/// two ticks, at the time of the frame minus one tick.
 ///
-/// Vertices that are rigid, of weight 0, have no particles: they stay where the
+/// Rigid vertices, of weight 0, have no particles: they stay where the
 /// [`ClothMesh`](crate::ClothMesh) has them, see [`ClothState::particle_of_vertex`].
 ///
-/// After a change of level it goes on from the surface before, with the vertices of the finer level,
-/// and becomes that of the new level within 0.25 s.
+/// After a change of level the surface continues the motion that was shown, with the vertices of the
+/// finer level, and approaches that of the new level within 0.25 s.
 ///
-/// Optional: only cloths that have it pay for it. Written each frame in
+/// Optional: only cloths with this component are interpolated. Written each frame in
 /// `RunFixedMainLoopSystems::AfterFixedMainLoop`.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
@@ -34,7 +34,7 @@ pub struct ClothSurface {
 }
 
 impl ClothSurface {
-    /// The level of detail whose particles it has.
+    /// The level of detail whose particles the surface has.
     #[must_use]
     pub fn level(&self) -> usize {
         self.level
@@ -57,7 +57,7 @@ impl Plugin for SurfacePlugin {
     }
 }
 
-/// When the last tick ended, and how long it was, s.
+/// End and length of the last tick, s.
 #[derive(Resource, Debug, Default)]
 struct LastTick {
     end: f64,
@@ -73,9 +73,9 @@ fn interpolate_surfaces(
     tick: Res<LastTick>,
     time: Res<Time<Virtual>>,
 ) {
-    let part =
+    let fraction =
         if tick.length > 0.0 { (time.elapsed_secs_f64() - tick.end) / tick.length } else { 1.0 };
-    let part = part.clamp(0.0, 1.0) as f32;
+    let fraction = fraction.clamp(0.0, 1.0) as f32;
     for (state, easing, mut surface) in &mut surfaces {
         let (level, [from, to], normals) = match easing.level() {
             Some(level) => (
@@ -91,13 +91,17 @@ fn interpolate_surfaces(
         };
         surface.level = level;
         surface.positions.clear();
-        surface.positions.extend(between(from, to, part));
+        surface.positions.extend(interpolate(from, to, fraction));
         surface.normals.clear();
-        let normals = between(normals[0], normals[1], part);
+        let normals = interpolate(normals[0], normals[1], fraction);
         surface.normals.extend(normals.map(Vec3::normalize_or_zero));
     }
 }
 
-fn between<'a>(from: &'a [Vec3], to: &'a [Vec3], part: f32) -> impl Iterator<Item = Vec3> + 'a {
-    from.iter().zip(to).map(move |(from, to)| from.lerp(*to, part))
+fn interpolate<'a>(
+    from: &'a [Vec3],
+    to: &'a [Vec3],
+    fraction: f32,
+) -> impl Iterator<Item = Vec3> + 'a {
+    from.iter().zip(to).map(move |(from, to)| from.lerp(*to, fraction))
 }

@@ -1,4 +1,4 @@
-//! What a cloth may touch.
+//! Colliders: shapes that cloth does not enter.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
@@ -16,7 +16,8 @@ use crate::environment::drive::{drive_cloths, pose_parts};
 use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// A shape that no cloth can enter. It moves with its entity, pushes cloth and is not pushed.
+/// A shape that no cloth enters. It moves with its entity, pushes cloth and is not pushed back. A heightfield
+/// is solid below its surface.
 #[derive(Component, Clone, Reflect)]
 #[reflect(Component, Clone)]
 #[require(Transform, PoseHistory)]
@@ -24,46 +25,47 @@ pub struct ClothCollider {
     /// The shape in the entity's frame, m; the entity's scale is ignored.
     #[reflect(remote = SharedShapeReflect)]
     pub shape: SharedShape,
-    /// Distance that cloth keeps in addition to its thickness, m. It rounds edges: a box with a
-    /// margin is a round box, and cheaper than parry's, whose nearest points are searched for.
+    /// Distance that cloth keeps from the shape in addition to its thickness, m. It rounds edges: a box
+    /// with a margin is a round box, and cheaper than parry's round cuboid, whose projections are
+    /// iterative.
     pub margin: f32,
-    /// Coulomb friction coefficient; the cloth's own is multiplied by it and the root taken.
+    /// Coulomb friction coefficient. In a contact the geometric mean of this and the material's counts.
     pub friction: f32,
 }
 
 impl ClothCollider {
-    /// Any parry shape, without a margin, with a friction coefficient of 1: the cloth's counts.
+    /// Any parry shape, without a margin, with a friction coefficient of 1.
     #[must_use]
     pub const fn new(shape: SharedShape) -> Self {
         Self { shape, margin: 0.0, friction: 1.0 }
     }
 
-    /// A ball of a radius in metres.
+    /// A ball of a radius (m).
     #[must_use]
     pub fn ball(radius: f32) -> Self {
         Self::new(SharedShape::ball(radius))
     }
 
-    /// A capsule along y: half the length of its axis, and its radius, m.
+    /// A capsule along y: half the length of its axis (m), and its radius (m).
     #[must_use]
     pub fn capsule(half_height: f32, radius: f32) -> Self {
         Self::new(SharedShape::capsule_y(half_height, radius))
     }
 
-    /// A box of half extents in metres.
+    /// A box of half extents (m).
     #[must_use]
     pub fn cuboid(half_extents: Vec3) -> Self {
         Self::new(SharedShape::cuboid(half_extents.x, half_extents.y, half_extents.z))
     }
 
-    /// Everything below the entity's xz plane.
+    /// The half space below the entity's xz plane.
     #[must_use]
     pub fn ground() -> Self {
         Self::new(SharedShape::halfspace(Vector::Y))
     }
 }
 
-/// Shows the [`ClothCollider`]s to the cloths.
+/// Gives each cloth the [`ClothCollider`]s that it may touch.
 #[derive(Debug, Default)]
 pub struct ColliderPlugin;
 
@@ -76,39 +78,41 @@ impl Plugin for ColliderPlugin {
     }
 }
 
-/// Gives each cloth every collider, in the cloth's frame: as it stood then at the start of the
-/// tick, as it stands now at the end. What is moved in frames is extrapolated to the time of the tick: cloth
-/// and colliders alike, so that those that ride along rest.
+/// Sets the colliders of each cloth in the cloth's frame: their poses at the start of the tick in the
+/// frame at that time, and their poses at the end of the tick in the frame at that time. Poses of what is
+/// moved in frames are extrapolated to the time of the tick, of cloths and colliders alike, so that a collider
+/// that moves with a cloth rests in its frame.
 fn drive_colliders(
     colliders: Query<(&ClothCollider, &PoseHistory)>,
     cloths: Query<(&ClothInstance, &PoseHistory)>,
     mut batches: ResMut<ClothBatches>,
-    mut were_any: Local<bool>,
+    mut had_any: Local<bool>,
 ) {
-    let are_any = !colliders.is_empty();
-    if !are_any && !*were_any {
+    let has_any = !colliders.is_empty();
+    if !has_any && !*had_any {
         return;
     }
-    *were_any = are_any;
+    *had_any = has_any;
     for (instance, frame) in &cloths {
-        let Some(slot) = instance.slot() else { continue };
-        let (start, end) = frame.ahead();
+        let Some(lane) = instance.lane() else { continue };
+        let (start, end) = frame.extrapolated();
         let (start, end) = (start.inverse(), end.inverse());
-        let seen = colliders.iter().map(|(collider, pose)| {
-            let (from, to) = pose.ahead();
+        let colliders = colliders.iter().map(|(collider, pose)| {
+            let (from, to) = pose.extrapolated();
             Collider {
                 shape: collider.shape.clone(),
-                from: seen_from(start, from),
-                to: seen_from(end, to),
+                from: relative_pose(start, from),
+                to: relative_pose(end, to),
                 margin: collider.margin,
                 friction: collider.friction,
             }
         });
-        batches.lane(slot).set_colliders(seen);
+        batches.lane(lane).set_colliders(colliders);
     }
 }
 
-fn seen_from(inverse_frame: Isometry3d, pose: Isometry3d) -> (Vec3, Quat) {
+/// A pose relative to a frame, given the inverse of the frame's pose.
+fn relative_pose(inverse_frame: Isometry3d, pose: Isometry3d) -> (Vec3, Quat) {
     let (translation, rotation) = pose_parts(inverse_frame * pose);
     (translation, rotation.normalize())
 }

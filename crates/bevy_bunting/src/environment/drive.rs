@@ -1,4 +1,4 @@
-//! What acts on each cloth in a tick: its frame's motion, gravity and air.
+//! Sets what acts on each cloth in a tick: its frame's motion, gravity and air.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
@@ -12,7 +12,7 @@ use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
 
-/// Drives cloths.
+/// Sets what acts on each cloth in a tick.
 #[derive(Debug, Default)]
 pub struct DrivePlugin;
 
@@ -22,8 +22,8 @@ impl Plugin for DrivePlugin {
     }
 }
 
-/// Gravity and wind are the world's; a batch takes them along the axes of the cloth's frame at the
-/// end of the tick.
+/// Sets frame motion, gravity and wind. Gravity and wind are given in the world, and rotated to the axes
+/// of the cloth's frame at the end of the tick.
 pub(crate) fn drive_cloths(
     mut cloths: Query<(&mut ClothInstance, &PoseHistory)>,
     settings: Res<ClothSettings>,
@@ -31,22 +31,23 @@ pub(crate) fn drive_cloths(
     mut batches: ResMut<ClothBatches>,
 ) {
     for (mut instance, frame) in &mut cloths {
-        let Some(slot) = instance.slot() else { continue };
+        let Some(lane) = instance.lane() else { continue };
         let (start, end) = (frame.start(), frame.end());
         let inverse = end.rotation.inverse();
         let gravity = inverse * settings.gravity;
-        // No change that anyone should look at: it is noted in every tick.
+        // Written in every tick: it must not mark the cloth as changed.
         instance.bypass_change_detection().gravity = gravity;
-        let place = end * instance.rest_middle();
-        batches.lane(slot).drive(Drive {
+        let middle = end * instance.rest_middle();
+        batches.lane(lane).drive(Drive {
             motion: FrameMotion::between(pose_parts(start), pose_parts(end)),
             gravity,
-            wind: inverse * wind.at(place),
+            wind: inverse * wind.at(middle),
             air_density: settings.air_density,
         });
     }
 }
 
-pub(crate) fn pose_parts(pose: Isometry3d) -> (Vec3, Quat) {
+/// Translation (m) and rotation of a pose.
+pub(super) fn pose_parts(pose: Isometry3d) -> (Vec3, Quat) {
     (pose.translation.into(), pose.rotation)
 }

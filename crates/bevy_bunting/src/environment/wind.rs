@@ -1,4 +1,4 @@
-//! Moving air.
+//! Wind: the velocity of the air.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
@@ -10,36 +10,37 @@ use fastnoise_lite::{FastNoiseLite, NoiseType};
 
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// Least length of a gust, m: about that of a flag, as a cloth feels the wind at its middle.
-const LEAST_GUST: f32 = 2.0;
+/// Least length of a gust, m: that of a large flag. Smaller: gusts are shorter than the cloth that feels them
+/// at its middle.
+const LEAST_GUST_LENGTH: f32 = 2.0;
 
-/// Moving air. Several fields add up.
+/// Moving air. The velocities of several fields are added up.
 ///
-/// Gusts are noise that is carried along by the mean wind (Taylor's hypothesis of frozen turbulence): one
-/// gust is as long as the mean wind goes in 1/`gust_frequency`, at least 2 m, and what stands downwind feels
-/// it later. They depend on place, time and seed, and not on the frame rate. A cloth feels the air at its
-/// middle.
+/// Gusts are simplex noise that the mean wind carries along (Taylor's hypothesis of frozen turbulence): their
+/// length is the distance that the mean wind covers in 1/`gust_frequency`, at least 2 m, and a cloth downwind
+/// feels a gust later. They depend on position, time and seed, and not on the frame rate. A cloth feels
+/// the air at its middle.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct WindField {
     /// Mean velocity of the air relative to the world, m/s.
     pub velocity: Vec3,
-    /// Greatest departure from the mean along each axis, m/s.
+    /// Greatest difference from the mean velocity along each axis, m/s.
     pub gust_strength: f32,
-    /// How often gusts come, 1/s.
+    /// Frequency of gusts, 1/s.
     pub gust_frequency: f32,
-    /// Chooses the gusts.
+    /// Seed of the noise: fields with different seeds have independent gusts.
     pub seed: i32,
 }
 
 impl WindField {
-    /// Wind without gusts, m/s.
+    /// Wind of a velocity (m/s) without gusts.
     #[must_use]
     pub const fn steady(velocity: Vec3) -> Self {
         Self { velocity, gust_strength: 0.0, gust_frequency: 0.5, seed: 0 }
     }
 
-    /// The same, with gusts of a strength (m/s) and frequency (1/s).
+    /// The same, with gusts of a strength (m/s), a frequency (1/s) and a seed.
     #[must_use]
     pub const fn with_gusts(mut self, strength: f32, frequency: f32, seed: i32) -> Self {
         self.gust_strength = strength;
@@ -48,9 +49,9 @@ impl WindField {
         self
     }
 
-    /// Velocity of the air at a place in the world (m) after `seconds`, m/s.
+    /// Velocity of the air (m/s) at a position in the world (m) and a time (s).
     #[must_use]
-    pub fn velocity_at(&self, place: Vec3, seconds: f64) -> Vec3 {
+    pub fn velocity_at(&self, position: Vec3, seconds: f64) -> Vec3 {
         if self.gust_strength == 0.0 {
             return self.velocity;
         }
@@ -58,13 +59,13 @@ impl WindField {
         noise.set_noise_type(Some(NoiseType::OpenSimplex2));
         noise.set_frequency(Some(1.0));
         let speed = self.velocity.length();
-        let length = (speed / self.gust_frequency).max(LEAST_GUST);
-        // In a light wind gusts go faster than the air, lest they come more seldom.
-        let hurry = (self.gust_frequency * length - speed).max(0.0) * Vec3::X;
-        let carried = (self.velocity + hurry).as_dvec3() * seconds;
-        let at = ((place.as_dvec3() - carried) / f64::from(length)).as_vec3();
-        // Rows of the noise far apart are independent.
-        let axis = |row: f32| noise.get_noise_3d(at.x, at.y + 100.0 * row, at.z);
+        let length = (speed / self.gust_frequency).max(LEAST_GUST_LENGTH);
+        // In a light wind gusts of the least length would be rarer than asked: they move faster than the air.
+        let excess = (self.gust_frequency * length - speed).max(0.0) * Vec3::X;
+        let carried = (self.velocity + excess).as_dvec3() * seconds;
+        let at = ((position.as_dvec3() - carried) / f64::from(length)).as_vec3();
+        // Layers of the noise at great distance are independent: one for each axis.
+        let axis = |layer: f32| noise.get_noise_3d(at.x, at.y + 100.0 * layer, at.z);
         self.velocity + self.gust_strength * Vec3::new(axis(1.0), axis(2.0), axis(3.0))
     }
 }
@@ -75,7 +76,7 @@ impl Default for WindField {
     }
 }
 
-/// The air in this tick: all fields.
+/// The air in this tick: all [`WindField`]s.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct TickWind {
@@ -85,22 +86,22 @@ pub struct TickWind {
 }
 
 impl TickWind {
-    /// Velocity of the air at a place in the world (m), m/s: the sum of all fields. One that is not finite
-    /// counts for nothing.
+    /// Velocity of the air (m/s) at a position in the world (m): the sum of all fields. A field that is not
+    /// finite counts as no wind at all.
     #[must_use]
-    pub fn at(&self, place: Vec3) -> Vec3 {
-        let velocities = self.fields.iter().map(|field| field.velocity_at(place, self.seconds));
+    pub fn at(&self, position: Vec3) -> Vec3 {
+        let velocities = self.fields.iter().map(|field| field.velocity_at(position, self.seconds));
         velocities.filter(|velocity| velocity.is_finite()).sum()
     }
 
-    /// Whether the air blows otherwise than in another tick.
+    /// Whether the velocity of the air differs from that in another tick.
     pub(crate) fn differs_from(&self, other: &Self) -> bool {
-        let gusty = self.fields.iter().any(|field| field.gust_strength != 0.0);
-        self.fields != other.fields || (gusty && self.seconds != other.seconds)
+        let has_gusts = self.fields.iter().any(|field| field.gust_strength != 0.0);
+        self.fields != other.fields || (has_gusts && self.seconds != other.seconds)
     }
 }
 
-/// Shows the [`WindField`]s to the cloths.
+/// Collects the [`WindField`]s.
 #[derive(Debug, Default)]
 pub struct WindPlugin;
 
@@ -109,11 +110,11 @@ impl Plugin for WindPlugin {
         app.register_type::<WindField>()
             .register_type::<TickWind>()
             .init_resource::<TickWind>()
-            .add_systems(ClothTick, note_winds.in_set(ClothSystems::Prepare));
+            .add_systems(ClothTick, collect_winds.in_set(ClothSystems::Prepare));
     }
 }
 
-fn note_winds(fields: Query<&WindField>, time: Res<Time>, mut wind: ResMut<TickWind>) {
+fn collect_winds(fields: Query<&WindField>, time: Res<Time>, mut wind: ResMut<TickWind>) {
     wind.seconds = time.elapsed_secs_f64();
     wind.fields.clear();
     wind.fields.extend(&fields);

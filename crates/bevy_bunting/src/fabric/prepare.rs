@@ -1,39 +1,34 @@
-//! New, changed and removed cloths.
+//! Prepares cloths that are new or changed: cuts or looks up their fabrics, changes their materials.
 
 use std::sync::Arc;
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
 use bevy_math::Isometry3d;
 use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
 
 use crate::batch::batches::ClothBatches;
-use crate::cloth::error::{ClothError, ClothFailed};
+use crate::cloth::activity::ClothPaused;
+use crate::cloth::error::ClothError;
+use crate::cloth::events::ClothFailed;
 use crate::cloth::imperfection::ClothSeed;
-use crate::cloth::instance::{ClothInstance, Place};
-use crate::cloth::mesh::{ClothMaterial, ClothMesh, ClothPaused};
+use crate::cloth::instance::{ClothInstance, StateStorage};
+use crate::cloth::material::ClothMaterial;
+use crate::cloth::mesh::ClothMesh;
 use crate::cloth::state::ClothState;
-use crate::fabric::levels::FabricLibrary;
-use crate::lod::LodSet;
-use crate::motion::attachment::{Attachment, TargetLost};
+use crate::fabric::levels::ClothLevels;
+use crate::fabric::library::FabricLibrary;
+use crate::lod::lod_set::LodSet;
+use crate::motion::attachment::Attachment;
 use crate::motion::frame::{frame_of, is_finite};
+use crate::motion::lost_target::handle_lost_targets;
 use crate::motion::pose::PoseHistory;
 use crate::motion::take_up::TakingUp;
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// The target of a cloth's attachment was despawned.
-#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ClothTargetLost {
-    /// The cloth.
-    pub entity: Entity,
-    /// The target that is gone.
-    pub target: Entity,
-    /// What happens to the cloth.
-    pub outcome: TargetLost,
-}
-
-/// Cuts cloths when they are new or changed.
+/// Prepares cloths that are new, changed or removed.
 #[derive(Debug, Default)]
 pub struct PreparePlugin;
 
@@ -44,17 +39,17 @@ impl Plugin for PreparePlugin {
             .register_type::<ClothSeed>()
             .init_resource::<FabricLibrary>()
             .add_observer(clear_removed)
-            .add_observer(note_release)
+            .add_observer(mark_released)
             .add_systems(
                 ClothTick,
-                (lose_targets, cut_cloths.run_if(may_cut), change_materials)
+                (handle_lost_targets, cut_cloths.run_if(any_may_be_stale), change_materials)
                     .chain()
                     .in_set(ClothSystems::Prepare),
             );
     }
 }
 
-/// Frees the lane of a cloth that is despawned, or is one no more.
+/// Frees the lane of a cloth that is despawned, or whose [`ClothMesh`] is removed.
 fn clear_removed(
     removed: On<Remove, ClothMesh>,
     mut cloths: Query<(&mut ClothInstance, &mut ClothState)>,
@@ -66,62 +61,42 @@ fn clear_removed(
     }
 }
 
-/// A cloth that has let go is cut anew. Messages of removals would be gone after two frames, and a tick may
-/// take longer to come.
-fn note_release(_: On<Remove, Attachment>, mut library: ResMut<FabricLibrary>) {
+/// Has a cloth cut again whose [`Attachment`] is removed. Messages of removals would be lost after two
+/// frames, and the next tick may come later.
+fn mark_released(_: On<Remove, Attachment>, mut library: ResMut<FabricLibrary>) {
     library.awaited = true;
 }
 
-fn lose_targets(
-    mut cloths: Query<(Entity, &Attachment, &mut ClothInstance, Has<ClothPaused>)>,
-    targets: Query<(), With<Transform>>,
-    mut commands: Commands,
-) {
-    for (entity, attachment, mut instance, paused) in &mut cloths {
-        let Some(target) = attachment.target_other_than(entity) else { continue };
-        if instance.target_lost || instance.target != Some(target) || targets.contains(target) {
-            continue;
-        }
-        instance.target_lost = true;
-        match attachment.on_lost {
-            TargetLost::Freeze => {
-                instance.frozen = !paused;
-                commands.entity(entity).insert(ClothPaused)
-            }
-            TargetLost::Release => commands.entity(entity).remove::<Attachment>(),
-        };
-        commands.trigger(ClothTargetLost { entity, target, outcome: attachment.on_lost });
-    }
-}
-
-type MayCut =
+type AnyChanged =
     Or<(Changed<ClothMesh>, Changed<ClothMaterial>, Changed<LodSet>, Changed<Attachment>)>;
 
-/// Whether there may be a cloth to cut: in most ticks there is none.
-fn may_cut(changed: Query<(), (With<ClothMesh>, MayCut)>, library: Res<FabricLibrary>) -> bool {
+/// Whether any cloth may have to be cut: in most ticks none has.
+fn any_may_be_stale(
+    changed: Query<(), (With<ClothMesh>, AnyChanged)>,
+    library: Res<FabricLibrary>,
+) -> bool {
     !changed.is_empty() || library.awaited
 }
 
-type Cloths<'w, 's> = Query<
-    'w,
-    's,
-    (
-        Entity,
-        Ref<'static, ClothMesh>,
-        Ref<'static, ClothMaterial>,
-        Ref<'static, LodSet>,
-        Option<Ref<'static, Attachment>>,
-        Option<&'static ClothSeed>,
-        &'static mut ClothInstance,
-        &'static mut ClothState,
-        &'static mut PoseHistory,
-    ),
->;
+/// The components that fabrics depend on, and those that depend on fabrics.
+#[derive(QueryData)]
+#[query_data(mutable)]
+struct CutCloth {
+    entity: Entity,
+    mesh: Ref<'static, ClothMesh>,
+    material: Ref<'static, ClothMaterial>,
+    lods: Ref<'static, LodSet>,
+    attachment: Option<Ref<'static, Attachment>>,
+    seed: Option<&'static ClothSeed>,
+    instance: &'static mut ClothInstance,
+    state: &'static mut ClothState,
+    history: &'static mut PoseHistory,
+}
 
-/// Cuts the fabrics of cloths whose mesh, levels or attachment are new. A bad cloth is reported and
+/// Cuts the fabrics of cloths whose mesh, levels or attachment changed. An invalid cloth is reported and
 /// not simulated until it changes again.
 fn cut_cloths(
-    mut cloths: Cloths,
+    mut cloths: Query<CutCloth>,
     targets: Query<(), With<Transform>>,
     transforms: TransformHelper,
     mut library: ResMut<FabricLibrary>,
@@ -129,96 +104,138 @@ fn cut_cloths(
     mut commands: Commands,
 ) {
     library.begin_tick();
-    for (entity, mesh, material, lods, attachment, seed, mut instance, mut state, mut history) in
-        &mut cloths
-    {
-        let target = attachment
-            .as_deref()
-            .map(|attachment| attachment.target_other_than(entity).unwrap_or(entity));
-        let changed = instance.cutting
-            || instance.awaits_target.is_some()
-            || mesh.is_changed()
-            || lods.is_changed()
-            || attachment.as_ref().is_some_and(|attachment| attachment.is_changed())
-            || (instance.target != target && instance.levels.is_some())
-            || (material.is_changed() && instance.levels.is_none());
-        if !changed {
+    for mut cloth in &mut cloths {
+        let target = cloth.target();
+        if !cloth.is_stale(target) {
             continue;
         }
-        let missing = target.filter(|&target| !instance.target_lost && !targets.contains(target));
-        let levels = match (missing, material.0.validate()) {
-            (Some(target), _) => Err(ClothError::MissingTarget { entity, target }),
-            (_, Err(source)) if instance.levels.is_none() => {
-                Err(ClothError::Material { entity, source })
-            }
-            _ => library.levels(entity, &mesh, attachment.as_deref(), &lods),
-        };
-        match levels {
+        match cloth.find_levels(target, &targets, &mut library) {
             Ok(None) => {
-                instance.cutting = true;
+                cloth.instance.cutting = true;
                 library.awaited = true;
             }
             Ok(Some(levels)) => {
-                instance.cutting = false;
-                instance.awaits_target = None;
-                let pose = frame_of(entity, attachment.as_deref(), &transforms);
-                let mut change = Isometry3d::IDENTITY;
-                if instance.target != target {
-                    let before = history.is_known().then(|| history.end());
-                    if let (Some(before), Some(now)) = (before, pose) {
-                        change = now.inverse() * before;
-                    }
-                    *history = PoseHistory::default();
-                    instance.target = target;
-                    instance.target_lost = false;
-                    if core::mem::take(&mut instance.frozen) {
-                        commands.entity(entity).remove::<ClothPaused>();
-                    }
-                }
-                if instance.levels.as_ref().is_some_and(|old| Arc::ptr_eq(old, &levels)) {
-                    continue;
-                }
-                if instance.levels.is_none() {
-                    instance.material = material.0;
-                    instance.seed = seed.copied().unwrap_or_else(|| {
-                        pose.as_ref().map_or(ClothSeed::default(), ClothSeed::of_pose)
-                    });
-                }
-                if let Some(lack) = levels.lack(entity, &mesh) {
-                    ClothFailed::report(&mut commands, entity, lack);
-                }
-                let fabric = Arc::clone(levels.fabric(instance.level));
-                let kept = instance.recut(levels, &mut batches);
-                if let (true, Place::Waiting(snapshot)) = (kept, &mut instance.place) {
-                    let change = if is_finite(&change) { change } else { Isometry3d::IDENTITY };
-                    match TakingUp::begin(snapshot, &fabric, change) {
-                        Some(way) => commands.entity(entity).insert(way),
-                        None => commands.entity(entity).remove::<TakingUp>(),
-                    };
-                }
-                if let Some((levels, snapshot)) = instance.levels.as_ref().zip(instance.waiting()) {
-                    state.begin_anew(instance.level, levels, &snapshot.positions);
-                }
+                let frame = frame_of(cloth.entity, cloth.attachment.as_deref(), &transforms);
+                cloth.set_levels(levels, target, frame, &mut batches, &mut commands);
             }
             Err(ClothError::MissingTarget { target, .. })
-                if instance.awaits_target == Some(target) =>
+                if cloth.instance.missing_target == Some(target) =>
             {
                 library.awaited = true;
             }
             Err(error) => {
-                instance.clear(&mut batches);
+                cloth.instance.clear(&mut batches);
                 if let ClothError::MissingTarget { target, .. } = error {
-                    instance.awaits_target = Some(target);
+                    cloth.instance.missing_target = Some(target);
                     library.awaited = true;
                 }
-                *state = ClothState::default();
-                ClothFailed::report(&mut commands, entity, error);
+                *cloth.state = ClothState::default();
+                ClothFailed::report(&mut commands, cloth.entity, error);
             }
         }
     }
 }
 
-/// Changes materials from this tick on. A bad one is reported, and the last good one kept.
+impl CutClothItem<'_, '_> {
+    /// The attachment's target; the cloth itself if attached to its own transform.
+    fn target(&self) -> Option<Entity> {
+        let attachment = self.attachment.as_deref()?;
+        Some(attachment.target_other_than(self.entity).unwrap_or(self.entity))
+    }
+
+    /// Whether the fabrics must be looked up or cut again.
+    fn is_stale(&self, target: Option<Entity>) -> bool {
+        self.instance.cutting
+            || self.instance.missing_target.is_some()
+            || self.mesh.is_changed()
+            || self.lods.is_changed()
+            || self.attachment.as_ref().is_some_and(|attachment| attachment.is_changed())
+            || (self.instance.target != target && self.instance.levels.is_some())
+            || (self.material.is_changed() && self.instance.levels.is_none())
+    }
+
+    /// The levels of the cloth; none while they are being cut.
+    fn find_levels(
+        &self,
+        target: Option<Entity>,
+        targets: &Query<(), With<Transform>>,
+        library: &mut FabricLibrary,
+    ) -> Result<Option<Arc<ClothLevels>>, ClothError> {
+        let entity = self.entity;
+        let is_missing = |target: &Entity| !self.instance.target_lost && !targets.contains(*target);
+        if let Some(target) = target.filter(is_missing) {
+            return Err(ClothError::MissingTarget { entity, target });
+        }
+        if self.instance.levels.is_none() {
+            let valid = self.material.0.validate();
+            valid.map_err(|source| ClothError::Material { entity, source })?;
+        }
+        library.levels(entity, &self.mesh, self.attachment.as_deref(), &self.lods)
+    }
+
+    /// Simulates the cloth with levels from now on.
+    fn set_levels(
+        &mut self,
+        levels: Arc<ClothLevels>,
+        target: Option<Entity>,
+        frame: Option<Isometry3d>,
+        batches: &mut ClothBatches,
+        commands: &mut Commands,
+    ) {
+        let change = self.set_target(target, frame, commands);
+        let instance = &mut *self.instance;
+        instance.cutting = false;
+        instance.missing_target = None;
+        if instance.levels.as_ref().is_some_and(|old| Arc::ptr_eq(old, &levels)) {
+            return;
+        }
+        if instance.levels.is_none() {
+            instance.material = self.material.0;
+            let of_frame = || frame.as_ref().map(ClothSeed::of_frame).unwrap_or_default();
+            instance.seed = self.seed.copied().unwrap_or_else(of_frame);
+        }
+        if let Some(shortage) = levels.shortage(self.entity, self.mesh.as_grid()) {
+            ClothFailed::report(commands, self.entity, shortage);
+        }
+        let fabric = Arc::clone(levels.fabric(instance.level));
+        let keeps_state = instance.replace_levels(levels, batches);
+        if let (true, StateStorage::Snapshot(state)) = (keeps_state, &mut instance.storage) {
+            match TakingUp::begin(state, &fabric, change) {
+                Some(taking_up) => commands.entity(self.entity).insert(taking_up),
+                None => commands.entity(self.entity).remove::<TakingUp>(),
+            };
+        }
+        if let Some((levels, snapshot)) = instance.levels.as_ref().zip(instance.snapshot()) {
+            self.state.restart(instance.level, levels, &snapshot.positions);
+        }
+    }
+}
+
+impl CutClothItem<'_, '_> {
+    /// Notes the target. Returns the transformation from the frame of the target before to its frame.
+    fn set_target(
+        &mut self,
+        target: Option<Entity>,
+        frame: Option<Isometry3d>,
+        commands: &mut Commands,
+    ) -> Isometry3d {
+        let instance = &mut *self.instance;
+        if instance.target == target {
+            return Isometry3d::IDENTITY;
+        }
+        let before = self.history.is_observed().then(|| self.history.end());
+        *self.history = PoseHistory::default();
+        instance.target = target;
+        instance.target_lost = false;
+        if core::mem::take(&mut instance.frozen) {
+            commands.entity(self.entity).remove::<ClothPaused>();
+        }
+        let change = before.zip(frame).map(|(before, now)| now.inverse() * before);
+        change.filter(is_finite).unwrap_or_default()
+    }
+}
+
+/// Changes materials from this tick on. An invalid one is reported, and the last valid one kept.
 fn change_materials(
     mut cloths: Query<(Entity, &ClothMaterial, &mut ClothInstance), Changed<ClothMaterial>>,
     mut batches: ResMut<ClothBatches>,
@@ -234,8 +251,8 @@ fn change_materials(
         }
         instance.material = material.0;
         instance.wake();
-        if let Some(slot) = instance.slot() {
-            batches.lane(slot).set_material(material.0);
+        if let Some(lane) = instance.lane() {
+            batches.lane(lane).set_material(material.0);
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Cloth that has come to rest falls asleep.
+//! Cloths that have come to rest fall asleep, and wake when anything changes that acts on them.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::entity::EntityHashMap;
@@ -6,32 +6,36 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_time::Time;
 
-use crate::batch::publish::publish_states;
-use crate::cloth::activity::{ClothActivity, ClothRest, ClothWatch};
+use crate::batch::publish::reset_diverged;
+use crate::cloth::activity::ClothActivity;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
-use crate::display::easing::ease_surfaces;
+use crate::display::ease::ease_surfaces;
 use crate::environment::collider::ClothCollider;
 use crate::environment::wind::TickWind;
-use crate::lod::choose_levels;
+use crate::lod::record::{LodRecord, RestTimer};
+use crate::lod::select::select_levels;
 use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
 
-/// Root mean square speed of a cloth at rest, m/s: a millimetre in a second is seen by no one.
+/// Root mean square speed of the particles below which a cloth rests, m/s: a millimetre in a second is
+/// not seen. Larger: cloth visibly stops.
 const REST_SPEED: f32 = 1e-3;
 
-/// How long it must be as slow, s: longer than a pendulum stands at its turning points.
+/// Time for which a cloth must rest before it falls asleep, s: longer than a pendulum is as slow at its
+/// turning points. Shorter: swinging cloth falls asleep there.
 const REST_TIME: f32 = 0.5;
 
-/// Distance between a cloth and a collider at which the one does not wake the other, m.
+/// Distance between a cloth and a moving collider from which on the collider does not wake the cloth, m.
+/// Smaller: fast colliders enter sleeping cloth.
 const CLEARANCE: f32 = 0.5;
 
 /// Sends cloths at rest to sleep, and wakes them.
 #[derive(Debug, Default)]
-pub struct RestPlugin;
+pub struct SleepPlugin;
 
-impl Plugin for RestPlugin {
+impl Plugin for SleepPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Changes>().add_systems(
             ClothTick,
@@ -39,39 +43,45 @@ impl Plugin for RestPlugin {
                 (note_changes, wake_cloths)
                     .chain()
                     .in_set(ClothSystems::SelectLod)
-                    .before(choose_levels),
-                rest_cloths
+                    .before(select_levels),
+                send_to_sleep
                     .in_set(ClothSystems::Publish)
-                    .after(publish_states)
+                    .after(reset_diverged)
                     .after(ease_surfaces),
             ),
         );
     }
 }
 
-/// What has changed since the last tick that acts on cloths.
+/// What has changed since the last tick of all that acts on cloths.
 #[derive(Resource, Debug, Default)]
 struct Changes {
-    /// Wind, gravity, settings, or which colliders there are.
+    /// Whether the wind, gravity, other settings or the set of colliders changed, which act everywhere.
     everywhere: bool,
-    /// Ticks since then.
-    calm: u32,
+    /// Number of ticks since anything changed everywhere.
+    unchanged_ticks: u32,
     /// Balls around colliders that move, centres and radii, m.
-    colliders: Vec<(Vec3, f32)>,
-    /// Most cloths that may be at rest.
-    resting: usize,
+    moving_colliders: Vec<(Vec3, f32)>,
+    /// Number of cloths asleep at rest; some of them may have been woken since.
+    asleep: usize,
     wind: TickWind,
     collider_poses: EntityHashMap<Isometry3d>,
 }
 
 impl Changes {
-    /// Whether anything near a cloth has changed, or its frame.
-    fn reach(&self, state: &ClothState, frame: Isometry3d, rest: &ClothRest, radius: f32) -> bool {
+    /// Whether anything changed that acts on a cloth with a radius (m): its frame, or a collider near it.
+    fn act_on(
+        &self,
+        state: &ClothState,
+        frame: Isometry3d,
+        timer: &RestTimer,
+        radius: f32,
+    ) -> bool {
         let middle = state.positions().get(state.positions().len() / 2);
         let middle = frame * middle.copied().unwrap_or_default();
-        let near =
+        let is_near =
             |&(centre, other): &(Vec3, f32)| middle.distance(centre) < radius + other + CLEARANCE;
-        rest.pose != Some(frame) || self.colliders.iter().any(near)
+        timer.pose != Some(frame) || self.moving_colliders.iter().any(is_near)
     }
 }
 
@@ -89,66 +99,68 @@ fn note_changes(
         changes.collider_poses.remove(&entity);
         changes.everywhere = true;
     }
-    changes.colliders.clear();
+    changes.moving_colliders.clear();
     for (entity, collider, history) in &colliders {
         changes.everywhere |= collider.is_changed();
         let pose = history.end();
         if changes.collider_poses.insert(entity, pose) != Some(pose) {
             let ball = collider.shape.compute_local_bounding_sphere();
-            changes.colliders.push((pose * ball.center, ball.radius + collider.margin));
+            changes.moving_colliders.push((pose * ball.center, ball.radius + collider.margin));
         }
     }
-    changes.calm = if changes.everywhere { 0 } else { changes.calm.saturating_add(1) };
+    changes.unchanged_ticks =
+        if changes.everywhere { 0 } else { changes.unchanged_ticks.saturating_add(1) };
 }
 
-type Watched = (
+type RestingCloth = (
     &'static mut ClothInstance,
     &'static ClothState,
     &'static PoseHistory,
-    &'static mut ClothRest,
-    &'static ClothWatch,
+    &'static mut RestTimer,
+    &'static LodRecord,
 );
 
-fn wake_cloths(mut cloths: Query<Watched>, mut changes: ResMut<Changes>) {
-    if changes.resting == 0 {
+fn wake_cloths(mut cloths: Query<RestingCloth>, mut changes: ResMut<Changes>) {
+    if changes.asleep == 0 {
         return;
     }
-    changes.resting = 0;
-    for (mut instance, state, frame, rest, watch) in &mut cloths {
+    changes.asleep = 0;
+    for (mut instance, state, frame, timer, record) in &mut cloths {
         if instance.activity != ClothActivity::AtRest {
             continue;
         }
-        if changes.everywhere || changes.reach(state, frame.end(), &rest, watch.radius) {
+        if changes.everywhere || changes.act_on(state, frame.end(), &timer, record.radius) {
             instance.wake();
         } else {
-            changes.resting += 1;
+            changes.asleep += 1;
         }
     }
 }
 
-fn rest_cloths(mut cloths: Query<Watched>, mut changes: ResMut<Changes>, time: Res<Time>) {
-    // In gusts nothing comes to rest: not worth a look.
+fn send_to_sleep(mut cloths: Query<RestingCloth>, mut changes: ResMut<Changes>, time: Res<Time>) {
+    // In gusts, which change in every tick, no cloth comes to rest.
     if changes.everywhere {
         return;
     }
     let tick = time.delta_secs();
-    for (mut instance, state, frame, mut rest, watch) in &mut cloths {
-        if instance.slot().is_none() {
+    for (mut instance, state, frame, mut timer, record) in &mut cloths {
+        if instance.lane().is_none() {
             continue;
         }
         let pose = frame.end();
-        let disturbed = changes.reach(state, pose, &rest, watch.radius);
-        rest.pose = Some(pose);
-        rest.still = if disturbed || speed(state, tick) > REST_SPEED { 0 } else { rest.still + 1 };
-        if rest.still.min(changes.calm) as f32 * tick > REST_TIME {
-            rest.still = 0;
+        let is_disturbed = changes.act_on(state, pose, &timer, record.radius);
+        timer.pose = Some(pose);
+        let is_still = !is_disturbed && speed(state, tick) <= REST_SPEED;
+        timer.ticks = if is_still { timer.ticks + 1 } else { 0 };
+        if timer.ticks.min(changes.unchanged_ticks) as f32 * tick > REST_TIME {
+            timer.ticks = 0;
             instance.activity = ClothActivity::AtRest;
-            changes.resting += 1;
+            changes.asleep += 1;
         }
     }
 }
 
-/// Root mean square speed in the last tick, m/s.
+/// Root mean square speed of the particles in the last tick of `tick` seconds, m/s.
 fn speed(state: &ClothState, tick: f32) -> f32 {
     let pairs = state.positions().iter().zip(state.previous_positions());
     let squares: f32 = pairs.map(|(now, before)| now.distance_squared(*before)).sum();

@@ -1,4 +1,4 @@
-//! What holds a cloth: chosen vertices stay on another entity.
+//! Attachments: chosen vertices of a cloth stay on another entity.
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec2;
@@ -9,20 +9,25 @@ use bevy_transform::components::Transform;
 use crate::cloth::mesh::ClothMesh;
 
 /// Default of [`Attachment::teleport_speed`], m/s: no vehicle brakes or starts by as much between two frames.
-/// A flag that is pulled off by that is stretched by a quarter for a moment, and goes on.
+/// Smaller: hard manoeuvres count as teleports, and swing no cloth. Larger: jumps whip it.
 pub(crate) const TELEPORT_SPEED: f32 = 25.0;
 
-/// How far from the extreme texture coordinate a vertex still lies on an edge.
+/// Greatest difference from the extreme texture coordinate of vertices on an edge. Smaller: rounding
+/// excludes vertices. Larger: an edge has several rows of fine meshes.
 const EDGE_TOLERANCE: f32 = 1e-4;
 
-/// Holds chosen vertices of a cloth on a target, wherever it goes.
+/// Holds chosen vertices of a cloth on a target that may move.
 ///
-/// The cloth's frame is the target's pose times [`offset`](Self::offset): the vertices rest there
-/// where the [`ClothMesh`](crate::ClothMesh) has them, and never leave. The cloth's own
-/// [`Transform`] is overwritten with that frame, be the cloth a child of its target or not.
+/// The cloth's frame is the target's pose times [`offset`](Self::offset). The held vertices stay in
+/// that frame where the [`ClothMesh`](crate::ClothMesh) has them. The cloth's own [`Transform`] is
+/// overwritten with the frame, whether the cloth is a child of its target or not.
 ///
-/// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. Its scale moves
-/// the offset and is otherwise ignored.
+/// A change of target, or of the held vertices, never whips the cloth: it moves with its frame rigidly, and newly
+/// held vertices move to their places within a second. From more than 2 m away the cloth is first put in place,
+/// as by a teleport.
+///
+/// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. Its scale scales
+/// the offset's translation and is otherwise ignored.
 #[derive(Component, Clone, Debug, Reflect)]
 #[reflect(Component, Debug, Clone)]
 pub struct Attachment {
@@ -36,10 +41,10 @@ pub struct Attachment {
     pub offset: Transform,
     /// What happens when the target is despawned.
     pub on_lost: TargetLost,
-    /// A target whose velocity changes by more than this between two observations, frames or ticks, was
-    /// teleported, m/s: the cloth goes along without being swung. At 60 frames a second, 25 m/s is to leave
-    /// its course by 0.4 m. The same goes for a turn that moves by as much what is a metre away, and for any
-    /// of more than 90°.
+    /// A target whose velocity changes by more than this between two frames or ticks, in m/s, was teleported: the
+    /// cloth moves with it rigidly, without being accelerated. At 60 frames a second, 25 m/s is to depart from the
+    /// extrapolated motion by 0.4 m. The same holds for a turn that moves as fast what is a metre away, and for
+    /// any of more than 90°.
     pub teleport_speed: f32,
 }
 
@@ -79,11 +84,11 @@ impl Attachment {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum TargetLost {
-    /// The cloth stands still: it gets [`ClothPaused`](crate::ClothPaused). Without that marker it
-    /// hangs from where the target was.
+    /// The cloth is paused: it gets [`ClothPaused`](crate::ClothPaused). If that component is removed,
+    /// the cloth hangs from the last pose of its target.
     #[default]
     Freeze,
-    /// The cloth lets go: its [`Attachment`] is removed.
+    /// The cloth falls: its [`Attachment`] is removed.
     Release,
 }
 
@@ -117,7 +122,7 @@ pub enum ClothCorner {
 
 /// Which vertices an [`Attachment`] holds.
 ///
-/// At a coarser level of detail those of them are held that the level has.
+/// A coarser level of detail holds those of them that it has.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum AttachedVertices {
@@ -128,7 +133,7 @@ pub enum AttachedVertices {
     /// Vertices of the [`ClothMesh`](crate::ClothMesh) by index; of a grid, by `row * columns +
     /// column`.
     List(Vec<u32>),
-    /// All vertices whose texture coordinate lies in a rectangle, borders and all. For any other choice, see
+    /// All vertices whose texture coordinate lies in a rectangle or on its border. For any other choice, see
     /// [`AttachedVertices::list_where`].
     Within {
         /// Least u and v.
@@ -136,18 +141,18 @@ pub enum AttachedVertices {
         /// Greatest u and v.
         high: Vec2,
     },
-    /// None but those that are rigid in any case: of weight 0, see
+    /// No vertices besides the rigid ones of weight 0, see
     /// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
     Rigid,
 }
 
 impl AttachedVertices {
-    /// The [`List`](Self::List) of a mesh's vertices for whose texture coordinate a predicate holds. A mesh without
-    /// texture coordinates has none.
+    /// The [`List`](Self::List) of a mesh's vertices for whose texture coordinate a predicate holds; none of a mesh
+    /// without texture coordinates.
     #[must_use]
     pub fn list_where(mesh: &ClothMesh, holds: impl Fn(Vec2) -> bool) -> Self {
-        let all = (0..).zip(mesh.uvs()).filter(|&(_, uv)| holds(uv));
-        Self::List(all.map(|(vertex, _)| vertex).collect())
+        let chosen = (0..).zip(mesh.uvs()).filter(|&(_, uv)| holds(uv));
+        Self::List(chosen.map(|(vertex, _)| vertex).collect())
     }
 
     /// The indices of the vertices, given the texture coordinates of all.
@@ -206,11 +211,13 @@ fn nearest(uv: &[Vec2], corner: Vec2) -> Option<u32> {
 
 #[cfg(test)]
 mod tests {
+    use bunting_solver::Grid;
+
     use super::*;
 
     #[test]
     fn edges_corners_and_predicates() {
-        let uv = ClothMesh::grid(3, 2, 1.0, 1.0).uvs();
+        let uv = Grid::new(3, 2, 1.0, 1.0).uvs();
         let choose = |vertices: AttachedVertices| vertices.choose(&uv);
         assert_eq!(choose(ClothEdge::Left.into()), [0, 3]);
         assert_eq!(choose(ClothEdge::Right.into()), [2, 5]);

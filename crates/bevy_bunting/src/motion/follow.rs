@@ -1,4 +1,5 @@
-//! Who has to be looked at because something has moved: most things rest, and cost nothing.
+//! Which entities have moved with another one, by hierarchy or by attachment: entities that rest cost
+//! nothing, as only moved ones are looked at.
 
 use bevy_ecs::entity::EntityHashSet;
 use bevy_ecs::hierarchy::{ChildOf, Children};
@@ -8,7 +9,7 @@ use bevy_transform::components::Transform;
 
 use crate::motion::attachment::Attachment;
 
-/// A cloth that is attached to another entity, and so moves with it.
+/// The target of a cloth's [`Attachment`], as a relationship: the cloth moves with it.
 #[derive(Component, Debug)]
 #[relationship(relationship_target = Followers)]
 pub(crate) struct Follows(Entity);
@@ -18,7 +19,7 @@ pub(crate) struct Follows(Entity);
 #[relationship_target(relationship = Follows)]
 pub(crate) struct Followers(Vec<Entity>);
 
-/// Notes what each cloth is attached to, where that is new.
+/// Keeps [`Follows`] equal to the targets of changed attachments.
 pub(crate) fn follow_targets(
     attachments: Query<(Entity, &Attachment), Changed<Attachment>>,
     targets: Query<()>,
@@ -36,40 +37,41 @@ pub(crate) fn follow_targets(
     }
 }
 
-/// Ends the following of what is attached no more.
-pub(crate) fn end_following(released: On<Remove, Attachment>, mut commands: Commands) {
-    commands.entity(released.entity).try_remove::<Follows>();
+/// Removes [`Follows`] with the attachment.
+pub(crate) fn stop_following(removed: On<Remove, Attachment>, mut commands: Commands) {
+    commands.entity(removed.entity).try_remove::<Follows>();
 }
 
-/// Finds out what does not stand where it stood when the system last ran.
+/// Finds the entities that may have moved since the system last ran.
 #[derive(SystemParam)]
-pub(crate) struct Motions<'w, 's> {
+pub(crate) struct MovedEntities<'w, 's> {
     transforms: Query<'w, 's, Entity, Changed<Transform>>,
     parents: Query<'w, 's, Entity, Changed<ChildOf>>,
     attachments: Query<'w, 's, Entity, Changed<Attachment>>,
     orphans: RemovedComponents<'w, 's, ChildOf>,
     released: RemovedComponents<'w, 's, Attachment>,
-    hanging: Query<'w, 's, (Option<&'static Children>, Option<&'static Followers>)>,
+    dependents: Query<'w, 's, (Option<&'static Children>, Option<&'static Followers>)>,
     moved: Local<'s, EntityHashSet>,
-    open: Local<'s, Vec<Entity>>,
+    stack: Local<'s, Vec<Entity>>,
 }
 
-impl Motions<'_, '_> {
-    /// All that was moved or attached anew, these others, and all that hangs on any of them.
+impl MovedEntities<'_, '_> {
+    /// Entities whose transform, parent or attachment changed, the given other ones, and all their
+    /// descendants and followers.
     pub fn find(&mut self, others: impl IntoIterator<Item = Entity>) -> &EntityHashSet {
         self.moved.clear();
-        self.open.extend(others);
-        self.open.extend(&self.transforms);
-        self.open.extend(&self.parents);
-        self.open.extend(&self.attachments);
-        self.open.extend(self.orphans.read());
-        self.open.extend(self.released.read());
-        while let Some(entity) = self.open.pop() {
+        self.stack.extend(others);
+        self.stack.extend(&self.transforms);
+        self.stack.extend(&self.parents);
+        self.stack.extend(&self.attachments);
+        self.stack.extend(self.orphans.read());
+        self.stack.extend(self.released.read());
+        while let Some(entity) = self.stack.pop() {
             if self.moved.insert(entity)
-                && let Ok((children, followers)) = self.hanging.get(entity)
+                && let Ok((children, followers)) = self.dependents.get(entity)
             {
-                self.open.extend(children.into_iter().flat_map(|children| children.iter()));
-                self.open.extend(followers.into_iter().flat_map(|followers| followers.iter()));
+                self.stack.extend(children.into_iter().flat_map(|children| children.iter()));
+                self.stack.extend(followers.into_iter().flat_map(|followers| followers.iter()));
             }
         }
         &self.moved

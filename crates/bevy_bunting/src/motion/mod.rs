@@ -1,8 +1,14 @@
-//! What carries a cloth: attachments, and the motion of their targets.
+//! The motion of a cloth's frame: attachments, the poses of their targets, teleports.
 
 pub mod attachment;
 pub mod follow;
 pub mod frame;
+pub mod lost_target;
+pub mod observe;
+pub mod place;
+pub mod plugin;
 pub mod pose;
+pub mod scale;
 pub mod take_up;
 pub mod teleport;
+pub mod track;

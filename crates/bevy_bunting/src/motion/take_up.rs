@@ -74,8 +74,8 @@ pub(crate) fn lead_pins(
     mut commands: Commands,
 ) {
     for (entity, instance, mut way) in &mut cloths {
-        let (Some(slot), Some(fabric)) = (instance.slot(), instance.fabric()) else { continue };
-        let mut lane = batches.lane(slot);
+        let (Some(lane), Some(fabric)) = (instance.lane(), instance.fabric()) else { continue };
+        let mut lane = batches.lane(lane);
         let mut state = lane.snapshot();
         let arrived = way.go_on(time.delta_secs(), fabric, &mut state.positions);
         lane.restore(&state);

@@ -1,4 +1,4 @@
-//! Cloth that is somewhere else at once.
+//! Teleports of cloths on request.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
@@ -8,29 +8,30 @@ use bevy_reflect::std_traits::ReflectDefault;
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
-use crate::motion::pose::{Observed, PoseHistory};
+use crate::motion::pose::{ObservationTimes, PoseHistory};
 
-/// Asks that the next change of a cloth's frame be a teleport: trigger it in the frame or tick in
-/// which the target is moved, before or after, but before the next tick of the cloth.
+/// Makes the next change of a cloth's frame a teleport: the cloth moves with it rigidly, without being
+/// accelerated. Trigger it in the frame or tick in which the target is moved, before or after the
+/// motion, but before the next tick of the cloth.
 ///
-/// A jump that would take more than [`Attachment::teleport_speed`](crate::Attachment::teleport_speed) is one
-/// without asking.
+/// A change that would take more than [`Attachment::teleport_speed`](crate::Attachment::teleport_speed) is a
+/// teleport without a request.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TeleportCloth {
     /// The cloth.
     pub entity: Entity,
-    /// What becomes of its shape.
+    /// Whether the cloth keeps its shape.
     pub mode: TeleportMode,
 }
 
-/// What becomes of a cloth's shape when it is teleported.
+/// Whether a cloth keeps its shape when it is teleported.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum TeleportMode {
-    /// The cloth keeps its shape and its motion, both carried along.
+    /// The cloth keeps its shape and its velocities relative to its frame.
     #[default]
     Keep,
-    /// The cloth is put back to rest.
+    /// The cloth is put back to its shape at rest, without velocity.
     Reset,
 }
 
@@ -48,11 +49,11 @@ fn teleport(
     request: On<TeleportCloth>,
     mut cloths: Query<(&mut PoseHistory, &mut ClothInstance, &mut ClothState)>,
     mut batches: ResMut<ClothBatches>,
-    observed: Res<Observed>,
+    times: Res<ObservationTimes>,
 ) {
     let Ok((mut history, mut instance, mut state)) = cloths.get_mut(request.entity) else { return };
-    history.jump_next(&observed);
+    history.teleport_next(&times);
     if request.mode == TeleportMode::Reset {
-        instance.put_to_rest(&mut state, &mut batches);
+        instance.reset(&mut state, &mut batches);
     }
 }

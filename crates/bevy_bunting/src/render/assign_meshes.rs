@@ -1,51 +1,23 @@
-//! Every cloth gets a mesh for each of its levels.
+//! Assigns meshes to cloths: one for each level, made or given by the user.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use bevy_asset::{AssetId, Assets, Handle, RenderAssetUsages};
+use bevy_asset::{AssetId, Assets, Handle};
 use bevy_camera::primitives::Aabb;
 use bevy_camera::visibility::{NoAutoAabb, Visibility};
 use bevy_ecs::prelude::*;
-use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
+use bevy_mesh::{Mesh, Mesh3d};
 
-use super::level_mesh;
-use crate::cloth::error::{ClothError, ClothFailed};
+use crate::cloth::events::ClothFailed;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::display::surface::ClothSurface;
 use crate::fabric::levels::ClothLevels;
+use crate::render::level_mesh;
+use crate::render::level_meshes::{LevelMeshes, MeshOrigin, check_mesh};
 
-/// The meshes that show a cloth.
-#[derive(Component, Clone, Debug)]
-pub struct LevelMeshes {
-    /// The cloth that they were made for: a clone of it needs its own.
-    cloth: Entity,
-    /// What they were made for.
-    pub levels: Arc<ClothLevels>,
-    /// One a level, the finest first.
-    meshes: Vec<Handle<Mesh>>,
-    pub origin: MeshOrigin,
-}
-
-/// Where the finest mesh comes from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MeshOrigin {
-    /// Made for the cloth.
-    Made,
-    /// The cloth came with it.
-    Given,
-    /// The cloth came with it, but it cannot be written.
-    Refused,
-}
-
-impl LevelMeshes {
-    fn contains(&self, mesh: AssetId<Mesh>) -> bool {
-        self.meshes.iter().any(|own| own.id() == mesh)
-    }
-}
-
-type Cloth = (
+type ShownCloth = (
     Entity,
     &'static ClothMesh,
     &'static ClothInstance,
@@ -53,59 +25,46 @@ type Cloth = (
     Option<&'static LevelMeshes>,
 );
 
-/// Makes the meshes of cloths that are new, cut anew or have another `Mesh3d`.
-pub fn dress_cloths(
-    cloths: Query<Cloth>,
+/// The first cloth with each given mesh: any further one gets a copy.
+type Owners = HashMap<AssetId<Mesh>, Entity>;
+
+/// Assigns meshes to cloths that are new, were cut again, or have another `Mesh3d`.
+pub fn assign_meshes(
+    cloths: Query<ShownCloth>,
     mut meshes: ResMut<Assets<Mesh>>,
-    mut owners: Local<HashMap<AssetId<Mesh>, Entity>>,
+    mut owners: Local<Owners>,
     mut commands: Commands,
 ) {
-    for (entity, shape, instance, worn, dressed) in &cloths {
+    for (entity, shape, instance, shown, level_meshes) in &cloths {
         let Some(levels) = &instance.levels else { continue };
-        let own = dressed.filter(|own| worn.is_some_and(|worn| own.contains(worn.id())));
+        let own = level_meshes.filter(|own| shown.is_some_and(|it| own.contains(it.id())));
         if own.is_some_and(|own| own.cloth == entity && Arc::ptr_eq(&own.levels, levels)) {
             continue;
         }
         let given = match own {
             Some(own) if own.origin == MeshOrigin::Made => None,
             Some(own) => own.meshes.first(),
-            None => worn.map(|worn| &worn.0),
+            None => shown.map(|shown| &shown.0),
         };
         let (finest, origin) = match given {
             None => (meshes.add(level_mesh::finest(shape, levels)), MeshOrigin::Made),
             Some(given) => {
-                // What is not yet loaded is asked for again.
-                let Some(mesh) = meshes.get(given) else { continue };
-                let vertices = levels.mesh(0).vertex_count();
-                match check(entity, mesh, vertices) {
-                    Ok(()) => {
-                        owners.retain(|_, owner| cloths.contains(*owner));
-                        let owner = *owners.entry(given.id()).or_insert(entity);
-                        let copy = (owner != entity).then(|| mesh.clone());
-                        let finest = copy.map_or(given.clone(), |copy| meshes.add(copy));
-                        (finest, MeshOrigin::Given)
-                    }
-                    Err(error) => {
-                        ClothFailed::report(&mut commands, entity, error);
-                        (given.clone(), MeshOrigin::Refused)
-                    }
-                }
+                owners.retain(|_, owner| cloths.contains(*owner));
+                let accepted =
+                    accept_given(entity, given, levels, &mut meshes, &mut owners, &mut commands);
+                // A mesh that is not loaded yet is looked at again in the next frame.
+                let Some(accepted) = accepted else { continue };
+                accepted
             }
         };
-        if origin == MeshOrigin::Given
-            && !levels.rigid().vertices.is_empty()
-            && let Some(mut mesh) = meshes.get_mut(&finest)
-        {
-            level_mesh::write_rigid(&mut mesh, levels, 0);
-        }
         let mut all = vec![finest];
         if origin != MeshOrigin::Refused {
             add_coarser(&mut all, levels, &mut meshes);
         }
-        let shown = all.get(instance.level).unwrap_or(&all[0]).clone();
+        let level_mesh = all.get(instance.level).unwrap_or(&all[0]).clone();
         let mut cloth = commands.entity(entity);
         cloth.insert((
-            Mesh3d(shown),
+            Mesh3d(level_mesh),
             LevelMeshes { cloth: entity, levels: Arc::clone(levels), meshes: all, origin },
         ));
         if origin != MeshOrigin::Refused {
@@ -118,39 +77,37 @@ pub fn dress_cloths(
     }
 }
 
-/// Adds the meshes of all levels but the finest, which is there.
+/// Accepts a given mesh as the finest one, or a copy of it if another cloth has it; writes the rigid
+/// vertices. A mesh that cannot be written is reported and refused. None if the mesh is not loaded yet.
+fn accept_given(
+    entity: Entity,
+    given: &Handle<Mesh>,
+    levels: &ClothLevels,
+    meshes: &mut Assets<Mesh>,
+    owners: &mut Owners,
+    commands: &mut Commands,
+) -> Option<(Handle<Mesh>, MeshOrigin)> {
+    let mesh = meshes.get(given)?;
+    if let Err(error) = check_mesh(entity, mesh, levels.topology(0).vertex_count()) {
+        ClothFailed::report(commands, entity, error);
+        return Some((given.clone(), MeshOrigin::Refused));
+    }
+    let owner = *owners.entry(given.id()).or_insert(entity);
+    let copy = (owner != entity).then(|| mesh.clone());
+    let finest = copy.map_or(given.clone(), |copy| meshes.add(copy));
+    if !levels.rigid().vertices.is_empty()
+        && let Some(mut mesh) = meshes.get_mut(&finest)
+    {
+        level_mesh::write_rigid(&mut mesh, levels, 0);
+    }
+    Some((finest, MeshOrigin::Given))
+}
+
+/// Adds the meshes of all levels but the finest to a list that has the finest.
 fn add_coarser(all: &mut Vec<Handle<Mesh>>, levels: &ClothLevels, meshes: &mut Assets<Mesh>) {
     for level in 1..levels.count() {
         let finest = meshes.get(&all[0]).expect("it was found or made before");
         let coarser = level_mesh::coarser(finest, levels, level);
         all.push(meshes.add(coarser));
-    }
-}
-
-/// Whether a mesh can be written as one of so many vertices.
-pub fn check(entity: Entity, mesh: &Mesh, expected: usize) -> Result<(), ClothError> {
-    if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
-        return Err(ClothError::MeshUnwritable { entity });
-    }
-    let given = match mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION) {
-        Ok(positions) => positions.map_or(0, VertexAttributeValues::len),
-        Err(_) => return Err(ClothError::MeshUnwritable { entity }),
-    };
-    if given == expected {
-        Ok(())
-    } else {
-        Err(ClothError::MeshVertices { entity, given, expected })
-    }
-}
-
-/// Shows each cloth with the mesh of its surface.
-pub fn switch_levels(mut cloths: Query<(&ClothSurface, &LevelMeshes, &mut Mesh3d)>) {
-    for (surface, dress, mut worn) in &mut cloths {
-        if let Some(mesh) = dress.meshes.get(surface.level())
-            && worn.0 != *mesh
-            && dress.contains(worn.id())
-        {
-            worn.0 = mesh.clone();
-        }
     }
 }

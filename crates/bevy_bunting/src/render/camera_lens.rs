@@ -1,28 +1,32 @@
-//! Cameras look at levels of detail through their own lens.
+//! Viewers on cameras: their lens and size follow the camera's projection and viewport.
 
-use bevy_camera::{Camera, Projection};
+use bevy_camera::{Camera, Camera3d, Projection};
 use bevy_ecs::prelude::*;
 
-use crate::lod::{Lens, LodViewer};
+use crate::lod::viewer::{Lens, LodViewer};
 
-/// Keeps the viewers on cameras like the cameras' projection and picture. A projection of the user's
-/// own leaves the lens alone.
-pub fn view_through_cameras(mut viewers: Query<(&Camera, &Projection, &mut LodViewer)>) {
+/// Puts a viewer on each new `Camera3d`.
+pub fn add_viewer(added: On<Add, Camera3d>, mut commands: Commands) {
+    commands.entity(added.entity).try_insert_if_new(LodViewer::default());
+}
+
+/// Sets the lens and the size of viewers on cameras. A custom projection leaves the lens as it is.
+pub fn follow_cameras(mut viewers: Query<(&Camera, &Projection, &mut LodViewer)>) {
     for (camera, projection, mut viewer) in &mut viewers {
-        let mut seen = *viewer;
+        let mut new = *viewer;
         match projection {
             Projection::Perspective(perspective) => {
-                seen.lens = Lens::Perspective { field_of_view: perspective.fov };
+                new.lens = Lens::Perspective { field_of_view: perspective.fov };
             }
             Projection::Orthographic(orthographic) => {
-                seen.lens = Lens::Orthographic { height: orthographic.area.height() };
+                new.lens = Lens::Orthographic { height: orthographic.area.height() };
             }
             Projection::Custom(_) => {}
         }
         if let Some(size) = camera.physical_viewport_size().filter(|size| size.min_element() > 0) {
-            seen.lines = size.y as f32;
-            seen.aspect = size.x as f32 / size.y as f32;
+            new.lines = size.y as f32;
+            new.aspect = size.x as f32 / size.y as f32;
         }
-        viewer.set_if_neq(seen);
+        viewer.set_if_neq(new);
     }
 }

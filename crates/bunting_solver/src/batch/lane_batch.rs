@@ -10,7 +10,7 @@ use crate::batch::single_cloth::Weave;
 use crate::batch::snapshot::ClothSnapshot;
 use crate::constraints::Knot;
 use crate::contact::collider::Collider;
-use crate::fabric::{ABREAST, Fabric, FabricMaterial};
+use crate::fabric::{CHAINS_PER_PAIR, Fabric, FabricMaterial};
 use crate::simd::lane::{Pack, Pack1};
 use crate::simd::vec3::{Pack3, set_lane3, splat3};
 use crate::stability::added_mass::{self, Hung, Weights};
@@ -146,7 +146,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         let nothing = P::splat(0.0);
         let longest_line =
             fabric.bend_lines().iter().map(|line| line.particles.len()).max().unwrap_or(0);
-        let longest_yarn = fabric.strands().longest();
+        let longest_yarn = fabric.chains().longest();
         let cloths = P::WIDTH / C::SIDE;
         // Lanes without a cloth lie at rest.
         let mut position = zero.clone();
@@ -167,11 +167,11 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             oldest_velocity: zero.clone(),
             position,
             velocity: zero,
-            link_target: vec![nothing; fabric.strands().target_count()],
+            link_target: vec![nothing; fabric.chains().target_count()],
             hinge_multiplier: vec![nothing; fabric.hinges().len()],
-            below: vec![splat3(Vec3::ZERO); fabric.columns_of_cells().unwrap_or(0)],
+            below: vec![splat3(Vec3::ZERO); fabric.patch_grid_columns().unwrap_or(0)],
             moments: vec![splat3(Vec3::ZERO); longest_line],
-            knots: vec![Knot::new(); ABREAST * longest_yarn],
+            knots: vec![Knot::new(); CHAINS_PER_PAIR * longest_yarn],
             weights: Weights::bare(&fabric),
             share: vec![P::splat(1.0); parts.len()],
             lane_weights: vec![nothing; parts.len()],

@@ -13,7 +13,7 @@
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::places::{Cloths, Constant, Places};
 use crate::batch::single_cloth::Weave;
-use crate::fabric::{ABREAST, LinkFamily, Strand, StrandLink, Strands};
+use crate::fabric::{CHAINS_PER_PAIR, ChainLink, ChainPair, Chains, LinkFamily};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
@@ -44,7 +44,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
     /// The bias must not come last: what it moves is large against the strain of warp and weft.
     pub fn solve_yarns(&mut self, passes: u32) {
         self.visit_yarns(Visit::First);
-        if self.fabric.squares_cells() {
+        if self.fabric.has_shear_cells() {
             if self.clock.done == 1 {
                 self.square_cells();
             }
@@ -68,10 +68,10 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             weave.visit_yarns(visit);
             return;
         }
-        let Strands { strands, colours, .. } = self.fabric.strands();
+        let Chains { pairs, colours, .. } = self.fabric.chains();
         for colour in colours.iter().filter(|colour| visit.is_to(colour.family)) {
             P::run(Yarns {
-                strands: &strands[colour.strands.clone()],
+                strands: &pairs[colour.pairs.clone()],
                 visit,
                 compliance: &self.parameters.link_compliance,
                 knots: &mut self.knots,
@@ -88,7 +88,7 @@ impl<P: Pack> Weave<P> {
             if visit.is_to(self.strands.colours[colour].family) {
                 self.sheets.turn(self.facings[colour]);
                 P::run(Yarns {
-                    strands: &self.strands.strands[self.strands.colours[colour].strands.clone()],
+                    strands: &self.strands.pairs[self.strands.colours[colour].pairs.clone()],
                     visit,
                     compliance: &self.compliance,
                     knots: &mut self.knots,
@@ -117,13 +117,13 @@ enum Visit {
 
 impl Visit {
     fn is_to(self, family: LinkFamily) -> bool {
-        (family == LinkFamily::Bias) == matches!(self, Self::Only | Self::Sheared)
+        (family == LinkFamily::Diagonal) == matches!(self, Self::Only | Self::Sheared)
     }
 }
 
 /// The yarns of one colour.
 struct Yarns<'a, P: Pack, S: Places<P>> {
-    strands: &'a [Strand<S::Constant>],
+    strands: &'a [ChainPair<S::Constant>],
     visit: Visit,
     compliance: &'a [P],
     knots: &'a mut [Knot<P>],
@@ -152,7 +152,7 @@ impl<P: Pack, S: Places<P>> Yarns<'_, P, S> {
     ) {
         for strand in self.strands {
             match strand.count {
-                ABREAST => self.solve::<L, ABREAST, RECALL, KEEP>(token, strand),
+                CHAINS_PER_PAIR => self.solve::<L, CHAINS_PER_PAIR, RECALL, KEEP>(token, strand),
                 _ => self.solve::<L, 1, RECALL, KEEP>(token, strand),
             }
         }
@@ -163,7 +163,7 @@ impl<P: Pack, S: Places<P>> Yarns<'_, P, S> {
     fn solve<L: Lane<Pack = P>, const SIDE: usize, const RECALL: bool, const KEEP: bool>(
         &mut self,
         token: L::Token,
-        strand: &Strand<S::Constant>,
+        strand: &ChainPair<S::Constant>,
     ) {
         let places = &mut self.places;
         let (knots, _) = self.knots.as_chunks_mut::<SIDE>();
@@ -185,7 +185,7 @@ impl<P: Pack, S: Places<P>> Yarns<'_, P, S> {
         let rows = strand.links.iter().zip(&strand.particles[1..]);
         for (((links, particles), targets), knots) in rows.zip(&*targets).zip(knots.iter_mut()) {
             for (at, &particle) in side::<SIDE>(particles).iter().enumerate() {
-                let StrandLink { class, rest_length } = links[at];
+                let ChainLink { class, rest_length } = links[at];
                 let compliance = L::load(token, &self.compliance[class as usize]);
                 let target =
                     if RECALL { L::load(token, &targets[at]) } else { rest_length.load(token) };
@@ -250,7 +250,7 @@ impl<P: Pack, S: Places<P>> Yarns<'_, P, S> {
 
 /// The first columns of a row of particles.
 #[inline(always)]
-fn side<const SIDE: usize>(row: &[u32; ABREAST]) -> &[u32; SIDE] {
+fn side<const SIDE: usize>(row: &[u32; CHAINS_PER_PAIR]) -> &[u32; SIDE] {
     row.first_chunk().expect("no more yarns than lie abreast")
 }
 

@@ -29,7 +29,7 @@ const STIFF: f32 = 1.0;
 
 /// How much of its memory a lane anticipates, given its stiffness number.
 pub(crate) fn anticipated(fabric: &Fabric, stiffness_number: f32) -> f32 {
-    if fabric.squares_cells() && stiffness_number > STIFF { ANTICIPATED } else { 0.0 }
+    if fabric.has_shear_cells() && stiffness_number > STIFF { ANTICIPATED } else { 0.0 }
 }
 
 impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {

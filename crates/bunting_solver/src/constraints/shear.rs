@@ -36,7 +36,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             return;
         }
         P::run(Square {
-            cells: &self.fabric.strands().cells,
+            cells: &self.fabric.chains().cells,
             length,
             stretch: &stretch,
             target: &mut self.link_target,

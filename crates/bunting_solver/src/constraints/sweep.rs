@@ -7,7 +7,7 @@
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::places::{Cloths, Constant, Places};
 use crate::batch::single_cloth::Weave;
-use crate::fabric::PolishLink;
+use crate::fabric::SweepLink;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
 
@@ -21,7 +21,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
             return;
         }
         P::run(Polish {
-            links: &self.fabric.strands().polish,
+            links: &self.fabric.chains().sweep_links,
             compliance: &self.parameters.link_compliance,
             target: &mut self.link_target,
             places: Cloths::new(&self.lane_weights, &mut self.position),
@@ -32,11 +32,11 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
 impl<P: Pack> Weave<P> {
     fn polish(&mut self) {
         for colour in 0..self.strands.colours.len() {
-            let links = self.strands.colours[colour].polish.clone();
+            let links = self.strands.colours[colour].sweep_links.clone();
             if !links.is_empty() {
                 self.sheets.turn(self.facings[colour]);
                 P::run(Polish {
-                    links: &self.strands.polish[links],
+                    links: &self.strands.sweep_links[links],
                     compliance: &self.compliance,
                     target: &mut self.target,
                     places: self.sheets.threads(&self.present),
@@ -47,7 +47,7 @@ impl<P: Pack> Weave<P> {
 }
 
 struct Polish<'a, P: Pack, S: Places<P>> {
-    links: &'a [PolishLink],
+    links: &'a [SweepLink],
     compliance: &'a [P],
     target: &'a mut [P],
     places: S,

@@ -27,7 +27,7 @@ pub(crate) fn sum_corners<L: Lane, G: Giver<L>>(
     below: &mut [Pack3<L::Pack>],
     sums: &mut [Pack3<L::Pack>],
 ) {
-    match fabric.columns_of_cells() {
+    match fabric.patch_grid_columns() {
         Some(columns) => {
             let below = &mut below[..columns];
             for sum in below.iter_mut() {

@@ -1,4 +1,4 @@
-//! Normals of the surface: each particle's is the area-weighted mean of its triangles'.
+//! Normals of the surface: each particle's normal is the area-weighted mean of its triangles' normals.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::places::Constant;
@@ -57,13 +57,14 @@ impl<L: Lane> Giver<L> for Faces<'_, L::Pack> {
     }
 }
 
-/// Normals, of twice the triangles' areas, of a patch with these corners.
+/// Normals of the triangles (a, b, c) and (a, c, d), each as long as twice the triangle's area, m².
 #[inline(always)]
 pub(crate) fn face<L: Lane>([a, b, c, d]: [V3<L>; 4]) -> [V3<L>; 2] {
     let (ab, ac, ad) = (b - a, c - a, d - a);
     [ab.cross(ac), ac.cross(ad)]
 }
 
+/// A unit vector along a sum of normals; nearly zero where the triangles have no area.
 #[inline(always)]
 pub(crate) fn normalised<L: Lane>(token: L::Token, sum: V3<L>) -> V3<L> {
     let least = L::splat(token, LEAST_AREA_SQUARED);

@@ -72,7 +72,7 @@ struct Blown<'a, L: Lane> {
 impl<L: Lane> Giver<L> for Blown<'_, L> {
     #[inline(always)]
     fn give(&self, token: L::Token, patch: &Patch) -> [V3<L>; 2] {
-        let [first, second] = patch.shares;
+        let [first, second] = patch.corner_areas;
         self.stream.blow(
             patch.load(token, self.position),
             patch.load(token, self.velocity),

@@ -37,7 +37,7 @@ impl<P: Pack> BendFactors<P> {
         let row = BendFactor { near: nothing, far: nothing, inverse: nothing };
         let per_spacing = profile.inverse_spacing;
         Self {
-            rows: vec![row; profile.weights.len()],
+            rows: vec![row; profile.coefficients.len()],
             weights: profile.inverse_areas.iter().map(|&w| w * per_spacing * per_spacing).collect(),
         }
     }
@@ -53,7 +53,8 @@ impl<P: Pack> BendFactors<P> {
             .collect();
         // Of the last two rows: 1/d, and what couples them.
         let (mut one, mut two) = ((0.0, 0.0), (0.0, 0.0));
-        for (row, (factor, &weight)) in self.rows.iter_mut().zip(&profile.weights).enumerate() {
+        for (row, (factor, &weight)) in self.rows.iter_mut().zip(&profile.coefficients).enumerate()
+        {
             let softness = f64::from(compliance) / f64::from(weight);
             let diagonal = areas[row] + 4.0 * areas[row + 1] + areas[row + 2] + softness;
             let beside = if row >= 1 { -2.0 * (areas[row] + areas[row + 1]) } else { 0.0 };
@@ -106,7 +107,7 @@ impl<P: Pack> TwistFactors<P> {
     fn factorise(&mut self, lanes: &Range<usize>, profile: &RibbonProfile, compliance: f32) {
         let pair: Vec<f64> =
             profile.inverse_areas.iter().map(|[a, b]| f64::from(*a) + f64::from(*b)).collect();
-        let softness = f64::from(compliance / profile.weight);
+        let softness = f64::from(compliance / profile.coefficient);
         let mut last = 0.0;
         for (cell, factor) in self.cells.iter_mut().enumerate() {
             let near = -pair[cell] * last;
@@ -251,7 +252,7 @@ impl<P: Pack> Parameters<P> {
         let least = LEAST_LINK_COMPLIANCE / fabric.particle_areas()[0];
         for (pack, class) in self.link_compliance.iter_mut().zip(fabric.link_classes()) {
             let stiffness = match scheme {
-                Scheme::Yarns if fabric.squares_cells() => class.stiffness_beside_shear(material),
+                Scheme::Yarns if fabric.has_shear_cells() => class.uncoupled_stiffness(material),
                 _ => class.stiffness(material),
             };
             set(pack, compliance(stiffness).max(least));

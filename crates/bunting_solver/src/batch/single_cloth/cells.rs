@@ -63,12 +63,14 @@ impl<L: Lane> Corners<L> {
 impl<P: Pack> Cells<P> {
     /// None unless the fabric's patches are its cells, row by row.
     pub fn of(fabric: &Fabric, stride: usize) -> Option<Self> {
-        let across = fabric.columns_of_cells()? - 1;
+        let across = fabric.patch_grid_columns()? - 1;
         let rows = fabric.patches().chunks(across);
         let shares = rows.flat_map(|row| {
             (0..stride).step_by(P::WIDTH).map(|first| {
                 [0, 1].map(|half| {
-                    P::of(|lane| row.get(first + lane).map_or(0.0, |patch| patch.shares[half]))
+                    P::of(|lane| {
+                        row.get(first + lane).map_or(0.0, |patch| patch.corner_areas[half])
+                    })
                 })
             })
         });

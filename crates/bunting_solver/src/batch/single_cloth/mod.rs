@@ -29,7 +29,7 @@ use sheets::Plane;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::places::Constant;
 use crate::constraints::Knot;
-use crate::fabric::{ABREAST, BendLine, Fabric, Strands};
+use crate::fabric::{BendLine, CHAINS_PER_PAIR, Chains, Fabric};
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, splat3};
 use crate::step::parameters::{BendFactors, Parameters};
@@ -44,7 +44,7 @@ pub(crate) struct Weave<P: Pack> {
     /// Whether the positions are here, and not in the batch.
     holds_positions: bool,
 
-    pub strands: Strands<P>,
+    pub strands: Chains<P>,
     /// For each colour of the strands, along what its yarns lie.
     pub facings: Vec<Facing>,
     pub target: Vec<P>,
@@ -83,7 +83,7 @@ impl<P: Pack> Weave<P> {
         let mut weave = Self {
             holds_positions: false,
             target: vec![nothing; strands.target_count()],
-            knots: vec![Knot::new(); ABREAST * strands.longest()],
+            knots: vec![Knot::new(); CHAINS_PER_PAIR * strands.longest()],
             present: classes.iter().map(present).collect(),
             compliance: vec![nothing; classes.len()],
             bend_factors: profiles.iter().map(|of| bend_lines::factors(fabric, of)).collect(),

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::{Facing, OfLanes, Sheets};
 use crate::batch::places::Constant;
-use crate::fabric::{Cell, Fabric, Grid, Link, LinkFamily, StrandLink, Strands, Thread, Yarn};
+use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Grid, Link, LinkFamily, Yarn};
 use crate::simd::lane::Pack;
 
 /// The links of yarns of one course, each by the line of the sheet on which it begins and by its yarn,
@@ -57,10 +57,10 @@ impl Course {
 pub(super) fn strands<P: Pack>(
     fabric: &Fabric,
     sheets: &Sheets,
-) -> Option<(Strands<P>, Vec<Facing>, Vec<OfLanes>)> {
+) -> Option<(Chains<P>, Vec<Facing>, Vec<OfLanes>)> {
     let grid = fabric.grid()?;
     let mut classes = Vec::new();
-    let mut colours: Vec<(LinkFamily, Vec<Thread<P>>)> = Vec::new();
+    let mut colours: Vec<(LinkFamily, Vec<Chain<P>>)> = Vec::new();
     let mut facings = Vec::new();
     for range in fabric.yarn_colours().ranges() {
         let yarns = &fabric.yarns()[range.clone()];
@@ -79,7 +79,7 @@ pub(super) fn strands<P: Pack>(
             let first = links.keys().map(|&(_, yarn)| yarn).min()?;
             let last = links.keys().map(|&(_, yarn)| yarn).max()?;
             let blocks = (first..=last).step_by(P::WIDTH);
-            let mut threads: Vec<Thread<P>> = blocks
+            let mut threads: Vec<Chain<P>> = blocks
                 .filter_map(|first| thread(course, first, &links, sheets, &mut classes))
                 .collect();
             threads.sort_by_key(|thread| core::cmp::Reverse(thread.links.len()));
@@ -87,10 +87,10 @@ pub(super) fn strands<P: Pack>(
             facings.push(course.facing());
         }
     }
-    let mut strands = Strands::of(colours.into_iter());
+    let mut strands = Chains::of_colours(colours.into_iter());
     // Packs of diagonals, each with those that cross them.
     let stride = sheets.stride() as u32;
-    let cells = strands.bias().map(|([above, below], target)| {
+    let cells = strands.diagonals().map(|([above, below], target)| {
         let left = if below > above + stride { above } else { above - 1 };
         Cell { corners: [left, left + 1, left + stride, left + stride + 1], targets: [target; 2] }
     });
@@ -105,7 +105,7 @@ fn thread<P: Pack>(
     links: &Links,
     sheets: &Sheets,
     classes: &mut Vec<OfLanes>,
-) -> Option<Thread<P>> {
+) -> Option<Chain<P>> {
     let here = first..first + P::WIDTH as isize;
     let lines = || links.keys().filter(|(_, yarn)| here.contains(yarn)).map(|&(line, _)| line);
     let (begin, end) = (lines().min()?, lines().max()? + 1);
@@ -125,7 +125,7 @@ fn thread<P: Pack>(
     for line in begin..end {
         let lanes = lanes(line);
         let of_link = |(link, _): (&Link, usize)| link.class;
-        strand_links.push(StrandLink {
+        strand_links.push(ChainLink {
             class: class(lanes.iter().map(|link| link.map(of_link)).collect()),
             rest_length: P::of(|lane| lanes[lane].map_or(0.0, |(link, _)| link.rest_length)),
         });
@@ -138,9 +138,9 @@ fn thread<P: Pack>(
             }
         }
     }
-    Some(Thread {
+    Some(Chain {
         particles: (begin..=end).map(at).collect(),
         links: strand_links,
-        polish: polish.concat(),
+        sweep_order: polish.concat(),
     })
 }
