@@ -128,7 +128,7 @@ impl ClothBatches {
 
     /// Takes a cloth out of its lane that will not go on at its level.
     pub(crate) fn take_away(&mut self, slot: Slot) -> ClothSnapshot {
-        self.free(slot).forgetful_snapshot(slot.lane)
+        self.free(slot).snapshot_without_history(slot.lane)
     }
 
     /// Takes a cloth out of its lane that goes on with some of its particles.

@@ -246,7 +246,7 @@ fn nobody_feels_who_sat_there_before() {
         for lane in 1..4 {
             // The stiff follows the stiff: what bending remembers counts there.
             let seed = lane + 3;
-            let state = flown[seed].clone().forgetful();
+            let state = flown[seed].clone().without_history();
             for batch in [&mut used, &mut unused] {
                 batch.replace(lane, &state, material(seed)).expect("a good state");
                 batch.drive(lane, drive(seed, 0));

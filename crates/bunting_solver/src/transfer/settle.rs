@@ -78,7 +78,7 @@ impl Settler {
                 }
             }
             // Each of first order: a second would foresee the push of the one before.
-            batch.forget_past(0);
+            batch.restart_integrator(0);
             batch.integrate();
             batch.solve_constraints();
             batch.update_velocities();
