@@ -41,6 +41,8 @@
 //!    3. [`ClothBatch::update_velocities`] computes velocities from the corrected positions.
 //! 3. [`ClothBatch::compute_normals`] computes normals, once.
 //!
+//! Forces and constraints of a user's come between the phases of a substep: see [`ClothBatch::particles_mut`].
+//!
 //! # Schemes
 //!
 //! [`Scheme::Yarns`] solves all links of a straight path of the fabric at once, as a tridiagonal system, and
@@ -72,7 +74,7 @@ mod transfer;
 
 pub use batch::lane_count::LaneCount;
 pub use batch::snapshot::ClothSnapshot;
-pub use batch::{BatchError, ClothBatch, LaneSurface};
+pub use batch::{BatchError, ClothBatch, LaneSurface, ParticlesMut};
 pub use contact::collider::Collider;
 pub use fabric::{
     BendLine, BendProfile, Coarser, Colours, Fabric, FabricBuilder, FabricError, FabricMaterial,

@@ -7,6 +7,7 @@ use glam::Vec3;
 use crate::batch::error::BatchError;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_count::LaneCount;
+use crate::batch::particles_mut::ParticlesMut;
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::snapshot::ClothSnapshot;
 use crate::batch::surfaces::LaneSurface;
@@ -240,6 +241,13 @@ impl ClothBatch {
     /// Projects the predicted positions onto the constraints, contacts included.
     pub fn solve_constraints(&mut self) {
         with_batch!(&mut self.0, batch => batch.solve_constraints());
+    }
+
+    /// The particles of a lane while a substep is under way, for forces and constraints of the caller's: between
+    /// [`integrate`](Self::integrate) and [`update_velocities`](Self::update_velocities). None where the lane is
+    /// empty, and outside a substep.
+    pub fn particles_mut(&mut self, lane: usize) -> Option<ParticlesMut<'_>> {
+        with_batch!(&mut self.0, batch => ParticlesMut::new(&mut **batch, lane))
     }
 
     /// Ends a substep: computes velocities from the corrected positions.

@@ -8,6 +8,7 @@ pub(crate) mod lane_count;
 pub(crate) mod lane_state;
 pub(crate) mod layout;
 mod masses;
+mod particles_mut;
 mod readout;
 pub(crate) mod side_by_side;
 pub(crate) mod single_cloth;
@@ -16,4 +17,5 @@ mod surfaces;
 
 pub use cloth_batch::ClothBatch;
 pub use error::BatchError;
+pub use particles_mut::ParticlesMut;
 pub use surfaces::LaneSurface;

@@ -16,7 +16,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Begins a tick of `tick` seconds: computes what is constant over it, and gathers contact candidates.
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
         let step = tick / settings.substeps as f32;
-        self.clock = Clock { settings, step, begun: 0 };
+        self.clock = Clock { settings, step, begun: 0, predicted: false };
         if self.clock.stands_still() {
             return;
         }

@@ -10,6 +10,8 @@ pub(crate) struct Clock {
     pub step: f32,
     /// Substeps begun in this tick; `integrate` counts them.
     pub begun: u32,
+    /// Whether a substep is under way: positions are predictions.
+    pub predicted: bool,
 }
 
 impl Clock {

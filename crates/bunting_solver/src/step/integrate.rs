@@ -27,6 +27,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let sums = self.predict(feels_air);
         self.assess_motion(&sums);
         self.clock.begun += 1;
+        self.clock.predicted = true;
     }
 
     /// Predicts positions and velocities, and sums the squares of velocities and of their differences. The

@@ -41,6 +41,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.store_pole_turn(&turn);
         }
         self.damp_internally();
+        self.clock.predicted = false;
     }
 
     /// Moments about the pole of corrections from outside the cloths, m⁴.
