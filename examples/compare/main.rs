@@ -1,8 +1,8 @@
 //! Compares two pictures of the same view.
 //!
-//! `cargo run --release --example compare -- A.png B.png` prints how much they differ, and fails if
-//! that is more than two rasterisers may differ. Small defects hardly change the mean of a whole
-//! picture, so the worst of many tiles is looked at, too.
+//! `cargo run --release --example compare --features render -- A.png B.png` prints their mean
+//! difference, and that of the worst of many tiles: a small defect hardly changes the mean of a
+//! picture. It fails if either is greater than between two rasterisers.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -13,10 +13,10 @@ use image::{ImageResult, RgbImage};
 /// Width and height of a tile, pixels.
 const TILE: u32 = 10;
 
-/// Greatest mean difference of the pictures, of 255.
+/// Greatest tolerated mean difference of the pictures, of 255.
 const PICTURE_LIMIT: f64 = 0.5;
 
-/// Greatest mean difference in a tile, of 255.
+/// Greatest tolerated mean difference in a tile, of 255.
 const TILE_LIMIT: f64 = 10.0;
 
 /// Exit code for pictures that cannot be compared.
@@ -57,19 +57,19 @@ fn open(file: &Path) -> ImageResult<RgbImage> {
     image::open(file).map(|picture| picture.into_rgb8())
 }
 
-/// How much two pictures differ, of 255.
+/// Difference of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Difference {
-    /// The mean over the whole picture.
+    /// Mean over the whole picture, of 255.
     picture: f64,
-    /// The mean over the worst tile.
+    /// Mean over the worst tile, of 255.
     tile: f64,
-    /// Where the worst tile begins, pixels.
+    /// Upper left corner of the worst tile, pixels.
     corner: (u32, u32),
 }
 
 impl Difference {
-    /// Between pictures of the same size.
+    /// The difference of pictures of the same size.
     fn between(one: &RgbImage, other: &RgbImage) -> Self {
         let (width, height) = one.dimensions();
         let corners = (0..height)
@@ -86,12 +86,12 @@ impl Difference {
         });
         let whole = Self { picture: 0.0, tile: 0.0, corner: (0, 0) };
         let area = f64::from(width) * f64::from(height);
-        tiles.fold(whole, |so_far, (corner, sum, pixels)| {
-            let picture = so_far.picture + sum / area;
-            if sum / pixels > so_far.tile {
+        tiles.fold(whole, |worst, (corner, sum, pixels)| {
+            let picture = worst.picture + sum / area;
+            if sum / pixels > worst.tile {
                 Self { picture, tile: sum / pixels, corner }
             } else {
-                Self { picture, ..so_far }
+                Self { picture, ..worst }
             }
         })
     }

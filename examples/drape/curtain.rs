@@ -1,9 +1,10 @@
-//! A curtain that hangs from a rail by its rings.
+//! A curtain that hangs from a rail by rings.
 
 use std::f32::consts::TAU;
 
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
+use bunting_scenes::Design;
 
 /// Pleats, each from a ring to the next.
 const PLEATS: u32 = 12;
@@ -17,45 +18,45 @@ const ROWS: u32 = 36;
 /// Distance from ring to ring, m.
 const SPACING: f32 = 0.14;
 
-/// How far pleats are to either side of the rail's plane, m: a pleat takes one and a half times as
-/// much cloth as it is wide.
+/// Amplitude of the pleats about the plane of the rail, m: the cloth is one and a half times as wide
+/// as the curtain.
 const DEPTH: f32 = 0.042;
 
 /// Height of the curtain, m.
 const HEIGHT: f32 = 2.1;
 
-/// The slit begins at this part of the height and goes down to the hem.
+/// Fraction of the height, from the top, at which the slit begins; it ends at the hem.
 const SLIT: f32 = 0.3;
 
-/// Where the middle of the curtain's top is, m.
+/// Colour.
+const LINEN: [u8; 3] = [92, 125, 140];
+
+/// Position of the middle of the curtain's top, m.
 pub const TOP: Vec3 = Vec3::new(-1.05, 2.2, -0.55);
 
-/// Hangs the curtain.
-pub fn hang(commands: &mut Commands) {
+/// Spawns the curtain.
+pub fn spawn(commands: &mut Commands) {
     commands.spawn((
-        Curtain,
         mesh(),
         ClothMaterial(FabricMaterial { area_density: 0.16, ..FabricMaterial::COTTON }),
         Attachment::in_place(AttachedVertices::List(rings().collect())),
         Transform::from_translation(TOP),
+        Design::Bars(vec![LINEN]),
     ));
 }
 
-/// The cloth of the curtain.
-#[derive(Component, Clone, Copy, Debug)]
-pub struct Curtain;
-
-/// The vertices of the top that are on rings: where pleats are farthest in front.
+/// The vertices of the top that hang on rings: those at the front of the pleats.
 fn rings() -> impl Iterator<Item = u32> {
     (0..=PLEATS).map(|pleat| pleat * ACROSS)
 }
 
-/// Where the rings hold the cloth, in its frame, m.
-pub fn ring_places() -> impl Iterator<Item = Vec3> {
+/// Positions at which the rings hold the cloth, in its frame, m.
+#[cfg(feature = "render")]
+pub fn ring_positions() -> impl Iterator<Item = Vec3> {
     rings().map(|vertex| position(vertex, 0))
 }
 
-/// Pleated as by its heading tape.
+/// A pleated grid with a slit.
 fn mesh() -> ClothMesh {
     let columns = PLEATS * ACROSS + 1;
     let nodes = || (0..ROWS).flat_map(|row| (0..columns).map(move |column| (column, row)));

@@ -1,98 +1,133 @@
 //! A curtain on a rail and a sheet on a table.
 //!
-//! `cargo run --release --example drape` shows them; drag to look around, scroll to come closer.
-//! Look at how the sheet falls into folds at the corners of the table and stays there by friction,
-//! and at the curtain, which hangs by its rings in pleats and is parted by gusts at its slit. The
-//! keys are those of the example `flags`.
+//! `cargo run --release --example drape -- --headless` simulates them as fast as possible and prints
+//! what it cost.
 //!
-//! `cargo run --release --example drape -- --headless` simulates them as fast as it goes and prints
-//! what it cost; with `--pictures DIR` it writes pictures.
+//! `cargo run --release --example drape --features render` opens a window: drag to look around,
+//! scroll to come closer. The sheet falls into folds at the corners of the table and is kept there by
+//! friction; the curtain hangs by its rings in pleats and is parted by gusts at its slit. The keys
+//! are those of the example `flags`.
 
 mod curtain;
-mod furniture;
+#[cfg(feature = "render")]
+mod draw;
 mod table;
 
 use std::f32::consts::PI;
 use std::process::ExitCode;
 
+use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
-use bunting_examples::show::{Check, Show};
+use bunting_examples::limits::{Limit, LimitRecord, greatest};
 use bunting_examples::strain::Strain;
+use bunting_examples::{Example, Options, Record};
 use bunting_solver::LinkFamily;
+use clap::Parser;
 
-/// Time from one gust to the next, s: the first comes when everything hangs.
+/// Position of the viewer, m.
+const EYE: Vec3 = Vec3::new(1.9, 1.6, 3.1);
+
+/// The point that the viewer looks at, m.
+const CENTRE: Vec3 = Vec3::new(-0.05, 0.98, -0.2);
+
+/// Time from one gust to the next, s: the first begins when all cloth has come to rest.
 const PERIOD: f32 = 5.0;
 
-/// How long a gust lasts, s.
+/// Duration of a gust, s.
 const GUST: f32 = 1.6;
 
-/// Speed of a gust at its height, m/s.
-const STRENGTH: f32 = 3.2;
+/// Greatest speed of a gust, m/s.
+const GUST_SPEED: f32 = 3.2;
 
-/// Mean strain that no cloth should exceed.
-const STRAIN: f32 = 0.01;
+/// Limit of the mean strain of each cloth: more would be seen.
+const STRAIN_LIMIT: f32 = 0.01;
 
-/// How deep a particle may be in the table, m: rounding.
-const DEPTH: f32 = 1e-3;
+/// Limit of a particle's depth in the table, m: rounding, and the distance that contacts permit.
+const DEPTH_LIMIT: f32 = 1e-3;
 
-/// A wind that comes in gusts through a door.
+/// A wind in gusts, as through an open door.
 #[derive(Component, Clone, Copy, Debug)]
 struct Draught;
 
+/// A curtain and a sheet.
+#[derive(Debug, Parser)]
+struct Drape {
+    #[command(flatten)]
+    options: Options,
+}
+
 fn main() -> ExitCode {
-    let show = Show {
-        name: env!("CARGO_BIN_NAME"),
-        build,
-        dress: |app| {
-            app.add_plugins(furniture::plugin);
-        },
-        eye: Vec3::new(1.9, 1.6, 3.1),
-        looks_at: Vec3::new(-0.05, 0.98, -0.2),
-        check,
-    };
-    show.main()
+    let drape = Drape::parse();
+    drape.options.run(&drape)
 }
 
-/// Air, curtain, table and sheet.
-fn build(app: &mut App) {
-    app.add_systems(FixedUpdate, blow);
-    let mut commands = app.world_mut().commands();
-    commands.spawn((Draught, WindField::default()));
-    curtain::hang(&mut commands);
-    table::lay(&mut commands);
+impl Example for Drape {
+    const NAME: &'static str = "Drape";
+    const SECONDS: f64 = 12.0;
+
+    fn build(&self, app: &mut App, schedule: impl ScheduleLabel) {
+        app.add_systems(schedule, blow);
+        let mut commands = app.world_mut().commands();
+        let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
+        commands.spawn((LodViewer::default(), view));
+        commands.spawn((Draught, WindField::default()));
+        curtain::spawn(&mut commands);
+        table::spawn(&mut commands);
+    }
+
+    fn record(&self, _ticks_per_second: usize) -> impl Record {
+        LimitRecord::new(measure)
+    }
+
+    #[cfg(feature = "render")]
+    fn stage(&self) -> bunting_examples::render::stage::Stage {
+        bunting_examples::render::stage::Stage::SMALL
+    }
+
+    #[cfg(feature = "render")]
+    fn draw(&self, app: &mut App) {
+        app.add_plugins(draw::plugin);
+    }
+
+    #[cfg(feature = "render")]
+    fn control(&self, app: &mut App) {
+        bunting_examples::render::control_orbit(app, EYE, CENTRE);
+    }
 }
 
-/// Lets gusts come and go.
+/// Makes gusts rise and fall.
 fn blow(mut draughts: Query<&mut WindField, With<Draught>>, time: Res<Time>) {
     let since = time.elapsed_secs() % PERIOD - (PERIOD - GUST);
     let rise = (PI * since.max(0.0) / GUST).sin();
     for mut wind in &mut draughts {
-        let velocity = STRENGTH * rise * rise * Vec3::new(0.15, 0.0, 1.0);
+        let velocity = GUST_SPEED * rise * rise * Vec3::new(0.15, 0.0, 1.0);
+        // An unchanged wind lets cloth sleep.
         if wind.velocity != velocity {
             wind.velocity = velocity;
         }
     }
 }
 
-/// Cloth is whole, hangs where it was hung, and is outside of the table.
-fn check(world: &mut World) -> Vec<Check> {
-    let (mut mean, mut off) = (0.0, 0.0_f32);
+/// Strain of the cloths, distance of the curtain from its rings, and depth of the sheet in the table.
+fn measure(world: &mut World) -> Vec<Limit> {
+    let [mut strain, mut off] = [0.0_f32; 2];
     for state in world.query::<&ClothState>().iter(world) {
         let Some(fabric) = state.fabric() else { continue };
-        let mut strain = Strain::default();
-        strain.add(state, LinkFamily::Warp);
-        strain.add(state, LinkFamily::Weft);
-        mean = strain.mean().max(mean);
+        let mut cloth = Strain::default();
+        cloth.add(state, LinkFamily::Warp);
+        cloth.add(state, LinkFamily::Weft);
+        strain = greatest([strain, cloth.mean() as f32]);
         for (particle, rest) in fabric.rest_positions().iter().enumerate() {
             if fabric.is_pinned(particle) {
-                off = off.max(rest.distance(state.positions()[particle]));
+                off = greatest([off, rest.distance(state.positions()[particle])]);
             }
         }
     }
+    let depth = table::depth(world);
     vec![
-        Check { what: "mean strain of a cloth", value: mean as f32, limit: STRAIN },
-        Check { what: "curtain, off its rings, m", value: off, limit: 0.0 },
-        Check { what: "sheet, deep in the table, m", value: table::depth(world), limit: DEPTH },
+        Limit { name: "mean strain of a cloth", value: strain, limit: STRAIN_LIMIT },
+        Limit { name: "distance of the curtain from its rings, m", value: off, limit: 0.0 },
+        Limit { name: "depth of the sheet in the table, m", value: depth, limit: DEPTH_LIMIT },
     ]
 }

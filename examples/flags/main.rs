@@ -1,8 +1,12 @@
 //! Eight flags, two of them on driving vehicles, in gusty wind.
 //!
-//! `cargo run --release --example flags` shows them; drag to look around, scroll to come closer.
-//! Look at how no two flags fly alike, how the vehicles' flags stay on their poles, and at the
-//! shadows. The title of the window tells what it costs, and these keys:
+//! `cargo run --release --example flags -- --headless` simulates 20 seconds as fast as possible and
+//! prints the cost of each phase. Compare the total with its budget of one millisecond a tick, and
+//! see how the levels of detail follow the viewer and how little the cloth stretches.
+//!
+//! `cargo run --release --example flags --features render` opens a window: drag to look around,
+//! scroll to come closer. No two flags fly alike, and the vehicles' flags stay on their poles. The
+//! title of the window shows the cost and these keys:
 //!
 //! | Key | |
 //! | --- | --- |
@@ -11,27 +15,22 @@
 //! | L | levels of detail: green is the finest, then yellow, orange and red |
 //! | D | attachments (crosses), strain (red is long, blue is short), wind (arrows) |
 //! | P | pause |
-//!
-//! `cargo run --release --example flags -- --headless` simulates 20 seconds as fast as it goes and
-//! prints where the time went. Look at the total beside its budget of one millisecond a tick, at
-//! how the levels of detail follow the viewer, and at the strain: cloth hardly stretches.
 
-mod headless;
-mod material;
+#[cfg(feature = "render")]
+mod draw;
 mod record;
-mod road;
-mod stage;
 mod table;
-mod window;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use bunting_examples::pictures::Album;
-use bunting_examples::{ASSETS, any_display};
+use bevy::ecs::schedule::ScheduleLabel;
+use bevy::prelude::*;
+use bunting_examples::{ASSETS, Example, Options, Record};
+use bunting_scenes::Scene;
 use clap::Parser;
 
-use crate::headless::Run;
+use crate::record::FlagsRecord;
 
 /// Exit code for a scene that cannot be read.
 const BAD_SCENE: u8 = 2;
@@ -42,32 +41,50 @@ struct Arguments {
     /// The scene to load instead of assets/scenes/flags.ron.
     #[arg(long, value_name = "FILE")]
     scene: Option<PathBuf>,
-    /// Simulate as fast as it goes, without a window, and print what was measured.
-    #[arg(long)]
-    headless: bool,
     #[command(flatten)]
-    run: Run,
-    #[command(flatten)]
-    album: Album,
+    options: Options,
 }
+
+/// A scene of flags from a file.
+struct Flags(Scene);
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let file = arguments.scene.unwrap_or_else(|| PathBuf::from(ASSETS).join("scenes/flags.ron"));
-    let scene = match bunting_scenes::load(file) {
-        Ok(scene) => scene,
+    match bunting_scenes::load(file) {
+        Ok(scene) => arguments.options.run(&Flags(scene)),
         Err(error) => {
             eprintln!("{error}");
-            return ExitCode::from(BAD_SCENE);
+            ExitCode::from(BAD_SCENE)
         }
-    };
-    if arguments.headless {
-        headless::run(&scene, &arguments.run, &arguments.album);
-        ExitCode::SUCCESS
-    } else if any_display() {
-        window::run(&scene)
-    } else {
-        eprintln!("no display can be opened: use --headless");
-        ExitCode::FAILURE
+    }
+}
+
+impl Example for Flags {
+    const NAME: &'static str = "Flags";
+    const SECONDS: f64 = 20.0;
+
+    fn build(&self, app: &mut App, schedule: impl ScheduleLabel) {
+        app.add_systems(schedule, bunting_scenes::follow_tracks);
+        bunting_scenes::spawn(&mut app.world_mut().commands(), &self.0);
+    }
+
+    fn record(&self, ticks_per_second: usize) -> impl Record {
+        FlagsRecord::new(&self.0, ticks_per_second)
+    }
+
+    #[cfg(feature = "render")]
+    fn stage(&self) -> bunting_examples::render::stage::Stage {
+        draw::STAGE
+    }
+
+    #[cfg(feature = "render")]
+    fn draw(&self, app: &mut App) {
+        app.add_plugins(draw::plugin);
+    }
+
+    #[cfg(feature = "render")]
+    fn control(&self, app: &mut App) {
+        draw::control(app, self.0.viewer.looks_at);
     }
 }

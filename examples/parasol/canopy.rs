@@ -11,16 +11,16 @@ pub const RIBS: u32 = 8;
 /// Length of a rib seen from above, m.
 pub const RADIUS: f32 = 1.45;
 
-/// How far the rim is below the top, m.
+/// Height of the top above the rim, m.
 pub const FALL: f32 = 0.62;
 
 /// Length of the valance in the middle of a panel, m.
 pub const VALANCE: f32 = 0.24;
 
-/// Part of this length at the ribs: the hem is scalloped.
+/// Length of the valance at the ribs, as a fraction of that: the hem is scalloped.
 const SCALLOP: f32 = 0.7;
 
-/// How far a panel is cut to bulge at the rim, as a part of its width: cloth is never quite taut.
+/// Bulge of a panel at the rim, as a fraction of its width: cloth is never quite taut.
 const BULGE: f32 = 0.035;
 
 /// Vertices from one rib to the next.
@@ -32,10 +32,11 @@ const RINGS: u32 = 14;
 /// Rows of vertices of the valance below the rim.
 const ROWS: u32 = 5;
 
-/// Parts of the radius within which nothing is simulated, and from which everything is.
+/// Fractions of the radius up to which vertices are rigid, and from which they are simulated; in
+/// between they blend.
 const INNER: (f32, f32) = (0.45, 0.75);
 
-/// A canopy around its top. The first and the last column are the same: a seam.
+/// A canopy in the frame of its top. The first column and the last coincide: a seam.
 pub fn mesh() -> ClothMesh {
     let columns = RIBS * PANEL + 1;
     let nodes = || (0..=RINGS + ROWS).flat_map(|ring| (0..columns).map(move |at| (ring, at)));
@@ -50,7 +51,7 @@ pub fn mesh() -> ClothMesh {
         let [a, b] = [index(ring, left), index(ring, right)];
         let [c, d] = [index(ring + 1, left), index(ring + 1, right)];
         match ring {
-            // The top is one point.
+            // The ring at the top is one point.
             0 => vec![a, c, d],
             _ if (ring + right).is_multiple_of(2) => vec![a, c, d, a, d, b],
             _ => vec![a, c, b, b, c, d],
@@ -60,7 +61,7 @@ pub fn mesh() -> ClothMesh {
     ClothMesh::triangles(positions, indices.collect(), uv.collect()).with_weights(weights)
 }
 
-/// Where a rib ends, seen from the top.
+/// The end of a rib, in the frame of the top, m.
 pub fn rib_end(rib: u32) -> Vec3 {
     let angle = TAU * rib as f32 / RIBS as f32;
     Vec3::new(RADIUS * angle.cos(), -FALL, -RADIUS * angle.sin())
@@ -69,7 +70,7 @@ pub fn rib_end(rib: u32) -> Vec3 {
 fn position(ring: u32, column: u32) -> Vec3 {
     let (rib, along) = (column / PANEL % RIBS, (column % PANEL) as f32 / PANEL as f32);
     let [left, right] = [rib, rib + 1].map(rib_end);
-    // Straight from rib to rib, and a little up and outwards.
+    // The rim is a chord from rib to rib, plus a bulge up and outwards.
     let out = left.cross(right).normalize();
     let bulge = BULGE * left.distance(right) * (PI * along).sin();
     let rim = left.lerp(right, along) + bulge * out;
@@ -80,14 +81,15 @@ fn position(ring: u32, column: u32) -> Vec3 {
     rim - Vec3::Y * length * ((ring - RINGS) as f32 / ROWS as f32)
 }
 
-/// What is sewn to a rib is rigid, and so is the inner part of the canopy.
+/// Weight of a vertex: 0 (rigid) on the ribs and the inner part of the canopy, 1 (simulated) at the
+/// rim and on the valance.
 fn weight(ring: u32, column: u32) -> f32 {
     match ring {
         ring if ring > RINGS => 1.0,
         _ if column.is_multiple_of(PANEL) => 0.0,
         ring => {
-            let part = ring as f32 / RINGS as f32;
-            let weight = ((part - INNER.0) / (INNER.1 - INNER.0)).clamp(0.0, 1.0);
+            let fraction = ring as f32 / RINGS as f32;
+            let weight = ((fraction - INNER.0) / (INNER.1 - INNER.0)).clamp(0.0, 1.0);
             weight * weight * (3.0 - 2.0 * weight)
         }
     }

@@ -1,100 +1,75 @@
-//! Simulates a small scene without a window.
+//! Simulates an example without a window, as fast as possible.
 
 use std::process::ExitCode;
 
-use bevy::app::{TaskPoolOptions, TaskPoolPlugin};
-use bevy::log::{Level, LogPlugin};
+use bevy::app::{TaskPoolOptions, TaskPoolPlugin, TaskPoolThreadAssignmentPolicy};
 use bevy::prelude::*;
-use bevy_bunting::ClothTimings;
+use bevy::time::TimeUpdateStrategy;
 use bevy_bunting::prelude::*;
-use comfy_table::presets::UTF8_BORDERS_ONLY;
-use comfy_table::{CellAlignment, Table};
+use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::ONE_TICK;
-use crate::durations::Durations;
-use crate::pictures::{self, Album};
-use crate::show::{Check, Show};
-use crate::stage::Stage;
+use crate::{Example, Options, Record};
 
-/// Simulates as fast as it goes, takes pictures and prints a table. Fails if something did not hold
-/// that must.
-pub fn run(show: &Show, seconds: f64, album: &Album) -> ExitCode {
+/// One tick a frame, however long the frame takes.
+pub const ONE_TICK: TimeUpdateStrategy = TimeUpdateStrategy::FixedTimesteps(1);
+
+/// Simulates an example and prints its measurements. Fails if one exceeds its limit.
+pub fn run(example: &impl Example, options: &Options) -> ExitCode {
+    env_logger::Builder::new().filter_level(log::LevelFilter::Warn).init();
     let mut app = App::new();
-    let mut pictures = album.open(show.name);
-    let log = LogPlugin { level: Level::WARN, ..default() };
-    if pictures.is_some() {
-        app.add_plugins((pictures::windowless().set(log), pictures::plugin, Stage::SMALL));
-        (show.dress)(&mut app);
-    } else {
-        let threads = TaskPoolPlugin { task_pool_options: TaskPoolOptions::with_num_threads(1) };
-        app.add_plugins((MinimalPlugins.set(threads), TransformPlugin, log));
-    }
+    app.add_plugins((MinimalPlugins.set(task_pools(options)), TransformPlugin));
+    start(&mut app, example);
+    simulate(&mut app, example, options, |_, _| {})
+}
+
+/// The number of compute threads of the command line, and Bevy's own choice for other threads.
+#[must_use]
+pub fn task_pools(options: &Options) -> TaskPoolPlugin {
+    let threads = options.threads.into();
+    let compute = TaskPoolThreadAssignmentPolicy {
+        min_threads: threads,
+        max_threads: threads,
+        percent: 1.0,
+        on_thread_spawn: None,
+        on_thread_destroy: None,
+    };
+    TaskPoolPlugin { task_pool_options: TaskPoolOptions { compute, ..default() } }
+}
+
+/// Adds an example to an app that has Bevy's plugins, and finishes all plugins.
+pub fn start(app: &mut App, example: &impl Example) {
     app.add_plugins(ClothPlugins::default()).insert_resource(ONE_TICK);
-    (show.build)(&mut app);
-    let view = Transform::from_translation(show.eye).looking_at(show.looks_at, Vec3::Y);
-    app.world_mut().spawn((LodViewer::default(), view));
+    example.build(app, FixedUpdate);
     app.finish();
     app.cleanup();
-    if let Some(pictures) = &mut pictures {
-        pictures.set_up(&mut app, Stage::SMALL.camera());
-    }
+}
 
+/// Simulates an example that has been started, and prints its measurements. Calls `after_tick` with
+/// the simulated time in seconds. Fails if a measurement exceeds its limit.
+pub fn simulate<E: Example>(
+    app: &mut App,
+    example: &E,
+    options: &Options,
+    mut after_tick: impl FnMut(&mut App, f64),
+) -> ExitCode {
     let rate = app.world().resource::<Time<Fixed>>().timestep().as_secs_f64().recip();
-    let mut ticks = Durations::default();
-    let mut worst: Vec<Check> = Vec::new();
-    for tick in 1..=(seconds * rate).ceil() as usize {
+    let ticks = (options.seconds.unwrap_or(E::SECONDS) * rate).ceil() as u64;
+    let style = ProgressStyle::with_template("{bar:40} {percent:>3} % {eta}");
+    let progress = ProgressBar::new(ticks).with_style(style.expect("the template is valid"));
+    let mut record = example.record(rate.round() as usize);
+    for tick in 1..=ticks {
         app.update();
-        ticks.push(app.world().resource::<ClothTimings>().total());
-        let checks = (show.check)(app.world_mut());
-        if worst.len() == checks.len() {
-            for (worst, check) in worst.iter_mut().zip(checks) {
-                worst.value = worst.value.max(check.value);
-            }
-        } else {
-            worst = checks;
+        if let Some(line) = record.add_tick(app.world_mut()) {
+            progress.suspend(|| println!("{line}"));
         }
-        if let Some(pictures) = &mut pictures {
-            pictures.take_due(&mut app, tick as f64 / rate);
-        }
+        after_tick(app, tick as f64 / rate);
+        progress.inc(1);
     }
-    print(&count(app.world_mut()), &ticks, &worst);
-    // What is not a number holds nothing.
-    if worst.iter().all(|check| check.value <= check.limit) {
+    progress.finish_and_clear();
+    if record.print() {
         ExitCode::SUCCESS
     } else {
-        eprintln!("a value is greater than it may be");
+        eprintln!("a value exceeds its limit");
         ExitCode::FAILURE
     }
-}
-
-/// Cloths, particles and vertices.
-fn count(world: &mut World) -> [usize; 3] {
-    let mut counts = [0; 3];
-    for (state, mesh) in world.query::<(&ClothState, &ClothMesh)>().iter(world) {
-        let vertices = match mesh {
-            ClothMesh::Grid { columns, rows, .. } => (columns * rows) as usize,
-            ClothMesh::Triangles { positions, .. } => positions.len(),
-        };
-        for (count, more) in counts.iter_mut().zip([1, state.positions().len(), vertices]) {
-            *count += more;
-        }
-    }
-    counts
-}
-
-fn print([cloths, particles, vertices]: &[usize; 3], ticks: &Durations, worst: &[Check]) {
-    let mut table = Table::new();
-    table.load_style(UTF8_BORDERS_ONLY).set_header(["", "worst", "at most"]);
-    for Check { what, value, limit } in worst {
-        table.add_row([(*what).to_owned(), format!("{value:.5}"), format!("{limit}")]);
-    }
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    println!("{table}\n");
-    println!(
-        "{cloths} cloths, {particles} particles for {vertices} vertices; a tick took {:.3} ms in the median, 95 % {:.3} ms",
-        ticks.quantile(0.5),
-        ticks.quantile(0.95),
-    );
 }

@@ -1,31 +1,20 @@
-//! What the examples of `bevy_bunting` share; they live beside this folder, one folder each.
+//! Code shared by the examples of `bevy_bunting`, which live beside this folder, one folder each.
+//!
+//! An [`Example`] is simulated by [`headless`] and, with the feature `render`, drawn by `render`.
 
 pub mod durations;
+mod example;
 pub mod headless;
-pub mod keys;
-pub mod orbit;
-pub mod pictures;
-pub mod print;
-pub mod show;
-pub mod sky;
-pub mod stage;
+pub mod limits;
+#[cfg(feature = "render")]
+pub mod render;
 pub mod strain;
-pub mod title;
-pub mod weather;
+pub mod table;
 
-use bevy::time::TimeUpdateStrategy;
+pub use example::{Example, Options, Record};
 
-/// Scenes and models.
+/// Folder of scenes and models.
 pub const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets");
-
-/// One tick a frame, whatever the wall clock says.
-pub const ONE_TICK: TimeUpdateStrategy = TimeUpdateStrategy::FixedTimesteps(1);
-
-/// Whether a window could be opened: winit panics where none can.
-#[must_use]
-pub fn any_display() -> bool {
-    !cfg!(target_os = "linux") || x11rb::connect(None).is_ok()
-}
 
 /// The README, whose example is tested here.
 #[cfg(doctest)]

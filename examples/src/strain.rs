@@ -1,9 +1,9 @@
-//! How far cloth is stretched.
+//! Strain of cloth.
 
 use bevy_bunting::prelude::*;
 use bunting_solver::LinkFamily;
 
-/// Magnitudes of the strain of many links.
+/// Magnitudes of the strain of many links, |l/l₀ − 1|.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Strain {
     sum: f64,
@@ -12,7 +12,7 @@ pub struct Strain {
 }
 
 impl Strain {
-    /// Adds all links of a cloth that run along the yarns of a family.
+    /// Adds all links of a cloth of one family: warp, weft or diagonal.
     pub fn add(&mut self, cloth: &ClothState, family: LinkFamily) {
         let Some(fabric) = cloth.fabric() else { return };
         for link in fabric.links().iter().filter(|link| link.family == family) {

@@ -10,22 +10,22 @@ use bevy_math::{Quat, Vec3};
 use bevy_time::Time;
 use bevy_transform::prelude::*;
 use bunting_tests::{
-    FLAG, Seen, TICK, app, app_at, assert_finite, bits, greatest_speed, run, state,
+    FLAG, Seen, TICK, app, app_at, assert_finite, bits, greatest, greatest_speed, run, state,
 };
 
-/// How far an attached vertex may be from where its target has it, m.
+/// Greatest distance of an attached vertex from its place on the target, m: rounding.
 const TOLERANCE: f32 = 1e-5;
 
 /// Speed of the target, m/s.
 const SPEED: f32 = 20.0;
 
-/// Where the flag is on the vehicle.
+/// Pose of the flag in the frame of the vehicle.
 const OFFSET: Transform = Transform::from_xyz(-0.3, 1.4, 0.2);
 
 #[derive(Component)]
 struct Vehicle;
 
-/// Drives a circle of 10 m and spins once a second about a tilted axis.
+/// Moves vehicles along a circle of 10 m and spins them once a second about a tilted axis.
 fn drive(mut vehicles: Query<&mut Transform, With<Vehicle>>, time: Res<Time>) {
     let radius = 10.0;
     let seconds = time.elapsed_secs();
@@ -58,7 +58,7 @@ fn error(app: &App, vehicle: Entity, cloth: Entity) -> f32 {
         let place = OFFSET.transform_point(fabric.rest_positions()[particle]);
         drawn.distance(global(vehicle).transform_point(place))
     });
-    errors.fold(0.0, f32::max)
+    greatest(errors)
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn transforms_are_right_when_published() {
 }
 
 #[test]
-fn a_steady_ride_looks_alike_whoever_moves_the_target() {
+fn a_steady_ride_is_smooth_in_either_schedule() {
     fn straight(mut vehicles: Query<&mut Transform, With<Vehicle>>, time: Res<Time>) {
         for mut transform in &mut vehicles {
             transform.translation.x = -time.elapsed_secs();
@@ -120,16 +120,15 @@ fn a_steady_ride_looks_alike_whoever_moves_the_target() {
             app.add_systems(FixedUpdate, straight);
         }
         let (_, cloth) = attached(&mut app, false);
-        // So slow and damped that it does not flutter: what moves then is moved by the jerking of
-        // its frame.
-        let calm = FabricMaterial { damping: 5.0, ..FabricMaterial::FLAG_POLYESTER };
-        app.world_mut().entity_mut(cloth).insert(ClothMaterial(calm));
+        // So slow and damped that it does not flutter: only jerks of its frame can move it.
+        let damped = FabricMaterial { damping: 5.0, ..FabricMaterial::FLAG_POLYESTER };
+        app.world_mut().entity_mut(cloth).insert(ClothMaterial(damped));
         run(&mut app, 200);
-        let greatest = (0..40).map(|_| {
+        let later = (0..40).map(|_| {
             app.update();
             greatest_speed(&app, cloth)
         });
-        speeds.push(greatest.fold(0.0, f32::max));
+        speeds.push(greatest(later));
     }
     assert!(speeds.iter().all(|&speed| speed < 0.02), "{speeds:?} m/s");
 }
@@ -144,13 +143,13 @@ fn a_teleport_carries_the_cloth_along_without_a_velocity() {
     app.world_mut().entity_mut(vehicle).insert(jump);
     for _ in 0..30 {
         app.update();
-        assert_eq!(bits(&app, cloth), bits(&app, other), "the jump is not felt at all");
+        assert_eq!(bits(&app, cloth), bits(&app, other), "the jump changes no bit");
     }
     assert!(error(&app, vehicle, cloth) < TOLERANCE);
 }
 
 #[test]
-fn a_small_teleport_is_one_only_on_request() {
+fn a_small_jump_is_a_teleport_only_on_request() {
     let moved = Transform::from_xyz(0.5, 0.0, 0.0);
     let speed = |request: Option<TeleportMode>| {
         let mut app = app();
@@ -161,11 +160,11 @@ fn a_small_teleport_is_one_only_on_request() {
         if let Some(mode) = request {
             app.world_mut().trigger(TeleportCloth { entity: cloth, mode });
         }
-        let greatest = (0..3).map(|_| {
+        let later = (0..3).map(|_| {
             app.update();
             greatest_speed(&app, cloth)
         });
-        (before, greatest.fold(0.0, f32::max))
+        (before, greatest(later))
     };
     let (before, after) = speed(Some(TeleportMode::Keep));
     assert!(after < before + 1.0, "{after} m/s");
@@ -197,7 +196,11 @@ fn a_lost_target_freezes_or_releases() {
                 app.world_mut().entity_mut(cloth).remove::<ClothPaused>();
                 run(&mut app, 10);
                 assert_ne!(bits(&app, cloth), before);
-                assert_eq!(state(&app, cloth).positions()[0], Vec3::ZERO, "it hangs where it hung");
+                assert_eq!(
+                    state(&app, cloth).positions()[0],
+                    Vec3::ZERO,
+                    "it is held where it was"
+                );
             }
             TargetLost::Release => {
                 assert!(state(&app, cloth).positions()[0].y < -1.0, "it falls");
@@ -221,7 +224,7 @@ fn a_cloth_left_behind_is_pulled_along() {
     assert!(tip.z < -0.3, "{tip}");
 }
 
-/// Moves an entity along z for a while; how far the cloth then is from where it hung, seen from its frame, m.
+/// Moves an entity along z for 30 ticks. Returns how far the tip of the cloth has moved in its frame, m.
 fn swing(app: &mut App, mover: Entity, vehicle: Entity, cloth: Entity) -> f32 {
     let tip = |app: &App| state(app, cloth).positions()[16];
     let before = tip(app);
@@ -234,14 +237,14 @@ fn swing(app: &mut App, mover: Entity, vehicle: Entity, cloth: Entity) -> f32 {
     tip(app).distance(before)
 }
 
-/// What has rested for so long is looked at no more, until something moves it.
+/// Ticks after which an unmoved target is no longer followed, until it moves.
 const LONG: usize = 60;
 
-/// As far as the cloth must swing to have felt the motion, m.
+/// Least swing of a cloth that has felt the motion of its frame, m.
 const FELT: f32 = 0.2;
 
 #[test]
-fn what_has_rested_is_followed_when_anything_moves_it() {
+fn a_target_that_has_rested_is_followed_when_it_moves() {
     let mut app = app();
     let (vehicle, cloth) = attached(&mut app, false);
     let lorry = app.world_mut().spawn(Transform::from_xyz(1.0, 0.0, 0.0)).id();
@@ -268,7 +271,7 @@ fn what_has_rested_is_followed_when_anything_moves_it() {
 }
 
 #[test]
-fn what_is_attached_no_more_follows_no_more() {
+fn a_detached_cloth_does_not_follow() {
     let mut app = app();
     let (vehicle, cloth) = attached(&mut app, false);
     run(&mut app, LONG);
@@ -284,7 +287,7 @@ fn what_is_attached_no_more_follows_no_more() {
 const SHORT: Duration = Duration::from_millis(2);
 
 #[test]
-fn between_two_ticks_nothing_is_missed_however_many_frames_pass() {
+fn changes_between_two_ticks_are_noticed_however_many_frames_pass() {
     let mut app = app_at(SHORT);
     let (vehicle, cloth) = attached(&mut app, false);
     let lorry = app.world_mut().spawn(Transform::from_xyz(1.0, 0.0, 0.0)).id();
@@ -293,7 +296,7 @@ fn between_two_ticks_nothing_is_missed_however_many_frames_pass() {
     let (_, released) = attached(&mut app, false);
     for frame in 0..8 {
         run(&mut app, 8 * LONG + frame);
-        let hung = state(&app, cloth).positions()[16];
+        let tip = state(&app, cloth).positions()[16];
         let mut world = app.world_mut().entity_mut(vehicle);
         if frame % 2 == 0 {
             world.remove::<ChildOf>()
@@ -302,7 +305,7 @@ fn between_two_ticks_nothing_is_missed_however_many_frames_pass() {
         };
         run(&mut app, 20);
         assert!(error(&app, vehicle, cloth) < TOLERANCE);
-        let left_behind = state(&app, cloth).positions()[16].distance(hung);
+        let left_behind = state(&app, cloth).positions()[16].distance(tip);
         assert!(left_behind > FELT, "the frame has jumped by a metre: {left_behind} m");
     }
     app.world_mut().entity_mut(released).remove::<Attachment>();

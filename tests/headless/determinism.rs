@@ -1,17 +1,16 @@
-//! The same bits, whatever else goes on.
+//! The same bits, whatever else is simulated and however it is batched.
 
 use bevy_app::prelude::*;
 use bevy_bunting::bunting_solver::LaneCount;
 use bevy_bunting::prelude::*;
-use bevy_bunting::{ClothSubstep, ClothSubstepSystems};
+use bevy_bunting::{ClothBatches, ClothSubstep, ClothSubstepSystems};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bevy_tasks::{ComputeTaskPool, TaskPoolBuilder};
 use bevy_transform::prelude::*;
 use bunting_tests::{Bits, FLAG, app, bits, run, spawn_flag};
 
-/// A world with a bit of everything.
-fn furnish(app: &mut App) -> Vec<Entity> {
+/// Spawns wind, a collider, a viewer, and cloths at several levels, on which all of them act.
+fn spawn_scene(app: &mut App) -> Vec<Entity> {
     let world = app.world_mut();
     world.spawn(WindField::steady(Vec3::new(4.0, 0.0, 1.0)).with_gusts(3.0, 0.7, 5));
     world.spawn((ClothCollider::ball(0.3), Transform::from_xyz(1.0, -0.6, 0.2)));
@@ -35,7 +34,7 @@ fn all_bits(app: &App, cloths: &[Entity]) -> Vec<Bits> {
 fn two_worlds_give_the_same_bits() {
     let run_one = || {
         let mut app = app();
-        let cloths = furnish(&mut app);
+        let cloths = spawn_scene(&mut app);
         run(&mut app, 120);
         all_bits(&app, &cloths)
     };
@@ -47,28 +46,32 @@ fn the_width_of_the_lanes_changes_no_bit() {
     let run_one = |lanes: Option<LaneCount>| {
         let mut app = app();
         app.world_mut().resource_mut::<ClothSettings>().lanes = lanes;
-        let cloths = furnish(&mut app);
+        let cloths = spawn_scene(&mut app);
         run(&mut app, 120);
-        all_bits(&app, &cloths)
+        (all_bits(&app, &cloths), app.world().resource::<ClothBatches>().batch_count())
     };
-    let scalar = run_one(Some(LaneCount::One));
+    let (scalar, batches) = run_one(Some(LaneCount::One));
+    assert_eq!(batches, scalar.len(), "one cloth a batch");
     for lanes in [None, Some(LaneCount::Eight), Some(LaneCount::Sixteen)] {
-        assert_eq!(run_one(lanes), scalar, "{lanes:?}");
+        let (bits, batches) = run_one(lanes);
+        assert_eq!(bits, scalar, "{lanes:?}");
+        assert!(batches < scalar.len(), "{lanes:?}: {batches} batches");
     }
 }
 
-/// With a system of the user's in the substep, all batches go through it together; else one by one.
+/// With a system of the user's in the substep, each phase runs on all batches before the next phase;
+/// without, all phases run on each batch before the next batch.
 #[test]
-fn who_looks_on_changes_no_bit() {
-    let run_one = |watched: bool| {
+fn a_system_in_the_substep_changes_no_bit() {
+    let run_one = |with_system: bool| {
         let mut app = app();
-        if watched {
+        if with_system {
             app.add_systems(ClothSubstep, (|| {}).in_set(ClothSubstepSystems::Integrate));
         }
         let coarse = StepSettings { substeps: 1, ..StepSettings::default() };
         app.world_mut().resource_mut::<ClothSettings>().steps =
             vec![StepSettings::default().into(), coarse.into()];
-        let cloths = furnish(&mut app);
+        let cloths = spawn_scene(&mut app);
         run(&mut app, 120);
         all_bits(&app, &cloths)
     };
@@ -76,14 +79,14 @@ fn who_looks_on_changes_no_bit() {
 }
 
 #[test]
-fn a_lone_cloth_and_one_among_others_are_alike() {
+fn other_cloths_change_no_bit() {
     let mut lone = app();
     let one = spawn_flag(&mut lone, Vec3::ZERO);
     let mut many = app();
     let among = spawn_flag(&mut many, Vec3::ZERO);
     let mut others = Vec::new();
     for tick in 0..100 {
-        // Company comes and goes, so the cloth is moved from batch to batch.
+        // Other cloths come and go, so that the cloth moves from batch to batch.
         match tick % 10 {
             0..=4 => others.push(spawn_flag(&mut many, Vec3::X * tick as f32)),
             7 => (0..4).for_each(|_| {
@@ -94,28 +97,5 @@ fn a_lone_cloth_and_one_among_others_are_alike() {
         run(&mut lone, 1);
         run(&mut many, 1);
         assert_eq!(bits(&lone, one), bits(&many, among), "tick {tick}");
-    }
-}
-
-#[test]
-fn threads_change_no_bit() {
-    // More particles than are stepped on one thread.
-    const CLOTHS: usize = 66;
-    const MESH: ClothMesh = ClothMesh::grid(33, 33, 1.0, 1.0);
-    let spawn = |app: &mut App, count: usize| {
-        app.world_mut().resource_mut::<ClothSettings>().lanes = Some(LaneCount::One);
-        let held = || Attachment::in_place(ClothEdge::Top);
-        let cloths = (0..count).map(|_| app.world_mut().spawn((MESH, held())).id());
-        cloths.collect::<Vec<Entity>>()
-    };
-    let mut lone = app();
-    let one = spawn(&mut lone, 1);
-    run(&mut lone, 6);
-    ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(3).build());
-    let mut many = app();
-    let cloths = spawn(&mut many, CLOTHS);
-    run(&mut many, 6);
-    for cloth in cloths {
-        assert_eq!(bits(&many, cloth), bits(&lone, one[0]));
     }
 }

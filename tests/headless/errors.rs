@@ -1,4 +1,4 @@
-//! Bad input is named, and disturbs no one else.
+//! An error names the entity of bad input; other cloths are unaffected.
 
 use bevy_app::prelude::*;
 use bevy_bunting::prelude::*;
@@ -10,7 +10,7 @@ fn errors(app: &App) -> Vec<ClothError> {
     app.world().resource::<Seen<ClothFailed>>().0.iter().map(|failed| failed.error).collect()
 }
 
-/// The bits of a flag after `updates`, beside whatever else is spawned.
+/// The bits of a flag after a number of updates, beside the entities that `spawn` adds.
 fn beside(updates: usize, spawn: impl Fn(&mut App)) -> (App, Bits) {
     let mut app = app();
     let flag = spawn_flag(&mut app, Vec3::ZERO);
@@ -44,7 +44,7 @@ fn a_bad_mesh_is_named_and_the_others_go_on() {
 }
 
 #[test]
-fn a_mended_mesh_is_simulated() {
+fn a_corrected_mesh_is_simulated() {
     let mut app = app();
     let cloth = app.world_mut().spawn(ClothMesh::grid(0, 0, 1.0, 1.0)).id();
     run(&mut app, 3);
@@ -135,7 +135,7 @@ fn a_diverged_cloth_is_put_back_to_rest() {
     let mut app = app();
     let cloth = spawn_flag(&mut app, Vec3::ZERO);
     run(&mut app, 5);
-    // Gravity beyond all numbers is what the plugin cannot refuse to feel.
+    // The plugin does not check gravity: this one overflows.
     app.world_mut().resource_mut::<ClothSettings>().gravity = Vec3::splat(f32::MAX);
     run(&mut app, 1);
     assert!(matches!(errors(&app)[..], [ClothError::Diverged { entity }] if entity == cloth));

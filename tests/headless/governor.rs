@@ -1,4 +1,4 @@
-//! Levels that are chosen within a budget, and cloth that nobody sees.
+//! Levels that are chosen within a budget, and cloth out of view.
 
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ fn spawn(app: &mut App, lods: LodSet, at: Vec3) -> Entity {
     app.world_mut().spawn((ClothMesh::grid(33, 33, 1.0, 1.0), attachment, lods, place)).id()
 }
 
-/// Windy, so that nothing comes to rest, with a viewer that looks along −z, and fixed costs.
+/// An app with wind, in which no cloth comes to rest, a viewer that looks along −z, and fixed costs.
 fn windy() -> (App, Entity) {
     let mut app = app();
     let wind = WindField::steady(Vec3::new(4.0, 0.0, 1.0)).with_gusts(2.0, 0.7, 5);
@@ -35,7 +35,7 @@ fn set_budget(app: &mut App, microseconds: u64) {
     budget.costs = LodCosts::Fixed(CostTable::default());
 }
 
-fn place(app: &mut App, entity: Entity, pose: Transform) {
+fn set_pose(app: &mut App, entity: Entity, pose: Transform) {
     *app.world_mut().get_mut(entity).expect("a transform") = pose;
 }
 
@@ -50,13 +50,13 @@ fn levels_follow_the_error_in_pixels() {
     let biased = spawn(&mut app, LodSet::automatic(4).with_bias(4.0), Vec3::ZERO);
     let pinned = spawn(&mut app, LodSet::automatic(4).pinned_to(2), Vec3::ZERO);
     let mut away = |distance: f32| {
-        place(&mut app, viewer, Transform::from_xyz(0.5, -0.5, distance));
+        set_pose(&mut app, viewer, Transform::from_xyz(0.5, -0.5, distance));
         run(&mut app, A_WHILE);
         assert_finite(&app, cloth);
         [cloth, biased, pinned].map(|cloth| state(&app, cloth).level())
     };
-    // 935 px a metre at one metre; a quarter of the particles' distance: 7.8 mm, and twice that at
-    // each further level.
+    // The error is a quarter of the distance between particles: 7.8 mm, doubled at each coarser
+    // level. At a distance of 1 m, 1 m is 935 px.
     assert_eq!(away(5.0), [0, 0, 2]);
     assert_eq!(away(40.0), [1, 0, 2]);
     assert_eq!(away(70.0), [2, 0, 2]);
@@ -67,7 +67,7 @@ fn levels_follow_the_error_in_pixels() {
 #[test]
 fn all_stay_within_the_budget() {
     let (mut app, viewer) = windy();
-    place(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 6.0));
+    set_pose(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 6.0));
     let cloths: Vec<Entity> = (0..40)
         .map(|index| spawn(&mut app, LodSet::automatic(4), Vec3::X * (0.1 * index as f32 - 2.0)))
         .collect();
@@ -79,7 +79,7 @@ fn all_stay_within_the_budget() {
         set_budget(&mut app, budget);
         run(&mut app, 3 * A_WHILE);
         assert!(report(&app).expected <= Duration::from_micros(budget), "{:?}", report(&app));
-        assert!(particles(&app) > last, "more time, finer cloth: {budget} µs");
+        assert!(particles(&app) > last, "a larger budget, finer cloth: {budget} µs");
         last = particles(&app);
         assert_eq!(report(&app).held_back > 0, budget < 3000);
     }
@@ -89,19 +89,19 @@ fn all_stay_within_the_budget() {
 }
 
 #[test]
-fn changes_are_told_and_few_in_a_tick() {
+fn level_changes_are_events_and_few_in_a_tick() {
     let (mut app, viewer) = windy();
-    place(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 200.0));
+    set_pose(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 200.0));
     let cloths: Vec<Entity> =
         (0..20).map(|_| spawn(&mut app, LodSet::automatic(4), Vec3::ZERO)).collect();
     run(&mut app, A_WHILE);
     set_budget(&mut app, 100_000);
-    place(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 4.0));
-    let told = |app: &App| app.world().resource::<Seen<ClothLevelChanged>>().0.len();
-    let mut before = told(&app);
+    set_pose(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 4.0));
+    let events = |app: &App| app.world().resource::<Seen<ClothLevelChanged>>().0.len();
+    let mut before = events(&app);
     for _ in 0..A_WHILE {
         run(&mut app, 1);
-        let changes = told(&app) - before;
+        let changes = events(&app) - before;
         assert_eq!(changes, report(&app).switches);
         assert!(changes <= app.world().resource::<ClothBudget>().switches);
         before += changes;
@@ -120,7 +120,7 @@ fn with_fixed_costs_two_worlds_give_the_same_bits() {
             .map(|index| spawn(&mut app, LodSet::automatic(4), Vec3::Z * -(index as f32)))
             .collect();
         for tick in 0..120 {
-            place(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 10.0 - 0.2 * tick as f32));
+            set_pose(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 10.0 - 0.2 * tick as f32));
             run(&mut app, 1);
         }
         cloths.iter().map(|&cloth| bits(&app, cloth)).collect::<Vec<Bits>>()
@@ -129,7 +129,7 @@ fn with_fixed_costs_two_worlds_give_the_same_bits() {
 }
 
 #[test]
-fn out_of_the_picture_cloth_sleeps_and_costs_nothing() {
+fn cloth_out_of_view_sleeps_and_costs_nothing() {
     let (mut app, viewer) = windy();
     let cloth = spawn(&mut app, LodSet::automatic(4), Vec3::ZERO);
     let seen = Transform::from_xyz(0.0, 0.0, 5.0);
@@ -139,11 +139,11 @@ fn out_of_the_picture_cloth_sleeps_and_costs_nothing() {
         (seen.looking_to(Vec3::Z, Vec3::Y), f32::INFINITY, ClothActivity::OffScreen),
         (Transform::from_xyz(0.0, 0.0, 50.0), 20.0, ClothActivity::OutOfRange),
     ] {
-        place(&mut app, viewer, seen);
+        set_pose(&mut app, viewer, seen);
         run(&mut app, A_WHILE);
         assert_eq!(asleep(&app), (ClothActivity::Ticking, 0));
         assert_eq!(batches(&app), 1);
-        place(&mut app, viewer, pose);
+        set_pose(&mut app, viewer, pose);
         app.world_mut().get_mut::<LodViewer>(viewer).expect("a viewer").range = range;
         run(&mut app, A_WHILE);
         assert_eq!(asleep(&app), (activity, 1));
@@ -153,8 +153,8 @@ fn out_of_the_picture_cloth_sleeps_and_costs_nothing() {
         assert_eq!(bits(&app, cloth), shape);
         assert_eq!(state(&app, cloth).previous_positions(), state(&app, cloth).positions());
 
-        // Back at the coarsest level, and soon as fine as is needed.
-        place(&mut app, viewer, seen);
+        // In view again, it begins at the coarsest level and is soon as fine as needed.
+        set_pose(&mut app, viewer, seen);
         run(&mut app, 6);
         let last = app.world().resource::<Seen<ClothLevelChanged>>().0.clone();
         assert!(last.iter().any(|change| change.to == 3), "{last:?}");
@@ -168,7 +168,7 @@ fn out_of_the_picture_cloth_sleeps_and_costs_nothing() {
 fn levels_by_distance_do_not_sleep() {
     let (mut app, viewer) = windy();
     let cloth = spawn(&mut app, LodSet::new([10.0]), Vec3::ZERO);
-    place(&mut app, viewer, Transform::from_xyz(0.0, 0.0, -50.0));
+    set_pose(&mut app, viewer, Transform::from_xyz(0.0, 0.0, -50.0));
     run(&mut app, A_WHILE);
     assert_eq!(state(&app, cloth).activity(), ClothActivity::Ticking);
     assert_eq!(state(&app, cloth).level(), 1);

@@ -5,7 +5,7 @@ use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_math::{Vec2, Vec3};
 use bevy_transform::prelude::*;
-use bunting_tests::{FLAG, Seen, app, assert_finite, run, state};
+use bunting_tests::{Seen, app, assert_finite, greatest, run, state, stretches};
 
 fn flag(app: &mut App) -> Entity {
     app.world_mut()
@@ -44,18 +44,10 @@ fn levels_follow_the_viewer_and_stay_finite() {
         .map(|change| (change.from, change.to))
         .collect();
     assert_eq!(changes, [(0, 1), (1, 2), (2, 3), (3, 0)]);
-    // Back at the finest level it is a flag in the wind, not a crumpled one.
+    // At the finest level again, it has not kept the strain of a bad transfer.
     run(&mut app, 60);
-    let flag = state(&app, cloth);
-    let fabric = flag.fabric().expect("a fabric");
-    for link in fabric.links() {
-        let [a, b] = link.particles.map(|end| flag.positions()[end as usize]);
-        assert!(
-            a.distance(b) < 1.2 * link.rest_length,
-            "stretched by {}",
-            a.distance(b) / link.rest_length
-        );
-    }
+    let stretch = greatest(stretches(&app, cloth));
+    assert!(stretch < 1.2, "{stretch}");
 }
 
 #[test]
@@ -69,7 +61,7 @@ fn the_nearest_viewer_counts() {
 }
 
 #[test]
-fn thrashing_is_harmless() {
+fn a_level_may_change_in_every_tick() {
     let mut app = app();
     let cloth = flag(&mut app);
     app.world_mut().spawn(WindField::steady(Vec3::new(5.0, 0.0, 2.0)));
@@ -78,19 +70,22 @@ fn thrashing_is_harmless() {
         app.world_mut().get_mut::<LodSet>(cloth).expect("levels").pinned = Some(tick % 4);
         run(&mut app, 1);
         assert_finite(&app, cloth);
+        assert_eq!(state(&app, cloth).level(), tick % 4);
     }
+    let stretch = greatest(stretches(&app, cloth));
+    assert!(stretch < 1.2, "{stretch}");
 }
 
-/// The state between the choice of levels and the step: the one that was moved.
+/// Looks at the state between the transfer to another level and the step.
 #[test]
-fn shared_particles_stay_near_their_place() {
+fn particles_of_both_levels_keep_their_positions() {
     #[derive(Resource, Default)]
-    struct Moved(Vec<Vec3>);
+    struct Transferred(Vec<Vec3>);
     let mut app = app();
-    app.init_resource::<Moved>().add_systems(
+    app.init_resource::<Transferred>().add_systems(
         bevy_bunting::ClothTick,
-        (|cloths: Query<&ClothState>, mut moved: ResMut<Moved>| {
-            moved.0 = cloths.single().expect("one cloth").positions().to_vec();
+        (|cloths: Query<&ClothState>, mut transferred: ResMut<Transferred>| {
+            transferred.0 = cloths.single().expect("one cloth").positions().to_vec();
         })
         .after(ClothSystems::SelectLod)
         .before(ClothSystems::Drive),
@@ -102,25 +97,25 @@ fn shared_particles_stay_near_their_place() {
         app.world_mut().get_mut::<LodSet>(cloth).expect("levels").pinned =
             Some(usize::from(to == 17));
         run(&mut app, 1);
-        let moved = &app.world().resource::<Moved>().0;
-        assert_eq!(moved.len(), to * to);
+        let after = &app.world().resource::<Transferred>().0;
+        assert_eq!(after.len(), to * to);
         for row in 0..17 {
             for column in 0..17 {
                 let stride = |count: usize| if count == 33 { 2 } else { 1 };
                 let at = |count: usize| stride(count) * (row * count + column);
-                // But for the strain that is taken off.
-                let apart = before[at(from)].distance(moved[at(to)]);
-                assert!(apart < 0.02, "row {row}, column {column}: {apart}");
+                // The transfer reduces strain, which moves particles a little.
+                let moved = before[at(from)].distance(after[at(to)]);
+                assert!(moved < 0.02, "row {row}, column {column}: {moved} m");
             }
         }
     }
 }
 
-/// A curtain with a hole, as plain triangles.
+/// A curtain of triangles with a hole.
 fn curtain(cells: u32) -> ClothMesh {
     let corners = cells + 1;
     let index = |column: u32, row: u32| row * corners + column;
-    let in_hole = |at: u32| (cells / 3..cells - cells / 3).contains(&at);
+    let in_hole = |cell: u32| (cells / 3..cells - cells / 3).contains(&cell);
     let mut triangles = Vec::new();
     for row in 0..cells {
         for column in 0..cells {
@@ -158,7 +153,7 @@ fn a_curtain_with_a_hole_has_levels() {
         })
         .collect();
     assert!(counts[1] < counts[0] * 2 / 3, "{counts:?}");
-    // Its border is all there; in the end nothing more can go, and it goes on.
+    // Coarser levels keep the whole border: one of five cannot be cut, and the fourth takes its place.
     assert_eq!(counts[3], counts[4], "{counts:?}");
     let errors = &app.world().resource::<Seen<ClothFailed>>().0;
     assert!(
@@ -167,32 +162,8 @@ fn a_curtain_with_a_hole_has_levels() {
     );
     app.world_mut().get_mut::<LodSet>(cloth).expect("levels").pinned = Some(0);
     run(&mut app, 60);
-    let state = state(&app, cloth);
-    for link in state.fabric().expect("a fabric").links() {
-        let [a, b] = link.particles.map(|end| state.positions()[end as usize]);
-        let stretch = a.distance(b) / link.rest_length;
-        assert!((0.8..1.1).contains(&stretch), "stretched by {stretch}");
+    assert!(stretches(&app, cloth).count() > 0);
+    for stretch in stretches(&app, cloth) {
+        assert!((0.8..1.1).contains(&stretch), "{stretch}");
     }
-}
-
-/// Beside the main thread it takes some updates; then it is as any other.
-#[test]
-fn a_large_cloth_is_cut_beside_the_main_thread() {
-    let mut app = app();
-    app.add_plugins(TaskPoolPlugin::default());
-    let large = ClothMesh::grid(97, 97, 1.0, 1.0);
-    let cloth = app.world_mut().spawn((large, Attachment::in_place(ClothEdge::Left))).id();
-    let small = app.world_mut().spawn((FLAG, Attachment::in_place(ClothEdge::Left))).id();
-    run(&mut app, 3);
-    assert_finite(&app, small);
-    for _ in 0..1000 {
-        if !state(&app, cloth).positions().is_empty() {
-            break;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(10));
-        run(&mut app, 1);
-    }
-    assert_finite(&app, cloth);
-    assert_eq!(state(&app, cloth).positions().len(), 97 * 97);
-    assert!(app.world().resource::<Seen<ClothFailed>>().0.is_empty());
 }

@@ -2,11 +2,13 @@
 
 mod attachment;
 mod determinism;
+mod environment;
 mod errors;
 mod governor;
 mod levels;
 mod lifecycle;
 mod order;
-mod parts;
 mod rest;
-mod surroundings;
+mod thread_probe;
+mod threads;
+mod weights;

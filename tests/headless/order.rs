@@ -1,4 +1,4 @@
-//! The sets run in the order that the documentation says.
+//! The sets run in the documented order.
 
 use bevy_app::prelude::*;
 use bevy_bunting::prelude::{Attachment, ClothEdge, ClothMesh, LodSet, StepSettings};
@@ -12,7 +12,7 @@ use bunting_tests::{app, run, spawn_flag};
 #[derive(Resource, Default)]
 struct Log(Vec<String>);
 
-/// A system in the set that notes its name; ordered against nothing but the sets.
+/// Adds a system that logs the name of its set, and is ordered only by the set.
 fn probe(app: &mut App, schedule: impl ScheduleLabel, set: impl SystemSet + Clone) {
     let name = format!("{set:?}");
     app.add_systems(schedule, (move |mut log: ResMut<Log>| log.0.push(name.clone())).in_set(set));
@@ -92,7 +92,7 @@ fn fine_cloth_and_long_ticks_take_more_substeps() {
     assert_eq!(substeps(&mut app), 8);
 }
 
-/// Substeps since last asked.
+/// Substeps per tick since the last call.
 fn substeps(app: &mut App) -> usize {
     let log = core::mem::take(&mut app.world_mut().resource_mut::<Log>().0);
     let ticks = log.iter().filter(|set| *set == "Step").count();

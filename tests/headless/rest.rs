@@ -1,4 +1,4 @@
-//! Cloth at rest falls asleep, and wakes when anything changes.
+//! Cloth at rest falls asleep, and wakes when something that acts on it changes.
 
 use bevy_app::prelude::*;
 use bevy_bunting::ClothBatches;
@@ -11,15 +11,15 @@ use bunting_tests::{app, bits, run, state};
 /// Ticks in which a damped cloth comes to rest.
 const SETTLING: usize = 64 * 20;
 
-/// A sheet on a pole of its own, hung from its top, asleep.
-struct Hung {
+/// A sheet that hangs from a pole by its top edge, asleep, and a ball far away.
+struct SleepingSheet {
     app: App,
     pole: Entity,
     sheet: Entity,
     ball: Entity,
 }
 
-fn hung() -> Hung {
+fn sleeping_sheet() -> SleepingSheet {
     let mut app = app();
     let world = app.world_mut();
     let pole = world.spawn(Transform::from_xyz(0.0, 3.0, 0.0)).id();
@@ -28,13 +28,13 @@ fn hung() -> Hung {
     let sheet = world.spawn((ClothMesh::grid(9, 9, 1.0, 1.0), ClothMaterial(material), held)).id();
     let ball = world.spawn((ClothCollider::ball(0.2), Transform::from_xyz(9.0, 3.0, 0.0))).id();
     run(&mut app, SETTLING);
-    let hung = Hung { app, pole, sheet, ball };
-    assert_eq!(hung.activity(), ClothActivity::AtRest);
-    assert_eq!(hung.batches(), 0);
-    hung
+    let scene = SleepingSheet { app, pole, sheet, ball };
+    assert_eq!(scene.activity(), ClothActivity::AtRest);
+    assert_eq!(scene.batches(), 0);
+    scene
 }
 
-impl Hung {
+impl SleepingSheet {
     fn activity(&self) -> ClothActivity {
         state(&self.app, self.sheet).activity()
     }
@@ -47,8 +47,8 @@ impl Hung {
         self.app.world_mut().entity_mut(entity)
     }
 
-    /// Runs a few ticks.
-    fn go_on(&mut self) -> ClothActivity {
+    /// Runs five ticks.
+    fn activity_after_ticks(&mut self) -> ClothActivity {
         run(&mut self.app, 5);
         self.activity()
     }
@@ -56,15 +56,15 @@ impl Hung {
 
 #[test]
 fn it_sleeps_for_long_without_a_change() {
-    let mut hung = hung();
-    let shape = bits(&hung.app, hung.sheet);
-    run(&mut hung.app, 100);
-    assert_eq!(bits(&hung.app, hung.sheet), shape);
-    assert_eq!(hung.batches(), 0);
+    let mut scene = sleeping_sheet();
+    let shape = bits(&scene.app, scene.sheet);
+    run(&mut scene.app, 100);
+    assert_eq!(bits(&scene.app, scene.sheet), shape);
+    assert_eq!(scene.batches(), 0);
 }
 
 #[test]
-fn what_swings_does_not_sleep() {
+fn a_swinging_cloth_does_not_sleep() {
     let mut app = app();
     let material = FabricMaterial { damping: 0.0, ..FabricMaterial::COTTON };
     let held = Attachment::in_place(ClothEdge::Top);
@@ -79,80 +79,80 @@ fn what_swings_does_not_sleep() {
 
 #[test]
 fn wind_wakes_it() {
-    let mut hung = hung();
-    hung.app.world_mut().spawn(WindField::steady(Vec3::Z));
-    assert_eq!(hung.go_on(), ClothActivity::Ticking);
-    assert_eq!(hung.batches(), 1);
+    let mut scene = sleeping_sheet();
+    scene.app.world_mut().spawn(WindField::steady(Vec3::Z));
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
+    assert_eq!(scene.batches(), 1);
 }
 
 #[test]
 fn gravity_wakes_it() {
-    let mut hung = hung();
-    hung.app.world_mut().resource_mut::<ClothSettings>().gravity *= 0.5;
-    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+    let mut scene = sleeping_sheet();
+    scene.app.world_mut().resource_mut::<ClothSettings>().gravity *= 0.5;
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
 }
 
 #[test]
 fn its_frame_wakes_it() {
-    let mut hung = hung();
-    let pole = hung.pole;
-    hung.entity(pole).get_mut::<Transform>().expect("a place").translation.x += 0.1;
-    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+    let mut scene = sleeping_sheet();
+    let pole = scene.pole;
+    scene.entity(pole).get_mut::<Transform>().expect("a place").translation.x += 0.1;
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
 }
 
 #[test]
 fn a_teleport_wakes_it() {
     for mode in [TeleportMode::Keep, TeleportMode::Reset] {
-        let mut hung = hung();
-        let (pole, entity) = (hung.pole, hung.sheet);
-        hung.app.world_mut().trigger(TeleportCloth { entity, mode });
-        hung.entity(pole).insert(Transform::from_rotation(Quat::from_rotation_z(1.0)));
-        assert_eq!(hung.go_on(), ClothActivity::Ticking, "{mode:?}");
+        let mut scene = sleeping_sheet();
+        let (pole, entity) = (scene.pole, scene.sheet);
+        scene.app.world_mut().trigger(TeleportCloth { entity, mode });
+        scene.entity(pole).insert(Transform::from_rotation(Quat::from_rotation_z(1.0)));
+        assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking, "{mode:?}");
     }
 }
 
 #[test]
 fn its_material_wakes_it() {
-    let mut hung = hung();
-    let sheet = hung.sheet;
-    hung.entity(sheet).insert(ClothMaterial::SILK);
-    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+    let mut scene = sleeping_sheet();
+    let sheet = scene.sheet;
+    scene.entity(sheet).insert(ClothMaterial::SILK);
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
 }
 
 #[test]
 fn its_attachment_wakes_it() {
-    let mut hung = hung();
-    let sheet = hung.sheet;
-    hung.entity(sheet).remove::<Attachment>();
-    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+    let mut scene = sleeping_sheet();
+    let sheet = scene.sheet;
+    scene.entity(sheet).remove::<Attachment>();
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
 }
 
 #[test]
 fn only_a_near_collider_wakes_it() {
-    let mut hung = hung();
-    let ball = hung.ball;
-    hung.entity(ball).insert(Transform::from_xyz(8.0, 3.0, 0.0));
-    assert_eq!(hung.go_on(), ClothActivity::AtRest);
-    hung.entity(ball).insert(Transform::from_xyz(0.5, 2.5, 0.3));
-    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+    let mut scene = sleeping_sheet();
+    let ball = scene.ball;
+    scene.entity(ball).insert(Transform::from_xyz(8.0, 3.0, 0.0));
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::AtRest);
+    scene.entity(ball).insert(Transform::from_xyz(0.5, 2.5, 0.3));
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
 }
 
 #[test]
 fn a_collider_that_goes_wakes_it() {
-    let mut hung = hung();
-    let ball = hung.ball;
-    hung.entity(ball).despawn();
-    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+    let mut scene = sleeping_sheet();
+    let ball = scene.ball;
+    scene.entity(ball).despawn();
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
 }
 
 #[test]
 fn a_pause_keeps_it_asleep() {
-    let mut hung = hung();
-    let sheet = hung.sheet;
-    hung.entity(sheet).insert(ClothPaused);
-    hung.go_on();
-    hung.entity(sheet).remove::<ClothPaused>();
-    assert_eq!(hung.go_on(), ClothActivity::AtRest);
-    hung.app.world_mut().spawn(WindField::steady(Vec3::Z));
-    assert_eq!(hung.go_on(), ClothActivity::Ticking);
+    let mut scene = sleeping_sheet();
+    let sheet = scene.sheet;
+    scene.entity(sheet).insert(ClothPaused);
+    scene.activity_after_ticks();
+    scene.entity(sheet).remove::<ClothPaused>();
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::AtRest);
+    scene.app.world_mut().spawn(WindField::steady(Vec3::Z));
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
 }

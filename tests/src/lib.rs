@@ -1,4 +1,4 @@
-//! What the headless tests share: an app with manual time, and shortcuts to its cloths.
+//! Code shared by the headless tests: an app with manual time, and access to its cloths.
 
 use std::time::Duration;
 
@@ -12,30 +12,31 @@ use bevy_transform::prelude::*;
 /// Seconds of a fixed step: Bevy's default.
 pub const TICK: f32 = 1.0 / 64.0;
 
-/// The flag that most tests use.
+/// The mesh of the flag that most tests use.
 pub const FLAG: ClothMesh = ClothMesh::grid(17, 9, 1.5, 1.0);
 
-/// Events as they came, in order.
+/// All events of a kind, in the order in which they were triggered.
 #[derive(Resource, Debug)]
 pub struct Seen<E>(pub Vec<E>);
 
-/// An app with cloth whose frames last as long as a tick: one tick an update, from the second on.
+/// An app with cloth whose frames are as long as a tick: one tick an update, from the second on.
 pub fn app() -> App {
     app_at(Duration::from_micros(15_625))
 }
 
-/// An app with cloth whose frames last as given.
+/// An app with cloth whose frames have this length.
 pub fn app_at(frame: Duration) -> App {
     let mut app = App::new();
     app.add_plugins((TimePlugin, TransformPlugin, ClothPlugins::default()))
         .insert_resource(TimeUpdateStrategy::ManualDuration(frame));
-    see::<ClothFailed>(&mut app);
-    see::<ClothLevelChanged>(&mut app);
-    see::<ClothTargetLost>(&mut app);
+    collect::<ClothFailed>(&mut app);
+    collect::<ClothLevelChanged>(&mut app);
+    collect::<ClothTargetLost>(&mut app);
     app
 }
 
-fn see<E>(app: &mut App)
+/// Collects events in [`Seen`].
+fn collect<E>(app: &mut App)
 where
     E: for<'a> EntityEvent<Trigger<'a>: Default> + Copy,
 {
@@ -43,30 +44,30 @@ where
         .add_observer(|event: On<E>, mut seen: ResMut<Seen<E>>| seen.0.push(*event.event()));
 }
 
-/// Runs so many updates.
+/// Runs a number of updates.
 pub fn run(app: &mut App, updates: usize) {
     (0..updates).for_each(|_| app.update());
 }
 
-/// A flag with its left edge on its own transform.
+/// Spawns a flag whose left edge is held by its own transform.
 pub fn spawn_flag(app: &mut App, at: Vec3) -> Entity {
     app.world_mut()
         .spawn((FLAG, Attachment::in_place(ClothEdge::Left), Transform::from_translation(at)))
         .id()
 }
 
-/// What a cloth publishes.
+/// The published state of a cloth.
 #[must_use]
 pub fn state(app: &App, cloth: Entity) -> &ClothState {
     app.world().get(cloth).expect("a cloth has a state")
 }
 
-/// Positions, bit for bit.
+/// The bits of all positions of a cloth.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Bits(Vec<[u32; 3]>);
 
 impl core::fmt::Debug for Bits {
-    /// Short: a failed comparison would print thousands of numbers.
+    /// Only the number of particles and the last of them: all would be thousands of lines.
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let last = self.0.last().map(|bits| bits.map(f32::from_bits));
         write!(formatter, "{} particles, the last at {last:?}", self.0.len())
@@ -74,24 +75,47 @@ impl core::fmt::Debug for Bits {
 }
 
 /// The bits of a cloth's positions.
+///
+/// # Panics
+///
+/// If the cloth is not simulated: no positions equal any others without positions.
 #[must_use]
 pub fn bits(app: &App, cloth: Entity) -> Bits {
-    let positions = state(app, cloth).positions().iter();
-    Bits(positions.map(|position| position.to_array().map(f32::to_bits)).collect())
+    let positions = state(app, cloth).positions();
+    assert!(!positions.is_empty(), "the cloth is not simulated");
+    Bits(positions.iter().map(|position| position.to_array().map(f32::to_bits)).collect())
 }
 
-/// Velocity of each particle in the last tick, m/s, seen from the cloth's frame.
+/// The greatest of values.
+///
+/// # Panics
+///
+/// If there are no values, or one is not a number: `f32::max` would ignore it.
 #[must_use]
-pub fn velocities(app: &App, cloth: Entity) -> Vec<Vec3> {
-    let state = state(app, cloth);
-    let pairs = state.positions().iter().zip(state.previous_positions());
-    pairs.map(|(now, before)| (now - before) / TICK).collect()
+pub fn greatest(values: impl IntoIterator<Item = f32>) -> f32 {
+    let greater = |a: f32, b: f32| {
+        assert!(!a.is_nan() && !b.is_nan(), "a value is not a number");
+        a.max(b)
+    };
+    values.into_iter().reduce(greater).expect("there are values")
 }
 
-/// The greatest speed of any particle in the last tick, m/s, seen from the cloth's frame.
+/// The greatest speed of any particle in the last tick, m/s, relative to the cloth's frame.
 #[must_use]
 pub fn greatest_speed(app: &App, cloth: Entity) -> f32 {
-    velocities(app, cloth).iter().map(|velocity| velocity.length()).fold(0.0, f32::max)
+    let state = state(app, cloth);
+    let pairs = state.positions().iter().zip(state.previous_positions());
+    greatest(pairs.map(|(now, before)| now.distance(*before) / TICK))
+}
+
+/// Length over rest length of every link of a cloth.
+pub fn stretches(app: &App, cloth: Entity) -> impl Iterator<Item = f32> {
+    let state = state(app, cloth);
+    let links = state.fabric().expect("the cloth is simulated").links();
+    links.iter().map(|link| {
+        let [from, to] = link.particles.map(|particle| state.positions()[particle as usize]);
+        from.distance(to) / link.rest_length
+    })
 }
 
 /// Panics unless a cloth has particles and all are finite.

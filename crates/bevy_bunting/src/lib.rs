@@ -1,7 +1,7 @@
 //! Real-time cloth for Bevy.
 //!
-//! Add [`ClothPlugins`], spawn an entity with a [`ClothMesh`], an [`Attachment`] to something that
-//! moves, and a [`WindField`] somewhere: it flies.
+//! Add [`ClothPlugins`], spawn an entity with a [`ClothMesh`] and an [`Attachment`] to an entity that
+//! moves, and another one with a [`WindField`]: the cloth flies.
 //!
 //! ```
 //! use std::time::Duration;
@@ -34,23 +34,23 @@
 //!
 //! | Component | On | What it does |
 //! | --- | --- | --- |
-//! | [`ClothMesh`] | a cloth | its shape at rest; brings the rest along |
-//! | [`ClothMaterial`] | a cloth | what it is made of |
-//! | [`LodSet`] | a cloth | its levels of detail |
+//! | [`ClothMesh`] | a cloth | shape at rest; requires the components that a cloth needs |
+//! | [`ClothMaterial`] | a cloth | area density, stiffnesses, damping, friction |
+//! | [`LodSet`] | a cloth | levels of detail |
 //! | [`Attachment`] | a cloth | holds vertices on another entity |
-//! | [`ClothPaused`] | a cloth | stops it |
+//! | [`ClothPaused`] | a cloth | stops the simulation of the cloth |
 //! | [`ClothState`] | a cloth | positions and normals after the last tick, to be read |
-//! | [`ClothSurface`] | a cloth | the same between two ticks, for display |
-//! | [`WindField`] | anything | moves the air |
-//! | [`ClothCollider`] | anything | a shape that cloth does not enter |
-//! | [`LodViewer`] | a camera | what levels of detail look to |
+//! | [`ClothSurface`] | a cloth | positions and normals between two ticks, for display |
+//! | [`WindField`] | any entity | velocity of the air |
+//! | [`ClothCollider`] | any entity | a shape that cloth does not enter |
+//! | [`LodViewer`] | a camera | a viewer for whom levels of detail are chosen |
 //!
-//! [`ClothSettings`] holds gravity, the density of air and how finely each level is solved;
-//! [`ClothBudget`] how much time cloths with [`LodSet::automatic`] may take, and [`LodReport`] what
-//! was made of it.
+//! The resource [`ClothSettings`] holds gravity, the density of air and the numbers of substeps and
+//! passes; [`ClothBudget`] the time that cloths with [`LodSet::automatic`] may take, and [`LodReport`]
+//! what it led to.
 //!
-//! A cloth at rest is asleep, and so is one with [`LodSet::automatic`] that no [`LodViewer`] sees:
-//! [`ClothState::activity`] tells.
+//! Cloths that have come to rest sleep, and so do cloths with [`LodSet::automatic`] that no
+//! [`LodViewer`] sees, see [`ClothState::activity`].
 //!
 //! # Sets
 //!
@@ -60,8 +60,8 @@
 //! | [`ClothSystems`] | What happens |
 //! | --- | --- |
 //! | [`Prepare`](ClothSystems::Prepare) | new, changed and removed cloths; wind |
-//! | [`SelectLod`](ClothSystems::SelectLod) | levels of detail; every cloth takes its lane |
-//! | [`Drive`](ClothSystems::Drive) | how frames move, gravity, wind, colliders |
+//! | [`SelectLod`](ClothSystems::SelectLod) | levels of detail; every simulated cloth gets a lane |
+//! | [`Drive`](ClothSystems::Drive) | motion of frames, gravity, wind, colliders |
 //! | [`Step`](ClothSystems::Step) | runs [`ClothSubstep`], see below |
 //! | [`Normals`](ClothSystems::Normals) | normals, once |
 //! | [`Publish`](ClothSystems::Publish) | [`ClothState`], transforms of attached cloths |
@@ -75,90 +75,79 @@
 //! # Events
 //!
 //! [`ClothFailed`], [`ClothLevelChanged`] and [`ClothTargetLost`] are triggered on the cloth;
-//! [`TeleportCloth`] is for you to trigger.
+//! [`TeleportCloth`] is triggered by the user.
 //!
 //! # Drawing
 //!
 //! With the feature `render`, a cloth with a material is drawn: `ClothRenderPlugin` gives it a mesh
-//! for each level, keeps its bounds, and puts a [`LodViewer`] on cameras. Its documentation tells
-//! what the material should be like. `ClothDebugPlugin`, to be added, draws gizmos.
+//! for each level, updates its bounds, and puts a [`LodViewer`] on cameras. Its documentation says which
+//! settings the material needs. `ClothDebugPlugin`, which is not among [`ClothPlugins`], draws gizmos.
 //!
 //! # Determinism
 //!
-//! The same world, stepped alike, gives the same bits: they depend neither on what else is in the
-//! world, nor on the number of threads. Only [`LodSet::automatic`] shares a budget among all cloths,
-//! and by default measures what they cost; with [`LodCosts::Fixed`] it, too, chooses alike on every
-//! machine.
+//! The same world in the same ticks gives the same bits. The bits of a cloth depend neither on other
+//! cloths nor on the number of threads. Only [`LodSet::automatic`] shares a budget among all cloths, and
+//! by default measures their costs; with [`LodCosts::Fixed`] its choice, too, is the same on every machine.
 
-mod activity;
-mod attachment;
-mod batches;
-mod collider;
+mod batch;
+mod cloth;
 mod diagnostics;
-mod drive;
-mod easing;
-mod error;
-mod follow;
-mod frame;
-mod instance;
-mod levels;
+mod display;
+mod environment;
+mod fabric;
 mod lod;
-mod mesh;
-mod part;
-mod pose;
-mod prepare;
-mod publish;
+mod motion;
 #[cfg(feature = "render")]
 mod render;
-mod rest;
 mod schedule;
-mod seat;
-mod seats;
 mod settings;
-mod solver;
-mod state;
-mod surface;
-mod teleport;
-mod wind;
+mod timings;
 
 use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::intern::Interned;
 use bevy_ecs::schedule::ScheduleLabel;
 
-pub use activity::ClothActivity;
-pub use attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
-pub use batches::ClothBatches;
+pub use batch::assign::LanePlugin;
+pub use batch::batches::ClothBatches;
+pub use batch::publish::PublishPlugin;
+pub use batch::solve::SolverPlugin;
 pub use bunting_solver;
-pub use collider::{ClothCollider, ColliderPlugin};
-pub use diagnostics::{ClothCounts, ClothDiagnosticsPlugin, ClothTimings};
-pub use drive::DrivePlugin;
-pub use easing::EasingPlugin;
-pub use error::{ClothError, ClothFailed};
-pub use frame::AttachmentPlugin;
-pub use lod::{
-    ClothBudget, ClothLevelChanged, CostTable, Lens, LodChoice, LodCosts, LodPlugin, LodReport,
-    LodSet, LodViewer,
-};
-pub use mesh::{ClothMaterial, ClothMesh, ClothPaused};
+pub use cloth::activity::{ClothActivity, ClothPaused};
+pub use cloth::error::ClothError;
+pub use cloth::events::{ClothFailed, ClothLevelChanged, ClothTargetLost};
+pub use cloth::material::ClothMaterial;
+pub use cloth::mesh::ClothMesh;
+pub use cloth::state::ClothState;
+pub use cloth::weights::WeightsError;
+pub use diagnostics::ClothDiagnosticsPlugin;
+pub use display::ease::EasingPlugin;
+pub use display::surface::{ClothSurface, SurfacePlugin};
+pub use environment::collider::{ClothCollider, ColliderPlugin};
+pub use environment::drive::DrivePlugin;
+pub use environment::wind::{TickWind, WindField, WindPlugin};
+pub use fabric::prepare::PreparePlugin;
+pub use lod::budget::{ClothBudget, LodCosts};
+pub use lod::cost_table::CostTable;
+pub use lod::lod_set::{LodChoice, LodSet};
+pub use lod::report::{ClothCounts, LodReport};
+pub use lod::select::LodPlugin;
+pub use lod::sleep::SleepPlugin;
+pub use lod::viewer::{Lens, LodViewer};
+pub use motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
+pub use motion::plugin::AttachmentPlugin;
+pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
-pub use part::WeightsError;
-pub use prepare::{ClothTargetLost, PreparePlugin};
-pub use publish::PublishPlugin;
 #[cfg(feature = "render")]
-pub use render::{ClothDebugPlugin, ClothGizmos, ClothRenderPlugin, ClothRenderSystems};
-pub use rest::RestPlugin;
+pub use render::debug::{ClothDebugPlugin, ClothGizmos};
+#[cfg(feature = "render")]
+pub use render::plugin::{ClothRenderPlugin, ClothRenderSystems};
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
-pub use seat::SeatPlugin;
 pub use settings::ClothSettings;
-pub use solver::SolverPlugin;
-pub use state::ClothState;
-pub use surface::{ClothSurface, SurfacePlugin};
-pub use teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
-pub use wind::{TickWind, WindField, WindPlugin};
+pub use timings::ClothTimings;
 
-/// Everything that one usually needs.
+/// The items that most apps need.
 pub mod prelude {
     pub use crate::{
         AttachedVertices, Attachment, ClothActivity, ClothBudget, ClothCollider, ClothCorner,
@@ -172,7 +161,7 @@ pub mod prelude {
 
 /// All plugins that cloth needs, one a concern.
 ///
-/// Bevy's `TimePlugin` and `TransformPlugin` must be there, too, as they are in `DefaultPlugins`.
+/// Bevy's `TimePlugin` and `TransformPlugin` must be added, too, as they are by `DefaultPlugins`.
 #[derive(Debug)]
 pub struct ClothPlugins {
     host: Interned<dyn ScheduleLabel>,
@@ -199,8 +188,8 @@ impl PluginGroup for ClothPlugins {
             .add(SchedulePlugin::new(self.host))
             .add(PreparePlugin)
             .add(LodPlugin)
-            .add(RestPlugin)
-            .add(SeatPlugin)
+            .add(SleepPlugin)
+            .add(LanePlugin)
             .add(WindPlugin)
             .add(AttachmentPlugin)
             .add(TeleportPlugin)

@@ -1,4 +1,4 @@
-//! When things happen: the schedules and sets of a tick.
+//! The schedules and sets of a tick.
 
 use bevy_app::{App, FixedPostUpdate, Plugin};
 use bevy_ecs::intern::Interned;
@@ -17,19 +17,20 @@ pub struct ClothTick;
 /// One substep of the cloths that join in it. Runs in [`ClothSystems::Step`], as often as the
 /// finest level needs.
 ///
-/// As long as nobody adds a system, the same happens batch by batch instead, with the same result:
-/// a batch then stays in the processor's cache from one phase to the next.
+/// As long as no user adds a system, the schedule is not run: the same phases run batch by batch, with the
+/// same result, so that each batch stays in the processor's cache from one phase to the next.
 #[derive(ScheduleLabel, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ClothSubstep;
 
-/// What happens in a [`ClothTick`], in this order.
+/// The sets of a [`ClothTick`], in this order.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClothSystems {
     /// New, changed and removed cloths: fabrics are cut, wind is added up.
     Prepare,
-    /// Levels of detail are chosen, state is moved between them, and every cloth takes its lane.
+    /// Levels of detail are chosen, states are transferred between them, and every simulated cloth gets a
+    /// lane.
     SelectLod,
-    /// What acts on each cloth in this tick: how its frame moves, gravity, wind, colliders.
+    /// What acts on each cloth in this tick is set: the motion of its frame, gravity, wind, colliders.
     Drive,
     /// Runs [`ClothSubstep`].
     Step,
@@ -45,12 +46,12 @@ impl ClothSystems {
         [Self::Prepare, Self::SelectLod, Self::Drive, Self::Step, Self::Normals, Self::Publish];
 }
 
-/// What happens in a [`ClothSubstep`], in this order.
+/// The sets of a [`ClothSubstep`], in this order.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClothSubstepSystems {
-    /// The state is carried into the moved frame; external forces, damping, prediction.
+    /// States are transformed into the moved frame; external forces, damping, predicted positions.
     Integrate,
-    /// Constraints and contacts.
+    /// Constraints and contacts correct the predicted positions.
     SolveConstraints,
     /// Velocities from the corrected positions.
     UpdateVelocities,
@@ -99,7 +100,8 @@ impl Plugin for SchedulePlugin {
     }
 }
 
-/// An executor and checks of its own: a plugin imposes none on its host's schedules.
+/// Sets the executor and the checks of a schedule of this plugin; those of the host's schedules are left
+/// alone.
 fn own(schedule: &mut Schedule) -> &mut Schedule {
     schedule.set_executor(SingleThreadedExecutor::new()).set_build_settings(ScheduleBuildSettings {
         ambiguity_detection: LogLevel::Error,

@@ -1,4 +1,4 @@
-//! What holds for all cloths.
+//! Settings for all cloths.
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
@@ -14,18 +14,18 @@ pub struct ClothSettings {
     pub gravity: Vec3,
     /// Density of the air, kg/m³; 1.225 at sea level.
     pub air_density: f32,
-    /// How finely each level of detail is solved, the finest level first; the last holds for all
-    /// levels after it. Within these limits substeps are chosen for each fabric.
+    /// Limits of substeps and passes at each level of detail, the finest level first; the last one holds
+    /// for all levels after it. Within these limits the number of substeps is chosen for each fabric.
     #[reflect(ignore)]
     pub steps: Vec<StepLimits>,
-    /// Width of the batches; none takes what suits the number of cloths and the machine. It does
-    /// not change the result by a bit.
+    /// Number of lanes of the batches; by default it suits the number of cloths and the machine. It does
+    /// not change the bits of the result.
     #[reflect(ignore)]
     pub lanes: Option<LaneCount>,
 }
 
 impl ClothSettings {
-    /// How finely a level may be solved.
+    /// Limits of substeps and passes at a level.
     #[must_use]
     pub fn limits(&self, level: usize) -> StepLimits {
         self.steps.get(level).or(self.steps.last()).cloned().unwrap_or_default()
@@ -33,7 +33,7 @@ impl ClothSettings {
 }
 
 impl Default for ClothSettings {
-    /// Gravity and air at sea level; the finest level takes two substeps or more, the others one or more.
+    /// Gravity and air at sea level; at least two substeps at the finest level, at least one at others.
     fn default() -> Self {
         let finest = StepLimits::default();
         let coarse = StepLimits { substeps: 1..=*finest.substeps.end(), ..finest.clone() };

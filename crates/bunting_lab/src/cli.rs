@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-use crate::commands::{budget, gate, lod, oracles, pareto, report, schedule, stability};
+use crate::commands::{budget, gate, lod, memory, oracles, pareto, report, schedule, stability};
 use crate::output::Outcome;
 
 /// Measures the cloth against references.
@@ -36,6 +36,8 @@ enum Command {
     Budget,
     /// Agreement of the levels of detail, and the jumps between them.
     Lod,
+    /// Bytes of a chain of levels and of batches.
+    Memory,
     /// The hard cases.
     Stability,
     /// Cost of the schedule over plain calls.
@@ -44,8 +46,8 @@ enum Command {
     Peers,
     /// Hashes, closed forms and quick hard cases against the committed lists; exits with 1 where they differ.
     Gate(gate::Options),
-    /// All of it, as one HTML page.
-    Report,
+    /// All of it, as one HTML page and as `docs/measurements.md`.
+    Report(report::Options),
 }
 
 impl Arguments {
@@ -61,6 +63,7 @@ impl Arguments {
             Command::Peers => peers(self.quick)?,
             Command::Schedule => schedule::run(self.quick),
             Command::Budget => budget::run(self.quick),
+            Command::Memory => memory::run(),
             Command::Oracles => oracles::run(),
             Command::Stability => stability::run(self.quick),
             Command::Gate(options) => {
@@ -68,7 +71,7 @@ impl Arguments {
                     outcome.present(self.json, self.out.as_deref())
                 });
             }
-            Command::Report => report::run(self.quick, self.out.as_deref())?,
+            Command::Report(options) => report::run(&options, self.quick, self.out.as_deref())?,
         };
         outcome.present(self.json, self.out.as_deref())
     }

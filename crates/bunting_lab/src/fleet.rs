@@ -7,13 +7,13 @@ use bunting_solver::{ClothBatch, ClothSnapshot, Drive, Fabric, LaneCount, StepSe
 use glam::Vec3;
 
 use crate::{
-    budget::Effort,
+    effort::Effort,
     product::{self, TICK},
     scenes::{Scene, TICK_RATE},
     timing::Timing,
 };
 
-/// By how much later each cloth meets the gusts than the one before it, s, so that no two move alike.
+/// Delay of each cloth's gusts against those of the cloth before it, s, so that no two move alike.
 const GUST_LAG: f64 = 0.618;
 
 /// Cloths of one scene, each in gusts of its own, side by side in batches.
@@ -25,14 +25,23 @@ pub struct Fleet {
 }
 
 impl Fleet {
-    /// `cloths` cloths as the scene begins, in the widest batches that pay.
+    /// `cloths` cloths in the scene's initial state, in the widest batches that save time.
     ///
     /// # Panics
     ///
     /// Never: every scene is a good cloth, and every cloth finds its lane.
     #[must_use]
     pub fn new(scene: Scene, cloths: usize, settings: StepSettings) -> Self {
-        let fabric = product::fabric(&scene);
+        Self::of(product::fabric(&scene), scene, cloths, settings)
+    }
+
+    /// The same of a fabric of the scene's particles that was cut otherwise.
+    ///
+    /// # Panics
+    ///
+    /// When the fabric has other particles than the scene.
+    #[must_use]
+    pub fn of(fabric: Arc<Fabric>, scene: Scene, cloths: usize, settings: StepSettings) -> Self {
         let positions: Vec<Vec3> = scene.positions().iter().map(|x| x.as_vec3()).collect();
         let velocities = vec![Vec3::ZERO; positions.len()];
         let start = ClothSnapshot::new(positions, velocities);
@@ -82,6 +91,12 @@ impl Fleet {
         self.batches[0].fabric()
     }
 
+    /// Scheme, substeps and passes.
+    #[must_use]
+    pub fn settings(&self) -> StepSettings {
+        self.settings
+    }
+
     /// The batches.
     pub fn batches_mut(&mut self) -> &mut [ClothBatch] {
         &mut self.batches
@@ -109,7 +124,7 @@ impl Fleet {
 
     /// Times ticks of all cloths, on this thread alone and on others, in turn so that all see the same
     /// machine. A tick sets the wind, steps and computes normals. As in the plugin each batch is a task
-    /// of a pool, and this thread does its share of them.
+    /// of a pool, and this thread runs some of them.
     #[must_use]
     pub fn time_ticks(&mut self, cores: &[usize], effort: &Effort) -> Vec<Timing> {
         self.advance(effort.warm_up);

@@ -20,17 +20,18 @@ const GUST: f32 = 1.0;
 /// How often gusts come, 1/s.
 const GUST_RATE: f32 = 0.3;
 
-/// An app on one core whose every update is one tick of the standard flag's wind.
-pub fn app(settings: StepSettings) -> App {
-    let mut app = calm_app(settings);
+/// An app on one core whose every update is one tick of the standard flag's wind. Settings are those of
+/// each level, the finest first; the last holds for all levels after it.
+pub fn app_in_wind(settings: impl IntoIterator<Item = StepSettings>) -> App {
+    let mut app = app_in_still_air(settings);
     let wind = Vec3::from_array(Scene::flag(2).air.wind.map(|speed| speed as f32));
     app.world_mut().spawn(WindField::steady(wind).with_gusts(GUST, GUST_RATE, 1));
     app
 }
 
-/// An app on one core whose every update is one tick in still air.
-pub fn calm_app(settings: StepSettings) -> App {
-    // Batches keep to the thread that ticks them when the pool has only one.
+/// The same in still air.
+pub fn app_in_still_air(settings: impl IntoIterator<Item = StepSettings>) -> App {
+    // The plugin steps batches on the ticking thread where the pool has only one thread.
     ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
     let tick = Duration::from_secs_f32(product::TICK);
     let mut app = App::new();
@@ -42,7 +43,10 @@ pub fn calm_app(settings: StepSettings) -> App {
     ))
     .insert_resource(Time::<Fixed>::from_duration(tick))
     .insert_resource(TimeUpdateStrategy::ManualDuration(tick))
-    .insert_resource(ClothSettings { steps: vec![settings.into()], ..ClothSettings::default() });
+    .insert_resource(ClothSettings {
+        steps: settings.into_iter().map(Into::into).collect(),
+        ..ClothSettings::default()
+    });
     app
 }
 

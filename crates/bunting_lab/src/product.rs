@@ -13,9 +13,9 @@ use glam::{DVec3, Vec3};
 
 use crate::{
     contender::Contender,
-    oracles::specimen::Specimen,
     scenes::{self, Scene, TICK_RATE},
     simulation::Simulation,
+    specimen::Specimen,
 };
 
 /// Density of the air in the scenes, kg/m³: they give only its product with a coefficient.
@@ -23,7 +23,7 @@ const AIR_DENSITY: f32 = 1.225;
 /// Length of a tick, s.
 pub const TICK: f32 = 1.0 / TICK_RATE as f32;
 
-/// Scheme, substeps and passes as users meet them: `StepSettings::default()` as a constant.
+/// Scheme, substeps and passes by default: `StepSettings::default()` as a constant.
 pub const DEFAULT: StepSettings = StepSettings { passes: 2, ..StepSettings::yarns(2) };
 
 /// The solver with its settings.

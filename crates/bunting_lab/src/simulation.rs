@@ -1,6 +1,8 @@
 //! What every method offers to be measured.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
+
+use crate::scenes::ticks;
 
 /// A cloth that runs one of the scenes at 60 ticks a second.
 pub trait Simulation {
@@ -10,4 +12,15 @@ pub trait Simulation {
     fn positions(&self) -> &[Vec3];
     /// Velocities in the scene's vertex order, m/s.
     fn velocities(&self) -> &[Vec3];
+}
+
+/// Advances by `seconds`.
+pub fn run(simulation: &mut (impl Simulation + ?Sized), seconds: f64) {
+    (0..ticks(seconds)).for_each(|_| simulation.tick());
+}
+
+/// Vectors in double precision, which closed forms and the reference take.
+#[must_use]
+pub fn in_double(vectors: &[Vec3]) -> Vec<DVec3> {
+    vectors.iter().map(|vector| vector.as_dvec3()).collect()
 }

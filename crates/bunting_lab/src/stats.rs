@@ -37,7 +37,7 @@ impl Strain {
     }
 }
 
-/// The larger of two figures, and not a number where either is none: `max` would pass over it.
+/// The larger of two figures, NaN where either is NaN: `f64::max` would ignore it.
 #[must_use]
 pub fn worse(one: f64, other: f64) -> f64 {
     if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) }

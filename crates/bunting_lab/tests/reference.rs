@@ -212,7 +212,7 @@ fn sheet_falls_through_air() {
     let fabric = Fabric { density: 0.1, ..Fabric::STANDARD };
     let air = Air { pressure: 1.2 * 1.225, ..Air::VACUUM };
     let scene = Scene { fabric, air, pins: Pins::Free, ..Scene::swing(3) };
-    // Equal shares of drag for unequal shares of mass would bend it: a rigid one falls flat.
+    // Equal drag on unequal masses would bend it: a rigid one falls flat.
     let rigid = Scene { fabric: Fabric { bending: 1.0, ..fabric }, ..scene };
     let mut cloth = start(&rigid);
     (0..30).for_each(|_| cloth.tick());

@@ -1,11 +1,7 @@
 //! The trials catch what they are meant to catch.
 
 use bunting_lab::{
-    oracles::{
-        Case,
-        specimen::{Mount, Specimen},
-        trials,
-    },
+    oracles::{Case, trials},
     product::Product,
     reference::{
         grid::Grid,
@@ -13,6 +9,7 @@ use bunting_lab::{
     },
     scenes::{Scene, TICK_RATE},
     simulation::Simulation,
+    specimen::{Mount, Specimen},
 };
 use bunting_solver::StepSettings;
 use glam::{DVec3, Vec3};

@@ -1,4 +1,4 @@
-//! Whether a scene makes sense, beyond having the right keys and kinds of values.
+//! Checks the values of a scene whose keys and types are right.
 
 use bevy_math::Vec3;
 use bunting_solver::{FabricError, FabricMaterial};
@@ -7,14 +7,14 @@ use crate::key::Key;
 use crate::material::{MaterialRecipe, PRESETS};
 use crate::scene::{Flag, Footing, Levels, Route, Scene, Vehicle, Wind};
 
-/// The value that makes no sense, and why.
+/// A value that cannot be used, and the reason.
 #[derive(Debug)]
-pub(crate) struct Nonsense {
+pub(crate) struct BadValue {
     pub key: Key,
     pub reason: String,
 }
 
-type Check = Result<(), Nonsense>;
+type Check = Result<(), BadValue>;
 
 pub(crate) fn scene(scene: &Scene) -> Check {
     for (index, one) in scene.winds.iter().enumerate() {
@@ -49,7 +49,7 @@ fn route(route: &Route, key: &Key) -> Check {
     let waypoints = key.name("waypoints");
     let count = route.waypoints.len();
     require(count >= 3, &waypoints, || {
-        format!("a closed way needs at least 3 waypoints, not {count}")
+        format!("a closed path needs at least 3 waypoints, not {count}")
     })?;
     for (index, &waypoint) in route.waypoints.iter().enumerate() {
         let key = waypoints.index(index);
@@ -84,16 +84,16 @@ fn levels(levels: &Levels, key: &Key) -> Check {
 }
 
 fn material(recipe: &MaterialRecipe, key: &Key) -> Check {
-    let material = recipe.material().ok_or_else(|| Nonsense {
+    let material = recipe.material().ok_or_else(|| BadValue {
         key: key.name("like"),
         reason: format!("no preset is called \"{}\": there are {}", recipe.like, preset_names()),
     })?;
     match FabricMaterial::validate(&material) {
         Ok(()) => Ok(()),
         Err(FabricError::Material { name, value }) => {
-            Err(Nonsense { key: key.name(name), reason: format!("{value} cannot be simulated") })
+            Err(BadValue { key: key.name(name), reason: format!("{value} cannot be simulated") })
         }
-        Err(error) => Err(Nonsense { key: key.clone(), reason: error.to_string() }),
+        Err(error) => Err(BadValue { key: key.clone(), reason: error.to_string() }),
     }
 }
 
@@ -140,5 +140,5 @@ fn finite(value: Vec3, key: &Key) -> Check {
 }
 
 fn require(holds: bool, key: &Key, reason: impl FnOnce() -> String) -> Check {
-    if holds { Ok(()) } else { Err(Nonsense { key: key.clone(), reason: reason() }) }
+    if holds { Ok(()) } else { Err(BadValue { key: key.clone(), reason: reason() }) }
 }

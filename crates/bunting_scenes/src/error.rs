@@ -1,4 +1,4 @@
-//! What can be wrong with a scene file.
+//! Errors of scene files.
 
 use std::io;
 use std::path::PathBuf;
@@ -12,10 +12,10 @@ pub enum SceneError {
     Unreadable {
         /// The file.
         file: PathBuf,
-        /// What the system said.
+        /// The error of the system.
         source: io::Error,
     },
-    /// A value is missing, of the wrong kind, or makes no sense.
+    /// A value is missing, of the wrong type, or out of range.
     #[error("{}:{line}:{column}: {key}: {reason}", file.display())]
     BadValue {
         /// The file.
@@ -24,9 +24,9 @@ pub enum SceneError {
         line: usize,
         /// Column of the value, from 1.
         column: usize,
-        /// The way to the value from the top of the file: `flags[2].size`; `scene` for the whole.
+        /// Path of the value from the top of the file: `flags[2].size`; `scene` for the whole.
         key: String,
-        /// What is wrong with it.
+        /// The reason.
         reason: String,
     },
 }

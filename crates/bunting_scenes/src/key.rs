@@ -1,4 +1,4 @@
-//! Where in a scene file a value stands.
+//! Paths of values in a scene file, and their lines and columns.
 
 use std::fmt;
 
@@ -7,7 +7,7 @@ use serde::Deserializer;
 use serde::de::{DeserializeSeed, Error, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_path_to_error::{Path, Segment};
 
-/// The way to a value from the top of a file: `flags[2].size`.
+/// The path of a value from the top of a file: `flags[2].size`.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Key(Vec<Step>);
 
@@ -37,7 +37,7 @@ impl Key {
         Self(self.0.iter().cloned().chain([step]).collect())
     }
 
-    /// Line and column of the value, or of the deepest value on the way to it that the file holds.
+    /// Line and column of the value; if the file lacks it, of its innermost parent that the file has.
     pub fn position(&self, source: &str, options: &ron::Options) -> Position {
         (0..=self.0.len())
             .rev()
@@ -75,8 +75,8 @@ impl fmt::Display for Key {
     }
 }
 
-/// Reads a file that is known to be well-formed up to a value, and fails there: the parser then
-/// tells the position.
+/// Reads a well-formed file up to a value and fails there on purpose: the error of the parser then has
+/// the position of the value.
 struct Seek<'a>(&'a [Step]);
 
 impl<'de> DeserializeSeed<'de> for Seek<'_> {

@@ -1,4 +1,4 @@
-//! From a file to a scene.
+//! Reads scene files.
 
 use std::fs;
 use std::path::Path;
@@ -11,12 +11,12 @@ use crate::error::SceneError;
 use crate::key::Key;
 use crate::scene::Scene;
 
-/// Reads a scene and checks that it makes sense.
+/// Reads a scene and checks its values.
 ///
 /// # Errors
 ///
 /// A [`SceneError`] names the file, and the line, the column and the key of the first value that is
-/// missing, of the wrong kind, or makes no sense.
+/// missing, of the wrong type, or out of range.
 pub fn load(file: impl AsRef<Path>) -> Result<Scene, SceneError> {
     let file = file.as_ref();
     let source = fs::read_to_string(file)
@@ -24,7 +24,7 @@ pub fn load(file: impl AsRef<Path>) -> Result<Scene, SceneError> {
     parse(&source, file)
 }
 
-/// Reads a scene from text; `file` is what errors call it.
+/// Reads a scene from text; errors name `file` as its source.
 ///
 /// # Errors
 ///
@@ -52,9 +52,8 @@ pub fn parse(source: &str, file: &Path) -> Result<Scene, SceneError> {
         bad_syntax(parser.span_error(error.into_inner()), key)
     })?;
     parser.end().map_err(|error| bad_syntax(parser.span_error(error), Key::default()))?;
-    check::scene(&scene).map_err(|nonsense| {
-        bad_value(nonsense.key.position(source, &syntax()), nonsense.key, nonsense.reason)
-    })?;
+    check::scene(&scene)
+        .map_err(|bad| bad_value(bad.key.position(source, &syntax()), bad.key, bad.reason))?;
     Ok(scene)
 }
 

@@ -18,13 +18,13 @@ pub fn preset(name: &str) -> Option<FabricMaterial> {
     PRESETS.into_iter().find_map(|(known, material)| (known == name).then_some(material))
 }
 
-/// A material as a scene file describes it: a preset and what differs from it. Units are those of
+/// A material in a scene file: a preset, and the values that differ from it. Units are those of
 /// [`FabricMaterial`].
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[allow(missing_docs, reason = "the fields are those of FabricMaterial, documented there")]
 pub struct MaterialRecipe {
-    /// Name of the preset that gives what is not said here.
+    /// Name of the preset that gives the missing values.
     pub like: String,
     pub area_density: Option<f32>,
     pub warp_stiffness: Option<f32>,

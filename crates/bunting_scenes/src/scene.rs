@@ -1,4 +1,4 @@
-//! What a scene file says.
+//! The contents of a scene file.
 
 use std::collections::BTreeMap;
 
@@ -9,18 +9,18 @@ use serde::Deserialize;
 
 use crate::material::{MaterialRecipe, preset};
 
-/// A scene: flags on poles and vehicles, the wind that moves them and the path of the one who
-/// looks. Lengths in metres, speeds in metres a second; y is up, the ground is y = 0.
+/// A scene: flags on poles and vehicles, the wind that moves them, and the path of a viewer. Lengths
+/// in metres, speeds in metres a second; y is up, the ground is y = 0.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// The wind; several add up.
     pub winds: Vec<Wind>,
-    /// Who looks at the scene, and from where.
+    /// The viewer, for whom levels of detail are chosen.
     pub viewer: Viewer,
     /// Resolutions of the flags.
     pub levels: Levels,
-    /// Materials of this scene, beside the presets, by name.
+    /// Materials in addition to the presets, by name.
     #[serde(default)]
     pub materials: BTreeMap<String, MaterialRecipe>,
     /// Vehicles by name.
@@ -47,10 +47,10 @@ pub struct Wind {
     /// Greatest departure of gusts from the mean along each axis, m/s.
     #[serde(default)]
     pub gust_strength: f32,
-    /// How often gusts come, 1/s.
+    /// Frequency of gusts, 1/s.
     #[serde(default = "Wind::default_gust_frequency")]
     pub gust_frequency: f32,
-    /// Chooses the gusts.
+    /// Seed of the gusts.
     #[serde(default)]
     pub seed: i32,
 }
@@ -61,17 +61,17 @@ impl Wind {
     }
 }
 
-/// The one who looks at the scene.
+/// A moving viewer.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Viewer {
-    /// The way that the viewer goes.
+    /// The path of the viewer.
     pub track: Route,
-    /// The point that the viewer looks at, m.
+    /// The point at which the viewer looks, m.
     pub looks_at: Vec3,
 }
 
-/// A closed way through the given points, and the speed along it.
+/// A closed path, and the speed along it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Route {
@@ -79,13 +79,13 @@ pub struct Route {
     pub waypoints: Vec<Vec3>,
     /// Speed, m/s; at most [`Route::MAX_SPEED`].
     pub speed: f32,
-    /// How far along the way the ride begins, m.
+    /// Length along the path at time 0, m.
     #[serde(default)]
     pub start: f32,
 }
 
 impl Route {
-    /// The highest speed for which cloth on a vehicle is made, m/s.
+    /// The greatest speed at which cloth on a vehicle is tested, m/s.
     pub const MAX_SPEED: f32 = 20.0;
 }
 
@@ -95,7 +95,7 @@ impl Route {
 pub struct Levels {
     /// Particles along either edge of a flag at the finest level: 2ⁿ + 1.
     pub finest: u32,
-    /// Distances from the viewer at which a flag goes to the next coarser level, m, ascending.
+    /// Distances from the viewer beyond which a flag has the next coarser level, m, ascending.
     pub switch_distances: Vec<f32>,
 }
 
@@ -103,11 +103,11 @@ pub struct Levels {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Vehicle {
-    /// The glTF file that it looks like, below `assets/`. Forward is −z, the ground is y = 0.
+    /// Its glTF file, relative to `assets/`. Forward is −z, the ground is y = 0.
     pub model: String,
-    /// The way that it drives.
+    /// The path along which it drives.
     pub track: Route,
-    /// Where a flag pole stands on it, m, in the vehicle's frame.
+    /// Foot of its flag pole in the vehicle's frame, m.
     pub socket: Vec3,
 }
 
@@ -115,24 +115,24 @@ pub struct Vehicle {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Flag {
-    /// What its pole stands on.
+    /// The base of its pole.
     pub on: Footing,
     /// Height of the pole, m.
     pub pole: f32,
     /// Length along the wind and height along the pole, m.
     pub size: Vec2,
-    /// A material of the scene, or a preset.
+    /// Name of a material of the scene, or of a preset.
     pub material: String,
-    /// What is printed on it.
+    /// The printed design.
     #[serde(default)]
     pub design: Design,
 }
 
-/// What a flag pole stands on.
+/// The base of a flag pole.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Footing {
-    /// The ground, at a place in m.
+    /// A point on the ground, m.
     Ground {
         /// To the right of the scene's origin.
         x: f32,
@@ -143,7 +143,7 @@ pub enum Footing {
     Vehicle(String),
 }
 
-/// What is printed on a flag. Colours are red, green and blue from 0 to 255.
+/// A design printed on cloth. Colours are red, green and blue from 0 to 255.
 #[derive(Component, Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Design {
@@ -165,11 +165,11 @@ pub enum Design {
         /// Colour of the disc.
         disc: [u8; 3],
     },
-    /// Two colours in squares, so many along the pole.
+    /// Squares of two colours.
     Chequers {
         /// The two colours.
         colours: [[u8; 3]; 2],
-        /// Squares along the pole.
+        /// Number of squares along the pole.
         rows: u8,
     },
 }

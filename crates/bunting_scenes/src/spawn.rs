@@ -1,4 +1,4 @@
-//! From a scene to entities.
+//! Spawns the entities of a scene.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use bevy_transform::components::Transform;
 use crate::scene::{Flag, Footing, Scene};
 use crate::track::{LooksAt, Track};
 
-/// A flag pole. Its frame stands on its foot, y up; the flag is cut to fly along +x.
+/// A flag pole. The origin is its foot, y is up, and its flag flies along +x.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct Pole {
     /// Height, m.
@@ -21,19 +21,19 @@ impl Pole {
     /// Radius of every pole, m.
     pub const RADIUS: f32 = 0.04;
 
-    /// How far below a pole's top its flag begins, m.
+    /// Distance from the top of a pole to its flag, m.
     const FREE_TOP: f32 = 0.1;
 }
 
-/// Where the headwind of a vehicle blows to, in its frame.
-const ASTERN: Vec3 = Vec3::Z;
+/// Direction of a vehicle's headwind in its frame.
+const HEADWIND: Vec3 = Vec3::Z;
 
-/// The glTF file that an entity looks like, below `assets/`.
+/// The glTF file that draws an entity, relative to `assets/`.
 #[derive(Component, Clone, Debug, PartialEq, Eq)]
 pub struct Model(pub String);
 
-/// Spawns everything that a scene names. Cloths need [`ClothPlugins`], vehicles and the viewer
-/// [`follow_tracks`](crate::follow_tracks) to move.
+/// Spawns the wind, viewer, vehicles and flags of a scene. Cloths need [`ClothPlugins`] to move, vehicles
+/// and the viewer [`follow_tracks`](crate::follow_tracks).
 pub fn spawn(commands: &mut Commands, scene: &Scene) {
     for wind in &scene.winds {
         let field = WindField::steady(wind.velocity);
@@ -59,7 +59,7 @@ pub fn spawn(commands: &mut Commands, scene: &Scene) {
                 commands.spawn((Pole { height: flag.pole }, foot)).id()
             }
             Footing::Vehicle(name) => {
-                let foot = foot(scene.vehicles[name].socket, ASTERN);
+                let foot = foot(scene.vehicles[name].socket, HEADWIND);
                 commands
                     .spawn((Pole { height: flag.pole }, foot, ChildOf(vehicles[name.as_str()])))
                     .id()
@@ -69,9 +69,9 @@ pub fn spawn(commands: &mut Commands, scene: &Scene) {
     }
 }
 
-/// A pole's frame at a place, its flag to leeward.
-fn foot(place: Vec3, wind: Vec3) -> Transform {
-    Transform::from_translation(place).looking_to(Vec3::Y.cross(wind), Vec3::Y)
+/// The frame of a pole, so turned that its flag flies with the wind.
+fn foot(position: Vec3, wind: Vec3) -> Transform {
+    Transform::from_translation(position).looking_to(Vec3::Y.cross(wind), Vec3::Y)
 }
 
 fn cloth(flag: &Flag, pole: Entity, scene: &Scene) -> impl Bundle {

@@ -1,4 +1,4 @@
-//! Driving along a closed way at a constant speed.
+//! Motion along a closed path at a constant speed.
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
@@ -9,61 +9,64 @@ use bevy_transform::components::Transform;
 
 use crate::scene::Route;
 
-/// Pieces of a curve between two waypoints whose lengths are taken as those of their chords. Fewer:
-/// the speed wavers in bends.
-const PIECES: usize = 256;
+/// Chords between two waypoints whose lengths approximate the length of the curve. With fewer, the
+/// speed is not constant in bends.
+const CHORDS: usize = 256;
 
-/// Moves an entity along a closed way, −z ahead, as a function of time only.
+/// A closed path along which an entity moves, −z ahead: its pose is a function of time only.
 #[derive(Component, Clone, Debug)]
 pub struct Track {
     curve: CubicCurve<Vec3>,
-    /// Parameter of the curve at a length along it in m.
+    /// Parameter of the curve, over the length along it in m.
     parameter: UnevenSampleAutoCurve<f32>,
+    /// Length of the path, m.
     length: f64,
+    /// m/s.
     speed: f64,
+    /// Length along the path at time 0, m.
     start: f64,
 }
 
 impl Track {
-    /// The way that a route describes: a closed Catmull–Rom curve through its waypoints.
+    /// The path of a route: a closed Catmull–Rom curve through its waypoints.
     ///
     /// # Panics
     ///
-    /// If there are fewer than two waypoints, or some that are not finite; [`load`](crate::load)
-    /// reads no such scene.
+    /// If there are fewer than two waypoints, or some that are not finite: errors of
+    /// [`load`](crate::load).
     #[must_use]
     pub fn new(route: &Route) -> Self {
         let spline = CubicCardinalSpline::new_catmull_rom(route.waypoints.iter().copied());
-        let curve = spline.to_curve_cyclic().expect("a way has at least two waypoints");
-        let pieces = curve.segments().len() * PIECES;
+        let curve = spline.to_curve_cyclic().expect("a route has at least two waypoints");
+        let chords = curve.segments().len() * CHORDS;
         let mut length = 0.0;
         let mut before = curve.position(0.0);
-        let samples: Vec<(f32, f32)> = (0..=pieces)
-            .map(|piece| {
-                let parameter = piece as f32 / PIECES as f32;
+        let samples: Vec<(f32, f32)> = (0..=chords)
+            .map(|chord| {
+                let parameter = chord as f32 / CHORDS as f32;
                 let point = curve.position(parameter);
                 length += f64::from(point.distance(before));
                 before = point;
                 (length as f32, parameter)
             })
             .collect();
-        let parameter = UnevenSampleAutoCurve::new(samples).expect("a way has finite waypoints");
+        let parameter = UnevenSampleAutoCurve::new(samples).expect("a route has finite waypoints");
         Self { curve, parameter, length, speed: route.speed.into(), start: route.start.into() }
     }
 
-    /// Length of the way, m.
+    /// Length of the path, m.
     #[must_use]
     pub const fn length(&self) -> f64 {
         self.length
     }
 
-    /// Place and direction at a time in s.
+    /// The pose at a time in s.
     #[must_use]
     pub fn pose(&self, time: f64) -> Transform {
         self.pose_at(self.start + self.speed * time)
     }
 
-    /// Place and direction at a length along the way in m.
+    /// The pose at a length along the path in m.
     #[must_use]
     pub fn pose_at(&self, length: f64) -> Transform {
         let parameter = self.parameter.sample_clamped(length.rem_euclid(self.length) as f32);
@@ -72,17 +75,18 @@ impl Track {
     }
 }
 
-/// A point that an entity faces wherever its track leads it, m.
+/// The point that an entity on a track faces, m.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct LooksAt(pub Vec3);
 
-/// Puts everything on a track where it is at the time of the clock of the schedule: `FixedUpdate` for
-/// runs that are alike to the bit, `Update` for a smooth ride on screen.
+/// Moves the entities with a [`Track`] to their pose at the current time: of the fixed clock in
+/// `FixedUpdate`, for runs that are the same to the bit; of the virtual clock in `Update`, for smooth
+/// motion on screen.
 pub fn follow_tracks(
     time: Res<Time>,
-    mut travellers: Query<(&Track, Option<&LooksAt>, &mut Transform)>,
+    mut entities: Query<(&Track, Option<&LooksAt>, &mut Transform)>,
 ) {
-    for (track, looks_at, mut transform) in &mut travellers {
+    for (track, looks_at, mut transform) in &mut entities {
         let ahead = track.pose(time.elapsed_secs_f64());
         *transform = looks_at.map_or(ahead, |point| ahead.looking_at(point.0, Vec3::Y));
     }

@@ -1,4 +1,4 @@
-//! A scene becomes cloths that fly, on poles and vehicles that move.
+//! The flags of a scene stay attached to poles and moving vehicles.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use bunting_scenes::{Model, Pole, follow_tracks, load, spawn};
 /// Ticks of the run: two seconds.
 const TICKS: u32 = 128;
 
-/// How far a held vertex may be off its pole, m.
+/// Greatest distance of an attached vertex from its pole, m.
 const ATTACHED: f32 = 1e-4;
 
 fn run() -> App {
@@ -50,6 +50,6 @@ fn flags_fly_on_poles_and_vehicles() {
 }
 
 #[test]
-fn two_runs_are_alike_to_the_bit() {
+fn two_runs_are_the_same_to_the_bit() {
     assert_eq!(positions(&mut run()), positions(&mut run()));
 }

@@ -1,9 +1,9 @@
-//! What follows a track goes at a constant speed, nose ahead, and comes round.
+//! A track has a constant speed, faces forward, and is closed.
 
 use bevy_math::Vec3;
 use bunting_scenes::{Route, Track};
 
-/// Relative error of the speed: bends between the samples of a track.
+/// Relative error of the speed, from bends between the samples of a track.
 const SPEED_TOLERANCE: f32 = 0.01;
 
 fn oval() -> Route {
@@ -17,7 +17,7 @@ fn oval() -> Route {
 }
 
 #[test]
-fn speed_is_constant_and_the_nose_ahead() {
+fn the_speed_is_constant_and_forward() {
     let track = Track::new(&oval());
     let tick = 1.0 / 64.0;
     for step in 0..2000 {
@@ -30,7 +30,7 @@ fn speed_is_constant_and_the_nose_ahead() {
 }
 
 #[test]
-fn the_way_is_closed() {
+fn the_path_is_closed() {
     let track = Track::new(&oval());
     let round = track.length() / 20.0;
     let (start, back) = (track.pose(0.0), track.pose(round));

@@ -77,8 +77,7 @@ pub use batch::snapshot::ClothSnapshot;
 pub use batch::{BatchError, ClothBatch, LaneSurface, ParticlesMut};
 pub use contact::collider::Collider;
 pub use fabric::{
-    BendLine, BendProfile, Coarser, Colours, Fabric, FabricBuilder, FabricError, FabricMaterial,
-    Grid, Hinge, HingeClass, Link, LinkClass, LinkFamily, Tether, Yarn,
+    CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link, LinkFamily,
 };
 pub use simd::level::{instruction_set, with_every_instruction_set};
 pub use step::frame::FrameMotion;

@@ -1,15 +1,15 @@
-//! How far the surface of a level may lie from the cloth.
+//! The geometric error of a level.
 
 use bunting_solver::Fabric;
 
-/// Error of a level over the distance between its particles. Flags of 33 × 33 in 6 m/s of gusty wind,
-/// shown by the particles of a coarser level and the triangles between them: 95 % of all vertices
-/// are off by less than 0.27 of the coarser distance at 17 × 17, 0.30 at 9 × 9 and 0.29 at 5 × 5.
-/// (`bunting_lab lod`, table "shown by the vertices of a coarser level".) That it hardly depends on
-/// the level says that cloth in the wind folds at every size.
+/// Error of a level divided by the distance between its particles. Flags of 33 × 33 in 6 m/s of gusty
+/// wind, shown by the particles of a coarser level and the triangles between them: 95 % of all vertices
+/// are off by less than 0.27 of the coarser distance at 17 × 17, 0.30 at 9 × 9 and 0.29 at 5 × 5
+/// (`bunting_lab lod`, table "shown by the vertices of a coarser level"). The ratio hardly depends on the
+/// level, as cloth in the wind has folds of every size.
 const ERROR_OVER_SPACING: f32 = 0.25;
 
-/// Estimated error of a fabric, m.
+/// Estimated distance of a level's surface from the cloth that it approximates, m.
 pub(crate) fn level_error(fabric: &Fabric) -> f32 {
     let rest = fabric.rest_positions();
     let area: f32 = fabric
@@ -20,6 +20,6 @@ pub(crate) fn level_error(fabric: &Fabric) -> f32 {
             0.5 * (b - a).cross(c - a).length()
         })
         .sum();
-    // Two triangles are a cell.
+    // Two triangles make a square cell, whose side is the distance between particles.
     ERROR_OVER_SPACING * (2.0 * area / fabric.triangles().len() as f32).sqrt()
 }

@@ -1,32 +1,33 @@
-//! The choice of levels, on invented cloths.
+//! The choice of levels of invented cloths.
 
 use super::*;
+use crate::lod::batch_costs::BatchCosts;
 
 const LIMITS: Limits =
     Limits { budget: 1000.0, refine_above: 1.0, coarsen_below: 0.5, switches: usize::MAX };
 
 /// Four levels, each four times the cost and half the error of the next coarser one.
-fn kind() -> Kind {
+fn table() -> LevelTable {
     let costs = [400.0, 100.0, 25.0, 6.25].map(|sixteen: f32| BatchCosts {
         one: 0.4 * sixteen,
         eight: 0.6 * sixteen,
         sixteen: Some(sixteen),
-        alone: 1,
-        each: 0.0,
+        most_single: 1,
+        per_cloth: 0.0,
         change: 0.0,
     });
-    Kind { errors: vec![0.001, 0.01, 0.02, 0.04], costs: costs.to_vec() }
+    LevelTable { errors: vec![0.001, 0.01, 0.02, 0.04], costs: costs.to_vec() }
 }
 
-fn cloth(level: u32, scale: f32) -> Candidate {
+fn cloth(level: u32, pixels_per_metre: f32) -> Candidate {
     Candidate {
-        kind: 0,
+        table: 0,
         level,
-        scale,
-        weight: scale * scale,
+        pixels_per_metre,
+        importance: pixels_per_metre * pixels_per_metre,
         ready: true,
         fixed: false,
-        seen: true,
+        on_screen: true,
     }
 }
 
@@ -35,7 +36,7 @@ fn settle(cloths: &mut [Candidate], limits: &Limits) -> Choice {
     let mut governor = Governor::default();
     let mut last = Choice::default();
     for _ in 0..200 {
-        last = governor.choose(&[kind()], cloths, limits).clone();
+        last = governor.choose(&[table()], cloths, limits).clone();
         assert!(last.switches.len() <= limits.switches);
         for &(cloth, to) in &last.switches {
             cloths[cloth].level = to as u32;
@@ -50,21 +51,7 @@ fn levels(cloths: &[Candidate]) -> Vec<u32> {
 }
 
 #[test]
-fn a_part_filled_batch_costs_a_full_one() {
-    let costs =
-        BatchCosts { one: 1.0, eight: 3.0, sixteen: Some(5.0), alone: 1, each: 0.5, change: 0.0 };
-    let expected = [0.0, 1.5, 4.0, 7.0, 9.5, 13.0, 14.5];
-    assert_eq!([0, 1, 2, 8, 9, 16, 17].map(|count| costs.of(count)), expected);
-    let narrow = BatchCosts { sixteen: None, ..costs };
-    assert_eq!([8, 9, 16].map(|count| narrow.of(count)), [7.0, 8.5, 14.0]);
-    let woven = BatchCosts { alone: 3, ..costs };
-    let counts = [1, 2, 3, 4, 8, 9, 10, 11, 16, 17, 19];
-    let each = counts.map(|count| woven.of(count));
-    assert_eq!(each, [1.5, 3.0, 4.5, 5.0, 7.0, 8.5, 10.0, 10.5, 13.0, 14.5, 17.5]);
-}
-
-#[test]
-fn with_time_to_spare_each_gets_what_it_wants() {
+fn with_time_to_spare_each_cloth_has_its_wanted_level() {
     // 0.02 m are 1.2 px, 0.01 m are 0.6 px: no coarser than the second level.
     let mut cloths = [cloth(3, 60.0), cloth(3, 10.0), cloth(0, 10.0), cloth(3, 2000.0)];
     let choice = settle(&mut cloths, &LIMITS);
@@ -102,7 +89,7 @@ fn the_sum_of_costs_stays_within_the_budget_and_the_nearest_gain() {
 }
 
 #[test]
-fn free_lanes_go_to_the_next_in_line() {
+fn free_lanes_are_used_by_the_next_cloths() {
     // Room for one batch of the finest, and all want it.
     let mut cloths: Vec<Candidate> = (0..40).map(|index| cloth(3, 2000.0 - index as f32)).collect();
     let limits = Limits { budget: 720.0, ..LIMITS };
@@ -122,9 +109,9 @@ fn over_the_budget_cloths_become_coarser_at_once() {
 }
 
 #[test]
-fn there_is_room_for_changes() {
-    let mut kind = kind();
-    for (costs, change) in kind.costs.iter_mut().zip([200.0, 50.0, 10.0, 0.0]) {
+fn levels_leave_room_for_changes() {
+    let mut table = table();
+    for (costs, change) in table.costs.iter_mut().zip([200.0, 50.0, 10.0, 0.0]) {
         costs.change = change;
     }
     let limits = Limits { switches: 1, ..LIMITS };
@@ -133,8 +120,8 @@ fn there_is_room_for_changes() {
     let mut changes = 0;
     for tick in 0..400 {
         // The one that counts most is another all the time.
-        cloths[tick / 20].scale = 2000.0;
-        let choice = governor.choose(core::slice::from_ref(&kind), &cloths, &limits).clone();
+        cloths[tick / 20].pixels_per_metre = 2000.0;
+        let choice = governor.choose(core::slice::from_ref(&table), &cloths, &limits).clone();
         assert!(choice.cost <= limits.budget, "{} in tick {tick}", choice.cost);
         for &(cloth, to) in &choice.switches {
             changes += usize::from(to == 0);
@@ -145,12 +132,12 @@ fn there_is_room_for_changes() {
 }
 
 #[test]
-fn what_nobody_sees_changes_in_turns_of_its_own() {
+fn cloths_on_no_screen_have_a_number_of_changes_of_their_own() {
     let unseen = |index: usize| index.is_multiple_of(2);
     let cloths: Vec<Candidate> =
-        (0..8).map(|index| Candidate { seen: !unseen(index), ..cloth(0, 1.0) }).collect();
+        (0..8).map(|index| Candidate { on_screen: !unseen(index), ..cloth(0, 1.0) }).collect();
     let limits = Limits { switches: 2, ..LIMITS };
-    let choice = Governor::default().choose(&[kind()], &cloths, &limits).clone();
+    let choice = Governor::default().choose(&[table()], &cloths, &limits).clone();
     let (of_unseen, of_seen): (Vec<usize>, Vec<usize>) =
         choice.switches.iter().map(|&(index, _)| index).partition(|&index| unseen(index));
     assert_eq!((of_unseen, of_seen), (vec![0, 2], vec![1, 3]));
@@ -167,7 +154,7 @@ fn within_the_budget_the_dwell_is_kept() {
 }
 
 #[test]
-fn cloths_at_levels_of_their_own_cost_but_do_not_move() {
+fn cloths_at_fixed_levels_cost_but_do_not_change() {
     let own = Candidate { fixed: true, ..cloth(0, 1.0) };
     let mut cloths = vec![own; 32];
     cloths.push(cloth(3, 2000.0));
@@ -178,16 +165,17 @@ fn cloths_at_levels_of_their_own_cost_but_do_not_move() {
 }
 
 #[test]
-fn costs_that_waver_change_nothing() {
+fn fluctuating_costs_change_nothing() {
     let mut cloths: Vec<Candidate> = (0..100).map(|index| cloth(3, 900.0 - index as f32)).collect();
     settle(&mut cloths, &LIMITS);
     let mut governor = Governor::default();
     for wave in [0.99, 1.01, 0.98, 1.0] {
-        let mut kind = kind();
-        kind.costs
+        let mut table = table();
+        table
+            .costs
             .iter_mut()
             .for_each(|costs| costs.sixteen = costs.sixteen.map(|cost| wave * cost));
-        assert_eq!(governor.choose(&[kind], &cloths, &LIMITS).switches, [], "{wave}");
+        assert_eq!(governor.choose(&[table], &cloths, &LIMITS).switches, [], "{wave}");
     }
 }
 

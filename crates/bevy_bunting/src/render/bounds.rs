@@ -1,15 +1,15 @@
-//! Keeps cloth from being culled while it could be seen.
+//! The bounding boxes of cloths, so that they are not culled while they could be seen.
 
 use bevy_camera::primitives::Aabb;
 use bevy_camera::visibility::NoAutoAabb;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3A;
 
-use super::dress::LevelMeshes;
-use crate::easing::ClothEasing;
-use crate::state::ClothState;
+use crate::cloth::state::ClothState;
+use crate::display::easing::ClothEasing;
+use crate::render::level_meshes::LevelMeshes;
 
-type Bounded = (
+type BoundedCloth = (
     &'static ClothState,
     Option<&'static ClothEasing>,
     Option<&'static LevelMeshes>,
@@ -17,10 +17,10 @@ type Bounded = (
 );
 type IsStale = Or<(Changed<ClothState>, Changed<ClothEasing>, Changed<LevelMeshes>)>;
 
-/// Bounds everything between the last two ticks, for cloths that are visible and for those that
-/// may come into view.
-pub fn bound_cloths(mut cloths: Query<Bounded, (With<NoAutoAabb>, IsStale)>) {
-    for (state, easing, dress, mut bounds) in &mut cloths {
+/// Bounds the surfaces before and after the last tick, between which the shown one lies, and the rigid
+/// part; of visible cloths and of those that may come into view.
+pub fn bound_cloths(mut cloths: Query<BoundedCloth, (With<NoAutoAabb>, IsStale)>) {
+    for (state, easing, level_meshes, mut bounds) in &mut cloths {
         let [from, to] = match easing {
             Some(easing) if easing.level().is_some() => {
                 [&*easing.previous_positions, &*easing.positions]
@@ -28,7 +28,7 @@ pub fn bound_cloths(mut cloths: Query<Bounded, (With<NoAutoAabb>, IsStale)>) {
             _ => [state.previous_positions(), state.positions()],
         };
         let particles = from.iter().chain(to);
-        let rigid = dress.and_then(|dress| dress.levels.rigid().bounds.as_ref());
+        let rigid = level_meshes.and_then(|it| it.levels.rigid().bounds.as_ref());
         let (low, high) = particles
             .chain(rigid.into_iter().flatten())
             .map(|&position| Vec3A::from(position))

@@ -1,4 +1,4 @@
-//! Gizmos that show what a cloth does.
+//! Gizmos: attachments, strain, wind and levels of detail of cloths.
 
 use bevy_app::{App, Plugin, PostUpdate};
 use bevy_camera::visibility::{ViewVisibility, VisibilitySystems};
@@ -15,24 +15,24 @@ use bevy_transform::TransformSystems;
 use bevy_transform::components::GlobalTransform;
 use bunting_solver::LinkFamily;
 
-use crate::state::ClothState;
-use crate::surface::ClothSurface;
-use crate::wind::TickWind;
+use crate::cloth::state::ClothState;
+use crate::display::surface::ClothSurface;
+use crate::environment::wind::TickWind;
 
 /// Half the size of the cross on an attached particle, m.
 const CROSS: f32 = 0.02;
 
-/// Strain that is drawn in full colour.
+/// Absolute strain from which on links are drawn in full colour.
 const FULL_STRAIN: f32 = 0.01;
 
-/// Time in which the wind covers the length of its arrow, s.
+/// Time in which the air moves by the length of its arrow, s.
 const ARROW_TIME: f32 = 0.1;
 
 /// Colours of the levels of detail, the finest first; the last holds for all coarser ones.
 const LEVEL_COLOURS: [Srgba; 4] = [LIME, YELLOW, ORANGE, RED];
 
-/// What to draw of cloths: as a group in Bevy's `GizmoConfigStore`, of all; as a component, of one
-/// cloth instead. By default nothing is drawn.
+/// The gizmos to draw: as a group in Bevy's `GizmoConfigStore`, of all cloths; as a component, of one
+/// cloth, whatever the group says. By default no gizmos are drawn.
 #[derive(Component, GizmoConfigGroup, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothGizmos {
@@ -41,7 +41,7 @@ pub struct ClothGizmos {
     /// Distance constraints by strain: blue where shorter by 1 % or more, white at rest length, red
     /// where longer by 1 % or more.
     pub strain: bool,
-    /// An arrow from the middle of the cloth, as long as the way of the wind in 0.1 s.
+    /// An arrow from the middle of the cloth, as long as the air moves in 0.1 s.
     pub wind: bool,
     /// Warp and weft in the colour of the level of detail: green is the finest, then yellow, orange
     /// and red.
@@ -49,12 +49,12 @@ pub struct ClothGizmos {
 }
 
 impl ClothGizmos {
-    /// Everything.
+    /// All gizmos.
     pub const ALL: Self = Self { attachments: true, strain: true, wind: true, levels: true };
 }
 
 /// Draws [`ClothGizmos`] of visible cloths. Needs Bevy's `GizmoPlugin`, and
-/// [`ClothRenderPlugin`](super::ClothRenderPlugin).
+/// [`ClothRenderPlugin`](crate::ClothRenderPlugin).
 #[derive(Debug, Default)]
 pub struct ClothDebugPlugin;
 
@@ -69,7 +69,7 @@ impl Plugin for ClothDebugPlugin {
     }
 }
 
-type Drawn = (
+type DrawnCloth = (
     &'static ClothState,
     &'static ClothSurface,
     &'static GlobalTransform,
@@ -77,41 +77,45 @@ type Drawn = (
     Option<&'static ClothGizmos>,
 );
 
-fn draw_cloths(cloths: Query<Drawn>, wind: Option<Res<TickWind>>, mut gizmos: Gizmos<ClothGizmos>) {
+fn draw_cloths(
+    cloths: Query<DrawnCloth>,
+    wind: Option<Res<TickWind>>,
+    mut gizmos: Gizmos<ClothGizmos>,
+) {
     for (state, surface, frame, visibility, own) in &cloths {
-        let what = *own.unwrap_or(gizmos.config_ext);
+        let drawn = *own.unwrap_or(gizmos.config_ext);
         let Some(fabric) = state.fabric() else { continue };
         if !visibility.get() || surface.positions.len() != fabric.particle_count() {
             continue;
         }
         let position = |particle: usize| frame.transform_point(surface.positions[particle]);
-        if what.levels {
+        if drawn.levels {
             let colour = LEVEL_COLOURS[state.level().min(LEVEL_COLOURS.len() - 1)];
-            for link in fabric.links().iter().filter(|link| link.family != LinkFamily::Bias) {
+            for link in fabric.links().iter().filter(|link| link.family != LinkFamily::Diagonal) {
                 let [from, to] = link.particles.map(|particle| position(particle as usize));
                 gizmos.line(from, to, colour);
             }
         }
-        if what.strain {
+        if drawn.strain {
             for link in fabric.links() {
                 let [from, to] = link.particles.map(|particle| position(particle as usize));
                 let strain = from.distance(to) / link.rest_length - 1.0;
                 gizmos.line(from, to, strain_colour(strain));
             }
         }
-        if what.attachments {
+        if drawn.attachments {
             for particle in (0..fabric.particle_count()).filter(|&each| fabric.is_pinned(each)) {
                 gizmos.cross(Isometry3d::from_translation(position(particle)), CROSS, MAGENTA);
             }
         }
-        if let (true, Some(wind)) = (what.wind, &wind) {
+        if let (true, Some(wind)) = (drawn.wind, &wind) {
             let middle = position(fabric.particle_count() / 2);
             gizmos.arrow(middle, middle + ARROW_TIME * wind.0, AQUA);
         }
     }
 }
 
-/// Blue, white or red, and what lies between.
+/// Colour of a strain: blue if compressed, white at rest, red if stretched, and mixtures.
 fn strain_colour(strain: f32) -> Srgba {
     let full = if strain < 0.0 { BLUE } else { RED };
     WHITE.mix(&full, (strain.abs() / FULL_STRAIN).min(1.0))

@@ -1,24 +1,24 @@
-//! Tangents: where u grows on the surface, for normal maps.
+//! Tangents of meshes, along which u grows, for normal maps.
 
 use bevy_math::{Vec2, Vec3, Vec4};
 use bevy_mesh::{Mesh, VertexAttributeValues};
 
-/// Where tangents are added up, kept from frame to frame.
+/// Sums of tangents, one a vertex; the memory is kept from frame to frame.
 #[derive(Debug, Default)]
-pub struct TangentScratch {
+pub struct TangentSums {
     sums: Vec<Vec3>,
 }
 
-impl TangentScratch {
-    /// Writes the tangents of a mesh that has any, from its positions, normals and texture
-    /// coordinates. The side of the bitangent, which no fold changes, stays as it is.
+impl TangentSums {
+    /// Computes the tangents of a mesh that has any, from its positions, normals and texture coordinates.
+    /// The sign of the bitangent does not depend on the shape and stays as it is.
     pub fn write_tangents(&mut self, mesh: &mut Mesh) {
         if mesh.contains_attribute(Mesh::ATTRIBUTE_TANGENT) && self.add_up(mesh).is_some() {
             self.write_sums(mesh);
         }
     }
 
-    /// Adds each triangle's tangent to its corners, weighted by its area in the texture.
+    /// Adds to each corner of a triangle the triangle's tangent, weighted by its area in the texture.
     fn add_up(&mut self, mesh: &Mesh) -> Option<()> {
         use VertexAttributeValues::{Float32x2, Float32x3};
 
@@ -41,7 +41,7 @@ impl TangentScratch {
         Some(())
     }
 
-    /// Writes what was added up, at right angles to the normals.
+    /// Writes the sums, made perpendicular to the normals and of unit length.
     fn write_sums(&self, mesh: &mut Mesh) {
         use VertexAttributeValues::{Float32x3, Float32x4};
 

@@ -8,14 +8,15 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
 
-use super::dress::{LevelMeshes, MeshOrigin, check};
-use super::tangents::TangentScratch;
-use crate::error::{ClothError, ClothFailed};
-use crate::levels::ClothLevels;
-use crate::state::ClothState;
-use crate::surface::ClothSurface;
+use crate::cloth::error::ClothError;
+use crate::cloth::events::ClothFailed;
+use crate::cloth::state::ClothState;
+use crate::display::surface::ClothSurface;
+use crate::fabric::levels::ClothLevels;
+use crate::render::level_meshes::{LevelMeshes, MeshOrigin, check_mesh};
+use crate::render::tangents::TangentSums;
 
-type Shown = (
+type WrittenCloth = (
     Entity,
     &'static ClothState,
     &'static ClothSurface,
@@ -24,101 +25,111 @@ type Shown = (
     &'static mut Mesh3d,
 );
 
-/// Writes the meshes of cloths that were visible in the last frame, in time for Bevy to note it.
+/// Writes the meshes of cloths that were visible in the last frame, early enough that Bevy finds them
+/// changed in this one.
 pub fn write_visible(
-    mut cloths: Query<Shown>,
+    mut cloths: Query<WrittenCloth>,
     mut meshes: ResMut<Assets<Mesh>>,
-    mut scratch: Local<TangentScratch>,
+    mut tangents: Local<TangentSums>,
     mut commands: Commands,
 ) {
-    for (entity, state, surface, visibility, mut dress, worn) in &mut cloths {
-        let Some(levels) = shows(state, surface, visibility, &dress) else { continue };
-        let Some(mut mesh) = meshes.get_mut(worn.id()) else { continue };
-        match write(entity, mesh.bypass_change_detection(), &levels, surface, &mut scratch) {
+    for (entity, state, surface, visibility, mut level_meshes, shown) in &mut cloths {
+        let levels = levels_to_write(state, surface, visibility, &level_meshes);
+        let Some(levels) = levels else { continue };
+        let Some(mut mesh) = meshes.get_mut(shown.id()) else { continue };
+        match write(entity, mesh.bypass_change_detection(), &levels, surface, &mut tangents) {
             Ok(true) => {
                 mesh.into_inner();
             }
             Ok(false) => {}
-            Err(error) => refuse(&mut dress, error, &mut commands, entity),
+            Err(error) => refuse(&mut level_meshes, error, &mut commands, entity),
         }
     }
 }
 
-/// Writes the meshes of cloths that come into view in this frame. Bevy has looked for changed
-/// assets by then, and is told here.
-pub fn write_revealed(
-    mut cloths: Query<Shown, Changed<ViewVisibility>>,
+/// Writes the meshes of cloths that come into view in this frame. Bevy has looked for changed assets by
+/// then, so that the change is sent as an event.
+pub fn write_newly_visible(
+    mut cloths: Query<WrittenCloth, Changed<ViewVisibility>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut events: MessageWriter<AssetEvent<Mesh>>,
-    mut scratch: Local<TangentScratch>,
+    mut tangents: Local<TangentSums>,
     mut commands: Commands,
 ) {
-    for (entity, state, surface, visibility, mut dress, mut worn) in &mut cloths {
-        let Some(levels) = shows(state, surface, visibility, &dress) else { continue };
-        let Some(mesh) = meshes.get_mut_untracked(worn.id()) else { continue };
-        match write(entity, mesh, &levels, surface, &mut scratch) {
+    for (entity, state, surface, visibility, mut level_meshes, mut shown) in &mut cloths {
+        let levels = levels_to_write(state, surface, visibility, &level_meshes);
+        let Some(levels) = levels else { continue };
+        let Some(mesh) = meshes.get_mut_untracked(shown.id()) else { continue };
+        match write(entity, mesh, &levels, surface, &mut tangents) {
             Ok(true) => {
-                events.write(AssetEvent::Modified { id: worn.id() });
-                worn.set_changed();
+                events.write(AssetEvent::Modified { id: shown.id() });
+                shown.set_changed();
             }
             Ok(false) => {}
-            Err(error) => refuse(&mut dress, error, &mut commands, entity),
+            Err(error) => refuse(&mut level_meshes, error, &mut commands, entity),
         }
     }
 }
 
-/// The levels of a cloth that is to be seen, with a surface and a mesh that fit.
-fn shows(
+/// The levels of a cloth that is visible and has a surface and a mesh that fit them.
+fn levels_to_write(
     state: &ClothState,
     surface: &ClothSurface,
     visibility: &ViewVisibility,
-    dress: &LevelMeshes,
+    level_meshes: &LevelMeshes,
 ) -> Option<Arc<ClothLevels>> {
     state.fabric()?;
-    let fits = surface.positions.len() == dress.levels.fabric(surface.level()).particle_count();
-    let shows = visibility.get() && fits && dress.origin != MeshOrigin::Refused;
-    shows.then(|| Arc::clone(&dress.levels))
+    let levels = &level_meshes.levels;
+    let fits = surface.positions.len() == levels.fabric(surface.level()).particle_count();
+    let is_written = visibility.get() && fits && level_meshes.origin != MeshOrigin::Refused;
+    is_written.then(|| Arc::clone(levels))
 }
 
-fn refuse(dress: &mut LevelMeshes, error: ClothError, commands: &mut Commands, entity: Entity) {
-    dress.origin = MeshOrigin::Refused;
+fn refuse(
+    level_meshes: &mut LevelMeshes,
+    error: ClothError,
+    commands: &mut Commands,
+    entity: Entity,
+) {
+    level_meshes.origin = MeshOrigin::Refused;
     ClothFailed::report(commands, entity, error);
 }
 
-/// Writes a surface into a mesh. Whether the mesh has changed.
+/// Writes the positions and normals of a surface into a mesh, and tangents if it has any. Returns whether
+/// the mesh has changed.
 fn write(
     entity: Entity,
     mesh: &mut Mesh,
     levels: &ClothLevels,
     surface: &ClothSurface,
-    scratch: &mut TangentScratch,
+    tangents: &mut TangentSums,
 ) -> Result<bool, ClothError> {
-    let (fabric, parts) = (levels.fabric(surface.level()), levels.mesh(surface.level()));
-    check(entity, mesh, parts.vertex_count())?;
-    let places = || parts.simulated.iter().zip(fabric.particle_of_vertex());
+    let (fabric, topology) = (levels.fabric(surface.level()), levels.topology(surface.level()));
+    check_mesh(entity, mesh, topology.vertex_count())?;
+    let vertices = || topology.simulated.iter().zip(fabric.particle_of_vertex());
     let mut changed = false;
     for (attribute, source) in
         [(Mesh::ATTRIBUTE_POSITION, &surface.positions), (Mesh::ATTRIBUTE_NORMAL, &surface.normals)]
     {
         if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(attribute) {
-            changed |= spread(source, places(), values);
+            changed |= copy_to_vertices(source, vertices(), values);
         }
     }
     if changed {
-        scratch.write_tangents(mesh);
+        tangents.write_tangents(mesh);
     }
     Ok(changed)
 }
 
-/// Gives each vertex the value of its particle. Whether any has changed.
-fn spread<'a>(
+/// Copies values of particles to vertices, given as pairs of indices. Returns whether any has changed.
+fn copy_to_vertices<'a>(
     source: &[Vec3],
-    places: impl Iterator<Item = (&'a u32, &'a u32)>,
+    vertices: impl Iterator<Item = (&'a u32, &'a u32)>,
     values: &mut [[f32; 3]],
 ) -> bool {
     let mut changed = false;
-    for (&place, &particle) in places {
-        let (value, new) = (&mut values[place as usize], source[particle as usize].to_array());
+    for (&vertex, &particle) in vertices {
+        let (value, new) = (&mut values[vertex as usize], source[particle as usize].to_array());
         changed |= *value != new;
         *value = new;
     }

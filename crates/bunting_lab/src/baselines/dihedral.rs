@@ -54,14 +54,14 @@ impl Hinge {
         let q2 = -(p3.cross(n2) + n1.cross(p3) * cosine) / size3
             - (p4.cross(n1) + n2.cross(p4) * cosine) / size4;
         let gradients = [-q2 - q3 - q4, q2, q3, q4];
-        let weights = self.vertices.map(|v| inverse_masses[v]);
+        let inverse = self.vertices.map(|v| inverse_masses[v]);
         let mobility: f32 =
-            gradients.iter().zip(weights).map(|(q, w)| w * q.length_squared()).sum();
+            gradients.iter().zip(inverse).map(|(q, w)| w * q.length_squared()).sum();
         if mobility == 0.0 {
             return;
         }
         let scale = stiffness * sine * (cosine.acos() - std::f32::consts::PI) / mobility;
-        for ((v, q), w) in self.vertices.into_iter().zip(gradients).zip(weights) {
+        for ((v, q), w) in self.vertices.into_iter().zip(gradients).zip(inverse) {
             positions[v] -= q * (w * scale);
         }
     }

@@ -2,7 +2,7 @@
 //! itself, so that what pulls at one end is felt at the other after a few sweeps.
 //!
 //! From the paper: each level keeps some vertices of the finer one, with their masses; the levels are
-//! visited once in a substep, the coarsest first; links of coarse levels resist stretch only, for
+//! solved once in a substep, the coarsest first; links of coarse levels resist stretch only, for
 //! compressed they would take the wrinkles out of the cloth; and a vertex that a level lacks is moved
 //! by what its parents there have moved since the prediction, weighted by one over their distances at
 //! rest.
@@ -14,10 +14,10 @@
 use glam::Vec3;
 
 use super::{
-    Stepper,
     pbd::{Bending, Pbd},
     projection::project,
     sheet::{Link, Sheet},
+    stepper::Stepper,
 };
 use crate::scenes::Scene;
 
@@ -39,11 +39,11 @@ pub struct Hpbd {
 #[derive(Clone, Debug)]
 struct Level {
     links: Vec<Link>,
-    /// Vertices that the next finer level has more, each with its parents in this level.
+    /// Vertices that only the next finer level has, each with its parents in this level.
     children: Vec<(usize, Parents)>,
 }
 
-/// Four vertices, each of weight one quarter: between two vertices both are in twice.
+/// Four vertices whose displacements are averaged. A vertex between two parents has each of them twice.
 type Parents = [usize; 4];
 
 impl Hpbd {

@@ -13,7 +13,7 @@ use faer::{
 };
 use glam::{Mat3, Vec3};
 
-use super::{Stepper, sheet::Sheet};
+use super::{sheet::Sheet, stepper::Stepper};
 
 /// A mass-spring cloth under implicit Euler.
 #[derive(Debug)]

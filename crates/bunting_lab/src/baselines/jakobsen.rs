@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 
-use super::{Stepper, sheet::Sheet};
+use super::{sheet::Sheet, stepper::Stepper};
 
 /// A cloth of sticks; it has no bending.
 #[derive(Clone, Debug)]

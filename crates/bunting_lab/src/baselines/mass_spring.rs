@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::{Stepper, sheet::Sheet};
+use super::{sheet::Sheet, stepper::Stepper};
 
 /// Whether positions move with the velocities from before or after the forces acted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

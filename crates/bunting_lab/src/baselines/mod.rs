@@ -11,6 +11,7 @@ pub mod mass_spring;
 pub mod pbd;
 pub mod projection;
 pub mod sheet;
+mod stepper;
 pub mod xpbd;
 
 use std::fmt;
@@ -22,6 +23,7 @@ use jakobsen::Jakobsen;
 use mass_spring::{MassSpring, Order};
 use pbd::{Bending, Pbd};
 use sheet::Sheet;
+use stepper::Stepper;
 use xpbd::Xpbd;
 
 use crate::{
@@ -103,12 +105,6 @@ impl Baseline {
         };
         Box::new(Stepped { sheet, stepper, substeps: self.substeps })
     }
-}
-
-/// One substep of a method.
-trait Stepper {
-    /// Advances the sheet by `h` seconds.
-    fn substep(&mut self, sheet: &mut Sheet, h: f32);
 }
 
 /// A sheet advanced by a method.

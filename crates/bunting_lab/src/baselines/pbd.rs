@@ -5,10 +5,10 @@
 use glam::Vec3;
 
 use super::{
-    Stepper,
     dihedral::{Hinge, hinges},
     projection::project,
     sheet::{Link, Sheet},
+    stepper::Stepper,
 };
 
 /// Part of a bending error that one projection removes. The method has no physical bending stiffness:

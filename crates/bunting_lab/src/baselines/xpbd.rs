@@ -4,8 +4,8 @@
 use glam::Vec3;
 
 use super::{
-    Stepper,
     sheet::{Sheet, Stencil},
+    stepper::Stepper,
 };
 
 /// A cloth under XPBD.

@@ -11,11 +11,12 @@
 //!
 //! All are of a full batch of the widest lanes, per cloth.
 
-use bunting_solver::{LaneCount, Scheme, StepSettings};
+use bunting_solver::{Link, LinkFamily, Scheme, StepSettings};
 use serde::Serialize;
 
-use super::Effort;
+use super::phases::full_batch;
 use crate::{
+    effort::Effort,
     fleet::Fleet,
     product::TICK,
     scenes::{Air, Scene},
@@ -51,21 +52,20 @@ pub fn measure(effort: &Effort) -> Kernels {
 }
 
 fn flags(scene: Scene, settings: StepSettings, effort: &Effort) -> Fleet {
-    let mut fleet = Fleet::new(scene, lanes(), settings);
+    let mut fleet = Fleet::new(scene, full_batch(), settings);
     fleet.advance(effort.warm_up);
     fleet
-}
-
-fn lanes() -> usize {
-    LaneCount::holding(usize::MAX).get()
 }
 
 fn ns_per_constraint(settings: StepSettings, effort: &Effort) -> f64 {
     let mut fleet = flags(Scene::flag(SIZE), settings, effort);
     let fabric = fleet.fabric();
     let projections = match settings.scheme {
-        Scheme::GaussSeidel => 2 * (fabric.links().len() + fabric.hinges().len()),
-        Scheme::Yarns => 3 * fabric.stretch_link_count(),
+        Scheme::GaussSeidel => 2 * (fabric.links().len() + fabric.hinge_count()),
+        Scheme::Yarns => {
+            let diagonal = |link: &&Link| link.family == LinkFamily::Diagonal;
+            3 * (fabric.links().len() - fabric.links().iter().filter(diagonal).count())
+        }
     };
     let mut times: [Timing; PASSES.len()] = Default::default();
     // In turn, so that both see the same machine.
@@ -82,7 +82,7 @@ fn ns_per_constraint(settings: StepSettings, effort: &Effort) -> f64 {
         }
     }
     let [few, many] = times.map(|time| time.median());
-    (many - few) * 1e3 / (projections * lanes()) as f64
+    (many - few) * 1e3 / (projections * full_batch()) as f64
 }
 
 fn ns_per_wind_triangle(settings: StepSettings, effort: &Effort) -> f64 {
@@ -105,5 +105,5 @@ fn ns_per_wind_triangle(settings: StepSettings, effort: &Effort) -> f64 {
         }
     }
     let [with_air, without] = times.map(|time| time.median());
-    (with_air - without) * 1e3 / (triangles * lanes()) as f64
+    (with_air - without) * 1e3 / (triangles * full_batch()) as f64
 }

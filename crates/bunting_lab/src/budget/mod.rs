@@ -1,61 +1,12 @@
 //! What cloth costs: many flags at once, the phases of a tick, single kernels, and a field of a
 //! thousand flags under levels of detail.
 
+pub mod distance;
 pub mod kernels;
+pub mod many_flags;
+pub mod parts;
 pub mod phases;
-pub mod sheets;
+pub mod plots;
+pub mod tables;
+pub mod thesis;
 pub mod thousand;
-
-use bunting_solver::{Scheme, StepSettings};
-
-use crate::product::DEFAULT;
-
-/// Vertices along each side of a flag, at each level of detail.
-pub const LEVELS: [u32; 4] = [33, 17, 9, 5];
-
-/// How finely each scheme is solved where time is measured: the settings that the solver proposes.
-#[must_use]
-pub fn schemes() -> [StepSettings; 2] {
-    [DEFAULT, StepSettings::gauss_seidel(10)]
-}
-
-/// Name of a scheme in tables and in JSON.
-#[must_use]
-pub fn scheme_name(settings: StepSettings) -> &'static str {
-    match settings.scheme {
-        Scheme::GaussSeidel => "gauss_seidel",
-        Scheme::Yarns => "yarns",
-    }
-}
-
-/// How long measuring may take.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Effort {
-    /// Ticks that each flag flies before time is taken.
-    pub warm_up: usize,
-    /// Fewest ticks that are timed.
-    pub least_ticks: usize,
-    /// Time in seconds to go on timing for.
-    pub seconds: f64,
-    /// Most flags at once.
-    pub most_cloths: usize,
-}
-
-impl Effort {
-    /// A few seconds in all.
-    pub const QUICK: Self = Self { warm_up: 10, least_ticks: 10, seconds: 0.02, most_cloths: 64 };
-    /// About a minute in all.
-    pub const FULL: Self = Self { warm_up: 10, least_ticks: 8, seconds: 0.25, most_cloths: 1000 };
-
-    /// The one asked for.
-    #[must_use]
-    pub fn of(quick: bool) -> Self {
-        if quick { Self::QUICK } else { Self::FULL }
-    }
-
-    /// How many ticks to time, where one takes `tick` microseconds.
-    #[must_use]
-    pub fn ticks(&self, tick: f64) -> usize {
-        self.least_ticks.max((self.seconds * 1e6 / tick) as usize)
-    }
-}

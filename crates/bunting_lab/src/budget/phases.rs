@@ -1,10 +1,16 @@
-//! Häggström's figure B.1: the share of each phase in a tick, at each level.
+//! Time of each phase of a tick, at each level.
 
-use bunting_solver::{ClothBatch, LaneCount, StepSettings};
+use bunting_solver::{LaneCount, StepSettings};
 use serde::Serialize;
 
-use super::{Effort, LEVELS, scheme_name, schemes};
-use crate::{fleet::Fleet, product::TICK, scenes::Scene, timing::Timing};
+use crate::{
+    effort::Effort,
+    fleet::Fleet,
+    product::TICK,
+    scenes::Scene,
+    settings::{LEVELS, scheme_name, schemes},
+    timing::Timing,
+};
 
 /// The phases of a tick, in the order in which they run.
 pub const PHASES: [&str; 5] = ["begin", "integrate", "constraints", "velocities", "normals"];
@@ -18,43 +24,89 @@ pub struct Phase {
     pub phase: &'static str,
     /// Scheme.
     pub scheme: &'static str,
-    /// Part of the tick's time: the phase's median over the sum of all medians.
-    pub share: f64,
-    /// Median time in a tick, µs, of a full batch.
+    /// The phase's median time over the sum of all medians.
+    pub fraction: f64,
+    /// Median time in a tick of a full batch, µs.
     pub us: f64,
 }
 
-/// Shares of all phases at all levels, of a full batch of the widest lanes.
+/// Median time of each phase in a tick of a full batch, µs.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PhaseTimes {
+    /// Compliances and contact candidates, once a tick.
+    pub begin: f64,
+    /// External forces, damping and prediction of all substeps.
+    pub integrate: f64,
+    /// Constraints of all substeps.
+    pub constraints: f64,
+    /// Velocities of all substeps.
+    pub velocities: f64,
+    /// Normals, once a tick.
+    pub normals: f64,
+}
+
+impl PhaseTimes {
+    /// The phases in the order of [`PHASES`].
+    #[must_use]
+    pub fn to_array(self) -> [f64; PHASES.len()] {
+        [self.begin, self.integrate, self.constraints, self.velocities, self.normals]
+    }
+
+    /// The whole tick.
+    #[must_use]
+    pub fn total(self) -> f64 {
+        self.to_array().iter().sum()
+    }
+}
+
+/// Cloths in a full batch of the widest lanes.
+#[must_use]
+pub fn full_batch() -> usize {
+    LaneCount::holding(usize::MAX).get()
+}
+
+/// All phases at all levels.
 #[must_use]
 pub fn measure(effort: &Effort) -> Vec<Phase> {
     schemes()
         .into_iter()
         .flat_map(|settings| LEVELS.map(|n| (settings, n)))
-        .flat_map(|(settings, n)| split(n, settings, effort))
+        .flat_map(|(settings, n)| of_level(n, settings, effort))
         .collect()
 }
 
-fn split(n: u32, settings: StepSettings, effort: &Effort) -> Vec<Phase> {
-    let lanes = LaneCount::holding(usize::MAX).get();
-    let mut fleet = Fleet::new(Scene::flag(n as usize), lanes, settings);
-    fleet.advance(effort.warm_up);
-    let whole = Timing::repeat(1, effort.least_ticks, || fleet.advance(1));
-    let mut times: [Timing; PHASES.len()] = Default::default();
+fn of_level(n: u32, settings: StepSettings, effort: &Effort) -> Vec<Phase> {
+    let fleet = Fleet::new(Scene::flag(n as usize), full_batch(), settings);
+    let [times] = time_in_turn(&mut [fleet], effort);
+    let scheme = scheme_name(settings);
+    let phase = |(phase, us)| Phase { n, phase, scheme, fraction: us / times.total(), us };
+    PHASES.into_iter().zip(times.to_array()).map(phase).collect()
+}
+
+/// Phases of the first batch of each fleet. Their ticks take turns, so that all see the same machine.
+pub fn time_in_turn<const FLEETS: usize>(
+    fleets: &mut [Fleet; FLEETS],
+    effort: &Effort,
+) -> [PhaseTimes; FLEETS] {
+    fleets.iter_mut().for_each(|fleet| fleet.advance(effort.warm_up));
+    let whole = Timing::repeat(1, effort.least_ticks, || fleets[0].advance(1));
+    let mut times: [[Timing; PHASES.len()]; FLEETS] = std::array::from_fn(|_| Default::default());
     for _ in 0..effort.ticks(whole.median()) {
-        fleet.drive();
-        tick(&mut fleet.batches_mut()[0], settings, &mut times);
+        for (fleet, times) in fleets.iter_mut().zip(&mut times) {
+            tick(fleet, times);
+        }
     }
-    let medians = times.map(|time| time.median());
-    let total: f64 = medians.iter().sum();
-    PHASES
-        .into_iter()
-        .zip(medians)
-        .map(|(phase, us)| Phase { n, phase, scheme: scheme_name(settings), share: us / total, us })
-        .collect()
+    times.map(|times| {
+        let [begin, integrate, constraints, velocities, normals] = times.map(|it| it.median());
+        PhaseTimes { begin, integrate, constraints, velocities, normals }
+    })
 }
 
-/// [`ClothBatch::step`] with a clock round each phase; those of the substeps are added up.
-fn tick(batch: &mut ClothBatch, settings: StepSettings, times: &mut [Timing; PHASES.len()]) {
+/// A tick of the fleet's first batch with a clock round each phase; those of the substeps are added up.
+fn tick(fleet: &mut Fleet, times: &mut [Timing; PHASES.len()]) {
+    fleet.drive();
+    let settings = fleet.settings();
+    let batch = &mut fleet.batches_mut()[0];
     let [begin, integrate, constraints, velocities, normals] = times;
     begin.time(|| batch.begin_tick(TICK, settings));
     let mut substeps: [Timing; 3] = Default::default();

@@ -3,23 +3,26 @@
 use std::f32::consts::TAU;
 
 use bevy_app::App;
-use bevy_bunting::{
-    ClothCounts, ClothSettings, ClothSystems, ClothTimings, LodReport, LodSet, LodViewer,
-};
+use bevy_bunting::{ClothCounts, ClothSystems, ClothTimings, LodReport, LodSet, LodViewer};
 use bevy_ecs::entity::Entity;
 use bevy_transform::components::Transform;
 use bunting_solver::StepSettings;
 use glam::{Quat, Vec3};
 use serde::Serialize;
 
-use super::LEVELS;
-use crate::{game, product::DEFAULT, scenes::TICK_RATE, stats, timing::Timing};
+use crate::{
+    game,
+    scenes::TICK_RATE,
+    settings::{LEVELS, steps_of_levels},
+    stats,
+    timing::Timing,
+};
 
 /// Flags in the field.
 const FLAGS: usize = 1000;
-/// Flags stand on a sunflower's spiral, k-th at this times √k from its middle, m: one on 10 m².
+/// Flags stand on Fermat's spiral, the k-th at this times √k from its middle, m: one flag on 10 m².
 const SPACING: f32 = 1.8;
-/// Turn from one flag to the next as a part of a full one: the golden section's.
+/// Turn from one flag to the next, of a full turn: the golden angle.
 const GOLDEN: f32 = 0.381_966;
 /// Radius of the camera's path, m: of the field's 57.
 const PATH: f32 = 40.0;
@@ -27,9 +30,9 @@ const PATH: f32 = 40.0;
 const HEIGHT: f32 = 1.0;
 /// Speed of the camera, m/s.
 const SPEED: f32 = 10.0;
-/// The camera looks by this much inwards from where it flies, rad.
+/// Angle between the camera's view and its direction of flight, inwards, rad.
 const INWARDS: f32 = 0.4;
-/// Half of the picture's width over its distance, and of its height: 60°, 16:9.
+/// Half the picture's width and half its height over their distance: 60°, 16:9.
 const SLOPES: [f32; 2] = [1.026_4, 0.577_35];
 /// Time before anything is measured, s: flags fly, and levels are found.
 const WARM_UP: usize = 3;
@@ -37,13 +40,6 @@ const WARM_UP: usize = 3;
 const SECONDS: usize = 25;
 /// The same where it is to be quick.
 const QUICK_SECONDS: usize = 2;
-
-/// How finely each level is solved, the finest first: what flies far away is solved more coarsely.
-#[must_use]
-pub fn steps() -> Vec<StepSettings> {
-    let coarse = StepSettings { substeps: 1, ..DEFAULT };
-    vec![DEFAULT, coarse, coarse, coarse]
-}
 
 /// What was measured in each tick.
 #[derive(Default)]
@@ -102,10 +98,8 @@ pub struct Thousand {
 /// Flies the camera once round.
 #[must_use]
 pub fn measure(quick: bool) -> Thousand {
-    let steps = steps();
-    let mut app = game::app(steps[0]);
-    app.world_mut().resource_mut::<ClothSettings>().steps =
-        steps.iter().map(|&step| step.into()).collect();
+    let steps = steps_of_levels();
+    let mut app = game::app_in_wind(steps.clone());
     let places: Vec<Vec3> = (0..FLAGS).map(place).collect();
     for &at in &places {
         game::spawn_flag(&mut app, LEVELS[0], at, LodSet::automatic(LEVELS.len()));

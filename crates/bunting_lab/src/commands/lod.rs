@@ -5,13 +5,13 @@ use serde_json::json;
 
 use super::progress;
 use crate::{
-    budget::{scheme_name, schemes},
     levels::{agreement::Agreement, pops::Pop, resolution::Resolution, switches::Switch},
     output::{
         Outcome,
         plot::{Axes, Mark, Plot, Series},
         table::{Table, figure},
     },
+    settings::{scheme_name, schemes},
 };
 
 /// Vertices along each side of the levels that are compared, the finest first.
@@ -143,7 +143,7 @@ fn resolution_table(resolutions: &[Resolution]) -> Table {
 }
 
 fn switch_table(switches: &[Switch]) -> Table {
-    let percent = |share: f64| format!("{:.2} %", 100.0 * share);
+    let percent = |fraction: f64| format!("{:.2} %", 100.0 * fraction);
     let cells = |switch: &Switch| {
         vec![
             switch.scheme.into(),

@@ -2,15 +2,17 @@
 
 pub mod ablation;
 pub mod budget;
+pub mod differences;
+pub mod families;
 pub mod gate;
 pub mod lod;
+pub mod memory;
 pub mod oracles;
 pub mod pareto;
 #[cfg(feature = "peers")]
 pub mod peers;
 pub mod report;
 pub mod schedule;
-pub mod speed_error;
 pub mod stability;
 
 use indicatif::{ProgressBar, ProgressStyle};

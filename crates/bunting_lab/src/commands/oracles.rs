@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::progress;
+use super::families::{self, Family};
 use crate::{
     oracles::{Case, trials},
     output::{
@@ -17,28 +17,24 @@ use crate::{
 /// Runs every trial.
 #[must_use]
 pub fn run() -> Outcome {
-    let cases = measure();
+    let families = families();
+    let times = families::times("oracles", &families);
+    let families_json = families::json(&families);
+    let cases: Vec<Case> = families.into_iter().flat_map(|family| family.cases).collect();
     let plots = [plot(&cases), cantilevers(&cases)].into_iter().flatten().collect();
-    Outcome { json: json!({ "cases": cases }), tables: vec![table(&cases)], plots }
-}
-
-/// Names of the cases that fail.
-#[must_use]
-pub fn failing() -> Vec<String> {
-    let failing = measure().into_iter().filter(|case| !case.pass);
-    failing.map(|case| format!("oracles: {}", case.name)).collect()
-}
-
-fn measure() -> Vec<Case> {
-    let bar = progress(trials::ALL.len());
-    let mut cases = Vec::new();
-    for (name, trial) in trials::ALL {
-        bar.set_message(name);
-        cases.extend(trial(&|scene, settings| Box::new(Product::lone(settings).start(scene))));
-        bar.inc(1);
+    Outcome {
+        json: json!({ "cases": cases, "families": families_json }),
+        tables: vec![table(&cases), times],
+        plots,
     }
-    bar.finish_and_clear();
-    cases
+}
+
+/// Every trial with its cases.
+#[must_use]
+pub fn families() -> Vec<Family<Case>> {
+    families::run(&trials::ALL, |trial| {
+        trial(&|scene, settings| Box::new(Product::lone(settings).start(scene)))
+    })
 }
 
 fn plot(cases: &[Case]) -> Option<Plot> {
@@ -74,7 +70,7 @@ fn table(cases: &[Case]) -> Table {
         name: "oracles".into(),
         title: format!("{passed} of {} closed forms met", cases.len()),
         headers: vec!["case", "expected", "measured", "relative error", "tolerance", "pass"],
-        // What fails first.
+        // Failing cases first.
         rows: [false, true]
             .into_iter()
             .flat_map(|pass| cases.iter().filter(move |case| case.pass == pass))

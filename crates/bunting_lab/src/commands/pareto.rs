@@ -8,32 +8,26 @@ use std::{
 use anyhow::{Context, Result};
 use bunting_solver::instruction_set;
 use clap::Args;
-use serde::Serialize;
 use serde_json::json;
 
-use super::{ablation, progress, speed_error};
+use super::{ablation, progress};
 use crate::{
-    baselines::Baseline,
-    contender::Contender,
-    observation::{Observation, Observer},
+    comparison::{
+        measurement::{contenders, measure},
+        row::{COMPARED, LeftOut, Row},
+        speed_error,
+    },
     output::{
         Outcome,
         table::{Table, figure, figure_or_dash},
     },
-    product::Product,
-    reference::{Reference, grid::Grid},
+    parallel,
+    reference::Reference,
     scenes::{Measure, Scene},
-    timing::Timing,
 };
 
-/// Entry of `COMPARED_TICKS` that a row's position error is taken at: 0.4 s.
-const COMPARED: usize = 1;
 /// Time after which a method that would take longer on a scene is left out, s.
-const PATIENCE: f64 = 15.0;
-/// Part of a position error that the reference's own may be; beyond it no error is reported.
-const KNOWN: f64 = 0.1;
-/// Ticks before time is taken.
-const WARM_UP: usize = 3;
+const TIME_LIMIT: f64 = 15.0;
 /// Largest n of the flag, whose reference takes minutes beyond it.
 const LARGEST_FLAG: usize = 33;
 /// Vertices along each side of the cloth whose parts are left out one by one; the second where quick.
@@ -54,8 +48,8 @@ pub struct Selection {
     #[arg(long, value_delimiter = ',', default_values_t = [9, 17, 33, 65], value_parser = parse_size)]
     sizes: Vec<usize>,
     /// Leave out a method that would take longer than this on a scene, s.
-    #[arg(long, default_value_t = PATIENCE, value_parser = parse_patience)]
-    patience: f64,
+    #[arg(long, default_value_t = TIME_LIMIT, value_parser = parse_time_limit)]
+    time_limit: f64,
     /// Also draw error over time of the position-based methods, on the last selected scene, as SVG.
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
@@ -64,16 +58,16 @@ pub struct Selection {
 impl Selection {
     /// These scenes at these sizes.
     #[must_use]
-    pub fn new(scenes: &[&str], sizes: Vec<usize>, patience: f64) -> Self {
+    pub fn new(scenes: &[&str], sizes: Vec<usize>, time_limit: f64) -> Self {
         let scenes = scenes.iter().map(|&name| name.to_owned()).collect();
-        Self { scenes, sizes, patience, figure: None }
+        Self { scenes, sizes, time_limit, figure: None }
     }
 }
 
-fn parse_patience(text: &str) -> Result<f64, String> {
+fn parse_time_limit(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(seconds) if seconds > 0.0 => Ok(seconds),
-        _ => Err("patience is a number of seconds above zero".into()),
+        _ => Err("the limit is a number of seconds above zero".into()),
     }
 }
 
@@ -82,91 +76,6 @@ fn parse_size(text: &str) -> Result<usize, String> {
         Ok(n) if (2..=129).contains(&n) => Ok(n),
         _ => Err("a size is a whole number from 2 to 129".into()),
     }
-}
-
-/// One method on one scene.
-#[derive(Clone, Debug, Serialize)]
-pub struct Row {
-    pub(super) scene: &'static str,
-    pub(super) n: usize,
-    pub(super) method: String,
-    pub(super) substeps: usize,
-    pub(super) passes: usize,
-    pub(super) lanes: usize,
-    pub(super) us_per_cloth_tick: f64,
-    us_min: f64,
-    rms_error_m: Option<f64>,
-    mean_stretch: f64,
-    max_stretch: f64,
-    /// Distance of the mean strain from the reference's.
-    strain_error: f64,
-    tip_error_m: f64,
-    stable: bool,
-}
-
-impl Row {
-    fn new(
-        scene: &Scene,
-        contender: &Contender,
-        seen: &Observation,
-        time: &Timing,
-        reference: &Reference,
-    ) -> Self {
-        let target = &reference.observation;
-        Self {
-            scene: scene.name,
-            n: scene.columns,
-            method: contender.method.clone(),
-            substeps: contender.substeps,
-            passes: contender.passes,
-            lanes: contender.lanes,
-            us_per_cloth_tick: time.median() / contender.lanes as f64,
-            us_min: time.min() / contender.lanes as f64,
-            rms_error_m: seen
-                .rms_error(target, COMPARED)
-                .filter(|error| reference.step_errors[COMPARED] < KNOWN * error),
-            mean_stretch: seen.strain.mean,
-            max_stretch: seen.strain.max,
-            strain_error: (seen.strain.mean - target.strain.mean).abs(),
-            tip_error_m: seen.tip.distance(target.tip),
-            stable: seen.stable,
-        }
-    }
-
-    /// The error that the scene is measured for, and what it is called.
-    pub(super) fn error(&self, measure: Measure) -> Option<f64> {
-        match measure {
-            Measure::Positions => self.rms_error_m,
-            Measure::Rest | Measure::Statistics => Some(self.strain_error),
-        }
-        .filter(|error| self.stable && *error > 0.0)
-    }
-
-    fn cells(&self) -> Vec<String> {
-        vec![
-            self.method.clone(),
-            self.substeps.to_string(),
-            self.passes.to_string(),
-            self.lanes.to_string(),
-            figure(self.us_per_cloth_tick),
-            figure_or_dash(self.rms_error_m),
-            figure(self.mean_stretch),
-            figure(self.max_stretch),
-            figure(self.strain_error),
-            figure(self.tip_error_m),
-            if self.stable { "yes" } else { "no" }.into(),
-        ]
-    }
-}
-
-/// A method that would have taken too long on a scene, or is not made for it.
-#[derive(Clone, Debug, Serialize)]
-struct LeftOut {
-    scene: &'static str,
-    n: usize,
-    method: String,
-    substeps: usize,
-    passes: usize,
 }
 
 /// Runs every method on the selected scenes.
@@ -180,27 +89,22 @@ pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
     let bar = progress(scenes.len() * contenders.len());
     let mut outcome = Outcome { json: json!(null), tables: Vec::new(), plots: Vec::new() };
     let (mut all, mut left_out, mut references) = (Vec::new(), Vec::new(), Vec::new());
-    for scene in &scenes {
-        bar.set_message(format!("reference of {} {}", scene.name, scene.columns));
-        let reference = Reference::of(scene);
+    bar.set_message("references");
+    // All of them before any time is taken.
+    let converged = parallel::map(&scenes, Reference::of);
+    for (scene, reference) in scenes.iter().zip(&converged) {
         let mut rows = Vec::new();
         for contender in &contenders {
             bar.set_message(format!("{} {} {}", scene.name, scene.columns, contender.method));
-            match measure(scene, contender, selection.patience) {
+            match measure(scene, contender, selection.time_limit) {
                 Some((seen, time)) => {
-                    rows.push(Row::new(scene, contender, &seen, &time, &reference));
+                    rows.push(Row::new(scene, contender, &seen, &time, reference));
                 }
-                None => left_out.push(LeftOut {
-                    scene: scene.name,
-                    n: scene.columns,
-                    method: contender.method.clone(),
-                    substeps: contender.substeps,
-                    passes: contender.passes,
-                }),
+                None => left_out.push(LeftOut::new(scene, contender)),
             }
             bar.inc(1);
         }
-        outcome.tables.push(table(scene, &rows, &reference));
+        outcome.tables.push(table(scene, &rows, reference));
         outcome.plots.extend(speed_error::plot(scene, &rows, &contenders));
         references.push(json!({
             "scene": scene.name,
@@ -243,17 +147,6 @@ fn write_figure(path: &Path, scene: &Scene, rows: &[Row]) -> Result<()> {
         .with_context(|| format!("cannot write {}", path.display()))
 }
 
-/// The methods of the thesis, other engines where they are built in, then every option of the product;
-/// of those, one pass where quick.
-fn contenders(quick: bool) -> Vec<Contender> {
-    let mut contenders: Vec<_> = Baseline::catalogue().into_iter().map(Contender::from).collect();
-    #[cfg(feature = "peers")]
-    contenders.extend(crate::peers::contenders());
-    let products = Product::catalogue().into_iter().filter(|it| !quick || it.settings.passes == 1);
-    contenders.extend(products.map(Contender::from));
-    contenders
-}
-
 fn selected(selection: &Selection, quick: bool) -> Vec<Scene> {
     let sizes: Vec<usize> = if quick { vec![9] } else { selection.sizes.clone() };
     sizes
@@ -264,28 +157,6 @@ fn selected(selection: &Selection, quick: bool) -> Vec<Scene> {
             scene.measure != Measure::Statistics || (!quick && scene.columns <= LARGEST_FLAG)
         })
         .collect()
-}
-
-/// Runs a contender through the scene; none where the scene is beyond it or it would take too long.
-fn measure(scene: &Scene, contender: &Contender, patience: f64) -> Option<(Observation, Timing)> {
-    let grid = Grid::new(scene);
-    let mut observer = Observer::new(scene, &grid);
-    let mut simulation = (contender.start)(scene)?;
-    let (mut warm_up, mut time) = (Timing::default(), Timing::default());
-    for tick in 0..scene.ticks() {
-        // The shortest tick, since others may have had to wait for the processor.
-        if tick == WARM_UP && warm_up.min() * scene.ticks() as f64 > patience * 1e6 {
-            return None;
-        }
-        let timing = if tick < WARM_UP { &mut warm_up } else { &mut time };
-        timing.time(|| simulation.tick());
-        let positions: Vec<_> = simulation.positions().iter().map(|x| x.as_dvec3()).collect();
-        let velocities: Vec<_> = simulation.velocities().iter().map(|v| v.as_dvec3()).collect();
-        if !observer.observe(&positions, &velocities) {
-            break;
-        }
-    }
-    Some((observer.finish(), time))
 }
 
 fn table(scene: &Scene, rows: &[Row], reference: &Reference) -> Table {
@@ -315,8 +186,24 @@ fn table(scene: &Scene, rows: &[Row], reference: &Reference) -> Table {
             "tip error m",
             "stable",
         ],
-        rows: rows.iter().map(Row::cells).collect(),
+        rows: rows.iter().map(cells).collect(),
     }
+}
+
+fn cells(row: &Row) -> Vec<String> {
+    vec![
+        row.method.clone(),
+        row.substeps.to_string(),
+        row.passes.to_string(),
+        row.lanes.to_string(),
+        figure(row.us_per_cloth_tick),
+        figure_or_dash(row.rms_error_m),
+        figure(row.mean_stretch),
+        figure(row.max_stretch),
+        figure(row.strain_error),
+        figure(row.tip_error_m),
+        if row.stable { "yes" } else { "no" }.into(),
+    ]
 }
 
 fn left_out_table(left_out: &[LeftOut]) -> Table {

@@ -11,7 +11,7 @@ use crate::{
         table::{Table, figure, figure_or_dash},
     },
     peers::{
-        Engine,
+        engine::Engine,
         measurement::{self, Row, Shock},
     },
     scenes::Scene,

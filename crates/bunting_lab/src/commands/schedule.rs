@@ -9,7 +9,6 @@ use serde_json::json;
 
 use super::progress;
 use crate::{
-    budget::{LEVELS, scheme_name, schemes},
     fleet::Fleet,
     game,
     output::{
@@ -18,6 +17,7 @@ use crate::{
         table::{Table, figure},
     },
     scenes::Scene,
+    settings::{LEVELS, scheme_name, schemes},
     timing::Timing,
 };
 
@@ -109,7 +109,7 @@ fn compare(n: u32, settings: StepSettings, ticks: usize) -> Row {
 }
 
 fn flags(n: u32, settings: StepSettings) -> App {
-    let mut app = game::app(settings);
+    let mut app = game::app_in_wind([settings]);
     for flag in 0..FLAGS {
         game::spawn_flag(&mut app, n, Vec3::X * flag as f32, LodSet::default());
     }

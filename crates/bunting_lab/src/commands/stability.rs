@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::progress;
+use super::families::{self, Family};
 use crate::{
     output::{
         Outcome,
@@ -16,29 +16,22 @@ use crate::{
 /// Runs every family of hard cases.
 #[must_use]
 pub fn run(quick: bool) -> Outcome {
-    let cases = measure(quick);
+    let families = families(quick);
+    let times = families::times("stability", &families);
+    let families_json = families::json(&families);
+    let cases: Vec<HardCase> = families.into_iter().flat_map(|family| family.cases).collect();
     let plots = plot(&cases).into_iter().collect();
-    Outcome { json: json!({ "cases": cases }), tables: vec![table(&cases)], plots }
-}
-
-/// Names and sizes of the cases that were run and fail.
-#[must_use]
-pub fn failing(quick: bool) -> Vec<String> {
-    let failing = measure(quick).into_iter();
-    let failing = failing.filter(|case| case.status == Status::Built && !case.pass);
-    failing.map(|case| format!("stability: {}, n = {}", case.name, case.n)).collect()
-}
-
-fn measure(quick: bool) -> Vec<HardCase> {
-    let bar = progress(stability::ALL.len());
-    let mut cases = Vec::new();
-    for (name, family) in stability::ALL {
-        bar.set_message(name);
-        cases.extend(family(quick));
-        bar.inc(1);
+    Outcome {
+        json: json!({ "cases": cases, "families": families_json }),
+        tables: vec![table(&cases), times],
+        plots,
     }
-    bar.finish_and_clear();
-    cases
+}
+
+/// Every family with its cases.
+#[must_use]
+pub fn families(quick: bool) -> Vec<Family<HardCase>> {
+    families::run(&stability::ALL, |family| family(quick))
 }
 
 fn plot(cases: &[HardCase]) -> Option<Plot> {
@@ -56,7 +49,7 @@ fn table(cases: &[HardCase]) -> Table {
         name: "stability".into(),
         title: format!("{passed} of {built} hard cases held, {} not built", cases.len() - built),
         headers: vec!["case", "n", "figure", "worst", "limit", "pass"],
-        // What fails first.
+        // Failing cases first.
         rows: [false, true]
             .into_iter()
             .flat_map(|pass| cases.iter().filter(move |case| case.pass == pass))

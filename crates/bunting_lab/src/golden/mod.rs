@@ -6,11 +6,11 @@
 mod hash;
 mod scenes;
 
-use std::thread;
-
 use bunting_solver::{LaneCount, instruction_set, with_every_instruction_set};
 
 pub use hash::StateHash;
+
+use crate::parallel;
 
 /// A scene's name and its hashes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -27,44 +27,58 @@ pub struct GoldenHash {
 /// times slower, and take the shorter run alone.
 pub const TICKS: [u32; 2] = [60, 600];
 
+/// Batch widths that must hash alike.
+const WIDTHS: [LaneCount; 3] = [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen];
+
 /// Instruction sets with fused multiply-add.
 const FUSED: [&str; 3] = ["AVX-512", "AVX2", "NEON"];
 
-/// Runs every scene at every batch width with every instruction set of this machine, a thread a scene.
+/// Runs every scene at every batch width with every instruction set of this machine, on all cores.
 ///
 /// # Panics
 ///
 /// When a scene does.
 #[must_use]
 pub fn measure() -> Vec<GoldenHash> {
-    thread::scope(|scope| {
-        let runs: Vec<_> = scenes::ALL
-            .iter()
-            .map(|&(scene, run)| scope.spawn(move || golden_hash(scene, run)))
-            .collect();
-        runs.into_iter().map(|run| run.join().expect("a scene runs to its end")).collect()
-    })
+    let scenes_and_widths: Vec<_> =
+        scenes::ALL.iter().flat_map(|scene| WIDTHS.map(|lanes| (scene, lanes))).collect();
+    let runs = parallel::map(&scenes_and_widths, |((_, run), lanes)| run_at_width(*run, *lanes));
+    let runs_of_scenes = runs.chunks(WIDTHS.len());
+    let scenes_and_runs = scenes::ALL.iter().zip(runs_of_scenes);
+    scenes_and_runs.map(|((scene, _), runs)| golden_hash(scene, runs.concat())).collect()
 }
 
-fn golden_hash(scene: &'static str, run: scenes::Run) -> GoldenHash {
-    let mut first = [None; 2];
-    let mut deviations = Vec::new();
-    for lanes in [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen] {
-        with_every_instruction_set(|| {
-            let set = instruction_set();
-            for (first, ticks) in first.iter_mut().zip(TICKS) {
-                if ticks > TICKS[0] && !FUSED.contains(&set) {
-                    continue;
-                }
-                let hash = run(lanes, ticks);
-                if *first.get_or_insert(hash) != hash {
-                    let lanes = lanes.get();
-                    deviations.push(format!("{lanes} lanes, {set}, {ticks} ticks: {hash:016x}"));
-                }
-            }
-        });
-    }
-    GoldenHash { scene, hashes: first.map(Option::unwrap_or_default), deviations }
+/// One run of a scene.
+#[derive(Clone, Debug)]
+struct Run {
+    /// Batch width and instruction set.
+    setup: String,
+    /// Index of the run's length in [`TICKS`].
+    length: usize,
+    hash: u64,
+}
+
+/// Every run of a scene at one batch width, the best instruction set first.
+fn run_at_width(run: scenes::Run, lanes: LaneCount) -> Vec<Run> {
+    let runs = with_every_instruction_set(|| {
+        let set = instruction_set();
+        let lengths = if FUSED.contains(&set) { 0..TICKS.len() } else { 0..1 };
+        let setup = format!("{} lanes, {set}", lanes.get());
+        lengths
+            .map(|length| Run { setup: setup.clone(), length, hash: run(lanes, TICKS[length]) })
+            .collect::<Vec<_>>()
+    });
+    runs.concat()
+}
+
+/// The hashes of a scene's first run of each length, and the runs that hash otherwise.
+fn golden_hash(scene: &'static str, runs: Vec<Run>) -> GoldenHash {
+    let hashes =
+        [0, 1].map(|length| runs.iter().find(|run| run.length == length).map_or(0, |run| run.hash));
+    let deviating = runs.iter().filter(|run| run.hash != hashes[run.length]);
+    let deviations = deviating
+        .map(|run| format!("{}, {} ticks: {:016x}", run.setup, TICKS[run.length], run.hash));
+    GoldenHash { scene, hashes, deviations: deviations.collect() }
 }
 
 /// The committed list, a line a scene: its name and its hashes, separated by tabs.

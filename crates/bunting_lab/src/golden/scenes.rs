@@ -1,4 +1,4 @@
-//! The six scenes: each takes another way through the solver.
+//! The six scenes: each runs other parts of the solver.
 
 use std::{sync::Arc, time::Duration};
 
@@ -13,7 +13,7 @@ use bunting_solver::{
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
 
-use super::StateHash;
+use super::hash::StateHash;
 use crate::product::TICK;
 
 /// Ticks from one state that is hashed to the next.
@@ -32,7 +32,7 @@ pub const ALL: [(&str, Run); 6] = [
     ("eight flags through the plugin", plugin),
 ];
 
-/// One cloth in the last lane of a batch, and another in the first to which other things happen.
+/// The hashed cloth in the last lane of a batch, and another in the first lane with another material and wind.
 struct Pair {
     batch: ClothBatch,
     lane: usize,

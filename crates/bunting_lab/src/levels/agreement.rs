@@ -7,11 +7,11 @@ use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use crate::{
-    budget::scheme_name,
     fleet::Fleet,
     levels::FLAGS,
     product::Product,
     scenes::{Scene, TICK_RATE, ticks},
+    settings::scheme_name,
     simulation::Simulation,
     stats,
 };

@@ -13,10 +13,10 @@ use glam::{Quat, Vec3};
 use serde::Serialize;
 
 use crate::{
-    budget::scheme_name,
     game,
     product::{self, material},
     scenes::{Scene, ticks},
+    settings::scheme_name,
     stats::{self, worse},
 };
 
@@ -100,7 +100,7 @@ impl Pop {
 
 fn change(from: usize, to: usize, settings: StepSettings, moment: usize) -> Vec<Stray> {
     let view = View::new(from.max(to));
-    let mut app = game::app(settings);
+    let mut app = game::app_in_wind([settings]);
     let levels = |n: usize| usize::from(n < from.max(to));
     let spawn = |app: &mut App| -> Vec<Entity> {
         let lods = LodSet::new([1.0]).pinned_to(levels(from));
@@ -158,7 +158,7 @@ fn change(from: usize, to: usize, settings: StepSettings, moment: usize) -> Vec<
 #[must_use]
 pub fn thrash(n: usize, settings: StepSettings, seconds: f64) -> f64 {
     let scene = Scene::swing(n);
-    let mut app = game::app(settings);
+    let mut app = game::app_in_wind([settings]);
     let level = Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2);
     let pole = app.world_mut().spawn(Transform::from_rotation(level)).id();
     let sheet = (

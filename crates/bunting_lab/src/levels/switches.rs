@@ -9,13 +9,14 @@ use glam::{DVec3, Vec3};
 use serde::Serialize;
 
 use crate::{
-    budget::scheme_name,
     fleet::Fleet,
     levels::{FLAGS, INTERVAL, SETTLING, pops::PIXELS},
     product,
     reference::grid::Grid,
-    scenes::{Scene, ticks},
-    stats,
+    scenes::{GRAVITY, Scene, ticks},
+    settings::scheme_name,
+    simulation::in_double,
+    stats::{self, worse},
 };
 
 /// Jumps of one change of level, over many moments of a flight.
@@ -97,8 +98,8 @@ impl Switch {
                 let [old, new] = [(&grids[0], before), (&grids[1], after)].map(Motion::of);
                 jumps.push(Jump {
                     pop_rms: stats::mean(&moved.iter().map(|d| d * d).collect::<Vec<_>>()).sqrt(),
-                    pop_max: moved.into_iter().fold(0.0, f64::max),
-                    momentum: (new.momentum - old.momentum).length() / old.throng,
+                    pop_max: moved.into_iter().fold(0.0, worse),
+                    momentum: (new.momentum - old.momentum).length() / old.momentum_sizes,
                     momentum_of_sum: (new.momentum - old.momentum).length() / old.momentum.length(),
                     kinetic: (new.kinetic - old.kinetic) / old.kinetic,
                     energy: (new.total - old.total) / old.kinetic,
@@ -108,7 +109,7 @@ impl Switch {
         let average =
             |figure: fn(&Jump) -> f64| stats::mean(&jumps.iter().map(figure).collect::<Vec<f64>>());
         let most =
-            |figure: fn(&Jump) -> f64| jumps.iter().map(figure).fold(f64::NEG_INFINITY, f64::max);
+            |figure: fn(&Jump) -> f64| jumps.iter().map(figure).fold(f64::NEG_INFINITY, worse);
         let pop_max_m = average(|jump| jump.pop_max);
         Self {
             scheme: scheme_name(settings),
@@ -135,7 +136,7 @@ struct Motion {
     /// Momentum, kg·m/s.
     momentum: DVec3,
     /// Sum of the sizes of all particles' momenta, kg·m/s.
-    throng: f64,
+    momentum_sizes: f64,
     /// Kinetic energy, J.
     kinetic: f64,
     /// Kinetic, elastic and potential energy, J.
@@ -144,14 +145,14 @@ struct Motion {
 
 impl Motion {
     fn of((grid, state): (&Grid, &ClothSnapshot)) -> Self {
-        let positions: Vec<DVec3> = state.positions.iter().map(|x| x.as_dvec3()).collect();
-        let velocities: Vec<DVec3> = state.velocities.iter().map(|v| v.as_dvec3()).collect();
+        let positions = in_double(&state.positions);
+        let velocities = in_double(&state.velocities);
         let momenta = || velocities.iter().zip(&grid.masses).map(|(&v, &mass)| v * mass);
         let kinetic = grid.kinetic_energy(&velocities);
-        let height = grid.gravity_energy(crate::scenes::GRAVITY, &positions);
+        let height = grid.gravity_energy(GRAVITY, &positions);
         Self {
             momentum: momenta().sum(),
-            throng: momenta().map(DVec3::length).sum(),
+            momentum_sizes: momenta().map(DVec3::length).sum(),
             kinetic,
             total: kinetic + grid.elastic_energy(&positions) + height,
         }

@@ -10,7 +10,6 @@ pub mod free_fall;
 pub mod pendulum;
 pub mod rig;
 pub mod root;
-pub mod specimen;
 pub mod stretch;
 pub mod trials;
 

@@ -1,16 +1,17 @@
-//! What the trials have in common: strips, and how they are read.
+//! Strips, their readings, and labels that the trials share.
 
 use bunting_solver::{Scheme, StepSettings};
 use glam::DVec3;
 
-use super::{Case, specimen::Specimen};
+use super::Case;
 use crate::{
     product::DEFAULT,
     reference::grid::Grid,
     scenes::{Fabric, Pins, Pose, Scene, TICK_RATE},
+    specimen::Specimen,
 };
 
-/// The scheme under trial as users meet it.
+/// The scheme under trial, by default settings.
 pub const YARNS: StepSettings = DEFAULT;
 /// The thesis's scheme, with enough substeps to be compared.
 pub const GAUSS_SEIDEL: StepSettings = StepSettings::gauss_seidel(20);
@@ -53,13 +54,6 @@ pub fn row(scene: &Scene, specimen: &dyn Specimen, j: usize) -> DVec3 {
 #[must_use]
 pub fn column_masses(scene: &Scene) -> Vec<f64> {
     Grid::new(scene).masses.into_iter().step_by(scene.columns).skip(1).collect()
-}
-
-/// Advances by `seconds`.
-pub fn run(specimen: &mut dyn Specimen, seconds: f64) {
-    for _ in 0..(seconds * f64::from(TICK_RATE)).round() as usize {
-        specimen.tick();
-    }
 }
 
 /// Length of a substep, s.

@@ -1,11 +1,21 @@
 //! Roots of functions of one variable.
 
 /// Bisections after which an interval of doubles cannot shrink any more.
-const BISECTIONS: usize = 200;
+const BISECTIONS: u32 = 200;
 
-/// The point of [`low`, `high`] where `is_past` turns from false to true.
-pub fn bisect(mut low: f64, mut high: f64, is_past: impl Fn(f64) -> bool) -> f64 {
-    for _ in 0..BISECTIONS {
+/// The point of [`low`, `high`] where `is_past` turns from false to true, as exactly as doubles tell.
+pub fn bisect(low: f64, high: f64, is_past: impl Fn(f64) -> bool) -> f64 {
+    bisect_times(BISECTIONS, low, high, is_past)
+}
+
+/// The same by so many evaluations of `is_past`: the interval is halved by each.
+pub fn bisect_times(
+    halvings: u32,
+    mut low: f64,
+    mut high: f64,
+    is_past: impl Fn(f64) -> bool,
+) -> f64 {
+    for _ in 0..halvings {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
             break;

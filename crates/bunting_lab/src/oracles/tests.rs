@@ -7,7 +7,7 @@ use super::{
     bending::{Cantilever, LATERAL_BUCKLING, SELF_WEIGHT_COLUMN, column_of_links},
     catenary::{Catenary, chain_sag},
     drag::BroadsideFall,
-    dumbbell::{Formula, spin_left},
+    dumbbell::{BdfFormula, spin_left},
     free_fall, pendulum, stretch,
 };
 
@@ -126,9 +126,11 @@ fn falls_sum_what_the_integrators_do() {
 #[test]
 fn dumbbells_lose_their_spin() {
     // At 20 rad/s and 180 Hz, in a revolution.
-    for (formula, lost) in
-        [(Formula::BACKWARD_EULER, 0.35), (Formula::BDF2, 0.0184), (Formula::BDF2_OPT, 0.0127)]
-    {
+    for (formula, lost) in [
+        (BdfFormula::BACKWARD_EULER, 0.35),
+        (BdfFormula::BDF2, 0.0184),
+        (BdfFormula::BDF2_OPT, 0.0127),
+    ] {
         assert_near(1.0 - spin_left(formula, 20.0, 1.0 / 180.0, 57), lost, 0.02 * lost + 0.0005);
     }
 }

@@ -3,7 +3,7 @@
 use bunting_solver::FrameMotion;
 use glam::{Quat, Vec3};
 
-use super::Peer;
+use super::peer::Peer;
 use crate::{product::Cloth, simulation::Simulation};
 
 impl Peer for Cloth {

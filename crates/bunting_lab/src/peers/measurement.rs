@@ -1,12 +1,12 @@
 //! What is measured of each engine.
 
-use glam::DVec3;
 use serde::Serialize;
 
-use super::{Engine, Peer};
+use super::{engine::Engine, peer::Peer};
 use crate::{
     reference::grid::Grid,
     scenes::{Scene, TICK_RATE, ticks},
+    simulation::in_double,
     stats::{self, Strain},
     timing::Timing,
 };
@@ -17,8 +17,8 @@ const WARM_UP: usize = 3;
 const TELEPORT: f32 = 10.0;
 /// Length of a tick that took too long, s.
 const HITCH: f32 = 0.5;
-/// Time to recover, s.
-const PATIENCE: f64 = 5.0;
+/// Longest time to recover, s.
+const RECOVERY_TIME: f64 = 5.0;
 /// A cloth has recovered when no link is longer by more than this than before the shock.
 const RECOVERED: f64 = 0.02;
 
@@ -87,7 +87,6 @@ pub fn hang(engine: &Engine, scene: &Scene) -> Row {
             largest = largest.max(strain.max);
         }
     }
-    let speeds: Vec<DVec3> = cloth.velocities().iter().map(|v| v.as_dvec3()).collect();
     Row {
         engine: engine.name,
         constraints: engine.constraints,
@@ -99,7 +98,7 @@ pub fn hang(engine: &Engine, scene: &Scene) -> Row {
         ms_min: time.min() * 1e-3 / engine.lanes as f64,
         mean_stretch: finite(stats::mean(&means)),
         max_stretch: finite(largest),
-        final_speed: finite(stats::rms_length(&speeds)),
+        final_speed: finite(stats::rms_length(&in_double(cloth.velocities()))),
     }
 }
 
@@ -123,16 +122,16 @@ fn shock(
     let grid = Grid::new(scene);
     let mut cloth = (engine.start)(scene);
     (0..scene.ticks()).for_each(|_| cloth.tick());
-    let calm = strain(&grid, cloth.as_ref()).max + RECOVERED;
+    let recovered = strain(&grid, cloth.as_ref()).max + RECOVERED;
     let mut time = Timing::default();
     time.time(|| happen(cloth.as_mut()));
     let mut worst = 0.0_f64;
     let mut recovery = None;
-    for tick in 0..ticks(PATIENCE) {
+    for tick in 0..ticks(RECOVERY_TIME) {
         let strain = strain(&grid, cloth.as_ref()).max;
         // A maximum would pass over what is not a number.
         worst = if strain.is_finite() { worst.max(strain) } else { f64::INFINITY };
-        if strain > calm || !strain.is_finite() {
+        if strain > recovered || !strain.is_finite() {
             recovery = None;
         } else if recovery.is_none() {
             recovery = Some(tick as f64 / f64::from(TICK_RATE));
@@ -151,8 +150,7 @@ fn shock(
 }
 
 fn strain(grid: &Grid, cloth: &dyn Peer) -> Strain {
-    let positions: Vec<DVec3> = cloth.positions().iter().map(|x| x.as_dvec3()).collect();
-    Strain::of(grid.strains(&positions))
+    Strain::of(grid.strains(&in_double(cloth.positions())))
 }
 
 fn finite(value: f64) -> Option<f64> {

@@ -10,7 +10,7 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 use rapier3d::prelude::*;
 
-use super::Peer;
+use super::peer::Peer;
 use crate::{product, scenes::Scene, simulation::Simulation};
 
 /// Damping ratio of rapier's default material.
@@ -58,7 +58,7 @@ impl Rapier {
             if fabric.is_pinned(particle) { 0.0 } else { masses[particle].recip() }
         };
         let softness = |link: &bunting_solver::Link| {
-            let stiffness = fabric.link_classes()[link.class as usize].stiffness(&material);
+            let stiffness = fabric.link_stiffness(link, &material);
             let [a, b] = link.particles;
             let rate = (stiffness * (inverse(a) + inverse(b))).sqrt();
             SpringCoefficients::new(rate / TAU, DAMPING_RATIO)

@@ -241,11 +241,11 @@ fn cells(scene: &Scene) -> impl Iterator<Item = (bool, [usize; 4])> {
 
 fn lumped_masses(scene: &Scene, triangles: &[UVec3]) -> Vec<f64> {
     let [dx, dy] = scene.spacing();
-    let share = scene.fabric.density * dx * dy / 6.0;
+    let corner_mass = scene.fabric.density * dx * dy / 6.0;
     let mut masses = vec![0.0; scene.vertices()];
     for triangle in triangles {
         for vertex in triangle.to_array() {
-            masses[vertex as usize] += share;
+            masses[vertex as usize] += corner_mass;
         }
     }
     masses

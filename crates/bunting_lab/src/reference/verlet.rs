@@ -8,7 +8,10 @@
 use glam::{DVec3, dvec3};
 
 use super::grid::Grid;
-use crate::scenes::{Scene, TICK_RATE};
+use crate::{
+    scenes::{Scene, TICK_RATE},
+    stats::worse,
+};
 
 /// Longest step as a fraction of the stability limit 2/ω.
 pub const STEP_FRACTION: f64 = 0.25;
@@ -72,7 +75,7 @@ impl Verlet {
     pub fn residual(&mut self) -> f64 {
         self.gather_steady_forces();
         let free = self.steady.iter().zip(&self.grid.inverse_masses).filter(|(_, w)| **w > 0.0);
-        free.map(|(f, _)| f.length()).fold(0.0, f64::max)
+        free.map(|(f, _)| f.length()).fold(0.0, worse)
     }
 
     /// One step of length `h` seconds about the instant `middle`.

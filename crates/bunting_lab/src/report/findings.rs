@@ -6,7 +6,7 @@ use crate::{output::table::figure, product::DEFAULT, stats::worse};
 
 /// Time that cloth may take of a frame, ms.
 const BUDGET: f64 = 1.0;
-/// Part of a length or a frequency by which levels may differ before anybody sees it.
+/// Part of a length or a frequency by which levels may differ before it is visible.
 const LEVELS_AGREE: f64 = 0.05;
 /// Largest pop that is not seen, pixels.
 const POP: f64 = 1.0;
@@ -29,7 +29,9 @@ pub struct Finding {
 }
 
 impl Finding {
-    fn new(good: bool, text: String) -> Self {
+    /// A finding.
+    #[must_use]
+    pub fn new(good: bool, text: String) -> Self {
         Self { good, text }
     }
 }
@@ -79,7 +81,7 @@ fn cases(json: &Value, what: &str, gap: fn(&Value) -> f64) -> Vec<Finding> {
     if !passed.is_empty() {
         findings.push(Finding::new(true, format!("{} of {total} {what}", passed.len())));
     }
-    // What is not a number is the worst of all.
+    // NaN counts as the worst.
     failed.sort_by(|a, b| gap(b).abs().total_cmp(&gap(a).abs()));
     if !failed.is_empty() {
         let name = |case: &&Value| match gap(case) {
@@ -117,7 +119,7 @@ fn fastest(json: &Value, scene: &str, n: u64) -> Option<Finding> {
     let (ours, others): (Vec<&Value>, Vec<&Value>) = on(json, scene, n)
         .filter(|row| row["stable"].as_bool() == Some(true) && error(row).is_finite())
         .partition(|row| text(row, "method").starts_with("bunting"));
-    // All lanes err alike: the fastest of the most exact.
+    // Every number of lanes has the same error: of the most exact settings the fastest.
     let order = |a: &Value, b: &Value| {
         error(a).total_cmp(&error(b)).then_with(|| time(a).total_cmp(&time(b)))
     };
@@ -181,7 +183,7 @@ fn budget(json: &Value) -> Vec<Finding> {
             figure(worst),
         ),
     )];
-    let within = rows(json, "sheets")
+    let within = rows(json, "many_flags")
         .iter()
         .filter(|sheet| sheet["n"] == 33 && sheet["cores"] == 1)
         .map(|sheet| (BUDGET / number(sheet, "ms_per_tick") * number(sheet, "cloths"), sheet))
@@ -206,14 +208,14 @@ fn lod(json: &Value) -> Vec<Finding> {
             let finest = levels.iter().find(|other| other["scheme"] == level["scheme"])?;
             Some((number(level, key) / number(finest, key) - 1.0).abs())
         });
-        let worst = off.fold(0.0, f64::max);
+        let worst = off.fold(0.0, worse);
         let sentence = format!("the levels' {what} differs by up to {:.1} %", 100.0 * worst);
         findings.push(Finding::new(worst <= LEVELS_AGREE, sentence));
     }
     let worst = |list: &str, key: &str| {
         rows(json, list).iter().map(|change| number(change, key)).fold(0.0, worse)
     };
-    let (pop, energy) = (worst("pops", "worst_px"), worst("switches", "energy_jump"));
+    let (pop, energy) = (worst("pops", "worst_px"), worst("switches", "energy_worst"));
     let sentence = format!("a change of level pops by {} pixels at most", figure(pop));
     findings.push(Finding::new(pop <= POP, sentence));
     let sentence = format!("a change of level adds up to {} × the kinetic energy", figure(energy));
@@ -223,7 +225,7 @@ fn lod(json: &Value) -> Vec<Finding> {
 
 fn schedule(json: &Value) -> Vec<Finding> {
     let finest = rows(json, "rows").iter().filter(|row| row["n"] == 33);
-    let worst = finest.map(|row| number(row, "ratio")).fold(0.0, f64::max);
+    let worst = finest.map(|row| number(row, "ratio")).fold(0.0, worse);
     let sentence =
         format!("the plugin takes {} × the time of plain calls, eight flags of 33²", figure(worst));
     vec![Finding::new(worst <= 1.0 + SCHEDULE, sentence)]

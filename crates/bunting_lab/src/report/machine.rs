@@ -1,6 +1,6 @@
 //! What the figures were measured on.
 
-use std::{fs, thread, time::SystemTime};
+use std::{fmt, fs, thread, time::SystemTime};
 
 use bunting_solver::instruction_set;
 
@@ -15,7 +15,13 @@ pub struct Machine {
     pub instruction_set: &'static str,
     /// When it was measured, UTC.
     pub date: String,
+    /// Mean number of threads that were running or ready in the minute before; none where the system
+    /// does not say.
+    pub load: Option<f64>,
 }
+
+/// Load of a machine that does nothing else.
+const IDLE: f64 = 0.5;
 
 impl Machine {
     /// This machine, now.
@@ -27,8 +33,27 @@ impl Machine {
             threads: thread::available_parallelism().map_or(1, usize::from),
             instruction_set: instruction_set(),
             date: humantime::format_rfc3339_seconds(SystemTime::now()).to_string(),
+            load: fs::read_to_string("/proc/loadavg").ok().as_deref().and_then(load),
         }
     }
+
+    /// The load, where other programs disturbed the measurement.
+    #[must_use]
+    pub fn foreign_load(&self) -> Option<f64> {
+        self.load.filter(|load| *load > IDLE)
+    }
+}
+
+impl fmt::Display for Machine {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { processor, threads, instruction_set, date, .. } = self;
+        write!(f, "{processor}, {threads} threads, {instruction_set}, {date}")
+    }
+}
+
+/// The mean of the last minute, of the three that Linux gives.
+fn load(described: &str) -> Option<f64> {
+    described.split_whitespace().next()?.parse().ok()
 }
 
 /// The first model name that Linux gives.
@@ -40,6 +65,14 @@ fn model(described: &str) -> Option<&str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_busy_machine_is_told_from_an_idle_one() {
+        assert_eq!(load("14.23 11.26 9.86 3/512 71\n"), Some(14.23));
+        assert_eq!(load(""), None);
+        let with = |load| Machine { load, ..Machine::here() }.foreign_load();
+        assert_eq!([with(Some(14.2)), with(Some(0.1)), with(None)], [Some(14.2), None, None]);
+    }
 
     #[test]
     fn the_model_is_read() {

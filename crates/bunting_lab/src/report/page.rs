@@ -3,11 +3,7 @@
 use anyhow::Result;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use super::{
-    Section,
-    findings::{self, Finding},
-    machine::Machine,
-};
+use super::{findings::Finding, machine::Machine, section::Section};
 use crate::output::table::Table;
 
 /// Rows from which a table is folded away.
@@ -31,10 +27,7 @@ pub fn render(sections: &[Section], machine: &Machine, quick: bool) -> Result<St
     let bodies = sections.iter().map(section).collect::<Result<Vec<Markup>>>()?;
     let found: Vec<(&str, Finding)> = sections
         .iter()
-        .flat_map(|section| {
-            let found = findings::of(section.command, &section.outcome.json);
-            found.into_iter().map(|finding| (section.command, finding))
-        })
+        .flat_map(|section| section.findings().into_iter().map(|it| (section.command, it)))
         .collect();
     let page = html! {
         (DOCTYPE)
@@ -61,9 +54,14 @@ pub fn render(sections: &[Section], machine: &Machine, quick: bool) -> Result<St
                     }
                 }
                 h2 { "On what" }
-                p {
-                    (machine.processor) ", " (machine.threads) " threads, "
-                    (machine.instruction_set) ", " (machine.date)
+                p { (machine) }
+                @if let Some(load) = machine.foreign_load() {
+                    p {
+                        strong {
+                            "Other programs used the machine (load average "
+                            (format!("{load:.1}")) " at the start): times are too long."
+                        }
+                    }
                 }
                 h2 { "What is good" }
                 (list(&found, true))
@@ -87,13 +85,14 @@ fn list(found: &[(&str, Finding)], good: bool) -> Markup {
 }
 
 fn section(section: &Section) -> Result<Markup> {
-    let plots = section.outcome.plots.iter().map(|plot| Ok(PreEscaped(plot.svg()?)));
+    let Ok(outcome) = &section.outcome else { return Ok(html! {}) };
+    let plots = outcome.plots.iter().map(|plot| Ok(PreEscaped(plot.svg()?)));
     let plots = plots.collect::<Result<Vec<_>>>()?;
     Ok(html! {
         h2 id=(section.command) { (section.command) }
         p { (section.measures) }
         @for plot in &plots { figure { (plot) } }
-        @for measured in &section.outcome.tables {
+        @for measured in &outcome.tables {
             @if measured.rows.len() < LONG {
                 h3 { (measured.title) }
                 (table(measured))
@@ -139,8 +138,9 @@ mod tests {
             Outcome { json: json!({ "cases": [case] }), tables: vec![table], plots: Vec::new() };
         let section = Section {
             command: "oracles",
+            command_line: "oracles".into(),
             measures: "closed forms",
-            outcome,
+            outcome: Ok(outcome),
             took: Duration::from_secs(2),
         };
         let page = render(&[section], &Machine::here(), true).expect("a page");

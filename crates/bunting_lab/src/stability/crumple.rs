@@ -1,22 +1,20 @@
-//! Starts that no cloth should have.
+//! Crumpled and degenerate initial states.
 
 use glam::{DVec3, Vec3, dvec3};
 
 use super::{
-    HardCase,
-    rig::{reach, run, speed, start, strain},
+    case::HardCase,
+    rig::{REACH, RECOVERED, reach, speed, start, strain},
 };
 use crate::{
-    oracles::specimen::Specimen,
     scenes::{Pose, Scene},
-    simulation::Simulation,
+    simulation::{Simulation, run},
+    specimen::Specimen,
     stats::worse,
 };
 
-/// Largest 95th percentile of strain of a cloth that has recovered, %.
-const RECOVERED: f64 = 1.0;
-/// Fastest that it may still move, m/s RMS.
-const CALM: f64 = 0.1;
+/// Largest RMS speed of a cloth that has recovered, m/s.
+const AT_REST: f64 = 0.1;
 /// Time to recover, s.
 const SECONDS: f64 = 6.0;
 
@@ -42,7 +40,7 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     cases
 }
 
-/// A cloth hung from its top that starts elsewhere.
+/// A cloth held by its top edge, from other initial positions.
 fn recovers(name: &str, n: usize, start_at: impl Fn(usize, DVec3) -> DVec3) -> [HardCase; 2] {
     let scene = Scene::hang_top(n);
     let mut cloth = start(&scene);
@@ -63,7 +61,7 @@ fn recovers(name: &str, n: usize, start_at: impl Fn(usize, DVec3) -> DVec3) -> [
             left,
             RECOVERED,
         ),
-        HardCase::new(format!("{name}: calms down"), n, "RMS speed, m/s", speed(&cloth), CALM),
+        HardCase::new(format!("{name}: calms down"), n, "RMS speed, m/s", speed(&cloth), AT_REST),
     ]
 }
 
@@ -79,7 +77,7 @@ fn finite(name: &str, n: usize, place: impl Fn(DVec3) -> DVec3) -> HardCase {
         .collect();
     cloth.place(&at, &vec![DVec3::ZERO; at.len()]);
     run(&mut cloth, 1.0);
-    HardCase::new(format!("degenerate: {name}"), n, "reach, m", reach(&cloth), 1.6)
+    HardCase::new(format!("degenerate: {name}"), n, "reach, m", reach(&cloth), REACH)
 }
 
 /// A flat cloth along the wind feels no pressure, and no division by nothing.

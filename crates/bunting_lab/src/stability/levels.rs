@@ -1,23 +1,23 @@
-//! Switching levels, riding in lanes and threads, and bad input.
+//! Changes of level, independence of lanes and threads, and bad input.
 
 use std::thread;
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, FabricBuilder, FabricMaterial, Grid as RestGrid, LaneCount,
-    LevelTransfer, instruction_set, with_every_instruction_set,
+    LevelTransfer, with_every_instruction_set,
 };
 use glam::{DVec3, Vec3};
 
 use super::{
-    HardCase,
-    rig::{SETTINGS, energy, start},
+    case::HardCase,
+    rig::{energy, start},
 };
 use crate::{
-    budget::LEVELS,
     levels::pops::{self, Pop},
-    product::{Product, fabric, material},
+    product::{DEFAULT, Product, TICK, fabric, material},
     reference::grid::Grid,
     scenes::{Scene, ticks},
+    settings::LEVELS,
     simulation::Simulation,
     stats::worse,
 };
@@ -26,7 +26,7 @@ use crate::{
 pub fn cases(quick: bool) -> Vec<HardCase> {
     let seconds = if quick { 2.0 } else { 10.0 };
     let mut cases = thrash(17, seconds).to_vec();
-    let pop = pops::thrash(17, SETTINGS, seconds);
+    let pop = pops::thrash(17, DEFAULT, seconds);
     cases.push(HardCase::new("LOD thrash: pop", 17, "pixels from 20 m", pop, 1.0));
     cases.extend(changes(if quick { 3 } else { 20 }));
     cases.push(determinism(9, if quick { 500 } else { 10_000 }));
@@ -79,7 +79,7 @@ fn changes(moments: usize) -> impl Iterator<Item = HardCase> {
     LEVELS.windows(2).map(move |sizes| {
         let [fine, coarse] = [sizes[0] as usize, sizes[1] as usize];
         let pop = [(fine, coarse), (coarse, fine)]
-            .map(|(from, to)| Pop::of(from, to, SETTINGS, moments).worst_px)
+            .map(|(from, to)| Pop::of(from, to, DEFAULT, moments).worst_px)
             .into_iter()
             .fold(0.0, worse);
         let name = format!("LOD: pop to {coarse}² and back from {} m", pops::distance(fine));
@@ -105,13 +105,9 @@ fn determinism(n: usize, ticks: usize) -> HardCase {
 
 /// A flag with each instruction set that the machine has, to the bit.
 fn instruction_sets(n: usize, ticks: usize) -> HardCase {
-    let mut sets = Vec::new();
-    let runs = with_every_instruction_set(|| {
-        sets.push(instruction_set());
-        fly(n, LaneCount::Eight, ticks)
-    });
-    let name = format!("determinism: {}", sets.join(", "));
-    if sets.len() == 1 {
+    let name = "determinism: instruction sets";
+    let runs = with_every_instruction_set(|| fly(n, LaneCount::Eight, ticks));
+    if runs.len() == 1 {
         return HardCase::not_built(name, "vertices that differ", 0.0);
     }
     HardCase::new(name, n, "vertices that differ", differing(&runs), 0.0)
@@ -119,7 +115,7 @@ fn instruction_sets(n: usize, ticks: usize) -> HardCase {
 
 /// A flag after so many ticks.
 fn fly(n: usize, lanes: LaneCount, ticks: usize) -> ClothSnapshot {
-    let mut cloth = Product { settings: SETTINGS, lanes }.start(&Scene::flag(n));
+    let mut cloth = Product { settings: DEFAULT, lanes }.start(&Scene::flag(n));
     (0..ticks).for_each(|_| cloth.tick());
     cloth.batch.snapshot(0)
 }
@@ -172,7 +168,7 @@ fn bad_neighbour() -> HardCase {
     let mut batch = ClothBatch::new(fabric, LaneCount::Eight);
     batch.insert(&good, material(&scene)).expect("a good cloth");
     let accepted = f64::from(u8::from(batch.insert(&bad, material(&scene)).is_ok()));
-    batch.step(crate::product::TICK, SETTINGS);
+    batch.step(TICK, DEFAULT);
     let broken = f64::from(u8::from(!batch.is_finite(0)));
     HardCase::new("bad cloth beside a good one", 5, "accepted or spread", accepted + broken, 0.0)
 }

@@ -6,21 +6,16 @@ use bunting_solver::{ClothSnapshot, FrameMotion};
 use glam::{DVec3, Quat, Vec3};
 
 use super::{
-    HardCase,
-    rig::{positions, reach, run, speed, start, strain},
+    case::HardCase,
+    rig::{REACH, RECOVERED, reach, speed, start, strain},
 };
 use crate::{
-    oracles::specimen::Specimen,
     product::{Cloth, TICK, fabric},
     scenes::{Pins, Pose, Scene, ticks},
-    simulation::Simulation,
+    simulation::{Simulation, in_double, run},
+    specimen::Specimen,
     stats::{rms_distance, worse},
 };
-
-/// How far a metre of cloth may be from the pin at its frame's origin, m.
-const REACH: f64 = 1.6;
-/// Largest 95th percentile of strain of a cloth that has recovered, %.
-const RECOVERED: f64 = 1.0;
 
 /// All cases.
 pub fn cases(quick: bool) -> Vec<HardCase> {
@@ -57,7 +52,8 @@ fn far(n: usize, offset: f32) -> HardCase {
             carry(cloth, pose(*offset, tick), pose(*offset, tick + 1));
         }
     }
-    let apart = rms_distance(&positions(&cloths[0].1), &positions(&cloths[1].1));
+    let apart =
+        rms_distance(&in_double(cloths[0].1.positions()), &in_double(cloths[1].1.positions()));
     // A pose that is rounded to a unit in the last place of the offset shakes the pins by as much.
     let limit = f64::from(offset * f32::EPSILON) + 1e-4;
     HardCase::new(format!("{offset:e} m from the origin"), n, "RMS distance, m", apart, limit)

@@ -8,10 +8,11 @@ use bevy_ecs::entity::Entity;
 use bunting_solver::StepSettings;
 use glam::DVec3;
 
-use super::HardCase;
+use super::case::HardCase;
 use crate::{
     game, product,
     scenes::{Scene, ticks},
+    simulation::in_double,
     stats::rms_distance,
 };
 
@@ -27,7 +28,7 @@ const DRIFT: f64 = 1e-4;
 /// A sheet hung by two corners: how soon it sleeps, and how far it then drifts.
 pub fn cases(_quick: bool) -> Vec<HardCase> {
     let scene = Scene::hang_corners(SIZE);
-    let mut app = game::calm_app(StepSettings::default());
+    let mut app = game::app_in_still_air([StepSettings::default()]);
     let corners = vec![ClothCorner::TopLeft, ClothCorner::TopRight];
     let size = SIZE as u32;
     let sheet = (
@@ -55,5 +56,5 @@ fn state(app: &App, sheet: Entity) -> &ClothState {
 }
 
 fn positions(app: &App, sheet: Entity) -> Vec<DVec3> {
-    state(app, sheet).positions().iter().map(|x| x.as_dvec3()).collect()
+    in_double(state(app, sheet).positions())
 }

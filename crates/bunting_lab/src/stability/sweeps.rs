@@ -3,15 +3,16 @@
 use bunting_solver::StepSettings;
 
 use super::{
-    HardCase,
-    rig::{SETTINGS, energy, run, speed, start, strain},
+    case::HardCase,
+    rig::{energy, speed, start, strain},
 };
 use crate::{
-    oracles::{rig::strip, specimen::Specimen, trials},
-    product::{Cloth, Product},
+    oracles::{rig::strip, trials},
+    product::{Cloth, DEFAULT, Product},
     reference::grid::Grid,
     scenes::{Fabric, Pins, Pose, Scene, ticks},
-    simulation::Simulation,
+    simulation::{Simulation, in_double, run},
+    specimen::Specimen,
     stats::{crossing_frequency, rms_distance, worse},
 };
 
@@ -21,7 +22,7 @@ const STRAIN: f64 = 0.2;
 const PERIOD: f64 = 0.01;
 /// Largest rise of the energy over its start, of the sheet's fall.
 const ENERGY: f64 = 0.01;
-/// Time that a cloth damped by 2/s is given to come to rest, s: what moves is down to e⁻¹².
+/// Time in which a cloth damped by 2/s comes to rest, s: its motion has decayed to e⁻¹².
 const SETTLING: f64 = 12.0;
 /// Fastest that a cloth at rest may move, m/s RMS.
 const REST_SPEED: f64 = 1e-3;
@@ -74,10 +75,10 @@ fn tick_lengths(rate: u32) -> impl Iterator<Item = f32> {
     })
 }
 
-/// Every setting of the sweep: passes at 60 Hz, then rates with one pass.
+/// Every setting of the sweep: passes at 60 Hz, then rates by default settings.
 fn sweep() -> impl Iterator<Item = (StepSettings, u32)> {
-    let passes = [1, 2, 4, 8].map(|passes| (StepSettings { passes, ..SETTINGS }, 60));
-    let rates = [30, 144, 240, 0].map(|rate| (SETTINGS, rate));
+    let passes = [1, 2, 4, 8].map(|passes| (StepSettings { passes, ..DEFAULT }, 60));
+    let rates = [30, 144, 240, 0].map(|rate| (DEFAULT, rate));
     passes.into_iter().chain(rates)
 }
 
@@ -173,11 +174,11 @@ fn tiny_steps(n: usize) -> [HardCase; 2] {
         cloth
     };
     let (coarse, mut fine) = (settled(8), settled(64));
-    let shape = rms_distance(&super::rig::positions(&coarse), &super::rig::positions(&fine));
+    let shape = rms_distance(&in_double(coarse.positions()), &in_double(fine.positions()));
     let seen: Vec<_> = (0..WINDOW)
         .map(|_| {
             fine.tick();
-            super::rig::positions(&fine)
+            in_double(fine.positions())
         })
         .collect();
     let mean: Vec<_> = (0..scene.vertices())
@@ -194,9 +195,9 @@ fn resting(quick: bool) -> HardCase {
     let scene = Scene::hang_top(17);
     let mut cloth = start(&scene);
     run(&mut cloth, 10.0);
-    let settled = super::rig::positions(&cloth);
+    let settled = in_double(cloth.positions());
     run(&mut cloth, if quick { 20.0 } else { 600.0 });
-    let drift = rms_distance(&settled, &super::rig::positions(&cloth));
+    let drift = rms_distance(&settled, &in_double(cloth.positions()));
     HardCase::new("rest: 10 min hanging", 17, "drift, m", drift, 1e-4)
 }
 
@@ -207,7 +208,7 @@ fn stiff_bending() -> HardCase {
     HardCase::new("stiff bending, Γ = 0.01", 32, "error of H/W = Γ/8, of one", aspect, 0.02)
 }
 
-/// A stiff clamped strip without load that is nudged in its plane swings and comes back. Its cells are
+/// A stiff clamped strip without load, displaced in its plane, must oscillate about its rest. Its cells are
 /// `aspect` times as wide as long.
 fn nudged_strip(aspect: f64) -> HardCase {
     const SEGMENTS: usize = 32;
@@ -222,7 +223,7 @@ fn nudged_strip(aspect: f64) -> HardCase {
     cloth.place(&nudged, &vec![glam::DVec3::ZERO; nudged.len()]);
     let worst = (0..ticks(20.0)).fold(0.0, |worst, _| {
         cloth.tick();
-        let moved = super::rig::positions(&cloth);
+        let moved = in_double(cloth.positions());
         let off = moved.iter().zip(&start_at).map(|(x, at)| x.distance(*at));
         worse(worst, off.fold(0.0, worse) / NUDGE)
     });

@@ -1,20 +1,17 @@
 //! Wind, weights, and a fabric that changes.
 
 use super::{
-    HardCase,
-    rig::{SETTINGS, positions, reach, run, start},
+    case::HardCase,
+    rig::{REACH, reach, start},
 };
 use crate::{
-    product::{Product, material},
+    product::{DEFAULT, Product, material},
     reference::grid::Grid,
     scenes::{Air, Fabric, Pins, Pose, Scene, ticks},
-    simulation::Simulation,
+    simulation::{Simulation, in_double, run},
     stats::worse,
 };
 
-/// How far the farthest corner of a metre of cloth held by a side may be from the pin at the origin,
-/// m: its diagonal and some strain.
-const REACH: f64 = 1.6;
 /// Pressure coefficient times density of a flag, kg/m³.
 const PRESSURE: f64 = 1.47;
 
@@ -71,7 +68,7 @@ fn flag(n: usize, density: f64, wind: f64, seconds: f64) -> f64 {
 /// Cloths of 2 g/m² and 2 kg/m² side by side in one batch.
 fn mass_ratio(n: usize) -> HardCase {
     let scene = Scene::flag(n);
-    let product = Product { settings: SETTINGS, lanes: bunting_solver::LaneCount::Eight };
+    let product = Product { settings: DEFAULT, lanes: bunting_solver::LaneCount::Eight };
     let mut cloths = product.start(&scene);
     let weigh =
         |density| material(&Scene { fabric: Fabric { density, ..scene.fabric }, ..scene.clone() });
@@ -122,11 +119,10 @@ fn stiffened(n: usize) -> HardCase {
         fabric: Fabric { stretch: [1e5, 1e5], shear: 2e3, ..scene.fabric },
         ..scene
     });
-    let stored = grid.elastic_energy(&positions(&cloth));
+    let stored = grid.elastic_energy(&in_double(cloth.positions()));
     let worst = (0..60).fold(0.0, |worst, _| {
         cloth.tick();
-        let velocities: Vec<_> = cloth.velocities().iter().map(|v| v.as_dvec3()).collect();
-        worse(worst, grid.kinetic_energy(&velocities) / stored)
+        worse(worst, grid.kinetic_energy(&in_double(cloth.velocities())) / stored)
     });
     HardCase::new("stiffness × 100 in one frame", n, "kinetic over elastic energy", worst, 1.0)
 }

@@ -9,7 +9,7 @@ use crate::batch::layout::{Layout, Positions};
 use crate::batch::masses::Masses;
 use crate::batch::side_by_side::SideBySide;
 use crate::constraints::tridiagonal::TridiagonalRow;
-use crate::fabric::{ABREAST, Fabric};
+use crate::fabric::{CHAINS_PER_PAIR, Fabric};
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, set_lane3, splat3};
 use crate::stability::pole::Pole;
@@ -101,7 +101,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             velocity: zero,
             relaxation: vec![P::splat(1.0); layout.pack_count()],
             link_target: vec![P::splat(0.0); chains.target_count()],
-            rows: vec![TridiagonalRow::new(); ABREAST * chains.longest()],
+            rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
             moments: vec![splat3(Vec3::ZERO); longest_line],
             masses: Masses::new(&layout, &fabric),
             partial_sums: layout.partial_sums(),

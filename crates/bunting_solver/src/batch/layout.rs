@@ -15,7 +15,7 @@ use glam::Vec3;
 
 use crate::constraints::factors::Factors;
 use crate::constraints::stiffness::Stiffness;
-use crate::fabric::{BendLine, Fabric, Ribbon, Strands, Tether};
+use crate::fabric::{BendLine, Chains, Fabric, Ribbon, Tether};
 use crate::geometry::corners::CornerSums;
 use crate::simd::constant::Constant;
 use crate::simd::lane::{Lane, Pack};
@@ -82,7 +82,7 @@ pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
     fn positions(&self, packs: Vec<Pack3<P>>) -> Self::Positions;
 
     /// Chains of links, colour by colour, and the cells whose diagonals are links.
-    fn chains<'a>(&'a self, fabric: &'a Fabric) -> &'a Strands<Self::Constant>;
+    fn chains<'a>(&'a self, fabric: &'a Fabric) -> &'a Chains<Self::Constant>;
 
     /// The order in which the chains of a colour want the particles.
     fn order_of_chains(&self, colour: usize) -> Order;

@@ -9,7 +9,7 @@ use crate::constraints::bend_factors::BendFactors;
 use crate::constraints::factors::{ClothFactors, Factors};
 use crate::constraints::stiffness::Stiffness;
 use crate::constraints::twist_factors::TwistFactors;
-use crate::fabric::{BendLine, Fabric, Ribbon, Strands, Tether};
+use crate::fabric::{BendLine, Chains, Fabric, Ribbon, Tether};
 use crate::geometry::corners::PatchSums;
 use crate::simd::constant::PARTIAL_SUMS;
 use crate::simd::lane::{Lane, Pack};
@@ -47,7 +47,7 @@ impl<P: Pack> SideBySide<P> {
             },
             hinge_compliance: vec![zero; fabric.hinge_classes().len()],
             hinge_multiplier: vec![zero; fabric.hinges().len()],
-            below: vec![splat3(Vec3::ZERO); fabric.columns_of_cells().unwrap_or(0)],
+            below: vec![splat3(Vec3::ZERO); fabric.patch_grid_columns().unwrap_or(0)],
         }
     }
 }
@@ -104,8 +104,8 @@ impl<P: Pack> Layout<P> for SideBySide<P> {
         Packs(packs)
     }
 
-    fn chains<'a>(&'a self, fabric: &'a Fabric) -> &'a Strands {
-        fabric.strands()
+    fn chains<'a>(&'a self, fabric: &'a Fabric) -> &'a Chains {
+        fabric.chains()
     }
 
     fn order_of_chains(&self, _: usize) -> Order {
@@ -148,8 +148,9 @@ impl<P: Pack> Layout<P> for SideBySide<P> {
         for (factors, rows) in twist.iter_mut().zip(&of_cloth.twist) {
             factors.set_lane(lane, rows);
         }
-        for (pack, class) in self.hinge_compliance.iter_mut().zip(fabric.hinge_classes()) {
-            pack.lanes_mut()[lane] = stiffness.of_hinge(class);
+        let hinges = stiffness.of_hinges(fabric);
+        for (pack, compliance) in self.hinge_compliance.iter_mut().zip(hinges) {
+            pack.lanes_mut()[lane] = compliance;
         }
     }
 

@@ -42,7 +42,7 @@ impl<P: Pack, C: Constant<P>> BendFactors<P, C> {
         };
         let particles = first.map_or(0, |profile| profile.inverse_areas.len());
         Self {
-            rows: vec![row; first.map_or(0, |profile| profile.weights.len())],
+            rows: vec![row; first.map_or(0, |profile| profile.coefficients.len())],
             mobilities: (0..particles)
                 .map(|particle| C::of(|lane| mobility(lane, particle)))
                 .collect(),
@@ -87,5 +87,5 @@ pub(crate) fn factorise(profile: &BendProfile, compliance: f32) -> Vec<BendRow<f
             inverse_diagonal: (1.0 / pivot) as f32,
         }
     };
-    profile.weights.iter().enumerate().map(row).collect()
+    profile.coefficients.iter().enumerate().map(row).collect()
 }

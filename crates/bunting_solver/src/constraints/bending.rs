@@ -131,7 +131,7 @@ mod tests {
     fn energy(fabric: &Fabric, lines: &[BendLine], bend_stiffness: f32, at: &[Vec3]) -> f64 {
         let of_line = |line: &BendLine| -> f64 {
             let profile = &fabric.bend_profiles()[line.profile as usize];
-            let bends = line.particles.windows(3).zip(&profile.weights);
+            let bends = line.particles.windows(3).zip(&profile.coefficients);
             bends
                 .map(|(three, &weight)| {
                     let [a, b, c] = [0, 1, 2].map(|i| at[three[i] as usize].as_dvec3());

@@ -13,7 +13,7 @@
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
 use crate::constraints::tridiagonal::TridiagonalRow;
-use crate::fabric::{ABREAST, LinkFamily, Strand, StrandLink};
+use crate::fabric::{CHAINS_PER_PAIR, ChainLink, ChainPair, LinkFamily};
 use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
@@ -25,7 +25,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Diagonals must not come last: they move particles far, measured by the strain of warp and weft.
     pub fn solve_chains(&mut self, passes: u32) {
         self.solve_chains_once(Pass::First);
-        if self.fabric.squares_cells() {
+        if self.fabric.has_shear_cells() {
             if self.clock.begun == 1 {
                 self.find_diagonal_targets();
             }
@@ -48,8 +48,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             if pass.solves(colour.family) {
                 let order = self.layout.order_of_chains(index);
                 let (masses, linked) = (&self.masses.inverse, self.layout.linked());
-                P::run(Chains {
-                    pairs: &chains.strands[colour.strands.clone()],
+                P::run(SolveChains {
+                    pairs: &chains.pairs[colour.pairs.clone()],
                     pass,
                     compliance: &self.layout.factors().link_compliance,
                     rows: &mut self.rows,
@@ -78,13 +78,13 @@ enum Pass {
 
 impl Pass {
     fn solves(self, family: LinkFamily) -> bool {
-        (family == LinkFamily::Bias) == matches!(self, Self::Diagonals | Self::Shear)
+        (family == LinkFamily::Diagonal) == matches!(self, Self::Diagonals | Self::Shear)
     }
 }
 
 /// The chains of one colour, in pairs.
-struct Chains<'a, P: Pack, S: Particles<P>> {
-    pairs: &'a [Strand<S::Constant>],
+struct SolveChains<'a, P: Pack, S: Particles<P>> {
+    pairs: &'a [ChainPair<S::Constant>],
     pass: Pass,
     compliance: &'a [P],
     rows: &'a mut [TridiagonalRow<P>],
@@ -92,7 +92,7 @@ struct Chains<'a, P: Pack, S: Particles<P>> {
     particles: S,
 }
 
-impl<P: Pack, S: Particles<P>> Kernel<P> for Chains<'_, P, S> {
+impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         match self.pass {
@@ -104,7 +104,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Chains<'_, P, S> {
     }
 }
 
-impl<P: Pack, S: Particles<P>> Chains<'_, P, S> {
+impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
     /// Solves all pairs: `WARM` starts from stored targets, and not from lengths at rest; `STORE` stores the new
     /// targets.
     #[inline(always)]
@@ -114,9 +114,9 @@ impl<P: Pack, S: Particles<P>> Chains<'_, P, S> {
     ) {
         for pair in self.pairs {
             match pair.count {
-                ABREAST => {
-                    self.eliminate::<L, ABREAST, WARM, STORE>(token, pair);
-                    self.substitute::<L, ABREAST, WARM, STORE>(token, pair);
+                CHAINS_PER_PAIR => {
+                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE>(token, pair);
+                    self.substitute::<L, CHAINS_PER_PAIR, WARM, STORE>(token, pair);
                 }
                 _ => {
                     self.eliminate::<L, 1, WARM, STORE>(token, pair);
@@ -131,7 +131,7 @@ impl<P: Pack, S: Particles<P>> Chains<'_, P, S> {
     fn eliminate<L: Lane<Pack = P>, const N: usize, const WARM: bool, const STORE: bool>(
         &mut self,
         token: L::Token,
-        pair: &Strand<S::Constant>,
+        pair: &ChainPair<S::Constant>,
     ) {
         let particles = &self.particles;
         let (rows, _) = self.rows.as_chunks_mut::<N>();
@@ -150,7 +150,7 @@ impl<P: Pack, S: Particles<P>> Chains<'_, P, S> {
         let links = pair.links.iter().zip(&pair.particles[1..]);
         for (((links, ends), targets), rows) in links.zip(targets).zip(rows) {
             for (at, &particle) in first_of::<N>(ends).iter().enumerate() {
-                let StrandLink { class, rest_length } = links[at];
+                let ChainLink { class, rest_length } = links[at];
                 let compliance = L::load(token, &self.compliance[class as usize]);
                 let target =
                     if WARM { L::load(token, &targets[at]) } else { rest_length.load(token) };
@@ -184,7 +184,7 @@ impl<P: Pack, S: Particles<P>> Chains<'_, P, S> {
     fn substitute<L: Lane<Pack = P>, const N: usize, const WARM: bool, const STORE: bool>(
         &mut self,
         token: L::Token,
-        pair: &Strand<S::Constant>,
+        pair: &ChainPair<S::Constant>,
     ) {
         let particles = &mut self.particles;
         let (rows, _) = self.rows.as_chunks::<N>();
@@ -226,7 +226,7 @@ impl<P: Pack, S: Particles<P>> Chains<'_, P, S> {
 
 /// The first columns of a row of particles.
 #[inline(always)]
-fn first_of<const N: usize>(row: &[u32; ABREAST]) -> &[u32; N] {
+fn first_of<const N: usize>(row: &[u32; CHAINS_PER_PAIR]) -> &[u32; N] {
     row.first_chunk().expect("no more chains than are solved side by side")
 }
 

@@ -5,7 +5,7 @@
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
-use crate::fabric::PolishLink;
+use crate::fabric::SweepLink;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
 
@@ -14,11 +14,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn sweep_links(&mut self) {
         let chains = self.layout.chains(&self.fabric);
         for (index, colour) in chains.colours.iter().enumerate() {
-            if !colour.polish.is_empty() {
+            if !colour.sweep_links.is_empty() {
                 let order = self.layout.order_of_chains(index);
                 let (masses, linked) = (&self.masses.inverse, self.layout.linked());
                 P::run(Sweep {
-                    links: &chains.polish[colour.polish.clone()],
+                    links: &chains.sweep_links[colour.sweep_links.clone()],
                     compliance: &self.layout.factors().link_compliance,
                     target: &mut self.link_target,
                     particles: self.positions.particles(order, masses, linked),
@@ -29,7 +29,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 }
 
 struct Sweep<'a, P: Pack, S: Particles<P>> {
-    links: &'a [PolishLink],
+    links: &'a [SweepLink],
     compliance: &'a [P],
     target: &'a mut [P],
     particles: S,

@@ -56,7 +56,7 @@ impl<P: Pack, C: Constant<P>> TwistFactors<P, C> {
 pub(crate) fn factorise(profile: &RibbonProfile, compliance: f32) -> Vec<TwistRow<f32>> {
     let pairs: Vec<f64> =
         profile.inverse_areas.iter().map(|[a, b]| f64::from(*a) + f64::from(*b)).collect();
-    let softness = f64::from(compliance / profile.weight);
+    let softness = f64::from(compliance / profile.coefficient);
     let mut last = 0.0;
     let row = |ends: &[f64]| {
         let lower = -ends[0] * last;

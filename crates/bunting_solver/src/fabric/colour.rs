@@ -1,27 +1,24 @@
-//! Colours: runs of constraints that share no particle.
+//! Graph colouring: constraints of one colour share no particle.
 //!
-//! Gauss–Seidel in row order pumps energy along the rows and chains each constraint to the last;
-//! in colour order neighbours in the stream are independent.
+//! Gauss–Seidel in row order feeds energy along the rows, and each constraint waits for the result of the one
+//! before. In colour order neighbours in the list are independent.
 
-use core::hash::Hash;
 use core::ops::Range;
-use std::collections::HashMap;
 
 /// Where each colour begins and ends in a list of constraints.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Colours(Vec<Range<usize>>);
+pub(crate) struct Colours(Vec<Range<usize>>);
 
 impl Colours {
-    /// The ranges, one a colour, in the order in which they are solved.
-    #[must_use]
+    /// The ranges, one per colour, in the order in which they are solved.
     pub fn ranges(&self) -> &[Range<usize>] {
         &self.0
     }
 }
 
-/// Sorts constraints by the smallest colour that no earlier one of their particles has, keeping the
-/// order within a colour. Constraints of a lower `rank` come first, whatever their colour.
-pub(crate) fn colour<C>(
+/// Gives each constraint the smallest colour that no earlier constraint of its particles has (greedy colouring),
+/// and sorts the constraints by rank, then colour, then their order before.
+pub(super) fn colour<C>(
     particle_count: usize,
     constraints: Vec<C>,
     particles: impl Fn(&C) -> &[u32],
@@ -59,29 +56,28 @@ pub(crate) fn colour<C>(
     (keyed.into_iter().map(|(_, constraint)| constraint).collect(), Colours(ranges))
 }
 
-/// Replaces values that are equal but for rounding by indices into a table of the distinct ones. The keys
-/// are their [`rounded_bits`].
-pub(crate) struct Classes<K> {
-    keys: HashMap<K, u32>,
-}
+#[cfg(test)]
+mod tests {
+    use super::colour;
 
-/// Bits of an f32 that a class ignores: values within 2⁻¹² of one another are one class.
-const CLASS_ROUNDING_BITS: u32 = 12;
-
-/// Bits of a value, equal for values of one class.
-pub(crate) fn rounded_bits(value: f32) -> u32 {
-    (value.to_bits() + (1 << (CLASS_ROUNDING_BITS - 1))) >> CLASS_ROUNDING_BITS
-}
-
-impl<K: Eq + Hash> Classes<K> {
-    pub fn new() -> Self {
-        Self { keys: HashMap::new() }
-    }
-
-    /// The class of a value, and whether it is new: then it is the next in the table.
-    pub fn class_of(&mut self, key: K) -> (u32, bool) {
-        let next = self.keys.len() as u32;
-        let class = *self.keys.entry(key).or_insert(next);
-        (class, class == next)
+    #[test]
+    fn constraints_of_one_colour_share_no_particle() {
+        // A fan and a path: pairs and a triple.
+        let constraints: Vec<Vec<u32>> =
+            vec![vec![0, 1], vec![0, 2], vec![0, 3], vec![1, 2, 3], vec![3, 4], vec![4, 5]];
+        let rank = |constraint: &Vec<u32>| u32::from(constraint.len() != 2);
+        let (sorted, colours) = colour(6, constraints.clone(), |constraint| constraint, rank);
+        let covered: usize = colours.ranges().iter().map(ExactSizeIterator::len).sum();
+        assert_eq!(covered, constraints.len());
+        assert!(constraints.iter().all(|constraint| sorted.contains(constraint)));
+        assert_eq!(sorted[5], [1, 2, 3], "of the higher rank");
+        assert_eq!(colours.ranges().len(), 4);
+        for range in colours.ranges() {
+            let mut particles: Vec<u32> = sorted[range.clone()].concat();
+            let all = particles.len();
+            particles.sort_unstable();
+            particles.dedup();
+            assert_eq!(particles.len(), all);
+        }
     }
 }

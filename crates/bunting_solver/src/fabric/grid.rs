@@ -1,8 +1,8 @@
-//! The rectangular grid, the commonest fabric.
+//! The rectangular grid: flags, sails, curtains.
 
 use glam::{Vec2, Vec3};
 
-use crate::fabric::FabricError;
+use super::error::FabricError;
 
 /// A rectangle of particles.
 ///
@@ -33,14 +33,15 @@ impl Grid {
         row * self.columns + column
     }
 
-    /// The next coarser grid of a dyadic chain: every second column and row.
+    /// The grid of every second column and row; none unless both counts are odd and at least 3.
     #[must_use]
     pub fn halved(&self) -> Option<Self> {
         let halve = |count: u32| (count >= 3 && count % 2 == 1).then_some(count / 2 + 1);
         Some(Self { columns: halve(self.columns)?, rows: halve(self.rows)?, ..*self })
     }
 
-    pub(crate) fn validate(&self) -> Result<(), FabricError> {
+    /// Checks that there are at least two columns and rows, and that both lengths are positive.
+    pub(super) fn validate(&self) -> Result<(), FabricError> {
         let positive = |length: f32| length > 0.0 && length.is_finite();
         let cells = u64::from(self.columns) * u64::from(self.rows);
         if self.columns < 2
@@ -55,23 +56,33 @@ impl Grid {
         Ok(())
     }
 
+    /// Positions at rest, m, one per particle.
     pub(crate) fn positions(&self) -> Vec<Vec3> {
         self.nodes(|u, v| Vec3::new(u * self.width, -v * self.height, 0.0))
     }
 
-    pub(crate) fn uvs(&self) -> Vec<Vec2> {
+    /// Texture coordinates, one per particle: from 0 to 1 along both sides.
+    #[must_use]
+    pub fn uvs(&self) -> Vec<Vec2> {
         self.nodes(Vec2::new)
     }
 
+    /// A value for each particle, from how far along a row and a column it lies, from 0 to 1.
     fn nodes<T>(&self, node: impl Fn(f32, f32) -> T) -> Vec<T> {
-        let fraction = |index: u32, count: u32| index as f32 / (count - 1) as f32;
+        let fraction = |index: u32, count: u32| index as f32 / (count.max(2) - 1) as f32;
         (0..self.rows)
             .flat_map(|row| (0..self.columns).map(move |column| (column, row)))
             .map(|(column, row)| node(fraction(column, self.columns), fraction(row, self.rows)))
             .collect()
     }
 
-    /// The corners of each cell: top left, top right, bottom left, bottom right.
+    /// Distances between neighbours along a row and along a column, m.
+    pub(crate) fn spacing(&self) -> [f32; 2] {
+        [self.width / (self.columns - 1) as f32, self.height / (self.rows - 1) as f32]
+    }
+
+    /// The particles at the corners of each cell (top left, top right, bottom left, bottom right), and whether the
+    /// cell is one of the "even" ones of a chessboard.
     pub(crate) fn cells(&self) -> impl Iterator<Item = ([u32; 4], bool)> + '_ {
         (0..self.rows - 1).flat_map(move |row| {
             (0..self.columns - 1).map(move |column| {
@@ -82,8 +93,8 @@ impl Grid {
         })
     }
 
-    /// Two triangles a cell, the diagonal alternating from cell to cell so that no direction is
-    /// preferred. `flipped` gives the other diagonal.
+    /// Two triangles per cell, the diagonal alternating from cell to cell so that no direction is preferred.
+    /// `flipped` cuts each cell along its other diagonal.
     pub(crate) fn triangles(&self, flipped: bool) -> Vec<[u32; 3]> {
         self.cells()
             .flat_map(|([top_left, top_right, bottom_left, bottom_right], even)| {

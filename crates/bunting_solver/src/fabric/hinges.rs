@@ -1,82 +1,89 @@
-//! Bending constraints: an edge, and the two corners that fold about it.
+//! Bending of any mesh: hinges, each an edge and the two corners that fold about it.
 
 use glam::Vec3;
 
-use super::colour::{Classes, Colours, colour, rounded_bits};
+use super::clamp::CLAMP_FACTOR;
+use super::classes::{Classes, rounded_bits};
+use super::colour::colour;
+use super::material::FabricMaterial;
+use super::mesh::RestMesh;
 use super::topology::Edge;
 
 /// A bending constraint between two triangles that share an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hinge {
+pub(crate) struct Hinge {
     /// The edge's two ends, then the corners opposite to it.
     pub particles: [u32; 4],
     /// Signed angle between the triangles' normals at rest, rad; zero is flat.
     pub rest_angle: f32,
-    /// Index into [`Fabric::hinge_classes`](super::Fabric::hinge_classes).
+    /// Index into [`Hinges::classes`].
     pub class: u32,
 }
 
-/// How stiff a hinge is.
+/// How stiff a hinge is in any material.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HingeClass {
-    /// Stiffness in N·m/rad² is this times the material's bending stiffness.
-    pub weight: f32,
+pub(crate) struct HingeClass {
+    /// Stiffness in N·m/rad² is this times the material's bending stiffness in N·m.
+    pub coefficient: f32,
 }
 
 impl HingeClass {
-    /// Stiffness of the hinge in a material, N·m.
-    #[must_use]
-    pub fn stiffness(&self, material: &super::FabricMaterial) -> f32 {
-        self.weight * material.bend_stiffness
+    /// Stiffness of the hinge in a material, N·m/rad².
+    pub fn stiffness(&self, material: &FabricMaterial) -> f32 {
+        self.coefficient * material.bend_stiffness
     }
 }
 
-/// The usual hinge energy ½ B · 3|e|²/(A₁+A₂) θ² overrates a cylinder's bending threefold on
-/// equilateral meshes and on grids along their axes, at every resolution: so no 3 here.
-const HINGE_CALIBRATION: f32 = 1.0;
+/// Factor of |e|²/(A₁+A₂) in a hinge's stiffness. The usual energy, ½ B · 3|e|²/(A₁+A₂) θ², is three times that of
+/// a bent cylinder on equilateral meshes and on grids along their axes, at every resolution: hence 1 and not 3.
+const CALIBRATION: f32 = 1.0;
 
-/// A hinge at a clamp, where the cloth leaves pinned ground, covers half a cell: with a weight of
-/// two a heavy cantilever converges at second order instead of first.
-const CLAMP_WEIGHT: f32 = 2.0;
-
-/// Makes a hinge of each edge between two triangles, except where nothing can move.
-pub(crate) fn hinges(
-    rest: &[Vec3],
-    edges: &[Edge],
-    pinned: &[bool],
-) -> (Vec<Hinge>, Vec<HingeClass>, Colours) {
-    let mut table = Vec::new();
-    let mut classes = Classes::new();
-    let is_pinned = |particle: u32| pinned[particle as usize];
-    let hinges = edges
-        .iter()
-        .filter_map(|edge| {
-            let ([a, b], c, d) = (edge.ends, edge.opposite, edge.other_opposite?);
-            let particles = [a, b, c, d];
-            if particles.iter().all(|&particle| is_pinned(particle)) {
-                return None;
-            }
-            let corners = particles.map(|particle| rest[particle as usize]);
-            let [pa, pb, pc, pd] = corners;
-            let edge_squared = pa.distance_squared(pb);
-            let areas =
-                0.5 * ((pb - pa).cross(pc - pa).length() + (pb - pa).cross(pd - pa).length());
-            let at_clamp = is_pinned(a) && is_pinned(b) && (is_pinned(c) || is_pinned(d));
-            let clamp = if at_clamp { CLAMP_WEIGHT } else { 1.0 };
-            let weight = clamp * HINGE_CALIBRATION * edge_squared / areas;
-            let (class, is_new) = classes.class_of([rounded_bits(weight)]);
-            if is_new {
-                table.push(HingeClass { weight });
-            }
-            Some(Hinge { particles, rest_angle: angle(corners), class })
-        })
-        .collect();
-    let (hinges, colours) = colour(rest.len(), hinges, |hinge: &Hinge| &hinge.particles, |_| 0);
-    (hinges, table, colours)
+/// The hinges of a fabric.
+#[derive(Clone, Debug)]
+pub(crate) struct Hinges {
+    /// Colour by colour.
+    pub list: Vec<Hinge>,
+    /// Stiffnesses that hinges refer to.
+    pub classes: Vec<HingeClass>,
 }
 
-/// Signed angle between the normals of the triangles (a, b, c) and (b, a, d), rad: atan2 of sine
-/// and cosine, since arccos (thesis, eq. 4.19) is singular at flat and blind to the side.
+impl Hinges {
+    /// A hinge at each edge between two triangles, except where all four particles are pinned.
+    pub fn of(mesh: &RestMesh, edges: &[Edge]) -> Self {
+        let mut table = Vec::new();
+        let mut classes = Classes::new();
+        let hinge = |edge: &Edge| {
+            let ([a, b], c, d) = (edge.ends, edge.opposite, edge.other_opposite?);
+            let particles = [a, b, c, d];
+            if particles.iter().all(|&particle| mesh.is_pinned(particle)) {
+                return None;
+            }
+            let corners = mesh.positions_of(particles);
+            let at_clamp =
+                mesh.is_pinned(a) && mesh.is_pinned(b) && (mesh.is_pinned(c) || mesh.is_pinned(d));
+            let coefficient = coefficient(corners, at_clamp);
+            let (class, is_new) = classes.class_of([rounded_bits(coefficient)]);
+            if is_new {
+                table.push(HingeClass { coefficient });
+            }
+            Some(Hinge { particles, rest_angle: angle(corners), class })
+        };
+        let hinges = edges.iter().filter_map(hinge).collect();
+        let (list, _) =
+            colour(mesh.positions.len(), hinges, |hinge: &Hinge| &hinge.particles, |_| 0);
+        Self { list, classes: table }
+    }
+}
+
+/// |e|²/(A₁+A₂) of the triangles (a, b, c) and (b, a, d), with the clamp's factor.
+fn coefficient([a, b, c, d]: [Vec3; 4], at_clamp: bool) -> f32 {
+    let areas = 0.5 * ((b - a).cross(c - a).length() + (b - a).cross(d - a).length());
+    let clamp = if at_clamp { CLAMP_FACTOR } else { 1.0 };
+    clamp * CALIBRATION * a.distance_squared(b) / areas
+}
+
+/// Signed angle between the normals of the triangles (a, b, c) and (b, a, d), rad: atan2 of sine and cosine, since
+/// the arccos of the thesis (eq. 4.19) is singular where the hinge is flat and has no sign.
 pub(crate) fn angle([a, b, c, d]: [Vec3; 4]) -> f32 {
     let edge = (b - a).normalize();
     let normal = edge.cross(c - a).normalize();

@@ -1,11 +1,20 @@
-//! Distance constraints: which particles they join, and how stiff they are.
+//! Distance constraints ("links"): which particles they join, and how stiff they are.
+//!
+//! Each triangle gives its three edges the stiffnesses with which links along those directions reproduce the
+//! material's moduli: Σ q c⁴ = A C₁₁, Σ q s⁴ = A C₂₂ and Σ q c²s² = A G, with q = k l² for an edge of stiffness k
+//! and length l, (c, s) its direction in the material and A the triangle's area. Where a triangle's directions do
+//! not tell the moduli apart, least squares picks the smallest solution. On a grid, whose cells are cut both ways,
+//! this is the textbook k = Y × width / length for warp and weft and G L²/(2 Δx Δy) for diagonals, exactly.
 
 use std::collections::BTreeMap;
 
-use glam::{DMat3, DVec3, Vec2, Vec3};
+use glam::{DMat3, DVec3, Vec3};
 
-use super::colour::{Classes, Colours, colour, rounded_bits};
+use super::classes::{Classes, rounded_bits};
+use super::colour::colour;
+use super::grid::Grid;
 use super::material::FabricMaterial;
+use super::mesh::RestMesh;
 
 /// A distance constraint between two particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,8 +23,8 @@ pub struct Link {
     pub particles: [u32; 2],
     /// Distance at rest, m.
     pub rest_length: f32,
-    /// Index into [`Fabric::link_classes`](super::Fabric::link_classes).
-    pub class: u32,
+    /// Index into [`Links::classes`].
+    pub(crate) class: u32,
     /// Direction in the cloth.
     pub family: LinkFamily,
 }
@@ -27,40 +36,42 @@ pub enum LinkFamily {
     Warp,
     /// Within 22.5° of the weft (v).
     Weft,
-    /// In between: carries shear.
-    Bias,
+    /// In between: resists shear.
+    Diagonal,
 }
 
-/// How stiff a link is, as weights of the material's moduli.
+/// How stiff a link is in any material.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LinkClass {
-    /// Stiffness in N/m is the sum of these times
-    /// [`FabricMaterial::lattice_moduli`](super::FabricMaterial::lattice_moduli).
-    pub weights: [f32; 3],
+pub(crate) struct LinkClass {
+    /// Stiffness in N/m is the sum of these times C₁₁, C₂₂ and G of the material.
+    pub coefficients: [f32; 3],
     /// Least stiffness, as a part of the material's softer stretch stiffness.
     pub floor: f32,
 }
 
 impl LinkClass {
-    /// Stiffness of the link in a material, N/m.
-    #[must_use]
+    /// Stiffness of the link in a material, N/m, where diagonals resist stretch too: with
+    /// [`FabricMaterial::lattice_moduli`].
     pub fn stiffness(&self, material: &FabricMaterial) -> f32 {
-        // Zero weights are skipped: an inextensible material's moduli are infinite.
-        self.of_moduli(material.lattice_moduli(), |weight| weight != 0.0).max(self.least(material))
+        // Coefficients of zero are skipped: an inextensible material's moduli are infinite.
+        let moduli = material.lattice_moduli();
+        self.combined(moduli, |coefficient| coefficient != 0.0).max(self.least(material))
     }
 
-    /// The same where the bias carries shear alone (`constraints/bias.rs`), so that what warp and weft
-    /// leave to it is theirs.
-    pub(crate) fn stiffness_beside_shear(&self, material: &FabricMaterial) -> f32 {
+    /// Stiffness of the link in a material, N/m, where diagonals resist shear alone (`constraints/shear.rs`): warp
+    /// and weft carry all of the stretch, so that the material's own moduli hold, and no negative coefficient
+    /// makes room for the diagonals.
+    pub fn uncoupled_stiffness(&self, material: &FabricMaterial) -> f32 {
         let FabricMaterial { warp_stiffness, weft_stiffness, shear_stiffness, .. } = *material;
         let moduli = [warp_stiffness, weft_stiffness, shear_stiffness];
-        self.of_moduli(moduli, |weight| weight > 0.0).max(self.least(material))
+        self.combined(moduli, |coefficient| coefficient > 0.0).max(self.least(material))
     }
 
-    fn of_moduli(&self, moduli: [f32; 3], counts: fn(f32) -> bool) -> f32 {
-        let weights = self.weights.iter().zip(moduli).filter(|(weight, _)| counts(**weight));
-        let sum: f32 = weights.map(|(weight, modulus)| weight * modulus).sum();
-        // An infinite modulus of either sign leaves no number behind; it means inextensible.
+    /// The sum of the moduli times those coefficients that count.
+    fn combined(&self, moduli: [f32; 3], counts: fn(f32) -> bool) -> f32 {
+        let terms = self.coefficients.iter().zip(moduli).filter(|(factor, _)| counts(**factor));
+        let sum: f32 = terms.map(|(factor, modulus)| factor * modulus).sum();
+        // ∞ − ∞ is not a number; it means inextensible.
         if sum.is_nan() { f32::INFINITY } else { sum }
     }
 
@@ -69,135 +80,198 @@ impl LinkClass {
     }
 }
 
-/// Least stiffness of a link as a part of that which an isotropic mesh would give it (Van Gelder
-/// 1998): a lattice cannot hold its shape on links that weigh nothing or less.
-const LEAST_LINK_STIFFNESS: f64 = 0.02;
+/// Least stiffness of a link as a part of that which an isotropic mesh would give it (Van Gelder 1998). Smaller: a
+/// mesh cannot hold its shape on links whose stiffness is zero or negative. Larger: shear-soft materials shear too
+/// little.
+const LEAST_STIFFNESS: f64 = 0.02;
 
-/// Relative size of the term that picks the smallest solution where a triangle's three directions
-/// do not tell the moduli apart (an equilateral one, say).
+/// Size, relative to the normal equations, of the term that picks the smallest solution where a triangle's three
+/// directions do not tell the moduli apart (an equilateral one, say). Smaller: the inverse is rounding. Larger:
+/// stiffnesses of other triangles are off by as much.
 const RIDGE: f64 = 1e-7;
 
-/// A weight below this is the ridge's rounding, not geometry.
-const NO_WEIGHT: f64 = 1e-4;
+/// Coefficients smaller than this are rounding left by the ridge, and count as zero. Larger: coefficients of
+/// triangles nearly along the warp are lost.
+const LEAST_COEFFICIENT: f64 = 1e-4;
 
 /// cos² of the angle to the warp above which a link counts as warp: 22.5°.
 const FAMILY_COS2: f64 = 0.853_553_390_6;
 
-/// A link before its class is known.
-pub(crate) struct LinkGeometry {
-    particles: [u32; 2],
-    weights: [f64; 3],
-    isotropic: f64,
-    cos2: f64,
-    share: f64,
+/// The links of a fabric.
+#[derive(Clone, Debug)]
+pub(crate) struct Links {
+    /// Warp first, then weft, then diagonals; in each, colour by colour.
+    pub list: Vec<Link>,
+    /// Stiffnesses that links refer to.
+    pub classes: Vec<LinkClass>,
 }
 
-/// A mesh at rest, whose triangles are spread over links.
-pub(crate) struct Sheet<'a> {
-    pub rest: &'a [Vec3],
-    pub uv: &'a [Vec2],
-}
-
-impl Sheet<'_> {
-    /// Adds a triangle's share to its three edges, such that links whose directions are those of
-    /// the triangle reproduce C₁₁, C₂₂ and G: Σ q c⁴ = A C₁₁, Σ q s⁴ = A C₂₂, Σ q c²s² = A G with
-    /// q = k l² and (c, s) an edge's direction in the material. On a grid this gives k = Y × width /
-    /// length to warp and weft and G L²/(2 Δx Δy) to the diagonals, exactly.
-    pub fn add_links(
-        &self,
-        links: &mut BTreeMap<[u32; 2], LinkGeometry>,
-        triangle: [u32; 3],
-        share: f64,
-    ) {
-        let [a, b, c] = triangle;
-        let corners = triangle.map(|corner| self.rest[corner as usize]);
-        let area =
-            0.5 * f64::from((corners[1] - corners[0]).cross(corners[2] - corners[0]).length());
-        let edges = [[a, b], [b, c], [c, a]];
-        let warp = self.warp_direction(triangle);
-        let rows = edges.map(|[from, to]| {
-            let edge = self.rest[to as usize] - self.rest[from as usize];
-            let cos2 = f64::from(edge.dot(warp).powi(2) / edge.length_squared()).clamp(0.0, 1.0);
-            DVec3::new(cos2 * cos2, (1.0 - cos2).powi(2), cos2 * (1.0 - cos2))
+impl Links {
+    /// Links along the edges of a mesh, or along the rows, columns and both diagonals of a grid. A link between
+    /// two pinned particles has nothing to move and is left out.
+    pub fn of(mesh: &RestMesh, grid: Option<&Grid>) -> Self {
+        let mut sums = BTreeMap::new();
+        match grid {
+            // Both ways of cutting a cell, half of each.
+            Some(grid) => {
+                for flipped in [false, true] {
+                    for triangle in grid.triangles(flipped) {
+                        add_triangle(&mut sums, mesh, triangle, 0.5);
+                    }
+                }
+            }
+            None => {
+                for &triangle in &mesh.triangles {
+                    add_triangle(&mut sums, mesh, triangle, 1.0);
+                }
+            }
+        }
+        let is_free = |ends: &[u32; 2]| !ends.iter().all(|&end| mesh.is_pinned(end));
+        let mut table = Vec::new();
+        let mut classes = Classes::new();
+        let links = sums.into_iter().filter(|(ends, _)| is_free(ends)).map(|(particles, sum)| {
+            let value = sum.class();
+            let [a, b, c] = value.coefficients;
+            let (class, is_new) = classes.class_of([a, b, c, value.floor].map(rounded_bits));
+            if is_new {
+                table.push(value);
+            }
+            let [a, b] = mesh.positions_of(particles);
+            Link { particles, rest_length: a.distance(b), class, family: sum.family() }
         });
-        // Least squares for q with three columns of right sides, one a modulus.
-        let system = DMat3::from_cols(rows[0], rows[1], rows[2]);
-        let normal = system.transpose() * system + DMat3::from_diagonal(DVec3::splat(RIDGE));
-        let solution = normal.inverse() * system.transpose();
-        for (index, [from, to]) in edges.into_iter().enumerate() {
-            let ends = [from.min(to), from.max(to)];
-            let length2 =
-                f64::from(self.rest[to as usize].distance_squared(self.rest[from as usize]));
-            let scale = share * area / length2;
-            let link = links.entry(ends).or_insert(LinkGeometry {
-                particles: ends,
-                weights: [0.0; 3],
-                isotropic: 0.0,
-                cos2: 0.0,
-                share: 0.0,
-            });
-            let weights = solution.row(index) * scale;
-            link.weights[0] += weights.x;
-            link.weights[1] += weights.y;
-            link.weights[2] += weights.z;
-            link.isotropic += scale;
-            link.cos2 += share * (rows[index].x + rows[index].z);
-            link.share += share;
+        let (list, _) = colour(
+            mesh.positions.len(),
+            links.collect(),
+            |link: &Link| &link.particles,
+            |link| link.family as u32,
+        );
+        Self { list, classes: table }
+    }
+
+    /// Length of the shortest link of warp and weft, m.
+    pub fn shortest(&self) -> f32 {
+        let stretching = self.list.iter().filter(|link| link.family != LinkFamily::Diagonal);
+        stretching.map(|link| link.rest_length).fold(f32::INFINITY, f32::min)
+    }
+}
+
+/// What the triangles on both sides of an edge have given to its link so far.
+#[derive(Default)]
+struct LinkSum {
+    /// Factors of C₁₁, C₂₂ and G.
+    coefficients: [f64; 3],
+    /// The factor of Young's modulus that an isotropic mesh would give.
+    isotropic: f64,
+    /// Sum of cos² of the angle to the warp, one per triangle, times the triangle's part.
+    cos2: f64,
+    /// Sum of the parts.
+    parts: f64,
+}
+
+impl LinkSum {
+    fn class(&self) -> LinkClass {
+        LinkClass {
+            coefficients: self.coefficients.map(|coefficient| {
+                if coefficient.abs() < LEAST_COEFFICIENT { 0.0 } else { coefficient as f32 }
+            }),
+            floor: (LEAST_STIFFNESS * self.isotropic) as f32,
         }
     }
 
-    /// The direction in which u grows, in the triangle's plane; along its first edge if the texture
-    /// does not say.
-    fn warp_direction(&self, [a, b, c]: [u32; 3]) -> Vec3 {
-        let (a, b, c) = (a as usize, b as usize, c as usize);
-        let (e1, e2) = (self.rest[b] - self.rest[a], self.rest[c] - self.rest[a]);
-        let (t1, t2) = (self.uv[b] - self.uv[a], self.uv[c] - self.uv[a]);
-        let along_u = (e1 * t2.y - e2 * t1.y) * t1.perp_dot(t2).signum();
-        along_u.try_normalize().unwrap_or_else(|| e1.normalize_or_zero())
+    fn family(&self) -> LinkFamily {
+        let cos2 = self.cos2 / self.parts;
+        if cos2 > FAMILY_COS2 {
+            LinkFamily::Warp
+        } else if cos2 < 1.0 - FAMILY_COS2 {
+            LinkFamily::Weft
+        } else {
+            LinkFamily::Diagonal
+        }
     }
 }
 
-/// Colours the links, warp first, and gathers their stiffnesses into classes. A link between two
-/// pinned particles has nothing to move and is left out.
-pub(crate) fn finish(
-    rest: &[Vec3],
-    pinned: &[bool],
-    geometry: impl Iterator<Item = LinkGeometry>,
-) -> (Vec<Link>, Vec<LinkClass>, Colours) {
-    let mut table = Vec::new();
-    let mut classes = Classes::new();
-    let links = geometry
-        .filter(|link| !link.particles.iter().all(|&particle| pinned[particle as usize]))
-        .map(|link| {
-            let weights = link
-                .weights
-                .map(|weight| if weight.abs() < NO_WEIGHT { 0.0 } else { weight as f32 });
-            let floor = (LEAST_LINK_STIFFNESS * link.isotropic) as f32;
-            let (class, is_new) =
-                classes.class_of([weights[0], weights[1], weights[2], floor].map(rounded_bits));
-            if is_new {
-                table.push(LinkClass { weights, floor });
-            }
-            let cos2 = link.cos2 / link.share;
-            let family = if cos2 > FAMILY_COS2 {
-                LinkFamily::Warp
-            } else if cos2 < 1.0 - FAMILY_COS2 {
-                LinkFamily::Weft
-            } else {
-                LinkFamily::Bias
-            };
-            let [a, b] = link.particles;
-            let rest_length = rest[a as usize].distance(rest[b as usize]);
-            Link { particles: link.particles, rest_length, class, family }
-        })
-        .collect();
-    let (links, colours) =
-        colour(rest.len(), links, |link: &Link| &link.particles, |link| link.family as u32);
-    (links, table, colours)
+/// Adds what a triangle, of which a `part` counts, gives to the links along its edges.
+fn add_triangle(
+    sums: &mut BTreeMap<[u32; 2], LinkSum>,
+    mesh: &RestMesh,
+    triangle: [u32; 3],
+    part: f64,
+) {
+    let [a, b, c] = triangle;
+    let corners = mesh.positions_of(triangle);
+    let area = 0.5 * f64::from((corners[1] - corners[0]).cross(corners[2] - corners[0]).length());
+    let edges = [[a, b], [b, c], [c, a]];
+    let warp = warp_direction(mesh, triangle);
+    // c⁴, s⁴ and c²s² of each edge.
+    let rows = edges.map(|ends| {
+        let [from, to] = mesh.positions_of(ends);
+        let edge = to - from;
+        let cos2 = f64::from(edge.dot(warp).powi(2) / edge.length_squared()).clamp(0.0, 1.0);
+        DVec3::new(cos2 * cos2, (1.0 - cos2).powi(2), cos2 * (1.0 - cos2))
+    });
+    // Least squares for q with three columns of right sides, one per modulus.
+    let system = DMat3::from_cols(rows[0], rows[1], rows[2]);
+    let normal = system.transpose() * system + DMat3::from_diagonal(DVec3::splat(RIDGE));
+    let solution = normal.inverse() * system.transpose();
+    for (index, ends @ [from, to]) in edges.into_iter().enumerate() {
+        let [one, other] = mesh.positions_of(ends);
+        let scale = part * area / f64::from(other.distance_squared(one));
+        let sum = sums.entry([from.min(to), from.max(to)]).or_default();
+        let found = (solution.row(index) * scale).to_array();
+        for (coefficient, found) in sum.coefficients.iter_mut().zip(found) {
+            *coefficient += found;
+        }
+        sum.isotropic += scale;
+        sum.cos2 += part * (rows[index].x + rows[index].z);
+        sum.parts += part;
+    }
 }
 
-/// Length of the shortest link of warp and weft, m.
-pub(super) fn shortest(links: &[Link]) -> f32 {
-    let stretching = links.iter().filter(|link| link.family != LinkFamily::Bias);
-    stretching.map(|link| link.rest_length).fold(f32::INFINITY, f32::min)
+/// The direction in which u grows, in the triangle's plane; along its first edge if the texture does not say.
+fn warp_direction(mesh: &RestMesh, triangle: [u32; 3]) -> Vec3 {
+    let [a, b, c] = mesh.positions_of(triangle);
+    let [uv_a, uv_b, uv_c] = triangle.map(|corner| mesh.uv[corner as usize]);
+    let (e1, e2) = (b - a, c - a);
+    let (t1, t2) = (uv_b - uv_a, uv_c - uv_a);
+    let along_u = (e1 * t2.y - e2 * t1.y) * t1.perp_dot(t2).signum();
+    along_u.try_normalize().unwrap_or_else(|| e1.normalize_or_zero())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fabric::FabricBuilder;
+
+    #[test]
+    fn grid_links_have_the_textbook_stiffness() {
+        let grid = Grid::new(4, 5, 0.9, 2.0);
+        let (dx, dy) = (0.3, 0.5);
+        let fabric = FabricBuilder::grid(grid).build().expect("a good fabric");
+        let material = FabricMaterial {
+            warp_stiffness: 900.0,
+            weft_stiffness: 700.0,
+            shear_stiffness: 40.0,
+            ..FabricMaterial::DENIM
+        };
+        let [c11, c22, g] = material.lattice_moduli();
+        for link in fabric.links() {
+            let [a, b] = link.particles;
+            let on_border = |count: u32, at: u32| at == 0 || at == count - 1;
+            let (width, height) = (grid.columns, grid.rows);
+            let expected = match link.family {
+                LinkFamily::Warp => {
+                    (c11 - g * dx * dx / (dy * dy)) * dy / dx
+                        * if on_border(height, a / width) { 0.5 } else { 1.0 }
+                }
+                LinkFamily::Weft => {
+                    (c22 - g * dy * dy / (dx * dx)) * dx / dy
+                        * if on_border(width, a % width) { 0.5 } else { 1.0 }
+                }
+                LinkFamily::Diagonal => g * (dx * dx + dy * dy) / (2.0 * dx * dy),
+            };
+            let stiffness = fabric.link_stiffness(link, &material);
+            assert!((stiffness / expected - 1.0).abs() < 2e-3, "{a}–{b}: {stiffness} {expected}");
+        }
+        assert!(fabric.link_classes().len() <= 6, "{:?}", fabric.link_classes());
+    }
 }

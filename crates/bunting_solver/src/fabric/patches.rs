@@ -1,59 +1,56 @@
-//! Triangles in pairs that share an edge, for what is summed triangle by triangle.
+//! Triangles in pairs that share an edge, for sums over all triangles (air, normals).
 //!
-//! A pair has four corners where two triangles have six, so air and normals load and add up a third
-//! less. Neighbours in the list follow one another in space.
+//! A pair has four corners where two triangles have six, so that a third fewer positions are loaded and results
+//! added. Neighbours in the list are neighbours in space.
 
 use std::collections::HashMap;
 
-use super::Grid;
+use super::grid::Grid;
 use crate::simd::lane::Lane;
 use crate::simd::vec3::{Pack3, V3};
 
 /// Two triangles (a, b, c) and (a, c, d).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Patch {
-    /// a, b, c and d; a triangle that found no partner has d = c.
+    /// a, b, c and d; d = c where a triangle found no partner.
     pub corners: [u32; 4],
-    /// A third of each triangle's area, m²: what falls to each of its corners.
-    pub shares: [f32; 2],
+    /// A third of each triangle's area, m²: the part of it that belongs to each of its corners.
+    pub corner_areas: [f32; 2],
 }
 
 impl Patch {
-    /// Of what there is at each particle, that at its corners.
+    /// The values at the corners, of one per particle.
     #[inline(always)]
-    pub fn load<L: Lane>(&self, token: L::Token, of: &[Pack3<L::Pack>]) -> [V3<L>; 4] {
+    pub fn load<L: Lane>(&self, token: L::Token, values: &[Pack3<L::Pack>]) -> [V3<L>; 4] {
         let [a, b, c, d] = self.corners;
         [
-            V3::load(token, &of[a as usize]),
-            V3::load(token, &of[b as usize]),
-            V3::load(token, &of[c as usize]),
-            V3::load(token, &of[d as usize]),
+            V3::load(token, &values[a as usize]),
+            V3::load(token, &values[b as usize]),
+            V3::load(token, &values[c as usize]),
+            V3::load(token, &values[d as usize]),
         ]
     }
 }
 
 /// Whether patches are the cells of a grid, row by row.
-pub(crate) fn are_cells(patches: &[Patch], grid: &Grid) -> bool {
-    let [across, down] = [grid.columns - 1, grid.rows - 1];
-    let cells = (0..down).flat_map(|row| {
-        (0..across).map(move |column| {
-            let at = |right, below| grid.index(column + right, row + below);
-            if (column + row) % 2 == 0 {
-                [at(0, 0), at(0, 1), at(1, 1), at(1, 0)]
-            } else {
-                [at(1, 0), at(0, 0), at(0, 1), at(1, 1)]
-            }
-        })
+pub(super) fn are_cells(patches: &[Patch], grid: &Grid) -> bool {
+    let cells = grid.cells().map(|([top_left, top_right, bottom_left, bottom_right], even)| {
+        if even {
+            [top_left, bottom_left, bottom_right, top_right]
+        } else {
+            [top_right, top_left, bottom_left, bottom_right]
+        }
     });
     cells.eq(patches.iter().map(|patch| patch.corners))
 }
 
-/// Pairs each triangle with the first of its neighbours that is free and faces the same way.
-pub(crate) fn patches(triangles: &[[u32; 3]], areas: &[f32]) -> Vec<Patch> {
-    let mut runs_along: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
+/// Pairs each triangle with the first neighbour that has no partner yet and faces the same way, given the areas of
+/// the triangles, m².
+pub(super) fn patches(triangles: &[[u32; 3]], areas: &[f32]) -> Vec<Patch> {
+    let mut triangles_at: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
     for (index, &[a, b, c]) in triangles.iter().enumerate() {
         for edge in [[a, b], [b, c], [c, a]] {
-            runs_along.entry(edge).or_default().push(index);
+            triangles_at.entry(edge).or_default().push(index);
         }
     }
     let mut taken = vec![false; triangles.len()];
@@ -63,14 +60,13 @@ pub(crate) fn patches(triangles: &[[u32; 3]], areas: &[f32]) -> Vec<Patch> {
             continue;
         }
         taken[index] = true;
-        let share = areas[index] / 3.0;
-        // The edge from a to c is shared; the partner runs along it the same way that this one runs
-        // back along it.
+        let corner_area = areas[index] / 3.0;
+        // The shared edge runs from c to a in this triangle, and from a to c in one that faces the same way.
         let partner = [[p, q, r], [q, r, p], [r, p, q]]
             .into_iter()
             .flat_map(|corners| {
-                let along = runs_along.get(&[corners[0], corners[2]]);
-                along.into_iter().flatten().map(move |&partner| (partner, corners))
+                let across = triangles_at.get(&[corners[0], corners[2]]);
+                across.into_iter().flatten().map(move |&partner| (partner, corners))
             })
             .filter(|&(partner, _)| !taken[partner])
             .min_by_key(|&(partner, _)| partner);
@@ -80,9 +76,9 @@ pub(crate) fn patches(triangles: &[[u32; 3]], areas: &[f32]) -> Vec<Patch> {
                 let opposite =
                     triangles[partner].into_iter().find(|corner| ![a, c].contains(corner));
                 let d = opposite.unwrap_or(c);
-                Patch { corners: [a, b, c, d], shares: [share, areas[partner] / 3.0] }
+                Patch { corners: [a, b, c, d], corner_areas: [corner_area, areas[partner] / 3.0] }
             }
-            None => Patch { corners: [p, q, r, r], shares: [share, 0.0] },
+            None => Patch { corners: [p, q, r, r], corner_areas: [corner_area, 0.0] },
         });
     }
     patches
@@ -95,7 +91,7 @@ mod tests {
     use super::*;
     use crate::fabric::{Fabric, FabricBuilder, Grid};
 
-    /// Area vectors of all triangles, by corners in a canonical order.
+    /// The triangles, sorted, each beginning with its lowest corner.
     fn faces(corners: impl Iterator<Item = [u32; 3]>) -> Vec<[u32; 3]> {
         let first = |[a, b, c]: [u32; 3]| [[a, b, c], [b, c, a], [c, a, b]].into_iter().min();
         let mut faces: Vec<[u32; 3]> = corners.filter_map(first).collect();
@@ -109,7 +105,8 @@ mod tests {
             [Some([a, b, c]), (d != c).then_some([a, c, d])].into_iter().flatten()
         });
         assert_eq!(faces(of_patches), faces(fabric.triangles().iter().copied()));
-        let area: f32 = fabric.patches().iter().flat_map(|patch| patch.shares).sum::<f32>() * 3.0;
+        let area: f32 =
+            fabric.patches().iter().flat_map(|patch| patch.corner_areas).sum::<f32>() * 3.0;
         assert!((area / fabric.area() - 1.0).abs() < 1e-5);
     }
 
@@ -128,6 +125,6 @@ mod tests {
         let fabric = FabricBuilder::new(positions, [indices, vec![0, 4, 5]].concat()).build();
         covers_each_triangle_once(&fabric.expect("good"));
         let lone = patches(&[[0, 1, 2]], &[3.0]);
-        assert_eq!(lone, [Patch { corners: [0, 1, 2, 2], shares: [1.0, 0.0] }]);
+        assert_eq!(lone, [Patch { corners: [0, 1, 2, 2], corner_areas: [1.0, 0.0] }]);
     }
 }

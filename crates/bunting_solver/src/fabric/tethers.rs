@@ -1,15 +1,19 @@
-//! How far each particle may be from the pin that is nearest to it, and from the one that is farthest.
+//! Tethers: how far each free particle may be from the pin nearest to it, and from the one farthest from it.
+//!
+//! Distances are geodesic at rest ("long range attachments", Kim 2012): straight on a grid, along the edges of
+//! other meshes.
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
 use glam::Vec3;
 
+use super::mesh::RestMesh;
 use super::topology::Edge;
 
-/// A particle and the pin that it must not stray from.
+/// A bound on the distance between a free particle and a pin.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Tether {
+pub(crate) struct Tether {
     /// The free particle.
     pub particle: u32,
     /// The pinned one.
@@ -18,38 +22,73 @@ pub struct Tether {
     pub length: f32,
 }
 
-/// Slack of a tether to a pin among pins, as a part of its length: more than a cloth's own strain.
-const LINE_SLACK: f32 = 0.005;
+/// Slack of a tether to a pin among pins, as a part of its length. Smaller: the tether carries what warp and weft
+/// should, at the cloth's own strain under its weight. Larger: the tether catches later.
+const SLACK_TO_LINE: f32 = 0.005;
 
-/// Slack of a tether along the bias, to a pin that stands alone or to the farthest: a cloth that hangs by
-/// points shears, and lies further from them than its rest shape says.
-const BIAS_SLACK: f32 = 0.05;
+/// Slack of a tether to an isolated pin or to the farthest pin, as a part of its length: such tethers run along
+/// diagonals, and a cloth that hangs by points shears and lies farther from them than its rest shape says. Smaller:
+/// the tether stops that shear. Larger: the tether catches later.
+const SLACK_UNDER_SHEAR: f32 = 0.05;
 
-/// A pinned particle, and whether it stands alone: no edge joins it to another pinned one.
+/// A pinned particle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pin {
+    /// The particle.
     pub particle: u32,
-    pub alone: bool,
+    /// Whether no edge joins it to another pinned particle.
+    pub isolated: bool,
 }
 
-/// All pins.
-pub(crate) fn pins(edges: &[Edge], pinned: &[bool]) -> Vec<Pin> {
-    let mut alone = pinned.to_vec();
-    for [a, b] in edges.iter().map(|edge| edge.ends.map(|end| end as usize)) {
-        if pinned[a] && pinned[b] {
-            (alone[a], alone[b]) = (false, false);
+/// The pins of a fabric and the tethers to them.
+#[derive(Clone, Debug)]
+pub(crate) struct Tethers {
+    /// All pins.
+    pub pins: Vec<Pin>,
+    /// Of each free particle the tether to its nearest pin.
+    pub near: Vec<Tether>,
+    /// Tethers to the farthest pin, of free particles that lie farther from it than [`reach`](Self::reach).
+    ///
+    /// With tethers to the nearest pin alone, the lower corner of a flag may come to lie beneath its pole. The
+    /// particles closer to their farthest pin are held by these.
+    pub far: Vec<Tether>,
+    /// Greatest length of a tether to the nearest pin, m; zero without pins.
+    pub reach: f32,
+}
+
+impl Tethers {
+    /// Pins and tethers; only pins and the reach if the fabric is not `tethered`. On a `flat` mesh the shortest way
+    /// between two particles at rest is straight.
+    pub(super) fn of(mesh: &RestMesh, edges: &[Edge], flat: bool, tethered: bool) -> Self {
+        let rest = &mesh.positions;
+        let pins = pins(mesh, edges);
+        let near = near_tethers(rest, edges, &pins, flat);
+        let reach = near.iter().map(|tether| tether.length).fold(0.0, f32::max);
+        if !tethered {
+            return Self { pins, near: Vec::new(), far: Vec::new(), reach };
+        }
+        let far = far_tethers(rest, edges, &pins, &near, reach, flat);
+        Self { pins, near, far, reach }
+    }
+}
+
+fn pins(mesh: &RestMesh, edges: &[Edge]) -> Vec<Pin> {
+    let particles = 0..mesh.positions.len() as u32;
+    let mut isolated: Vec<bool> =
+        particles.clone().map(|particle| mesh.is_pinned(particle)).collect();
+    for [a, b] in edges.iter().map(|edge| edge.ends) {
+        if mesh.is_pinned(a) && mesh.is_pinned(b) {
+            (isolated[a as usize], isolated[b as usize]) = (false, false);
         }
     }
-    (0..)
-        .zip(pinned)
-        .filter(|(_, pinned)| **pinned)
-        .map(|(particle, _)| Pin { particle, alone: alone[particle as usize] })
+    particles
+        .filter(|&particle| mesh.is_pinned(particle))
+        .map(|particle| Pin { particle, isolated: isolated[particle as usize] })
         .collect()
 }
 
-/// The tether of each free particle that a pin can be reached from. `flat` says that the shortest
-/// way between two particles at rest is straight.
-pub(crate) fn tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -> Vec<Tether> {
+/// Of each free particle from which a way leads to a pin, the tether to the nearest pin.
+fn near_tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -> Vec<Tether> {
     let edges = edges.iter().map(|edge| edge.ends);
     let nearest =
         if flat { nearest_straight(rest, pins) } else { nearest_along(rest, edges, pins) };
@@ -57,8 +96,8 @@ pub(crate) fn tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -
         .zip(nearest)
         .filter_map(|(particle, nearest)| {
             let (length, pin) = nearest?;
-            let Pin { particle: pin, alone } = pins[pin];
-            let slack = if alone { BIAS_SLACK } else { LINE_SLACK };
+            let Pin { particle: pin, isolated } = pins[pin];
+            let slack = if isolated { SLACK_UNDER_SHEAR } else { SLACK_TO_LINE };
             (pin != particle && length > 0.0).then_some(Tether {
                 particle,
                 pin,
@@ -68,11 +107,8 @@ pub(crate) fn tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -
         .collect()
 }
 
-/// The tethers of free particles to the pins that are farthest from them at rest: to the nearest alone, the
-/// lower corner of a flag may come to lie beneath its pole. Only of those that lie further from it than any
-/// lies from its nearest, the `reach`; they hold the others. Given the tethers to the nearest, and `flat` as
-/// above.
-pub(crate) fn far_tethers(
+/// Tethers to the farthest pins, see [`Tethers::far`].
+fn far_tethers(
     rest: &[Vec3],
     edges: &[Edge],
     pins: &[Pin],
@@ -80,39 +116,29 @@ pub(crate) fn far_tethers(
     reach: f32,
     flat: bool,
 ) -> Vec<Tether> {
-    let mut of_pins: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+    let mut particles_of_pin: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
     for &Tether { particle, .. } in near {
         let distance = |pin: &Pin| rest[particle as usize].distance(rest[pin.particle as usize]);
         let distances = pins.iter().map(distance).enumerate();
         if let Some((farthest, _)) = distances.max_by(|one, other| one.1.total_cmp(&other.1)) {
-            of_pins.entry(farthest).or_default().push(particle);
+            particles_of_pin.entry(farthest).or_default().push(particle);
         }
     }
-    let of_pin = |(pin, particles): (usize, Vec<u32>)| {
+    let tethers_to_pin = |(pin, particles): (usize, Vec<u32>)| {
         let lengths = distances(rest, edges.iter().map(|edge| edge.ends), pins[pin], flat);
         let pin = pins[pin].particle;
         particles.into_iter().filter_map(move |particle| {
             let length = lengths[particle as usize];
-            let far = length > reach && length.is_finite();
-            far.then_some(Tether { particle, pin, length: length * (1.0 + BIAS_SLACK) })
+            let is_far = length > reach && length.is_finite();
+            let slack = 1.0 + SLACK_UNDER_SHEAR;
+            is_far.then_some(Tether { particle, pin, length: length * slack })
         })
     };
-    of_pins.into_iter().flat_map(of_pin).collect()
+    particles_of_pin.into_iter().flat_map(tethers_to_pin).collect()
 }
 
-/// For each particle the distance to the nearest pin, and which it is.
-fn nearest_straight(rest: &[Vec3], pins: &[Pin]) -> Vec<Option<(f32, usize)>> {
-    let distance = |at: Vec3, pin: &Pin| at.distance(rest[pin.particle as usize]);
-    rest.iter()
-        .map(|&at| {
-            let distances = pins.iter().enumerate().map(|(index, pin)| (distance(at, pin), index));
-            distances.min_by(|one, other| one.0.total_cmp(&other.0))
-        })
-        .collect()
-}
-
-/// The distance of each particle from a pin at rest; infinite where no way leads. `flat` and edges as above.
-pub(crate) fn distances(
+/// The distance of each particle from a pin at rest, m; infinite where no way leads to it.
+pub(super) fn distances(
     rest: &[Vec3],
     edges: impl Iterator<Item = [u32; 2]>,
     pin: Pin,
@@ -123,7 +149,18 @@ pub(crate) fn distances(
     nearest.into_iter().map(|nearest| nearest.map_or(f32::INFINITY, |(length, _)| length)).collect()
 }
 
-/// The same along the edges of the mesh (Dijkstra 1959): no shorter than the way across them.
+/// For each particle the straight distance to the nearest pin, m, and the index of the pin.
+fn nearest_straight(rest: &[Vec3], pins: &[Pin]) -> Vec<Option<(f32, usize)>> {
+    let distance = |at: Vec3, pin: &Pin| at.distance(rest[pin.particle as usize]);
+    rest.iter()
+        .map(|&at| {
+            let distances = pins.iter().enumerate().map(|(index, pin)| (distance(at, pin), index));
+            distances.min_by(|one, other| one.0.total_cmp(&other.0))
+        })
+        .collect()
+}
+
+/// The same along the edges of the mesh (Dijkstra 1959), which is never shorter than the way across the triangles.
 fn nearest_along(
     rest: &[Vec3],
     edges: impl Iterator<Item = [u32; 2]>,
@@ -135,7 +172,7 @@ fn nearest_along(
         neighbours[b as usize].push(a);
     }
     let mut nearest: Vec<Option<(f32, usize)>> = vec![None; rest.len()];
-    // Distances are not negative, so their bits are in their order.
+    // Floats that are not negative compare like their bits.
     let mut open: BinaryHeap<Reverse<(u32, usize, u32)>> =
         pins.iter().enumerate().map(|(index, pin)| Reverse((0, index, pin.particle))).collect();
     while let Some(Reverse((bits, pin, particle))) = open.pop() {

@@ -1,23 +1,24 @@
-//! Edges of a triangle mesh, and what lies on either side of them.
+//! Edges of a triangle mesh, each with the triangles on its two sides.
 
 use std::collections::BTreeMap;
 
-/// An edge with the triangles on its sides.
+/// An edge and the corners opposite to it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Edge {
+pub(super) struct Edge {
+    /// The particles that it joins, the lower index first.
     pub ends: [u32; 2],
-    /// The corner opposite to the edge in the first triangle.
+    /// The corner opposite to the edge in the first of its triangles.
     pub opposite: u32,
-    /// The corner opposite to the edge in the second triangle; none on the border.
+    /// The corner opposite to the edge in the second triangle; none at the border of the mesh.
     pub other_opposite: Option<u32>,
 }
 
-/// All edges, in the order of their ends, so that the fabric does not depend on a hash.
+/// All edges, sorted by their ends, so that a fabric does not depend on the order of a hash table.
 ///
 /// # Errors
 ///
 /// The ends of an edge that more than two triangles share.
-pub(crate) fn edges(triangles: &[[u32; 3]]) -> Result<Vec<Edge>, [u32; 2]> {
+pub(super) fn edges(triangles: &[[u32; 3]]) -> Result<Vec<Edge>, [u32; 2]> {
     let mut edges: BTreeMap<[u32; 2], Edge> = BTreeMap::new();
     for &[a, b, c] in triangles {
         for (from, to, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {

@@ -1,18 +1,34 @@
-//! Merges vertices that lie on one another, as a mesh has them along its texture's seams.
+//! Merging of vertices that lie at one place, as they do along the seams of a texture.
 
 use std::collections::HashMap;
 
 use glam::{IVec3, Vec3};
 
-/// The particle of each vertex, and the vertex that each particle stands for.
-pub(crate) struct Weld {
+/// Default distance at which vertices become one particle, as a part of the mesh's extent. Smaller: the rounding
+/// of 32-bit positions keeps seams open. Larger: small features of large meshes collapse.
+const DEFAULT_FRACTION: f32 = 1e-6;
+
+/// Which vertex became which particle.
+pub(super) struct Weld {
+    /// One per vertex.
     pub particle_of_vertex: Vec<u32>,
+    /// The first of the vertices that became the particle, one per particle.
     pub vertex_of_particle: Vec<u32>,
 }
 
-/// Merges vertices that are at most `distance` metres apart, each into the first of its neighbours.
-/// Zero merges nothing.
-pub(crate) fn weld(positions: &[Vec3], distance: f32) -> Weld {
+/// The distance within which the vertices of a mesh are merged where none is given, m.
+pub(super) fn default_distance(positions: &[Vec3]) -> f32 {
+    let first = positions.first().copied().unwrap_or_default();
+    let (low, high) =
+        positions.iter().fold((first, first), |(low, high), &p| (low.min(p), high.max(p)));
+    DEFAULT_FRACTION * (high - low).max_element()
+}
+
+/// Merges each vertex into the first particle at most `distance` metres from it. Zero merges nothing.
+///
+/// Particles are looked up in cells of a hash grid as wide as the distance, so that all candidates lie in the 27
+/// cells around a vertex.
+pub(super) fn weld(positions: &[Vec3], distance: f32) -> Weld {
     if distance <= 0.0 {
         let each: Vec<u32> = (0..positions.len() as u32).collect();
         return Weld { particle_of_vertex: each.clone(), vertex_of_particle: each };
@@ -25,7 +41,7 @@ pub(crate) fn weld(positions: &[Vec3], distance: f32) -> Weld {
         .enumerate()
         .map(|(vertex, &position)| {
             let home = cell_of(position);
-            let near = neighbourhood(home)
+            let near = cells_around(home)
                 .filter_map(|cell| particles_in.get(&cell))
                 .flatten()
                 .copied()
@@ -45,8 +61,32 @@ pub(crate) fn weld(positions: &[Vec3], distance: f32) -> Weld {
     Weld { particle_of_vertex, vertex_of_particle }
 }
 
-fn neighbourhood(home: IVec3) -> impl Iterator<Item = IVec3> {
+fn cells_around(home: IVec3) -> impl Iterator<Item = IVec3> {
     (-1..=1).flat_map(move |x| {
         (-1..=1).flat_map(move |y| (-1..=1).map(move |z| home.saturating_add(IVec3::new(x, y, z))))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use crate::fabric::FabricBuilder;
+
+    #[test]
+    fn a_seam_is_welded() {
+        let seam = [
+            Vec3::ZERO,
+            Vec3::X,
+            Vec3::Y,
+            Vec3::X,
+            Vec3::new(1.0, 1.0, 0.0),
+            Vec3::new(1e-8, 1.0, 0.0),
+        ];
+        let fabric = FabricBuilder::new(seam.to_vec(), vec![0, 1, 2, 3, 4, 5]);
+        let fabric = fabric.build().expect("a good fabric");
+        assert_eq!(fabric.particle_count(), 4);
+        assert_eq!(fabric.particle_of_vertex(), &[0, 1, 2, 1, 3, 2]);
+        assert_eq!(fabric.hinges().len(), 1);
+    }
 }

@@ -1,9 +1,8 @@
 //! Yarns: the links of any mesh cut into long straight paths.
 //!
-//! At each particle the links that run on most straightly are joined; a path ends where nothing
-//! runs on. On a grid these are the rows, the columns and both diagonals. Every link lies in exactly
-//! one yarn. The links of one yarn are solved together, exactly, in a tridiagonal system
-//! (`constraints/yarn.rs`).
+//! At each particle the pairs of links that run on most straightly are joined; a path ends where no link runs on.
+//! On a grid the paths are the rows, the columns and both diagonals. Every link lies in exactly one yarn. The links
+//! of one yarn are solved together, exactly, as a tridiagonal system (`constraints/chain.rs`).
 
 use glam::Vec3;
 
@@ -12,60 +11,43 @@ use super::links::Link;
 
 /// A path of links.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Yarn {
+pub(crate) struct Yarn {
     /// Particles along the path, one more than there are links.
     pub particles: Vec<u32>,
-    /// Indices into [`Fabric::links`](super::Fabric::links), in the order of the path.
+    /// Indices of the links, in the order of the path.
     pub links: Vec<u32>,
 }
 
-/// Two links run on into one another if they bend by less than this: 30°.
+/// The yarns of a fabric.
+#[derive(Clone, Debug)]
+pub(crate) struct Yarns {
+    /// Colour by colour, warp first; in each colour the longer yarns first, so that neighbours in the list are of
+    /// similar length.
+    pub list: Vec<Yarn>,
+    /// Runs of yarns that share no particle.
+    pub colours: Colours,
+}
+
+/// cos of the angle between two links below which one runs on into the other: 30°.
 const STRAIGHT_COS: f32 = 0.866;
 
-/// Cuts the links into yarns and colours these, warp first, so that yarns of one colour share no
-/// particle. Within a colour, longer yarns come first: neighbours are then of one length.
-pub(crate) fn yarns(rest: &[Vec3], links: &[Link]) -> (Vec<Yarn>, Colours) {
-    let next = continuations(rest, links);
-    let mut in_yarn = vec![false; links.len()];
-    let mut yarns = Vec::new();
-    for start in 0..links.len() {
-        if in_yarn[start] {
-            continue;
-        }
-        // Back to the path's beginning, or once around a ring.
-        let mut first = End { link: start, at: 0 };
-        while let Some(before) = next[first.link][first.at] {
-            first = End { link: before.link, at: 1 - before.at };
-            if first.link == start {
-                break;
+impl Yarns {
+    /// Cuts links into yarns, given the positions at rest, m.
+    pub(super) fn of(rest: &[Vec3], links: &[Link]) -> Self {
+        let next = continuations(rest, links);
+        let mut in_yarn = vec![false; links.len()];
+        let mut yarns = Vec::new();
+        for start in 0..links.len() {
+            if !in_yarn[start] {
+                let first = first_end(&next, start);
+                follow(links, &next, first, &mut in_yarn, &mut yarns);
             }
         }
-        let mut yarn =
-            Yarn { particles: vec![links[first.link].particles[first.at]], links: Vec::new() };
-        let mut entry = Some(first);
-        while let Some(End { link, at }) = entry {
-            if in_yarn[link] {
-                break;
-            }
-            in_yarn[link] = true;
-            let far = links[link].particles[1 - at];
-            yarn.links.push(link as u32);
-            // A ring is cut open: its last link, which would close it, is a yarn of its own.
-            if yarn.particles.contains(&far) {
-                yarn.links.pop();
-                yarns.push(Yarn {
-                    particles: links[link].particles.to_vec(),
-                    links: vec![link as u32],
-                });
-                break;
-            }
-            yarn.particles.push(far);
-            entry = next[link][1 - at];
-        }
-        yarns.push(yarn);
+        yarns.sort_by_key(|yarn| core::cmp::Reverse(yarn.links.len()));
+        let family = |yarn: &Yarn| links[yarn.links[0] as usize].family as u32;
+        let (list, colours) = colour(rest.len(), yarns, |yarn| &yarn.particles, family);
+        Self { list, colours }
     }
-    yarns.sort_by_key(|yarn| core::cmp::Reverse(yarn.links.len()));
-    colour(rest.len(), yarns, |yarn| &yarn.particles, |yarn| family_rank(links, yarn))
 }
 
 /// One end of a link.
@@ -73,20 +55,23 @@ pub(crate) fn yarns(rest: &[Vec3], links: &[Link]) -> (Vec<Yarn>, Colours) {
 struct End {
     link: usize,
     /// Which of the link's two particles.
-    at: usize,
+    side: usize,
 }
 
-/// For each end of each link the end at which the next link of its yarn is entered.
-fn continuations(rest: &[Vec3], links: &[Link]) -> Vec<[Option<End>; 2]> {
+/// For each end of each link the end at which the yarn enters the next link.
+type Continuations = Vec<[Option<End>; 2]>;
+
+/// Joins the ends at each particle, the straightest pair first.
+fn continuations(rest: &[Vec3], links: &[Link]) -> Continuations {
     let mut ends_at: Vec<Vec<End>> = vec![Vec::new(); rest.len()];
     for (link, joined) in links.iter().enumerate() {
-        for at in 0..2 {
-            ends_at[joined.particles[at] as usize].push(End { link, at });
+        for side in 0..2 {
+            ends_at[joined.particles[side] as usize].push(End { link, side });
         }
     }
     let outward = |end: End| {
         let [near, far] =
-            [end.at, 1 - end.at].map(|at| rest[links[end.link].particles[at] as usize]);
+            [end.side, 1 - end.side].map(|side| rest[links[end.link].particles[side] as usize]);
         (far - near).normalize()
     };
     let mut next = vec![[None; 2]; links.len()];
@@ -102,18 +87,55 @@ fn continuations(rest: &[Vec3], links: &[Link]) -> Vec<[Option<End>; 2]> {
         }
         pairs.sort_by(|a, b| b.0.total_cmp(&a.0));
         for (_, one, other) in pairs {
-            if next[one.link][one.at].is_none() && next[other.link][other.at].is_none() {
-                next[one.link][one.at] = Some(other);
-                next[other.link][other.at] = Some(one);
+            if next[one.link][one.side].is_none() && next[other.link][other.side].is_none() {
+                next[one.link][one.side] = Some(other);
+                next[other.link][other.side] = Some(one);
             }
         }
     }
     next
 }
 
-/// Warp before weft before bias.
-fn family_rank(links: &[Link], yarn: &Yarn) -> u32 {
-    links[yarn.links[0] as usize].family as u32
+/// The end at which the path through a link begins: back to its beginning, or once around a ring.
+fn first_end(next: &Continuations, start: usize) -> End {
+    let mut first = End { link: start, side: 0 };
+    while let Some(before) = next[first.link][first.side] {
+        first = End { link: before.link, side: 1 - before.side };
+        if first.link == start {
+            break;
+        }
+    }
+    first
+}
+
+/// Adds the yarn that begins at an end, and marks its links.
+fn follow(
+    links: &[Link],
+    next: &Continuations,
+    first: End,
+    in_yarn: &mut [bool],
+    yarns: &mut Vec<Yarn>,
+) {
+    let mut yarn =
+        Yarn { particles: vec![links[first.link].particles[first.side]], links: Vec::new() };
+    let mut entry = Some(first);
+    while let Some(End { link, side }) = entry {
+        if in_yarn[link] {
+            break;
+        }
+        in_yarn[link] = true;
+        let far = links[link].particles[1 - side];
+        // A ring is cut open: its last link, which would close it, is a yarn of its own.
+        if yarn.particles.contains(&far) {
+            let closing = links[link].particles.to_vec();
+            yarns.push(Yarn { particles: closing, links: vec![link as u32] });
+            break;
+        }
+        yarn.links.push(link as u32);
+        yarn.particles.push(far);
+        entry = next[link][1 - side];
+    }
+    yarns.push(yarn);
 }
 
 #[cfg(test)]

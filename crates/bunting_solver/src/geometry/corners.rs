@@ -57,7 +57,7 @@ impl<L: Lane> Corners<L> for &Patch {
 
     #[inline(always)]
     fn areas(&self, token: L::Token) -> [L; 2] {
-        let [first, second] = self.shares;
+        let [first, second] = self.corner_areas;
         [L::splat(token, first), L::splat(token, second)]
     }
 
@@ -85,7 +85,7 @@ impl<P: Pack> CornerSums<P> for PatchSums<'_, P> {
         sums: &mut [Pack3<P>],
     ) {
         let Self { fabric, below } = self;
-        let Some(columns) = fabric.columns_of_cells() else {
+        let Some(columns) = fabric.patch_grid_columns() else {
             sum_patches(token, fabric.patches(), contribution, sums);
             return;
         };

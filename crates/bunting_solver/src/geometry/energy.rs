@@ -1,75 +1,79 @@
-//! What a cloth's state weighs in joules.
+//! Elastic energy of a state, and area-weighted sums over its particles.
 
 use glam::{DVec3, Vec3};
 
 use crate::constraints::resists_twist;
-use crate::fabric::{Fabric, FabricMaterial, Ribbon, hinge_angle};
+use crate::fabric::{BendLine, Fabric, FabricMaterial, Hinge, Ribbon, hinge_angle};
 
-/// Elastic energy, J: of links and of bending, as the constraints have it. Links that cannot stretch
-/// store none.
+/// Elastic energy of links and bending, J, given positions in m, by the same formulas as the constraints. Inextensible
+/// links store none.
 ///
-/// Distances are as exact as positions are, in single precision; only sums need more.
+/// Distances are computed in single precision, in which positions are given; only their sums need more.
 pub(crate) fn elastic(fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> f64 {
-    let at = |particle: u32| positions[particle as usize];
+    let bending = if fabric.grid().is_some() {
+        let lines = fabric.bend_lines().iter();
+        let along_lines: f64 = lines.map(|line| line_bending(fabric, line, positions)).sum();
+        let twists = resists_twist(fabric, material);
+        along_lines + if twists { twist(fabric, positions) } else { 0.0 }
+    } else {
+        let hinges = fabric.hinges().iter().map(|hinge| hinge_bending(fabric, hinge, positions));
+        // A hinge without area has no angle.
+        hinges.filter(|energy| energy.is_finite()).sum()
+    };
+    0.5 * (stretch(fabric, material, positions) + bending * f64::from(material.bend_stiffness))
+}
+
+/// Twice the energy of all links, J.
+fn stretch(fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> f64 {
     let stiffnesses: Vec<f64> = fabric
         .link_classes()
         .iter()
         .map(|class| f64::from(class.stiffness(material)))
         .map(|stiffness| if stiffness.is_finite() { stiffness } else { 0.0 })
         .collect();
-    let stretch = fabric.links().iter().map(|link| {
-        let [a, b] = link.particles.map(at);
+    let energies = fabric.links().iter().map(|link| {
+        let [a, b] = link.particles.map(|particle| positions[particle as usize]);
         let stretch = a.distance(b) - link.rest_length;
         stiffnesses[link.class as usize] * f64::from(stretch * stretch)
     });
-    let stretch: f64 = stretch.sum();
-    let bending: f64 = if fabric.grid().is_some() {
-        let lines = fabric.bend_lines().iter();
-        let along: f64 =
-            lines.map(|line| along_line(fabric, line.profile, &line.particles, positions)).sum();
-        along + if resists_twist(fabric, material) { twist(fabric, positions) } else { 0.0 }
-    } else {
-        let hinges = fabric.hinges().iter();
-        hinges
-            .map(|hinge| {
-                let corners = hinge.particles.map(|particle| positions[particle as usize]);
-                let angle = f64::from(hinge_angle(corners) - hinge.rest_angle);
-                let weight = fabric.hinge_classes()[hinge.class as usize].weight;
-                f64::from(weight) * angle * angle
-            })
-            .filter(|energy| energy.is_finite())
-            .sum()
-    };
-    0.5 * (stretch + bending * f64::from(material.bend_stiffness))
+    energies.sum()
 }
 
-/// Twice the energy of a line against unit bending stiffness.
-fn along_line(fabric: &Fabric, profile: u32, particles: &[u32], positions: &[Vec3]) -> f64 {
-    let profile = &fabric.bend_profiles()[profile as usize];
+/// Twice the energy of a line of a grid at a bending stiffness of 1 N·m, J.
+fn line_bending(fabric: &Fabric, line: &BendLine, positions: &[Vec3]) -> f64 {
+    let profile = &fabric.bend_profiles()[line.profile as usize];
     let at = |particle: u32| positions[particle as usize];
-    let turns = particles.windows(3).map(|three| {
+    let turns = line.particles.windows(3).map(|three| {
         let turn = (at(three[0]) - at(three[1])) + (at(three[2]) - at(three[1]));
         turn.length_squared()
     });
-    let sum: f64 =
-        turns.zip(&profile.weights).map(|(turn, &weight)| f64::from(turn * weight)).sum();
+    let energies = turns.zip(&profile.coefficients);
+    let sum: f64 = energies.map(|(turn, &coefficient)| f64::from(turn * coefficient)).sum();
     sum * f64::from(profile.inverse_spacing).powi(2)
 }
 
-/// Twice the energy of a grid's twist against unit bending stiffness.
+/// Twice the energy of a hinge at a bending stiffness of 1 N·m, J.
+fn hinge_bending(fabric: &Fabric, hinge: &Hinge, positions: &[Vec3]) -> f64 {
+    let corners = hinge.particles.map(|particle| positions[particle as usize]);
+    let angle = f64::from(hinge_angle(corners) - hinge.rest_angle);
+    f64::from(fabric.hinge_classes()[hinge.class as usize].coefficient) * angle * angle
+}
+
+/// Twice the energy of a grid's twist at a bending stiffness of 1 N·m, J.
 pub(crate) fn twist(fabric: &Fabric, positions: &[Vec3]) -> f64 {
     let at = |particle: u32| positions[particle as usize].as_dvec3();
     let across = |[from, to]: [u32; 2]| at(to) - at(from);
     let of_ribbon = |ribbon: &Ribbon| -> f64 {
-        let weight = fabric.ribbon_profiles()[ribbon.profile as usize].weight;
+        let coefficient = fabric.ribbon_profiles()[ribbon.profile as usize].coefficient;
         let turns = ribbon.pairs.windows(2).map(|cell| across(cell[1]) - across(cell[0]));
-        f64::from(weight) * turns.map(|turn| turn.length_squared()).sum::<f64>()
+        f64::from(coefficient) * turns.map(|turn| turn.length_squared()).sum::<f64>()
     };
     fabric.ribbons().iter().map(of_ribbon).sum()
 }
 
-/// Sum of area times vector over all particles, pinned or not.
-pub(crate) fn moment(fabric: &Fabric, vectors: &[Vec3]) -> DVec3 {
+/// Sum of area times vector over all particles, pinned or not: of velocities (m/s) the momentum per area density,
+/// m³/s; of positions the first moment of area, m³.
+pub(crate) fn area_moment(fabric: &Fabric, vectors: &[Vec3]) -> DVec3 {
     let products =
         fabric.particle_areas().iter().zip(vectors).map(|(&area, &vector)| vector * area);
     products.map(|product| product.as_dvec3()).sum()

@@ -1,4 +1,4 @@
-//! What is computed from positions: normals, sums over triangles, energies.
+//! Values computed from positions: normals, sums over triangles, energies.
 
 pub(crate) mod corners;
 pub(crate) mod energy;

@@ -72,7 +72,7 @@ impl InverseMasses {
     pub fn new(fabric: &Fabric, step: f32) -> Self {
         let mut masses = Self::without_added(fabric);
         let pins = fabric.pins();
-        if !pins.is_empty() && pins.iter().all(|pin| pin.alone) {
+        if !pins.is_empty() && pins.iter().all(|pin| pin.isolated) {
             let pins: Vec<u32> = pins.iter().map(|pin| pin.particle).collect();
             let load = fabric.area() * GRAVITY / pins.len() as f32;
             let needed = needed(fabric, &pins, load, step);

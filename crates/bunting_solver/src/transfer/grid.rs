@@ -1,31 +1,31 @@
-//! Rows between a grid and every second column and row of it.
+//! Interpolation between a grid and every second column and row of it.
 
-use super::rows::Rows;
+use super::interpolation::Interpolation;
 use crate::fabric::Grid;
 
-/// Smooth: the four-point scheme along columns and rows (Dyn, Levin and Gregory 1987), which gives
-/// back cubics, so that folds are not flattened.
-pub(super) fn smooth(fine: &Grid, coarse: &Grid) -> Rows {
+/// Smooth interpolation: the four-point scheme along columns and rows (Dyn, Levin and Gregory 1987). It reproduces
+/// cubics, so that folds are not flattened.
+pub(super) fn smooth(fine: &Grid, coarse: &Grid) -> Interpolation {
     let columns: Vec<_> = (0..fine.columns).map(|at| four_point(at, coarse.columns)).collect();
-    let mut rows = Rows::default();
+    let mut interpolation = Interpolation::default();
     for down in (0..fine.rows).map(|at| four_point(at, coarse.rows)) {
         for across in &columns {
-            rows.push(down.iter().flat_map(|&(row, by)| {
+            interpolation.push(down.iter().flat_map(|&(row, by)| {
                 across.iter().map(move |&(column, weight)| (coarse.index(column, row), weight * by))
             }));
         }
     }
-    rows
+    interpolation
 }
 
-/// Flat: where the coarse triangles, as they are drawn, pass.
-pub(super) fn flat(fine: &Grid, coarse: &Grid) -> Rows {
-    let mut rows = Rows::default();
+/// Linear interpolation over the coarse triangles as they are drawn.
+pub(super) fn flat(fine: &Grid, coarse: &Grid) -> Interpolation {
+    let mut interpolation = Interpolation::default();
     for row in 0..fine.rows {
         for column in 0..fine.columns {
             let (left, top) = (column / 2, row / 2);
             let (right, bottom) = (column.div_ceil(2), row.div_ceil(2));
-            // Amid a cell passes its diagonal, which alternates.
+            // The centre of a coarse cell lies on its diagonal, which alternates from cell to cell.
             let ends = if (left + top).is_multiple_of(2) || left == right || top == bottom {
                 [(left, top), (right, bottom)]
             } else {
@@ -33,24 +33,24 @@ pub(super) fn flat(fine: &Grid, coarse: &Grid) -> Rows {
             };
             let [one, other] = ends.map(|(column, row)| coarse.index(column, row));
             if one == other {
-                rows.push([(one, 1.0)]);
+                interpolation.push([(one, 1.0)]);
             } else {
-                rows.push([(one, 0.5), (other, 0.5)]);
+                interpolation.push([(one, 0.5), (other, 0.5)]);
             }
         }
     }
-    rows
+    interpolation
 }
 
-/// Weights of coarse nodes at a fine node of one line. Beside the ends a parabola takes the place of
-/// the cubic.
-fn four_point(at: u32, coarse: u32) -> Vec<(u32, f32)> {
-    let (left, last) = (at / 2, coarse - 1);
+/// Weights of coarse nodes at a fine node of one line of `coarse` nodes. In the first and the last interval a parabola
+/// takes the place of the cubic.
+fn four_point(fine: u32, coarse: u32) -> Vec<(u32, f32)> {
+    let (left, last) = (fine / 2, coarse - 1);
     let weighted = |weights: &[f32], first: u32| -> Vec<(u32, f32)> {
         (first..).zip(weights.iter().copied()).collect()
     };
     match left {
-        left if at.is_multiple_of(2) => vec![(left, 1.0)],
+        left if fine.is_multiple_of(2) => vec![(left, 1.0)],
         _ if coarse == 2 => weighted(&[0.5, 0.5], 0),
         0 => weighted(&[0.375, 0.75, -0.125], 0),
         left if left + 1 == last => weighted(&[-0.125, 0.75, 0.375], left - 1),
@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn smooth_rows_give_back_parabolas_everywhere_and_cubics_inside() {
+    fn the_smooth_stencil_reproduces_parabolas_everywhere_and_cubics_inside() {
         let (fine, coarse) = (Grid::new(17, 9, 1.0, 1.0), Grid::new(9, 5, 1.0, 1.0));
         let at = |grid: &Grid, index: usize| {
             let columns = grid.columns as usize;
@@ -91,9 +91,9 @@ mod tests {
     /// Along the diagonal of a coarse cell the drawn surface has a crease; the fine one must pass
     /// through it.
     #[test]
-    fn flat_rows_follow_the_triangles() {
+    fn the_flat_stencil_follows_the_triangles() {
         let (fine, coarse) = (Grid::new(9, 9, 1.0, 1.0), Grid::new(5, 5, 1.0, 1.0));
-        let rows: Vec<Vec<(u32, f32)>> = flat(&fine, &coarse).iter().map(<[_]>::to_vec).collect();
+        let rows: Vec<Vec<(u32, f32)>> = flat(&fine, &coarse).rows().map(<[_]>::to_vec).collect();
         let triangles = coarse.triangles(false);
         for row in &rows {
             let holds = |triangle: &[u32; 3]| row.iter().all(|(node, _)| triangle.contains(node));

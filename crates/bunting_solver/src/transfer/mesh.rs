@@ -1,71 +1,74 @@
-//! Rows between any mesh and one with some of its vertices.
+//! Interpolation between any mesh and one with some of its vertices.
 
 use glam::Vec3;
 use parry3d::query::PointQueryWithLocation;
 use parry3d::shape::TriMesh;
 
-use super::rows::Rows;
+use super::interpolation::Interpolation;
 use crate::fabric::Fabric;
 
-/// Height above the coarse triangles, as a part of the fabric's reach, below which a particle lies on
-/// them.
+/// Distance from the coarse triangles, as a part of the root of the fabric's area, below which a particle counts as
+/// on them. Smaller: flat meshes get offsets of rounding errors. Larger: shallow curves are flattened.
 const FLAT: f32 = 1e-4;
 
-/// Where each fine particle lies at rest: by barycentric coordinates on the nearest coarse triangle,
-/// and above it. None if the coarse mesh is none.
-pub(super) fn nearest(fine: &Fabric, coarse: &Fabric, shared: &[u32]) -> Option<(Rows, Relief)> {
+/// For each fine particle barycentric weights on the coarse triangle nearest to it at rest, and how far it lies from
+/// that. None if the coarse mesh has no triangles that can be searched.
+pub(super) fn nearest(
+    fine: &Fabric,
+    coarse: &Fabric,
+    shared: &[u32],
+) -> Option<(Interpolation, RestOffsets)> {
     let mesh = TriMesh::new(coarse.rest_positions().to_vec(), coarse.triangles().to_vec()).ok()?;
-    let mut rows = Rows::default();
-    let mut relief = Relief::default();
+    let mut interpolation = Interpolation::default();
+    let mut offsets = RestOffsets::default();
     let mut coarse_of = vec![None; fine.particle_count()];
     for (particle, &of) in shared.iter().enumerate() {
         coarse_of[of as usize] = Some(particle as u32);
     }
     let extent = fine.area().sqrt();
     for (particle, &rest) in fine.rest_positions().iter().enumerate() {
-        if let Some(itself) = coarse_of[particle] {
-            rows.push([(itself, 1.0)]);
+        if let Some(same) = coarse_of[particle] {
+            interpolation.push([(same, 1.0)]);
             continue;
         }
         let (point, (triangle, location)) = mesh.project_local_point_and_get_location(rest, false);
         let corners = coarse.triangles()[triangle as usize];
         let weights = location.barycentric_coordinates()?;
         let row = corners.into_iter().zip(weights);
-        rows.push(row.filter(|(_, weight)| *weight != 0.0));
-        let above = rest - point.point;
-        if above.length() > FLAT * extent {
+        interpolation.push(row.filter(|(_, weight)| *weight != 0.0));
+        let offset = rest - point.point;
+        if offset.length() > FLAT * extent {
             let axes = axes(corners, coarse.rest_positions());
-            let along = axes.map(|axis| axis.dot(above));
-            relief.bumps.push(Bump { particle: particle as u32, corners, along });
+            let along = axes.map(|axis| axis.dot(offset));
+            offsets.0.push(RestOffset { particle: particle as u32, corners, along });
         }
     }
-    Some((rows, relief))
+    Some((interpolation, offsets))
 }
 
-/// What fine particles stand out by from the coarse triangles at rest, which turns with these.
+/// How far fine particles lie from the coarse triangles at rest, along axes that turn with the triangles.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Relief {
-    bumps: Vec<Bump>,
-}
+pub(super) struct RestOffsets(Vec<RestOffset>);
 
 #[derive(Clone, Debug)]
-struct Bump {
+struct RestOffset {
     particle: u32,
     corners: [u32; 3],
     /// Along the triangle's axes, m.
     along: [f32; 3],
 }
 
-impl Relief {
+impl RestOffsets {
+    /// Adds the offsets to interpolated positions, m.
     pub fn add(&self, coarse: &[Vec3], fine: &mut [Vec3]) {
-        for Bump { particle, corners, along } in &self.bumps {
+        for RestOffset { particle, corners, along } in &self.0 {
             let axes = axes(*corners, coarse).into_iter().zip(along);
             fine[*particle as usize] += axes.map(|(axis, &along)| axis * along).sum::<Vec3>();
         }
     }
 }
 
-/// Along the first edge, across it in the plane, and normal.
+/// Unit vectors along a triangle's first edge, across it in the plane, and along the normal.
 fn axes(corners: [u32; 3], positions: &[Vec3]) -> [Vec3; 3] {
     let [a, b, c] = corners.map(|corner| positions[corner as usize]);
     let along = (b - a).normalize_or_zero();
@@ -80,7 +83,7 @@ mod tests {
     use glam::{Quat, Vec3};
 
     use crate::batch::snapshot::ClothSnapshot;
-    use crate::fabric::{Coarser, FabricBuilder, FabricMaterial, Grid};
+    use crate::fabric::{CoarserMesh, FabricBuilder, FabricMaterial, Grid};
     use crate::transfer::LevelTransfer;
 
     /// A quarter of a tube, as plain triangles, held along one side, and its next level.
@@ -94,7 +97,7 @@ mod tests {
         let triangles = grid.triangles(false).into_iter().flatten().collect();
         let fine = FabricBuilder::new(positions, triangles).uv(grid.uvs());
         let fine = fine.pin_where(|_, uv| uv.y == 0.0);
-        let Coarser { builder, vertices } = fine.coarser().expect("a level");
+        let CoarserMesh { builder, vertices } = fine.coarser().expect("a level");
         let fine = Arc::new(fine.build().expect("a cape"));
         let coarse = Arc::new(builder.build().expect("a cape"));
         let transfer = LevelTransfer::nested(&fine, &coarse, &vertices).expect("nested");
@@ -112,7 +115,7 @@ mod tests {
             pairs.map(|(at, rest)| at.distance(turn * *rest)).fold(0.0, f32::max)
         };
         assert!(error(&up) > 2e-3, "{}", error(&up));
-        transfer.relief.add(&turned, &mut up);
+        transfer.offsets.add(&turned, &mut up);
         assert!(error(&up) < 2e-4, "{}", error(&up));
     }
 
@@ -133,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_give_back_what_is_linear() {
+    fn linear_fields_are_interpolated_nearly_exactly() {
         let (fine, coarse, transfer) = cape();
         let field = |at: &Vec3| Vec3::new(at.y, 2.0 * at.y + 1.0, 0.5);
         let values: Vec<Vec3> = coarse.rest_positions().iter().map(field).collect();

@@ -1,88 +1,59 @@
-//! Velocities after a change of level: the momentum of before, and no more energy.
+//! Velocities after a change of level: the same linear momentum, and no more energy than before.
 
 use glam::{DVec3, Vec3};
 
-use super::LevelTransfer;
-use super::rows::Rows;
 use crate::fabric::Fabric;
-use crate::geometry::energy::moment;
+use crate::geometry::energy::area_moment;
 
-impl LevelTransfer {
-    /// What shared particles have, and the mean of what the fine ones about them have beyond that, by
-    /// their masses: nothing is lost on the way up and down again.
-    pub(super) fn gather_velocities(&self, fine: &[Vec3]) -> Vec<Vec3> {
-        let mut coarse: Vec<Vec3> = self.pick(fine).collect();
-        let beyond = self.smooth.interpolate(&coarse).zip(fine).zip(free_masses(&self.fine));
-        let beyond = beyond.map(|((smooth, &fine), mass)| (fine - smooth) * mass);
-        let gathered = self.smooth.gather(beyond, coarse.len());
-        for (particle, velocity) in coarse.iter_mut().enumerate() {
-            if !self.coarse.is_pinned(particle) && self.masses[particle] > 0.0 {
-                *velocity += gathered[particle] / self.masses[particle];
-            }
-        }
-        coarse
-    }
+/// Areas of the particles, m²; zero where they are pinned. Times the area density they are the masses of the free
+/// particles.
+pub(super) fn free_areas(fabric: &Fabric) -> impl Iterator<Item = f32> + '_ {
+    let areas = fabric.particle_areas().iter().enumerate();
+    areas.map(|(particle, &area)| if fabric.is_pinned(particle) { 0.0 } else { area })
 }
 
-/// What each coarse particle has of the masses of free fine ones, in units of the density, m².
-pub(super) fn gather_masses(smooth: &Rows, fine: &Fabric, coarse: usize) -> Vec<f32> {
-    smooth.gather(free_masses(fine), coarse)
-}
-
-/// Masses of free particles in units of the density, m²; zero for those that are not.
-fn free_masses(fabric: &Fabric) -> impl Iterator<Item = f32> + '_ {
-    let free = |&inverse: &f32| if inverse > 0.0 { 1.0 / inverse } else { 0.0 };
-    fabric.inverse_areas().iter().map(free)
-}
-
-/// Moves all free particles by one velocity, so that the momentum per density is `wanted`.
+/// Adds one velocity to all free particles, so that the momentum per area density becomes `wanted`, m³/s.
 pub(super) fn match_momentum(fabric: &Fabric, wanted: DVec3, velocities: &mut [Vec3]) {
-    let free = free_areas(fabric);
-    let mass: f64 = free.iter().sum();
-    if mass == 0.0 {
+    let free_area: f64 = free_areas(fabric).map(f64::from).sum();
+    if free_area == 0.0 {
         return;
     }
-    // Twice: what rounding leaves of the first.
+    // The second time for the rounding errors of the first.
     for _ in 0..2 {
-        let missing = ((wanted - moment(fabric, velocities)) / mass).as_vec3();
-        for (velocity, _) in velocities.iter_mut().zip(&free).filter(|(_, area)| **area > 0.0) {
-            *velocity += missing;
+        let missing = ((wanted - area_moment(fabric, velocities)) / free_area).as_vec3();
+        for (velocity, area) in velocities.iter_mut().zip(free_areas(fabric)) {
+            if area > 0.0 {
+                *velocity += missing;
+            }
         }
     }
 }
 
-/// Twice the kinetic energy per density, in the frame that moves with the centre of mass.
-pub(super) fn agitation(fabric: &Fabric, velocities: &[Vec3]) -> f64 {
-    let mean = moment(fabric, velocities) / f64::from(fabric.area());
+/// Σ A |v − v̄|², m⁴/s², with v̄ the mean velocity: twice the kinetic energy per area density, in the frame that moves
+/// with the centre of mass.
+pub(super) fn internal_motion(fabric: &Fabric, velocities: &[Vec3]) -> f64 {
+    let mean = area_moment(fabric, velocities) / f64::from(fabric.area());
     let areas = fabric.particle_areas().iter().map(|&area| f64::from(area));
     areas.zip(velocities).map(|(area, v)| area * (v.as_dvec3() - mean).length_squared()).sum()
 }
 
-/// Slows free particles relative to their mean, which keeps the momentum, until the agitation is at
-/// most `limit`, or as near as that goes.
-pub(super) fn calm(fabric: &Fabric, limit: f64, velocities: &mut [Vec3]) {
-    let free = free_areas(fabric);
-    let mass: f64 = free.iter().sum();
-    let now = agitation(fabric, velocities);
-    if now <= limit || mass == 0.0 {
+/// Scales the velocities of the free particles relative to their mean, which keeps the momentum, until the
+/// [`internal_motion`] is at most `limit`, m⁴/s², or as near to it as that can bring it.
+pub(super) fn limit_internal_motion(fabric: &Fabric, limit: f64, velocities: &mut [Vec3]) {
+    let areas: Vec<f64> = free_areas(fabric).map(f64::from).collect();
+    let free_area: f64 = areas.iter().sum();
+    let now = internal_motion(fabric, velocities);
+    if now <= limit || free_area == 0.0 {
         return;
     }
-    let moving = || free.iter().zip(&*velocities).map(|(area, v)| (area, v.as_dvec3()));
-    let mean = moving().map(|(area, v)| v * *area).sum::<DVec3>() / mass;
+    let moving = || areas.iter().zip(&*velocities).map(|(area, v)| (area, v.as_dvec3()));
+    let mean = moving().map(|(area, v)| v * *area).sum::<DVec3>() / free_area;
     let about_mean: f64 = moving().map(|(area, v)| area * (v - mean).length_squared()).sum();
-    let kept = (1.0 - (now - limit) / about_mean).max(0.0).sqrt();
-    if !kept.is_finite() {
+    let scale = (1.0 - (now - limit) / about_mean).max(0.0).sqrt();
+    if !scale.is_finite() {
         return;
     }
-    for (velocity, _) in velocities.iter_mut().zip(&free).filter(|(_, area)| **area > 0.0) {
-        *velocity = (mean + (velocity.as_dvec3() - mean) * kept).as_vec3();
+    for (velocity, _) in velocities.iter_mut().zip(&areas).filter(|(_, area)| **area > 0.0) {
+        *velocity = (mean + (velocity.as_dvec3() - mean) * scale).as_vec3();
     }
-}
-
-/// Areas of the particles that are not pinned, m²; zero for those that are.
-fn free_areas(fabric: &Fabric) -> Vec<f64> {
-    let areas = fabric.particle_areas().iter().enumerate();
-    areas
-        .map(|(particle, &area)| if fabric.is_pinned(particle) { 0.0 } else { f64::from(area) })
-        .collect()
 }

@@ -1,9 +1,9 @@
-//! Takes off the strain that a change of level brings.
+//! Settling: takes off the strain that a change of level brings.
 //!
-//! Between new particles a fold is longer or shorter than the cloth is. Left to the next substep, that
-//! strain would become velocity. Here it is taken off the positions alone, by substeps from rest and
-//! without loads, each slowed, until hardly more energy is stored than before. Up, one does; down, where
-//! folds have no room between the particles that stay, the cloth must find others.
+//! Between interpolated particles a fold is longer or shorter than the cloth is. The next substep would turn that
+//! strain into velocity. Here it is taken off the positions alone, by damped substeps from rest and without loads,
+//! until hardly more elastic energy is stored than before the change. One substep is enough towards more particles;
+//! towards fewer, where a fold may be narrower than two particles are apart, the cloth must find other folds.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -16,19 +16,18 @@ use crate::fabric::{Fabric, FabricMaterial};
 use crate::geometry::energy::elastic;
 use crate::step::{Drive, StepSettings};
 
-/// Length of a substep, s. Shorter: it takes more of them. Longer: soft cloth shrinks, for its weight
-/// does not hold it.
+/// Length of a substep, s. Shorter: settling takes more substeps. Longer: soft cloth shrinks, since its weight does
+/// not hold its stretch here.
 const STEP: f32 = 1.0 / 120.0;
 
-/// Most substeps: one flag in thirty, the most crumpled, needs more on its way down, and ends with
-/// more energy than it had. Fewer: more do. More: it costs time, and the cloth goes farther from where
-/// it was.
+/// Most substeps. One flag in thirty, the most crumpled, needs more on its way down, and ends with more energy than it
+/// had. Fewer: more flags do. More: it costs time, and the cloth moves farther from where it was.
 const MOST_STEPS: u32 = 24;
 
-/// Damping, 1/s: 7 % of the velocity in a substep. Less: the cloth overshoots. More: it creeps.
+/// Damping, 1/s: 7 % of the velocity in a substep. Less: the cloth overshoots. More: it takes longer.
 const DAMPING: f32 = 8.7;
 
-/// Where cloths of a fabric settle, one after the other.
+/// A fabric and a batch of one lane, in which cloths of the fabric settle one after the other.
 #[derive(Debug)]
 pub(super) struct Settler {
     fabric: Arc<Fabric>,
@@ -36,9 +35,9 @@ pub(super) struct Settler {
 }
 
 impl Settler {
-    pub fn new(fabric: &Arc<Fabric>) -> Self {
+    pub fn new(fabric: &Arc<Fabric>) -> Arc<Self> {
         let batch = Mutex::new(ClothBatch::new(Arc::clone(fabric), LaneCount::One));
-        Self { fabric: Arc::clone(fabric), batch }
+        Arc::new(Self { fabric: Arc::clone(fabric), batch })
     }
 
     /// The fabric.
@@ -47,37 +46,37 @@ impl Settler {
     }
 
     fn lock(&self) -> MutexGuard<'_, ClothBatch> {
-        // Whoever panicked left a cloth there, and the next takes its place.
+        // The next cloth replaces all of the state that a panic may have left behind.
         self.batch.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Lets positions come to at most so much elastic energy, J, or as near to that as they come, and
-    /// returns how much it is. Where they are `creased` they have more, which need not be reckoned. What
-    /// cannot be simulated stays as it is.
+    /// Settles positions (m) until at most `limit` joules of elastic energy are stored, or the substeps are used up,
+    /// and returns the energy that is then stored, J. Of `folded` positions the first energy is not computed, since it
+    /// is over the limit. A material that cannot be simulated leaves the positions as they are.
     pub fn settle(
         &self,
         material: &FabricMaterial,
         positions: &mut Vec<Vec3>,
         limit: f64,
-        creased: bool,
+        folded: bool,
     ) -> f64 {
         let mut batch = self.lock();
         let damped = FabricMaterial { damping: DAMPING, internal_damping: 0.0, ..*material };
         let begin = ClothSnapshot::new(positions.clone(), vec![Vec3::ZERO; positions.len()]);
-        if place(&mut batch, &begin, damped).is_err() {
+        if insert(&mut batch, &begin, damped).is_err() {
             return elastic(&self.fabric, material, positions);
         }
         let settings = StepSettings { passes: 2, ..StepSettings::yarns(MOST_STEPS) };
         batch.begin_tick(STEP * MOST_STEPS as f32, settings);
         for step in 0..MOST_STEPS {
-            // Reckoning the energy takes half as long as a substep: after none, one, two, four, …
-            if (step == 0 && !creased) || step.is_power_of_two() {
+            // Computing the energy takes half as long as a substep: only after none, one, two, four, …
+            if (step == 0 && !folded) || step.is_power_of_two() {
                 let stored = elastic(&self.fabric, material, positions);
                 if stored <= limit {
                     return stored;
                 }
             }
-            // Each of first order: a second would foresee the push of the one before.
+            // Every step is of first order, which extrapolates no correction of the step before.
             batch.restart_integrator(0);
             batch.integrate();
             batch.solve_constraints();
@@ -88,9 +87,8 @@ impl Settler {
     }
 }
 
-/// Puts a cloth into a batch, in the place of the one before: what follows from its material alone stays,
-/// if that is the same.
-fn place(
+/// Replaces the cloth in the batch's lane. The parameters of a material are kept if the next cloth has the same.
+fn insert(
     batch: &mut ClothBatch,
     state: &ClothSnapshot,
     material: FabricMaterial,

@@ -1,4 +1,4 @@
-//! Strips that buckle under their own weight: the load beyond which a touch grows.
+//! Strips that buckle under their own weight: the load beyond which a small perturbation grows.
 
 use std::f64::consts::{FRAC_PI_2, SQRT_2};
 
@@ -10,10 +10,11 @@ use crate::{
         Case,
         bending::{LATERAL_BUCKLING, SELF_WEIGHT_COLUMN, column_of_links},
         rig::{YARNS, chains, label, order, row, strip},
-        specimen::Mount,
+        root::bisect_times,
     },
     reference::grid::Grid,
     scenes::{Fabric, GRAVITY, Pins, Pose, Scene, ticks},
+    specimen::Mount,
 };
 
 /// Links along the free metre of a column.
@@ -22,36 +23,36 @@ const COLUMNS: [usize; 5] = [2, 4, 8, 16, 32];
 const ORDERED: usize = 3;
 /// Links along the free metre on edge.
 const ON_EDGE: [usize; 3] = [8, 16, 32];
-/// What warping gives a strip on edge of square cells, times N: at the clamp the hinges stiffen the
-/// first cell's twist by a quarter, and the load rises by three times a fifth of a cell. The stencil
-/// takes off 0.5/N².
+/// Relative rise of the critical load of a strip on edge of square cells by restrained warping, times N: at
+/// the clamp the hinges stiffen the first cell's twist by a quarter, which raises the load by three times a
+/// fifth of a cell. The stencil lowers it by 0.5/N².
 const WARPING: f64 = 0.6;
-/// How much more than that passes.
+/// Factor on the known error within which a case passes.
 const MARGIN: f64 = 1.5;
-/// What is missed by directions that are frozen where gravity predicts them, by the strain, and by a
-/// touch that grows too slowly to be seen, relative.
+/// Relative error of a measured load: link directions are frozen at the predicted positions, the strip
+/// strains, and a perturbation may grow too slowly to be seen within the run.
 const READING: f64 = 2e-3;
-/// Sideways displacement of the tip, m.
-const TOUCH: f64 = 1e-4;
-/// Displacement over the touch from which it has grown: a mode that swings never leaves its start
-/// behind.
+/// Initial sideways displacement of the tip, m.
+const PERTURBATION: f64 = 1e-4;
+/// Displacement over the perturbation from which it counts as grown: a stable mode oscillates within its
+/// initial amplitude.
 const GROWN: f64 = 2.0;
-/// Longest run, s: a load 0.1 ‰ beyond the critical one doubles the touch.
+/// Longest run, s: it lets a load 0.1 ‰ beyond the critical one double the perturbation.
 const SECONDS: f64 = 40.0;
 /// Halvings of the interval of loads from none to twice the expected one.
 const HALVINGS: u32 = 16;
 /// Stiffness against stretch, N/m: the strip of N = 32 is 200 times as stiff in its plane as across.
 const STIFF: f64 = 1e5;
 
-/// How a strip is laid, and which way it gives.
+/// How a strip is laid, and in which direction it buckles.
 struct Form {
     /// Critical σgL³/B of the continuum.
     critical: f64,
     /// All but the bending stiffness, by which it buckles.
     fabric: Fabric,
-    /// From the scene's vertical sheet, whose upper end is clamped and whose gravity points down.
+    /// Maps the scene's positions, a vertical sheet clamped at its upper end, to those of the strip.
     lay: fn(DVec3) -> DVec3,
-    /// Direction of the touch.
+    /// Direction in which it buckles.
     sideways: DVec3,
     /// Sign of gravity: a column stands on its clamp.
     upright: f64,
@@ -87,8 +88,9 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
     cases
 }
 
-/// Thirds of alternating triangles make masses alternate from line to line of vertices, and by itself one
-/// line would be weaker. Twist holds it to the other.
+/// The expected load is that of the discrete column: masses of a third of each triangle alternate between
+/// the two lines of vertices, so the weaker line would buckle first but for the twist that ties it to the
+/// other.
 fn column(mount: &Mount, segments: usize) -> Case {
     let masses = Grid::new(&scene(&COLUMN, segments)).masses;
     // In masses of a whole row.
@@ -103,8 +105,8 @@ fn column(mount: &Mount, segments: usize) -> Case {
     )
 }
 
-/// At two substeps the product does not meet it: it holds a strip in its plane too weakly by ten times and
-/// more, and what sags buckles.
+/// The product fails this at two substeps: its stiffness in the plane of a two-column strip is too low by a
+/// factor of ten and more, so the strip sags in its plane and buckles early.
 fn on_edge(mount: &Mount, segments: usize) -> Case {
     Case::new(
         format!("lateral buckling σgL³/B (twist), N = {segments}, {}", label(YARNS)),
@@ -114,26 +116,18 @@ fn on_edge(mount: &Mount, segments: usize) -> Case {
     )
 }
 
-/// Whether a touch of a strip on edge grows under a part of its critical load.
+/// Whether a perturbation of a strip on edge grows under a part of its critical load.
 pub fn on_edge_grows(mount: &Mount, segments: usize, part: f64) -> bool {
     grows(mount, &STRIP_ON_EDGE, segments, YARNS, part * STRIP_ON_EDGE.critical)
 }
 
-/// The load σgL³/B between those under which a touch of the tip grows and does not, by bisection.
+/// The load σgL³/B from which a perturbation of the tip grows, by bisection.
 fn critical_load(mount: &Mount, form: &Form, segments: usize, settings: StepSettings) -> f64 {
-    let (mut low, mut high) = (0.0, 2.0 * form.critical);
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        if grows(mount, form, segments, settings, middle) {
-            high = middle;
-        } else {
-            low = middle;
-        }
-    }
-    0.5 * (low + high)
+    let grows = |load| grows(mount, form, segments, settings, load);
+    bisect_times(HALVINGS, 0.0, 2.0 * form.critical, grows)
 }
 
-/// Whether a strip under a load σgL³/B leaves a touch behind that bends it as its first mode.
+/// Whether a perturbation in the shape of the first mode grows under a load σgL³/B.
 fn grows(mount: &Mount, form: &Form, segments: usize, settings: StepSettings, load: f64) -> bool {
     let scene = scene(form, segments);
     let mut specimen = mount(&scene, settings);
@@ -143,7 +137,7 @@ fn grows(mount: &Mount, form: &Form, segments: usize, settings: StepSettings, lo
         .map(|x| {
             let along = (-x.y - 1.0 / segments as f64).max(0.0);
             let bent = 1.0 - (FRAC_PI_2 * along).cos();
-            (form.lay)(x) + form.sideways * (TOUCH * bent)
+            (form.lay)(x) + form.sideways * (PERTURBATION * bent)
         })
         .collect();
     specimen.place(&laid, &vec![DVec3::ZERO; laid.len()]);
@@ -151,8 +145,8 @@ fn grows(mount: &Mount, form: &Form, segments: usize, settings: StepSettings, lo
     (0..ticks(SECONDS)).any(|_| {
         specimen.tick();
         let tip = row(&scene, specimen.as_ref(), segments + 1).dot(form.sideways).abs();
-        // What is no longer a number has grown too.
-        tip.is_nan() || tip >= GROWN * TOUCH
+        // A tip that is not a number has grown, too.
+        tip.is_nan() || tip >= GROWN * PERTURBATION
     })
 }
 

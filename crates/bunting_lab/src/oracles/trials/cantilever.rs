@@ -6,10 +6,11 @@ use crate::{
     oracles::{
         Case,
         bending::Cantilever,
-        rig::{YARNS, label, order, row, run, strip},
-        specimen::{Mount, Specimen},
+        rig::{YARNS, label, order, row, strip},
     },
     scenes::{Fabric, GRAVITY, Pins, Pose, Scene, ticks},
+    simulation::run,
+    specimen::{Mount, Specimen},
 };
 
 /// Γ = σgL³/B, as tabulated by Romero et al. 2021.

@@ -6,10 +6,11 @@ use crate::{
     oracles::{
         Case,
         catenary::{Catenary, sag_of_chain},
-        rig::{YARNS, chains, column_masses, label, order, row, run, strip, substep},
-        specimen::{Mount, Specimen},
+        rig::{YARNS, chains, column_masses, label, order, row, strip, substep},
     },
     scenes::{GRAVITY, Pins, Pose, Scene},
+    simulation::run,
+    specimen::{Mount, Specimen},
 };
 
 /// Stiffness of a strip as good as inextensible, N/m: it strains by 4e-6.

@@ -7,21 +7,22 @@ use crate::{
     oracles::{
         Case,
         drag::BroadsideFall,
-        rig::{Substeps, YARNS, label, order, run, substep},
-        specimen::{Mount, Specimen},
+        rig::{Substeps, YARNS, label, order, substep},
     },
-    scenes::{Air, Fabric, GRAVITY, Pins, Scene, TICK_RATE},
+    scenes::{Air, Fabric, GRAVITY, Pins, Scene, ticks},
+    simulation::run,
+    specimen::{Mount, Specimen},
 };
 
 /// σ = 0.1 kg/m², C_d = 1.2, ρ = 1.225 kg/m³.
 const FALL: BroadsideFall = BroadsideFall { gravity: GRAVITY, density: 0.1, drag: 1.2 * 1.225 };
-/// Speed at which explicit drag turns round within 7 ms, m/s.
+/// Speed at which a step of 7 ms of explicit drag reverses the motion, m/s.
 const FAST: f64 = 20.0;
 /// Time for which the fast sheet is dragged, s.
 const DRAGGED: f64 = 0.1;
 /// The implicit update is exact for drag alone: what is left is rounding, in single precision.
 const EXACT: f64 = 1e-4;
-/// Gauss–Seidel with few substeps: its air is cheap.
+/// Gauss–Seidel with few substeps: of the air alone no more are needed.
 const GAUSS_SEIDEL: StepSettings = StepSettings::gauss_seidel(10);
 
 /// Fall from rest, and drag alone.
@@ -63,7 +64,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
             format!("drag alone from {FAST} m/s, ticks not turned round, {}", label(settings));
         cases.push(Case::new(name, 1.0, onward(mount, settings), 0.0));
     }
-    // Of what the air does, only who has a past knows more than the first order.
+    // Backward Euler treats the air to first order; the multistep formula to second.
     for (scheme, expected) in
         [(StepSettings::yarns as Substeps, 2.0), (StepSettings::gauss_seidel, 1.0)]
     {
@@ -85,11 +86,11 @@ fn dragged(mount: &Mount, settings: StepSettings) -> f64 {
     mean(specimen.velocities()).y
 }
 
-/// Part of the ticks after which the fast sheet still goes where it went. Explicit drag turns it round
-/// in steps longer than 2σ/(ρ C_d v), 6.8 ms, and beyond twice that diverges.
+/// Fraction of the ticks after which the fast sheet still moves in its first direction. Explicit drag
+/// reverses the motion in steps longer than 2σ/(ρ C_d v), 6.8 ms, and diverges beyond twice that.
 fn onward(mount: &Mount, settings: StepSettings) -> f64 {
     let mut specimen = start(mount, 0.0, FAST, settings);
-    let ticks = (DRAGGED * f64::from(TICK_RATE)).round() as usize;
+    let ticks = ticks(DRAGGED);
     let onward = (0..ticks).filter(|_| {
         specimen.tick();
         mean(specimen.velocities()).y > 0.0

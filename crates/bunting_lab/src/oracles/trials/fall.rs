@@ -5,10 +5,11 @@ use bunting_solver::StepSettings;
 use crate::{
     oracles::{
         Case, free_fall,
-        rig::{Substeps, label, order, run, substep},
-        specimen::Mount,
+        rig::{Substeps, label, order, substep},
     },
-    scenes::{GRAVITY, Pins, Scene, TICK_RATE},
+    scenes::{GRAVITY, Pins, Scene, ticks},
+    simulation::run,
+    specimen::Mount,
 };
 
 /// Length of the fall, s.
@@ -30,7 +31,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
         let mut errors = Vec::new();
         for substeps in [2, 4, 8] {
             let settings = scheme(substeps);
-            let steps = (SECONDS * f64::from(TICK_RATE)).round() as u32 * substeps;
+            let steps = ticks(SECONDS) as u32 * substeps;
             let fallen = height(mount, settings);
             let expected = sum(GRAVITY, substep(settings), steps);
             cases.push(Case::new(

@@ -1,7 +1,7 @@
 //! Each closed form put to a cloth.
 //!
-//! A tolerance is what the discretisation is known to miss, plus what single precision rounds; where
-//! it comes from is said beside it.
+//! A tolerance is the known error of the discretisation plus the rounding of single precision; its source
+//! stands beside it.
 
 mod buckling;
 mod cantilever;
@@ -14,7 +14,8 @@ mod pendulum;
 mod spin;
 mod stretch;
 
-use super::{Case, specimen::Mount};
+use super::Case;
+use crate::specimen::Mount;
 
 /// A family of cases of one closed form.
 pub type Trial = fn(&Mount) -> Vec<Case>;
@@ -56,8 +57,8 @@ pub fn stiffest_cantilever(mount: &Mount) -> f64 {
     cantilever::case(mount, 0.01, 32, super::rig::YARNS).relative_error
 }
 
-/// Whether a touch of a narrow strip on edge, of `segments` links, grows under a part of the load at
-/// which it should buckle.
+/// Whether a small perturbation of a narrow strip on edge, of `segments` links, grows under a part of the
+/// load at which the strip should buckle.
 #[must_use]
 pub fn strip_on_edge_buckles(mount: &Mount, segments: usize, part: f64) -> bool {
     buckling::on_edge_grows(mount, segments, part)

@@ -10,9 +10,9 @@ use crate::{
         Case,
         pendulum::{Mode, modes_of_chain},
         rig::{GAUSS_SEIDEL, YARNS, chains, column_masses, label, strip, substep},
-        specimen::Mount,
     },
     scenes::{GRAVITY, Pins, Pose, Scene, TICK_RATE, ticks},
+    specimen::Mount,
     stats::crossing_frequency,
 };
 

@@ -6,16 +6,17 @@ use glam::{DVec3, dvec3};
 use crate::{
     oracles::{
         Case,
-        dumbbell::{Formula, spin_left},
-        rig::{GAUSS_SEIDEL, Substeps, YARNS, label, order, run, substep},
-        specimen::{Mount, Specimen},
+        dumbbell::{BdfFormula, spin_left},
+        rig::{GAUSS_SEIDEL, Substeps, YARNS, label, order, substep},
     },
     reference::grid::Grid,
     scenes::{Fabric, Pins, Pose, Scene},
+    simulation::run,
+    specimen::{Mount, Specimen},
 };
 
-/// Corrections round to a unit in the last place of a position, 6e-8 m, in each of at most 1200
-/// substeps of a second; what they add up to over a step of 1/1200 s is 1e-3 of 0.4 m/s.
+/// Relative rounding error of a momentum: each correction rounds to a unit in the last place of a position,
+/// 6e-8 m, which over a substep of 1/1200 s is a velocity; over 1200 substeps these add up to 1e-3 of 0.4 m/s.
 const ROUNDING: f64 = 1e-3;
 /// Spin of the dumbbell, rad/s.
 const SPIN: f64 = 20.0;
@@ -36,9 +37,9 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
             ROUNDING,
         ));
     }
-    let schemes: [(Formula, Substeps, [u32; 3], f64); 2] = [
-        (Formula::BDF2_OPT, StepSettings::yarns, [3, 6, 12], 2.0),
-        (Formula::BACKWARD_EULER, StepSettings::gauss_seidel, [10, 20, 40], 1.0),
+    let schemes: [(BdfFormula, Substeps, [u32; 3], f64); 2] = [
+        (BdfFormula::BDF2_OPT, StepSettings::yarns, [3, 6, 12], 2.0),
+        (BdfFormula::BACKWARD_EULER, StepSettings::gauss_seidel, [10, 20, 40], 1.0),
     ];
     for (formula, scheme, sizes, expected_order) in schemes {
         let mut lost = Vec::new();

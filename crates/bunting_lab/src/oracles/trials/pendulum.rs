@@ -7,9 +7,9 @@ use crate::{
         Case,
         pendulum::{amplitude_factor, stiff_period},
         rig::{YARNS, label, row, strip, substep},
-        specimen::Mount,
     },
     scenes::{Fabric, GRAVITY, Pins, Pose, TICK_RATE, ticks},
+    specimen::Mount,
     stats::crossing_frequency,
 };
 

@@ -6,10 +6,10 @@ use crate::{
     oracles::{
         Case,
         rig::{YARNS, chains, label, row, strip, substep},
-        specimen::{Mount, Specimen},
         stretch::{free_spinning_strip, spinning_strip},
     },
     scenes::{Pins, Pose, Scene, TICK_RATE},
+    specimen::{Mount, Specimen},
     stats::mean,
 };
 

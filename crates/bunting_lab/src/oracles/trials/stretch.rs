@@ -5,11 +5,12 @@ use bunting_solver::StepSettings;
 use crate::{
     oracles::{
         Case,
-        rig::{GAUSS_SEIDEL, YARNS, chains, label, row, run, strip, substep},
-        specimen::Mount,
+        rig::{GAUSS_SEIDEL, YARNS, chains, label, row, strip, substep},
         stretch::hung_strip,
     },
     scenes::{Fabric, GRAVITY, Pins, Pose, Scene},
+    simulation::run,
+    specimen::Mount,
 };
 
 /// Time to come to rest, s: at 5/s the oscillation is down to e⁻²⁰.

@@ -31,13 +31,15 @@ pub(crate) struct Cells<P: Pack> {
 impl<P: Pack> Cells<P> {
     /// The cells of a fabric; none unless its patches are the cells of a grid, row by row.
     pub fn new(fabric: &Fabric, shape: GridShape) -> Option<Self> {
-        let columns = fabric.columns_of_cells()? - 1;
+        let columns = fabric.patch_grid_columns()? - 1;
         let stride = shape.row_stride;
         let rows = fabric.patches().chunks(columns);
         let corner_areas = rows.flat_map(|row| {
             (0..stride).step_by(P::WIDTH).map(|first| {
                 [0, 1].map(|half| {
-                    P::of(|lane| row.get(first + lane).map_or(0.0, |patch| patch.shares[half]))
+                    P::of(|lane| {
+                        row.get(first + lane).map_or(0.0, |patch| patch.corner_areas[half])
+                    })
                 })
             })
         });

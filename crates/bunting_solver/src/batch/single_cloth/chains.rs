@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, HashMap};
 use super::LaneIndices;
 use super::grid_shape::GridShape;
 use crate::batch::layout::Order;
-use crate::fabric::{Cell, Fabric, Grid, Link, LinkFamily, StrandLink, Strands, Thread, Yarn};
+use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Grid, Link, LinkFamily, Yarn};
 use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;
 
@@ -63,7 +63,7 @@ impl Direction {
 #[derive(Clone, Debug)]
 pub(super) struct ChainPacks<P: Pack> {
     /// The `class` of a link is an index into `classes`.
-    pub chains: Strands<P>,
+    pub chains: Chains<P>,
     /// For each colour, the order in which its yarns are consecutive.
     pub orders: Vec<Order>,
     /// For each class of links of packs, the fabric's class in each lane.
@@ -75,7 +75,7 @@ impl<P: Pack> ChainPacks<P> {
     pub fn new(fabric: &Fabric, shape: GridShape) -> Option<Self> {
         let grid = fabric.grid()?;
         let mut packer = Packer { shape, classes: Vec::new() };
-        let mut colours: Vec<(LinkFamily, Vec<Thread<P>>)> = Vec::new();
+        let mut colours: Vec<(LinkFamily, Vec<Chain<P>>)> = Vec::new();
         let mut orders = Vec::new();
         for range in fabric.yarn_colours().ranges() {
             let yarns = &fabric.yarns()[range.clone()];
@@ -85,7 +85,7 @@ impl<P: Pack> ChainPacks<P> {
                 orders.push(direction.order());
             }
         }
-        let mut chains = Strands::of(colours.into_iter());
+        let mut chains = Chains::of_colours(colours.into_iter());
         chains.cells = cells(&chains, shape);
         Some(Self { chains, orders, classes: packer.classes })
     }
@@ -111,13 +111,13 @@ fn by_direction<'a>(
 }
 
 /// The cells whose diagonals are links, one for each link of a pack of diagonals.
-fn cells<P: Pack>(chains: &Strands<P>, shape: GridShape) -> Vec<Cell> {
+fn cells<P: Pack>(chains: &Chains<P>, shape: GridShape) -> Vec<Cell> {
     let stride = shape.row_stride as u32;
     let of_diagonal = |([above, below], target): ([u32; 2], u32)| {
         let left = if below > above + stride { above } else { above - 1 };
         Cell { corners: [left, left + 1, left + stride, left + stride + 1], targets: [target; 2] }
     };
-    chains.bias().map(of_diagonal).collect()
+    chains.diagonals().map(of_diagonal).collect()
 }
 
 /// Packs yarns that lie side by side.
@@ -128,10 +128,10 @@ struct Packer {
 
 impl Packer {
     /// Packs the yarns of one direction, the longest first.
-    fn pack<P: Pack>(&mut self, direction: Direction, links: &Links) -> Option<Vec<Thread<P>>> {
+    fn pack<P: Pack>(&mut self, direction: Direction, links: &Links) -> Option<Vec<Chain<P>>> {
         let first = links.keys().map(|&(_, yarn)| yarn).min()?;
         let last = links.keys().map(|&(_, yarn)| yarn).max()?;
-        let mut chains: Vec<Thread<P>> = (first..=last)
+        let mut chains: Vec<Chain<P>> = (first..=last)
             .step_by(<P as Pack>::WIDTH)
             .filter_map(|first| self.chain(direction, first, links))
             .collect();
@@ -145,7 +145,7 @@ impl Packer {
         direction: Direction,
         first: isize,
         links: &Links,
-    ) -> Option<Thread<P>> {
+    ) -> Option<Chain<P>> {
         let yarns = first..first + P::WIDTH as isize;
         let lines = || links.keys().filter(|(_, yarn)| yarns.contains(yarn)).map(|&(line, _)| line);
         let (begin, end) = (lines().min()?, lines().max()? + 1);
@@ -155,7 +155,7 @@ impl Packer {
             let lanes: Vec<Option<(&Link, usize)>> =
                 yarns.clone().map(|yarn| links.get(&(line, yarn)).copied()).collect();
             let of_link = |(link, _): (&Link, usize)| link.class;
-            chain_links.push(StrandLink {
+            chain_links.push(ChainLink {
                 class: self.class(lanes.iter().map(|link| link.map(of_link)).collect()),
                 rest_length: P::of(|lane| lanes[lane].map_or(0.0, |(link, _)| link.rest_length)),
             });
@@ -170,10 +170,10 @@ impl Packer {
         }
         let skewed = |line| first + direction.skew() * line as isize;
         let at = |line| self.shape.index(direction.order(), line, skewed(line));
-        Some(Thread {
+        Some(Chain {
             particles: (begin..=end).map(at).collect(),
             links: chain_links,
-            polish: sweep.concat(),
+            sweep_order: sweep.concat(),
         })
     }
 

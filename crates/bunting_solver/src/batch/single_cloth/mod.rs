@@ -35,7 +35,7 @@ use crate::constraints::bend_factors::BendFactors;
 use crate::constraints::factors::{ClothFactors, Factors};
 use crate::constraints::stiffness::Stiffness;
 use crate::constraints::twist_factors::TwistFactors;
-use crate::fabric::{BendLine, Fabric, Ribbon, Strands};
+use crate::fabric::{BendLine, Chains, Fabric, Ribbon};
 use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
@@ -173,7 +173,7 @@ impl<P: Pack> Layout<P> for SingleCloth<P> {
         PositionGrids::new(self.shape, packs)
     }
 
-    fn chains<'a>(&'a self, _: &'a Fabric) -> &'a Strands<P> {
+    fn chains<'a>(&'a self, _: &'a Fabric) -> &'a Chains<P> {
         &self.chains.chains
     }
 

@@ -1,56 +1,45 @@
-//! The next coarser level of a mesh.
+//! The next coarser mesh of a chain of levels of detail.
 
-use glam::Vec3;
 use meshopt::{SimplifyOptions, VertexDataAdapter, typed_to_bytes};
 
-use super::{FabricBuilder, slivers};
-use crate::fabric::Grid;
+use super::slivers::flip_slivers;
+use super::source::FabricBuilder;
+use crate::fabric::grid::Grid;
 
-/// Part of the triangles that a coarser mesh should have.
-const SHARE: usize = 4;
+/// The simplified mesh should have one triangle for so many of the finer mesh.
+const REDUCTION: usize = 4;
 
-/// A mesh that keeps more than this part of the triangles is not worth a level.
-const WORTH: f32 = 0.75;
+/// Part of the triangles above which a simplified mesh is not worth a level of its own.
+const WORTHWHILE: f32 = 0.75;
 
-/// How much a texture's distortion weighs against that of the shape, 1/m.
-const UV_WEIGHT: f32 = 1.0;
+/// Cost of the texture's distortion in the simplification, 1/m: how many units of texture weigh as much as a metre of
+/// shape.
+const UV_COST: f32 = 1.0;
 
-/// A mesh with some of a finer one's vertices.
+/// A mesh with some of the vertices of a finer mesh.
 #[derive(Clone, Debug)]
-pub struct Coarser {
+pub struct CoarserMesh {
     /// The mesh, with those of the pins that are left.
     pub builder: FabricBuilder,
-    /// The finer mesh's vertex that each of its vertices is.
+    /// For each of its vertices the vertex of the finer mesh at the same place.
     pub vertices: Vec<u32>,
 }
 
 impl FabricBuilder {
-    /// The next coarser level: every second column and row of a grid; of other meshes about a fourth
-    /// of the triangles, with all vertices of the border and all that are pinned (`meshoptimizer`'s
-    /// simplification, which minds the texture, too).
+    /// The next coarser level: every second column and row of a grid; of other meshes about a fourth of the
+    /// triangles, with all vertices of the border and all pinned vertices (`meshoptimizer`'s simplification by
+    /// quadric error metrics, which takes the texture into account).
     ///
-    /// None where a grid cannot be halved, or hardly a triangle can go.
+    /// None where a grid cannot be halved, or hardly a triangle can be left out.
     #[must_use]
-    pub fn coarser(&self) -> Option<Coarser> {
+    pub fn coarser(&self) -> Option<CoarserMesh> {
         match &self.grid {
             Some(grid) => self.every_second(grid),
             None => self.simplified(),
         }
     }
 
-    /// Positions of the vertices, m.
-    #[must_use]
-    pub fn positions(&self) -> &[Vec3] {
-        &self.positions
-    }
-
-    /// Three vertices a triangle.
-    #[must_use]
-    pub fn indices(&self) -> &[u32] {
-        &self.indices
-    }
-
-    fn every_second(&self, grid: &Grid) -> Option<Coarser> {
+    fn every_second(&self, grid: &Grid) -> Option<CoarserMesh> {
         let halved = grid.halved()?;
         let vertices: Vec<u32> = (0..halved.rows)
             .flat_map(|row| (0..halved.columns).map(move |column| (column, row)))
@@ -58,56 +47,60 @@ impl FabricBuilder {
             .collect();
         let pins = self.pins_among(&vertices);
         let builder = Self::grid(halved).pin(pins).tethered(self.tethered);
-        Some(Coarser { builder, vertices })
+        Some(CoarserMesh { builder, vertices })
     }
 
-    fn simplified(&self) -> Option<Coarser> {
+    fn simplified(&self) -> Option<CoarserMesh> {
         self.validate().ok()?;
+        let kept = self.simplified_triangles()?;
+        let mut vertices = kept.clone();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let index = |vertex: &u32| vertices.binary_search(vertex).ok().map(|at| at as u32);
+        let finer = || vertices.iter().map(|&vertex| vertex as usize);
+        let builder = Self {
+            positions: finer().map(|vertex| self.positions[vertex]).collect(),
+            indices: kept.iter().filter_map(index).collect(),
+            uv: finer().filter_map(|vertex| self.uv.get(vertex).copied()).collect(),
+            pinned: self.pins_among(&vertices).collect(),
+            weld_distance: Some(self.effective_weld_distance()),
+            tethered: self.tethered,
+            grid: None,
+        };
+        Some(CoarserMesh { builder, vertices })
+    }
+
+    /// Three vertices of this mesh per triangle of the simplified one.
+    fn simplified_triangles(&self) -> Option<Vec<u32>> {
         let positions: Vec<[f32; 3]> = self.positions.iter().map(|at| at.to_array()).collect();
         let adapter =
             VertexDataAdapter::new(typed_to_bytes(&positions), size_of::<[f32; 3]>(), 0).ok()?;
         let uv: Vec<f32> = self.uv.iter().flat_map(|uv| uv.to_array()).collect();
-        let weights = if uv.is_empty() { &[][..] } else { &[UV_WEIGHT; 2] };
+        let costs = if uv.is_empty() { &[][..] } else { &[UV_COST; 2] };
         let locked: Vec<bool> =
             (0..positions.len()).map(|vertex| self.pinned.contains(&(vertex as u32))).collect();
         let kept = meshopt::simplify_with_attributes_and_locks(
             &self.indices,
             &adapter,
             &uv,
-            weights,
-            size_of_val(weights),
+            costs,
+            size_of_val(costs),
             &locked,
-            self.indices.len() / SHARE,
+            self.indices.len() / REDUCTION,
             f32::MAX,
             SimplifyOptions::LockBorder | SimplifyOptions::Regularize,
             None,
         );
-        if kept.is_empty() || kept.len() as f32 > WORTH * self.indices.len() as f32 {
+        if kept.is_empty() || kept.len() as f32 > WORTHWHILE * self.indices.len() as f32 {
             return None;
         }
-        let mut triangles: Vec<[u32; 3]> =
-            kept.chunks_exact(3).map(|corners| [corners[0], corners[1], corners[2]]).collect();
-        slivers::mend(&self.positions, &mut triangles);
-        let kept = triangles.into_flattened();
-        let mut vertices = kept.clone();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let place = |vertex: &u32| vertices.binary_search(vertex).ok().map(|at| at as u32);
-        let indices = kept.iter().filter_map(place).collect();
-        let pick = |&vertex: &u32| vertex as usize;
-        let builder = Self {
-            positions: vertices.iter().map(pick).map(|vertex| self.positions[vertex]).collect(),
-            indices,
-            uv: vertices.iter().map(pick).filter_map(|at| self.uv.get(at).copied()).collect(),
-            pinned: self.pins_among(&vertices).collect(),
-            weld_distance: Some(self.weld_distance.unwrap_or_else(|| self.default_weld())),
-            tethered: self.tethered,
-            grid: None,
-        };
-        Some(Coarser { builder, vertices })
+        let corners = kept.chunks_exact(3);
+        let mut triangles: Vec<[u32; 3]> = corners.map(|at| [at[0], at[1], at[2]]).collect();
+        flip_slivers(&self.positions, &mut triangles);
+        Some(triangles.into_flattened())
     }
 
-    /// The places of pins in a list of vertices.
+    /// Indices of the pinned vertices within a list of vertices.
     fn pins_among(&self, vertices: &[u32]) -> impl Iterator<Item = u32> {
         (0..).zip(vertices).filter(|(_, vertex)| self.pinned.contains(vertex)).map(|(at, _)| at)
     }
@@ -136,11 +129,11 @@ mod tests {
         let mut used = kept.clone();
         used.sort_unstable();
         used.dedup();
-        let place = |vertex: &u32| used.binary_search(vertex).expect("it is used") as u32;
+        let index = |vertex: &u32| used.binary_search(vertex).expect("it is used") as u32;
         let uv: Vec<Vec2> = grid.uvs();
         FabricBuilder::new(
             used.iter().map(|&vertex| positions[vertex as usize]).collect(),
-            kept.iter().map(place).collect(),
+            kept.iter().map(index).collect(),
         )
         .uv(used.iter().map(|&vertex| uv[vertex as usize]).collect())
         .pin_where(|_, uv| uv.y == 0.0)
@@ -164,7 +157,7 @@ mod tests {
     #[test]
     fn a_mesh_keeps_its_border_and_its_pins() {
         let fine = curtain();
-        let Coarser { builder, vertices } = fine.coarser().expect("a level");
+        let CoarserMesh { builder, vertices } = fine.coarser().expect("a level");
         assert!(builder.indices.len() < fine.indices.len() / 2);
         for (vertex, &of) in vertices.iter().enumerate() {
             assert_eq!(builder.positions[vertex], fine.positions[of as usize]);
@@ -177,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_tethers_has_none_at_any_level() {
+    fn an_untethered_fabric_has_no_tethers_at_any_level() {
         let grid = FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0)).pin([0, 8]);
         for builder in [grid, curtain()] {
             let coarser = builder.tethered(false).coarser().expect("a level").builder;
@@ -187,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_all_border_has_no_coarser_level() {
+    fn a_strip_without_inner_vertices_has_no_coarser_level() {
         let strip = Grid::new(9, 2, 1.0, 0.1);
         let triangles = strip.triangles(false).into_iter().flatten().collect();
         assert!(FabricBuilder::new(strip.positions(), triangles).coarser().is_none());

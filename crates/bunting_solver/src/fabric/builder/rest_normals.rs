@@ -1,39 +1,50 @@
-//! Normals of a mesh that need not be a fabric.
+//! Normals of a mesh from which no fabric has been built, or can be.
 
 use glam::Vec3;
 
-use super::FabricBuilder;
-use crate::fabric::{FabricError, weld};
+use super::source::FabricBuilder;
+use crate::fabric::error::FabricError;
+use crate::fabric::normals::vertex_normals;
+use crate::fabric::weld::weld;
 
 impl FabricBuilder {
-    /// Unit normals at rest, one a vertex, to the front; vertices that a fabric would merge share
-    /// theirs. Triangles without area and edges of many triangles are no error here.
+    /// Unit normals at rest, one per vertex, to the front; vertices that a fabric would merge have the same normal.
+    /// Triangles without area and edges of more than two triangles are no errors here.
     ///
     /// # Errors
     ///
     /// A [`FabricError`] where the lists do not fit one another, or a position is not finite.
     pub fn rest_normals(&self) -> Result<Vec<Vec3>, FabricError> {
         self.validate()?;
-        let distance = self.weld_distance.unwrap_or_else(|| self.default_weld());
-        let welded = weld::weld(&self.positions, distance);
-        let particle = |vertex: u32| welded.particle_of_vertex[vertex as usize] as usize;
-        let mut sums = vec![Vec3::ZERO; welded.vertex_of_particle.len()];
-        for corners in self.indices.chunks_exact(3) {
-            let [a, b, c] = [0, 1, 2].map(|corner| self.positions[corners[corner] as usize]);
-            // Twice the area long.
-            let normal = (b - a).cross(c - a);
-            for &corner in corners {
-                sums[particle(corner)] += normal;
-            }
-        }
-        let sums = welded.particle_of_vertex.iter().map(|&particle| sums[particle as usize]);
-        Ok(sums.map(Vec3::normalize_or_zero).collect())
+        let welded = weld(&self.positions, self.effective_weld_distance());
+        let triangles = self.indices.chunks_exact(3).map(|corners| {
+            let vertices = [corners[0], corners[1], corners[2]].map(|vertex| vertex as usize);
+            let particles = vertices.map(|vertex| welded.particle_of_vertex[vertex]);
+            (vertices.map(|vertex| self.positions[vertex]), particles)
+        });
+        let normals = vertex_normals(welded.vertex_of_particle.len(), triangles);
+        let particles = welded.particle_of_vertex.iter();
+        Ok(particles.map(|&particle| normals[particle as usize]).collect())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fabric::Grid;
+
+    /// On a mesh without seams particles are vertices, and a fabric has the same normals.
+    #[test]
+    fn a_fabric_has_the_normals_of_its_mesh() {
+        let grid = Grid::new(5, 4, 1.0, 1.0);
+        let bent = grid.positions().iter().map(|at| at.with_z(at.x * at.x - 0.3 * at.y)).collect();
+        let triangles = grid.triangles(false).into_flattened();
+        let builder = FabricBuilder::new(bent, triangles);
+        let normals = builder.rest_normals().expect("a mesh");
+        let fabric = builder.build().expect("a fabric");
+        assert_eq!(fabric.normals(fabric.rest_positions()), normals);
+        assert!(normals.iter().all(|normal| normal.z > 0.3), "to the front");
+    }
 
     #[test]
     fn a_roof_is_smooth_across_its_seam() {

@@ -1,30 +1,30 @@
-//! Mends triangles that are almost lines.
+//! Removes triangles that are almost lines from a simplified mesh.
 //!
-//! Where all of a straight border is kept, three of its vertices may end up as one triangle. Turning
-//! the edge that it shares with its neighbour gives two sound ones.
+//! Where all vertices of a straight border are kept, three of them may end up as one triangle. Flipping the edge that
+//! it shares with its neighbour gives two sound triangles.
 
 use std::collections::BTreeMap;
 
 use glam::Vec3;
 
-/// A triangle's area over the square of its longest edge, below which it is a sliver; 0.43 is
-/// equilateral.
+/// Area over the square of the longest edge below which a triangle is a sliver; 0.43 is equilateral. Smaller: stiff
+/// needles remain. Larger: edges are flipped against the shape of the surface.
 const SLIVER: f32 = 0.03;
 
-/// Turns the longest edges of slivers while that makes the worse of the two triangles better.
-pub(super) fn mend(positions: &[Vec3], triangles: &mut [[u32; 3]]) {
+/// Flips the longest edges of slivers as long as that makes the worse of the two triangles better.
+pub(super) fn flip_slivers(positions: &[Vec3], triangles: &mut [[u32; 3]]) {
     let shape = |triangle: [u32; 3]| {
         let [a, b, c] = triangle.map(|corner| positions[corner as usize]);
         let edges = [b - a, c - b, a - c].map(Vec3::length_squared);
         0.5 * (b - a).cross(c - a).length() / edges.into_iter().fold(f32::MIN_POSITIVE, f32::max)
     };
-    // Each turn makes something better, so it ends; a mesh this bad is not worth more.
+    // Each flip improves a pair of triangles, so that one flip per triangle is enough for any sensible mesh.
     for _ in 0..triangles.len() {
         let mut at_edge = BTreeMap::new();
         for (index, &[a, b, c]) in triangles.iter().enumerate() {
             at_edge.extend([((a, b), index), ((b, c), index), ((c, a), index)]);
         }
-        let turned = triangles.iter().enumerate().find_map(|(index, &triangle)| {
+        let flip = triangles.iter().enumerate().find_map(|(index, &triangle)| {
             if shape(triangle) >= SLIVER {
                 return None;
             }
@@ -35,7 +35,7 @@ pub(super) fn mend(positions: &[Vec3], triangles: &mut [[u32; 3]]) {
             let worst = |pair: [[u32; 3]; 2]| pair.map(shape).into_iter().fold(f32::MAX, f32::min);
             (worst(new) > worst([triangle, triangles[other]])).then_some((index, other, new))
         });
-        let Some((index, other, new)) = turned else { break };
+        let Some((index, other, new)) = flip else { break };
         [triangles[index], triangles[other]] = new;
     }
 }
@@ -54,12 +54,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_triangle_on_a_straight_border_is_turned_into_two() {
+    fn the_edge_of_a_triangle_on_a_straight_border_is_flipped() {
         let at = |x: f32, y: f32| Vec3::new(x, y, 0.0);
         let positions = [at(0.0, 0.0), at(1.0, 0.0), at(2.0, 0.0), at(1.0, 1.5)];
         // 0, 1 and 2 lie on one line; 0, 2 and 3 stand on it.
         let mut triangles = [[0, 1, 2], [0, 2, 3]];
-        mend(&positions, &mut triangles);
+        flip_slivers(&positions, &mut triangles);
         let area = |[a, b, c]: [u32; 3]| {
             let [a, b, c] = [a, b, c].map(|corner| positions[corner as usize]);
             0.5 * (b - a).cross(c - a).z

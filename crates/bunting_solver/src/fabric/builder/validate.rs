@@ -1,10 +1,10 @@
-//! What is wrong with a mesh before it is cut.
+//! Checks of a mesh before a fabric is built from it.
 
-use super::FabricBuilder;
-use crate::fabric::FabricError;
+use super::source::FabricBuilder;
+use crate::fabric::error::FabricError;
 
 impl FabricBuilder {
-    /// Checks that counts and indices fit, and that positions are numbers.
+    /// Checks that counts and indices fit one another, and that positions are finite.
     pub(super) fn validate(&self) -> Result<(), FabricError> {
         if let Some(grid) = &self.grid {
             grid.validate()?;

@@ -1,0 +1,80 @@
+//! Assigns lanes: each simulated cloth gets one, paused and sleeping cloths leave theirs.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_time::Time;
+
+use crate::batch::batches::ClothBatches;
+use crate::batch::occupancy::PendingCloth;
+use crate::cloth::activity::{ClothActivity, ClothPaused};
+use crate::cloth::instance::{ClothInstance, StateStorage};
+use crate::schedule::{ClothSystems, ClothTick};
+use crate::settings::ClothSettings;
+
+/// Assigns cloths to lanes of batches.
+#[derive(Debug, Default)]
+pub struct LanePlugin;
+
+impl Plugin for LanePlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<ClothSettings>()
+            .register_type::<ClothPaused>()
+            .init_resource::<ClothSettings>()
+            .init_resource::<ClothBatches>()
+            .add_observer(mark_paused)
+            .add_observer(mark_resumed)
+            .add_systems(ClothTick, assign_lanes.in_set(ClothSystems::SelectLod));
+    }
+}
+
+fn mark_paused(paused: On<Insert, ClothPaused>, mut cloths: Query<&mut ClothInstance>) {
+    if let Ok(mut instance) = cloths.get_mut(paused.entity) {
+        instance.set_changed();
+    }
+}
+
+fn mark_resumed(resumed: On<Remove, ClothPaused>, mut cloths: Query<&mut ClothInstance>) {
+    if let Ok(mut instance) = cloths.get_mut(resumed.entity) {
+        instance.set_changed();
+    }
+}
+
+/// Moves snapshots of simulated cloths into lanes, and the states of paused and sleeping cloths out of
+/// them. When the settings or the length of a tick change, all cloths are assigned again, as their
+/// numbers of substeps may differ.
+pub(crate) fn assign_lanes(
+    mut cloths: Query<(Entity, &mut ClothInstance, Has<ClothPaused>)>,
+    settings: Res<ClothSettings>,
+    time: Res<Time>,
+    mut last_tick: Local<f32>,
+    mut batches: ResMut<ClothBatches>,
+) {
+    let tick = time.delta_secs();
+    let reassign_all = settings.is_changed() || tick != *last_tick;
+    *last_tick = tick;
+    let gravity = settings.gravity.length();
+    for (entity, mut instance, paused) in &mut cloths {
+        if !instance.is_changed() && !reassign_all {
+            continue;
+        }
+        let is_still = paused || instance.activity != ClothActivity::Ticking;
+        if instance.lane().is_some() && (is_still || reassign_all) {
+            instance.leave_lane(&mut batches);
+        }
+        if is_still || instance.snapshot().is_none() {
+            continue;
+        }
+        if let (Some(fabric), StateStorage::Snapshot(snapshot)) =
+            (instance.fabric().cloned(), core::mem::take(&mut instance.storage))
+        {
+            let pending = PendingCloth { entity, snapshot, material: instance.material };
+            let limits = settings.limits(instance.level);
+            batches.add(&fabric, limits.of_fabric(&fabric, tick, gravity), pending);
+        }
+    }
+    batches.assign_lanes(settings.lanes, |entity, lane| {
+        if let Ok((_, mut instance, _)) = cloths.get_mut(entity) {
+            instance.storage = StateStorage::Lane(lane);
+        }
+    });
+}

@@ -1,0 +1,251 @@
+//! The batches that hold the state of all simulated cloths, one cloth a lane.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use bevy_ecs::prelude::*;
+use bevy_tasks::ComputeTaskPool;
+use bunting_solver::{ClothBatch, ClothSnapshot, Fabric, LaneCount, LaneSurface, StepSettings};
+
+use crate::batch::group::Group;
+use crate::batch::lane_handle::LaneHandle;
+use crate::batch::occupancy::{LaneMut, OccupiedBatch, PendingCloth};
+
+/// Number of particles, counted in all lanes, from which a phase of a substep is spread over threads:
+/// it then outweighs the 30 µs that it takes to wake them. Fewer: small crowds are slowed down.
+const PARALLEL_PARTICLES: usize = 64 * 1024;
+
+/// The batches that hold the state of all simulated cloths.
+#[derive(Resource, Debug, Default)]
+pub struct ClothBatches {
+    groups: Vec<Group>,
+    /// Time that the last [`assign_lanes`](Self::assign_lanes) took.
+    pub(crate) assignment_time: Duration,
+    /// Whether the time of each batch is measured in this tick.
+    pub(crate) is_timed: bool,
+}
+
+/// Time that a batch took in a tick.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BatchTiming {
+    pub particles: usize,
+    pub settings: StepSettings,
+    pub lanes: LaneCount,
+    /// µs.
+    pub time: f32,
+}
+
+impl ClothBatches {
+    /// Number of batches in use.
+    #[must_use]
+    pub fn batch_count(&self) -> usize {
+        self.groups.iter().map(|group| group.batches.len()).sum()
+    }
+
+    /// Number of substeps in a tick of the batches that have most.
+    pub(crate) fn substeps(&self) -> u32 {
+        let groups = self.groups.iter().filter(|group| !group.batches.is_empty());
+        groups.map(|group| group.settings.substeps).max().unwrap_or(0)
+    }
+
+    /// Adds a cloth, which gets a lane at the next [`assign_lanes`](Self::assign_lanes).
+    pub(crate) fn add(
+        &mut self,
+        fabric: &Arc<Fabric>,
+        settings: StepSettings,
+        cloth: PendingCloth,
+    ) {
+        let found = self.groups.iter().position(|group| group.is_of(fabric, settings));
+        let index = found.unwrap_or_else(|| {
+            let group = Group::new(fabric, settings);
+            match self.groups.iter().position(Group::is_empty) {
+                Some(unused) => {
+                    self.groups[unused] = group;
+                    unused
+                }
+                None => {
+                    self.groups.push(group);
+                    self.groups.len() - 1
+                }
+            }
+        });
+        self.groups[index].changed = true;
+        self.groups[index].pending.push(cloth);
+    }
+
+    /// Removes a cloth from its lane.
+    pub(crate) fn remove(&mut self, lane: LaneHandle) -> ClothSnapshot {
+        self.free(lane).snapshot(lane.lane)
+    }
+
+    /// Removes a cloth from its lane, without the integrator's history: it belongs to this level.
+    pub(crate) fn remove_without_history(&mut self, lane: LaneHandle) -> ClothSnapshot {
+        self.free(lane).snapshot_without_history(lane.lane)
+    }
+
+    /// Removes a cloth from its lane, with the positions and velocities of some particles only.
+    pub(crate) fn remove_particles(
+        &mut self,
+        lane: LaneHandle,
+        particles: &[u32],
+    ) -> ClothSnapshot {
+        self.free(lane).snapshot_of(lane.lane, particles)
+    }
+
+    /// Frees a lane. The cloth's state can be read until another cloth gets the lane.
+    fn free(&mut self, lane: LaneHandle) -> &ClothBatch {
+        let group = &mut self.groups[lane.group];
+        let batch = &mut group.batches[lane.batch];
+        group.changed = true;
+        batch.occupants[lane.lane] = None;
+        &batch.batch
+    }
+
+    /// Gives every pending cloth a lane and closes gaps. Calls `assigned` with each cloth whose lane is
+    /// another, and that lane.
+    pub(crate) fn assign_lanes(
+        &mut self,
+        width: Option<LaneCount>,
+        mut assigned: impl FnMut(Entity, LaneHandle),
+    ) {
+        let began = Instant::now();
+        let changed = self.groups.iter_mut().enumerate().filter(|(_, group)| group.changed);
+        for (index, group) in changed {
+            group.assign_lanes(width, |entity, batch, lane| {
+                assigned(entity, LaneHandle { group: index, batch, lane });
+            });
+        }
+        self.assignment_time = began.elapsed();
+    }
+
+    /// The cloths in all lanes, each with the surface that [`copy_surfaces`](Self::copy_surfaces) writes.
+    pub(crate) fn surfaces(&mut self) -> impl Iterator<Item = (Entity, &mut LaneSurface)> {
+        self.batches_where(|_| true).flat_map(|batch| {
+            let lanes = batch.occupants.iter().zip(&mut batch.surfaces);
+            lanes.filter_map(|(occupant, surface)| Some((occupant.as_ref()?.entity, surface)))
+        })
+    }
+
+    /// Copies the surfaces of all lanes out of the batches.
+    pub(crate) fn copy_surfaces(&mut self) {
+        self.spread(|_| true, |batch| batch.batch.copy_surfaces(&mut batch.surfaces));
+    }
+
+    /// The batch of a lane.
+    #[cfg(test)]
+    pub(crate) fn batch(&self, lane: LaneHandle) -> &ClothBatch {
+        &self.groups[lane.group].batches[lane.batch].batch
+    }
+
+    /// Write access to a cloth.
+    pub(crate) fn lane(&mut self, lane: LaneHandle) -> LaneMut<'_> {
+        LaneMut { occupied: &mut self.groups[lane.group].batches[lane.batch], lane: lane.lane }
+    }
+
+    /// The time that each batch took in the last tick, if it was measured.
+    pub(crate) fn timings(&self) -> impl Iterator<Item = BatchTiming> + '_ {
+        self.groups.iter().flat_map(|group| {
+            group.batches.iter().map(|batch| BatchTiming {
+                particles: group.fabric.particle_count(),
+                settings: group.settings,
+                lanes: batch.width,
+                time: batch.time.as_secs_f32() * 1e6,
+            })
+        })
+    }
+
+    /// Begins a tick of `tick` seconds in all batches.
+    pub(crate) fn begin_tick(&mut self, tick: f32) {
+        for group in &mut self.groups {
+            let settings = group.settings;
+            for batch in &mut group.batches {
+                batch.time = Duration::ZERO;
+                batch.substeps = settings.substeps;
+                batch.batch.begin_tick(tick, settings);
+            }
+        }
+    }
+
+    /// Begins substep `index` of `count`. A batch of fewer substeps takes part in as many of them as it
+    /// has, evenly spread.
+    pub(crate) fn begin_substep(&mut self, index: u32, count: u32) {
+        for group in &mut self.groups {
+            let done = |index: u32| index * group.settings.substeps / count;
+            let joins = done(index + 1) > done(index);
+            for batch in &mut group.batches {
+                batch.joins = joins;
+            }
+        }
+    }
+
+    /// Runs a phase on all batches that take part in the current substep.
+    pub(crate) fn for_each_joining(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
+        self.for_each_where(|batch| batch.joins, |batch| phase(&mut batch.batch));
+    }
+
+    /// Runs a phase on all batches.
+    pub(crate) fn for_each(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
+        self.for_each_where(|_| true, |batch| phase(&mut batch.batch));
+    }
+
+    /// Runs all substeps of the tick, batch by batch.
+    pub(crate) fn for_each_substep(&mut self, substep: impl Fn(&mut ClothBatch) + Sync) {
+        let all = |batch: &mut OccupiedBatch| {
+            (0..batch.substeps).for_each(|_| substep(&mut batch.batch));
+        };
+        self.for_each_where(|_| true, all);
+    }
+
+    /// Runs a phase on some batches, and adds its time to theirs where that is measured.
+    fn for_each_where(
+        &mut self,
+        takes_part: impl Fn(&OccupiedBatch) -> bool,
+        phase: impl Fn(&mut OccupiedBatch) + Sync,
+    ) {
+        let is_timed = self.is_timed;
+        self.spread(takes_part, |batch| {
+            if is_timed {
+                let began = Instant::now();
+                phase(batch);
+                batch.time += began.elapsed();
+            } else {
+                phase(batch);
+            }
+        });
+    }
+
+    /// Runs work on some batches, on all threads if there are enough particles. Batches share nothing
+    /// that is written, so the order does not matter.
+    fn spread(
+        &mut self,
+        takes_part: impl Fn(&OccupiedBatch) -> bool,
+        work: impl Fn(&mut OccupiedBatch) + Sync,
+    ) {
+        let batches = self.batches_where(&takes_part);
+        let particles: usize = batches.map(|batch| batch.particle_count()).sum();
+        let pool = ComputeTaskPool::try_get().filter(|pool| pool.thread_num() > 1);
+        match pool {
+            Some(pool) if particles >= PARALLEL_PARTICLES => {
+                let work = &work;
+                pool.scope(|scope| {
+                    for batch in self.batches_where(&takes_part) {
+                        scope.spawn(async move { work(batch) });
+                    }
+                });
+            }
+            _ => {
+                self.batches_where(&takes_part).for_each(work);
+            }
+        }
+    }
+
+    fn batches_where(
+        &mut self,
+        takes_part: impl Fn(&OccupiedBatch) -> bool,
+    ) -> impl Iterator<Item = &mut OccupiedBatch> {
+        self.groups
+            .iter_mut()
+            .flat_map(|group| &mut group.batches)
+            .filter(move |batch| takes_part(batch))
+    }
+}

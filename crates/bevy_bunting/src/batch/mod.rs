@@ -1,0 +1,9 @@
+//! Batches, whose lanes hold the state of all simulated cloths, and the systems that step them.
+
+pub mod assign;
+pub mod batches;
+pub mod group;
+pub mod lane_handle;
+pub mod occupancy;
+pub mod publish;
+pub mod solve;

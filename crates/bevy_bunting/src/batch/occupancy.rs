@@ -1,0 +1,142 @@
+//! The occupancy of a batch: which cloth each of its lanes holds.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use bevy_ecs::prelude::*;
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricMaterial, LaneCount, LaneSurface,
+};
+
+/// A cloth that waits for a lane.
+#[derive(Debug)]
+pub(crate) struct PendingCloth {
+    pub entity: Entity,
+    pub snapshot: ClothSnapshot,
+    pub material: FabricMaterial,
+}
+
+/// The cloth in a lane, and its material.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Occupant {
+    pub entity: Entity,
+    pub material: FabricMaterial,
+}
+
+/// A batch and the cloths in its lanes.
+#[derive(Debug)]
+pub(crate) struct OccupiedBatch {
+    pub batch: ClothBatch,
+    /// One a lane; none for a free lane.
+    pub occupants: Vec<Option<Occupant>>,
+    /// Surfaces of the lanes, on their way from the batch to the cloths' states.
+    pub surfaces: Vec<LaneSurface>,
+    pub width: LaneCount,
+    /// Number of substeps in this tick.
+    pub substeps: u32,
+    /// Whether the batch takes part in the current substep.
+    pub joins: bool,
+    /// Time that the batch has taken in this tick, where that is measured.
+    pub time: Duration,
+}
+
+impl OccupiedBatch {
+    /// A batch with free lanes only.
+    pub fn new(fabric: &Arc<Fabric>, width: LaneCount) -> Self {
+        Self {
+            batch: ClothBatch::new(Arc::clone(fabric), width),
+            occupants: vec![None; width.get()],
+            surfaces: vec![LaneSurface::default(); width.get()],
+            width,
+            substeps: 0,
+            joins: true,
+            time: Duration::ZERO,
+        }
+    }
+
+    /// Number of particles in all lanes, whether occupied or not.
+    pub fn particle_count(&self) -> usize {
+        self.batch.fabric().particle_count() * self.batch.lane_count()
+    }
+
+    /// The occupied lanes and their cloths.
+    pub fn occupied(&self) -> impl Iterator<Item = (usize, Occupant)> + '_ {
+        let lanes = self.occupants.iter().enumerate();
+        lanes.filter_map(|(lane, occupant)| Some((lane, (*occupant)?)))
+    }
+
+    /// Number of occupied lanes.
+    pub fn occupied_count(&self) -> usize {
+        self.occupants.iter().flatten().count()
+    }
+
+    /// Fills free lanes with pending cloths as long as there are any of both, calls `assigned` with each
+    /// cloth and its lane, and clears lanes whose cloths were removed.
+    pub fn fill(
+        &mut self,
+        pending: &mut impl Iterator<Item = PendingCloth>,
+        mut assigned: impl FnMut(Entity, usize),
+    ) {
+        let free = (0..self.occupants.len()).filter(|&lane| self.occupants[lane].is_none());
+        let entering: Vec<(usize, PendingCloth)> = free.zip(pending).collect();
+        for (lane, PendingCloth { entity, material, .. }) in &entering {
+            self.occupants[*lane] = Some(Occupant { entity: *entity, material: *material });
+            assigned(*entity, *lane);
+        }
+        let is_left =
+            |lane: &usize| self.occupants[*lane].is_none() && self.batch.is_occupied(*lane);
+        let leaving: Vec<usize> = (0..self.occupants.len()).filter(is_left).collect();
+        let entering: Vec<_> =
+            entering.iter().map(|(lane, cloth)| (*lane, &cloth.snapshot, cloth.material)).collect();
+        if !leaving.is_empty() || !entering.is_empty() {
+            self.batch.exchange(&leaving, &entering).expect("pending cloths are valid");
+        }
+    }
+
+    /// Frees all lanes; their cloths wait for other ones.
+    pub fn dissolve(&mut self, pending: &mut Vec<PendingCloth>) {
+        for (lane, occupant) in self.occupants.iter_mut().enumerate() {
+            if let Some(Occupant { entity, material }) = occupant.take() {
+                pending.push(PendingCloth {
+                    entity,
+                    snapshot: self.batch.snapshot(lane),
+                    material,
+                });
+            }
+        }
+        self.fill(&mut core::iter::empty(), |_, _| {});
+    }
+}
+
+/// Write access to one cloth in its batch.
+pub(crate) struct LaneMut<'a> {
+    pub occupied: &'a mut OccupiedBatch,
+    pub lane: usize,
+}
+
+impl LaneMut<'_> {
+    /// Sets what acts on the cloth in the next tick.
+    pub fn drive(&mut self, drive: Drive) {
+        self.occupied.batch.drive(self.lane, drive);
+    }
+
+    /// Sets the shapes that the cloth may touch in the next tick.
+    pub fn set_colliders(&mut self, colliders: impl IntoIterator<Item = Collider>) {
+        self.occupied.batch.set_colliders(self.lane, colliders);
+    }
+
+    /// Changes the material, which must be valid.
+    pub fn set_material(&mut self, material: FabricMaterial) {
+        if self.occupied.batch.set_material(self.lane, material).is_ok()
+            && let Some(occupant) = &mut self.occupied.occupants[self.lane]
+        {
+            occupant.material = material;
+        }
+    }
+
+    /// Puts the cloth back to its shape at rest, without velocity.
+    pub fn reset(&mut self) {
+        let rest = ClothSnapshot::at_rest(self.occupied.batch.fabric());
+        self.occupied.batch.restore(self.lane, &rest).expect("a fabric's own rest shape fits it");
+    }
+}

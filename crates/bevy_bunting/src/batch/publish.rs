@@ -1,0 +1,91 @@
+//! Writes the state of each cloth after a tick to its [`ClothState`].
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+
+use crate::batch::batches::ClothBatches;
+use crate::cloth::error::ClothError;
+use crate::cloth::events::ClothFailed;
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::state::ClothState;
+use crate::schedule::{ClothSystems, ClothTick};
+
+/// Publishes the state of cloths.
+#[derive(Debug, Default)]
+pub struct PublishPlugin;
+
+impl Plugin for PublishPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_systems(
+            ClothTick,
+            (stop_states, publish_states, reset_diverged).chain().in_set(ClothSystems::Publish),
+        )
+        .init_resource::<Diverged>();
+    }
+}
+
+/// Cloths whose positions were not finite after this tick.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct Diverged(Vec<Entity>);
+
+/// Publishes the activity of cloths, and gives those that are no longer simulated a previous surface
+/// equal to the current one, so that nothing is interpolated.
+fn stop_states(mut cloths: Query<(&ClothInstance, &mut ClothState), Changed<ClothInstance>>) {
+    for (instance, mut state) in &mut cloths {
+        state.activity = instance.activity;
+        if instance.lane().is_none() && state.moved {
+            let state = &mut *state;
+            state.moved = false;
+            state.previous_positions.clone_from(&state.positions);
+            state.previous_normals.clone_from(&state.normals);
+        }
+    }
+}
+
+/// Copies surfaces batch by batch, as the lanes of a batch lie side by side in memory. Each is written
+/// into the memory of the surface before the last tick, so that nothing is allocated.
+fn publish_states(
+    mut cloths: Query<&mut ClothState>,
+    mut batches: ResMut<ClothBatches>,
+    mut diverged: ResMut<Diverged>,
+) {
+    for (entity, surface) in batches.surfaces() {
+        if let Ok(mut state) = cloths.get_mut(entity) {
+            surface.positions = core::mem::take(&mut state.previous_positions);
+            surface.normals = core::mem::take(&mut state.previous_normals);
+        }
+    }
+    batches.copy_surfaces();
+    for (entity, surface) in batches.surfaces() {
+        if let Ok(mut state) = cloths.get_mut(entity) {
+            let state = &mut *state;
+            let positions = core::mem::take(&mut surface.positions);
+            let normals = core::mem::take(&mut surface.normals);
+            state.previous_positions = core::mem::replace(&mut state.positions, positions);
+            state.previous_normals = core::mem::replace(&mut state.normals, normals);
+            state.blend();
+            state.moved = true;
+            if !surface.is_finite {
+                diverged.0.push(entity);
+            }
+        }
+    }
+}
+
+/// Puts cloths that are not finite back to their rest shape, and reports them.
+pub(crate) fn reset_diverged(
+    mut cloths: Query<(&ClothInstance, &mut ClothState)>,
+    mut batches: ResMut<ClothBatches>,
+    mut diverged: ResMut<Diverged>,
+    mut commands: Commands,
+) {
+    for entity in diverged.0.drain(..) {
+        let Ok((instance, mut state)) = cloths.get_mut(entity) else { continue };
+        if let (Some(lane), Some(levels)) = (instance.lane(), &instance.levels) {
+            batches.lane(lane).reset();
+            let rest = levels.fabric(instance.level).rest_positions();
+            state.restart(instance.level, levels, rest);
+            ClothFailed::report(&mut commands, entity, ClothError::Diverged { entity });
+        }
+    }
+}

@@ -1,0 +1,150 @@
+//! Why a cloth cannot be simulated or shown as asked.
+
+use bevy_ecs::prelude::*;
+use bunting_solver::FabricError;
+
+use crate::cloth::weights::WeightsError;
+
+/// Why a cloth is not simulated or shown as asked; its message says what to do. Other cloths are not
+/// affected.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ClothError {
+    /// No fabric can be cut from the mesh. The cloth is not simulated until its `ClothMesh` changes.
+    #[error("the mesh of cloth {entity} cannot be simulated: {source}")]
+    Mesh {
+        /// The cloth.
+        entity: Entity,
+        /// What is wrong with the mesh, and at which vertex, edge or triangle.
+        source: FabricError,
+    },
+    /// The weights of the mesh cannot be used. The cloth is not simulated until its `ClothMesh` changes.
+    #[error("the weights of cloth {entity} cannot be used: {source}")]
+    Weights {
+        /// The cloth.
+        entity: Entity,
+        /// What is wrong with the weights.
+        source: WeightsError,
+    },
+    /// The material cannot be simulated. The cloth keeps the last valid one; without one it is not
+    /// simulated until its material changes.
+    #[error("the material of cloth {entity} cannot be simulated: {source}")]
+    Material {
+        /// The cloth.
+        entity: Entity,
+        /// What is wrong with the material.
+        source: FabricError,
+    },
+    /// The [`LodSet`](crate::LodSet) is invalid: its distances (m) must be finite, positive and grow
+    /// from level to level, an automatic choice needs a level, the hysteresis lies within 0 to 1, the
+    /// bias is positive. The cloth is not simulated until it changes.
+    #[error(
+        "the LodSet of cloth {entity} must have finite distances that grow or at least one level, a hysteresis from 0 to 1, and a positive bias"
+    )]
+    Levels {
+        /// The cloth.
+        entity: Entity,
+    },
+    /// The mesh has fewer levels than its `LodSet` asks for: its border and attached vertices stay at
+    /// every level, so that the number of triangles can fall only so far. The cloth is simulated with
+    /// the levels that it has.
+    #[error(
+        "cloth {entity} has {built} levels, not {asked}: hardly a triangle more can go; give its LodSet fewer"
+    )]
+    TooFewLevels {
+        /// The cloth.
+        entity: Entity,
+        /// Levels that the cloth has.
+        built: usize,
+        /// Levels that its `LodSet` asks for.
+        asked: usize,
+    },
+    /// The grid cannot be halved as often as its `LodSet` asks: columns − 1 and rows − 1 must be
+    /// multiples of 2 for each further level. The cloth is simulated with the levels that it has.
+    #[error(
+        "a grid of {columns} × {rows} particles cannot be halved {halvings} times as the LodSet of cloth {entity} asks: make columns − 1 and rows − 1 multiples of 2^{halvings}, or give fewer levels"
+    )]
+    NotNested {
+        /// The cloth.
+        entity: Entity,
+        /// Particles in a row.
+        columns: u32,
+        /// Particles in a column.
+        rows: u32,
+        /// Levels besides the finest.
+        halvings: usize,
+    },
+    /// The level that the `LodSet` is pinned to does not exist. The cloth is not simulated until its
+    /// `LodSet` changes.
+    #[error(
+        "cloth {entity} is pinned to level {level}, but has {levels}: pin a lower level, or give more levels"
+    )]
+    PinnedLevel {
+        /// The cloth.
+        entity: Entity,
+        /// The level that it is pinned to.
+        level: usize,
+        /// Number of levels.
+        levels: usize,
+    },
+    /// The attachment holds no vertex. If that is so at the finest level, the cloth is not simulated;
+    /// if at a coarser one, the cloth is simulated with the levels at which vertices are held.
+    #[error(
+        "the attachment of cloth {entity} holds no vertex at level {level}: choose vertices that the level has; an edge or a corner of a mesh without uv has none"
+    )]
+    NoVertices {
+        /// The cloth.
+        entity: Entity,
+        /// The finest level without held vertices.
+        level: usize,
+    },
+    /// The target of the attachment is no entity with a `Transform`. The cloth is not simulated until
+    /// its `Attachment` changes.
+    #[error(
+        "cloth {entity} is attached to {target}, which does not exist or has no Transform: spawn it first"
+    )]
+    MissingTarget {
+        /// The cloth.
+        entity: Entity,
+        /// Its target.
+        target: Entity,
+    },
+    /// The pose that the cloth should follow is not finite. The cloth keeps its last finite pose.
+    #[error("the transform that cloth {entity} follows is not finite: check what moves it")]
+    Pose {
+        /// The cloth.
+        entity: Entity,
+    },
+    /// The cloth's `Mesh3d` is kept in the render world only. The cloth is simulated, but its mesh is not
+    /// written until its `Mesh3d` is replaced.
+    #[cfg(feature = "render")]
+    #[error(
+        "the mesh of cloth {entity} is not kept in the main world and cannot be written: make it with RenderAssetUsages::default(), or leave out the Mesh3d"
+    )]
+    MeshUnwritable {
+        /// The cloth.
+        entity: Entity,
+    },
+    /// The cloth's `Mesh3d` does not have the vertices of its `ClothMesh`. The cloth is simulated, but its
+    /// mesh is not written until its `Mesh3d` is replaced.
+    #[cfg(feature = "render")]
+    #[error(
+        "the mesh of cloth {entity} has {given} vertices, its ClothMesh {expected}: give both the same vertices, or leave out the Mesh3d"
+    )]
+    MeshVertices {
+        /// The cloth.
+        entity: Entity,
+        /// Vertices of the `Mesh3d`.
+        given: usize,
+        /// Vertices of the `ClothMesh`.
+        expected: usize,
+    },
+    /// A position became infinite or not a number. The cloth was put back to its rest shape.
+    #[error(
+        "cloth {entity} became infinite and was put back to rest: give it more substeps, or a softer material"
+    )]
+    Diverged {
+        /// The cloth.
+        entity: Entity,
+    },
+}

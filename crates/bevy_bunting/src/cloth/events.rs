@@ -1,0 +1,45 @@
+//! Events that are triggered on cloths.
+
+use bevy_ecs::prelude::*;
+
+use crate::cloth::error::ClothError;
+use crate::motion::attachment::TargetLost;
+
+/// A cloth cannot be simulated or shown as asked. Triggered once when that is found, and logged.
+#[derive(EntityEvent, Clone, Copy, Debug)]
+pub struct ClothFailed {
+    /// The cloth.
+    pub entity: Entity,
+    /// The reason; its message says what to do.
+    pub error: ClothError,
+}
+
+impl ClothFailed {
+    /// Logs the error and triggers the event.
+    pub(crate) fn report(commands: &mut Commands, entity: Entity, error: ClothError) {
+        log::error!("{error}");
+        commands.trigger(Self { entity, error });
+    }
+}
+
+/// A cloth has changed its level of detail.
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClothLevelChanged {
+    /// The cloth.
+    pub entity: Entity,
+    /// The level before; 0 is the finest.
+    pub from: usize,
+    /// The level from now on.
+    pub to: usize,
+}
+
+/// The target of a cloth's [`Attachment`](crate::Attachment) was despawned.
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ClothTargetLost {
+    /// The cloth.
+    pub entity: Entity,
+    /// The target that no longer exists.
+    pub target: Entity,
+    /// What happens to the cloth.
+    pub outcome: TargetLost,
+}

@@ -1,0 +1,10 @@
+//! A cloth: its mesh, material and state, and what can be wrong with them.
+
+pub mod activity;
+pub mod error;
+pub mod events;
+pub mod instance;
+pub mod material;
+pub mod mesh;
+pub mod state;
+pub mod weights;

@@ -1,0 +1,163 @@
+//! The simulated surface of a cloth, to be read.
+
+use std::sync::Arc;
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bunting_solver::Fabric;
+
+use crate::cloth::activity::ClothActivity;
+use crate::fabric::levels::ClothLevels;
+
+/// The simulated surface of a cloth after the last tick; read only.
+///
+/// Positions and normals are in the cloth's frame, whose pose in the world is the entity's
+/// `GlobalTransform`: the pose of the attachment's target times its offset or, without an
+/// [`Attachment`](crate::Attachment), the entity's own. After [`ClothSystems::Publish`] and after
+/// each frame the `GlobalTransform` is that of the target's current pose.
+///
+/// A grid has one particle for each vertex. In a mesh of triangles, vertices at the same position are
+/// one particle, and rigid ones have none, see [`particle_of_vertex`](Self::particle_of_vertex).
+/// Particles of a weight below 1 are blended with their position at rest, see
+/// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights): what is read here is the blended surface.
+///
+/// [`ClothSystems::Publish`]: crate::ClothSystems::Publish
+#[derive(Component, Clone, Debug, Default)]
+pub struct ClothState {
+    pub(crate) positions: Vec<Vec3>,
+    pub(crate) previous_positions: Vec<Vec3>,
+    pub(crate) normals: Vec<Vec3>,
+    pub(crate) previous_normals: Vec<Vec3>,
+    pub(crate) level: usize,
+    pub(crate) activity: ClothActivity,
+    /// Whether the cloth was simulated in the last tick.
+    pub(crate) moved: bool,
+    pub(crate) levels: Option<Arc<ClothLevels>>,
+    /// The surface before a change of level, until the change is eased.
+    pub(crate) replaced: Option<ReplacedSurface>,
+}
+
+/// The surface of a cloth before a change of level, in the cloth's frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ReplacedSurface {
+    pub level: usize,
+    /// Positions after the last tick, m.
+    pub positions: Vec<Vec3>,
+    /// Positions before that tick, m.
+    pub previous_positions: Vec<Vec3>,
+    pub normals: Vec<Vec3>,
+}
+
+impl ClothState {
+    /// Positions of the particles after the last tick, m. Empty until the first tick, and while
+    /// the cloth cannot be simulated.
+    #[must_use]
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// Positions of the same particles before the last tick, in the cloth's frame of that time, m.
+    #[must_use]
+    pub fn previous_positions(&self) -> &[Vec3] {
+        &self.previous_positions
+    }
+
+    /// Unit normals of the particles after the last tick, to the front.
+    #[must_use]
+    pub fn normals(&self) -> &[Vec3] {
+        &self.normals
+    }
+
+    /// Unit normals of the particles before the last tick.
+    #[must_use]
+    pub fn previous_normals(&self) -> &[Vec3] {
+        &self.previous_normals
+    }
+
+    /// The level of detail; 0 is the finest.
+    #[must_use]
+    pub fn level(&self) -> usize {
+        self.level
+    }
+
+    /// Whether the cloth is simulated or asleep.
+    #[must_use]
+    pub fn activity(&self) -> ClothActivity {
+        self.activity
+    }
+
+    /// The fabric of the cloth at its level: triangles, texture coordinates, pins. None until the
+    /// first tick, and while the cloth cannot be simulated.
+    #[must_use]
+    pub fn fabric(&self) -> Option<&Arc<Fabric>> {
+        self.levels.as_ref().map(|levels| levels.fabric(self.level))
+    }
+
+    /// The particle of a vertex of the [`ClothMesh`](crate::ClothMesh) at the cloth's level: an index
+    /// into [`positions`](Self::positions). None where the level leaves the vertex out, and where the
+    /// vertex is rigid: it then stays where the mesh has it.
+    #[must_use]
+    pub fn particle_of_vertex(&self, vertex: u32) -> Option<usize> {
+        self.levels.as_ref()?.particle(self.level, vertex)
+    }
+
+    /// Sets the surface, from simulated positions (m) of a level's particles, without easing: nothing of
+    /// what was shown before is continued.
+    pub(crate) fn restart(&mut self, level: usize, levels: &Arc<ClothLevels>, positions: &[Vec3]) {
+        self.change_level(level, levels, positions);
+        self.replaced = None;
+    }
+
+    /// Changes the level of a cloth that is not simulated in this tick: normals are computed from the
+    /// simulated positions (m) of the new level's particles.
+    pub(crate) fn change_level(
+        &mut self,
+        level: usize,
+        levels: &Arc<ClothLevels>,
+        positions: &[Vec3],
+    ) {
+        let normals = levels.fabric(level).normals(positions);
+        self.replace_surface(level, levels, positions, normals);
+    }
+
+    /// Changes the level of a cloth that is simulated in this tick: until the tick ends, the normals
+    /// are those that were shown, interpolated to the new level's particles.
+    pub(crate) fn change_level_in_motion(
+        &mut self,
+        level: usize,
+        levels: &Arc<ClothLevels>,
+        positions: &[Vec3],
+    ) {
+        let normals = levels.transfer_directions(&self.normals, self.level, level);
+        self.replace_surface(level, levels, positions, normals);
+    }
+
+    fn replace_surface(
+        &mut self,
+        level: usize,
+        levels: &Arc<ClothLevels>,
+        positions: &[Vec3],
+        normals: Vec<Vec3>,
+    ) {
+        let replaced = ReplacedSurface {
+            level: self.level,
+            positions: core::mem::replace(&mut self.positions, positions.to_vec()),
+            previous_positions: core::mem::take(&mut self.previous_positions),
+            normals: core::mem::replace(&mut self.normals, normals),
+        };
+        // Of several changes before a tick ends, the surface before the first is the one that was shown.
+        self.replaced.get_or_insert(replaced);
+        self.level = level;
+        self.levels = Some(Arc::clone(levels));
+        self.blend();
+        self.previous_positions.clone_from(&self.positions);
+        self.previous_normals.clone_from(&self.normals);
+    }
+
+    /// Blends simulated positions and normals with those at rest, for particles of a weight below 1.
+    pub(crate) fn blend(&mut self) {
+        if let Some(levels) = &self.levels {
+            levels.blend(self.level, &mut self.positions, &mut self.normals);
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! The surface that is shown: interpolated between two ticks, and eased across changes of level.
+
+pub mod decay;
+pub mod ease;
+pub mod easing;
+pub mod surface;

@@ -1,0 +1,110 @@
+//! Colliders: shapes that cloth does not enter.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Quat, Vec3};
+use bevy_reflect::Reflect;
+use bevy_transform::components::Transform;
+use bunting_solver::Collider;
+use parry3d::math::Vector;
+use parry3d::shape::SharedShape;
+
+use crate::batch::batches::ClothBatches;
+use crate::cloth::instance::ClothInstance;
+use crate::environment::drive::{drive_cloths, pose_parts};
+use crate::motion::pose::PoseHistory;
+use crate::schedule::{ClothSystems, ClothTick};
+
+/// A shape that no cloth enters. It moves with its entity, pushes cloth and is not pushed back.
+#[derive(Component, Clone, Reflect)]
+#[reflect(opaque)]
+#[reflect(Component, Clone)]
+#[require(Transform, PoseHistory)]
+pub struct ClothCollider {
+    /// The shape in the entity's frame, m; the entity's scale is ignored.
+    pub shape: SharedShape,
+    /// Distance that cloth keeps from the shape in addition to its thickness, m. It rounds edges: a box
+    /// with a margin is a round box, and cheaper than parry's round cuboid, whose projections are
+    /// iterative.
+    pub margin: f32,
+    /// Coulomb friction coefficient. In a contact the geometric mean of this and the material's counts.
+    pub friction: f32,
+}
+
+impl ClothCollider {
+    /// Any parry shape, without a margin, with a friction coefficient of 1.
+    #[must_use]
+    pub const fn new(shape: SharedShape) -> Self {
+        Self { shape, margin: 0.0, friction: 1.0 }
+    }
+
+    /// A ball of a radius (m).
+    #[must_use]
+    pub fn ball(radius: f32) -> Self {
+        Self::new(SharedShape::ball(radius))
+    }
+
+    /// A capsule along y: half the length of its axis (m), and its radius (m).
+    #[must_use]
+    pub fn capsule(half_height: f32, radius: f32) -> Self {
+        Self::new(SharedShape::capsule_y(half_height, radius))
+    }
+
+    /// A box of half extents (m).
+    #[must_use]
+    pub fn cuboid(half_extents: Vec3) -> Self {
+        Self::new(SharedShape::cuboid(half_extents.x, half_extents.y, half_extents.z))
+    }
+
+    /// The half space below the entity's xz plane.
+    #[must_use]
+    pub fn ground() -> Self {
+        Self::new(SharedShape::halfspace(Vector::Y))
+    }
+}
+
+/// Gives each cloth the [`ClothCollider`]s that it may touch.
+#[derive(Debug, Default)]
+pub struct ColliderPlugin;
+
+impl Plugin for ColliderPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<ClothCollider>().add_systems(
+            ClothTick,
+            drive_colliders.in_set(ClothSystems::Drive).after(drive_cloths),
+        );
+    }
+}
+
+/// Sets the colliders of each cloth in the cloth's frame: their poses at the start of the tick in the
+/// frame at that time, and their poses at the end of the tick in the frame at that time.
+fn drive_colliders(
+    colliders: Query<(&ClothCollider, &PoseHistory)>,
+    cloths: Query<(&ClothInstance, &PoseHistory)>,
+    mut batches: ResMut<ClothBatches>,
+    mut had_any: Local<bool>,
+) {
+    let has_any = !colliders.is_empty();
+    if !has_any && !*had_any {
+        return;
+    }
+    *had_any = has_any;
+    for (instance, frame) in &cloths {
+        let Some(lane) = instance.lane() else { continue };
+        let (start, end) = (frame.start().inverse(), frame.end().inverse());
+        let colliders = colliders.iter().map(|(collider, pose)| Collider {
+            shape: collider.shape.clone(),
+            from: relative_pose(start, pose.start()),
+            to: relative_pose(end, pose.end()),
+            margin: collider.margin,
+            friction: collider.friction,
+        });
+        batches.lane(lane).set_colliders(colliders);
+    }
+}
+
+/// A pose relative to a frame, given the inverse of the frame's pose.
+fn relative_pose(inverse_frame: Isometry3d, pose: Isometry3d) -> (Vec3, Quat) {
+    let (translation, rotation) = pose_parts(inverse_frame * pose);
+    (translation, rotation.normalize())
+}

@@ -1,0 +1,5 @@
+//! What acts on a cloth: wind, gravity, colliders.
+
+pub mod collider;
+pub mod drive;
+pub mod wind;

@@ -1,0 +1,201 @@
+//! The fabrics in use, so that cloths of equal content share them.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Weak};
+
+use bevy_ecs::prelude::*;
+use bevy_tasks::{AsyncComputeTaskPool, Task, futures::check_ready};
+use bunting_solver::FabricError;
+
+use crate::cloth::error::ClothError;
+use crate::cloth::mesh::ClothMesh;
+use crate::cloth::weights::check_weights;
+use crate::fabric::cut::cut_levels;
+use crate::fabric::levels::ClothLevels;
+use crate::lod::lod_set::LodSet;
+use crate::motion::attachment::Attachment;
+
+/// Number of vertices from which levels are cut on another thread, where there are threads: it takes
+/// longer than a tick then. Fewer: cloths appear some ticks late without need.
+const ASYNC_VERTICES: usize = 8192;
+
+/// The levels of all cloths in use, by content.
+#[derive(Resource, Debug, Default)]
+pub(crate) struct FabricLibrary {
+    cut: HashMap<ContentKey, Weak<ClothLevels>>,
+    /// Levels that are being cut on another thread.
+    cutting: HashMap<ContentKey, Task<Result<ClothLevels, FabricError>>>,
+    /// Whether a cloth waits for its levels, or for others than it has.
+    pub awaited: bool,
+}
+
+/// Everything that the levels of a cloth depend on, bit for bit; each list after its length.
+type ContentKey = Vec<u32>;
+
+impl FabricLibrary {
+    /// The levels of a cloth, cut now or before. None while they are being cut on another thread: ask
+    /// again in a later tick.
+    ///
+    /// # Errors
+    ///
+    /// The mesh, its weights, the attachment's vertices or the [`LodSet`] are invalid.
+    pub fn levels(
+        &mut self,
+        entity: Entity,
+        mesh: &ClothMesh,
+        attachment: Option<&Attachment>,
+        lods: &LodSet,
+    ) -> Result<Option<Arc<ClothLevels>>, ClothError> {
+        lods.validate(entity)?;
+        let attached = attachment.map(|attachment| attachment.vertices.choose(&mesh.uvs()));
+        check_weights(mesh.weights(), mesh.vertex_count())
+            .map_err(|source| ClothError::Weights { entity, source })?;
+        let holds = |attached: &Vec<u32>| !attached.is_empty() || mesh.weights().contains(&0.0);
+        if !attached.as_ref().is_none_or(holds) {
+            return Err(ClothError::NoVertices { entity, level: 0 });
+        }
+        let attached = attached.unwrap_or_default();
+        let key = content_key(mesh, &attached, lods.levels());
+        if let Some(levels) = self.cut.get(&key).and_then(Weak::upgrade) {
+            return Ok(Some(levels));
+        }
+        let Some(cut) = self.cut_or_poll(&key, mesh, attached, lods.levels()) else {
+            return Ok(None);
+        };
+        self.cutting.remove(&key);
+        let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
+        self.cut.retain(|_, levels| levels.strong_count() > 0);
+        self.cut.insert(key, Arc::downgrade(&levels));
+        Ok(Some(levels))
+    }
+
+    /// Cuts levels on this thread, or starts or polls the task that cuts them on another.
+    fn cut_or_poll(
+        &mut self,
+        key: &ContentKey,
+        mesh: &ClothMesh,
+        attached: Vec<u32>,
+        asked: usize,
+    ) -> Option<Result<ClothLevels, FabricError>> {
+        match (self.cutting.get_mut(key), AsyncComputeTaskPool::try_get()) {
+            (Some(task), _) => check_ready(task),
+            (None, Some(pool)) if mesh.vertex_count() >= ASYNC_VERTICES => {
+                let mesh = mesh.clone();
+                let task = pool.spawn(async move { cut_levels(&mesh, &attached, asked) });
+                self.cutting.insert(key.clone(), task);
+                None
+            }
+            _ => Some(cut_levels(mesh, &attached, asked)),
+        }
+    }
+}
+
+fn content_key(mesh: &ClothMesh, attached: &[u32], levels: usize) -> ContentKey {
+    let mut key = vec![levels as u32];
+    match mesh {
+        ClothMesh::Grid { columns, rows, width, height } => {
+            key.extend([0, *columns, *rows, width.to_bits(), height.to_bits()]);
+        }
+        ClothMesh::Triangles { positions, indices, uv, weights } => {
+            let lengths = [positions.len(), indices.len(), uv.len(), weights.len()];
+            key.push(1);
+            key.extend(lengths.map(|length| length as u32));
+            key.extend(positions.iter().flat_map(|position| position.to_array()).map(f32::to_bits));
+            key.extend(indices);
+            key.extend(uv.iter().flat_map(|uv| uv.to_array()).map(f32::to_bits));
+            key.extend(weights.iter().map(|weight| weight.to_bits()));
+        }
+    }
+    key.extend(attached);
+    key
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_math::Vec3;
+    use bunting_solver::{ClothSnapshot, FabricMaterial};
+
+    use super::*;
+    use crate::motion::attachment::ClothEdge;
+
+    const FLAG: ClothMesh = ClothMesh::grid(9, 5, 1.5, 1.0);
+
+    fn levels(
+        library: &mut FabricLibrary,
+        edge: ClothEdge,
+        lods: LodSet,
+    ) -> Result<Arc<ClothLevels>, ClothError> {
+        let attachment = Attachment::in_place(edge);
+        let levels = library.levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods);
+        levels.map(|levels| levels.expect("small cloths are cut at once"))
+    }
+
+    #[test]
+    fn equal_cloths_share_their_levels() {
+        let mut library = FabricLibrary::default();
+        let one = levels(&mut library, ClothEdge::Left, LodSet::default()).expect("a flag");
+        let same = levels(&mut library, ClothEdge::Left, LodSet::default()).expect("a flag");
+        let other = levels(&mut library, ClothEdge::Right, LodSet::default()).expect("a flag");
+        assert!(Arc::ptr_eq(&one, &same));
+        assert!(!Arc::ptr_eq(&one, &other));
+    }
+
+    #[test]
+    fn every_level_keeps_its_pins() {
+        let mut library = FabricLibrary::default();
+        let levels =
+            levels(&mut library, ClothEdge::Right, LodSet::new([5.0, 10.0])).expect("a flag");
+        let pins = |level: usize| {
+            let fabric = levels.fabric(level);
+            (0..fabric.particle_count())
+                .filter(|&particle| fabric.is_pinned(particle))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(pins(0), [8, 17, 26, 35, 44]);
+        assert_eq!(pins(1), [4, 9, 14]);
+        assert_eq!(pins(2), [2, 5]);
+    }
+
+    #[test]
+    fn levels_that_cannot_be_cut_are_reported_and_repeat_the_coarsest() {
+        let lods = LodSet::new([1.0, 2.0, 3.0]);
+        let levels = levels(&mut FabricLibrary::default(), ClothEdge::Left, lods).expect("a flag");
+        assert!(matches!(
+            levels.shortage(Entity::PLACEHOLDER, FLAG.as_grid()),
+            Some(ClothError::NotNested { columns: 9, rows: 5, halvings: 3, .. })
+        ));
+        assert_eq!(levels.count(), 4);
+        assert!(Arc::ptr_eq(levels.fabric(2), levels.fabric(3)));
+        let state = ClothSnapshot::at_rest(levels.fabric(3));
+        let moved = levels.transfer(state.clone(), (3, 2), &FabricMaterial::SILK, Vec3::ZERO);
+        assert_eq!(moved, state);
+        assert_eq!(levels.interpolate(state.positions, 3, 0).len(), 45);
+    }
+
+    /// The flag as plain triangles.
+    fn triangles() -> ClothMesh {
+        let flag = FLAG.builder().build().expect("a flag");
+        let indices = flag.triangles().as_flattened().to_vec();
+        ClothMesh::triangles(flag.rest_positions().to_vec(), indices, FLAG.uvs())
+    }
+
+    #[test]
+    fn levels_of_a_mesh_keep_its_attached_vertices() {
+        let mesh = triangles();
+        let attachment = Attachment::in_place(ClothEdge::Left);
+        let lods = LodSet::new([5.0, 10.0, 20.0]);
+        let levels = FabricLibrary::default()
+            .levels(Entity::PLACEHOLDER, &mesh, Some(&attachment), &lods)
+            .expect("a cloth")
+            .expect("at once");
+        let fabric = levels.fabric(1);
+        assert!(fabric.particle_count() < 45);
+        let pinned = (0..fabric.particle_count()).filter(|&particle| fabric.is_pinned(particle));
+        assert_eq!(pinned.count(), 5);
+        let shortage = levels.shortage(Entity::PLACEHOLDER, mesh.as_grid());
+        assert!(
+            matches!(shortage, Some(ClothError::TooFewLevels { asked: 4, .. })),
+            "{shortage:?}"
+        );
+    }
+}

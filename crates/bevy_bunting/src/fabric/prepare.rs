@@ -1,0 +1,205 @@
+//! Prepares cloths that are new or changed: cuts or looks up their fabrics, changes their materials.
+
+use std::sync::Arc;
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
+use bevy_transform::components::Transform;
+
+use crate::batch::batches::ClothBatches;
+use crate::cloth::error::ClothError;
+use crate::cloth::events::ClothFailed;
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::material::ClothMaterial;
+use crate::cloth::mesh::ClothMesh;
+use crate::cloth::state::ClothState;
+use crate::fabric::levels::ClothLevels;
+use crate::fabric::library::FabricLibrary;
+use crate::lod::lod_set::LodSet;
+use crate::motion::attachment::Attachment;
+use crate::motion::lost_target::handle_lost_targets;
+use crate::motion::pose::PoseHistory;
+use crate::schedule::{ClothSystems, ClothTick};
+
+/// Prepares cloths that are new, changed or removed.
+#[derive(Debug, Default)]
+pub struct PreparePlugin;
+
+impl Plugin for PreparePlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<ClothMesh>()
+            .register_type::<ClothMaterial>()
+            .init_resource::<FabricLibrary>()
+            .add_observer(clear_removed)
+            .add_observer(mark_released)
+            .add_systems(
+                ClothTick,
+                (handle_lost_targets, cut_cloths.run_if(any_may_be_stale), change_materials)
+                    .chain()
+                    .in_set(ClothSystems::Prepare),
+            );
+    }
+}
+
+/// Frees the lane of a cloth that is despawned, or whose [`ClothMesh`] is removed.
+fn clear_removed(
+    removed: On<Remove, ClothMesh>,
+    mut cloths: Query<(&mut ClothInstance, &mut ClothState)>,
+    mut batches: ResMut<ClothBatches>,
+) {
+    if let Ok((mut instance, mut state)) = cloths.get_mut(removed.entity) {
+        instance.clear(&mut batches);
+        *state = ClothState::default();
+    }
+}
+
+/// Has a cloth cut again whose [`Attachment`] is removed. Messages of removals would be lost after two
+/// frames, and the next tick may come later.
+fn mark_released(_: On<Remove, Attachment>, mut library: ResMut<FabricLibrary>) {
+    library.awaited = true;
+}
+
+type AnyChanged =
+    Or<(Changed<ClothMesh>, Changed<ClothMaterial>, Changed<LodSet>, Changed<Attachment>)>;
+
+/// Whether any cloth may have to be cut: in most ticks none has.
+fn any_may_be_stale(
+    changed: Query<(), (With<ClothMesh>, AnyChanged)>,
+    library: Res<FabricLibrary>,
+) -> bool {
+    !changed.is_empty() || library.awaited
+}
+
+/// The components that fabrics depend on, and those that depend on fabrics.
+#[derive(QueryData)]
+#[query_data(mutable)]
+struct CutCloth {
+    entity: Entity,
+    mesh: Ref<'static, ClothMesh>,
+    material: Ref<'static, ClothMaterial>,
+    lods: Ref<'static, LodSet>,
+    attachment: Option<Ref<'static, Attachment>>,
+    instance: &'static mut ClothInstance,
+    state: &'static mut ClothState,
+    history: &'static mut PoseHistory,
+}
+
+/// Cuts the fabrics of cloths whose mesh, levels or attachment changed. An invalid cloth is reported and
+/// not simulated until it changes again.
+fn cut_cloths(
+    mut cloths: Query<CutCloth>,
+    targets: Query<(), With<Transform>>,
+    mut library: ResMut<FabricLibrary>,
+    mut batches: ResMut<ClothBatches>,
+    mut commands: Commands,
+) {
+    library.awaited = false;
+    for mut cloth in &mut cloths {
+        let target = cloth.target();
+        if !cloth.is_stale(target) {
+            continue;
+        }
+        match cloth.find_levels(target, &targets, &mut library) {
+            Ok(None) => {
+                cloth.instance.cutting = true;
+                library.awaited = true;
+            }
+            Ok(Some(levels)) => cloth.set_levels(levels, target, &mut batches, &mut commands),
+            Err(error) => {
+                cloth.instance.clear(&mut batches);
+                *cloth.state = ClothState::default();
+                ClothFailed::report(&mut commands, cloth.entity, error);
+            }
+        }
+    }
+}
+
+impl CutClothItem<'_, '_> {
+    /// The attachment's target; the cloth itself if attached to its own transform.
+    fn target(&self) -> Option<Entity> {
+        let attachment = self.attachment.as_deref()?;
+        Some(attachment.target_other_than(self.entity).unwrap_or(self.entity))
+    }
+
+    /// Whether the fabrics must be looked up or cut again.
+    fn is_stale(&self, target: Option<Entity>) -> bool {
+        self.instance.cutting
+            || self.mesh.is_changed()
+            || self.lods.is_changed()
+            || self.attachment.as_ref().is_some_and(|attachment| attachment.is_changed())
+            || (self.instance.target != target && self.instance.levels.is_some())
+            || (self.material.is_changed() && self.instance.levels.is_none())
+    }
+
+    /// The levels of the cloth; none while they are being cut.
+    fn find_levels(
+        &self,
+        target: Option<Entity>,
+        targets: &Query<(), With<Transform>>,
+        library: &mut FabricLibrary,
+    ) -> Result<Option<Arc<ClothLevels>>, ClothError> {
+        let entity = self.entity;
+        let is_missing = |target: &Entity| !self.instance.target_lost && !targets.contains(*target);
+        if let Some(target) = target.filter(is_missing) {
+            return Err(ClothError::MissingTarget { entity, target });
+        }
+        if self.instance.levels.is_none() {
+            let valid = self.material.0.validate();
+            valid.map_err(|source| ClothError::Material { entity, source })?;
+        }
+        library.levels(entity, &self.mesh, self.attachment.as_deref(), &self.lods)
+    }
+
+    /// Simulates the cloth with levels from now on.
+    fn set_levels(
+        &mut self,
+        levels: Arc<ClothLevels>,
+        target: Option<Entity>,
+        batches: &mut ClothBatches,
+        commands: &mut Commands,
+    ) {
+        let instance = &mut *self.instance;
+        instance.cutting = false;
+        if instance.target != target {
+            *self.history = PoseHistory::default();
+            instance.target = target;
+            instance.target_lost = false;
+        }
+        if instance.levels.as_ref().is_some_and(|old| Arc::ptr_eq(old, &levels)) {
+            return;
+        }
+        if instance.levels.is_none() {
+            instance.material = self.material.0;
+        }
+        if let Some(shortage) = levels.shortage(self.entity, self.mesh.as_grid()) {
+            ClothFailed::report(commands, self.entity, shortage);
+        }
+        instance.replace_levels(levels, batches);
+        if let Some((levels, snapshot)) = instance.levels.as_ref().zip(instance.snapshot()) {
+            self.state.restart(instance.level, levels, &snapshot.positions);
+        }
+    }
+}
+
+/// Changes materials from this tick on. An invalid one is reported, and the last valid one kept.
+fn change_materials(
+    mut cloths: Query<(Entity, &ClothMaterial, &mut ClothInstance), Changed<ClothMaterial>>,
+    mut batches: ResMut<ClothBatches>,
+    mut commands: Commands,
+) {
+    for (entity, material, mut instance) in &mut cloths {
+        if instance.levels.is_none() || instance.material == material.0 {
+            continue;
+        }
+        if let Err(source) = material.0.validate() {
+            ClothFailed::report(&mut commands, entity, ClothError::Material { entity, source });
+            continue;
+        }
+        instance.material = material.0;
+        instance.wake();
+        if let Some(lane) = instance.lane() {
+            batches.lane(lane).set_material(material.0);
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! The rigid part of a mesh, and the blend between simulated and rigid vertices.
+
+use bevy_math::Vec3;
+use bunting_solver::Fabric;
+
+/// A vertex at rest.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RestVertex {
+    /// Index in the mesh.
+    pub vertex: u32,
+    /// Position in the cloth's frame, m.
+    pub position: Vec3,
+    /// Unit normal of the whole mesh.
+    pub normal: Vec3,
+}
+
+/// The vertices of a mesh that are not, or not fully, simulated.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RigidPart {
+    /// The vertices without particles.
+    pub vertices: Vec<RestVertex>,
+    /// The triangles without simulated corners, as vertices of the mesh.
+    pub triangles: Vec<[u32; 3]>,
+    /// Simulated vertices of a weight below 1, with their weights.
+    pub blended: Vec<(RestVertex, f32)>,
+    /// Least and greatest coordinates of all these vertices, m; none without such vertices.
+    pub bounds: Option<[Vec3; 2]>,
+}
+
+impl RigidPart {
+    /// Extends the bounds to a position (m).
+    pub fn extend_bounds(&mut self, position: Vec3) {
+        let [low, high] = self.bounds.unwrap_or([position; 2]);
+        self.bounds = Some([low.min(position), high.max(position)]);
+    }
+}
+
+/// A particle that is shown between its position at rest and its simulated position.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Blend {
+    particle: usize,
+    /// 0 at rest, 1 simulated.
+    weight: f32,
+    rest: RestVertex,
+}
+
+impl Blend {
+    /// The blended particles of a level with the given vertices of the mesh, ascending. Of vertices that
+    /// were merged into one particle the first one's weight counts.
+    pub fn all(rigid: &RigidPart, vertices: &[u32], fabric: &Fabric) -> Vec<Self> {
+        let mut blends: Vec<Self> = rigid
+            .blended
+            .iter()
+            .filter_map(|&(rest, weight)| {
+                let index = vertices.binary_search(&rest.vertex).ok()?;
+                let particle = fabric.particle_of_vertex()[index] as usize;
+                Some(Self { particle, weight, rest })
+            })
+            .collect();
+        blends.sort_by_key(|blend| blend.particle);
+        blends.dedup_by_key(|blend| blend.particle);
+        blends
+    }
+
+    /// Blends the particle's simulated position (m) and normal with those at rest.
+    pub fn apply(&self, positions: &mut [Vec3], normals: &mut [Vec3]) {
+        let (position, normal) = (&mut positions[self.particle], &mut normals[self.particle]);
+        *position = self.rest.position.lerp(*position, self.weight);
+        *normal = self.rest.normal.lerp(*normal, self.weight).normalize_or_zero();
+    }
+}

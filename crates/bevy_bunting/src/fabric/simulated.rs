@@ -1,0 +1,200 @@
+//! The simulated part of a mesh, cut from it by the weights of its vertices (thesis, 6.1).
+
+use bunting_solver::{FabricBuilder, FabricError};
+
+use crate::cloth::mesh::ClothMesh;
+use crate::fabric::rigid::{RestVertex, RigidPart};
+
+/// The simulated part of a mesh, and the rigid rest of it.
+#[derive(Clone, Debug)]
+pub(crate) struct SimulatedPart {
+    /// Builder of the part's fabric, with its pins.
+    pub builder: FabricBuilder,
+    /// The part's vertices as indices in the mesh, ascending.
+    pub vertices: Vec<u32>,
+    /// The part's triangles as indices in the mesh; empty where the part is the whole mesh.
+    triangles: Vec<usize>,
+    /// The rest of the mesh.
+    pub rigid: RigidPart,
+}
+
+impl SimulatedPart {
+    /// Cuts the simulated part out of a mesh with valid weights, and pins attached vertices. Triangles
+    /// whose corners all have weight 0 are left out; vertices of weight 0 on the other triangles are
+    /// pinned.
+    ///
+    /// # Errors
+    ///
+    /// The lists of the mesh do not fit one another, or a position is not finite.
+    pub fn of(mesh: &ClothMesh, attached: &[u32]) -> Result<Self, FabricError> {
+        let whole = mesh.builder().pin(attached.iter().copied());
+        let weights = mesh.weights();
+        if weights.is_empty() {
+            let vertices = (0..mesh.vertex_count() as u32).collect();
+            let (triangles, rigid) = (Vec::new(), RigidPart::default());
+            return Ok(Self { builder: whole, vertices, triangles, rigid });
+        }
+        let normals = whole.rest_normals()?;
+        let corners = whole.indices().as_chunks::<3>().0;
+        let is_rigid = |corners: &[u32; 3]| corners.iter().all(|&it| weights[it as usize] == 0.0);
+        let (rigid_triangles, triangles): (Vec<usize>, Vec<usize>) =
+            (0..corners.len()).partition(|&triangle| is_rigid(&corners[triangle]));
+        let mut is_simulated: Vec<bool> = weights.iter().map(|&weight| weight > 0.0).collect();
+        for &corner in triangles.iter().flat_map(|&triangle| &corners[triangle]) {
+            is_simulated[corner as usize] = true;
+        }
+        let mut rigid = RigidPart {
+            triangles: rigid_triangles.iter().map(|&triangle| corners[triangle]).collect(),
+            ..RigidPart::default()
+        };
+        let mut vertices = Vec::new();
+        for (vertex, (&position, &normal)) in whole.positions().iter().zip(&normals).enumerate() {
+            let rest = RestVertex { vertex: vertex as u32, position, normal };
+            let weight = weights[vertex];
+            if weight < 1.0 {
+                rigid.extend_bounds(position);
+            }
+            if !is_simulated[vertex] {
+                rigid.vertices.push(rest);
+                continue;
+            }
+            vertices.push(rest.vertex);
+            if weight < 1.0 {
+                rigid.blended.push((rest, weight));
+            }
+        }
+        let builder = part_builder(mesh, &whole, attached, (&vertices, &triangles), &rigid);
+        Ok(Self { builder, vertices, triangles, rigid })
+    }
+
+    /// An error of the part's fabric, with the indices of the mesh instead of the part's.
+    pub fn renumber(&self, error: FabricError) -> FabricError {
+        let vertex = |of_part: usize| self.vertices.get(of_part).map_or(of_part, |&v| v as usize);
+        match error {
+            FabricError::ZeroArea { triangle } => FabricError::ZeroArea {
+                triangle: self.triangles.get(triangle).copied().unwrap_or(triangle),
+            },
+            FabricError::LooseVertex { vertex: loose } => {
+                FabricError::LooseVertex { vertex: vertex(loose) }
+            }
+            FabricError::NonManifoldEdge { a, b } => {
+                let [a, b] = [a, b].map(|end| vertex(end as usize) as u32);
+                FabricError::NonManifoldEdge { a, b }
+            }
+            other => other,
+        }
+    }
+}
+
+/// The builder of some vertices and triangles of a mesh, both ascending. Attached vertices and those of
+/// weight 0 are pinned.
+fn part_builder(
+    mesh: &ClothMesh,
+    whole: &FabricBuilder,
+    attached: &[u32],
+    (vertices, triangles): (&[u32], &[usize]),
+    rigid: &RigidPart,
+) -> FabricBuilder {
+    let index = |vertex: &u32| vertices.binary_search(vertex).ok().map(|index| index as u32);
+    let corners = triangles.iter().flat_map(|triangle| &whole.indices()[3 * triangle..][..3]);
+    let uv = mesh.uvs();
+    let held = rigid.blended.iter().filter(|(_, weight)| *weight == 0.0);
+    let held = held.filter_map(|(rest, _)| index(&rest.vertex));
+    FabricBuilder::new(
+        vertices.iter().map(|&vertex| whole.positions()[vertex as usize]).collect(),
+        corners.filter_map(index).collect(),
+    )
+    .uv(vertices.iter().filter_map(|&vertex| uv.get(vertex as usize).copied()).collect())
+    .pin(attached.iter().filter_map(index).chain(held))
+}
+
+#[cfg(test)]
+mod tests {
+    use bevy_math::Vec3;
+
+    use super::*;
+    use crate::fabric::rigid::Blend;
+
+    /// A strip of four squares along x, the first two of them rigid.
+    fn strip() -> ClothMesh {
+        let weight = |vertex: usize| if vertex % 5 < 3 { 0.0 } else { 1.0 };
+        ClothMesh::grid(5, 2, 4.0, 1.0).with_weights((0..10).map(weight).collect())
+    }
+
+    fn edit(edit: impl FnOnce(&mut Vec<Vec3>, &mut Vec<u32>)) -> ClothMesh {
+        let mut mesh = strip();
+        if let ClothMesh::Triangles { positions, indices, .. } = &mut mesh {
+            edit(positions, indices);
+        }
+        mesh
+    }
+
+    #[test]
+    fn the_part_has_the_triangles_with_a_simulated_corner() {
+        let part = SimulatedPart::of(&strip(), &[0, 4]).expect("a part");
+        assert_eq!(part.vertices, [2, 3, 4, 7, 8, 9]);
+        assert_eq!(part.rigid.triangles.len(), 4);
+        let rigid: Vec<u32> = part.rigid.vertices.iter().map(|rest| rest.vertex).collect();
+        assert_eq!(rigid, [0, 1, 5, 6]);
+        let fabric = part.builder.build().expect("a fabric");
+        assert_eq!((fabric.particle_count(), fabric.triangles().len()), (6, 4));
+        // The border to the rigid part, and what is attached.
+        let pinned: Vec<usize> = (0..6).filter(|&particle| fabric.is_pinned(particle)).collect();
+        assert_eq!(pinned, [0, 2, 3]);
+        assert_eq!(fabric.uvs()[1].x, 0.75);
+    }
+
+    #[test]
+    fn errors_of_a_part_have_the_indices_of_the_mesh() {
+        let error = |mesh: ClothMesh| {
+            let part = SimulatedPart::of(&mesh, &[])?;
+            part.builder.clone().build().map_err(|error| part.renumber(error)).map(|_| ())
+        };
+        let flat = edit(|positions, _| positions[9] = positions[4]);
+        let Err(FabricError::ZeroArea { triangle }) = error(flat) else { panic!("no area") };
+        assert!(triangle >= 6, "{triangle}");
+        let loose = edit(|_, indices| indices.retain(|&vertex| vertex != 4));
+        assert!(error(loose).is_err());
+        let fan = edit(|positions, indices| {
+            positions[0] = Vec3::new(3.5, -0.5, 1.0);
+            positions[5] = Vec3::new(3.5, -0.5, -1.0);
+            indices.truncate(12);
+            indices.extend([3, 8, 4, 3, 8, 0, 3, 8, 5, 3, 9, 4, 2, 7, 3]);
+        });
+        assert_eq!(error(fan), Err(FabricError::NonManifoldEdge { a: 3, b: 8 }));
+        let far = edit(|_, indices| indices[0] = 12);
+        assert!(matches!(error(far), Err(FabricError::IndexOutOfRange { vertex: 12, .. })));
+        let attached = SimulatedPart::of(&strip(), &[10]).map(|_| ());
+        assert_eq!(attached, Err(FabricError::PinOutOfRange { vertex: 10, vertices: 10 }));
+    }
+
+    #[test]
+    fn a_particle_of_two_vertices_is_blended_once() {
+        // The strip again, with vertices 3 and 8 twice, as along a seam.
+        let ClothMesh::Triangles { mut positions, mut indices, mut weights, .. } = strip() else {
+            unreachable!("it has weights")
+        };
+        positions.extend([positions[3], positions[8]]);
+        for corner in indices.iter_mut().rev().take(6) {
+            *corner = match *corner {
+                3 => 10,
+                8 => 11,
+                other => other,
+            };
+        }
+        weights.extend([0.5; 2]);
+        (weights[3], weights[8]) = (0.5, 0.5);
+        let mesh = ClothMesh::triangles(positions, indices, Vec::new()).with_weights(weights);
+        let part = SimulatedPart::of(&mesh, &[]).expect("a part");
+        let fabric = part.builder.clone().build().expect("a fabric");
+        assert_eq!((part.vertices.len(), fabric.particle_count()), (8, 6));
+        let blends = Blend::all(&part.rigid, &part.vertices, &fabric);
+        assert_eq!(blends.len(), 4);
+        let (mut positions, mut normals) = (vec![Vec3::ZERO; 6], vec![Vec3::X; 6]);
+        blends.iter().for_each(|blend| blend.apply(&mut positions, &mut normals));
+        assert_eq!(positions[1], 0.5 * fabric.rest_positions()[1]);
+        assert!((normals[1] - Vec3::new(1.0, 0.0, 1.0).normalize()).length() < 1e-6);
+        assert_eq!(positions[0], fabric.rest_positions()[0]);
+        assert_eq!((positions[2], normals[0]), (Vec3::ZERO, Vec3::Z));
+    }
+}

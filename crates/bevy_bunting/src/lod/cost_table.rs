@@ -1,0 +1,68 @@
+//! The table of costs, by which levels are chosen before anything is measured.
+
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+use bunting_solver::{LaneCount, StepSettings};
+
+/// Costs of cloth, by width of its batch where that matters: one, eight or sixteen lanes. A batch whose
+/// lanes are occupied in part costs as much as a full one.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub struct CostTable {
+    /// One particle in all lanes, in a substep of one pass, ns.
+    pub substep: [f32; 3],
+    /// One particle in all lanes, in each further pass, ns.
+    pub pass: [f32; 3],
+    /// Driving a cloth and publishing its state in a tick, ns a particle.
+    pub publish: f32,
+    /// Driving a cloth and publishing its state in a tick, besides its particles, ns.
+    pub cloth: f32,
+    /// A tick without any cloth, µs.
+    pub tick: f32,
+    /// A change of level on a screen, ns a particle of the finer of the two levels.
+    pub change: f32,
+}
+
+impl Default for CostTable {
+    /// Costs of a 33 × 33 flag in the wind on one core of a server Xeon with AVX-512, in 2026.
+    fn default() -> Self {
+        Self {
+            substep: [21.0, 80.0, 137.0],
+            pass: [4.8, 17.5, 31.0],
+            publish: 2.0,
+            cloth: 200.0,
+            tick: 20.0,
+            change: 170.0,
+        }
+    }
+}
+
+impl CostTable {
+    /// Cost of a batch in a tick, µs; `particles` of one lane.
+    #[must_use]
+    pub fn batch(&self, particles: usize, settings: StepSettings, lanes: LaneCount) -> f32 {
+        let width = width(lanes);
+        let passes = settings.passes.saturating_sub(1) as f32;
+        let substep = self.substep[width] + passes * self.pass[width];
+        1e-3 * particles as f32 * settings.substeps as f32 * substep
+    }
+
+    /// Cost of a change between two levels on a screen, µs; `particles` of the finer.
+    pub(crate) fn change(&self, particles: usize) -> f32 {
+        1e-3 * self.change * particles as f32
+    }
+
+    /// Cost of a cloth in a tick besides its batch, µs.
+    pub(super) fn per_cloth(&self, particles: usize) -> f32 {
+        1e-3 * (self.cloth + self.publish * particles as f32)
+    }
+}
+
+/// Index of a width in the table's arrays.
+fn width(lanes: LaneCount) -> usize {
+    match lanes {
+        LaneCount::One => 0,
+        LaneCount::Eight => 1,
+        LaneCount::Sixteen => 2,
+    }
+}

@@ -1,0 +1,106 @@
+//! Level tables: errors, costs and sizes of the levels of all cloths that share their fabrics.
+
+use std::sync::{Arc, Weak};
+
+use bunting_solver::{Fabric, LaneCount, instruction_set};
+
+use crate::fabric::levels::ClothLevels;
+use crate::lod::candidate::LevelTable;
+use crate::lod::cost_model::CostModel;
+use crate::lod::cost_table::CostTable;
+use crate::lod::error::level_error;
+use crate::settings::ClothSettings;
+
+/// Factor on the greatest distance at rest from the middle particle: cloth stretches little. Smaller: a
+/// stretched cloth is taken for off-screen while its border is still seen.
+const STRETCH: f32 = 1.1;
+
+/// One table for each [`ClothLevels`] in use.
+#[derive(Debug, Default)]
+pub(crate) struct LevelTables {
+    levels: Vec<Weak<ClothLevels>>,
+    /// Number of particles at each level.
+    particles: Vec<Vec<usize>>,
+    /// Greatest distance of any particle from the middle one, m.
+    radii: Vec<f32>,
+    /// Errors and costs of each level.
+    pub tables: Vec<LevelTable>,
+}
+
+impl LevelTables {
+    /// Index of the table of a cloth with these levels; found or made.
+    pub fn index_of(&mut self, levels: &Arc<ClothLevels>) -> usize {
+        let is_same =
+            |known: &Weak<ClothLevels>| core::ptr::eq(known.as_ptr(), Arc::as_ptr(levels));
+        if let Some(known) = self.levels.iter().position(is_same) {
+            return known;
+        }
+        let fabrics = || (0..levels.count()).map(|level| levels.fabric(level));
+        let unused = self.levels.iter().position(|known| known.strong_count() == 0);
+        let index = unused.unwrap_or(self.tables.len());
+        if unused.is_none() {
+            self.levels.push(Weak::new());
+            self.particles.push(Vec::new());
+            self.radii.push(0.0);
+            self.tables.push(LevelTable::default());
+        }
+        self.levels[index] = Arc::downgrade(levels);
+        self.particles[index] = fabrics().map(|fabric| fabric.particle_count()).collect();
+        // The middle particle may be another one at each level.
+        let radius = fabrics().map(|fabric| rest_radius(fabric)).fold(0.0, f32::max);
+        self.radii[index] = STRETCH * radius;
+        self.tables[index] = LevelTable {
+            errors: fabrics().map(|fabric| level_error(fabric)).collect(),
+            costs: vec![Default::default(); levels.count()],
+        };
+        index
+    }
+
+    /// Greatest distance of any particle of a table's cloths from the middle one, m.
+    pub fn radius(&self, table: usize) -> f32 {
+        self.radii[table]
+    }
+
+    /// Number of particles of a table's cloths at a level.
+    pub fn particles(&self, table: usize, level: usize) -> usize {
+        self.particles[table][level]
+    }
+
+    /// Updates all costs, for ticks of `tick` seconds. `fixed` costs are those of sixteen lanes whatever
+    /// the machine's width.
+    pub fn update_costs(
+        &mut self,
+        table: &CostTable,
+        model: &CostModel,
+        settings: &ClothSettings,
+        tick: f32,
+        fixed: bool,
+    ) {
+        let machine = if fixed || instruction_set() == "AVX-512" {
+            LaneCount::Sixteen
+        } else {
+            LaneCount::Eight
+        };
+        let widest = settings.lanes.unwrap_or(machine);
+        let gravity = settings.gravity.length();
+        for (levels, costs) in self.levels.iter().zip(&mut self.tables) {
+            let Some(levels) = levels.upgrade() else { continue };
+            for (level, costs) in costs.costs.iter_mut().enumerate() {
+                let fabric = levels.fabric(level);
+                let step = settings.limits(level).of_fabric(fabric, tick, gravity);
+                let most_single = match settings.lanes {
+                    None => LaneCount::most_alone(fabric, step.scheme) as u32,
+                    Some(_) => 0,
+                };
+                *costs = model.costs(table, fabric.particle_count(), step, widest, most_single);
+            }
+        }
+    }
+}
+
+/// Greatest distance at rest of any particle from the middle one, m.
+fn rest_radius(fabric: &Fabric) -> f32 {
+    let rest = fabric.rest_positions();
+    let middle = rest[rest.len() / 2];
+    rest.iter().map(|position| position.distance(middle)).fold(0.0, f32::max)
+}

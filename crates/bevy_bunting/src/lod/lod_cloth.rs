@@ -1,0 +1,113 @@
+//! A cloth as the choice of levels sees it: where it is, how it changes its level and falls asleep.
+
+use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
+use bevy_math::Vec3;
+
+use crate::batch::batches::ClothBatches;
+use crate::cloth::activity::{ClothActivity, ClothPaused};
+use crate::cloth::events::ClothLevelChanged;
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::state::ClothState;
+use crate::lod::lod_set::LodSet;
+use crate::lod::record::LodRecord;
+use crate::lod::view::{Sight, Sighting, View};
+use crate::motion::pose::PoseHistory;
+
+/// Ticks from one in which a cloth is examined to the next. Cloths take turns.
+pub(super) const EXAMINED_EVERY: u32 = 4;
+
+/// Ticks after which a cloth on no screen falls asleep: two examinations. Fewer: cloth at the border of
+/// the screen falls asleep and wakes in turns.
+const ASLEEP_AFTER: u32 = 2 * EXAMINED_EVERY;
+
+/// The components of a cloth that the choice of levels reads and writes.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(crate) struct LodCloth {
+    pub entity: Entity,
+    pub lods: Ref<'static, LodSet>,
+    pub frame: &'static PoseHistory,
+    pub instance: &'static mut ClothInstance,
+    pub state: &'static mut ClothState,
+    pub record: &'static mut LodRecord,
+    pub paused: Has<ClothPaused>,
+}
+
+impl LodClothItem<'_, '_> {
+    /// Changes the level in tick `now`. A cloth on no screen becomes coarser without regard to momentum
+    /// and energy, which is faster.
+    pub fn change_level(
+        &mut self,
+        to: usize,
+        on_screen: bool,
+        now: u32,
+        batches: &mut ClothBatches,
+        commands: &mut Commands,
+    ) {
+        let from = self.instance.level;
+        let is_unseen = !on_screen && to > from;
+        if is_unseen {
+            self.instance.change_level_unseen(to, batches);
+        } else {
+            self.instance.change_level(to, batches);
+        }
+        let instance = &*self.instance;
+        if let Some((levels, snapshot)) = instance.levels.as_ref().zip(instance.snapshot()) {
+            if is_unseen {
+                self.state.restart(to, levels, &snapshot.positions);
+            } else if instance.activity == ClothActivity::Ticking && !self.paused {
+                self.state.change_level_in_motion(to, levels, &snapshot.positions);
+            } else {
+                self.state.change_level(to, levels, &snapshot.positions);
+            }
+        }
+        self.record.changed = now;
+        if let Some(candidate) = &mut self.record.candidate {
+            candidate.level = to as u32;
+        }
+        commands.trigger(ClothLevelChanged { entity: self.entity, from, to });
+    }
+
+    /// Position in the world of the middle particle, m, which is near the middle of a grid; noted in the
+    /// record.
+    pub fn update_middle(&mut self) -> Vec3 {
+        let positions = self.state.positions();
+        self.record.middle = positions.get(positions.len() / 2).copied().unwrap_or_default();
+        self.frame.end() * self.record.middle
+    }
+
+    /// Whether the cloth sleeps off the screen and is still there, so that it need not be examined.
+    pub fn stays_off_screen(&self, views: &[View]) -> bool {
+        self.record.activity == ClothActivity::OffScreen && {
+            let middle = self.frame.end() * self.record.middle;
+            Sighting::of(views, middle, self.record.radius).sight == Sight::OffScreen
+        }
+    }
+
+    /// Lets a cloth fall asleep that no viewer has seen for some time, and wakes one that a viewer sees,
+    /// or that rests and wants a finer level. Returns whether it wakes from off the screen.
+    pub fn update_activity(&mut self, sight: Sight, wants_finer: bool, now: u32) -> bool {
+        let unseen = match sight {
+            Sight::OnScreen | Sight::NearScreen => None,
+            Sight::OffScreen => Some(ClothActivity::OffScreen),
+            Sight::OutOfRange => Some(ClothActivity::OutOfRange),
+        };
+        if unseen.is_none() {
+            self.record.seen = now;
+        }
+        let old = self.instance.activity;
+        let is_overdue = now.wrapping_sub(self.record.seen) > ASLEEP_AFTER;
+        let new = match (old, unseen) {
+            (ClothActivity::Ticking, Some(unseen)) if is_overdue => unseen,
+            (ClothActivity::OffScreen | ClothActivity::OutOfRange, Some(unseen)) => unseen,
+            (ClothActivity::OffScreen | ClothActivity::OutOfRange, None) => ClothActivity::Ticking,
+            (ClothActivity::AtRest, None) if wants_finer => ClothActivity::Ticking,
+            _ => old,
+        };
+        if new != old {
+            self.instance.activity = new;
+        }
+        new == ClothActivity::Ticking && old != new && old != ClothActivity::AtRest
+    }
+}

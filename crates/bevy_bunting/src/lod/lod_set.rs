@@ -1,0 +1,153 @@
+//! The levels of detail of a cloth, and the rule by which one of them is chosen.
+
+use bevy_ecs::prelude::*;
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+
+use crate::cloth::error::ClothError;
+
+/// Default of [`LodSet::hysteresis`]. Smaller: a viewer that sways at a switch distance changes levels
+/// again and again.
+const HYSTERESIS: f32 = 0.1;
+
+/// The levels of detail of a cloth, and how one of them is chosen. Level 0 is the mesh itself. Each
+/// further level has some of the vertices of the one before: of a grid every second column and row, of
+/// any other mesh those that [`FabricBuilder::coarser`](bunting_solver::FabricBuilder::coarser) leaves.
+/// A grid of 33 × 33 particles with four levels has 33, 17, 9 and 5 particles in a row. By default there
+/// is one level.
+///
+/// The level is chosen before each tick by what the [`LodViewer`](crate::LodViewer)s see. Without a
+/// viewer every cloth counts as being at distance 0 and on the screen.
+#[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
+pub struct LodSet {
+    /// Number of levels, and how one is chosen.
+    pub choice: LodChoice,
+    /// Fraction of a switch distance by which the distance must pass it before the level changes, from 0
+    /// to 1. Not used by an automatic choice.
+    pub hysteresis: f32,
+    /// Keeps the cloth at this level, whatever the viewers see.
+    pub pinned: Option<usize>,
+    /// Factor on the size of the cloth on the screen in an automatic choice: above 1 for cloth that the
+    /// player looks at, below 1 for cloth in the background. Positive.
+    pub bias: f32,
+}
+
+/// How the level of a cloth is chosen.
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[reflect(Debug, PartialEq, Clone)]
+pub enum LodChoice {
+    /// By the distance to the nearest viewer, whatever it costs. The distances (m, growing) are those at
+    /// which each level switches to the next coarser one; there is one level more than distances.
+    Distances(Vec<f32>),
+    /// By the error in pixels, within the [`ClothBudget`](crate::ClothBudget). Outside the picture of
+    /// every viewer the cloth sleeps.
+    Automatic {
+        /// Number of levels, at least 1.
+        levels: usize,
+    },
+}
+
+impl LodSet {
+    /// Levels that switch at these distances, m.
+    #[must_use]
+    pub fn new(distances: impl Into<Vec<f32>>) -> Self {
+        Self::chosen(LodChoice::Distances(distances.into()))
+    }
+
+    /// A number of levels, chosen by the error in pixels that each has in the viewers' pictures, within
+    /// the [`ClothBudget`](crate::ClothBudget).
+    #[must_use]
+    pub fn automatic(levels: usize) -> Self {
+        Self::chosen(LodChoice::Automatic { levels })
+    }
+
+    fn chosen(choice: LodChoice) -> Self {
+        Self { choice, hysteresis: HYSTERESIS, pinned: None, bias: 1.0 }
+    }
+
+    /// The same, kept at a level.
+    #[must_use]
+    pub fn pinned_to(mut self, level: usize) -> Self {
+        self.pinned = Some(level);
+        self
+    }
+
+    /// The same with a [`bias`](Self::bias).
+    #[must_use]
+    pub fn with_bias(mut self, bias: f32) -> Self {
+        self.bias = bias;
+        self
+    }
+
+    /// Number of levels.
+    #[must_use]
+    pub fn levels(&self) -> usize {
+        match &self.choice {
+            LodChoice::Distances(distances) => distances.len() + 1,
+            LodChoice::Automatic { levels } => *levels,
+        }
+    }
+
+    /// The level at a distance (m) from the nearest viewer, for a cloth that is at level `now`. If the
+    /// choice is automatic, `now`.
+    #[must_use]
+    pub fn level_at(&self, distance: f32, now: usize) -> usize {
+        if let Some(level) = self.pinned {
+            return level;
+        }
+        let LodChoice::Distances(distances) = &self.choice else { return now };
+        let mut level = now.min(distances.len());
+        while level < distances.len() && distance > distances[level] * (1.0 + self.hysteresis) {
+            level += 1;
+        }
+        while level > 0 && distance < distances[level - 1] * (1.0 - self.hysteresis) {
+            level -= 1;
+        }
+        level
+    }
+
+    /// Checks distances, number of levels, hysteresis, bias and pinned level, for the cloth `entity`.
+    pub(crate) fn validate(&self, entity: Entity) -> Result<(), ClothError> {
+        let good = match &self.choice {
+            LodChoice::Distances(distances) => {
+                let grow = distances.windows(2).all(|pair| pair[0] < pair[1]);
+                grow && distances.iter().all(|&distance| distance > 0.0 && distance.is_finite())
+            }
+            LodChoice::Automatic { levels } => *levels > 0,
+        };
+        let is_biased = self.bias > 0.0 && self.bias.is_finite();
+        if !good || !is_biased || !(0.0..1.0).contains(&self.hysteresis) {
+            return Err(ClothError::Levels { entity });
+        }
+        match self.pinned {
+            Some(level) if level >= self.levels() => {
+                Err(ClothError::PinnedLevel { entity, level, levels: self.levels() })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Default for LodSet {
+    fn default() -> Self {
+        Self::new([])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn levels_have_hysteresis() {
+        let lods = LodSet::new([10.0, 20.0, 40.0]);
+        assert_eq!(lods.level_at(5.0, 0), 0);
+        assert_eq!(lods.level_at(10.5, 0), 0);
+        assert_eq!(lods.level_at(10.5, 1), 1);
+        assert_eq!(lods.level_at(11.5, 0), 1);
+        assert_eq!(lods.level_at(100.0, 0), 3);
+        assert_eq!(lods.level_at(1.0, 3), 0);
+        assert_eq!(lods.pinned_to(2).level_at(1.0, 3), 2);
+    }
+}

@@ -1,0 +1,168 @@
+//! Cloths that have come to rest fall asleep, and wake when anything changes that acts on them.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::entity::EntityHashMap;
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Vec3};
+use bevy_time::Time;
+
+use crate::batch::publish::reset_diverged;
+use crate::cloth::activity::ClothActivity;
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::state::ClothState;
+use crate::display::ease::ease_surfaces;
+use crate::environment::collider::ClothCollider;
+use crate::environment::wind::TickWind;
+use crate::lod::record::{LodRecord, RestTimer};
+use crate::lod::select::select_levels;
+use crate::motion::pose::PoseHistory;
+use crate::schedule::{ClothSystems, ClothTick};
+use crate::settings::ClothSettings;
+
+/// Root mean square speed of the particles below which a cloth rests, m/s: a millimetre in a second is
+/// not seen. Larger: cloth visibly stops.
+const REST_SPEED: f32 = 1e-3;
+
+/// Time for which a cloth must rest before it falls asleep, s: longer than a pendulum is as slow at its
+/// turning points. Shorter: swinging cloth falls asleep there.
+const REST_TIME: f32 = 0.5;
+
+/// Distance between a cloth and a moving collider from which on the collider does not wake the cloth, m.
+/// Smaller: fast colliders enter sleeping cloth.
+const CLEARANCE: f32 = 0.5;
+
+/// Sends cloths at rest to sleep, and wakes them.
+#[derive(Debug, Default)]
+pub struct SleepPlugin;
+
+impl Plugin for SleepPlugin {
+    fn build(&self, app: &mut App) {
+        app.init_resource::<Changes>().add_systems(
+            ClothTick,
+            (
+                (note_changes, wake_cloths)
+                    .chain()
+                    .in_set(ClothSystems::SelectLod)
+                    .before(select_levels),
+                send_to_sleep
+                    .in_set(ClothSystems::Publish)
+                    .after(reset_diverged)
+                    .after(ease_surfaces),
+            ),
+        );
+    }
+}
+
+/// What has changed since the last tick of all that acts on cloths.
+#[derive(Resource, Debug, Default)]
+struct Changes {
+    /// Whether the wind, gravity, other settings or the set of colliders changed, which act everywhere.
+    everywhere: bool,
+    /// Number of ticks since anything changed everywhere.
+    unchanged_ticks: u32,
+    /// Balls around colliders that move, centres and radii, m.
+    moving_colliders: Vec<(Vec3, f32)>,
+    /// Number of cloths asleep at rest; some of them may have been woken since.
+    asleep: usize,
+    wind: TickWind,
+    collider_poses: EntityHashMap<Isometry3d>,
+}
+
+impl Changes {
+    /// Whether anything changed that acts on a cloth with a radius (m): its frame, or a collider near it.
+    fn act_on(
+        &self,
+        state: &ClothState,
+        frame: Isometry3d,
+        timer: &RestTimer,
+        radius: f32,
+    ) -> bool {
+        let middle = state.positions().get(state.positions().len() / 2);
+        let middle = frame * middle.copied().unwrap_or_default();
+        let is_near =
+            |&(centre, other): &(Vec3, f32)| middle.distance(centre) < radius + other + CLEARANCE;
+        timer.pose != Some(frame) || self.moving_colliders.iter().any(is_near)
+    }
+}
+
+fn note_changes(
+    colliders: Query<(Entity, Ref<ClothCollider>, &PoseHistory)>,
+    mut removed: RemovedComponents<ClothCollider>,
+    settings: Res<ClothSettings>,
+    wind: Res<TickWind>,
+    mut changes: ResMut<Changes>,
+) {
+    let changes = &mut *changes;
+    changes.everywhere = settings.is_changed() || changes.wind != *wind;
+    changes.wind = *wind;
+    for entity in removed.read() {
+        changes.collider_poses.remove(&entity);
+        changes.everywhere = true;
+    }
+    changes.moving_colliders.clear();
+    for (entity, collider, history) in &colliders {
+        changes.everywhere |= collider.is_changed();
+        let pose = history.end();
+        if changes.collider_poses.insert(entity, pose) != Some(pose) {
+            let ball = collider.shape.compute_local_bounding_sphere();
+            changes.moving_colliders.push((pose * ball.center, ball.radius + collider.margin));
+        }
+    }
+    changes.unchanged_ticks =
+        if changes.everywhere { 0 } else { changes.unchanged_ticks.saturating_add(1) };
+}
+
+type RestingCloth = (
+    &'static mut ClothInstance,
+    &'static ClothState,
+    &'static PoseHistory,
+    &'static mut RestTimer,
+    &'static LodRecord,
+);
+
+fn wake_cloths(mut cloths: Query<RestingCloth>, mut changes: ResMut<Changes>) {
+    if changes.asleep == 0 {
+        return;
+    }
+    changes.asleep = 0;
+    for (mut instance, state, frame, timer, record) in &mut cloths {
+        if instance.activity != ClothActivity::AtRest {
+            continue;
+        }
+        if changes.everywhere || changes.act_on(state, frame.end(), &timer, record.radius) {
+            instance.wake();
+        } else {
+            changes.asleep += 1;
+        }
+    }
+}
+
+fn send_to_sleep(mut cloths: Query<RestingCloth>, mut changes: ResMut<Changes>, time: Res<Time>) {
+    // In gusts, which change in every tick, no cloth comes to rest.
+    if changes.everywhere {
+        return;
+    }
+    let tick = time.delta_secs();
+    for (mut instance, state, frame, mut timer, record) in &mut cloths {
+        if instance.lane().is_none() {
+            continue;
+        }
+        let pose = frame.end();
+        let is_disturbed = changes.act_on(state, pose, &timer, record.radius);
+        timer.pose = Some(pose);
+        let is_still = !is_disturbed && speed(state, tick) <= REST_SPEED;
+        timer.ticks = if is_still { timer.ticks + 1 } else { 0 };
+        if timer.ticks.min(changes.unchanged_ticks) as f32 * tick > REST_TIME {
+            timer.ticks = 0;
+            instance.activity = ClothActivity::AtRest;
+            changes.asleep += 1;
+        }
+    }
+}
+
+/// Root mean square speed of the particles in the last tick of `tick` seconds, m/s.
+fn speed(state: &ClothState, tick: f32) -> f32 {
+    let pairs = state.positions().iter().zip(state.previous_positions());
+    let squares: f32 = pairs.map(|(now, before)| now.distance_squared(*before)).sum();
+    (squares / state.positions().len().max(1) as f32).sqrt() / tick
+}

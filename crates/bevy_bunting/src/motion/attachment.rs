@@ -1,0 +1,209 @@
+//! Attachments: chosen vertices of a cloth stay on another entity.
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec2;
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+use bevy_transform::components::Transform;
+
+/// Default of [`Attachment::teleport_distance`], m: no vehicle departs from its extrapolated motion by
+/// that much between two frames. Smaller: hard manoeuvres count as teleports, and swing no cloth.
+const TELEPORT_DISTANCE: f32 = 2.0;
+
+/// Greatest difference from the extreme texture coordinate of vertices on an edge. Smaller: rounding
+/// excludes vertices. Larger: an edge has several rows of fine meshes.
+const EDGE_TOLERANCE: f32 = 1e-4;
+
+/// Holds chosen vertices of a cloth on a target that may move.
+///
+/// The cloth's frame is the target's pose times [`offset`](Self::offset). The held vertices stay in
+/// that frame where the [`ClothMesh`](crate::ClothMesh) has them. The cloth's own [`Transform`] is
+/// overwritten with the frame, whether the cloth is a child of its target or not.
+///
+/// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. Its scale scales
+/// the offset's translation and is otherwise ignored.
+#[derive(Component, Clone, Debug, Reflect)]
+#[reflect(Component, Debug, Clone)]
+pub struct Attachment {
+    /// The entity that the vertices stay on. [`Entity::PLACEHOLDER`], or the cloth itself, holds
+    /// them on the cloth's own [`Transform`].
+    #[entities]
+    pub target: Entity,
+    /// The vertices that are held.
+    pub vertices: AttachedVertices,
+    /// Pose of the cloth's frame seen from the target; the scale is ignored.
+    pub offset: Transform,
+    /// What happens when the target is despawned.
+    pub on_lost: TargetLost,
+    /// A target that departs from its extrapolated motion by more than this between two frames or ticks,
+    /// in m, was teleported: the cloth moves with it rigidly, without being accelerated. The same holds
+    /// for a turn of more than 90°.
+    pub teleport_distance: f32,
+}
+
+impl Attachment {
+    /// Holds vertices on a target, in the target's own frame.
+    #[must_use]
+    pub fn new(target: Entity, vertices: impl Into<AttachedVertices>) -> Self {
+        Self {
+            target,
+            vertices: vertices.into(),
+            offset: Transform::IDENTITY,
+            on_lost: TargetLost::default(),
+            teleport_distance: TELEPORT_DISTANCE,
+        }
+    }
+
+    /// Holds vertices on the cloth's own [`Transform`].
+    #[must_use]
+    pub fn in_place(vertices: impl Into<AttachedVertices>) -> Self {
+        Self::new(Entity::PLACEHOLDER, vertices)
+    }
+
+    /// The same, with the cloth's frame at `offset` from the target.
+    #[must_use]
+    pub fn with_offset(mut self, offset: Transform) -> Self {
+        self.offset = offset;
+        self
+    }
+
+    /// The target of the attachment of `cloth`, unless it is the cloth itself.
+    pub(crate) fn target_other_than(&self, cloth: Entity) -> Option<Entity> {
+        (self.target != Entity::PLACEHOLDER && self.target != cloth).then_some(self.target)
+    }
+}
+
+/// What happens to a cloth whose target is despawned.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub enum TargetLost {
+    /// The cloth is paused: it gets [`ClothPaused`](crate::ClothPaused). If that component is removed,
+    /// the cloth hangs from the last pose of its target.
+    #[default]
+    Freeze,
+    /// The cloth falls: its [`Attachment`] is removed.
+    Release,
+}
+
+/// An edge of a cloth, by texture coordinate: u grows to the right and v down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Debug, PartialEq, Clone)]
+pub enum ClothEdge {
+    /// Least u.
+    Left,
+    /// Greatest u.
+    Right,
+    /// Least v.
+    Top,
+    /// Greatest v.
+    Bottom,
+}
+
+/// A corner of a cloth, by texture coordinate: u grows to the right and v down.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Debug, PartialEq, Clone)]
+pub enum ClothCorner {
+    /// Least u and v.
+    TopLeft,
+    /// Greatest u, least v.
+    TopRight,
+    /// Least u, greatest v.
+    BottomLeft,
+    /// Greatest u and v.
+    BottomRight,
+}
+
+/// Which vertices an [`Attachment`] holds.
+///
+/// A coarser level of detail holds those of them that it has.
+#[derive(Clone, Debug, Reflect)]
+#[reflect(opaque)]
+#[reflect(Debug, Clone)]
+pub enum AttachedVertices {
+    /// All vertices on an edge.
+    Edge(ClothEdge),
+    /// The vertices nearest to these corners.
+    Corners(Vec<ClothCorner>),
+    /// Vertices of the [`ClothMesh`](crate::ClothMesh) by index; of a grid, by `row * columns +
+    /// column`.
+    List(Vec<u32>),
+    /// All vertices for whose texture coordinate a predicate holds.
+    Where(fn(Vec2) -> bool),
+    /// No vertices besides the rigid ones of weight 0, see
+    /// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
+    Rigid,
+}
+
+impl AttachedVertices {
+    /// The indices of the vertices, given the texture coordinates of all.
+    pub(crate) fn choose(&self, uv: &[Vec2]) -> Vec<u32> {
+        let low = uv.iter().copied().reduce(Vec2::min).unwrap_or_default();
+        let high = uv.iter().copied().reduce(Vec2::max).unwrap_or_default();
+        let all_where = |holds: &dyn Fn(Vec2) -> bool| {
+            (0..).zip(uv).filter(|&(_, &uv)| holds(uv)).map(|(vertex, _)| vertex).collect()
+        };
+        match self {
+            Self::Edge(ClothEdge::Left) => all_where(&|uv| uv.x <= low.x + EDGE_TOLERANCE),
+            Self::Edge(ClothEdge::Right) => all_where(&|uv| uv.x >= high.x - EDGE_TOLERANCE),
+            Self::Edge(ClothEdge::Top) => all_where(&|uv| uv.y <= low.y + EDGE_TOLERANCE),
+            Self::Edge(ClothEdge::Bottom) => all_where(&|uv| uv.y >= high.y - EDGE_TOLERANCE),
+            Self::Corners(corners) => {
+                corners.iter().filter_map(|corner| nearest(uv, corner.of(low, high))).collect()
+            }
+            Self::List(vertices) => vertices.clone(),
+            Self::Where(predicate) => all_where(predicate),
+            Self::Rigid => Vec::new(),
+        }
+    }
+}
+
+impl From<ClothEdge> for AttachedVertices {
+    fn from(edge: ClothEdge) -> Self {
+        Self::Edge(edge)
+    }
+}
+
+impl From<ClothCorner> for AttachedVertices {
+    fn from(corner: ClothCorner) -> Self {
+        Self::Corners(vec![corner])
+    }
+}
+
+impl ClothCorner {
+    fn of(self, low: Vec2, high: Vec2) -> Vec2 {
+        match self {
+            Self::TopLeft => low,
+            Self::TopRight => Vec2::new(high.x, low.y),
+            Self::BottomLeft => Vec2::new(low.x, high.y),
+            Self::BottomRight => high,
+        }
+    }
+}
+
+fn nearest(uv: &[Vec2], corner: Vec2) -> Option<u32> {
+    (0..)
+        .zip(uv)
+        .min_by(|(_, a), (_, b)| a.distance_squared(corner).total_cmp(&b.distance_squared(corner)))
+        .map(|(vertex, _)| vertex)
+}
+
+#[cfg(test)]
+mod tests {
+    use bunting_solver::Grid;
+
+    use super::*;
+
+    #[test]
+    fn edges_corners_and_predicates() {
+        let uv = Grid::new(3, 2, 1.0, 1.0).uvs();
+        let choose = |vertices: AttachedVertices| vertices.choose(&uv);
+        assert_eq!(choose(ClothEdge::Left.into()), [0, 3]);
+        assert_eq!(choose(ClothEdge::Right.into()), [2, 5]);
+        assert_eq!(choose(ClothEdge::Top.into()), [0, 1, 2]);
+        assert_eq!(choose(ClothEdge::Bottom.into()), [3, 4, 5]);
+        assert_eq!(choose(ClothCorner::TopRight.into()), [2]);
+        assert_eq!(choose(ClothCorner::BottomLeft.into()), [3]);
+        assert_eq!(choose(AttachedVertices::Where(|uv| uv.x > 0.4 && uv.y > 0.5)), [4, 5]);
+        assert_eq!(choose(AttachedVertices::List(vec![4])), [4]);
+    }
+}

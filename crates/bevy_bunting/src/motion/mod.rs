@@ -1,0 +1,12 @@
+//! The motion of a cloth's frame: attachments, the poses of their targets, teleports.
+
+pub mod attachment;
+pub mod follow;
+pub mod frame;
+pub mod lost_target;
+pub mod observe;
+pub mod place;
+pub mod plugin;
+pub mod pose;
+pub mod teleport;
+pub mod track;

@@ -1,0 +1,49 @@
+//! Follows the targets of attachments: observes their poses and places cloths on them.
+
+use bevy_app::prelude::*;
+use bevy_app::{AnimationSystems, RunFixedMainLoop, RunFixedMainLoopSystems};
+use bevy_ecs::prelude::*;
+use bevy_transform::TransformSystems;
+
+use crate::environment::drive::drive_cloths;
+use crate::motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
+use crate::motion::follow::{follow_targets, stop_following};
+use crate::motion::observe::{observe_frames, observe_ticks};
+use crate::motion::place::place_cloths;
+use crate::motion::pose::ObservationTimes;
+use crate::schedule::{ClothSystems, ClothTick};
+
+/// Follows the targets of attachments, and places cloths on them.
+#[derive(Debug, Default)]
+pub struct AttachmentPlugin;
+
+impl Plugin for AttachmentPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<Attachment>()
+            .register_type::<AttachedVertices>()
+            .register_type::<ClothEdge>()
+            .register_type::<ClothCorner>()
+            .register_type::<TargetLost>()
+            .init_resource::<ObservationTimes>()
+            .add_observer(stop_following)
+            .add_systems(
+                RunFixedMainLoop,
+                observe_frames::<true>.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+            )
+            .add_systems(
+                ClothTick,
+                (
+                    follow_targets.in_set(ClothSystems::Prepare),
+                    observe_ticks.in_set(ClothSystems::Drive).before(drive_cloths),
+                    place_cloths.in_set(ClothSystems::Publish),
+                ),
+            )
+            .add_systems(
+                PostUpdate,
+                (follow_targets, observe_frames::<false>, place_cloths)
+                    .chain_ignore_deferred()
+                    .after(AnimationSystems)
+                    .before(TransformSystems::Propagate),
+            );
+    }
+}

@@ -1,0 +1,63 @@
+//! Teleports of cloths on request.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+
+use crate::batch::batches::ClothBatches;
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::state::ClothState;
+use crate::motion::pose::{ObservationTimes, PoseHistory};
+
+/// Makes the next change of a cloth's frame a teleport: the cloth moves with it rigidly, without being
+/// accelerated. Trigger it in the frame or tick in which the target is moved, before or after the
+/// motion, but before the next tick of the cloth.
+///
+/// A change by more than [`Attachment::teleport_distance`](crate::Attachment::teleport_distance) is a
+/// teleport without a request.
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TeleportCloth {
+    /// The cloth.
+    pub entity: Entity,
+    /// Whether the cloth keeps its shape.
+    pub mode: TeleportMode,
+}
+
+/// Whether a cloth keeps its shape when it is teleported.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub enum TeleportMode {
+    /// The cloth keeps its shape and its velocities relative to its frame.
+    #[default]
+    Keep,
+    /// The cloth is put back to its shape at rest, without velocity.
+    Reset,
+}
+
+/// Teleports cloths on request.
+#[derive(Debug, Default)]
+pub struct TeleportPlugin;
+
+impl Plugin for TeleportPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<TeleportMode>().add_observer(teleport);
+    }
+}
+
+fn teleport(
+    request: On<TeleportCloth>,
+    mut cloths: Query<(&mut PoseHistory, &mut ClothInstance, &mut ClothState)>,
+    mut batches: ResMut<ClothBatches>,
+    times: Res<ObservationTimes>,
+) {
+    let Ok((mut history, mut instance, mut state)) = cloths.get_mut(request.entity) else { return };
+    history.teleport_next(&times);
+    if request.mode == TeleportMode::Reset {
+        instance.reset(&mut batches);
+        if let Some(levels) = &instance.levels {
+            let rest = levels.fabric(instance.level).rest_positions();
+            state.restart(instance.level, levels, rest);
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! A track: observed poses of an entity at known times, between which poses are interpolated.
+
+use std::collections::VecDeque;
+
+use bevy_math::Isometry3d;
+
+/// Number of poses that are kept: at 250 frames a second, the longest delay that Bevy's clock allows.
+const MOST_SAMPLES: usize = 64;
+
+/// A turn between two observations of more than this is a teleport, rad. Smaller: fast spins count as
+/// teleports. Larger: teleports swing the cloth about.
+const TELEPORT_ANGLE: f32 = core::f32::consts::FRAC_PI_2;
+
+/// Time past the last observed pose up to which the motion is extrapolated, s: Bevy's clock allows no
+/// longer frame.
+const LONGEST_EXTRAPOLATION: f64 = 0.25;
+
+/// Observed poses of one entity, on one clock.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Track {
+    /// Times (s, ascending) and poses.
+    samples: VecDeque<(f64, Isometry3d)>,
+    /// Whether the next change is a teleport, however small.
+    pub teleports_next: bool,
+}
+
+impl Track {
+    /// Adds a pose. If it departs from the extrapolated motion by more than `limit` metres, it is a
+    /// teleport: all earlier samples are moved along, as if the entity had come from there, and the
+    /// transformation is returned.
+    pub fn push(&mut self, time: f64, pose: Isometry3d, limit: f32) -> Option<Isometry3d> {
+        let teleport = self.teleport(time, pose, limit);
+        if let Some(teleport) = teleport {
+            self.teleports_next = false;
+            for (_, earlier) in &mut self.samples {
+                *earlier = teleport * *earlier;
+            }
+        }
+        while self.samples.back().is_some_and(|&(newest, _)| newest >= time) {
+            self.samples.pop_back();
+        }
+        self.samples.push_back((time, pose));
+        if self.samples.len() > MOST_SAMPLES {
+            self.samples.pop_front();
+        }
+        teleport
+    }
+
+    /// The transformation from the extrapolated pose to a pose, if the change between them is a
+    /// teleport: far from both the extrapolated and the last pose, or requested.
+    fn teleport(&self, time: f64, pose: Isometry3d, limit: f32) -> Option<Isometry3d> {
+        let &(_, last) = self.samples.back()?;
+        let expected = self.pose_at(time)?;
+        let is_far = |from: Isometry3d| {
+            from.translation.distance(pose.translation) > limit
+                || from.rotation.angle_between(pose.rotation) > TELEPORT_ANGLE
+        };
+        let is_teleport =
+            (self.teleports_next && pose != last) || (is_far(last) && is_far(expected));
+        is_teleport.then(|| pose * expected.inverse())
+    }
+
+    /// The pose at a time (s): interpolated between two samples, or extrapolated from the last two.
+    pub fn pose_at(&self, time: f64) -> Option<Isometry3d> {
+        let after = self
+            .samples
+            .partition_point(|&(sample, _)| sample < time)
+            .min(self.samples.len().saturating_sub(1));
+        let &(end, b) = self.samples.get(after)?;
+        let Some(&(start, a)) = after.checked_sub(1).and_then(|before| self.samples.get(before))
+        else {
+            return Some(b);
+        };
+        let fraction = (time.min(end + LONGEST_EXTRAPOLATION) - start) / (end - start);
+        Some(interpolate(a, b, fraction as f32))
+    }
+
+    /// Extends the time of the last sample. The same as [`push`](Self::push) of the pose that all
+    /// samples have.
+    pub fn extend(&mut self, time: f64) {
+        if let Some((newest, _)) = self.samples.back_mut() {
+            *newest = newest.max(time);
+        }
+    }
+
+    /// Whether all samples have a pose, and no teleport was requested.
+    pub fn rests_at(&self, pose: Isometry3d) -> bool {
+        !self.teleports_next && self.samples.iter().all(|&(_, sample)| sample == pose)
+    }
+
+    /// Whether nothing was observed yet.
+    pub fn is_empty(&self) -> bool {
+        self.samples.is_empty()
+    }
+
+    /// Drops samples that are not needed for any time from this one (s) on.
+    pub fn drop_before(&mut self, time: f64) {
+        while self.samples.len() > 2 && self.samples[1].0 <= time {
+            self.samples.pop_front();
+        }
+    }
+}
+
+/// Interpolates two poses. The result is exact where a component does not change, so that an entity at
+/// rest has no motion at all.
+fn interpolate(a: Isometry3d, b: Isometry3d, fraction: f32) -> Isometry3d {
+    if a == b || fraction == 1.0 {
+        return b;
+    }
+    let translation = a.translation + (b.translation - a.translation) * fraction;
+    let rotation = if a.rotation == b.rotation {
+        b.rotation
+    } else {
+        a.rotation.slerp(b.rotation, fraction).normalize()
+    };
+    Isometry3d::new(translation, rotation)
+}

@@ -1,0 +1,90 @@
+//! The plugin that shows cloth with meshes.
+
+use bevy_app::{App, Plugin, PostUpdate, RunFixedMainLoop, RunFixedMainLoopSystems};
+use bevy_asset::{AssetEventSystems, Assets};
+use bevy_camera::visibility::VisibilitySystems;
+use bevy_ecs::prelude::*;
+use bevy_mesh::Mesh;
+
+use crate::render::assign_meshes::assign_meshes;
+use crate::render::bounds::bound_cloths;
+use crate::render::camera_lens::{add_viewer, follow_cameras};
+use crate::render::level_meshes::show_level;
+use crate::render::write::{write_newly_visible, write_visible};
+
+/// The sets in `PostUpdate` that show cloth. To change what is shown, change
+/// [`ClothSurface`](crate::ClothSurface)s before them.
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum ClothRenderSystems {
+    /// Meshes are assigned to new cloths, each cloth is shown with the mesh of its level, bounds are
+    /// computed, and the meshes of cloths that were visible in the last frame are written. Before
+    /// `AssetEventSystems`.
+    UpdateMeshes,
+    /// The meshes of cloths that come into view in this frame are written. After `VisibilitySystems`.
+    WriteNewlyVisible,
+}
+
+/// Shows each cloth with its `Mesh3d`; does nothing in an app without `Assets<Mesh>`.
+///
+/// # Meshes
+///
+/// A cloth without a `Mesh3d` gets one with positions, normals and, if its
+/// [`ClothMesh`](crate::ClothMesh) has them, texture coordinates. A `Mesh3d` that the user gives must
+/// have the vertices of the [`ClothMesh`](crate::ClothMesh), in its order. Its positions, normals and,
+/// if it has any, tangents are written in place. If several cloths have one mesh, all but the first get
+/// a copy. The meshes of coarser levels have the other attributes of the finest one. A mesh that cannot be
+/// written is reported in a [`ClothFailed`](crate::ClothFailed) event and left alone until the `Mesh3d`
+/// is replaced.
+///
+/// Rigid vertices, of weight 0, are written only when a cloth gets its meshes.
+///
+/// Meshes are made when a cloth is new. After that no frame allocates, except for cloths that change
+/// their level, which are eased with the mesh of the finer level. Meshes are written only of cloths that
+/// move and are visible to a camera or a light. The `Aabb` is updated whether the cloth is visible or not.
+///
+/// # Materials
+///
+/// Cloth has one layer of triangles for both of its faces. Give it a material with
+/// `double_sided: true`, so that the back is lit by the normals of the back, and `cull_mode: None`,
+/// so that it is drawn at all and casts a shadow; Bevy asks for both. `diffuse_transmission` lets
+/// light through thin cloth.
+///
+/// Bevy 0.19 turns normals to the back only where neither the mesh has tangents nor the material a
+/// normal map, or both do: have both or neither.
+///
+/// # Levels of detail
+///
+/// Every new `Camera3d` gets a [`LodViewer`](crate::LodViewer), whose lens and size follow the camera's
+/// projection and viewport. Remove it from cameras for which levels should not be chosen.
+#[derive(Debug, Default)]
+pub struct ClothRenderPlugin;
+
+impl Plugin for ClothRenderPlugin {
+    fn build(&self, app: &mut App) {
+        app.add_observer(add_viewer)
+            .add_systems(
+                RunFixedMainLoop,
+                follow_cameras.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+            )
+            .configure_sets(
+                PostUpdate,
+                (
+                    ClothRenderSystems::UpdateMeshes
+                        .before(AssetEventSystems)
+                        .before(VisibilitySystems::VisibilityPropagate),
+                    ClothRenderSystems::WriteNewlyVisible
+                        .after(VisibilitySystems::MarkNewlyHiddenEntitiesInvisible),
+                )
+                    .run_if(resource_exists::<Assets<Mesh>>),
+            )
+            .add_systems(
+                PostUpdate,
+                (
+                    (assign_meshes, show_level, bound_cloths, write_visible)
+                        .chain()
+                        .in_set(ClothRenderSystems::UpdateMeshes),
+                    write_newly_visible.in_set(ClothRenderSystems::WriteNewlyVisible),
+                ),
+            );
+    }
+}

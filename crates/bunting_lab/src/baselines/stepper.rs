@@ -1,0 +1,9 @@
+//! What a method does to the state.
+
+use super::sheet::Sheet;
+
+/// One substep of a method.
+pub trait Stepper {
+    /// Advances the sheet by `h` seconds.
+    fn substep(&mut self, sheet: &mut Sheet, h: f32);
+}

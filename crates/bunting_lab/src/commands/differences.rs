@@ -1,0 +1,117 @@
+//! Differences between what the gate measures and the committed lists.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::golden::{self, GoldenHash};
+
+/// A case as the gate sees it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GateCase {
+    /// Command, name and size: no two cases have the same.
+    pub identity: String,
+    /// Whether it fails.
+    pub fails: bool,
+}
+
+/// What differs from the committed lists: the case or hash, and how it differs.
+#[derive(Debug, Default)]
+pub struct Differences(pub Vec<[String; 2]>);
+
+impl Differences {
+    fn add(&mut self, what: impl Into<String>, how: impl Into<String>) {
+        self.0.push([what.into(), how.into()]);
+    }
+
+    /// Compares cases with the list of those that are known to fail, one identity a line.
+    pub fn compare_cases(&mut self, known_failures: &str, cases: &[GateCase]) {
+        let mut counts = BTreeMap::new();
+        for case in cases {
+            *counts.entry(case.identity.as_str()).or_insert(0) += 1;
+        }
+        for (identity, count) in counts.iter().filter(|(_, count)| **count > 1) {
+            self.add(*identity, format!("is the identity of {count} cases"));
+        }
+        let known: BTreeSet<&str> = known_failures.lines().collect();
+        let failing: BTreeSet<&str> =
+            cases.iter().filter(|case| case.fails).map(|case| case.identity.as_str()).collect();
+        for case in failing.difference(&known) {
+            self.add(*case, "fails, and is not on the list of known failures");
+        }
+        for case in known.difference(&failing) {
+            let how = if counts.contains_key(case) { "passes" } else { "does not exist" };
+            self.add(*case, format!("is on the list of known failures, and {how}"));
+        }
+    }
+
+    /// Compares hashes with those that are expected.
+    pub fn compare_hashes(&mut self, expected: &str, hashes: &[GoldenHash]) {
+        let measured = golden::list(hashes);
+        for line in measured.lines().filter(|line| !expected.lines().any(|it| it == *line)) {
+            self.add(line, "hash is not as expected");
+        }
+        for line in expected.lines().filter(|line| !measured.lines().any(|it| it == *line)) {
+            self.add(line, "hash was expected");
+        }
+        for hash in hashes {
+            for deviation in &hash.deviations {
+                self.add(hash.scene, format!("differs at {deviation}"));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cases(verdicts: &[(&str, bool)]) -> Vec<GateCase> {
+        let case =
+            |&(identity, fails): &(&str, bool)| GateCase { identity: identity.into(), fails };
+        verdicts.iter().map(case).collect()
+    }
+
+    fn differences(known_failures: &str, verdicts: &[(&str, bool)]) -> Vec<[String; 2]> {
+        let mut differences = Differences::default();
+        differences.compare_cases(known_failures, &cases(verdicts));
+        differences.0
+    }
+
+    #[test]
+    fn what_newly_fails_passes_or_vanishes_is_a_difference() {
+        let verdicts = [("a", true), ("b", true), ("c", false)];
+        assert!(differences("a\nb\n", &verdicts).is_empty());
+        for (known, case, how) in [
+            ("a\n", "b", "not on the list"),
+            ("a\nb\nc\n", "c", "and passes"),
+            ("a\nb\nd\n", "d", "and does not exist"),
+        ] {
+            let [[what, found]] = &differences(known, &verdicts)[..] else { panic!("{known:?}") };
+            assert!(what == case && found.contains(how), "{what} {found}");
+        }
+    }
+
+    #[test]
+    fn two_cases_of_one_identity_are_a_difference() {
+        for fails in [[false, false], [true, true], [true, false]] {
+            let found = differences("a\n", &[("a", true), ("b", false), ("a", fails[0])]);
+            assert!(found[0][1].contains("2 cases"), "{found:?}");
+            let found = differences("", &[("b", false), ("b", false)]);
+            assert_eq!(found.len(), 1, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn other_hashes_missing_scenes_and_deviations_are_differences() {
+        let hash = |deviations| [GoldenHash { scene: "a", hashes: [1, 2], deviations }];
+        let count = |expected: &str, deviations: Vec<String>| {
+            let mut differences = Differences::default();
+            differences.compare_hashes(expected, &hash(deviations));
+            differences.0.len()
+        };
+        let same = "a\t0000000000000001\t0000000000000002\n";
+        assert_eq!(count(same, Vec::new()), 0);
+        assert_eq!(count(same, vec!["8 lanes".into()]), 1);
+        assert_eq!(count("a\t0000000000000001\t0000000000000003\n", Vec::new()), 2);
+        assert_eq!(count("", Vec::new()), 1);
+    }
+}

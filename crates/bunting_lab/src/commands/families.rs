@@ -1,0 +1,62 @@
+//! Families of cases: each is independent of the others, so they run on all cores.
+
+use std::time::Instant;
+
+use serde_json::{Value, json};
+
+use super::progress;
+use crate::{
+    output::table::{Table, figure},
+    parallel,
+};
+
+/// The cases of one family.
+#[derive(Debug)]
+pub struct Family<Case> {
+    /// Its name.
+    pub name: &'static str,
+    /// Its cases, in their order.
+    pub cases: Vec<Case>,
+    /// Wall-clock time that its thread took, s.
+    pub seconds: f64,
+}
+
+/// Runs every family; `run` is given what stands beside the family's name.
+pub fn run<Entry: Copy + Sync, Case: Send>(
+    all: &[(&'static str, Entry)],
+    run: impl Fn(Entry) -> Vec<Case> + Sync,
+) -> Vec<Family<Case>> {
+    let bar = progress(all.len());
+    let families = parallel::map(all, |&(name, entry)| {
+        let start = Instant::now();
+        let cases = run(entry);
+        bar.inc(1);
+        Family { name, cases, seconds: start.elapsed().as_secs_f64() }
+    });
+    bar.finish_and_clear();
+    families
+}
+
+/// The time of each family, the longest first.
+#[must_use]
+pub fn times<Case>(command: &str, families: &[Family<Case>]) -> Table {
+    let mut longest_first: Vec<_> = families.iter().collect();
+    longest_first.sort_by(|a, b| b.seconds.total_cmp(&a.seconds));
+    let sum: f64 = families.iter().map(|family| family.seconds).sum();
+    Table {
+        name: format!("{command}_times"),
+        title: format!("Time of the families of {command}, {} s on their threads", figure(sum)),
+        headers: vec!["family", "cases", "s"],
+        rows: longest_first
+            .into_iter()
+            .map(|it| vec![it.name.into(), it.cases.len().to_string(), figure(it.seconds)])
+            .collect(),
+    }
+}
+
+/// Name, number of cases and time of each family.
+#[must_use]
+pub fn json<Case>(families: &[Family<Case>]) -> Value {
+    let family = |it: &Family<Case>| json!({ "name": it.name, "cases": it.cases.len(), "seconds": it.seconds });
+    families.iter().map(family).collect()
+}

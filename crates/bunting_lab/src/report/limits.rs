@@ -1,0 +1,20 @@
+//! What the project cannot do, said where its figures are.
+
+/// What a reader of the figures might expect and will not find.
+pub const LIMITS: [&str; 14] = [
+    "Self-collision: a cloth passes through itself.",
+    "Collision of cloths with one another.",
+    "Two-way coupling: cloth does not push back on what it touches or hangs from.",
+    "Features of shapes: particles are tested, not the triangles between them, so sharp edges and corners \
+     of a shape can poke through between particles.",
+    "Continuous contact with shapes that deform.",
+    "Several targets: a cloth is attached to one entity.",
+    "Compliant or sliding attachments; pins are exact and fixed on the cloth.",
+    "Skinning: cloth that follows the bones of a character.",
+    "Tearing.",
+    "Plasticity: a fold leaves no crease.",
+    "Curved rest shapes with their own bending on grids; they are flat.",
+    "Local wind: a field is the same everywhere but for its gusts, and nothing shelters a cloth from it.",
+    "Air that cloth moves: the wind knows nothing of the cloth.",
+    "Exact stretch on irregular meshes: the chains cut from their edges need more substeps than a grid's.",
+];

@@ -1,0 +1,29 @@
+//! Counted memory. One test in a program of its own: other tests would allocate meanwhile.
+
+use bunting_lab::{commands::memory, heap::held_by};
+
+#[test]
+fn memory_is_counted_and_grows_with_the_number_of_particles() {
+    let (_list, held) = held_by(|| {
+        drop(vec![0_u8; 1 << 20]);
+        let mut list: Vec<u64> = Vec::with_capacity(10);
+        list.reserve_exact(1000);
+        list
+    });
+    assert_eq!(held, 8000);
+    let json = memory::run().json;
+    let bytes = |list: &str, key: &str| -> Vec<u64> {
+        let rows = json[list].as_array().expect(list).iter();
+        rows.map(|row| row[key].as_u64().expect(key)).collect()
+    };
+    let fabrics = bytes("fabrics", "bytes");
+    assert_eq!(fabrics.len(), 4);
+    assert!(fabrics.windows(2).all(|pair| pair[0] > 2 * pair[1]), "{fabrics:?}");
+    // A particle is at least a position, a velocity and a normal in each lane.
+    for row in json["batches"].as_array().expect("batches") {
+        let n = row["n"].as_u64().expect("n");
+        let least = n * n * row["lanes"].as_u64().expect("lanes") * 36;
+        let held = row["bytes"].as_u64().expect("bytes");
+        assert!(held > least && held < 20 * least, "{row}");
+    }
+}

@@ -1,0 +1,71 @@
+//! The steps from a builder to a fabric.
+
+use super::source::FabricBuilder;
+use crate::fabric::error::FabricError;
+use crate::fabric::fabric::Fabric;
+use crate::fabric::mesh::RestMesh;
+use crate::fabric::weld::weld;
+
+impl FabricBuilder {
+    /// Builds the fabric.
+    ///
+    /// # Errors
+    ///
+    /// A [`FabricError`] says what is wrong with the mesh, and where.
+    pub fn build(self) -> Result<Fabric, FabricError> {
+        self.validate()?;
+        let welded = weld(&self.positions, self.effective_weld_distance());
+        let (mesh, surface) =
+            RestMesh::new(&self.positions, &self.uv, &self.indices, self.pinned, welded)?;
+        Ok(Fabric::new(mesh, &surface, self.grid, self.tethered))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use crate::fabric::{FabricBuilder, FabricError, Grid};
+
+    const QUAD: [Vec3; 4] = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 1.0, 0.0)];
+
+    fn error(positions: &[Vec3], indices: &[u32]) -> FabricError {
+        FabricBuilder::new(positions.to_vec(), indices.to_vec()).build().expect_err("a bad mesh")
+    }
+
+    #[test]
+    fn bad_meshes_say_where() {
+        assert_eq!(error(&QUAD, &[]), FabricError::Empty);
+        assert_eq!(error(&QUAD, &[0, 1, 2, 3]), FabricError::IndexCount { count: 4 });
+        assert_eq!(
+            error(&QUAD, &[0, 1, 2, 1, 9, 2]),
+            FabricError::IndexOutOfRange { triangle: 1, vertex: 9, vertices: 4 }
+        );
+        let mut infinite = QUAD;
+        infinite[2].y = f32::INFINITY;
+        assert_eq!(error(&infinite, &[0, 1, 2]), FabricError::NotFinite { vertex: 2 });
+        assert_eq!(error(&QUAD, &[0, 1, 2, 1, 1, 3]), FabricError::ZeroArea { triangle: 1 });
+        assert_eq!(error(&QUAD, &[0, 1, 2]), FabricError::LooseVertex { vertex: 3 });
+        let fan = [QUAD[0], QUAD[1], QUAD[2], QUAD[3], Vec3::Z];
+        assert_eq!(
+            error(&fan, &[1, 2, 0, 1, 2, 3, 1, 2, 4]),
+            FabricError::NonManifoldEdge { a: 1, b: 2 }
+        );
+        let pinned = FabricBuilder::new(QUAD.to_vec(), vec![0, 1, 2, 1, 3, 2]).pin([4]).build();
+        assert_eq!(
+            pinned.expect_err("a bad pin"),
+            FabricError::PinOutOfRange { vertex: 4, vertices: 4 }
+        );
+        let grid = FabricBuilder::grid(Grid::new(1, 5, 1.0, 1.0)).build();
+        assert!(matches!(grid, Err(FabricError::Grid { columns: 1, .. })));
+    }
+
+    #[test]
+    fn all_pinned_is_allowed_and_has_nothing_to_solve() {
+        let fabric = FabricBuilder::grid(Grid::new(3, 3, 1.0, 1.0))
+            .pin(0..9)
+            .build()
+            .expect("a good fabric");
+        assert!(fabric.links().is_empty() && fabric.hinges().is_empty());
+    }
+}

@@ -1,0 +1,124 @@
+//! The mesh that a fabric is built from, its pins and its options.
+
+use std::collections::BTreeSet;
+
+use glam::{Vec2, Vec3};
+
+use crate::fabric::grid::Grid;
+use crate::fabric::weld::default_distance;
+
+/// Collects a mesh and its pins, checks them, and builds a [`Fabric`](crate::Fabric) from them.
+///
+/// ```
+/// use bunting_solver::{FabricBuilder, Grid};
+///
+/// let flag = FabricBuilder::grid(Grid::new(33, 23, 1.5, 1.0))
+///     .pin_where(|_position, uv| uv.x == 0.0)
+///     .build()?;
+/// assert_eq!(flag.particle_count(), 33 * 23);
+/// # Ok::<(), bunting_solver::FabricError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct FabricBuilder {
+    pub(super) positions: Vec<Vec3>,
+    pub(super) indices: Vec<u32>,
+    /// One per vertex, or none.
+    pub(super) uv: Vec<Vec2>,
+    pub(super) pinned: BTreeSet<u32>,
+    /// m; by default a part of the mesh's extent.
+    pub(super) weld_distance: Option<f32>,
+    pub(super) tethered: bool,
+    /// The grid that the mesh was made from.
+    pub(super) grid: Option<Grid>,
+}
+
+impl FabricBuilder {
+    /// A mesh of triangles: positions in metres, three vertex indices per triangle, counter-clockwise seen from the
+    /// front.
+    #[must_use]
+    pub fn new(positions: Vec<Vec3>, indices: Vec<u32>) -> Self {
+        Self {
+            positions,
+            indices,
+            uv: Vec::new(),
+            pinned: BTreeSet::new(),
+            weld_distance: None,
+            tethered: true,
+            grid: None,
+        }
+    }
+
+    /// A rectangular grid, with links along both diagonals of each cell.
+    #[must_use]
+    pub fn grid(grid: Grid) -> Self {
+        if grid.validate().is_err() {
+            // `build` reports it.
+            return Self { grid: Some(grid), ..Self::new(Vec::new(), Vec::new()) };
+        }
+        Self {
+            uv: grid.uvs(),
+            grid: Some(grid),
+            // A grid has no seams.
+            weld_distance: Some(0.0),
+            ..Self::new(grid.positions(), grid.triangles(false).into_iter().flatten().collect())
+        }
+    }
+
+    /// Texture coordinates, one per vertex: the warp runs along u. Without them the warp of each triangle runs along
+    /// its first edge, which does not matter to a material of equal warp and weft stiffness.
+    #[must_use]
+    pub fn uv(mut self, uv: Vec<Vec2>) -> Self {
+        self.uv = uv;
+        self
+    }
+
+    /// Pins vertices to the cloth's frame.
+    #[must_use]
+    pub fn pin(mut self, vertices: impl IntoIterator<Item = u32>) -> Self {
+        self.pinned.extend(vertices);
+        self
+    }
+
+    /// Pins the vertices for which a predicate on position (m) and texture coordinate holds.
+    #[must_use]
+    pub fn pin_where(mut self, predicate: impl Fn(Vec3, Vec2) -> bool) -> Self {
+        let uv = |vertex: usize| self.uv.get(vertex).copied().unwrap_or_default();
+        let chosen = (0..self.positions.len())
+            .filter(|&vertex| predicate(self.positions[vertex], uv(vertex)));
+        self.pinned.extend(chosen.map(|vertex| vertex as u32));
+        self
+    }
+
+    /// Distance in metres at which vertices are merged into one particle; zero merges none. By default a millionth of
+    /// the mesh's extent.
+    #[must_use]
+    pub fn weld_distance(mut self, distance: f32) -> Self {
+        self.weld_distance = Some(distance);
+        self
+    }
+
+    /// Whether free particles are tethered to their pins, as they are by default. A tether bounds the distance from a
+    /// pin along the cloth, which stops overshoot in violent motion; without tethers a step costs a little less.
+    #[must_use]
+    pub fn tethered(mut self, tethered: bool) -> Self {
+        self.tethered = tethered;
+        self
+    }
+
+    /// Positions of the vertices, m.
+    #[must_use]
+    pub fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    /// Three vertices per triangle.
+    #[must_use]
+    pub fn indices(&self) -> &[u32] {
+        &self.indices
+    }
+
+    /// The distance in metres at which vertices are merged.
+    pub(super) fn effective_weld_distance(&self) -> f32 {
+        self.weld_distance.unwrap_or_else(|| default_distance(&self.positions))
+    }
+}

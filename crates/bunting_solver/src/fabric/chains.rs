@@ -1,0 +1,240 @@
+//! Chains: yarns arranged in the order in which they are solved, two at a time.
+//!
+//! Solving a yarn is one long sequence of divisions, each of which waits for the one before. Yarns of one colour do
+//! not depend on one another, so that two of them, solved in step and stored interleaved, take hardly longer than
+//! one. The shorter chain of a pair is filled up with links from its last particle to itself, which have no
+//! direction and exert no force.
+//!
+//! The constant `C` of a link is an `f32`, the same for all cloths of a batch; where one cloth fills the lanes it
+//! is a pack, and a chain is as many yarns side by side as there are lanes.
+
+use core::ops::Range;
+use std::collections::HashMap;
+
+use super::colour::Colours;
+use super::grid::Grid;
+use super::links::{Link, LinkFamily};
+use super::yarns::Yarn;
+
+/// Number of chains that are solved in step. With three or four the state of the elimination no longer fits into
+/// the registers, which was slower at every width but one.
+pub(crate) const CHAINS_PER_PAIR: usize = 2;
+
+/// A yarn as it is solved.
+#[derive(Clone, Debug)]
+pub(crate) struct Chain<C = f32> {
+    /// Particles along it, one more than there are links.
+    pub particles: Vec<u32>,
+    /// Links along it.
+    pub links: Vec<ChainLink<C>>,
+    /// The order in which a Gauss–Seidel sweep visits the links: every second link and then the others, each with
+    /// its class.
+    pub sweep_order: Vec<(usize, u32)>,
+}
+
+/// A link of a chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ChainLink<C = f32> {
+    /// Index into the fabric's link classes.
+    pub class: u32,
+    /// Distance at rest, m.
+    pub rest_length: C,
+}
+
+/// Two chains of one colour, interleaved: row i holds the i-th particles, or links, of both. The last pair of a
+/// colour may be a single chain.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ChainPair<C = f32> {
+    /// Number of chains, one or two. Columns from here on repeat the last chain and are not solved.
+    pub count: usize,
+    /// Rows of particles, one more than there are rows of links.
+    pub particles: Vec<[u32; CHAINS_PER_PAIR]>,
+    /// Rows of links.
+    pub links: Vec<[ChainLink<C>; CHAINS_PER_PAIR]>,
+    /// Indices of its links' target lengths: row by row, `count` in each.
+    pub targets: Range<usize>,
+}
+
+/// The chains of one colour.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct ChainColour {
+    /// The direction of their links.
+    pub family: LinkFamily,
+    /// Their pairs, in [`Chains::pairs`].
+    pub pairs: Range<usize>,
+    /// Their links, in [`Chains::sweep_links`].
+    pub sweep_links: Range<usize>,
+}
+
+/// A link of a Gauss–Seidel sweep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SweepLink {
+    /// The two particles.
+    pub particles: [u32; 2],
+    /// Index into the fabric's link classes.
+    pub class: u32,
+    /// Index of its target length.
+    pub target: u32,
+}
+
+/// A cell of a grid, or a pack of cells, with its diagonals.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Cell {
+    /// Top left, top right, bottom left and bottom right.
+    pub corners: [u32; 4],
+    /// Indices of its diagonals' target lengths; twice the same where there is only one diagonal.
+    pub targets: [u32; 2],
+}
+
+/// All chains of a fabric.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Chains<C = f32> {
+    /// Colour by colour.
+    pub pairs: Vec<ChainPair<C>>,
+    /// In the order in which they are solved: warp, weft, diagonals.
+    pub colours: Vec<ChainColour>,
+    /// Links of warp and weft, chain after chain; neighbours in the list share no particle.
+    pub sweep_links: Vec<SweepLink>,
+    /// The cells of a grid whose diagonals are links; none of other meshes.
+    pub cells: Vec<Cell>,
+}
+
+impl Chains {
+    /// One chain per yarn, and the cells of a grid.
+    pub(super) fn of(
+        yarns: &[Yarn],
+        colours: &Colours,
+        links: &[Link],
+        grid: Option<&Grid>,
+    ) -> Self {
+        let chain = |yarn: &Yarn| {
+            let count = yarn.links.len();
+            let order = (0..count).step_by(2).chain((1..count).step_by(2));
+            let link = |at: usize| &links[yarn.links[at] as usize];
+            Chain {
+                particles: yarn.particles.clone(),
+                links: (0..count).map(|at| ChainLink::of(link(at))).collect(),
+                sweep_order: order.map(|at| (at, link(at).class)).collect(),
+            }
+        };
+        let mut chains = Self::of_colours(colours.ranges().iter().map(|range| {
+            let yarns = &yarns[range.clone()];
+            let family = links[yarns[0].links[0] as usize].family;
+            (family, yarns.iter().map(chain).collect())
+        }));
+        if let Some(grid) = grid {
+            chains.cells = chains.cells_of(grid);
+        }
+        chains
+    }
+
+    /// The cells of a grid, with the targets of those of their diagonals that are links.
+    fn cells_of(&self, grid: &Grid) -> Vec<Cell> {
+        let targets: HashMap<[u32; 2], u32> =
+            self.diagonals().map(|([a, b], target)| ([a.min(b), a.max(b)], target)).collect();
+        let cell = |corners| {
+            let [top_left, top_right, bottom_left, bottom_right] = corners;
+            let falling = targets.get(&[top_left, bottom_right]);
+            let rising = targets.get(&[top_right, bottom_left]);
+            let targets = [*falling.or(rising)?, *rising.or(falling)?];
+            Some(Cell { corners, targets })
+        };
+        grid.cells().filter_map(|(corners, _)| cell(corners)).collect()
+    }
+}
+
+impl<C: Copy> Chains<C> {
+    /// Arranges chains, given colour by colour, in pairs. No cells.
+    pub fn of_colours(colours: impl Iterator<Item = (LinkFamily, Vec<Chain<C>>)>) -> Self {
+        let mut chains = Self {
+            pairs: Vec::new(),
+            colours: Vec::new(),
+            sweep_links: Vec::new(),
+            cells: Vec::new(),
+        };
+        for (family, of_colour) in colours {
+            let (first_pair, first_link) = (chains.pairs.len(), chains.sweep_links.len());
+            for pair in of_colour.chunks(CHAINS_PER_PAIR) {
+                chains.push_pair(family, pair);
+            }
+            chains.colours.push(ChainColour {
+                family,
+                pairs: first_pair..chains.pairs.len(),
+                sweep_links: first_link..chains.sweep_links.len(),
+            });
+        }
+        chains
+    }
+
+    fn push_pair(&mut self, family: LinkFamily, chains: &[Chain<C>]) {
+        let first_target = self.target_count();
+        self.pairs.push(ChainPair::of(chains, first_target));
+        if family == LinkFamily::Diagonal {
+            return;
+        }
+        for (column, chain) in chains.iter().enumerate() {
+            self.sweep_links.extend(chain.sweep_order.iter().map(|&(row, class)| SweepLink {
+                particles: [chain.particles[row], chain.particles[row + 1]],
+                class,
+                target: (first_target + row * chains.len() + column) as u32,
+            }));
+        }
+    }
+
+    /// The diagonal links: both ends, and the index of the target length. Links that fill up a shorter chain are
+    /// among them.
+    pub fn diagonals(&self) -> impl Iterator<Item = ([u32; 2], u32)> {
+        let diagonal = self.colours.iter().filter(|colour| colour.family == LinkFamily::Diagonal);
+        diagonal.flat_map(|colour| &self.pairs[colour.pairs.clone()]).flat_map(|pair| {
+            let rows = pair.particles.windows(2).enumerate();
+            rows.flat_map(move |(row, ends)| {
+                (0..pair.count).map(move |column| {
+                    let target = pair.targets.start + row * pair.count + column;
+                    ([ends[0][column], ends[1][column]], target as u32)
+                })
+            })
+        })
+    }
+
+    /// Number of target lengths, including those of links that fill up a shorter chain.
+    pub fn target_count(&self) -> usize {
+        self.pairs.last().map_or(0, |pair| pair.targets.end)
+    }
+
+    /// Most rows of links of a pair.
+    pub fn longest(&self) -> usize {
+        self.pairs.iter().map(|pair| pair.links.len()).max().unwrap_or(0)
+    }
+}
+
+impl ChainLink {
+    fn of(link: &Link) -> Self {
+        Self { class: link.class, rest_length: link.rest_length }
+    }
+}
+
+impl<C: Copy> ChainPair<C> {
+    /// One or two chains, whose targets begin at an index.
+    fn of(chains: &[Chain<C>], first_target: usize) -> Self {
+        let rows = chains.iter().map(|chain| chain.links.len()).max().unwrap_or(0);
+        let chain = |column: usize| &chains[column.min(chains.len() - 1)];
+        let particles = (0..=rows).map(|row| {
+            core::array::from_fn(|column| {
+                let path = &chain(column).particles;
+                path[row.min(path.len() - 1)]
+            })
+        });
+        let links = (0..rows).map(|row| {
+            core::array::from_fn(|column| {
+                let path = &chain(column).links;
+                path[row.min(path.len() - 1)]
+            })
+        });
+        Self {
+            count: chains.len(),
+            particles: particles.collect(),
+            links: links.collect(),
+            targets: first_target..first_target + rows * chains.len(),
+        }
+    }
+}

@@ -1,0 +1,263 @@
+//! The fabric: a mesh at rest with everything that can be computed from it before a cloth moves.
+
+use glam::{Vec2, Vec3};
+
+use super::bending::{BendLine, BendProfile, Bending};
+use super::chains::Chains;
+use super::colour::Colours;
+use super::grid::Grid;
+use super::hinges::{Hinge, HingeClass, Hinges};
+use super::links::{Link, LinkClass, Links};
+use super::material::FabricMaterial;
+use super::mesh::{RestMesh, Surface};
+use super::normals::vertex_normals;
+use super::patches::{self, Patch};
+use super::tethers::{self, Pin, Tether, Tethers};
+use super::twist::{Ribbon, RibbonProfile, Twist};
+use super::yarns::{Yarn, Yarns};
+
+/// A piece of cloth at rest, with its pins. Immutable; all cloths cut from it share it in an `Arc`.
+///
+/// Built by a [`FabricBuilder`](crate::FabricBuilder). Vertices of the source mesh that lie at one place are one
+/// particle, see [`particle_of_vertex`](Self::particle_of_vertex); everything else is indexed by particle.
+#[derive(Clone, Debug)]
+pub struct Fabric {
+    grid: Option<Grid>,
+    mesh: RestMesh,
+    patches: Vec<Patch>,
+    patch_grid_columns: Option<usize>,
+    links: Links,
+    yarns: Yarns,
+    chains: Chains,
+    hinges: Hinges,
+    bending: Bending,
+    twist: Twist,
+    tethers: Tethers,
+    tautness: f32,
+}
+
+impl Fabric {
+    /// The constraints of a mesh, or of the grid that the mesh was made from.
+    pub(super) fn new(
+        mesh: RestMesh,
+        surface: &Surface,
+        grid: Option<Grid>,
+        tethered: bool,
+    ) -> Self {
+        let links = Links::of(&mesh, grid.as_ref());
+        let yarns = Yarns::of(&mesh.positions, &links.list);
+        let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref());
+        let hinges = Hinges::of(&mesh, &surface.edges);
+        let bending = grid.map(|grid| Bending::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
+        let twist = grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
+        let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
+        let patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
+        let cells = grid.filter(|grid| patches::are_cells(&patches, grid));
+        Self {
+            patch_grid_columns: cells.map(|grid| grid.columns as usize),
+            tautness: tethers.reach.sqrt() / links.shortest(),
+            grid,
+            mesh,
+            patches,
+            links,
+            yarns,
+            chains,
+            hinges,
+            bending,
+            twist,
+            tethers,
+        }
+    }
+
+    /// Positions at rest in the cloth's frame, m, one per particle.
+    #[must_use]
+    pub fn rest_positions(&self) -> &[Vec3] {
+        &self.mesh.positions
+    }
+
+    /// Texture coordinates, one per particle: u runs along the warp, v along the weft.
+    #[must_use]
+    pub fn uvs(&self) -> &[Vec2] {
+        &self.mesh.uv
+    }
+
+    /// Triangles as particle indices, counter-clockwise seen from the front.
+    #[must_use]
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.mesh.triangles
+    }
+
+    /// The particle that each vertex of the source mesh was merged into.
+    #[must_use]
+    pub fn particle_of_vertex(&self) -> &[u32] {
+        &self.mesh.particle_of_vertex
+    }
+
+    /// Number of particles.
+    #[must_use]
+    pub fn particle_count(&self) -> usize {
+        self.mesh.positions.len()
+    }
+
+    /// Area of each particle, m²: a third of each triangle that it borders (thesis, 5.1.3). Times the material's
+    /// area density it is the particle's mass, pinned or not.
+    #[must_use]
+    pub fn particle_areas(&self) -> &[f32] {
+        &self.mesh.areas
+    }
+
+    /// Area of the whole fabric, m².
+    #[must_use]
+    pub fn area(&self) -> f32 {
+        self.mesh.areas.iter().sum()
+    }
+
+    /// Whether a particle is pinned to the cloth's frame.
+    #[must_use]
+    pub fn is_pinned(&self, particle: usize) -> bool {
+        self.mesh.inverse_areas[particle] == 0.0
+    }
+
+    /// Whether any particle is pinned.
+    #[must_use]
+    pub fn has_pins(&self) -> bool {
+        !self.tethers.pins.is_empty()
+    }
+
+    /// Unit normals at the particles for given positions (m, one per particle), to the front: the area-weighted
+    /// mean of the normals of each particle's triangles. Zero where these have no area.
+    #[must_use]
+    pub fn normals(&self, positions: &[Vec3]) -> Vec<Vec3> {
+        let triangles = self.mesh.triangles.iter();
+        let corners = |corners: &[u32; 3]| corners.map(|corner| positions[corner as usize]);
+        vertex_normals(positions.len(), triangles.map(|triangle| (corners(triangle), *triangle)))
+    }
+
+    /// Distance constraints: warp first, then weft, then diagonals. Links between two pinned particles are left out.
+    #[must_use]
+    pub fn links(&self) -> &[Link] {
+        &self.links.list
+    }
+
+    /// Stiffness in N/m of one of this fabric's [`links`](Self::links) in a material, where diagonals resist stretch
+    /// as well as shear: on triangle meshes, and in the Gauss–Seidel scheme.
+    #[must_use]
+    pub fn link_stiffness(&self, link: &Link, material: &FabricMaterial) -> f32 {
+        self.links.classes[link.class as usize].stiffness(material)
+    }
+
+    /// Number of edges at which the Gauss–Seidel scheme, and any scheme on a triangle mesh, resists bending.
+    #[must_use]
+    pub fn hinge_count(&self) -> usize {
+        self.hinges.list.len()
+    }
+
+    /// The grid that the fabric was made from, if it was.
+    pub(crate) fn grid(&self) -> Option<&Grid> {
+        self.grid.as_ref()
+    }
+
+    /// One over the area of each particle, 1/m²; zero where it is pinned, as if infinitely heavy (thesis, 5.1.4).
+    pub(crate) fn inverse_areas(&self) -> &[f32] {
+        &self.mesh.inverse_areas
+    }
+
+    /// The triangles in pairs.
+    pub(crate) fn patches(&self) -> &[Patch] {
+        &self.patches
+    }
+
+    /// Number of particles in a row, where the patches are the cells of a grid, row by row; else none.
+    pub(crate) fn patch_grid_columns(&self) -> Option<usize> {
+        self.patch_grid_columns
+    }
+
+    /// Stiffnesses that links refer to.
+    pub(crate) fn link_classes(&self) -> &[LinkClass] {
+        &self.links.classes
+    }
+
+    /// The links in straight paths, colour by colour.
+    pub(crate) fn yarns(&self) -> &[Yarn] {
+        &self.yarns.list
+    }
+
+    /// Runs of yarns that share no particle.
+    pub(crate) fn yarn_colours(&self) -> &Colours {
+        &self.yarns.colours
+    }
+
+    /// The yarns as they are solved, where each cloth has a lane.
+    pub(crate) fn chains(&self) -> &Chains {
+        &self.chains
+    }
+
+    /// Whether diagonals resist shear alone (`constraints/shear.rs`): on grids whose diagonals are links of the
+    /// family [`Diagonal`](crate::LinkFamily::Diagonal).
+    pub(crate) fn has_shear_cells(&self) -> bool {
+        !self.chains.cells.is_empty()
+    }
+
+    /// Bending constraints of the Gauss–Seidel scheme and of triangle meshes, colour by colour.
+    pub(crate) fn hinges(&self) -> &[Hinge] {
+        &self.hinges.list
+    }
+
+    /// Stiffnesses that hinges refer to.
+    pub(crate) fn hinge_classes(&self) -> &[HingeClass] {
+        &self.hinges.classes
+    }
+
+    /// Rows and columns along which a grid bends; none of other meshes, which bend at their hinges.
+    pub(crate) fn bend_lines(&self) -> &[BendLine] {
+        &self.bending.lines
+    }
+
+    /// Profiles that bend lines refer to.
+    pub(crate) fn bend_profiles(&self) -> &[BendProfile] {
+        &self.bending.profiles
+    }
+
+    /// Ribbons of cells along which a grid twists; none of other meshes.
+    pub(crate) fn ribbons(&self) -> &[Ribbon] {
+        &self.twist.ribbons
+    }
+
+    /// Profiles that ribbons refer to.
+    pub(crate) fn ribbon_profiles(&self) -> &[RibbonProfile] {
+        &self.twist.profiles
+    }
+
+    /// The pinned particles.
+    pub(crate) fn pins(&self) -> &[Pin] {
+        &self.tethers.pins
+    }
+
+    /// Of each free particle the tether to its nearest pin.
+    pub(crate) fn tethers(&self) -> &[Tether] {
+        &self.tethers.near
+    }
+
+    /// Tethers to the pins that are farthest from particles at rest, of particles that lie farther from them than
+    /// [`reach`](Self::reach).
+    pub(crate) fn far_tethers(&self) -> &[Tether] {
+        &self.tethers.far
+    }
+
+    /// Greatest distance of any particle from its nearest pin, with the slack of its tether, m; zero without pins.
+    pub(crate) fn reach(&self) -> f32 {
+        self.tethers.reach
+    }
+
+    /// √L/l, m^−½, with L the [`reach`](Self::reach) and l the length of the shortest link of warp and weft. The
+    /// topmost links of a cloth of length L that hangs under gravity g vibrate at 2 √g times this, rad/s.
+    pub(crate) fn tautness(&self) -> f32 {
+        self.tautness
+    }
+
+    /// The distance of each particle from a pin at rest, along the cloth, m; infinite where no way leads to it.
+    pub(crate) fn distances_from(&self, pin: Pin) -> Vec<f32> {
+        let edges = self.mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        tethers::distances(&self.mesh.positions, edges, pin, self.grid.is_some())
+    }
+}

@@ -1,0 +1,130 @@
+//! The mesh of a fabric: particles, triangles and edges, with their areas and pins.
+
+use glam::{Vec2, Vec3};
+
+use super::error::FabricError;
+use super::topology::{self, Edge};
+use super::weld::Weld;
+
+/// Least area of a triangle over the square of its longest edge. Smaller: the normals and stiffnesses of thin
+/// triangles are rounding errors. Larger: sound meshes are refused.
+const LEAST_ASPECT: f32 = 1e-6;
+
+/// Particles and triangles at rest.
+#[derive(Clone, Debug)]
+pub(crate) struct RestMesh {
+    /// Positions, m, one per particle.
+    pub positions: Vec<Vec3>,
+    /// Texture coordinates, one per particle.
+    pub uv: Vec<Vec2>,
+    /// Particles at the corners, counter-clockwise seen from the front.
+    pub triangles: Vec<[u32; 3]>,
+    /// The particle that each vertex of the source mesh was merged into.
+    pub particle_of_vertex: Vec<u32>,
+    /// A third of the areas of a particle's triangles, m² (thesis, 5.1.3).
+    pub areas: Vec<f32>,
+    /// One over these, 1/m²; zero where the particle is pinned (thesis, 5.1.4).
+    pub inverse_areas: Vec<f32>,
+}
+
+/// What only the construction of a fabric needs of its mesh.
+#[derive(Clone, Debug)]
+pub(super) struct Surface {
+    /// m², one per triangle.
+    pub triangle_areas: Vec<f32>,
+    /// All edges, sorted by their ends.
+    pub edges: Vec<Edge>,
+}
+
+impl RestMesh {
+    /// Merges vertices into particles and measures their triangles.
+    ///
+    /// # Errors
+    ///
+    /// A triangle without area, a vertex without triangle, an edge of more than two triangles.
+    pub(super) fn new(
+        positions: &[Vec3],
+        uv: &[Vec2],
+        indices: &[u32],
+        pinned: impl IntoIterator<Item = u32>,
+        weld: Weld,
+    ) -> Result<(Self, Surface), FabricError> {
+        let Weld { particle_of_vertex, vertex_of_particle } = weld;
+        let vertices = || vertex_of_particle.iter().map(|&vertex| vertex as usize);
+        let particle = |vertex: u32| particle_of_vertex[vertex as usize];
+        let corner_particles = |corners: &[u32]| [0, 1, 2].map(|corner| particle(corners[corner]));
+
+        let rest: Vec<Vec3> = vertices().map(|vertex| positions[vertex]).collect();
+        let triangles: Vec<[u32; 3]> = indices.chunks_exact(3).map(corner_particles).collect();
+        let triangle_areas = triangle_areas(&rest, &triangles)?;
+        let areas = particle_areas(rest.len(), &triangles, &triangle_areas);
+        if let Some(loose) = areas.iter().position(|&area| area == 0.0) {
+            return Err(FabricError::LooseVertex { vertex: vertex_of_particle[loose] as usize });
+        }
+        let edges = topology::edges(&triangles).map_err(|ends| {
+            let [a, b] = ends.map(|end| vertex_of_particle[end as usize]);
+            FabricError::NonManifoldEdge { a, b }
+        })?;
+        let mut inverse_areas: Vec<f32> = areas.iter().map(|area| 1.0 / area).collect();
+        for vertex in pinned {
+            inverse_areas[particle(vertex) as usize] = 0.0;
+        }
+        let mesh = Self {
+            positions: rest,
+            uv: vertices().map(|vertex| uv.get(vertex).copied().unwrap_or_default()).collect(),
+            triangles,
+            areas,
+            inverse_areas,
+            particle_of_vertex,
+        };
+        Ok((mesh, Surface { triangle_areas, edges }))
+    }
+
+    /// Whether a particle is pinned.
+    pub fn is_pinned(&self, particle: u32) -> bool {
+        self.inverse_areas[particle as usize] == 0.0
+    }
+
+    /// Positions of some particles, m.
+    pub fn positions_of<const N: usize>(&self, particles: [u32; N]) -> [Vec3; N] {
+        particles.map(|particle| self.positions[particle as usize])
+    }
+}
+
+/// m², one per triangle.
+fn triangle_areas(rest: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<f32>, FabricError> {
+    let area = |(index, triangle): (usize, &[u32; 3])| {
+        let [a, b, c] = triangle.map(|corner| rest[corner as usize]);
+        let longest =
+            (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
+        let area = 0.5 * (b - a).cross(c - a).length();
+        let has_area = area > LEAST_ASPECT * longest;
+        has_area.then_some(area).ok_or(FabricError::ZeroArea { triangle: index })
+    };
+    triangles.iter().enumerate().map(area).collect()
+}
+
+/// A third of each triangle's area to each of its corners, m², one per particle.
+fn particle_areas(count: usize, triangles: &[[u32; 3]], triangle_areas: &[f32]) -> Vec<f32> {
+    let mut areas = vec![0.0; count];
+    for (triangle, area) in triangles.iter().zip(triangle_areas) {
+        for &corner in triangle {
+            areas[corner as usize] += area / 3.0;
+        }
+    }
+    areas
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fabric::{FabricBuilder, Grid};
+
+    #[test]
+    fn mass_is_a_third_of_each_bordering_triangle() {
+        let fabric = FabricBuilder::grid(Grid::new(5, 4, 2.0, 1.5)).build().expect("a good fabric");
+        assert!((fabric.area() - 3.0).abs() < 1e-5);
+        // A row has half of the area of the cells above and below it.
+        let row: f32 = fabric.particle_areas()[5..10].iter().sum();
+        assert!((row - 1.0).abs() < 1e-5, "{row}");
+    }
+}

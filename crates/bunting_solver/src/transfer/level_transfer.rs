@@ -1,0 +1,286 @@
+//! The correspondence of two neighbouring levels, and the transfer of states between them.
+
+use core::slice;
+use std::borrow::Cow;
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use super::error::TransferError;
+use super::interpolation::Interpolation;
+use super::mesh::RestOffsets;
+use super::motion::{free_areas, internal_motion, limit_internal_motion, match_momentum};
+use super::settle::Settler;
+use super::{grid, mesh};
+use crate::batch::snapshot::ClothSnapshot;
+use crate::fabric::{Fabric, FabricMaterial, Grid};
+use crate::geometry::energy::{area_moment, elastic};
+
+/// Part of the elastic and the kinetic energy that a transfer may add as strain; the motion gives it. Smaller: cloth
+/// at rest is settled that needs no settling. Larger: motion is lost.
+const ALLOWED_STRAIN: f64 = 0.01;
+
+/// How the particles of a finer and a coarser fabric of one cloth correspond.
+#[derive(Clone, Debug)]
+pub struct LevelTransfer {
+    /// Takes the strain off cloths that became finer.
+    fine: Arc<Settler>,
+    /// Takes the strain off cloths that became coarser.
+    coarse: Arc<Settler>,
+    /// From coarse particles to fine ones, by a smooth stencil.
+    pub(super) smooth: Interpolation,
+    /// From coarse particles to fine ones, along the coarse triangles as they are drawn.
+    flat: Interpolation,
+    /// How far fine particles lie from the interpolated surface at rest.
+    pub(super) offsets: RestOffsets,
+    /// For each coarse particle the fine particle at the same place.
+    pub(super) shared: Vec<u32>,
+    /// For each coarse particle the part of the free fine particles' areas that falls to it by the transposed smooth
+    /// stencil, m².
+    gathered_areas: Vec<f32>,
+}
+
+impl LevelTransfer {
+    /// The correspondence of a grid and the next coarser one: every second column and row.
+    ///
+    /// # Errors
+    ///
+    /// The fabrics are not grids, or the coarser is not every second column and row of the finer.
+    pub fn between(fine: &Arc<Fabric>, coarse: &Arc<Fabric>) -> Result<Self, TransferError> {
+        Self::of_grids(Settler::new(fine), Settler::new(coarse))
+    }
+
+    /// The correspondence of a fabric and one whose mesh has some of its mesh's vertices: for each of the coarser
+    /// mesh the vertex of the finer mesh, as in [`CoarserMesh::vertices`](crate::CoarserMesh::vertices). Grids as in
+    /// [`between`](Self::between), other meshes by where their particles lie at rest.
+    ///
+    /// # Errors
+    ///
+    /// The vertices are not those of the coarser fabric, or a grid is not half of the other.
+    pub fn nested(
+        fine: &Arc<Fabric>,
+        coarse: &Arc<Fabric>,
+        vertices: &[u32],
+    ) -> Result<Self, TransferError> {
+        Self::of_any(Settler::new(fine), Settler::new(coarse), vertices)
+    }
+
+    /// The correspondence of this transfer's coarser fabric and the next coarser one, as [`nested`](Self::nested).
+    /// The two transfers share the batch in which cloths of the fabric between them settle.
+    ///
+    /// # Errors
+    ///
+    /// As for [`nested`](Self::nested).
+    pub fn then(&self, coarser: &Arc<Fabric>, vertices: &[u32]) -> Result<Self, TransferError> {
+        Self::of_any(Arc::clone(&self.coarse), Settler::new(coarser), vertices)
+    }
+
+    fn of_any(
+        fine: Arc<Settler>,
+        coarse: Arc<Settler>,
+        vertices: &[u32],
+    ) -> Result<Self, TransferError> {
+        if fine.fabric().grid().is_some() && coarse.fabric().grid().is_some() {
+            return Self::of_grids(fine, coarse);
+        }
+        let shared = shared_particles(fine.fabric(), coarse.fabric(), vertices);
+        let expected = coarse.fabric().particle_of_vertex().len();
+        let error = TransferError::NotShared { given: vertices.len(), expected };
+        let shared = shared.ok_or(error)?;
+        let (rows, offsets) =
+            mesh::nearest(fine.fabric(), coarse.fabric(), &shared).ok_or(error)?;
+        Ok(Self::new(fine, coarse, shared, [rows.clone(), rows], offsets))
+    }
+
+    fn of_grids(fine: Arc<Settler>, coarse: Arc<Settler>) -> Result<Self, TransferError> {
+        let (Some(&fine_grid), Some(&coarse_grid)) = (fine.fabric().grid(), coarse.fabric().grid())
+        else {
+            return Err(TransferError::NotAGrid);
+        };
+        let size = |grid: Grid| (grid.columns, grid.rows);
+        if fine_grid.halved().map(size) != Some(size(coarse_grid)) {
+            return Err(TransferError::NotNested {
+                fine: size(fine_grid),
+                coarse: size(coarse_grid),
+            });
+        }
+        let shared = (0..coarse_grid.rows)
+            .flat_map(|row| (0..coarse_grid.columns).map(move |column| (column, row)))
+            .map(|(column, row)| fine_grid.index(2 * column, 2 * row))
+            .collect();
+        let stencils =
+            [grid::smooth(&fine_grid, &coarse_grid), grid::flat(&fine_grid, &coarse_grid)];
+        Ok(Self::new(fine, coarse, shared, stencils, RestOffsets::default()))
+    }
+
+    fn new(
+        fine: Arc<Settler>,
+        coarse: Arc<Settler>,
+        shared: Vec<u32>,
+        [smooth, flat]: [Interpolation; 2],
+        offsets: RestOffsets,
+    ) -> Self {
+        let gathered_areas =
+            smooth.gather(free_areas(fine.fabric()), coarse.fabric().particle_count());
+        Self { fine, coarse, smooth, flat, offsets, shared, gathered_areas }
+    }
+
+    /// The finer state of a coarser one, for a cloth of a material under a gravity along the axes of its frame, m/s².
+    #[must_use]
+    pub fn prolong(
+        &self,
+        coarse: &ClothSnapshot,
+        material: &FabricMaterial,
+        gravity: Vec3,
+    ) -> ClothSnapshot {
+        let mut positions: Vec<Vec3> = self.smooth.interpolate(&coarse.positions).collect();
+        self.offsets.add(&coarse.positions, &mut positions);
+        let velocities = self.smooth.interpolate(&coarse.velocities).collect();
+        let before = Before { fabric: self.coarse.fabric(), state: coarse };
+        before.conserve(&self.fine, positions, velocities, material, gravity)
+    }
+
+    /// The coarser state of a finer one, for a cloth of a material under a gravity along the axes of its frame, m/s².
+    #[must_use]
+    pub fn restrict(
+        &self,
+        fine: &ClothSnapshot,
+        material: &FabricMaterial,
+        gravity: Vec3,
+    ) -> ClothSnapshot {
+        Self::restrict_through(slice::from_ref(self), fine, material, gravity)
+    }
+
+    /// The state at the coarsest fabric of a chain of transfers, the finest first, of a state at the finest. Strain is
+    /// taken off at the coarsest level only, which is cheaper than one transfer after the other.
+    ///
+    /// # Panics
+    ///
+    /// If the chain is empty, or not of neighbours.
+    #[must_use]
+    pub fn restrict_through(
+        chain: &[Self],
+        fine: &ClothSnapshot,
+        material: &FabricMaterial,
+        gravity: Vec3,
+    ) -> ClothSnapshot {
+        let (mut positions, mut velocities) =
+            (Cow::from(&fine.positions), Cow::from(&fine.velocities));
+        for transfer in chain {
+            positions = transfer.pick(&positions).collect::<Vec<_>>().into();
+            velocities = transfer.gather_velocities(&velocities).into();
+        }
+        let (finest, coarsest) = (&chain[0], &chain[chain.len() - 1]);
+        let before = Before { fabric: finest.fine.fabric(), state: fine };
+        let (positions, velocities) = (positions.into_owned(), velocities.into_owned());
+        before.conserve(&coarsest.coarse, positions, velocities, material, gravity)
+    }
+
+    /// For each coarse particle the fine particle at the same place.
+    #[must_use]
+    pub fn shared(&self) -> &[u32] {
+        &self.shared
+    }
+
+    /// Takes the strain off a coarse state that has the shared particles' positions and velocities, until little more
+    /// elastic energy is stored than a part of the kinetic energy. For cloth that nobody sees: much cheaper than
+    /// [`restrict`](Self::restrict), but neither momentum nor energy are those of the fine cloth.
+    #[must_use]
+    pub fn settle(&self, coarse: ClothSnapshot, material: &FabricMaterial) -> ClothSnapshot {
+        let ClothSnapshot { mut positions, velocities, .. } = coarse;
+        let kinetic = 0.5
+            * f64::from(material.area_density)
+            * internal_motion(self.coarse.fabric(), &velocities);
+        self.coarse.settle(material, &mut positions, ALLOWED_STRAIN * kinetic, true);
+        ClothSnapshot::new(positions, velocities)
+    }
+
+    /// The values of the shared particles, one per coarse particle, of values at all fine particles.
+    pub fn pick<'a>(&'a self, fine: &'a [Vec3]) -> impl Iterator<Item = Vec3> + 'a {
+        self.shared.iter().map(|&particle| fine[particle as usize])
+    }
+
+    /// Values at the fine particles, interpolated linearly over the coarse triangles as they are drawn, of values at
+    /// the coarse particles: where each fine particle would lie on the drawn coarse surface.
+    pub fn spread<'a>(&'a self, coarse: &'a [Vec3]) -> impl Iterator<Item = Vec3> + 'a {
+        self.flat.interpolate(coarse)
+    }
+
+    /// Coarse velocities v_c = v_s + D⁻¹ Pᵀ M (v − P v_s), with v the fine velocities, v_s those of the shared
+    /// particles, P the smooth stencil, M the masses of the free fine particles and D = Pᵀ M 1: to the velocity of a
+    /// shared particle comes the mean of what the fine ones around it have beyond the interpolated velocity. After
+    /// prolongation that is nothing, so that up and down again gives back the velocities.
+    pub(super) fn gather_velocities(&self, fine: &[Vec3]) -> Vec<Vec3> {
+        let mut coarse: Vec<Vec3> = self.pick(fine).collect();
+        let interpolated = self.smooth.interpolate(&coarse);
+        let beyond = interpolated.zip(fine).zip(free_areas(self.fine.fabric()));
+        let beyond = beyond.map(|((smooth, &fine), area)| (fine - smooth) * area);
+        let gathered = self.smooth.gather(beyond, coarse.len());
+        for (particle, velocity) in coarse.iter_mut().enumerate() {
+            let area = self.gathered_areas[particle];
+            if !self.coarse.fabric().is_pinned(particle) && area > 0.0 {
+                *velocity += gathered[particle] / area;
+            }
+        }
+        coarse
+    }
+}
+
+#[cfg(test)]
+impl LevelTransfer {
+    /// Whether the next coarser transfer uses the same settler for the fabric between them.
+    pub(super) fn shares_settler_with(&self, next: &Self) -> bool {
+        Arc::ptr_eq(&self.coarse, &next.fine)
+    }
+}
+
+/// For each coarse particle the fine particle at the same place, given the fine vertex of each coarse vertex; none if
+/// the vertices do not fit.
+fn shared_particles(fine: &Fabric, coarse: &Fabric, vertices: &[u32]) -> Option<Vec<u32>> {
+    if vertices.len() != coarse.particle_of_vertex().len() {
+        return None;
+    }
+    let mut shared = vec![0; coarse.particle_count()];
+    for (&particle, &vertex) in coarse.particle_of_vertex().iter().zip(vertices) {
+        shared[particle as usize] = *fine.particle_of_vertex().get(vertex as usize)?;
+    }
+    Some(shared)
+}
+
+/// A cloth before its change of level.
+struct Before<'a> {
+    fabric: &'a Fabric,
+    state: &'a ClothSnapshot,
+}
+
+impl Before<'_> {
+    /// The state on the settler's fabric, from positions and velocities there: without the strain that came with the
+    /// change, with the same momentum, and with no more energy.
+    fn conserve(
+        &self,
+        settler: &Settler,
+        mut positions: Vec<Vec3>,
+        mut velocities: Vec<Vec3>,
+        material: &FabricMaterial,
+        gravity: Vec3,
+    ) -> ClothSnapshot {
+        let fabric = settler.fabric();
+        for pin in fabric.pins() {
+            positions[pin.particle as usize] = fabric.rest_positions()[pin.particle as usize];
+        }
+        let density = f64::from(material.area_density);
+        let motion = internal_motion(self.fabric, &self.state.velocities);
+        let kinetic = 0.5 * density * motion;
+        let stored = elastic(self.fabric, material, &self.state.positions);
+        let limit = stored + ALLOWED_STRAIN * (stored + kinetic);
+        // Cloth that flies is folded, and its folds are strained by new particles or by the lack of old ones.
+        let folded = kinetic > stored;
+        let stretched = settler.settle(material, &mut positions, limit, folded) - stored;
+        let sunk =
+            area_moment(self.fabric, &self.state.positions) - area_moment(fabric, &positions);
+        let gained = stretched / density + sunk.dot(gravity.as_dvec3());
+        match_momentum(fabric, area_moment(self.fabric, &self.state.velocities), &mut velocities);
+        limit_internal_motion(fabric, motion - 2.0 * gained.max(0.0), &mut velocities);
+        ClothSnapshot::new(positions, velocities)
+    }
+}

@@ -1,0 +1,34 @@
+//! Shows examples in windows and pictures.
+
+pub mod keys;
+pub mod orbit;
+pub mod pictures;
+pub mod print;
+mod sky;
+pub mod stage;
+pub mod title;
+pub mod wind;
+pub mod window;
+
+use bevy::prelude::*;
+use bevy_bunting::prelude::*;
+
+/// The one viewer of an example.
+///
+/// # Panics
+///
+/// Unless there is one [`LodViewer`].
+pub fn viewer(app: &mut App) -> Entity {
+    let world = app.world_mut();
+    world.flush();
+    let mut viewers = world.query_filtered::<Entity, With<LodViewer>>();
+    viewers.single(world).expect("an example has one viewer")
+}
+
+/// Lets the mouse move the viewer around a centre, and keys change the wind and show
+/// gizmos.
+pub fn control_orbit(app: &mut App, eye: Vec3, centre: Vec3) {
+    let viewer = viewer(app);
+    app.world_mut().entity_mut(viewer).insert(orbit::Orbit::new(eye, centre));
+    app.add_plugins((orbit::plugin, wind::plugin, keys::gizmos));
+}

@@ -1,0 +1,79 @@
+//! Prints a cloth's design onto it.
+
+use bevy::asset::RenderAssetUsages;
+use bevy::prelude::*;
+use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
+use bevy_bunting::prelude::*;
+use bunting_scenes::Design;
+
+/// Resolution of a print, pixels/m.
+const RESOLUTION: f32 = 128.0;
+
+/// Size of a print on a cloth of triangles, m: stripes across any such cloth are sharp enough.
+const TRIANGLES_SIZE: Vec2 = Vec2::new(8.0, 0.1);
+
+/// Gives each cloth with a [`Design`] this material, printed with the design. The plugin of the
+/// cloth gives it a mesh.
+pub fn plugin(material: StandardMaterial) -> impl Plugin {
+    move |app: &mut App| {
+        let material = material.clone();
+        let print = move |mut commands: Commands,
+                          cloths: Query<(Entity, &ClothMesh, &Design), Added<Design>>,
+                          mut images: ResMut<Assets<Image>>,
+                          mut materials: ResMut<Assets<StandardMaterial>>| {
+            for (cloth, mesh, design) in &cloths {
+                let size = match *mesh {
+                    ClothMesh::Grid { width, height, .. } => Vec2::new(width, height),
+                    ClothMesh::Triangles { .. } => TRIANGLES_SIZE,
+                };
+                let base_color_texture = Some(images.add(image(design, size)));
+                let printed = StandardMaterial { base_color_texture, ..material.clone() };
+                commands.entity(cloth).insert(MeshMaterial3d(materials.add(printed)));
+            }
+        };
+        app.add_systems(Update, print);
+    }
+}
+
+/// The image of a design on a flag of this size in m.
+pub fn image(design: &Design, size: Vec2) -> Image {
+    let pixels = (size * RESOLUTION).as_uvec2();
+    let colours = (0..pixels.y).flat_map(|row| {
+        (0..pixels.x).flat_map(move |column| {
+            let point = (UVec2::new(column, row).as_vec2() + 0.5) / RESOLUTION;
+            let [red, green, blue] = colour(design, point, size);
+            [red, green, blue, u8::MAX]
+        })
+    });
+    Image::new(
+        Extent3d { width: pixels.x, height: pixels.y, depth_or_array_layers: 1 },
+        TextureDimension::D2,
+        colours.collect(),
+        TextureFormat::Rgba8UnormSrgb,
+        RenderAssetUsages::RENDER_WORLD,
+    )
+}
+
+/// The colour at a point in m from the top of the pole.
+fn colour(design: &Design, point: Vec2, size: Vec2) -> [u8; 3] {
+    let stripe = |colours: &[[u8; 3]], fraction: f32| {
+        colours[(fraction * colours.len() as f32) as usize % colours.len()]
+    };
+    match design {
+        Design::Pales(colours) => stripe(colours, point.x / size.x),
+        Design::Bars(colours) => stripe(colours, point.y / size.y),
+        Design::Cross { field, cross } => {
+            let centre = Vec2::new(0.36 * size.x, 0.5 * size.y);
+            let on_cross = (point - centre).abs().min_element() < 0.09 * size.y;
+            if on_cross { *cross } else { *field }
+        }
+        Design::Disc { field, disc } => {
+            let on_disc = point.distance(0.5 * size) < 0.3 * size.y;
+            if on_disc { *disc } else { *field }
+        }
+        Design::Chequers { colours, rows } => {
+            let square = (point / size.y * f32::from(*rows)).as_uvec2();
+            colours[((square.x + square.y) % 2) as usize]
+        }
+    }
+}

@@ -1,0 +1,39 @@
+//! Shows an example in a window.
+
+use std::process::ExitCode;
+
+use bevy::prelude::*;
+use bevy_bunting::prelude::*;
+
+use crate::render::{keys, title, viewer};
+use crate::{ASSETS, Example};
+
+/// Shows an example until its window is closed. Fails if no display can be opened.
+pub fn run<E: Example>(example: &E) -> ExitCode {
+    if !any_display() {
+        eprintln!("no display can be opened: use --headless");
+        return ExitCode::FAILURE;
+    }
+    let mut app = App::new();
+    let window = Window { title: E::NAME.to_owned(), ..default() };
+    let stage = example.stage();
+    let camera = stage.camera();
+    app.add_plugins((
+        DefaultPlugins
+            .set(WindowPlugin { primary_window: Some(window), ..default() })
+            .set(AssetPlugin { file_path: ASSETS.to_owned(), ..default() }),
+        ClothPlugins::default(),
+        (stage, keys::pause, title::plugin(E::NAME)),
+    ));
+    example.build(&mut app, Update);
+    let viewer = viewer(&mut app);
+    app.world_mut().entity_mut(viewer).insert(camera);
+    example.draw(&mut app);
+    example.control(&mut app);
+    if app.run().is_success() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+}
+
+/// Whether a window can be opened: winit panics where none can.
+fn any_display() -> bool {
+    !cfg!(target_os = "linux") || x11rb::connect(None).is_ok()
+}
