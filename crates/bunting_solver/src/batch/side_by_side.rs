@@ -148,8 +148,9 @@ impl<P: Pack> Layout<P> for SideBySide<P> {
         for (factors, rows) in twist.iter_mut().zip(&of_cloth.twist) {
             factors.set_lane(lane, rows);
         }
-        for (pack, class) in self.hinge_compliance.iter_mut().zip(fabric.hinge_classes()) {
-            pack.lanes_mut()[lane] = stiffness.of_hinge(class);
+        let hinges = stiffness.of_hinges(fabric);
+        for (pack, compliance) in self.hinge_compliance.iter_mut().zip(hinges) {
+            pack.lanes_mut()[lane] = compliance;
         }
     }
 

@@ -48,7 +48,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             if pass.solves(colour.family) {
                 let order = self.layout.order_of_chains(index);
                 let (masses, linked) = (&self.masses.inverse, self.layout.linked());
-                P::run(Chains {
+                P::run(SolveChains {
                     pairs: &chains.pairs[colour.pairs.clone()],
                     pass,
                     compliance: &self.layout.factors().link_compliance,
@@ -83,7 +83,7 @@ impl Pass {
 }
 
 /// The chains of one colour, in pairs.
-struct Chains<'a, P: Pack, S: Particles<P>> {
+struct SolveChains<'a, P: Pack, S: Particles<P>> {
     pairs: &'a [ChainPair<S::Constant>],
     pass: Pass,
     compliance: &'a [P],
@@ -92,7 +92,7 @@ struct Chains<'a, P: Pack, S: Particles<P>> {
     particles: S,
 }
 
-impl<P: Pack, S: Particles<P>> Kernel<P> for Chains<'_, P, S> {
+impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         match self.pass {
@@ -104,7 +104,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Chains<'_, P, S> {
     }
 }
 
-impl<P: Pack, S: Particles<P>> Chains<'_, P, S> {
+impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
     /// Solves all pairs: `WARM` starts from stored targets, and not from lengths at rest; `STORE` stores the new
     /// targets.
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Compliances of one cloth's constraints in its substep, and what follows from how stiff it is.
 
 use crate::constants::{GRAVITY, GREATEST_COMPLIANCE, LEAST_LINK_COMPLIANCE};
-use crate::fabric::{Fabric, FabricMaterial, HingeClass, LinkClass};
+use crate::fabric::{Fabric, FabricMaterial};
 use crate::step::Scheme;
 
 /// Γ = σ g L³/B above which a cloth does not resist twist. At this Γ a sheet of length L that is clamped
@@ -44,21 +44,18 @@ impl Stiffness<'_> {
     /// Compliance of each class of links, 1/m².
     pub fn of_links(&self, fabric: &Fabric) -> Vec<f32> {
         let least = LEAST_LINK_COMPLIANCE / fabric.particle_areas()[0];
-        let of_class = |class: &LinkClass| {
-            let stiffness = match self.scheme {
-                Scheme::Yarns if fabric.has_shear_cells() => {
-                    class.uncoupled_stiffness(self.material)
-                }
-                _ => class.stiffness(self.material),
-            };
-            self.compliance(stiffness).max(least)
-        };
-        fabric.link_classes().iter().map(of_class).collect()
+        let classes = fabric.link_classes().iter();
+        let stiffnesses = classes.map(|class| match self.scheme {
+            Scheme::Yarns if fabric.has_shear_cells() => class.uncoupled_stiffness(self.material),
+            _ => class.stiffness(self.material),
+        });
+        stiffnesses.map(|stiffness| self.compliance(stiffness).max(least)).collect()
     }
 
-    /// Compliance of a class of hinges, 1/m⁴.
-    pub fn of_hinge(&self, class: &HingeClass) -> f32 {
-        self.compliance(class.stiffness(self.material))
+    /// Compliance of each class of hinges, 1/m⁴.
+    pub fn of_hinges(&self, fabric: &Fabric) -> Vec<f32> {
+        let classes = fabric.hinge_classes().iter();
+        classes.map(|class| self.compliance(class.stiffness(self.material))).collect()
     }
 
     /// σ/(B h²), 1/m⁴: compliance against bending and twist of a line of unit weight.
