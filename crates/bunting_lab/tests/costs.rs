@@ -62,7 +62,7 @@ fn budget_has_its_schema() {
         // Differences cancel: what one part takes too much another takes too little.
         let whole: f64 = level[..PARTS.len()].iter().filter_map(|it| it["fraction"].as_f64()).sum();
         assert!((whole - 1.0).abs() < 1e-9, "{whole}");
-        for name in ["prediction", "velocities", "normals"] {
+        for name in ["prediction, damping", "velocities", "normals"] {
             let part = level.iter().find(|part| part["part"] == name).expect(name);
             assert_positive(part, &["us"]);
         }

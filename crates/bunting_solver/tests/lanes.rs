@@ -1,4 +1,5 @@
-//! A lane's bits depend on its own history only.
+//! The bits of a lane depend only on the lane's own history: not on the other lanes, the batch's width or the
+//! instruction set.
 
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -24,11 +25,11 @@ fn flag() -> Arc<Fabric> {
     Arc::new(builder.build().expect("a good fabric"))
 }
 
-/// Cloths that differ in everything that may differ within a batch.
+/// Materials that differ in everything that may differ within a batch.
 fn material(seed: usize) -> FabricMaterial {
     match seed % 3 {
         0 => FabricMaterial { friction_coefficient: 0.0, ..FabricMaterial::SILK },
-        // Stiff enough for its bending to be anticipated.
+        // Stiff enough for bending to use the predicted stretch.
         1 => FabricMaterial { bend_stiffness: 10.0, ..FabricMaterial::DENIM },
         _ => FabricMaterial { internal_damping: 1.0, ..FabricMaterial::COTTON },
     }
@@ -52,7 +53,7 @@ fn colliders(seed: usize) -> Vec<Collider> {
     if seed % 4 == 2 { vec![ball] } else { Vec::new() }
 }
 
-/// The states of cloths with these seeds after a while in batches of a width.
+/// The states of cloths with these seeds after a second in a batch of this width.
 fn fly(
     fabric: &Arc<Fabric>,
     lanes: LaneCount,
@@ -121,30 +122,30 @@ fn every_instruction_set_gives_the_same_bits() {
 }
 
 #[test]
-fn a_neighbour_that_goes_wild_is_not_felt() {
+fn a_lane_that_is_not_finite_does_not_change_its_neighbours() {
     let fabric = flag();
     let settings = StepSettings::gauss_seidel(4);
-    let calm = fly(&fabric, LaneCount::Eight, &[0, 1], settings);
+    let alone = fly(&fabric, LaneCount::Eight, &[0, 1], settings);
     let mut batch = ClothBatch::new(fabric.clone(), LaneCount::Eight);
     for seed in [0, 1] {
         batch.insert(&ClothSnapshot::at_rest(&fabric), material(seed)).expect("a free lane");
     }
-    let wild = batch.insert(&ClothSnapshot::at_rest(&fabric), material(2)).expect("a free lane");
+    let bad = batch.insert(&ClothSnapshot::at_rest(&fabric), material(2)).expect("a free lane");
     for tick in 0..60 {
         for seed in [0, 1] {
             batch.drive(seed, drive(seed, tick));
         }
-        batch.drive(wild, Drive { wind: Vec3::splat(f32::NAN), ..Drive::default() });
+        batch.drive(bad, Drive { wind: Vec3::splat(f32::NAN), ..Drive::default() });
         batch.step(TICK, settings);
     }
-    assert!(!batch.is_finite(wild));
-    for (lane, calm) in calm.iter().enumerate() {
-        assert_eq!(bits(calm), bits(&batch.snapshot(lane)));
+    assert!(!batch.is_finite(bad));
+    for (lane, alone) in alone.iter().enumerate() {
+        assert_eq!(bits(alone), bits(&batch.snapshot(lane)));
     }
 }
 
 #[test]
-fn a_cloth_moved_between_batches_goes_on_as_if_it_had_not() {
+fn a_cloth_moved_between_batches_keeps_its_bits() {
     let fabric = flag();
     for settings in EVERY_SCHEME {
         let stayed = fly(&fabric, LaneCount::One, &[1], settings).remove(0);
@@ -166,7 +167,7 @@ fn a_cloth_moved_between_batches_goes_on_as_if_it_had_not() {
 }
 
 #[test]
-fn a_lane_that_went_wild_can_be_used_again() {
+fn a_lane_that_was_not_finite_can_be_used_again() {
     let fabric = flag();
     let mut batch = ClothBatch::new(fabric.clone(), LaneCount::Eight);
     let rest = ClothSnapshot::at_rest(&fabric);
@@ -182,9 +183,10 @@ fn a_lane_that_went_wild_can_be_used_again() {
     assert!(batch.is_finite(lane));
 }
 
-/// Several at once are put where each would have been put by itself, and what leaves comes to a standstill.
+/// An exchange of several lanes gives the same states as one replacement after the other, and lanes that become empty
+/// come to a standstill.
 #[test]
-fn many_change_places_at_once() {
+fn an_exchange_of_many_lanes_equals_single_replacements() {
     let fabric = flag();
     let settings = EVERY_SCHEME[3];
     for lanes in [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen] {
@@ -228,7 +230,7 @@ fn many_change_places_at_once() {
 }
 
 #[test]
-fn nobody_feels_who_sat_there_before() {
+fn a_lane_keeps_nothing_of_the_cloth_before() {
     let fabric = flag();
     for settings in EVERY_SCHEME {
         let flown = fly(&fabric, LaneCount::Eight, &[0, 1, 2, 3, 4, 5, 6, 7], settings);
@@ -239,14 +241,14 @@ fn nobody_feels_who_sat_there_before() {
             used.drive(lane, drive(lane, 0));
         }
         used.step(TICK, settings);
-        // Some in the place of others, some where there was nobody for a while.
+        // Lane 1 replaces a cloth; lanes 2 and 3 have been empty for a tick.
         let left = [2, 3];
-        used.exchange(&left, &[]).expect("nobody comes");
+        used.exchange(&left, &[]).expect("two cloths leave");
         used.step(TICK, settings);
         for lane in 1..4 {
-            // The stiff follows the stiff: what bending remembers counts there.
+            // Stiff cloth replaces stiff cloth: only its bending depends on the stretch of earlier substeps.
             let seed = lane + 3;
-            let state = flown[seed].clone().forgetful();
+            let state = flown[seed].clone().without_history();
             for batch in [&mut used, &mut unused] {
                 batch.replace(lane, &state, material(seed)).expect("a good state");
                 batch.drive(lane, drive(seed, 0));
@@ -263,7 +265,7 @@ fn nobody_feels_who_sat_there_before() {
 }
 
 #[test]
-fn surfaces_are_what_the_lanes_hold() {
+fn surfaces_are_copies_of_the_lanes() {
     let fabric = flag();
     for lanes in [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen] {
         let mut batch = ClothBatch::new(fabric.clone(), lanes);
@@ -294,10 +296,10 @@ fn surfaces_are_what_the_lanes_hold() {
     }
 }
 
-/// A cloth hung by two corners in still air trembles at one substep, and is calmed: by the same bits alone, beside
-/// cloths that fly, and in another batch.
+/// A cloth hung by two corners in still air oscillates with one substep, and is under-relaxed: by the same bits alone,
+/// beside cloths that fly, and after a move to another batch.
 #[test]
-fn what_trembles_is_calmed_by_the_same_bits() {
+fn under_relaxation_at_rest_gives_the_same_bits() {
     const SETTINGS: StepSettings = StepSettings { passes: 4, ..StepSettings::yarns(1) };
     let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)).pin([0, 16]);
     let fabric = Arc::new(grid.build().expect("a good fabric"));
@@ -329,7 +331,6 @@ fn what_trembles_is_calmed_by_the_same_bits() {
             batch.drive(*lane, still);
             if *lane == 1 {
                 batch.drive(0, drive(1, tick));
-                // What is moved to another batch goes on as if it had not been.
                 let moving = batch.snapshot(1);
                 let mut other = ClothBatch::new(fabric.clone(), LaneCount::Eight);
                 other.insert(&batch.snapshot(0), FabricMaterial::SILK).expect("a free lane");

@@ -12,7 +12,7 @@ fn fabric(columns: u32, rows: u32) -> Arc<Fabric> {
 }
 
 #[test]
-fn what_lies_at_rest_stays_where_it_is() {
+fn a_cloth_at_rest_stays_where_it_is() {
     let (fine, coarse) = (fabric(9, 5), fabric(5, 3));
     let transfer = LevelTransfer::between(&fine, &coarse).expect("nested");
     let rest = [&fine, &coarse].map(|fabric| ClothSnapshot::at_rest(fabric));

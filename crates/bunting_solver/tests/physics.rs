@@ -1,4 +1,4 @@
-//! The solver against closed forms, through its public API.
+//! Laws of motion that hold in every scheme: in the default one, and in Gauss–Seidel where that differs.
 
 use std::sync::Arc;
 
@@ -11,11 +11,16 @@ use glam::{Quat, Vec3};
 const TICK: f32 = 1.0 / 60.0;
 const GRAVITY: f32 = 9.81;
 
-/// What rounding may do to the momentum of a cloth in a second, as a part of it: corrections are
-/// rounded to a unit in the last place of a position, 6e-8 m at 1 m, in each of 240 substeps.
+/// Change of a cloth's momentum in a second by rounding, as a part of it: corrections are rounded to a unit in the last
+/// place of a position, 6e-8 m at 1 m, in each of 240 substeps. A smaller limit fails by rounding; a larger one passes
+/// where a constraint pushes one particle more than another.
 const MOMENTUM_ROUNDING: f32 = 1e-3;
 
-/// The standard scenes' material: σ = 0.2, Y = 1e4, G = 200, B = 2e-5, nothing else.
+/// Change of the angular momentum about the centre in a second, as a part of it, of a crumpled sheet: directions of links
+/// are those before a solve and not those after it. Measured: 0.10 by default, 0.05 with Gauss–Seidel.
+const SPIN_ERROR: f32 = 0.12;
+
+/// The standard scenes' material: σ = 0.2, Y = 1e4, G = 200, B = 2e-5, without damping, air or contact.
 const STANDARD: FabricMaterial = FabricMaterial {
     area_density: 0.2,
     warp_stiffness: 1e4,
@@ -29,6 +34,11 @@ const STANDARD: FabricMaterial = FabricMaterial {
     thickness: 0.0,
     surface_friction: 0.0,
 };
+
+/// The default settings, and Gauss–Seidel in so many substeps.
+fn schemes(substeps: u32) -> [StepSettings; 2] {
+    [StepSettings::default(), StepSettings::gauss_seidel(substeps)]
+}
 
 fn square(n: u32, pinned: impl Fn(Vec3) -> bool) -> Arc<Fabric> {
     let builder =
@@ -60,8 +70,9 @@ fn mass_weighted(fabric: &Fabric, value: impl Fn(usize) -> Vec3) -> Vec3 {
     fabric.particle_areas().iter().enumerate().map(|(particle, &area)| value(particle) * area).sum()
 }
 
+/// Backward Euler from rest: Σ g h² i over n steps is g h² n (n + 1)/2. `yarns.rs` has the sum of the default scheme.
 #[test]
-fn free_fall_is_the_schemes_own_sum() {
+fn gauss_seidel_falls_as_backward_euler() {
     let fabric = square(5, |_| false);
     let mut batch = lone(&fabric, STANDARD, Drive::default());
     let settings = StepSettings::gauss_seidel(4);
@@ -89,15 +100,22 @@ fn a_hanging_sheet_stretches_as_its_material_says() {
         damping: 3.0,
         ..STANDARD
     };
-    for n in [5, 9] {
-        let fabric = square(n, |position| position.y == 0.0);
-        let mut batch = lone(&fabric, soft, Drive::default());
-        for _ in 0..400 {
-            batch.step(TICK, StepSettings::gauss_seidel(30));
+    // Gauss–Seidel leaves a hidden compliance of h²/(k m) behind, which 30 substeps bring below 2 %. Chains are solved
+    // exactly.
+    for (settings, tolerance) in
+        [(StepSettings::default(), 2e-3), (StepSettings::gauss_seidel(30), 0.02)]
+    {
+        for n in [5, 9] {
+            let fabric = square(n, |position| position.y == 0.0);
+            let mut batch = lone(&fabric, soft, Drive::default());
+            for _ in 0..400 {
+                batch.step(TICK, settings);
+            }
+            let strain = mean_strain(&fabric, &batch.snapshot(0).positions, LinkFamily::Weft);
+            let expected = soft.area_density * GRAVITY / (2.0 * soft.weft_stiffness);
+            let error = strain / expected - 1.0;
+            assert!(error.abs() < tolerance, "{n}, {settings:?}: {strain} {expected}");
         }
-        let strain = mean_strain(&fabric, &batch.snapshot(0).positions, LinkFamily::Weft);
-        let expected = soft.area_density * GRAVITY / (2.0 * soft.weft_stiffness);
-        assert!((strain / expected - 1.0).abs() < 0.02, "{n}: {strain} {expected}");
     }
 }
 
@@ -105,20 +123,24 @@ fn a_hanging_sheet_stretches_as_its_material_says() {
 fn broadside_fall_reaches_terminal_speed() {
     let fabric = square(5, |_| false);
     let material = FabricMaterial { area_density: 0.1, pressure_coefficient: 1.2, ..STANDARD };
-    // It lies in the xy plane; let it fall along z.
+    // The sheet lies in the xy plane and falls along z, to v_t² = 2σg/(ρ C).
     let drive = Drive { gravity: Vec3::new(0.0, 0.0, -GRAVITY), ..Drive::default() };
-    let mut batch = lone(&fabric, material, drive);
-    for _ in 0..60 {
-        batch.step(TICK, StepSettings::gauss_seidel(20));
+    let expected = (2.0 * 0.1 * GRAVITY / (1.225_f32 * 1.2)).sqrt();
+    // Each step of backward Euler slows v by av/(1 + a²) with a = gh v/v_t², and adds gh: v is v_t but for a²/2, which
+    // is 2.5e-5 with 20 substeps.
+    for settings in schemes(20) {
+        let mut batch = lone(&fabric, material, drive);
+        for _ in 0..60 {
+            batch.step(TICK, settings);
+        }
+        let velocity = batch.snapshot(0).velocities[12].z;
+        assert!((velocity / -expected - 1.0).abs() < 1e-4, "{settings:?}: {velocity} {expected}");
     }
-    let velocity = batch.snapshot(0).velocities[12].z;
-    // Each substep slows v by av/(1 + a²) with a = gh v/v_t², and adds gh: v is v_t but for a²/2.
-    let expected = 1.155_29_f32;
-    assert!((velocity / -expected - 1.0).abs() < 1e-4, "{velocity} {expected}");
 }
 
+/// dv/dt = −k v² with k = ½ρC/σ: v = v₀/(1 + k v₀ t).
 #[test]
-fn drag_alone_slows_as_it_must() {
+fn drag_alone_slows_by_its_closed_form() {
     let material = FabricMaterial { area_density: 0.1, pressure_coefficient: 1.2, ..STANDARD };
     let fabric = square(3, |_| false);
     let mut start = ClothSnapshot::at_rest(&fabric);
@@ -128,7 +150,6 @@ fn drag_alone_slows_as_it_must() {
     batch.drive(0, Drive { gravity: Vec3::ZERO, ..Drive::default() });
     for tick in 1..=60 {
         batch.step(TICK, StepSettings::yarns(2));
-        // dv/dt = −k v²
         let k = 0.5 * 1.225 * 1.2 / 0.1;
         let expected = 20.0 / (1.0 + k * 20.0 * tick as f32 * TICK);
         let velocity = batch.snapshot(0).velocities[4].z;
@@ -139,7 +160,7 @@ fn drag_alone_slows_as_it_must() {
 /// A sheet that hangs in a steady wind stands at the slope θ at which ½ρCW² cos²θ = σg sin θ, whatever the
 /// step: drag made implicit as if nothing held the cloth would lose a seventh.
 #[test]
-fn what_is_held_feels_all_of_the_wind() {
+fn a_pinned_sheet_feels_all_of_the_wind() {
     let fabric = square(3, |at| at.y == 0.0);
     let material = FabricMaterial {
         area_density: 0.1,
@@ -160,17 +181,28 @@ fn what_is_held_feels_all_of_the_wind() {
     }
 }
 
+/// Drag is implicit: a light sheet in a storm speeds up to the wind within a tick, and never beyond it.
 #[test]
 fn strong_wind_never_overshoots() {
-    let fabric = square(3, |_| false);
+    const WIND: f32 = 40.0;
     let material = FabricMaterial { area_density: 0.02, pressure_coefficient: 1.2, ..STANDARD };
-    let wind = Vec3::new(0.0, 0.0, 40.0);
-    let drive = Drive { gravity: Vec3::ZERO, wind, ..Drive::default() };
-    let mut batch = lone(&fabric, material, drive);
-    for _ in 0..20 {
-        batch.step(TICK, StepSettings::gauss_seidel(1));
-        for velocity in batch.snapshot(0).velocities {
-            assert!((0.0..=40.0).contains(&velocity.z), "{velocity}");
+    let drive = Drive { gravity: Vec3::ZERO, wind: Vec3::new(0.0, 0.0, WIND), ..Drive::default() };
+    for n in [3, 9] {
+        for settings in schemes(1) {
+            let mut batch = lone(&square(n, |_| false), material, drive);
+            let mut slowest = 0.0;
+            for _ in 0..20 {
+                batch.step(TICK, settings);
+                let speeds = batch.snapshot(0).velocities.into_iter().map(|v| v.z);
+                let [low, high] = [f32::min, f32::max].map(|of| speeds.clone().reduce(of));
+                let (low, high) = (low.expect("a sheet"), high.expect("a sheet"));
+                assert!(low >= slowest && high <= WIND, "{n}, {settings:?}: {low}..{high} m/s");
+                slowest = low;
+            }
+            // v = W − W/(1 + k W t), after a third of a second.
+            let lag = 1.0 + 0.5 * 1.225 * 1.2 / 0.02 * WIND * 20.0 * TICK;
+            let expected = WIND - WIND / lag;
+            assert!((slowest / expected - 1.0).abs() < 1e-3, "{slowest} {expected}");
         }
     }
 }
@@ -188,21 +220,26 @@ fn free_cloth_keeps_its_momenta() {
         *position += crumple(*position);
     }
     let material = FabricMaterial { internal_damping: 2.0, ..STANDARD };
-    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
-    batch.insert(&start, material).expect("a free lane");
-    batch.drive(0, Drive::NONE);
     let momentum = |state: &ClothSnapshot| mass_weighted(&fabric, |i| state.velocities[i]);
     let spin = |state: &ClothSnapshot| {
-        mass_weighted(&fabric, |i| state.positions[i].cross(state.velocities[i]))
+        let centre = mass_weighted(&fabric, |i| state.positions[i]) / fabric.area();
+        mass_weighted(&fabric, |i| (state.positions[i] - centre).cross(state.velocities[i]))
     };
-    for _ in 0..60 {
-        batch.step(TICK, StepSettings::gauss_seidel(4));
+    for settings in schemes(4) {
+        let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+        batch.insert(&start, material).expect("a free lane");
+        batch.drive(0, Drive::NONE);
+        for _ in 0..60 {
+            batch.step(TICK, settings);
+        }
+        let end = batch.snapshot(0);
+        let (before, after) = (momentum(&start), momentum(&end));
+        let change = (after - before).length() / before.length();
+        assert!(change < MOMENTUM_ROUNDING, "{settings:?}: {before} {after}");
+        let (before, after) = (spin(&start), spin(&end));
+        let change = (after - before).length() / before.length();
+        assert!(change < SPIN_ERROR, "{settings:?}: {before} {after}");
     }
-    let end = batch.snapshot(0);
-    let (before, after) = (momentum(&start), momentum(&end));
-    assert!((after - before).length() < MOMENTUM_ROUNDING * before.length(), "{before} {after}");
-    let (before, after) = (spin(&start), spin(&end));
-    assert!((after - before).length() < 0.05 * before.length(), "{before} {after}");
 }
 
 #[test]
@@ -217,25 +254,29 @@ fn internal_damping_leaves_a_rigid_spin_and_stops_a_wobble() {
         let wobble = [0.2, -0.2, 0.0, -0.2, 0.2][index % 5];
         *velocity = Vec3::X + Vec3::Z.cross(*position - centre) + Vec3::Z * wobble;
     }
-    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
-    batch.insert(&start, material).expect("a free lane");
-    batch.drive(0, Drive::NONE);
-    for _ in 0..60 {
-        batch.step(TICK, StepSettings::gauss_seidel(4));
-    }
-    let end = batch.snapshot(0);
     let momentum = |state: &ClothSnapshot| mass_weighted(&fabric, |i| state.velocities[i]);
-    let drift = momentum(&end);
-    assert!((drift - momentum(&start)).length() < MOMENTUM_ROUNDING, "{drift}");
-    let wobble =
-        end.velocities.iter().map(|velocity| (velocity.z - drift.z).abs()).fold(0.0, f32::max);
-    assert!(wobble < 0.01, "{wobble}");
-    let corner = (end.velocities[0] - drift).length()
-        / (end.positions[0] - mass_weighted(&fabric, |i| end.positions[i])).length();
-    assert!((corner - 1.0).abs() < 0.05, "spin {corner} rad/s");
+    for settings in schemes(4) {
+        let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+        batch.insert(&start, material).expect("a free lane");
+        batch.drive(0, Drive::NONE);
+        for _ in 0..60 {
+            batch.step(TICK, settings);
+        }
+        let end = batch.snapshot(0);
+        // The sheet has an area of 1 m².
+        let drift = momentum(&end);
+        let lost = (drift - momentum(&start)).length();
+        assert!(lost < MOMENTUM_ROUNDING, "{settings:?}: {drift}");
+        let wobbles = end.velocities.iter().map(|velocity| (velocity.z - drift.z).abs());
+        let wobble = wobbles.fold(0.0, f32::max);
+        assert!(wobble < 0.01, "{settings:?}: {wobble} m/s");
+        let centre = mass_weighted(&fabric, |i| end.positions[i]);
+        let spin = (end.velocities[0] - drift).length() / (end.positions[0] - centre).length();
+        assert!((spin - 1.0).abs() < 0.05, "{settings:?}: {spin} rad/s");
+    }
 }
 
-/// What the frame does cannot matter to the motion in the world.
+/// The motion in the world does not depend on the frame in which it is computed.
 #[test]
 fn a_moving_frame_changes_nothing_in_the_world() {
     let fabric = square(5, |_| false);
@@ -243,26 +284,27 @@ fn a_moving_frame_changes_nothing_in_the_world() {
         rotation: Quat::from_euler(glam::EulerRot::XYZ, 0.05, 0.1, -0.07),
         translation: Vec3::new(0.03, -0.01, 0.02),
     };
-    let mut fixed = lone(&fabric, STANDARD, Drive::default());
-    let mut moving = lone(&fabric, STANDARD, Drive::default());
-    let (mut origin, mut axes) = (Vec3::ZERO, Quat::IDENTITY);
-    for _ in 0..20 {
-        origin += axes * motion.translation;
-        axes = (axes * motion.rotation).normalize();
-        moving.drive(
-            0,
-            Drive { motion, gravity: axes.inverse() * Vec3::NEG_Y * GRAVITY, ..Drive::default() },
-        );
-        fixed.step(TICK, StepSettings::gauss_seidel(8));
-        moving.step(TICK, StepSettings::gauss_seidel(8));
-    }
-    let (fixed, moving) = (fixed.snapshot(0), moving.snapshot(0));
-    for (here, there) in fixed.positions.iter().zip(&moving.positions) {
-        let there = origin + axes * *there;
-        assert!(here.distance(there) < 2e-4, "{here} {there}");
-    }
-    for (here, there) in fixed.velocities.iter().zip(&moving.velocities) {
-        assert!(here.distance(axes * *there) < 2e-3);
+    for settings in schemes(8) {
+        let mut fixed = lone(&fabric, STANDARD, Drive::default());
+        let mut moving = lone(&fabric, STANDARD, Drive::default());
+        let (mut origin, mut axes) = (Vec3::ZERO, Quat::IDENTITY);
+        for _ in 0..20 {
+            origin += axes * motion.translation;
+            axes = (axes * motion.rotation).normalize();
+            let gravity = axes.inverse() * Vec3::NEG_Y * GRAVITY;
+            moving.drive(0, Drive { motion, gravity, ..Drive::default() });
+            fixed.step(TICK, settings);
+            moving.step(TICK, settings);
+        }
+        let (fixed, moving) = (fixed.snapshot(0), moving.snapshot(0));
+        for (here, there) in fixed.positions.iter().zip(&moving.positions) {
+            let there = origin + axes * *there;
+            assert!(here.distance(there) < 2e-4, "{settings:?}: {here} {there}");
+        }
+        for (here, there) in fixed.velocities.iter().zip(&moving.velocities) {
+            let there = axes * *there;
+            assert!(here.distance(there) < 2e-3, "{settings:?}: {here} {there}");
+        }
     }
 }
 
@@ -273,13 +315,15 @@ fn damping_does_not_hold_back_a_frame_that_travels() {
     let motion = FrameMotion { translation: Vec3::new(0.0, 0.0, 20.0 * TICK), ..FrameMotion::NONE };
     let mut start = ClothSnapshot::at_rest(&fabric);
     start.velocities.fill(Vec3::Z * 20.0);
-    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
-    batch.insert(&start, material).expect("a free lane");
-    batch.drive(0, Drive { motion, gravity: Vec3::ZERO, ..Drive::default() });
-    for _ in 0..60 {
-        batch.step(TICK, StepSettings::gauss_seidel(4));
-    }
-    for (now, rest) in batch.snapshot(0).positions.iter().zip(fabric.rest_positions()) {
-        assert!(now.distance(*rest) < 1e-3, "{now} {rest}");
+    for settings in schemes(4) {
+        let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+        batch.insert(&start, material).expect("a free lane");
+        batch.drive(0, Drive { motion, gravity: Vec3::ZERO, ..Drive::default() });
+        for _ in 0..60 {
+            batch.step(TICK, settings);
+        }
+        for (now, rest) in batch.snapshot(0).positions.iter().zip(fabric.rest_positions()) {
+            assert!(now.distance(*rest) < 1e-5, "{settings:?}: {now} {rest}");
+        }
     }
 }

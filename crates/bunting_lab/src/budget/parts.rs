@@ -17,7 +17,7 @@ use crate::{
     effort::Effort,
     fleet::Fleet,
     product::{self, DEFAULT},
-    scenes::{Air, Scene},
+    scenes::{Air, Pins, Scene},
     settings::LEVELS,
 };
 
@@ -25,7 +25,7 @@ use crate::{
 /// multiplication within the prediction.
 pub const PARTS: [&str; 8] = [
     "begin of tick",
-    "prediction",
+    "prediction, damping",
     "air",
     "bending, shear",
     "stretch",
@@ -34,7 +34,7 @@ pub const PARTS: [&str; 8] = [
     "normals",
 ];
 
-/// What a ball behind the flag and internal damping add to a tick.
+/// What a ball behind the flag adds to a tick, and internal damping to that of a free sheet.
 pub const EXTRAS: [&str; 2] = ["collision", "internal damping"];
 
 /// Rate of the internal damping that is timed, 1/s.
@@ -62,6 +62,8 @@ pub fn measure(effort: &Effort) -> Vec<Part> {
 fn of_level(n: u32, effort: &Effort) -> Vec<Part> {
     let scene = Scene::flag(n as usize);
     let still = Scene { air: Air::VACUUM, ..scene.clone() };
+    // Internal damping is for cloth without pins.
+    let free = Scene { pins: Pins::Free, gravity: 0.0, ..scene.clone() };
     let untethered =
         product::pattern(&scene).tethered(false).build().expect("a scene is a good grid");
     let lanes = full_batch();
@@ -74,11 +76,12 @@ fn of_level(n: u32, effort: &Effort) -> Vec<Part> {
         fleet(&scene, more_passes(1)),
         fleet(&scene, more_passes(2)),
         fleet(&scene, DEFAULT),
-        fleet(&scene, DEFAULT),
+        fleet(&free, DEFAULT),
+        fleet(&free, DEFAULT),
     ];
-    damp_internally(&mut fleets[5], &scene);
-    put_on_a_ball(&mut fleets[6]);
-    let [whole, still, untethered, one_more, two_more, damped, on_a_ball] =
+    put_on_a_ball(&mut fleets[5]);
+    damp_internally(&mut fleets[7], &free);
+    let [whole, still, untethered, one_more, two_more, on_a_ball, free, damped] =
         phases::time_in_turn(&mut fleets, effort);
     // Each pass solves warp and weft, and every second one ends with a Gauss–Seidel sweep over them.
     let pass = one_more.constraints - whole.constraints;
@@ -97,7 +100,7 @@ fn of_level(n: u32, effort: &Effort) -> Vec<Part> {
         whole.velocities,
         whole.normals,
     ];
-    let added = [on_a_ball, damped].map(|tick| tick.total() - whole.total());
+    let added = [on_a_ball.total() - whole.total(), damped.total() - free.total()];
     let part = |(part, us)| Part { n, part, us, fraction: us / whole.total() };
     let parts = PARTS.into_iter().zip(times).chain(EXTRAS.into_iter().zip(added));
     parts.map(part).collect()

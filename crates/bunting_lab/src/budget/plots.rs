@@ -16,7 +16,8 @@ use crate::{
 pub fn many_flags_plot(many_flags: &[ManyFlags], scheme: &str) -> Plot {
     let mut series: Vec<Series> = Vec::new();
     for it in many_flags.iter().filter(|it| it.scheme == scheme) {
-        let name = format!("{n} × {n}, {} cores", it.cores, n = it.n);
+        let cores = if it.cores == 1 { "one core".into() } else { format!("{} cores", it.cores) };
+        let name = format!("{n} × {n}, {cores}", n = it.n);
         let point = (it.cloths as f64, it.ms_per_tick);
         match series.iter_mut().find(|series| series.name == name) {
             Some(found) => found.points.push(point),
@@ -38,16 +39,26 @@ pub fn many_flags_plot(many_flags: &[ManyFlags], scheme: &str) -> Plot {
     }
 }
 
-/// Figure 6.2 over the distance, one line.
+/// Figure 6.2 over the distance, one line, between the thesis's times of its finest and coarsest level.
 #[must_use]
 pub fn distance_plot(distances: &[AtDistance]) -> Plot {
-    let points = distances.iter().map(|it| (it.distance_m, it.ms_per_tick)).collect();
+    let points: Vec<(f64, f64)> =
+        distances.iter().map(|it| (it.distance_m, it.ms_per_tick)).collect();
+    let guide = |level: &str, ms: f64| Series {
+        name: format!("thesis, {level}: {ms} ms"),
+        points: points.iter().map(|&(distance, _)| (distance, ms)).collect(),
+        mark: Mark::Guide,
+    };
+    let guides = [guide("finest", thesis::FINEST_MS), guide("coarsest", thesis::COARSEST_MS)];
     Plot {
         name: "budget_distance".into(),
         title: "Eight flags by their distance (thesis, fig. 6.2)".into(),
         labels: ["distance from the viewer, m".into(), "ms a tick".into()],
         axes: Axes::Logarithmic,
-        series: vec![Series { name: "plugin, one core".into(), points, mark: Mark::Line }],
+        series: [Series { name: "plugin, one core".into(), points, mark: Mark::Line }]
+            .into_iter()
+            .chain(guides)
+            .collect(),
     }
 }
 

@@ -185,8 +185,8 @@ pub fn part_table(parts: &[Part]) -> Table {
     Table {
         name: "budget_parts".into(),
         title: format!(
-            "Parts of the tick of a full batch of flags; {} are added to it where they are used (of the \
-             thesis's frame internal damping takes {:.0} %)",
+            "Parts of the tick of a full batch of flags, and what {} add where they are used (internal \
+             damping took {:.0} % of the thesis's frame)",
             EXTRAS.join(" and "),
             100.0 * thesis::INTERNAL_DAMPING
         ),

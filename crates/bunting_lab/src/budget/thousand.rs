@@ -20,9 +20,9 @@ use crate::{
 
 /// Flags in the field.
 const FLAGS: usize = 1000;
-/// Flags stand on a sunflower's spiral, k-th at this times √k from its middle, m: one on 10 m².
+/// Flags stand on Fermat's spiral, the k-th at this times √k from its middle, m: one flag on 10 m².
 const SPACING: f32 = 1.8;
-/// Turn from one flag to the next as a part of a full one: the golden section's.
+/// Turn from one flag to the next, of a full turn: the golden angle.
 const GOLDEN: f32 = 0.381_966;
 /// Radius of the camera's path, m: of the field's 57.
 const PATH: f32 = 40.0;
@@ -30,9 +30,9 @@ const PATH: f32 = 40.0;
 const HEIGHT: f32 = 1.0;
 /// Speed of the camera, m/s.
 const SPEED: f32 = 10.0;
-/// The camera looks by this much inwards from where it flies, rad.
+/// Angle between the camera's view and its direction of flight, inwards, rad.
 const INWARDS: f32 = 0.4;
-/// Half of the picture's width over its distance, and of its height: 60°, 16:9.
+/// Half the picture's width and half its height over their distance: 60°, 16:9.
 const SLOPES: [f32; 2] = [1.026_4, 0.577_35];
 /// Time before anything is measured, s: flags fly, and levels are found.
 const WARM_UP: usize = 3;

@@ -70,7 +70,7 @@ fn table(cases: &[Case]) -> Table {
         name: "oracles".into(),
         title: format!("{passed} of {} closed forms met", cases.len()),
         headers: vec!["case", "expected", "measured", "relative error", "tolerance", "pass"],
-        // What fails first.
+        // Failing cases first.
         rows: [false, true]
             .into_iter()
             .flat_map(|pass| cases.iter().filter(move |case| case.pass == pass))

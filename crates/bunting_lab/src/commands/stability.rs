@@ -49,7 +49,7 @@ fn table(cases: &[HardCase]) -> Table {
         name: "stability".into(),
         title: format!("{passed} of {built} hard cases held, {} not built", cases.len() - built),
         headers: vec!["case", "n", "figure", "worst", "limit", "pass"],
-        // What fails first.
+        // Failing cases first.
         rows: [false, true]
             .into_iter()
             .flat_map(|pass| cases.iter().filter(move |case| case.pass == pass))

@@ -38,7 +38,7 @@ pub fn measure(
     let mut simulation = (contender.start)(scene)?;
     let (mut warm_up, mut time) = (Timing::default(), Timing::default());
     for tick in 0..scene.ticks() {
-        // The shortest tick, since others may have had to wait for the processor.
+        // Judged by the shortest tick: longer ones may have waited for the processor.
         if tick == WARM_UP && warm_up.min() * scene.ticks() as f64 > time_limit * 1e6 {
             return None;
         }

@@ -1,6 +1,6 @@
-//! What a level cannot show: how far the surface of a flag lies from the same surface at a coarser
-//! level's vertices, with the triangles between them. The plugin's estimate of a level's error is
-//! drawn from this table.
+//! The resolution of a level: distance between the surface of a flag and the same surface sampled at a
+//! coarser level's vertices, with the triangles between them. The plugin's estimate of a level's error
+//! comes from this table.
 
 use bunting_solver::{LevelTransfer, StepSettings};
 use serde::Serialize;

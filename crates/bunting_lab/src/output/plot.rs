@@ -43,7 +43,7 @@ pub enum Mark {
     Line,
     /// A grey line under everything else: a front or a limit.
     Guide,
-    /// Bars from zero to the points. A series covers those before it: stacked bars are cumulative
+    /// Bars from zero to the points, drawn in the order of the series. Stacked bars are series of cumulative
     /// sums, the largest first.
     Bars,
 }
@@ -53,8 +53,8 @@ pub enum Mark {
 pub struct Series {
     /// Name in the legend.
     pub name: String,
-    /// Points, all positive where the axes are logarithmic. A series of none keeps its colour from
-    /// the next and is not named.
+    /// Points, all positive where the axes are logarithmic. A series without points takes a colour, so that
+    /// the others keep theirs in every plot, but is not in the legend.
     pub points: Vec<(f64, f64)>,
     /// How they are drawn.
     pub mark: Mark,

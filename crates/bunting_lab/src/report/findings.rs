@@ -81,7 +81,7 @@ fn cases(json: &Value, what: &str, gap: fn(&Value) -> f64) -> Vec<Finding> {
     if !passed.is_empty() {
         findings.push(Finding::new(true, format!("{} of {total} {what}", passed.len())));
     }
-    // What is not a number is the worst of all.
+    // NaN counts as the worst.
     failed.sort_by(|a, b| gap(b).abs().total_cmp(&gap(a).abs()));
     if !failed.is_empty() {
         let name = |case: &&Value| match gap(case) {
@@ -119,7 +119,7 @@ fn fastest(json: &Value, scene: &str, n: u64) -> Option<Finding> {
     let (ours, others): (Vec<&Value>, Vec<&Value>) = on(json, scene, n)
         .filter(|row| row["stable"].as_bool() == Some(true) && error(row).is_finite())
         .partition(|row| text(row, "method").starts_with("bunting"));
-    // All lanes err alike: the fastest of the most exact.
+    // Every number of lanes has the same error: of the most exact settings the fastest.
     let order = |a: &Value, b: &Value| {
         error(a).total_cmp(&error(b)).then_with(|| time(a).total_cmp(&time(b)))
     };
@@ -215,7 +215,7 @@ fn lod(json: &Value) -> Vec<Finding> {
     let worst = |list: &str, key: &str| {
         rows(json, list).iter().map(|change| number(change, key)).fold(0.0, worse)
     };
-    let (pop, energy) = (worst("pops", "worst_px"), worst("switches", "energy_jump"));
+    let (pop, energy) = (worst("pops", "worst_px"), worst("switches", "energy_worst"));
     let sentence = format!("a change of level pops by {} pixels at most", figure(pop));
     findings.push(Finding::new(pop <= POP, sentence));
     let sentence = format!("a change of level adds up to {} × the kinetic energy", figure(energy));

@@ -22,7 +22,7 @@ const STRAIN: f64 = 0.2;
 const PERIOD: f64 = 0.01;
 /// Largest rise of the energy over its start, of the sheet's fall.
 const ENERGY: f64 = 0.01;
-/// Time that a cloth damped by 2/s is given to come to rest, s: what moves is down to e⁻¹².
+/// Time in which a cloth damped by 2/s comes to rest, s: its motion has decayed to e⁻¹².
 const SETTLING: f64 = 12.0;
 /// Fastest that a cloth at rest may move, m/s RMS.
 const REST_SPEED: f64 = 1e-3;

@@ -60,8 +60,8 @@ fn dropped(n: usize) -> HardCase {
     HardCase::new("drop on a floor", n, "speed of rebound over that of impact", rebound, 0.05)
 }
 
-/// The shape flies through the middle of a sheet that nothing holds; what it meets must be pushed ahead of
-/// it. (A sheet held by its top could not follow farther than it is long: it would have to slip off.)
+/// The shape flies through the middle of a free sheet; vertices in its way must be pushed ahead of it. (A
+/// sheet held by its top could not follow farther than its length: it would have to slip off.)
 fn shot(name: &str, n: usize, shape: &SharedShape, turn: Quat) -> [HardCase; 2] {
     let scene = Scene { pose: Pose::Vertical, pins: Pins::Free, ..Scene::hang_top(n) };
     let mut cloth = start(&scene);

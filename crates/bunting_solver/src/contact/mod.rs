@@ -1,4 +1,6 @@
-//! What a cloth may touch.
+//! Contacts between cloth and colliders.
 
+mod candidates;
 pub(crate) mod collider;
 mod solve;
+mod surface;

@@ -1,14 +1,14 @@
-//! What can be wrong with a fabric.
+//! Errors of meshes, grids and materials.
 
-/// Why a fabric cannot be built, and where.
+/// The reason why a fabric cannot be built, and where.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FabricError {
-    /// There is nothing to simulate.
+    /// The mesh has no triangles.
     #[error("the mesh has no triangles: give it at least one")]
     Empty,
     /// The indices do not come in threes.
-    #[error("{count} indices do not make whole triangles: give three a triangle")]
+    #[error("{count} indices do not make whole triangles: give three per triangle")]
     IndexCount {
         /// Number of indices given.
         count: usize,
@@ -37,21 +37,21 @@ pub enum FabricError {
         /// The vertex.
         vertex: usize,
     },
-    /// There must be one texture coordinate a vertex.
-    #[error("{uvs} texture coordinates for {vertices} vertices: give one a vertex, or none")]
+    /// There must be one texture coordinate per vertex.
+    #[error("{uvs} texture coordinates for {vertices} vertices: give one per vertex, or none")]
     UvCount {
         /// Number of texture coordinates given.
         uvs: usize,
         /// Number of vertices given.
         vertices: usize,
     },
-    /// A triangle has no area, so neither mass nor normal.
+    /// A triangle has no area, and so neither mass nor normal.
     #[error("triangle {triangle} has no area: remove it, or move its corners apart")]
     ZeroArea {
         /// The triangle.
         triangle: usize,
     },
-    /// A vertex would have no mass.
+    /// A vertex has no triangle, and so no mass.
     #[error("vertex {vertex} belongs to no triangle: remove it")]
     LooseVertex {
         /// The vertex.
@@ -65,7 +65,7 @@ pub enum FabricError {
         /// The other end.
         b: u32,
     },
-    /// A grid needs two particles and some length each way.
+    /// A grid needs at least two particles and a positive length along both sides.
     #[error(
         "a grid of {columns} × {rows} particles over {width} m × {height} m is not a cloth: give at least 2 × 2 and a positive size"
     )]
@@ -79,7 +79,7 @@ pub enum FabricError {
         /// Extent along a column, m.
         height: f32,
     },
-    /// A material value cannot be simulated.
+    /// A value of the material cannot be simulated.
     #[error("the material's {name} cannot be {value}")]
     Material {
         /// The field's name.

@@ -1,22 +1,22 @@
-//! What a cloth is made of, in physical units.
+//! The material of a cloth, in SI units.
 
-use crate::fabric::FabricError;
+use super::error::FabricError;
 
 /// A woven or knitted material, in SI units.
 ///
-/// Every level of detail derives its masses and compliances from these values, so a cloth behaves
-/// alike at every resolution.
+/// Masses and compliances at every level of detail follow from these values, so that a cloth behaves alike at every
+/// resolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FabricMaterial {
-    /// Mass of a square metre, kg/m².
+    /// Area density: mass per area, kg/m².
     pub area_density: f32,
     /// Stretch stiffness along the warp (the u axis), N/m. Infinite: inextensible (PBD).
     pub warp_stiffness: f32,
     /// Stretch stiffness along the weft (the v axis), N/m. Infinite: inextensible (PBD).
     pub weft_stiffness: f32,
-    /// Shear stiffness, N/m: the energy is ½ G γ² a square metre.
+    /// Shear stiffness G, N/m: the energy is ½ G γ² per square metre at a shear angle of γ rad.
     pub shear_stiffness: f32,
-    /// Bending stiffness, N·m: the energy is ½ B κ² a square metre.
+    /// Bending stiffness B, N·m: the energy is ½ B κ² per square metre at a curvature of κ 1/m.
     pub bend_stiffness: f32,
     /// Rate at which all motion relative to the cloth's frame dies away, 1/s.
     pub damping: f32,
@@ -33,9 +33,8 @@ pub struct FabricMaterial {
     pub surface_friction: f32,
 }
 
-/// Stretch stiffness of ARCSim's fabrics is the slope at the smallest strain (Wang, O'Brien and
-/// Ramamoorthi 2011, "Data-driven elastic models for cloth"); their bending coefficient k
-/// corresponds to B ≈ k/4.
+/// Presets. Values after Wang, O'Brien and Ramamoorthi 2011, "Data-driven elastic models for cloth": the stretch
+/// stiffness is the slope at the smallest strain measured, and their bending coefficient k corresponds to B ≈ k/4.
 impl FabricMaterial {
     /// Knitted flag polyester. Density: flag makers' 110–115 g/m². Stretch, shear and bending:
     /// Wang et al. 2011, polyester tablecloth (2002/2027/19 N/m, k = 41 µN·m). The rest: estimates.
@@ -110,48 +109,35 @@ impl FabricMaterial {
     /// and finite, a stretch stiffness that is not positive, anything else that is negative or not
     /// a number.
     pub fn validate(&self) -> Result<(), FabricError> {
-        let positive = |value: f32| value > 0.0;
-        let non_negative = |value: f32| value >= 0.0 && value.is_finite();
-        let checks = [
-            (
-                "area_density",
-                self.area_density,
-                positive(self.area_density) && self.area_density.is_finite(),
-            ),
-            ("warp_stiffness", self.warp_stiffness, positive(self.warp_stiffness)),
-            ("weft_stiffness", self.weft_stiffness, positive(self.weft_stiffness)),
-            ("shear_stiffness", self.shear_stiffness, non_negative(self.shear_stiffness)),
-            ("bend_stiffness", self.bend_stiffness, non_negative(self.bend_stiffness)),
-            ("damping", self.damping, non_negative(self.damping)),
-            ("internal_damping", self.internal_damping, non_negative(self.internal_damping)),
-            (
-                "pressure_coefficient",
-                self.pressure_coefficient,
-                non_negative(self.pressure_coefficient),
-            ),
-            (
-                "friction_coefficient",
-                self.friction_coefficient,
-                non_negative(self.friction_coefficient),
-            ),
-            ("thickness", self.thickness, non_negative(self.thickness)),
-            ("surface_friction", self.surface_friction, non_negative(self.surface_friction)),
+        let density = |value: f32| value > 0.0 && value.is_finite();
+        let stretch = |value: f32| value > 0.0;
+        let other = |value: f32| value >= 0.0 && value.is_finite();
+        let checks: [(_, _, fn(f32) -> bool); 11] = [
+            ("area_density", self.area_density, density),
+            ("warp_stiffness", self.warp_stiffness, stretch),
+            ("weft_stiffness", self.weft_stiffness, stretch),
+            ("shear_stiffness", self.shear_stiffness, other),
+            ("bend_stiffness", self.bend_stiffness, other),
+            ("damping", self.damping, other),
+            ("internal_damping", self.internal_damping, other),
+            ("pressure_coefficient", self.pressure_coefficient, other),
+            ("friction_coefficient", self.friction_coefficient, other),
+            ("thickness", self.thickness, other),
+            ("surface_friction", self.surface_friction, other),
         ];
-        match checks.into_iter().find(|(_, _, good)| !good) {
+        match checks.into_iter().find(|&(_, value, is_valid)| !is_valid(value)) {
             Some((name, value, _)) => Err(FabricError::Material { name, value }),
             None => Ok(()),
         }
     }
 
-    /// The stiffness matrix's diagonal `[C₁₁, C₂₂, G]` in N/m that makes a lattice of links measure
-    /// as the material says.
+    /// The stiffnesses `[C₁₁, C₂₂, G]` in N/m with which a lattice of links measures as the material says, where its
+    /// diagonals resist stretch as well as shear.
     ///
-    /// Links on the bias carry shear, but stretch too: they couple warp and weft by C₁₂ = G. A
-    /// strip pulled along the warp, free to narrow, then measures C₁₁ − C₁₂²/C₂₂; asking that to be
-    /// the warp stiffness, and likewise the weft, gives these two. The bias of a grid of yarns carries
-    /// shear alone, and needs none of this.
-    #[must_use]
-    pub fn lattice_moduli(&self) -> [f32; 3] {
+    /// Such diagonals couple warp and weft by C₁₂ = G. A strip that is pulled along the warp and free to narrow then
+    /// measures C₁₁ − C₁₂²/C₂₂; setting that equal to the warp stiffness, and likewise for the weft, gives C₁₁ and C₂₂.
+    /// Where diagonals resist shear alone (`constraints/shear.rs`), the material's own stiffnesses hold.
+    pub(crate) fn lattice_moduli(&self) -> [f32; 3] {
         let (warp, weft, shear) = (self.warp_stiffness, self.weft_stiffness, self.shear_stiffness);
         if !warp.is_finite() || !weft.is_finite() {
             return [warp, weft, shear];

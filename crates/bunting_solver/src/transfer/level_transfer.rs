@@ -226,6 +226,14 @@ impl LevelTransfer {
     }
 }
 
+#[cfg(test)]
+impl LevelTransfer {
+    /// Whether the next coarser transfer uses the same settler for the fabric between them.
+    pub(super) fn shares_settler_with(&self, next: &Self) -> bool {
+        Arc::ptr_eq(&self.coarse, &next.fine)
+    }
+}
+
 /// For each coarse particle the fine particle at the same place, given the fine vertex of each coarse vertex; none if
 /// the vertices do not fit.
 fn shared_particles(fine: &Fabric, coarse: &Fabric, vertices: &[u32]) -> Option<Vec<u32>> {

@@ -21,7 +21,7 @@ fn fabric(columns: u32, rows: u32, pinned: bool) -> Arc<Fabric> {
     Arc::new(grid.pin_where(|_, uv| pinned && uv.x == 0.0).build().expect("a good fabric"))
 }
 
-/// Two neighbours, and how they correspond.
+/// Two neighbouring levels and the transfer between them.
 fn levels(pinned: bool) -> (Arc<Fabric>, Arc<Fabric>, LevelTransfer) {
     let (fine, coarse) = (fabric(17, 9, pinned), fabric(9, 5, pinned));
     let transfer = LevelTransfer::between(&fine, &coarse).expect("nested");
@@ -34,7 +34,7 @@ fn batch_of(fabric: &Arc<Fabric>, state: &ClothSnapshot) -> ClothBatch {
     batch
 }
 
-/// Mid-flight: a second of wind and gravity.
+/// A flag after a second in wind and gravity.
 fn flown(fabric: &Arc<Fabric>) -> ClothSnapshot {
     let mut batch = batch_of(fabric, &ClothSnapshot::at_rest(fabric));
     batch.drive(0, Drive { wind: Vec3::new(7.0, 0.0, 3.0), ..Drive::default() });
@@ -66,16 +66,16 @@ fn momentum_is_kept_and_energy_does_not_grow() {
             assert!(had.distance(has) < 1e-5 * had.length(), "pinned {pinned}: {had} {has}");
             let (had, has) = (energies(from, before), energies(to, &after));
             let sum = |energies: [f64; 3]| energies.iter().sum::<f64>();
-            // Rounded where the parts are large, however small their sum.
+            // The sum is rounded as its largest part.
             let rounding = 1e-6 * had.map(f64::abs).iter().sum::<f64>();
             assert!(sum(has) < sum(had) + rounding, "pinned {pinned}: {had:?} {has:?}");
         }
     }
 }
 
-/// Over several levels at once: as sound as over one, and those between are not arrived at.
+/// A restriction over several levels conserves what one over a single level does.
 #[test]
-fn several_levels_are_crossed_at_once() {
+fn several_levels_are_crossed_at_once_without_strain() {
     let fabrics = [(17, 9), (9, 5), (5, 3)].map(|(columns, rows)| fabric(columns, rows, true));
     let between =
         |pair: &[Arc<Fabric>]| LevelTransfer::between(&pair[0], &pair[1]).expect("nested");
@@ -93,9 +93,9 @@ fn several_levels_are_crossed_at_once() {
     assert!(has[1] < had[1] + 0.1 * had[0], "strain is left: {had:?} {has:?}");
 }
 
-/// A frame in motion: all of the cloth, pins too, has its velocity, and keeps it.
+/// A cloth whose particles, pins included, all move at the velocity of the frame.
 #[test]
-fn what_moves_as_one_goes_on_as_one() {
+fn a_uniform_velocity_stays_uniform() {
     let (fine, coarse, transfer) = levels(true);
     let speed = Vec3::new(20.0, -3.0, 5.0);
     let moving = |fabric: &Fabric| {
@@ -111,7 +111,7 @@ fn what_moves_as_one_goes_on_as_one() {
 }
 
 #[test]
-fn up_and_down_again_gives_back_the_velocities() {
+fn prolongation_and_restriction_give_back_the_velocities() {
     let (_, coarse, transfer) = levels(true);
     let state = flown(&coarse);
     let up: Vec<Vec3> = transfer.smooth.interpolate(&state.velocities).collect();
@@ -120,9 +120,9 @@ fn up_and_down_again_gives_back_the_velocities() {
     }
 }
 
-/// What only the fine particles between the shared ones do is not lost.
+/// The motion of fine particles between the shared ones is not lost.
 #[test]
-fn velocities_are_gathered_from_all() {
+fn velocities_are_gathered_from_all_particles() {
     let (fine, _, transfer) = levels(false);
     let is_shared = |particle: usize| transfer.shared.contains(&(particle as u32));
     let velocities: Vec<Vec3> = (0..fine.particle_count())
@@ -147,10 +147,10 @@ fn folds_are_not_flattened() {
     assert!(smooth < 0.4 * flat, "{smooth} {flat}");
 }
 
-/// New particles on a fold lie farther apart than the cloth is long. What would tear them together
-/// in the next substep is gone.
+/// Particles interpolated on a fold lie farther apart than the cloth is long. Settling takes off that strain, which would
+/// become velocity in the next substep.
 #[test]
-fn no_strain_is_left_that_kicks() {
+fn little_strain_is_left() {
     let (fine, coarse, transfer) = levels(true);
     let (above, below) = (flown(&fine), flown(&coarse));
     let stored = |fabric, state: &ClothSnapshot| elastic(fabric, &MATERIAL, &state.positions);
@@ -165,9 +165,9 @@ fn no_strain_is_left_that_kicks() {
     assert!(down < 0.1 * elastic(&coarse, &MATERIAL, &bare), "{down}");
 }
 
-/// The weight of a stretchy cloth holds its stretch: a change of level must not let it go.
+/// Soft cloth that is stretched by its weight keeps its stretch in a change of level.
 #[test]
-fn stretch_by_weight_stays() {
+fn stretch_by_weight_is_kept() {
     let material = FabricMaterial {
         warp_stiffness: 20.0,
         weft_stiffness: 20.0,
@@ -199,9 +199,9 @@ fn stretch_by_weight_stays() {
     }
 }
 
-/// Ten seconds of a swing that changes its level in every tick.
+/// Ten seconds of a swing with a change of level in every tick.
 #[test]
-fn thrashing_is_harmless() {
+fn a_change_in_every_tick_conserves_momentum_and_adds_no_energy() {
     let (fine, coarse, transfer) = levels(true);
     let fabrics = [fine, coarse];
     let mut batches =
@@ -227,4 +227,26 @@ fn thrashing_is_harmless() {
         let now: f64 = energies(&fabrics[level], &moved).iter().sum();
         assert!(now < start + 0.01 * fall, "tick {tick}: {now} {start}");
     }
+}
+
+/// The transfers of a chain are the same whether their neighbours share a settler or not.
+#[test]
+fn a_chain_of_transfers_shares_its_settlers() {
+    let builder = FabricBuilder::grid(Grid::new(17, 9, 1.2, 0.8)).pin_where(|_, uv| uv.x == 0.0);
+    let middle = builder.coarser().expect("a level");
+    let coarse = middle.builder.coarser().expect("a level");
+    let [fine, between, last] = [&builder, &middle.builder, &coarse.builder]
+        .map(|builder| Arc::new(builder.clone().build().expect("a good fabric")));
+    let first = LevelTransfer::nested(&fine, &between, &middle.vertices).expect("nested");
+    let second = first.then(&last, &coarse.vertices).expect("nested");
+    assert!(first.shares_settler_with(&second));
+    let apart = LevelTransfer::nested(&between, &last, &coarse.vertices).expect("nested");
+    assert!(!first.shares_settler_with(&apart));
+    let state = flown(&between);
+    let restricted =
+        [&second, &apart].map(|transfer| transfer.restrict(&state, &MATERIAL, GRAVITY));
+    assert_eq!(restricted[0], restricted[1]);
+    let state = flown(&last);
+    let prolonged = [&second, &apart].map(|transfer| transfer.prolong(&state, &MATERIAL, GRAVITY));
+    assert_eq!(prolonged[0], prolonged[1]);
 }

@@ -31,6 +31,20 @@ impl FabricBuilder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fabric::Grid;
+
+    /// On a mesh without seams particles are vertices, and a fabric has the same normals.
+    #[test]
+    fn a_fabric_has_the_normals_of_its_mesh() {
+        let grid = Grid::new(5, 4, 1.0, 1.0);
+        let bent = grid.positions().iter().map(|at| at.with_z(at.x * at.x - 0.3 * at.y)).collect();
+        let triangles = grid.triangles(false).into_flattened();
+        let builder = FabricBuilder::new(bent, triangles);
+        let normals = builder.rest_normals().expect("a mesh");
+        let fabric = builder.build().expect("a fabric");
+        assert_eq!(fabric.normals(fabric.rest_positions()), normals);
+        assert!(normals.iter().all(|normal| normal.z > 0.3), "to the front");
+    }
 
     #[test]
     fn a_roof_is_smooth_across_its_seam() {

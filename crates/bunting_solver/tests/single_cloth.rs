@@ -1,4 +1,4 @@
-//! A lone cloth, whose own yarns fill the lanes, has the bits of one that shares its batch.
+//! A batch of one cloth, whose own yarns fill the lanes, computes the same bits as a batch of several cloths.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ fn yarns(substeps: u32, passes: u32) -> StepSettings {
     StepSettings { passes, ..StepSettings::yarns(substeps) }
 }
 
-/// A gusty wind, and a frame that moves for a while.
+/// A changing wind, and a frame that moves for a while.
 fn drive(tick: usize) -> Drive {
     let time = tick as f32 * TICK;
     let motion = if (40..90).contains(&tick) {
@@ -43,7 +43,7 @@ fn fly(
     let mut normals = Vec::new();
     for tick in 0..200 {
         batch.drive(lane, drive(tick));
-        // What is moved to another batch goes on as if it had not been.
+        // A cloth that is taken out and put back goes on with the same bits.
         if tick == 100 {
             let moving = batch.snapshot(lane);
             batch.restore(lane, &moving).expect("its own state");
@@ -66,7 +66,7 @@ fn agrees(fabric: FabricBuilder, material: FabricMaterial, settings: StepSetting
 }
 
 #[test]
-fn flags_of_any_size() {
+fn flags_of_any_size_agree() {
     for (columns, rows) in [(33, 33), (17, 9), (5, 23), (8, 16), (2, 9), (9, 2)] {
         for settings in [yarns(1, 4), yarns(2, 2), yarns(3, 1)] {
             let (width, height) = (0.05 * (columns - 1) as f32, 0.04 * (rows - 1) as f32);
@@ -77,7 +77,7 @@ fn flags_of_any_size() {
 }
 
 #[test]
-fn pins_anywhere() {
+fn pins_anywhere_agree() {
     let grid = || FabricBuilder::grid(Grid::new(13, 11, 1.0, 1.0));
     let stiff = FabricMaterial { bend_stiffness: 10.0, ..FabricMaterial::DENIM };
     let damped = FabricMaterial { internal_damping: 1.0, ..FabricMaterial::COTTON };
@@ -91,13 +91,13 @@ fn pins_anywhere() {
 }
 
 #[test]
-fn yarns_that_do_not_run_straight() {
+fn yarns_that_run_from_diagonal_to_diagonal_agree() {
     let grid = FabricBuilder::grid(Grid::new(5, 17, 2.0, 0.5));
     agrees(grid.pin_where(|_, uv| uv.x == 0.0), FabricMaterial::COTTON, yarns(2, 2));
 }
 
 #[test]
-fn with_any_instructions() {
+fn every_instruction_set_agrees() {
     let grid = FabricBuilder::grid(Grid::new(9, 7, 1.2, 0.8)).pin_where(|_, uv| uv.x == 0.0);
     let fabric = Arc::new(grid.build().expect("a good fabric"));
     let flown = with_every_instruction_set(|| {
@@ -107,7 +107,7 @@ fn with_any_instructions() {
 }
 
 #[test]
-fn what_went_wild_can_be_used_again() {
+fn a_lane_that_was_not_finite_can_be_used_again() {
     let grid = FabricBuilder::grid(Grid::new(9, 7, 1.2, 0.8)).pin_where(|_, uv| uv.x == 0.0);
     let fabric = Arc::new(grid.build().expect("a good fabric"));
     let rest = ClothSnapshot::at_rest(&fabric);
@@ -123,7 +123,7 @@ fn what_went_wild_can_be_used_again() {
 }
 
 #[test]
-fn another_scheme_from_one_tick_to_the_next() {
+fn a_change_of_scheme_between_ticks_agrees() {
     let grid = FabricBuilder::grid(Grid::new(9, 7, 1.2, 0.8)).pin_where(|_, uv| uv.x == 0.0);
     let fabric = Arc::new(grid.build().expect("a good fabric"));
     let [alone, shared] = [LaneCount::One, LaneCount::Eight].map(|lanes| {
@@ -140,14 +140,14 @@ fn another_scheme_from_one_tick_to_the_next() {
 }
 
 #[test]
-fn pins_too_far_apart() {
+fn pins_too_far_apart_agree() {
     let grid = FabricBuilder::grid(Grid::new(13, 11, 1.0, 1.0)).pin([0, 12, 136]);
     let fabric = Arc::new(grid.build().expect("a good fabric"));
     let mut wide = ClothSnapshot::at_rest(&fabric);
     wide.positions.iter_mut().for_each(|position| *position *= 1.05);
     let [alone, shared] = [LaneCount::One, LaneCount::Eight].map(|lanes| {
         let mut batch = ClothBatch::new(fabric.clone(), lanes);
-        // A neighbour of which nothing is asked.
+        // A second cloth in the batch, at rest.
         if lanes != LaneCount::One {
             let rest = ClothSnapshot::at_rest(&fabric);
             batch.insert(&rest, FabricMaterial::DENIM).expect("a free lane");
