@@ -34,7 +34,7 @@ mod yarns;
 
 pub(crate) use bending::{BendLine, BendProfile};
 pub(crate) use chains::{CHAINS_PER_PAIR, Cell, Chain, ChainLink, ChainPair, Chains, SweepLink};
-pub(crate) use hinges::{Hinge, angle as hinge_angle};
+pub(crate) use hinges::{Hinge, HingeClass, angle as hinge_angle};
 pub(crate) use patches::Patch;
 pub(crate) use tethers::Tether;
 pub(crate) use twist::{Ribbon, RibbonProfile};
@@ -44,5 +44,6 @@ pub use builder::{CoarserMesh, FabricBuilder};
 pub use error::FabricError;
 pub use fabric::Fabric;
 pub use grid::Grid;
+pub(crate) use links::LinkClass;
 pub use links::{Link, LinkFamily};
 pub use material::FabricMaterial;
