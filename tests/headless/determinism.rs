@@ -84,6 +84,9 @@ fn other_cloths_change_no_bit() {
     let one = spawn_flag(&mut lone, Vec3::ZERO);
     let mut many = app();
     let among = spawn_flag(&mut many, Vec3::ZERO);
+    // No tick is simulated in the first update.
+    run(&mut lone, 1);
+    run(&mut many, 1);
     let mut others = Vec::new();
     for tick in 0..100 {
         // Other cloths come and go, so that the cloth moves from batch to batch.

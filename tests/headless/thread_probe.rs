@@ -19,7 +19,7 @@ const NEAREST: Vec3 = Vec3::splat(1e6);
 
 /// Time for which the first thread waits for another, so that it cannot do all work before the
 /// others have woken up. Too short: a busy machine fails the test.
-const PATIENCE: Duration = Duration::from_secs(30);
+const RENDEZVOUS_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// The threads that have asked the shape for its nearest point.
 #[derive(Clone, Default)]
@@ -42,7 +42,7 @@ impl ThreadProbe {
         if threads.insert(thread::current().id()) {
             arrived.notify_all();
             let alone = |threads: &mut HashSet<_>| threads.len() < 2;
-            drop(arrived.wait_timeout_while(threads, PATIENCE, alone));
+            drop(arrived.wait_timeout_while(threads, RENDEZVOUS_TIMEOUT, alone));
         }
     }
 }

@@ -19,11 +19,15 @@ fn memory_is_counted_and_grows_with_the_number_of_particles() {
     let fabrics = bytes("fabrics", "bytes");
     assert_eq!(fabrics.len(), 4);
     assert!(fabrics.windows(2).all(|pair| pair[0] > 2 * pair[1]), "{fabrics:?}");
-    // A particle is at least a position, a velocity and a normal in each lane.
+    // A particle is at least a position, a velocity and a normal in each lane, and 150 to 200 bytes with
+    // what the integrator and the constraints store. A single cloth's layout also has what belongs to the
+    // fabric, in each lane.
     for row in json["batches"].as_array().expect("batches") {
         let n = row["n"].as_u64().expect("n");
-        let least = n * n * row["lanes"].as_u64().expect("lanes") * 36;
+        let lanes = row["lanes"].as_u64().expect("lanes");
+        let least = n * n * lanes * 36;
+        let most = if lanes == 1 { 60 } else { 8 } * least;
         let held = row["bytes"].as_u64().expect("bytes");
-        assert!(held > least && held < 20 * least, "{row}");
+        assert!((least..most).contains(&held), "{row}");
     }
 }

@@ -1,34 +1,63 @@
 //! Real-time cloth: position-based dynamics in SIMD lanes.
 //!
-//! This crate is the physics of `bevy_bunting`. It knows no ECS, no renderer and no clock: it takes
-//! a [`Fabric`] (a cloth at rest), fills the lanes of a [`ClothBatch`] with cloths cut from it, and
-//! steps them.
+//! This crate is the physics of `bevy_bunting`, without an ECS, a renderer or a clock. A [`Fabric`] is a piece of
+//! cloth at rest: particles, triangles, constraints and pins. A [`ClothBatch`] holds the moving state of up to
+//! sixteen cloths of one fabric, one in each lane of a vector, and steps them together. All units are SI.
+//!
+//! ```
+//! use std::sync::Arc;
+//! use bunting_solver::{
+//!     ClothBatch, ClothSnapshot, FabricBuilder, FabricMaterial, Grid, LaneCount, StepSettings,
+//! };
+//!
+//! // A flag of one square metre, pinned along its left edge, u = 0.
+//! let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0));
+//! let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build()?);
+//!
+//! let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
+//! let flag = batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::FLAG_POLYESTER)?;
+//! for _ in 0..60 {
+//!     batch.step(1.0 / 60.0, StepSettings::default());
+//! }
+//!
+//! let mut positions = Vec::new();
+//! batch.copy_positions(flag, &mut positions);
+//! # let lowest = positions.iter().map(|at| at.y).fold(0.0, f32::min);
+//! # assert!(positions.len() == 17 * 17 && lowest < -1.0);
+//! # Ok::<(), Box<dyn core::error::Error>>(())
+//! ```
 //!
 //! # One tick
 //!
-//! The loop of Häggström's thesis (5.1), with small steps (Macklin 2019) and compliance from the
-//! material (XPBD, Macklin 2016):
+//! The loop is that of Häggström's thesis (5.1), with small steps (Macklin 2019) and compliances from the
+//! material (XPBD, Macklin 2016). [`ClothBatch::step`] runs all of it:
 //!
-//! 1. [`ClothBatch::begin_tick`]: compliances for the step, contact candidates.
-//! 2. For each substep:
-//!    1. [`ClothBatch::integrate`]: carry the state into the moved frame, external forces (gravity,
-//!       air), damping, prediction.
-//!    2. [`ClothBatch::solve_constraints`]: bending, stretch and shear, contacts.
-//!    3. [`ClothBatch::update_velocities`]: velocities from the corrected positions.
-//! 3. [`ClothBatch::compute_normals`], once.
+//! 1. [`ClothBatch::begin_tick`] sets the length of the substeps and finds contact candidates.
+//! 2. In each substep
+//!    1. [`ClothBatch::integrate`] carries the state into the moved frame, applies air, damping and gravity, and
+//!       predicts positions;
+//!    2. [`ClothBatch::solve_constraints`] projects the predictions onto bending, stretch, shear, tethers and
+//!       contacts;
+//!    3. [`ClothBatch::update_velocities`] computes velocities from the corrected positions.
+//! 3. [`ClothBatch::compute_normals`] computes normals, once.
 //!
-//! [`ClothBatch::step`] does all of it.
+//! Forces and constraints of a user's come between the phases of a substep: see [`ClothBatch::particles_mut`].
+//!
+//! # Schemes
+//!
+//! [`Scheme::Yarns`] solves all links of a straight path of the fabric at once, as a tridiagonal system, and
+//! integrates by a formula of second order. [`Scheme::GaussSeidel`] is the thesis's scheme.
 //!
 //! # Frames
 //!
-//! A cloth lives in its own frame: pinned particles are constants there. When the frame moves, the
-//! [`FrameMotion`] of the tick is fed to the free particles over the substeps. Velocities are the
-//! world's, along the frame's axes.
+//! Positions of a cloth are in the cloth's own frame, in which its pins are constant. When the frame moves, the
+//! [`FrameMotion`] of the tick is applied to the free particles substep by substep. Velocities are relative to
+//! the world, along the frame's axes.
 //!
 //! # Determinism
 //!
-//! A lane's bits depend on its own history only: not on the lanes beside it, the width, the
-//! instruction set, nor the thread.
+//! The bits of a cloth's state depend on its own history only: not on the other cloths of the batch, nor on the
+//! width, the instruction set or the thread.
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
@@ -45,7 +74,7 @@ mod transfer;
 
 pub use batch::lane_count::LaneCount;
 pub use batch::snapshot::ClothSnapshot;
-pub use batch::{BatchError, ClothBatch, LaneSurface};
+pub use batch::{BatchError, ClothBatch, LaneSurface, ParticlesMut};
 pub use contact::collider::Collider;
 pub use fabric::{
     CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link, LinkFamily,

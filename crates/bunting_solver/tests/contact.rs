@@ -154,6 +154,10 @@ fn nothing_stays_inside_a_fast_shape() {
                 let depth = if nearest.is_inside { nearest.point.distance(local) } else { 0.0 };
                 assert!(depth < 1e-3, "{depth} m inside {:?} in tick {tick}", shape.shape_type());
             }
+            // The shape crosses the cloth's plane, z = 0, in tick 1, and takes cloth along.
+            let front = batch.snapshot(0).positions.iter().map(|at| at.z).fold(0.0, f32::max);
+            let reached = tick == 0 || front > at(tick + 1).z;
+            assert!(reached, "{:?} in tick {tick}: {front} m", shape.shape_type());
         }
     }
 }

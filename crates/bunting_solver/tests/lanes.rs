@@ -248,7 +248,7 @@ fn a_lane_keeps_nothing_of_the_cloth_before() {
         for lane in 1..4 {
             // Stiff cloth replaces stiff cloth: only its bending depends on the stretch of earlier substeps.
             let seed = lane + 3;
-            let state = flown[seed].clone().forgetful();
+            let state = flown[seed].clone().without_history();
             for batch in [&mut used, &mut unused] {
                 batch.replace(lane, &state, material(seed)).expect("a good state");
                 batch.drive(lane, drive(seed, 0));

@@ -6,11 +6,47 @@ use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use bevy_math::{Vec2, Vec3};
-use bevy_reflect::serde::{ReflectDeserializer, ReflectSerializer};
-use bevy_reflect::{GetPath, PartialReflect, ReflectRef, TypeRegistry};
+use bevy_reflect::serde::{
+    ReflectDeserializer, ReflectDeserializerProcessor, ReflectSerializer,
+    ReflectSerializerProcessor,
+};
+use bevy_reflect::{GetPath, PartialReflect, ReflectRef, TypeRegistration, TypeRegistry};
 use bevy_transform::prelude::*;
 use bunting_tests::{app, run, state};
 use serde::de::DeserializeSeed;
+use serde::{Deserialize, Deserializer, Serializer};
+
+/// Entities as numbers, as scenes have them.
+struct Entities;
+
+impl ReflectSerializerProcessor for Entities {
+    fn try_serialize<S: Serializer>(
+        &self,
+        value: &dyn PartialReflect,
+        _: &TypeRegistry,
+        serializer: S,
+    ) -> Result<Result<S::Ok, S>, S::Error> {
+        match value.try_downcast_ref::<Entity>() {
+            Some(entity) => serializer.serialize_u64(entity.to_bits()).map(Ok),
+            None => Ok(Err(serializer)),
+        }
+    }
+}
+
+impl ReflectDeserializerProcessor for Entities {
+    fn try_deserialize<'de, D: Deserializer<'de>>(
+        &mut self,
+        registration: &TypeRegistration,
+        _: &TypeRegistry,
+        deserializer: D,
+    ) -> Result<Result<Box<dyn PartialReflect>, D>, D::Error> {
+        if registration.type_id() != core::any::TypeId::of::<Entity>() {
+            return Ok(Err(deserializer));
+        }
+        let entity = Entity::from_bits(u64::deserialize(deserializer)?);
+        Ok(Ok(Box::new(entity).into_partial_reflect()))
+    }
+}
 
 /// All components of an entity that a scene would hold, as RON.
 fn save(world: &World, entity: Entity) -> Vec<String> {
@@ -22,7 +58,7 @@ fn save(world: &World, entity: Entity) -> Vec<String> {
     });
     reflected
         .map(|value| {
-            ron::to_string(&ReflectSerializer::new(value, &types))
+            ron::to_string(&ReflectSerializer::with_processor(value, &types, &Entities))
                 .unwrap_or_else(|error| panic!("{}: {error}", value.reflect_type_path()))
         })
         .collect()
@@ -44,7 +80,7 @@ fn load(world: &mut World, components: &[String]) -> Entity {
 
 fn read(text: &str, types: &TypeRegistry) -> Box<dyn PartialReflect> {
     let mut reader = ron::Deserializer::from_str(text).expect("RON");
-    ReflectDeserializer::new(types)
+    ReflectDeserializer::with_processor(types, &mut Entities)
         .deserialize(&mut reader)
         .unwrap_or_else(|error| panic!("{error}: {text}"))
 }

@@ -88,7 +88,7 @@ impl ClothBatches {
 
     /// Removes a cloth from its lane, without the integrator's history: it belongs to this level.
     pub(crate) fn remove_without_history(&mut self, lane: LaneHandle) -> ClothSnapshot {
-        self.free(lane).forgetful_snapshot(lane.lane)
+        self.free(lane).snapshot_without_history(lane.lane)
     }
 
     /// Removes a cloth from its lane, with the positions and velocities of some particles only.

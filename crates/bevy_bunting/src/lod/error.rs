@@ -11,15 +11,6 @@ const ERROR_OVER_SPACING: f32 = 0.25;
 
 /// Estimated distance of a level's surface from the cloth that it approximates, m.
 pub(crate) fn level_error(fabric: &Fabric) -> f32 {
-    let rest = fabric.rest_positions();
-    let area: f32 = fabric
-        .triangles()
-        .iter()
-        .map(|corners| {
-            let [a, b, c] = corners.map(|corner| rest[corner as usize]);
-            0.5 * (b - a).cross(c - a).length()
-        })
-        .sum();
     // Two triangles make a square cell, whose side is the distance between particles.
-    ERROR_OVER_SPACING * (2.0 * area / fabric.triangles().len() as f32).sqrt()
+    ERROR_OVER_SPACING * (2.0 * fabric.area() / fabric.triangles().len() as f32).sqrt()
 }

@@ -191,21 +191,52 @@ impl Governor {
         pairs.map(|(cloth, &to)| cloth.cost_of_change(tables, to)).fold(0.0, f32::max)
     }
 
+    /// Starts cloths that have not been simulated yet: at the coarsest level, or at the chosen one as long as the
+    /// budget has room for it, since others become coarser only by and by. Returns the cost, µs.
+    fn start_fresh(
+        &mut self,
+        tables: &[LevelTable],
+        cloths: &[Candidate],
+        budget: f32,
+        mut cost: f32,
+    ) -> f32 {
+        let is_fresh = |cloth: &Candidate| cloth.fresh && !cloth.fixed;
+        let coarsest = |cloth: &Candidate| tables[cloth.table as usize].errors.len() as u32 - 1;
+        for cloth in cloths.iter().filter(|cloth| is_fresh(cloth)) {
+            let to = coarsest(cloth);
+            if cloth.level != to {
+                cost += self.counts.difference(tables, cloth.table, cloth.level, to);
+                self.counts.shift(cloth.table, cloth.level, to);
+            }
+        }
+        for (index, cloth) in cloths.iter().enumerate().filter(|(_, cloth)| is_fresh(cloth)) {
+            let (from, mut to) = (coarsest(cloth), self.chosen[index]);
+            if from != to {
+                let more = self.counts.difference(tables, cloth.table, from, to);
+                if cost + more <= budget {
+                    cost += more;
+                    self.counts.shift(cloth.table, from, to);
+                } else {
+                    to = from;
+                }
+            }
+            if to != cloth.level {
+                self.choice.switches.push((index, to as usize));
+            }
+        }
+        cost
+    }
+
     /// Chooses the changes of this tick: to coarser levels in the order of the cloths, then to finer ones
     /// in the order of the steps, as long as their costs stay within the budget.
     fn switch(&mut self, tables: &[LevelTable], cloths: &[Candidate], limits: &Limits) {
-        let switches = &mut self.choice.switches;
-        switches.clear();
+        self.choice.switches.clear();
         // Changes that are left to cloths on no screen, and on one.
         let mut left = [limits.switches; 2];
         let mut changes = 0.0;
         let mut cost = self.counts.count(tables, cloths, cloths.iter().map(|cloth| cloth.level));
-        let fresh = cloths.iter().zip(&self.chosen).enumerate().filter(|(_, (it, _))| it.fresh);
-        for (index, (cloth, &to)) in fresh.filter(|(_, (it, to))| it.level != **to) {
-            cost += self.counts.difference(tables, cloth.table, cloth.level, to);
-            self.counts.shift(cloth.table, cloth.level, to);
-            switches.push((index, to as usize));
-        }
+        cost = self.start_fresh(tables, cloths, limits.budget, cost);
+        let switches = &mut self.choice.switches;
         for (index, (cloth, &to)) in cloths.iter().zip(&self.chosen).enumerate() {
             if cloth.fresh {
                 continue;

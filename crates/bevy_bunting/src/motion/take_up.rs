@@ -37,7 +37,7 @@ impl TakingUp {
             snapshot.positions.iter_mut().for_each(|at| *at = change * *at);
             snapshot.velocities.iter_mut().for_each(|speed| *speed = change.rotation * *speed);
         }
-        *snapshot = core::mem::take(snapshot).forgetful();
+        *snapshot = core::mem::take(snapshot).without_history();
         let rest = fabric.rest_positions();
         let pins: Vec<usize> =
             (0..rest.len()).filter(|&particle| fabric.is_pinned(particle)).collect();

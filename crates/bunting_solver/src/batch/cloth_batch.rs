@@ -1,79 +1,46 @@
-//! A batch of cloths of one fabric, one in each lane.
+//! The public face of a batch, whatever its width and layout.
 
 use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::batch::error::BatchError;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_count::LaneCount;
+use crate::batch::particles_mut::ParticlesMut;
+use crate::batch::single_cloth::SingleCloth;
 use crate::batch::snapshot::ClothSnapshot;
+use crate::batch::surfaces::LaneSurface;
 use crate::contact::collider::Collider;
 use crate::fabric::{Fabric, FabricError, FabricMaterial};
-use crate::simd::lane::{Pack1, Pack8, Pack16};
-use crate::step::bdf::Past;
+use crate::simd::registers::{Pack1, Pack8, Pack16};
+use crate::step::bdf::IntegratorHistory;
 use crate::step::{Drive, Scheme, StepSettings};
-
-/// Why a cloth cannot ride in a batch.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum BatchError {
-    /// Every lane is taken.
-    #[error("all {lanes} lanes are taken")]
-    Full {
-        /// Number of lanes.
-        lanes: usize,
-    },
-    /// The state is of another fabric.
-    #[error("the state has {given} particles, the fabric {expected}")]
-    ParticleCount {
-        /// Particles in the state.
-        given: usize,
-        /// Particles in the fabric.
-        expected: usize,
-    },
-    /// The state is infinite or not a number.
-    #[error("the state is not finite")]
-    NotFinite,
-    /// The material cannot be simulated.
-    #[error(transparent)]
-    Material(#[from] FabricError),
-}
-
-/// What a lane shows.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct LaneSurface {
-    /// Positions of the particles in the cloth's frame, m.
-    pub positions: Vec<Vec3>,
-    /// Unit normals of the particles, as of the last
-    /// [`compute_normals`](ClothBatch::compute_normals).
-    pub normals: Vec<Vec3>,
-    /// Whether all positions are finite, and their sum.
-    pub is_finite: bool,
-}
 
 /// The state of up to [`LaneCount`] cloths of one [`Fabric`], stepped together.
 ///
-/// A lane's bits depend on its own history only.
+/// Each cloth has a lane, numbered from 0. The bits of its state depend on its own history only. Methods that
+/// take a lane panic where there is none of that number.
 #[derive(Clone, Debug)]
-pub struct ClothBatch(Width);
+pub struct ClothBatch(Lanes);
 
 #[derive(Clone, Debug)]
-enum Width {
+enum Lanes {
+    /// One cloth across all lanes of a vector.
+    Single(Box<LaneBatch<Pack8, SingleCloth<Pack8>>>),
     One(Box<LaneBatch<Pack1>>),
-    /// One cloth that has all lanes to itself.
-    Woven(Box<LaneBatch<Pack8, Pack8>>),
     Eight(Box<LaneBatch<Pack8>>),
     Sixteen(Box<LaneBatch<Pack16>>),
 }
 
-/// Does the same with a batch of any width.
-macro_rules! at_any_width {
-    ($batch:expr, $lanes:ident => $body:expr) => {
-        match $batch {
-            Width::One($lanes) => $body,
-            Width::Woven($lanes) => $body,
-            Width::Eight($lanes) => $body,
-            Width::Sixteen($lanes) => $body,
+/// Evaluates the same expression with the batch of any width and layout.
+macro_rules! with_batch {
+    ($lanes:expr, $batch:ident => $body:expr) => {
+        match $lanes {
+            Lanes::Single($batch) => $body,
+            Lanes::One($batch) => $body,
+            Lanes::Eight($batch) => $body,
+            Lanes::Sixteen($batch) => $body,
         }
     };
 }
@@ -83,25 +50,25 @@ impl ClothBatch {
     #[must_use]
     pub fn new(fabric: Arc<Fabric>, lanes: LaneCount) -> Self {
         Self(match lanes {
-            LaneCount::One => match LaneBatch::woven_of(&fabric) {
-                Some(woven) => Width::Woven(Box::new(woven)),
-                None => Width::One(Box::new(LaneBatch::new(fabric))),
+            LaneCount::One => match LaneBatch::single_cloth(&fabric) {
+                Some(batch) => Lanes::Single(Box::new(batch)),
+                None => Lanes::One(Box::new(LaneBatch::side_by_side(fabric))),
             },
-            LaneCount::Eight => Width::Eight(Box::new(LaneBatch::new(fabric))),
-            LaneCount::Sixteen => Width::Sixteen(Box::new(LaneBatch::new(fabric))),
+            LaneCount::Eight => Lanes::Eight(Box::new(LaneBatch::side_by_side(fabric))),
+            LaneCount::Sixteen => Lanes::Sixteen(Box::new(LaneBatch::side_by_side(fabric))),
         })
     }
 
-    /// The fabric that all its cloths are cut from.
+    /// The fabric that all cloths of the batch are cut from.
     #[must_use]
     pub fn fabric(&self) -> &Arc<Fabric> {
-        at_any_width!(&self.0, batch => &batch.fabric)
+        with_batch!(&self.0, batch => &batch.fabric)
     }
 
     /// Number of lanes.
     #[must_use]
     pub fn lane_count(&self) -> usize {
-        at_any_width!(&self.0, batch => batch.slots.len())
+        with_batch!(&self.0, batch => batch.lanes.len())
     }
 
     /// Lanes that hold a cloth.
@@ -112,26 +79,26 @@ impl ClothBatch {
     /// Whether a lane holds a cloth.
     #[must_use]
     pub fn is_occupied(&self, lane: usize) -> bool {
-        at_any_width!(&self.0, batch => batch.slots.get(lane).is_some_and(Option::is_some))
+        with_batch!(&self.0, batch => batch.lanes.get(lane).is_some_and(Option::is_some))
     }
 
     /// Whether no lane is free.
     #[must_use]
     pub fn is_full(&self) -> bool {
-        at_any_width!(&self.0, batch => batch.slots.iter().all(Option::is_some))
+        with_batch!(&self.0, batch => batch.lanes.iter().all(Option::is_some))
     }
 
     /// Whether no lane holds a cloth.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        at_any_width!(&self.0, batch => batch.slots.iter().all(Option::is_none))
+        with_batch!(&self.0, batch => batch.lanes.iter().all(Option::is_none))
     }
 
-    /// Lets the integrator of a lane begin anew: its next substep is of first order.
-    pub(crate) fn forget_past(&mut self, lane: usize) {
-        at_any_width!(&mut self.0, batch => {
-            if let Some(slot) = &mut batch.slots[lane] {
-                slot.past = Past::default();
+    /// Restarts the integrator of a lane: its next substep is of first order.
+    pub(crate) fn restart_integrator(&mut self, lane: usize) {
+        with_batch!(&mut self.0, batch => {
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                cloth.history = IntegratorHistory::default();
             }
         });
     }
@@ -154,7 +121,7 @@ impl ClothBatch {
         Ok(lane)
     }
 
-    /// Puts a cloth into a lane, in the place of any that is there.
+    /// Puts a cloth into a lane, in place of any cloth that it holds.
     ///
     /// # Errors
     ///
@@ -169,8 +136,8 @@ impl ClothBatch {
         self.exchange(&[], &[(lane, snapshot, material)])
     }
 
-    /// Takes cloths out of lanes, and puts others into lanes, in the place of any that are there: several take
-    /// hardly longer than one.
+    /// Takes cloths out of lanes, and puts others into lanes, in place of any cloths that these hold. Several
+    /// take hardly longer than one.
     ///
     /// # Errors
     ///
@@ -184,24 +151,24 @@ impl ClothBatch {
             material.validate()?;
             self.check(snapshot)?;
         }
-        at_any_width!(&mut self.0, batch => batch.exchange(leave, come));
+        with_batch!(&mut self.0, batch => batch.exchange(leave, come));
         Ok(())
     }
 
     /// Takes the cloth out of a lane.
     pub fn remove(&mut self, lane: usize) {
-        at_any_width!(&mut self.0, batch => batch.exchange(&[lane], &[]));
+        with_batch!(&mut self.0, batch => batch.exchange(&[lane], &[]));
     }
 
-    /// Overwrites the state of a lane. A state without a past is continued by one substep of first
-    /// order.
+    /// Overwrites the state of a lane. A state without the integrator's history is continued by a substep of
+    /// first order.
     ///
     /// # Errors
     ///
     /// The state is not finite or of another fabric. The lane is then as it was.
     pub fn restore(&mut self, lane: usize, snapshot: &ClothSnapshot) -> Result<(), BatchError> {
         self.check(snapshot)?;
-        at_any_width!(&mut self.0, batch => batch.restore(&[(lane, snapshot)]));
+        with_batch!(&mut self.0, batch => batch.restore(&[(lane, snapshot)]));
         Ok(())
     }
 
@@ -219,73 +186,81 @@ impl ClothBatch {
     ///
     /// # Errors
     ///
-    /// The material cannot be simulated. The lane keeps the one it has.
+    /// The material cannot be simulated. The lane keeps its material.
     pub fn set_material(
         &mut self,
         lane: usize,
         material: FabricMaterial,
     ) -> Result<(), FabricError> {
         material.validate()?;
-        at_any_width!(&mut self.0, batch => {
-            if let Some(slot) = &mut batch.slots[lane] {
-                slot.material = material;
+        with_batch!(&mut self.0, batch => {
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                cloth.material = material;
             }
         });
         Ok(())
     }
 
-    /// Sets what acts on a lane from the next tick on. The frame's motion is repeated every tick
-    /// until it is set anew.
+    /// Sets what acts on a lane from the next tick on. The frame's motion is repeated every tick until it is
+    /// set again. An empty lane stays empty.
     pub fn drive(&mut self, lane: usize, drive: Drive) {
-        at_any_width!(&mut self.0, batch => {
-            if let Some(slot) = &mut batch.slots[lane] {
-                slot.drive = drive;
+        with_batch!(&mut self.0, batch => {
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                cloth.drive = drive;
             }
         });
     }
 
-    /// Sets what a lane may touch from the next tick on.
+    /// Sets the shapes that a lane's cloth cannot enter, from the next tick on. An empty lane stays empty.
     pub fn set_colliders(&mut self, lane: usize, colliders: impl IntoIterator<Item = Collider>) {
-        at_any_width!(&mut self.0, batch => {
-            if let Some(slot) = &mut batch.slots[lane] {
-                slot.colliders.clear();
-                slot.colliders.extend(colliders);
+        with_batch!(&mut self.0, batch => {
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                cloth.colliders.clear();
+                cloth.colliders.extend(colliders);
             }
         });
     }
 
-    /// Begins a tick of `tick` seconds: compliances for its substeps, contact candidates. In a tick of
-    /// no time nothing moves.
+    /// Begins a tick of `tick` seconds: sets the length of its substeps, and finds the particles that may touch
+    /// each collider. In a tick without length nothing moves.
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
-        if let Width::Woven(woven) = &self.0
+        if let Lanes::Single(single) = &self.0
             && settings.scheme != Scheme::Yarns
         {
-            self.0 = Width::One(Box::new(woven.unwoven()));
+            self.0 = Lanes::One(Box::new(single.to_one_lane()));
         }
-        at_any_width!(&mut self.0, batch => batch.begin_tick(tick, settings));
+        with_batch!(&mut self.0, batch => batch.begin_tick(tick, settings));
     }
 
-    /// Begins a substep: external forces, damping, prediction.
+    /// Begins a substep: carries the state into the moved frame, applies air, gravity and damping, and
+    /// predicts positions.
     pub fn integrate(&mut self) {
-        at_any_width!(&mut self.0, batch => batch.integrate());
+        with_batch!(&mut self.0, batch => batch.integrate());
     }
 
-    /// Projects the predicted positions onto the constraints.
+    /// Projects the predicted positions onto the constraints, contacts included.
     pub fn solve_constraints(&mut self) {
-        at_any_width!(&mut self.0, batch => batch.solve_constraints());
+        with_batch!(&mut self.0, batch => batch.solve_constraints());
     }
 
-    /// Ends a substep: velocities from the corrected positions.
+    /// The particles of a lane while a substep is under way, for forces and constraints of the caller's: between
+    /// [`integrate`](Self::integrate) and [`update_velocities`](Self::update_velocities). None where the lane is
+    /// empty, and outside a substep.
+    pub fn particles_mut(&mut self, lane: usize) -> Option<ParticlesMut<'_>> {
+        with_batch!(&mut self.0, batch => ParticlesMut::new(&mut **batch, lane))
+    }
+
+    /// Ends a substep: computes velocities from the corrected positions.
     pub fn update_velocities(&mut self) {
-        at_any_width!(&mut self.0, batch => batch.update_velocities());
+        with_batch!(&mut self.0, batch => batch.update_velocities());
     }
 
     /// Recomputes all normals from the positions.
     pub fn compute_normals(&mut self) {
-        at_any_width!(&mut self.0, batch => batch.compute_normals());
+        with_batch!(&mut self.0, batch => batch.compute_normals());
     }
 
-    /// One whole tick of `tick` seconds, normals and all.
+    /// Runs one whole tick of `tick` seconds: all substeps, then the normals.
     pub fn step(&mut self, tick: f32, settings: StepSettings) {
         self.begin_tick(tick, settings);
         for _ in 0..settings.substeps {
@@ -298,51 +273,52 @@ impl ClothBatch {
 
     /// Positions of a lane's particles in the cloth's frame, m.
     pub fn copy_positions(&self, lane: usize, into: &mut Vec<Vec3>) {
-        at_any_width!(&self.0, batch => batch.copy_positions(lane, into));
+        with_batch!(&self.0, batch => batch.copy_positions(lane, into));
     }
 
     /// Velocities of a lane's particles relative to the world, along the frame's axes, m/s.
     pub fn copy_velocities(&self, lane: usize, into: &mut Vec<Vec3>) {
-        at_any_width!(&self.0, batch => batch.copy_velocities(lane, into));
+        with_batch!(&self.0, batch => batch.copy_velocities(lane, into));
     }
 
     /// Unit normals of a lane's particles, as of the last
     /// [`compute_normals`](Self::compute_normals).
     pub fn copy_normals(&self, lane: usize, into: &mut Vec<Vec3>) {
-        at_any_width!(&self.0, batch => batch.copy_normals(lane, into));
+        with_batch!(&self.0, batch => batch.copy_normals(lane, into));
     }
 
-    /// Positions and normals of all cloths at once, each into the place of its lane: much faster than
-    /// lane by lane. A lane's surface is left alone where it holds no cloth.
+    /// Positions and normals of all cloths at once, each into the element of its lane: much faster than lane
+    /// by lane. The elements of empty lanes are left as they are.
     ///
     /// # Panics
     ///
-    /// When there are fewer places than lanes.
+    /// When `into` has fewer elements than the batch has lanes.
     pub fn copy_surfaces(&self, into: &mut [LaneSurface]) {
-        at_any_width!(&self.0, batch => batch.copy_surfaces(into));
+        with_batch!(&self.0, batch => batch.copy_surfaces(into));
     }
 
-    /// The state of a lane, with what the integrator remembers.
+    /// The state of a lane, with the integrator's history.
     #[must_use]
     pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
-        at_any_width!(&self.0, batch => batch.snapshot(lane))
+        with_batch!(&self.0, batch => batch.snapshot(lane))
     }
 
-    /// The state of a lane without what the integrator remembers.
+    /// The state of a lane, without the integrator's history.
     #[must_use]
-    pub fn forgetful_snapshot(&self, lane: usize) -> ClothSnapshot {
-        at_any_width!(&self.0, batch => batch.forgetful_snapshot(lane))
+    pub fn snapshot_without_history(&self, lane: usize) -> ClothSnapshot {
+        with_batch!(&self.0, batch => batch.snapshot_without_history(lane))
     }
 
-    /// Positions and velocities of some of a lane's particles, as of a coarser fabric that shares them.
+    /// Positions and velocities of some of a lane's particles, in the order given: the state of a coarser
+    /// fabric that has these particles.
     #[must_use]
     pub fn snapshot_of(&self, lane: usize, particles: &[u32]) -> ClothSnapshot {
-        at_any_width!(&self.0, batch => batch.snapshot_of(lane, particles))
+        with_batch!(&self.0, batch => batch.snapshot_of(lane, particles))
     }
 
     /// Whether every number of a lane's state is finite.
     #[must_use]
     pub fn is_finite(&self, lane: usize) -> bool {
-        at_any_width!(&self.0, batch => batch.is_finite(lane))
+        with_batch!(&self.0, batch => batch.is_finite(lane))
     }
 }

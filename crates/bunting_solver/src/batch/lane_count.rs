@@ -1,13 +1,14 @@
-//! How wide a batch is.
+//! The width of a batch.
 
 use crate::fabric::Fabric;
 use crate::simd::level::instruction_set;
 use crate::step::Scheme;
 
-/// How many cloths ride side by side in a batch.
+/// How many cloths a batch holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum LaneCount {
-    /// One cloth. Cut from a grid it fills lanes with its own yarns; other meshes are scalar code.
+    /// One cloth. If it is cut from a grid, it is spread across the lanes of a vector; other meshes are solved
+    /// in scalar code.
     One,
     /// Eight cloths: full speed with AVX2.
     #[default]
@@ -38,8 +39,9 @@ impl LaneCount {
         }
     }
 
-    /// The width of the first of the batches that hold so many cloths of a fabric in the least time: full
-    /// ones of the widest that pays on this machine, and what suits the rest.
+    /// The width of the first batch, where `cloths` cloths of a fabric are to be divided among batches such
+    /// that they take the least time: full batches of the widest width that pays on this machine, and for
+    /// the rest narrower ones.
     #[must_use]
     pub fn first_of(cloths: usize, fabric: &Fabric, scheme: Scheme) -> Self {
         let alone = Self::most_alone(fabric, scheme);
@@ -50,11 +52,12 @@ impl LaneCount {
         }
     }
 
-    /// Most cloths of a fabric that take less time each by itself than side by side in eight lanes. Beside
-    /// eight, one less does.
+    /// Most cloths of a fabric that take less time in batches of one than side by side in eight lanes. What
+    /// remains after eight takes less time so if it is fewer by one.
     ///
-    /// A 33 × 33 flag takes 55 µs by itself, eight take 220 and sixteen 400; at 17 × 17 it is 8.7, 29 and
-    /// 48, at 9 × 9 3.5, 7.8 and 12, at 5 × 5 1.7, 2.6 and 3.7: short rows leave most lanes empty.
+    /// A 33 × 33 flag takes 55 µs a tick by itself, eight side by side take 220 and sixteen 400; at 17 × 17
+    /// the times are 8.7, 29 and 48, at 9 × 9 3.5, 7.8 and 12, at 5 × 5 1.7, 2.6 and 3.7: short rows leave most
+    /// lanes empty.
     #[must_use]
     pub fn most_alone(fabric: &Fabric, scheme: Scheme) -> usize {
         const WIDE: u32 = 16;

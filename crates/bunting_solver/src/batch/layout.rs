@@ -1,136 +1,204 @@
-//! Where particles lie among the packs of a batch, and what the fabric says of those of each.
+//! The layouts of a batch: which pack and lane each particle is in, and in which order constraints are solved.
+//!
+//! There are two. [`SideBySide`](crate::batch::side_by_side::SideBySide) holds up to as many cloths of one
+//! fabric as there are lanes: a pack holds the same particle of each cloth, and numbers of the fabric are
+//! the same in all lanes. [`SingleCloth`](crate::batch::single_cloth::SingleCloth) spreads one cloth across
+//! the lanes: a pack holds consecutive particles of a row of its grid, constraints that share no particle
+//! are solved in one pack, and numbers of the fabric are each lane's own.
+//!
+//! Kernels are written once for both, over [`Constant`] and [`Particles`].
+
+use core::fmt::Debug;
+use core::ops::Range;
 
 use glam::Vec3;
 
-use crate::batch::places::Constant;
-use crate::fabric::Fabric;
-use crate::simd::lane::Pack;
-use crate::simd::reduce::PARTS;
-use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
+use crate::constraints::factors::Factors;
+use crate::constraints::stiffness::Stiffness;
+use crate::fabric::{BendLine, Chains, Fabric, Ribbon, Tether};
+use crate::geometry::corners::CornerSums;
+use crate::simd::constant::Constant;
+use crate::simd::lane::{Lane, Pack};
+use crate::simd::vec3::{Pack3, V3};
 
-/// Where particles lie among the packs of a batch.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Seating {
-    /// Particles in a row.
-    columns: usize,
-    rows: usize,
-    /// Particles of one cloth in a pack.
-    side: usize,
+/// Vectors of a cloth to be written into its lanes, one a particle, and the index of the cloth; zero where
+/// there are none.
+pub(crate) type OfCloth<'a> = (usize, Option<&'a [Vec3]>);
+
+/// Which particles of a single cloth are consecutive in memory.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Order {
+    /// Those of a row of the grid.
+    RowMajor,
+    /// Those of a column of the grid.
+    ColumnMajor,
 }
 
-impl Seating {
-    /// A mesh that is no grid is a single row.
-    pub fn of<P: Pack, C: Constant<P>>(fabric: &Fabric) -> Self {
-        let columns = fabric.grid().map_or(fabric.particle_count(), |grid| grid.columns as usize);
-        Self { columns, rows: fabric.particle_count() / columns, side: C::SIDE }
-    }
+/// A layout, with the constraints of the fabric as it has them.
+pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
+    /// Number of the fabric that goes with a pack.
+    type Constant: Constant<P>;
+    /// Where positions are stored.
+    type Positions: Positions<P, Constant = Self::Constant>;
+    /// A tether, or one in each lane.
+    type Tether: PackedTether<P>;
+    /// Sums over the triangles at each particle.
+    type Triangles<'a>: CornerSums<P, Field = <Self::Positions as Positions<P>>::Field>;
 
-    /// Packs in a row.
-    fn blocks(self) -> usize {
-        self.columns.div_ceil(self.side)
-    }
+    /// Most cloths in a batch.
+    const CLOTHS: usize;
+
+    /// The lanes of a cloth.
+    fn lanes(cloth: usize) -> Range<usize>;
+
+    /// Number of packs of each array of the state.
+    fn pack_count(&self) -> usize;
 
     /// The pack and the lane of a particle of a cloth.
-    #[inline]
-    pub fn seat(self, particle: usize, cloth: usize) -> (usize, usize) {
-        if self.side == 1 {
-            return (particle, cloth);
-        }
-        let (row, column) = (particle / self.columns, particle % self.columns);
-        (row * self.blocks() + column / self.side, column % self.side)
-    }
+    fn locate(&self, particle: usize, cloth: usize) -> (usize, usize);
 
-    /// Reads the vectors of one cloth, particle by particle.
-    pub fn read<P: Pack, C: Constant<P>>(
-        self,
-        packs: &[Pack3<P>],
-        cloth: usize,
-        into: &mut Vec<Vec3>,
-    ) {
-        // Once, and not for every number.
-        assert!(C::lanes(cloth).end <= P::WIDTH, "lanes of the batch");
-        into.resize(self.columns * self.rows, Vec3::ZERO);
-        let rows = into.chunks_mut(self.columns).zip(packs.chunks(self.blocks()));
-        for (values, packs) in rows {
-            for (side, pack) in values.chunks_mut(C::SIDE).zip(packs) {
-                for (lane, value) in (cloth..).zip(side) {
-                    *value = lane3(pack, lane);
-                }
-            }
-        }
-    }
+    /// Reads the vectors of a cloth, particle by particle.
+    fn read(&self, packs: &[Pack3<P>], cloth: usize, into: &mut Vec<Vec3>);
 
-    /// Writes the vectors of cloths, particle by particle; zero where there are none, and where no particle
-    /// lies.
-    pub fn write<P: Pack, C: Constant<P>>(
-        self,
-        packs: &mut [Pack3<P>],
-        cloths: &[(usize, Option<&[Vec3]>)],
-    ) {
-        let zero = |of: &[Vec3], at: usize| of.get(at).copied().unwrap_or(Vec3::ZERO);
-        if C::SIDE == 1 {
-            // Pack by pack, so that each is fetched once for all lanes.
-            for (particle, pack) in packs.iter_mut().enumerate() {
-                for &(lane, values) in cloths {
-                    set_lane3(pack, lane, zero(values.unwrap_or_default(), particle));
-                }
-            }
-            return;
-        }
-        for &(_, values) in cloths {
-            // Not a lane, but all of a pack is the cloth's.
-            packs.fill(splat3(Vec3::ZERO));
-            let values = values.unwrap_or_default();
-            let rows = values.chunks(self.columns).zip(packs.chunks_mut(self.blocks()));
-            for (side, pack) in rows.flat_map(|(row, packs)| row.chunks(C::SIDE).zip(packs)) {
-                for (lane, &value) in side.iter().enumerate() {
-                    set_lane3(pack, lane, value);
-                }
-            }
-        }
-    }
+    /// Writes the vectors of cloths, and zero into lanes of a cloth that hold no particle.
+    fn write(&self, packs: &mut [Pack3<P>], cloths: &[OfCloth]);
 
-    /// One value for each pack, given one for each particle; none where there are no more particles.
-    pub fn lay<P: Pack, C: Constant<P>>(self, values: &[f32]) -> Vec<C> {
-        let rows = values.chunks(self.columns);
-        rows.flat_map(|row| {
-            row.chunks(self.side).map(|side| C::of(|lane| side.get(lane).copied().unwrap_or(0.0)))
-        })
-        .collect()
-    }
+    /// The number of each pack, given one of each particle; zero in lanes that hold no particle.
+    fn constants(&self, of_particles: &[f32]) -> Vec<Self::Constant>;
 
-    /// Overwrites what a cloth has in the packs, given one value for each particle.
-    pub fn put<P: Pack>(self, cloth: usize, values: &[f32], packs: &mut [P]) {
-        for (particle, &value) in values.iter().enumerate() {
-            let (pack, lane) = self.seat(particle, cloth);
+    /// For each pack, to which partial sum it adds. That is a matter of its particles' columns, so that
+    /// sums have the same bits in both layouts.
+    fn partial_sums(&self) -> Vec<u8>;
+
+    /// Writes a number of each particle of a cloth.
+    fn write_numbers(&self, of_particles: &[f32], cloth: usize, packs: &mut [P]) {
+        for (particle, &value) in of_particles.iter().enumerate() {
+            let (pack, lane) = self.locate(particle, cloth);
             packs[pack].lanes_mut()[lane] = value;
         }
     }
 
-    /// Into which part of a sum each pack goes.
-    pub fn parts(self) -> Vec<u8> {
-        let part = |block: usize| (block * self.side % PARTS) as u8;
-        (0..self.rows).flat_map(|_| (0..self.blocks()).map(part)).collect()
+    /// Positions of all particles, given those of the packs, m.
+    fn positions(&self, packs: Vec<Pack3<P>>) -> Self::Positions;
+
+    /// Chains of links, colour by colour, and the cells whose diagonals are links.
+    fn chains<'a>(&'a self, fabric: &'a Fabric) -> &'a Chains<Self::Constant>;
+
+    /// The order in which the chains of a colour want the particles.
+    fn order_of_chains(&self, colour: usize) -> Order;
+
+    /// For each class of links one in lanes that have a link, zero in others; none where every lane has one.
+    fn linked(&self) -> &[P];
+
+    /// Lines along which a grid bends, and the order in which they want the particles.
+    fn bend_lines<'a>(
+        &'a self,
+        fabric: &'a Fabric,
+    ) -> impl Iterator<Item = (Order, &'a [BendLine])>;
+
+    /// Ribbons along which a grid twists, and the order in which they want the particles.
+    fn ribbons<'a>(&'a self, fabric: &'a Fabric) -> (Order, &'a [Ribbon]);
+
+    /// Tethers to the farthest pins, and to the nearest.
+    fn tethers<'a>(&'a self, fabric: &'a Fabric) -> [&'a [Self::Tether]; 2];
+
+    /// Compliances and factorised systems of these constraints.
+    fn factors(&self) -> &Factors<P, Self::Constant>;
+
+    /// Computes the factors of a cloth.
+    fn set_stiffness(&mut self, cloth: usize, fabric: &Fabric, stiffness: &Stiffness);
+
+    /// Takes over where a cloth's pins are, given the positions of all its particles, m.
+    fn set_pins(&mut self, positions: &[Vec3]);
+
+    /// The triangles, for sums of what positions alone tell.
+    fn triangles<'a>(&'a mut self, fabric: &'a Fabric) -> Self::Triangles<'a>;
+
+    /// The triangles, and velocities as their sums read them.
+    fn moving_triangles<'a>(
+        &'a mut self,
+        fabric: &'a Fabric,
+        velocity: &'a [Pack3<P>],
+    ) -> (Self::Triangles<'a>, &'a <Self::Positions as Positions<P>>::Field);
+}
+
+/// The positions of all particles: in packs, and wherever else constraints want them.
+pub(crate) trait Positions<P: Pack>: Clone + Debug + Send + Sync + 'static {
+    /// Number of the fabric that goes with a pack.
+    type Constant: Constant<P>;
+    /// Particles as constraints reach them.
+    type Particles<'a>: Particles<P, Constant = Self::Constant>;
+    /// Vectors of all particles as sums over triangles read them.
+    type Field: ?Sized;
+
+    /// The positions in packs, m. Only between the phases of a substep, when no constraint has them.
+    fn packs(&self) -> &[Pack3<P>];
+
+    /// The positions in packs, m, taken back from the constraints.
+    fn packs_mut(&mut self) -> &mut Vec<Pack3<P>>;
+
+    /// The particles in an order, for the constraints. `inverse_masses` are those of the packs, 1/m².
+    fn particles<'a>(
+        &'a mut self,
+        order: Order,
+        inverse_masses: &'a [P],
+        linked: &'a [P],
+    ) -> Self::Particles<'a>;
+
+    /// The positions as sums over triangles read them.
+    fn field(&mut self) -> &Self::Field;
+
+    /// Takes over the inverse mass of each particle of a cloth, 1/m².
+    fn set_inverse_masses(&mut self, of_particles: &[f32]);
+
+    /// Forgets what constraints had, before a new state is written.
+    fn clear(&mut self);
+}
+
+/// The particles that constraints move: one of each cloth, or several of one cloth, in each pack.
+pub(crate) trait Particles<P: Pack> {
+    /// Number of the fabric that goes with a pack.
+    type Constant: Constant<P>;
+
+    /// Position, m.
+    fn position<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> V3<L>;
+
+    /// Overwrites the position, m.
+    fn set_position<L: Lane<Pack = P>>(&mut self, at: u32, position: V3<L>);
+
+    /// Inverse mass per unit of area density, 1/m²; zero where the particle is pinned.
+    fn inverse_mass<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> L;
+
+    /// One, but zero in lanes that have no link where others have one of this class: divided by the
+    /// diagonal of a link's row in place of one, it leaves that lane without tension.
+    fn one_if_linked<L: Lane<Pack = P>>(&self, token: L::Token, class: u32) -> L;
+}
+
+/// A tether of each cloth, or of several particles of one cloth.
+pub(crate) trait PackedTether<P: Pack> {
+    /// Where the tethered particle is, or the first of them.
+    fn particle(&self) -> u32;
+
+    /// Position of the pin, m.
+    fn pin<L: Lane<Pack = P>, S: Particles<P>>(&self, token: L::Token, particles: &S) -> V3<L>;
+
+    /// Length at rest, m; infinite in lanes without a tether.
+    fn length<L: Lane<Pack = P>>(&self, token: L::Token) -> L;
+}
+
+impl<P: Pack> PackedTether<P> for Tether {
+    #[inline(always)]
+    fn particle(&self) -> u32 {
+        self.particle
     }
-}
 
-/// What the fabric says of the particles in each pack.
-#[derive(Clone, Debug)]
-pub(crate) struct Packed<C> {
-    /// Area, m².
-    pub areas: Vec<C>,
-    /// One over the area, 1/m²; zero where pinned.
-    pub inverse_areas: Vec<C>,
-}
+    #[inline(always)]
+    fn pin<L: Lane<Pack = P>, S: Particles<P>>(&self, token: L::Token, particles: &S) -> V3<L> {
+        particles.position(token, self.pin)
+    }
 
-impl<C> Packed<C> {
-    pub fn new<P: Pack>(seating: Seating, fabric: &Fabric) -> Self
-    where
-        C: Constant<P>,
-    {
-        Self {
-            areas: seating.lay(fabric.particle_areas()),
-            inverse_areas: seating.lay(fabric.inverse_areas()),
-        }
+    #[inline(always)]
+    fn length<L: Lane<Pack = P>>(&self, token: L::Token) -> L {
+        L::splat(token, self.length)
     }
 }

@@ -1,13 +1,21 @@
-//! Where the state of cloths lives: the lanes of a batch.
+//! Batches: the state of cloths of one fabric, in the lanes of vectors.
 
 mod cloth_batch;
+mod error;
+mod exchange;
 pub(crate) mod lane_batch;
 pub(crate) mod lane_count;
+pub(crate) mod lane_state;
 pub(crate) mod layout;
-pub(crate) mod places;
+mod masses;
+mod particles_mut;
 mod readout;
+pub(crate) mod side_by_side;
 pub(crate) mod single_cloth;
 pub(crate) mod snapshot;
 mod surfaces;
 
-pub use cloth_batch::{BatchError, ClothBatch, LaneSurface};
+pub use cloth_batch::ClothBatch;
+pub use error::BatchError;
+pub use particles_mut::ParticlesMut;
+pub use surfaces::LaneSurface;

@@ -1,30 +1,42 @@
-//! What the lanes of a batch show, out of the lanes.
+//! Copies of what all lanes of a batch show: positions and normals, cloth by cloth.
 //!
-//! A cloth's particle is three numbers in three packs. They are put together in registers, for four lanes at
-//! once: that takes a third of the time of fetching each by itself.
+//! The vector of a cloth's particle is spread over three packs. Four lanes at once are transposed in
+//! registers: that takes a third of the time of reading each vector by itself.
 
 use fearless_simd::{Simd, SimdBase, dispatch, f32x4};
 use glam::Vec3;
 
-use crate::batch::LaneSurface;
 use crate::batch::lane_batch::LaneBatch;
-use crate::batch::places::Constant;
+use crate::batch::layout::{Layout, Positions};
 use crate::simd::lane::Pack;
 use crate::simd::level::level;
 use crate::simd::vec3::Pack3;
 
+/// What a lane shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LaneSurface {
+    /// Positions of the particles in the cloth's frame, m.
+    pub positions: Vec<Vec3>,
+    /// Unit normals of the particles, as of the last
+    /// [`compute_normals`](crate::ClothBatch::compute_normals).
+    pub normals: Vec<Vec3>,
+    /// Whether all positions are finite, and their sum.
+    pub is_finite: bool,
+}
+
 /// Particles whose positions and normals in all lanes fit into the nearest cache, at 384 bytes each.
 const BLOCK: usize = 32;
 
-/// Lanes that are read at once.
+/// Lanes that are transposed at once.
 const QUAD: usize = 4;
 
-impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Copies positions and normals of all cloths.
     pub fn copy_surfaces(&self, into: &mut [LaneSurface]) {
         let particles = self.fabric.particle_count();
-        let surfaces = &mut into[..self.slots.len()];
+        let surfaces = &mut into[..self.lanes.len()];
         for (cloth, surface) in surfaces.iter_mut().enumerate() {
-            if self.slots[cloth].is_some() {
+            if self.lanes[cloth].is_some() {
                 surface.is_finite = true;
                 surface.positions.resize(particles, Vec3::ZERO);
                 surface.normals.resize(particles, Vec3::ZERO);
@@ -32,7 +44,7 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         }
         if surfaces.len().is_multiple_of(QUAD) {
             dispatch!(level(), token => self.copy_by_quads(token, surfaces));
-        } else if self.slots[0].is_some() {
+        } else if self.lanes[0].is_some() {
             let LaneSurface { positions, normals, is_finite } = &mut surfaces[0];
             self.copy_positions(0, positions);
             self.copy_normals(0, normals);
@@ -40,45 +52,46 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
         }
     }
 
-    /// Particles by the block, so that each is fetched once for all lanes.
+    /// Copies particles block by block, so that each pack is fetched once for all lanes.
     #[inline(always)]
     fn copy_by_quads<S: Simd>(&self, token: S, into: &mut [LaneSurface]) {
-        let mut unseen = [[Vec3::ZERO; BLOCK]; QUAD];
-        let blocks = self.position.chunks(BLOCK).zip(self.scratch.chunks(BLOCK));
+        // Where empty lanes of a quad are written.
+        let mut discarded = [[Vec3::ZERO; BLOCK]; QUAD];
+        let blocks = self.positions.packs().chunks(BLOCK).zip(self.scratch.chunks(BLOCK));
         for (index, (positions, normals)) in blocks.enumerate() {
-            let part = index * BLOCK..index * BLOCK + positions.len();
+            let block = index * BLOCK..index * BLOCK + positions.len();
             for (quad, surfaces) in into.chunks_exact_mut(QUAD).enumerate() {
-                let lane = quad * QUAD;
-                let slots = &self.slots[lane..lane + QUAD];
-                if slots.iter().all(Option::is_none) {
+                let first = quad * QUAD;
+                let lanes = &self.lanes[first..first + QUAD];
+                if lanes.iter().all(Option::is_none) {
                     continue;
                 }
-                let [a, b, c, d] = &mut unseen;
-                let mut of_positions: [&mut [Vec3]; QUAD] = [a, b, c, d];
+                let [a, b, c, d] = &mut discarded;
+                let mut to_positions: [&mut [Vec3]; QUAD] = [a, b, c, d];
                 for (lane, surface) in surfaces.iter_mut().enumerate() {
-                    if slots[lane].is_some() {
-                        of_positions[lane] = &mut surface.positions[part.clone()];
+                    if lanes[lane].is_some() {
+                        to_positions[lane] = &mut surface.positions[block.clone()];
                     }
                 }
-                let sums = unpack(token, positions, lane, of_positions);
-                let [a, b, c, d] = &mut unseen;
-                let mut of_normals: [&mut [Vec3]; QUAD] = [a, b, c, d];
+                let sums = transpose(token, positions, first, to_positions);
+                let [a, b, c, d] = &mut discarded;
+                let mut to_normals: [&mut [Vec3]; QUAD] = [a, b, c, d];
                 for (lane, surface) in surfaces.iter_mut().enumerate() {
-                    if slots[lane].is_some() {
-                        // What is not finite makes the sum so.
+                    if lanes[lane].is_some() {
+                        // One coordinate that is not finite makes the sum not finite.
                         surface.is_finite &= sums[lane].is_finite();
-                        of_normals[lane] = &mut surface.normals[part.clone()];
+                        to_normals[lane] = &mut surface.normals[block.clone()];
                     }
                 }
-                unpack(token, normals, lane, of_normals);
+                transpose(token, normals, first, to_normals);
             }
         }
     }
 }
 
-/// Reads particles in four lanes from a lane on, and adds up the coordinates in each.
+/// Reads the vectors of four lanes from `first` on, and adds up the coordinates of each lane.
 #[inline(always)]
-fn unpack<S: Simd, P: Pack>(
+fn transpose<S: Simd, P: Pack>(
     token: S,
     packs: &[Pack3<P>],
     first: usize,
@@ -91,13 +104,13 @@ fn unpack<S: Simd, P: Pack>(
         let y = f32x4::from_slice(token, &y.lanes()[first..first + QUAD]);
         let z = f32x4::from_slice(token, &z.lanes()[first..first + QUAD]);
         sum = sum + x + y + z;
-        // The fourth number of each is not used.
-        let (xz, also_xz) = (x.zip_low(z), x.zip_high(z));
-        let (yy, also_yy) = (y.zip_low(y), y.zip_high(y));
-        *a = Vec3::from_slice(xz.zip_low(yy).as_slice());
-        *b = Vec3::from_slice(xz.zip_high(yy).as_slice());
-        *c = Vec3::from_slice(also_xz.zip_low(also_yy).as_slice());
-        *d = Vec3::from_slice(also_xz.zip_high(also_yy).as_slice());
+        // The fourth number of each transposed vector is not used.
+        let (xz_low, xz_high) = (x.zip_low(z), x.zip_high(z));
+        let (yy_low, yy_high) = (y.zip_low(y), y.zip_high(y));
+        *a = Vec3::from_slice(xz_low.zip_low(yy_low).as_slice());
+        *b = Vec3::from_slice(xz_low.zip_high(yy_low).as_slice());
+        *c = Vec3::from_slice(xz_high.zip_low(yy_high).as_slice());
+        *d = Vec3::from_slice(xz_high.zip_high(yy_high).as_slice());
     }
     sum.into()
 }

@@ -1,43 +1,44 @@
-//! A single cloth whose constraints are solved one kind at a time, for the tests of each.
+//! A batch of one cloth for tests of single constraints.
 
 use std::sync::Arc;
 
 use glam::Vec3;
 
 use crate::batch::lane_batch::LaneBatch;
+use crate::batch::layout::Positions;
 use crate::batch::snapshot::ClothSnapshot;
 use crate::fabric::{Fabric, FabricMaterial};
-use crate::simd::lane::Pack1;
+use crate::simd::registers::Pack1;
 use crate::simd::vec3::{lane3, set_lane3};
 use crate::step::StepSettings;
 
 /// Length of the substep, s.
-pub(super) const STEP: f32 = 1.0 / 120.0;
+pub(in crate::constraints) const STEP: f32 = 1.0 / 120.0;
 
 /// A batch of one cloth at the given positions, in a substep of backward Euler.
-pub(super) fn cloth_at(
+pub(in crate::constraints) fn cloth_at(
     fabric: &Fabric,
     material: FabricMaterial,
     positions: &[Vec3],
 ) -> LaneBatch<Pack1> {
-    let mut batch = LaneBatch::new(Arc::new(fabric.clone()));
+    let mut batch = LaneBatch::side_by_side(Arc::new(fabric.clone()));
     batch.exchange(&[], &[(0, &ClothSnapshot::at_rest(fabric), material)]);
     batch.begin_tick(STEP, StepSettings::gauss_seidel(1));
     batch.begin_substep();
-    for (pack, &position) in batch.position.iter_mut().zip(positions) {
+    for (pack, &position) in batch.positions.packs_mut().iter_mut().zip(positions) {
         set_lane3(pack, 0, position);
     }
     batch
 }
 
-/// Where the particles are.
-pub(super) fn positions(batch: &LaneBatch<Pack1>) -> Vec<Vec3> {
-    batch.position.iter().map(|pack| lane3(pack, 0)).collect()
+/// Positions of the particles, m.
+pub(in crate::constraints) fn positions(batch: &LaneBatch<Pack1>) -> Vec<Vec3> {
+    batch.positions.packs().iter().map(|pack| lane3(pack, 0)).collect()
 }
 
-/// What an implicit step of an energy much softer than inertia moves each particle by, by central
-/// differences: −w h²/σ ∂E/∂x.
-pub(super) fn soft_step(
+/// Displacement of each particle by an implicit step of an energy that is soft compared with inertia,
+/// −w h²/σ ∂E/∂x, m, by central differences.
+pub(in crate::constraints) fn soft_step(
     fabric: &Fabric,
     material: &FabricMaterial,
     positions: &[Vec3],

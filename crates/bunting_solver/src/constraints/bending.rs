@@ -1,70 +1,80 @@
-//! Bending along the lines of a grid, each line exactly: C = (x₋ − 2x + x₊)/l at every inner
-//! particle, of stiffness B × width/l.
+//! Bending along the lines of a grid, each line solved exactly: C = (x₋ − 2x + x₊)/l at every inner particle,
+//! of stiffness B × width/l.
 //!
-//! The XPBD system (D W Dᵀ + α̃) λ = −C of a line is pentadiagonal, constant, and the same for x, y
-//! and z: it is factorised once as L D Lᵀ. Solved before stretch it passes the heavy cantilever with
-//! three substeps, where Gauss–Seidel needs hundreds.
+//! The XPBD system (D W Dᵀ + α̃) λ = −C of a line is pentadiagonal, constant, and the same for x, y and z (see
+//! `bend_factors.rs`). Solved before stretch, three substeps suffice for the heavy cantilever, where Gauss–Seidel
+//! needs hundreds.
 
 use crate::batch::lane_batch::LaneBatch;
-use crate::batch::places::{Cloths, Constant, Places};
-use crate::batch::single_cloth::Weave;
+use crate::batch::layout::{Layout, Particles, Positions};
+use crate::constraints::bend_factors::BendFactors;
 use crate::fabric::BendLine;
+use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
-use crate::step::parameters::BendFactors;
 
-impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Solves every line once.
     pub fn solve_bending(&mut self) {
-        if C::SIDE > 1
-            && let Some(weave) = self.woven()
-        {
-            weave.solve_bending();
-            return;
-        }
-        P::run(Bending {
-            lines: self.fabric.bend_lines(),
-            factors: &self.parameters.bend_factors,
-            moments: &mut self.moments,
-            places: Cloths::new(&self.lane_weights, &mut self.position),
-        });
-    }
-}
-
-impl<P: Pack> Weave<P> {
-    fn solve_bending(&mut self) {
-        for (facing, lines) in &self.bend_lines {
-            self.sheets.turn(*facing);
+        for (order, lines) in self.layout.bend_lines(&self.fabric) {
+            let (masses, linked) = (&self.masses.inverse, self.layout.linked());
             P::run(Bending {
                 lines,
-                factors: &self.bend_factors,
+                factors: &self.layout.factors().bending,
                 moments: &mut self.moments,
-                places: self.sheets.threads(&self.present),
+                particles: self.positions.particles(order, masses, linked),
             });
         }
     }
 }
 
-struct Bending<'a, P: Pack, S: Places<P>> {
+struct Bending<'a, P: Pack, S: Particles<P>> {
     lines: &'a [BendLine],
     factors: &'a [BendFactors<P, S::Constant>],
     moments: &'a mut [Pack3<P>],
-    places: S,
+    particles: S,
 }
 
-impl<P: Pack, S: Places<P>> Kernel<P> for Bending<'_, P, S> {
+impl<P: Pack, S: Particles<P>> Kernel<P> for Bending<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         for line in self.lines {
             let factors = &self.factors[line.profile as usize];
-            self.solve_line::<L>(token, &line.particles, factors);
+            self.eliminate::<L>(token, &line.particles, factors);
+            self.substitute::<L>(token, &line.particles, factors);
         }
     }
 }
 
-impl<P: Pack, S: Places<P>> Bending<'_, P, S> {
+impl<P: Pack, S: Particles<P>> Bending<'_, P, S> {
+    /// Solves L y = −l C along a line. A factor of one over the spacing is left to `mobilities`.
     #[inline(always)]
-    fn solve_line<L: Lane<Pack = P>>(
+    fn eliminate<L: Lane<Pack = P>>(
+        &mut self,
+        token: L::Token,
+        particles: &[u32],
+        factors: &BendFactors<P, S::Constant>,
+    ) {
+        let zero = V3::<L>::splat(token, 0.0);
+        let mut at: V3<L> = self.particles.position(token, particles[1]);
+        let mut edge = at - self.particles.position(token, particles[0]);
+        let (mut last, mut before_last) = (zero, zero);
+        for (index, (row, &next)) in factors.rows.iter().zip(&particles[2..]).enumerate() {
+            let next: V3<L> = self.particles.position(token, next);
+            let next_edge = next - at;
+            let y = (edge - next_edge)
+                .minus_scaled(last, L::load(token, &row.first_lower))
+                .minus_scaled(before_last, L::load(token, &row.second_lower));
+            y.store(&mut self.moments[index]);
+            (before_last, last) = (last, y);
+            (at, edge) = (next, next_edge);
+        }
+    }
+
+    /// Solves D Lᵀ λ = y back along a line, and moves each particle by W Dᵀ λ: by the moments of its own
+    /// stencil and of its neighbours'.
+    #[inline(always)]
+    fn substitute<L: Lane<Pack = P>>(
         &mut self,
         token: L::Token,
         particles: &[u32],
@@ -72,57 +82,41 @@ impl<P: Pack, S: Places<P>> Bending<'_, P, S> {
     ) {
         let zero = V3::<L>::splat(token, 0.0);
         let two = L::splat(token, 2.0);
-        let inner = factors.rows.len();
-
-        // Down the line: L y = −l C. What is left out is made up for when the moments act.
-        let mut at: V3<L> = self.places.position(token, particles[1]);
-        let mut edge = at - self.places.position(token, particles[0]);
-        let (mut last, mut before_last) = (zero, zero);
-        for (row, (factor, &next)) in factors.rows.iter().zip(&particles[2..]).enumerate() {
-            let next: V3<L> = self.places.position(token, next);
-            let next_edge = next - at;
-            let y = (edge - next_edge)
-                .minus_scaled(last, L::load(token, &factor.near))
-                .minus_scaled(before_last, L::load(token, &factor.far));
-            y.store(&mut self.moments[row]);
-            (before_last, last) = (last, y);
-            (at, edge) = (next, next_edge);
+        let mobilities = &factors.mobilities;
+        // Moments of the next row and of the one after, and the elements of Lᵀ that couple them.
+        let (mut next, mut after_next) = (zero, zero);
+        let (mut first_upper, mut second_upper) = (L::splat(token, 0.0), L::splat(token, 0.0));
+        let mut next_second_upper = L::splat(token, 0.0);
+        for index in (0..factors.rows.len()).rev() {
+            let row = &factors.rows[index];
+            let y: V3<L> = V3::load(token, &self.moments[index]);
+            let moment = (y * L::load(token, &row.inverse_diagonal))
+                .minus_scaled(next, first_upper)
+                .minus_scaled(after_next, second_upper);
+            let difference = (moment + after_next).minus_scaled(next, two);
+            self.shift::<L>(token, particles[index + 2], difference, mobilities[index + 2]);
+            (after_next, next) = (next, moment);
+            first_upper = L::load(token, &row.first_lower);
+            second_upper = next_second_upper;
+            next_second_upper = L::load(token, &row.second_lower);
         }
-
-        // Back up: D Lᵀ λ = y, and Δx = W Dᵀ λ: each particle takes the moments of its own stencil and
-        // of its neighbours'.
-        let (mut above, mut above_that) = (zero, zero);
-        let (mut near, mut far) = (L::splat(token, 0.0), L::splat(token, 0.0));
-        let mut next_far = L::splat(token, 0.0);
-        for row in (0..inner).rev() {
-            let factor = &factors.rows[row];
-            let y: V3<L> = V3::load(token, &self.moments[row]);
-            let moment = (y * L::load(token, &factor.inverse))
-                .minus_scaled(above, near)
-                .minus_scaled(above_that, far);
-            let moved = (moment + above_that).minus_scaled(above, two);
-            self.shift::<L>(token, particles[row + 2], moved, factors.weights[row + 2]);
-            (above_that, above) = (above, moment);
-            near = L::load(token, &factor.near);
-            far = next_far;
-            next_far = L::load(token, &factor.far);
-        }
-        let moved = above_that.minus_scaled(above, two);
-        self.shift::<L>(token, particles[1], moved, factors.weights[1]);
-        self.shift::<L>(token, particles[0], above, factors.weights[0]);
+        let difference = after_next.minus_scaled(next, two);
+        self.shift::<L>(token, particles[1], difference, mobilities[1]);
+        self.shift::<L>(token, particles[0], next, mobilities[0]);
     }
 
-    /// Moves a particle of a line by the difference of moments that acts on it.
+    /// Moves a particle by the second difference of moments that acts on it.
     #[inline(always)]
     fn shift<L: Lane<Pack = P>>(
         &mut self,
         token: L::Token,
         particle: u32,
-        moments: V3<L>,
-        weight: S::Constant,
+        difference: V3<L>,
+        mobility: S::Constant,
     ) {
-        let position = self.places.position(token, particle);
-        self.places.set_position(particle, position.plus_scaled(moments, weight.load(token)));
+        let position = self.particles.position(token, particle);
+        let moved = position.plus_scaled(difference, mobility.load(token));
+        self.particles.set_position(particle, moved);
     }
 }
 

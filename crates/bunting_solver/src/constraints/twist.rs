@@ -1,70 +1,42 @@
-//! Twist along the ribbons of a grid, each ribbon exactly: C = x₀₀ − x₁₀ − x₀₁ + x₁₁ in every cell, of
+//! Twist along the ribbons of a grid, each ribbon solved exactly: C = x₀₀ − x₁₀ − x₀₁ + x₁₁ in every cell, of
 //! stiffness 2 B/(Δx Δy).
 //!
-//! The XPBD system of a ribbon is tridiagonal, constant, and the same for x, y and z. Cell by cell it
-//! would take as many sweeps as a strip has cells to hold it on edge.
+//! The XPBD system of a ribbon is tridiagonal, constant, and the same for x, y and z (see `twist_factors.rs`).
+//! Solved cell by cell, a strip would need as many sweeps as it has cells to be held on edge.
 
 use crate::batch::lane_batch::LaneBatch;
-use crate::batch::places::{Cloths, Constant, Places};
-use crate::batch::single_cloth::Weave;
-use crate::constants::GRAVITY;
-use crate::fabric::{Fabric, FabricMaterial, Ribbon};
+use crate::batch::layout::{Layout, Particles, Positions};
+use crate::constraints::twist_factors::TwistFactors;
+use crate::fabric::Ribbon;
+use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
-use crate::step::parameters::TwistFactors;
 
-/// Γ = σ g L³/B from which on cloth is limp: held level by its edge, it reaches out by a twentieth of its
-/// length, and twist is small beside its weight. A flag of a metre has 100,000.
-const LIMP: f32 = 1000.0;
-
-/// Whether cloth is stiff enough to be seen to resist twist.
-pub(crate) fn resists_twist(fabric: &Fabric, material: &FabricMaterial) -> bool {
-    let Some(grid) = fabric.grid() else { return false };
-    let length = grid.width.max(grid.height);
-    material.area_density * GRAVITY * length.powi(3) < LIMP * material.bend_stiffness
-}
-
-impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
-    /// Solves every ribbon once.
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Solves every ribbon once, unless no cloth resists twist.
     pub fn solve_twist(&mut self) {
-        if !self.parameters.twists() {
+        if !self.layout.factors().resist_twist() {
             return;
         }
-        if C::SIDE > 1
-            && let Some(weave) = self.woven()
-        {
-            weave.solve_twist();
-            return;
-        }
+        let (order, ribbons) = self.layout.ribbons(&self.fabric);
+        let (masses, linked) = (&self.masses.inverse, self.layout.linked());
         P::run(Twist {
-            ribbons: self.fabric.ribbons(),
-            factors: &self.parameters.twist_factors,
+            ribbons,
+            factors: &self.layout.factors().twist,
             moments: &mut self.moments,
-            places: Cloths::new(&self.lane_weights, &mut self.position),
+            particles: self.positions.particles(order, masses, linked),
         });
     }
 }
 
-impl<P: Pack> Weave<P> {
-    fn solve_twist(&mut self) {
-        self.sheets.turn(self.ribbons.facing);
-        P::run(Twist {
-            ribbons: &self.ribbons.ribbons,
-            factors: &self.ribbons.factors,
-            moments: &mut self.moments,
-            places: self.sheets.threads(&self.present),
-        });
-    }
-}
-
-struct Twist<'a, P: Pack, S: Places<P>> {
+struct Twist<'a, P: Pack, S: Particles<P>> {
     ribbons: &'a [Ribbon],
     factors: &'a [TwistFactors<P, S::Constant>],
     moments: &'a mut [Pack3<P>],
-    places: S,
+    particles: S,
 }
 
-impl<P: Pack, S: Places<P>> Kernel<P> for Twist<'_, P, S> {
+impl<P: Pack, S: Particles<P>> Kernel<P> for Twist<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         for ribbon in self.ribbons {
@@ -74,7 +46,7 @@ impl<P: Pack, S: Places<P>> Kernel<P> for Twist<'_, P, S> {
     }
 }
 
-impl<P: Pack, S: Places<P>> Twist<'_, P, S> {
+impl<P: Pack, S: Particles<P>> Twist<'_, P, S> {
     #[inline(always)]
     fn solve_ribbon<L: Lane<Pack = P>>(
         &mut self,
@@ -87,45 +59,47 @@ impl<P: Pack, S: Places<P>> Twist<'_, P, S> {
         // Along the ribbon: L y = −C.
         let mut across: V3<L> = self.across(token, pairs[0]);
         let mut last = zero;
-        for (cell, (factor, &pair)) in factors.cells.iter().zip(&pairs[1..]).enumerate() {
+        for (cell, (row, &pair)) in factors.rows.iter().zip(&pairs[1..]).enumerate() {
             let next = self.across(token, pair);
-            last = (across - next).minus_scaled(last, L::load(token, &factor.near));
+            last = (across - next).minus_scaled(last, L::load(token, &row.lower));
             last.store(&mut self.moments[cell]);
             across = next;
         }
 
-        // And back: D Lᵀ λ = y, and Δx = W Cᵀ λ: each pair is turned by the cells on either side.
-        let mut beyond = zero;
-        let mut near = L::splat(token, 0.0);
-        for (cell, factor) in factors.cells.iter().enumerate().rev() {
+        // And back: D Lᵀ λ = y. Each pair is moved by the moments of the cells on either side, W Jᵀ λ.
+        let mut next = zero;
+        let mut upper = L::splat(token, 0.0);
+        for (cell, row) in factors.rows.iter().enumerate().rev() {
             let y: V3<L> = V3::load(token, &self.moments[cell]);
-            let moment = (y * L::load(token, &factor.inverse)).minus_scaled(beyond, near);
-            self.turn(token, pairs[cell + 1], moment - beyond, factors.weights[cell + 1]);
-            (beyond, near) = (moment, L::load(token, &factor.near));
+            let moment = (y * L::load(token, &row.inverse_diagonal)).minus_scaled(next, upper);
+            let inverse_masses = factors.inverse_masses[cell + 1];
+            self.move_apart(token, pairs[cell + 1], moment - next, inverse_masses);
+            (next, upper) = (moment, L::load(token, &row.lower));
         }
-        self.turn(token, pairs[0], zero - beyond, factors.weights[0]);
+        self.move_apart(token, pairs[0], zero - next, factors.inverse_masses[0]);
     }
 
-    /// From one of a pair to the other.
+    /// The vector from the first particle of a pair to the second, m.
     #[inline(always)]
     fn across<L: Lane<Pack = P>>(&self, token: L::Token, [from, to]: [u32; 2]) -> V3<L> {
-        self.places.position::<L>(token, to) - self.places.position(token, from)
+        self.particles.position::<L>(token, to) - self.particles.position(token, from)
     }
 
-    /// Moves a pair apart.
+    /// Moves the particles of a pair apart, each by a moment times its inverse mass.
     #[inline(always)]
-    fn turn<L: Lane<Pack = P>>(
+    fn move_apart<L: Lane<Pack = P>>(
         &mut self,
         token: L::Token,
         [from, to]: [u32; 2],
         moment: V3<L>,
-        weights: [S::Constant; 2],
+        [mass_from, mass_to]: [S::Constant; 2],
     ) {
-        let [here, there] = weights;
-        let moved = self.places.position(token, from).minus_scaled(moment, here.load(token));
-        self.places.set_position(from, moved);
-        let moved = self.places.position(token, to).plus_scaled(moment, there.load(token));
-        self.places.set_position(to, moved);
+        let position = self.particles.position(token, from);
+        let moved = position.minus_scaled(moment, mass_from.load(token));
+        self.particles.set_position(from, moved);
+        let position = self.particles.position(token, to);
+        let moved = position.plus_scaled(moment, mass_to.load(token));
+        self.particles.set_position(to, moved);
     }
 }
 

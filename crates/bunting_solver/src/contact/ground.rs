@@ -10,7 +10,7 @@ const SHALLOW: f32 = 0.25;
 
 /// Speed at which particles rise that are deeper than [`SHALLOW`], m/s. Cloth that rises faster is stretched
 /// by the particles that are above the ground already.
-pub(crate) const RISE: f32 = 4.0;
+pub(crate) const RISE_SPEED: f32 = 4.0;
 
 /// Distance from a point up to the surface, m; negative above it, none beside it and at holes.
 pub(crate) fn depth(field: &HeightField, at: Vec3) -> Option<f32> {

@@ -1,6 +1,8 @@
-//! What a cloth may touch.
+//! Contacts between cloth and colliders.
 
+mod candidates;
 pub(crate) mod collider;
 mod ground;
 mod near;
 mod solve;
+mod surface;

@@ -1,171 +1,120 @@
-//! Contacts: a particle stays a thickness away from a collider, C = n·(x − q) − d ≥ 0, and slides
-//! along it with Coulomb friction.
+//! Contacts: particles keep their clearance from colliders, and slide along them with friction.
 
 use glam::Vec3;
-use parry3d::query::Ray;
-use parry3d::shape::{HeightField, Shape};
+use parry3d::math::Pose;
 
-use crate::batch::lane_batch::{Clock, LaneBatch};
-use crate::batch::places::Constant;
-use crate::constants::{LEAST_CLEARANCE, LEAST_LENGTH};
-use crate::contact::ground;
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::lane_state::LaneState;
+use crate::batch::layout::{Layout, Positions};
+use crate::constants::LEAST_CLEARANCE;
+use crate::contact::collider::Collider;
+use crate::contact::ground::RISE_SPEED;
+use crate::contact::surface::{Projection, Surface};
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
+use crate::step::clock::Clock;
+use crate::step::frame::FrameStep;
 
-impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Projects every contact candidate once.
     pub fn solve_contacts(&mut self) {
-        let Clock { settings, done, .. } = self.clock;
-        // `integrate` has counted this substep already.
-        let index = done - 1;
-        let part = |substep: u32| substep as f32 / settings.substeps as f32;
-        for (cloth, slot) in self.slots.iter_mut().enumerate() {
-            let Some(slot) = slot else { continue };
-            slot.contact_moment = 0.0;
-            let effective_step = self.parameters.step.lanes()[C::lanes(cloth).start];
-            let carry = slot.drive.motion.carry(index, settings.substeps);
-            for (collider, candidates) in slot.colliders.iter().zip(&slot.contacts) {
-                let (old_pose, pose) =
-                    (collider.pose_at(part(index)), collider.pose_at(part(done)));
-                let surface = Surface {
-                    shape: &*collider.shape.0,
-                    ground: collider.shape.as_heightfield(),
-                    rise: ground::RISE * self.clock.step,
-                    keep: (slot.material.thickness + collider.margin).max(LEAST_CLEARANCE),
-                    friction: (slot.material.surface_friction * collider.friction).sqrt(),
-                };
-                for &particle in candidates {
-                    let (pack, lane) = self.seating.seat(particle as usize, cloth);
-                    let position = &mut self.position[pack];
-                    let old = lane3(&self.scratch[pack], lane);
-                    let before = lane3(position, lane);
-                    // Both ends of the particle's way in the collider's own frame, so that it is
-                    // relative to the surface; the old end as it stood before the frame moved.
-                    let from = old_pose.inverse_transform_point(carry.back(old));
-                    let to = pose.inverse_transform_point(before);
-                    let Some(push) = surface.push(from, to) else { continue };
-                    let after = pose.transform_point(push.to);
-                    set_lane3(position, lane, after);
-
-                    // A surface takes a particle along, but does not throw it off.
-                    let was = carry.forth(old_pose.transform_point(push.to));
-                    let of_surface = (after - was) / self.clock.step;
-                    let normal = pose.rotation * push.normal;
-                    let predicted = old + lane3(&self.displacement[pack], lane);
-                    let velocity = lane3(&self.velocity[pack], lane);
-                    let given = (after - before) / effective_step;
-                    let leaves = velocity + (after - predicted) / effective_step - of_surface;
-                    let thrown = leaves.dot(normal).min(given.dot(normal)).max(0.0) * normal;
-                    set_lane3(&mut self.velocity[pack], lane, velocity - thrown);
-                    // A blow is not to be extrapolated: the past is carried along with it. What presses
-                    // on a surface is, for it goes on.
-                    let arrived = lane3(&self.older_velocity[pack], lane);
-                    let approach = (of_surface - arrived).dot(normal);
-                    let blow = approach.min((given - thrown).dot(normal)).max(0.0) * normal;
-                    for past in [&mut self.older_velocity[pack], &mut self.oldest_velocity[pack]] {
-                        set_lane3(past, lane, lane3(past, lane) + blow);
-                    }
-                    if let Some(pole) = self.pole {
-                        let inertia = self.lane_inertias[pack].lanes()[lane];
-                        let moment = |at: Vec3| pole.moment(inertia, at, at - predicted);
-                        slot.contact_moment += moment(after) - moment(before);
+        for cloth in 0..self.lanes.len() {
+            // Taken out, so that the particles of the batch can be written.
+            let touches = |state: &mut LaneState| !state.colliders.is_empty();
+            if let Some(mut state) = self.lanes[cloth].take_if(touches) {
+                for (collider, candidates) in state.colliders.iter().zip(&state.contacts) {
+                    let contact = Contact::new(&state, collider, &self.clock);
+                    for &particle in candidates {
+                        state.external_moment +=
+                            self.solve_contact(cloth, particle as usize, &contact);
                     }
                 }
+                self.lanes[cloth] = Some(state);
             }
         }
     }
+
+    /// Projects one particle, and returns the moment of the correction about the pole, m⁴.
+    fn solve_contact(&mut self, cloth: usize, particle: usize, contact: &Contact) -> f32 {
+        let (pack, lane) = self.layout.locate(particle, cloth);
+        let effective_step = self.parameters.step.lanes()[lane];
+        let position = &mut self.positions.packs_mut()[pack];
+        let start = lane3(&self.scratch[pack], lane);
+        let before = lane3(position, lane);
+        let Some(Projection { to, normal }) = contact.project(start, before) else { return 0.0 };
+        let after = contact.pose.transform_point(to);
+        let normal = contact.pose.rotation * normal;
+        set_lane3(position, lane, after);
+
+        // A surface moves a particle along, but does not throw it off: the part of its velocity by which it
+        // would leave the surface, and which the contact gave to it, is taken from it.
+        let of_surface = (after - contact.surface_point_before(to)) / self.clock.step;
+        let predicted = start + lane3(&self.displacement[pack], lane);
+        let velocity = lane3(&self.velocity[pack], lane);
+        let given = (after - before) / effective_step;
+        let leaving = velocity + (after - predicted) / effective_step - of_surface;
+        let thrown = leaving.dot(normal).min(given.dot(normal)).max(0.0) * normal;
+        set_lane3(&mut self.velocity[pack], lane, velocity - thrown);
+
+        // An impact must not be extrapolated, so the velocities of the last substeps are changed alike. A
+        // steady pressure is extrapolated, since it continues.
+        let arrived = lane3(&self.older_velocity[pack], lane);
+        let approach = (of_surface - arrived).dot(normal);
+        let impact = approach.min((given - thrown).dot(normal)).max(0.0) * normal;
+        for past in [&mut self.older_velocity[pack], &mut self.oldest_velocity[pack]] {
+            set_lane3(past, lane, lane3(past, lane) + impact);
+        }
+        self.pole.map_or(0.0, |pole| {
+            let inertia = self.masses.inertia[pack].lanes()[lane];
+            let moment = |at: Vec3| pole.moment(inertia, at, at - predicted);
+            moment(after) - moment(before)
+        })
+    }
 }
 
-/// A collider as a particle meets it, in the collider's frame.
-struct Surface<'a> {
-    shape: &'a dyn Shape,
-    /// The shape, if it is a heightfield.
-    ground: Option<&'a HeightField>,
-    /// How far a particle deep under ground rises in this substep, m.
-    rise: f32,
-    /// Distance to keep, m.
-    keep: f32,
-    /// Coulomb friction coefficient.
-    friction: f32,
+/// A collider and a cloth in a substep.
+struct Contact<'a> {
+    surface: Surface<'a>,
+    /// The collider's poses at the beginning and at the end of the substep, each in the cloth's frame as it
+    /// was then.
+    old_pose: Pose,
+    pose: Pose,
+    /// Motion of the cloth's frame in the substep.
+    frame: FrameStep,
 }
 
-/// A particle's distance from a plane that it should stay above.
-struct Touch {
-    normal: Vec3,
-    /// How far it is short of the distance to keep, m.
-    depth: f32,
-}
-
-/// Where a contact puts a particle.
-struct Push {
-    to: Vec3,
-    /// Out of the surface.
-    normal: Vec3,
-}
-
-impl Surface<'_> {
-    /// Pushes a particle that goes from one point to another out of the shape, if it is in it.
-    fn push(&self, from: Vec3, to: Vec3) -> Option<Push> {
-        let (to, normal) = match self.crossing(from, to) {
-            Some(hit) => hit,
-            None => self.slide(from, to)?,
-        };
-        Some(Push { to, normal })
+impl<'a> Contact<'a> {
+    fn new(cloth: &LaneState, collider: &'a Collider, clock: &Clock) -> Self {
+        let Clock { settings, begun, .. } = *clock;
+        // `integrate` has counted this substep already.
+        let index = begun - 1;
+        let pose_after =
+            |substeps: u32| collider.pose_at(substeps as f32 / settings.substeps as f32);
+        Self {
+            surface: Surface {
+                shape: &*collider.shape.0,
+                ground: collider.shape.as_heightfield(),
+                rise: RISE_SPEED * clock.step,
+                clearance: (cloth.material.thickness + collider.margin).max(LEAST_CLEARANCE),
+                friction: (cloth.material.surface_friction * collider.friction).sqrt(),
+            },
+            old_pose: pose_after(index),
+            pose: pose_after(begun),
+            frame: cloth.drive.motion.substep(index, settings.substeps),
+        }
     }
 
-    /// Where a particle stays whose way enters the shape from outside, and the normal there. What a fast
-    /// shape overtakes goes with it, and does not slide: a slide as long as the way would let the particle
-    /// slip round the shape within the substep.
-    fn crossing(&self, from: Vec3, to: Vec3) -> Option<(Vec3, Vec3)> {
-        if self.contains(from) {
-            return None;
-        }
-        let way = Ray::new(from, to - from);
-        let hit = self.shape.cast_local_ray_and_get_normal(&way, 1.0, true)?;
-        let above = |at: Vec3| hit.normal.dot(at - way.point_at(hit.time_of_impact)) - self.keep;
-        if above(to) >= 0.0 {
-            return None;
-        }
-        let at = from - hit.normal * above(from);
-        // Beside an edge, and where the ray's normal is but an estimate.
-        let out = self.overlap(from, at).map_or(at, |Touch { normal, depth }| at + normal * depth);
-        Some((out, hit.normal))
+    /// Projects a particle that moves from one point to another in the cloth's frame, m. Both ends of its path
+    /// are taken in the collider's frame, so that the path is relative to the surface, and the first as it was
+    /// before the cloth's frame moved.
+    fn project(&self, start: Vec3, end: Vec3) -> Option<Projection> {
+        let from = self.old_pose.inverse_transform_point(self.frame.to_old(start));
+        let to = self.pose.inverse_transform_point(end);
+        self.surface.project(from, to)
     }
 
-    /// Where a particle slides that comes nearer than the distance to keep, and the normal there.
-    fn slide(&self, from: Vec3, to: Vec3) -> Option<(Vec3, Vec3)> {
-        let Touch { normal, depth } = self.overlap(from, to)?;
-        let moved = to - from;
-        let slide = moved - normal * moved.dot(normal);
-        // Friction holds back a slide as far as the push is deep (Coulomb's cone).
-        let held = (self.friction * depth / slide.length().max(LEAST_LENGTH)).min(1.0);
-        Some((to + normal * depth - slide * held, normal))
-    }
-
-    /// The surface nearest to `to`, if it is nearer than the distance to keep.
-    fn overlap(&self, from: Vec3, to: Vec3) -> Option<Touch> {
-        let nearest = match self.ground {
-            Some(field) => ground::project(field, to, self.keep)?,
-            None => self.shape.project_local_point(to, false),
-        };
-        let away = if nearest.is_inside { nearest.point - to } else { to - nearest.point };
-        let distance = away.length();
-        let signed = if nearest.is_inside { -distance } else { distance };
-        if signed >= self.keep {
-            return None;
-        }
-        // On the surface itself, or at the centre of a ball, the way it came tells the side.
-        let normal =
-            if distance > LEAST_LENGTH { away / distance } else { (from - to).try_normalize()? };
-        let depth = self.keep - signed;
-        let rises = self.ground.is_some() && nearest.is_inside;
-        Some(Touch { normal, depth: if rises { depth.min(self.rise) } else { depth } })
-    }
-
-    fn contains(&self, at: Vec3) -> bool {
-        match self.ground {
-            Some(field) => ground::depth(field, at).is_some_and(|depth| depth > 0.0),
-            None => self.shape.contains_local_point(at),
-        }
+    /// Where a point of the collider was at the beginning of the substep, in the cloth's present frame, m.
+    fn surface_point_before(&self, point: Vec3) -> Vec3 {
+        self.frame.to_new(self.old_pose.transform_point(point))
     }
 }

@@ -109,10 +109,11 @@ impl FabricMaterial {
     /// and finite, a stretch stiffness that is not positive, anything else that is negative or not
     /// a number.
     pub fn validate(&self) -> Result<(), FabricError> {
+        type Check = (&'static str, f32, fn(f32) -> bool);
         let density = |value: f32| value > 0.0 && value.is_finite();
         let stretch = |value: f32| value > 0.0;
         let other = |value: f32| value >= 0.0 && value.is_finite();
-        let checks: [(_, _, fn(f32) -> bool); 11] = [
+        let checks: [Check; 11] = [
             ("area_density", self.area_density, density),
             ("warp_stiffness", self.warp_stiffness, stretch),
             ("weft_stiffness", self.weft_stiffness, stretch),

@@ -1,100 +1,158 @@
-//! Sums over the triangles at each particle, of cloths side by side.
+//! Sums over the triangles at each particle, for normals and air.
 //!
-//! Where the triangles are the cells of a grid, a row of cells is passed from left to right: what it gives
-//! to the right is carried in registers, and what it gives downwards in a line that stays in the nearest
-//! cache, so that each particle's sum is written once and never read. It is taken in the order of the
-//! patches all the same.
+//! Triangles are summed in pairs, the patches of the fabric. Where patches are the cells of a grid, a row of
+//! cells is passed from left to right: the contributions to the right are carried in registers, and those
+//! downwards in one row of packs that stays in the nearest cache, so that each particle's sum is written once
+//! and never read. The terms of a sum are added in the order of the patches all the same.
 
 use crate::fabric::{Fabric, Patch};
-use crate::simd::lane::Lane;
+use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
-/// What triangles give to their corners.
-pub(crate) trait Giver<L: Lane> {
-    /// What the triangles (a, b, c) and (a, c, d) of a patch give to each of their corners.
-    fn give(&self, token: L::Token, patch: &Patch) -> [V3<L>; 2];
+/// The corners a, b, c and d of two triangles (a, b, c) and (a, c, d), or of such pairs in lanes.
+pub(crate) trait Corners<L: Lane> {
+    /// Vectors of all particles.
+    type Field: ?Sized;
 
-    /// What becomes of the sum of a particle.
+    /// The vectors at the corners.
+    fn load(&self, token: L::Token, field: &Self::Field) -> [V3<L>; 4];
+
+    /// A third of each triangle's area, m²; zero in lanes without triangles.
+    fn areas(&self, token: L::Token) -> [L; 2];
+
+    /// `vector` in lanes that have triangles, zero in others.
+    fn where_present(&self, token: L::Token, vector: V3<L>) -> V3<L>;
+}
+
+/// What triangles contribute to the sum at each of their corners.
+pub(crate) trait Contribution<L: Lane, F: ?Sized> {
+    /// The contributions of the two triangles with these corners.
+    fn of<C: Corners<L, Field = F>>(&self, token: L::Token, corners: &C) -> [V3<L>; 2];
+
+    /// What is stored, given the sum at a particle.
     fn finish(&self, token: L::Token, sum: V3<L>) -> V3<L>;
 }
 
-/// Sums what all triangles give to their corners. `below` is room for a row of a grid.
-#[inline(always)]
-pub(crate) fn sum_corners<L: Lane, G: Giver<L>>(
-    token: L::Token,
-    fabric: &Fabric,
-    giver: &G,
-    below: &mut [Pack3<L::Pack>],
-    sums: &mut [Pack3<L::Pack>],
-) {
-    match fabric.patch_grid_columns() {
-        Some(columns) => {
-            let below = &mut below[..columns];
-            for sum in below.iter_mut() {
-                V3::<L>::splat(token, 0.0).store(sum);
-            }
-            let mut rows = fabric.patches().chunks_exact(columns - 1);
-            for sums in sums.chunks_exact_mut(columns) {
-                match rows.next() {
-                    Some(cells) => sum_row(token, cells, giver, below, sums),
-                    None => {
-                        for (sum, above) in sums.iter_mut().zip(&*below) {
-                            giver.finish(token, V3::load(token, above)).store(sum);
-                        }
+/// Sums over the triangles at each particle, as a layout has them.
+pub(crate) trait CornerSums<P: Pack> {
+    /// Vectors of all particles.
+    type Field: ?Sized;
+
+    /// Sums the contributions of all triangles at each of their corners.
+    fn sum<L: Lane<Pack = P>, T: Contribution<L, Self::Field>>(
+        self,
+        token: L::Token,
+        contribution: &T,
+        sums: &mut [Pack3<P>],
+    );
+}
+
+impl<L: Lane> Corners<L> for &Patch {
+    type Field = [Pack3<L::Pack>];
+
+    #[inline(always)]
+    fn load(&self, token: L::Token, field: &Self::Field) -> [V3<L>; 4] {
+        Patch::load(self, token, field)
+    }
+
+    #[inline(always)]
+    fn areas(&self, token: L::Token) -> [L; 2] {
+        let [first, second] = self.corner_areas;
+        [L::splat(token, first), L::splat(token, second)]
+    }
+
+    #[inline(always)]
+    fn where_present(&self, _: L::Token, vector: V3<L>) -> V3<L> {
+        vector
+    }
+}
+
+/// Sums over the patches of cloths side by side.
+pub(crate) struct PatchSums<'a, P: Pack> {
+    pub fabric: &'a Fabric,
+    /// Room for the contributions of a row of cells to the particles below it.
+    pub below: &'a mut [Pack3<P>],
+}
+
+impl<P: Pack> CornerSums<P> for PatchSums<'_, P> {
+    type Field = [Pack3<P>];
+
+    #[inline(always)]
+    fn sum<L: Lane<Pack = P>, T: Contribution<L, Self::Field>>(
+        self,
+        token: L::Token,
+        contribution: &T,
+        sums: &mut [Pack3<P>],
+    ) {
+        let Self { fabric, below } = self;
+        let Some(columns) = fabric.patch_grid_columns() else {
+            sum_patches(token, fabric.patches(), contribution, sums);
+            return;
+        };
+        let below = &mut below[..columns];
+        for sum in below.iter_mut() {
+            V3::<L>::splat(token, 0.0).store(sum);
+        }
+        let mut rows = fabric.patches().chunks_exact(columns - 1);
+        for sums in sums.chunks_exact_mut(columns) {
+            match rows.next() {
+                Some(cells) => sum_row(token, cells, contribution, below, sums),
+                None => {
+                    for (sum, above) in sums.iter_mut().zip(&*below) {
+                        contribution.finish(token, V3::load(token, above)).store(sum);
                     }
                 }
             }
         }
-        None => sum_patches(token, fabric.patches(), giver, sums),
     }
 }
 
-/// The particles at the upper border of a row of cells. `below` holds what those above give to them, and
-/// then what these give to the next.
+/// Finishes the sums of the particles along the upper border of a row of cells. `below` holds the
+/// contributions of the row above to these particles, and afterwards those of this row to the next.
 #[inline(always)]
-fn sum_row<L: Lane, G: Giver<L>>(
+fn sum_row<L: Lane, T: Contribution<L, [Pack3<L::Pack>]>>(
     token: L::Token,
     cells: &[Patch],
-    giver: &G,
+    contribution: &T,
     below: &mut [Pack3<L::Pack>],
     sums: &mut [Pack3<L::Pack>],
 ) {
-    let nothing = V3::<L>::splat(token, 0.0);
-    // What the cell on the left gives to the right.
-    let (mut top, mut bottom) = (nothing, nothing);
+    let zero = V3::<L>::splat(token, 0.0);
+    // Contributions of the cell on the left to its two corners on the right.
+    let (mut top, mut bottom) = (zero, zero);
     let ([sums @ .., last_sum], [below @ .., last_below]) = (sums, below) else { return };
     for ((cell, sum), below) in cells.iter().zip(sums).zip(below) {
-        let [first, second] = giver.give(token, cell);
+        let [first, second] = contribution.of(token, &cell);
         let both = first + second;
         let above = V3::load(token, below) + top;
-        // Cut from the top left, which is a, to the bottom right, or from the top right.
+        // The diagonal runs from the top left, which is then a, to the bottom right, or from the top right.
         if cell.corners[1] > cell.corners[3] {
-            giver.finish(token, above + both).store(sum);
+            contribution.finish(token, above + both).store(sum);
             (bottom + first).store(below);
             (top, bottom) = (second, both);
         } else {
-            giver.finish(token, above + first).store(sum);
+            contribution.finish(token, above + first).store(sum);
             (bottom + both).store(below);
             (top, bottom) = (both, second);
         }
     }
-    giver.finish(token, V3::load(token, last_below) + top).store(last_sum);
+    contribution.finish(token, V3::load(token, last_below) + top).store(last_sum);
     bottom.store(last_below);
 }
 
-/// Patch by patch, wherever they lie.
+/// Sums the contributions of patches that lie anywhere.
 #[inline(always)]
-fn sum_patches<L: Lane, G: Giver<L>>(
+fn sum_patches<L: Lane, T: Contribution<L, [Pack3<L::Pack>]>>(
     token: L::Token,
     patches: &[Patch],
-    giver: &G,
+    contribution: &T,
     sums: &mut [Pack3<L::Pack>],
 ) {
     for sum in sums.iter_mut() {
         V3::<L>::splat(token, 0.0).store(sum);
     }
     for patch in patches {
-        let [first, second] = giver.give(token, patch);
+        let [first, second] = contribution.of(token, &patch);
         let both = first + second;
         let [a, b, c, d] = patch.corners;
         both.add_to(token, &mut sums[a as usize]);
@@ -103,6 +161,6 @@ fn sum_patches<L: Lane, G: Giver<L>>(
         second.add_to(token, &mut sums[d as usize]);
     }
     for sum in sums {
-        giver.finish(token, V3::load(token, sum)).store(sum);
+        contribution.finish(token, V3::load(token, sum)).store(sum);
     }
 }

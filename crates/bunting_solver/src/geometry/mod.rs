@@ -2,4 +2,5 @@
 
 pub(crate) mod corners;
 pub(crate) mod energy;
+pub(crate) mod face;
 pub(crate) mod normals;

@@ -1,24 +1,20 @@
-//! The only file that knows how wide a vector is.
+//! Lanes: what a kernel may do with vectors of any width.
 //!
-//! A batch keeps one cloth in each lane: a particle's x coordinate is a [`Pack`] of as many floats
-//! as there are lanes. A kernel is written once over a [`Lane`], the register that holds a pack,
-//! and runs at every width through [`Pack::run`].
+//! A coordinate of a particle is stored in a [`Pack`], which has one float for each lane of the batch. A
+//! kernel is written once over [`Lane`], the register that holds a pack, and runs at every width through
+//! [`Pack::run`]. The widths themselves are in `registers.rs`.
 //!
-//! Only `+ − × ÷ √`, a sum with a product, comparisons and selects exist here, each correctly rounded
-//! by IEEE 754, and nothing is estimated. A sum with a product is rounded once, in software where
-//! there is no instruction for it. So a lane's bits depend neither on the width, nor on the
-//! instruction set, nor on what rides in the other lanes.
+//! The only operations are `+ − × ÷ √`, a sum with a product, comparisons and selections. Each is correctly
+//! rounded (IEEE 754), and none is estimated; a sum with a product is rounded once, in software where the
+//! instruction set has no instruction for it. The bits of a lane therefore depend neither on the width, nor
+//! on the instruction set, nor on the values in the other lanes.
 //!
-//! What a kernel does must be compiled with it, or it is compiled without the machine's instructions: all
-//! functions that it calls are `#[inline(always)]`, and since closures cannot be, it has none, and leaves
-//! `map` and `from_fn` alone.
+//! A kernel is compiled with the machine's instructions only as far as its calls are inlined. So every
+//! function that a kernel calls is `#[inline(always)]`. Closures cannot be, and therefore kernels contain
+//! none and use neither `map` nor `from_fn`.
 
 use core::fmt::Debug;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
-
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f32x4, f32x8, f32x16};
-
-use crate::simd::level::level;
 
 /// One float for each lane of a batch, in memory.
 pub(crate) trait Pack: Copy + Debug + Send + Sync + 'static {
@@ -31,22 +27,22 @@ pub(crate) trait Pack: Copy + Debug + Send + Sync + 'static {
     /// The lanes, in order.
     fn lanes(&self) -> &[f32];
 
-    /// The lanes, in order, to be written.
+    /// The lanes, in order, for writing.
     fn lanes_mut(&mut self) -> &mut [f32];
 
-    /// Runs a kernel with the best instructions that this machine has for the width.
+    /// Runs a kernel with the best instructions that this machine has for this width.
     fn run<K: Kernel<Self>>(kernel: K);
 }
 
-/// A piece of the step that is the same for every width.
+/// A loop over packs, written once for every width.
 pub(crate) trait Kernel<P: Pack> {
-    /// Runs it; must be `#[inline(always)]`, so that it is compiled for the caller's target features.
+    /// Runs the loop. Must be `#[inline(always)]`, so that it is compiled for the caller's target features.
     fn run<L: Lane<Pack = P>>(self, token: L::Token);
 }
 
-/// What a comparison of two [`Lane`]s gives: a truth value for each lane.
+/// The result of a comparison of two [`Lane`]s: a truth value for each lane.
 pub(crate) trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> {
-    /// True if any lane is.
+    /// Whether any lane is true.
     fn any(self) -> bool;
 }
 
@@ -59,9 +55,9 @@ pub(crate) trait Lane:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The same floats in memory.
+    /// The type of the same floats in memory.
     type Pack: Pack;
-    /// Proof that the instructions in use exist.
+    /// Proof that this machine has the instructions that the kernel is compiled for.
     type Token: Copy;
     /// The result of a comparison.
     type Mask: Mask;
@@ -69,9 +65,9 @@ pub(crate) trait Lane:
     fn splat(token: Self::Token, value: f32) -> Self;
     fn load(token: Self::Token, pack: &Self::Pack) -> Self;
     fn store(self, pack: &mut Self::Pack);
-    /// Floats that lie side by side, one for each lane, from a place on.
+    /// Loads consecutive floats from index `at` on, one for each lane.
     fn load_at(token: Self::Token, values: &[f32], at: usize) -> Self;
-    /// Overwrites floats that lie side by side, from a place on.
+    /// Stores the lanes to consecutive floats from index `at` on.
     fn store_at(self, values: &mut [f32], at: usize);
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
@@ -83,295 +79,9 @@ pub(crate) trait Lane:
     /// `self` where the mask is true, `other` elsewhere.
     fn or_where_not(self, mask: Self::Mask, other: Self) -> Self;
 
-    /// The larger of the two; `other` if either is not a number.
+    /// The larger of `self` and `other`; `other` if either is not a number.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         self.or_where_not(other.lt(self), other)
-    }
-}
-
-/// A single lane: the scalar solver, and the oracle of the wide ones.
-#[derive(Clone, Copy, Debug)]
-#[repr(transparent)]
-pub(crate) struct Pack1([f32; 1]);
-
-/// Eight lanes: one AVX register, or two of SSE or NEON.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-pub(crate) struct Pack8([f32; 8]);
-
-/// Sixteen lanes: one AVX-512 register, or two of AVX.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(crate) struct Pack16([f32; 16]);
-
-macro_rules! pack_memory {
-    ($width:literal) => {
-        const WIDTH: usize = $width;
-
-        #[inline(always)]
-        fn splat(value: f32) -> Self {
-            Self([value; $width])
-        }
-
-        #[inline(always)]
-        fn lanes(&self) -> &[f32] {
-            &self.0
-        }
-
-        #[inline(always)]
-        fn lanes_mut(&mut self) -> &mut [f32] {
-            &mut self.0
-        }
-    };
-}
-
-impl Pack for Pack1 {
-    pack_memory!(1);
-
-    fn run<K: Kernel<Self>>(kernel: K) {
-        #[inline(always)]
-        fn with_token<S: Simd, K: Kernel<Pack1>>(token: S, kernel: K) {
-            kernel.run::<Single<S>>(token);
-        }
-        dispatch!(level(), token => with_token(token, kernel));
-    }
-}
-
-/// Whether there is an instruction that rounds a sum with a product once. Where there is none it is
-/// done in software, which is too long to be inlined.
-#[inline(always)]
-fn fuses<S: Simd>(token: S) -> bool {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        matches!(token.level(), Level::Avx2(_) | Level::Avx512(_))
-    }
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    {
-        let _ = token;
-        cfg!(target_arch = "aarch64")
-    }
-}
-
-macro_rules! wide {
-    ($pack:ident, $vector:ident, $width:literal) => {
-        impl Pack for $pack {
-            pack_memory!($width);
-
-            fn run<K: Kernel<Self>>(kernel: K) {
-                #[inline(always)]
-                fn with_token<S: Simd, K: Kernel<$pack>>(token: S, kernel: K) {
-                    kernel.run::<$vector<S>>(token);
-                }
-                dispatch!(level(), token => with_token(token, kernel));
-            }
-        }
-
-        impl<S: Simd> Lane for $vector<S> {
-            type Pack = $pack;
-            type Token = S;
-            type Mask = <$vector<S> as SimdBase<S>>::Mask;
-
-            #[inline(always)]
-            fn splat(token: S, value: f32) -> Self {
-                SimdBase::splat(token, value)
-            }
-
-            #[inline(always)]
-            fn load(token: S, pack: &$pack) -> Self {
-                SimdBase::load_array_ref(token, &pack.0)
-            }
-
-            #[inline(always)]
-            fn store(self, pack: &mut $pack) {
-                SimdBase::store_array(self, &mut pack.0);
-            }
-
-            #[inline(always)]
-            fn load_at(token: S, values: &[f32], at: usize) -> Self {
-                SimdBase::from_slice(token, &values[at..at + $width])
-            }
-
-            #[inline(always)]
-            fn store_at(self, values: &mut [f32], at: usize) {
-                SimdBase::store_slice(&self, &mut values[at..at + $width]);
-            }
-
-            #[inline(always)]
-            fn sqrt(self) -> Self {
-                SimdFloat::sqrt(self)
-            }
-
-            #[inline(always)]
-            fn abs(self) -> Self {
-                SimdBase::abs(self)
-            }
-
-            #[inline(always)]
-            fn lt(self, other: Self) -> Self::Mask {
-                self.simd_lt(other)
-            }
-
-            #[inline(always)]
-            fn plus_product(self, a: Self, b: Self) -> Self {
-                #[cold]
-                #[inline(never)]
-                fn in_software<S: Simd>(sum: $vector<S>, a: $vector<S>, b: $vector<S>) -> $vector<S> {
-                    a.mul_add_precise(b, sum)
-                }
-                if fuses(self.simd) {
-                    a.mul_add_precise(b, self)
-                } else {
-                    in_software(self, a, b)
-                }
-            }
-
-            #[inline(always)]
-            fn minus_product(self, a: Self, b: Self) -> Self {
-                self.plus_product(-a, b)
-            }
-
-            #[inline(always)]
-            fn or_where_not(self, mask: Self::Mask, other: Self) -> Self {
-                mask.select(self, other)
-            }
-        }
-    };
-}
-
-wide!(Pack8, f32x8, 8);
-wide!(Pack16, f32x16, 16);
-
-impl<S: Simd> Mask for fearless_simd::mask32x8<S> {
-    #[inline(always)]
-    fn any(self) -> bool {
-        fearless_simd::SimdMask::any_true(self)
-    }
-}
-
-impl<S: Simd> Mask for fearless_simd::mask32x16<S> {
-    #[inline(always)]
-    fn any(self) -> bool {
-        fearless_simd::SimdMask::any_true(self)
-    }
-}
-
-impl Mask for bool {
-    #[inline(always)]
-    fn any(self) -> bool {
-        self
-    }
-}
-
-/// A single float in a register, with proof of the instructions in use: a product and a sum rounded
-/// once are one instruction only where the token says so.
-#[derive(Clone, Copy)]
-struct Single<S> {
-    value: f32,
-    token: S,
-}
-
-impl<S: Simd> Single<S> {
-    #[inline(always)]
-    fn with(self, value: f32) -> Self {
-        Self { value, ..self }
-    }
-}
-
-macro_rules! single_operator {
-    ($($operator:ident :: $method:ident),*) => {
-        $(impl<S: Simd> $operator for Single<S> {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                self.with($operator::$method(self.value, other.value))
-            }
-        })*
-    };
-}
-
-single_operator!(Add::add, Sub::sub, Mul::mul, Div::div);
-
-impl<S: Simd> Neg for Single<S> {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        self.with(-self.value)
-    }
-}
-
-impl<S: Simd> Lane for Single<S> {
-    type Pack = Pack1;
-    type Token = S;
-    type Mask = bool;
-
-    #[inline(always)]
-    fn splat(token: S, value: f32) -> Self {
-        Self { value, token }
-    }
-
-    #[inline(always)]
-    fn load(token: S, pack: &Pack1) -> Self {
-        Self { value: pack.0[0], token }
-    }
-
-    #[inline(always)]
-    fn store(self, pack: &mut Pack1) {
-        pack.0[0] = self.value;
-    }
-
-    #[inline(always)]
-    fn load_at(token: S, values: &[f32], at: usize) -> Self {
-        Self { value: values[at], token }
-    }
-
-    #[inline(always)]
-    fn store_at(self, values: &mut [f32], at: usize) {
-        values[at] = self.value;
-    }
-
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // Correctly rounded by IEEE 754 on every target.
-        self.with(f32::sqrt(self.value))
-    }
-
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.with(f32::abs(self.value))
-    }
-
-    #[inline(always)]
-    fn lt(self, other: Self) -> bool {
-        self.value < other.value
-    }
-
-    #[inline(always)]
-    #[expect(clippy::disallowed_methods, reason = "taken only where the level has the instruction")]
-    fn plus_product(self, a: Self, b: Self) -> Self {
-        #[cold]
-        #[inline(never)]
-        fn in_software<S: Simd>(token: S, [sum, a, b]: [f32; 3]) -> f32 {
-            let [sum, a, b] =
-                [sum, a, b].map(|value| <f32x4<S> as SimdBase<S>>::splat(token, value));
-            a.mul_add_precise(b, sum).as_slice()[0]
-        }
-        self.with(if fuses(self.token) {
-            a.value.mul_add(b.value, self.value)
-        } else {
-            in_software(self.token, [self.value, a.value, b.value])
-        })
-    }
-
-    #[inline(always)]
-    fn minus_product(self, a: Self, b: Self) -> Self {
-        self.plus_product(-a, b)
-    }
-
-    #[inline(always)]
-    fn or_where_not(self, mask: bool, other: Self) -> Self {
-        if mask { self } else { other }
     }
 }

@@ -1,20 +1,20 @@
-//! Which instructions kernels run with: the best that the machine has.
+//! The instruction set that kernels run with: the best that the machine has.
 
 use core::cell::Cell;
 
 use fearless_simd::{Level, Simd};
 
 std::thread_local! {
-    /// What this thread's kernels run with instead of the best.
+    /// Instruction set that this thread's kernels run with in place of the best; tests set it.
     static CHOSEN: Cell<Option<Level>> = const { Cell::new(None) };
 }
 
-/// What a kernel is to run with.
+/// The instruction set for this thread's kernels.
 pub(crate) fn level() -> Level {
     CHOSEN.get().unwrap_or_else(Level::new)
 }
 
-/// The instruction set that wide kernels run with on this machine, for reports.
+/// Name of the instruction set that kernels run with on this machine, for reports.
 #[must_use]
 pub fn instruction_set() -> &'static str {
     match level() {
@@ -32,8 +32,8 @@ pub fn instruction_set() -> &'static str {
     }
 }
 
-/// Does the same on this thread with each instruction set that the machine has, the best first. For
-/// tests of what must not depend on it.
+/// Calls `work` on this thread with each instruction set that the machine has, the best first, and returns
+/// the results in that order. For tests of what must not depend on the instruction set.
 #[doc(hidden)]
 pub fn with_every_instruction_set<T>(mut work: impl FnMut() -> T) -> Vec<T> {
     let results = levels().into_iter().map(|level| {
@@ -45,7 +45,7 @@ pub fn with_every_instruction_set<T>(mut work: impl FnMut() -> T) -> Vec<T> {
     results
 }
 
-/// The levels of this machine, the best first.
+/// The instruction sets of this machine, the best first.
 fn levels() -> Vec<Level> {
     let best = Level::new();
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]

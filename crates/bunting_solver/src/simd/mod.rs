@@ -1,6 +1,8 @@
-//! Vectors of lanes: the only code that knows how wide they are.
+//! Packs of floats, the registers that hold them, and the instructions that kernels are compiled for.
 
+pub(crate) mod constant;
 pub(crate) mod lane;
 pub(crate) mod level;
-pub(crate) mod reduce;
+pub(crate) mod registers;
+pub(crate) mod sum;
 pub(crate) mod vec3;

@@ -1,4 +1,4 @@
-//! Vectors in three dimensions whose coordinates are lanes, in registers and in memory.
+//! Vectors in three dimensions, one for each lane: in memory and in registers.
 
 use core::ops::{Add, Mul, Range, Sub};
 
@@ -14,13 +14,13 @@ pub(crate) fn splat3<P: Pack>(value: Vec3) -> Pack3<P> {
     [P::splat(value.x), P::splat(value.y), P::splat(value.z)]
 }
 
-/// The vector of one lane.
+/// Reads the vector of one lane.
 #[inline]
 pub(crate) fn lane3<P: Pack>(pack: &Pack3<P>, lane: usize) -> Vec3 {
     Vec3::new(pack[0].lanes()[lane], pack[1].lanes()[lane], pack[2].lanes()[lane])
 }
 
-/// Overwrites the vector of one lane.
+/// Writes the vector of one lane.
 #[inline]
 pub(crate) fn set_lane3<P: Pack>(pack: &mut Pack3<P>, lane: usize, value: Vec3) {
     pack[0].lanes_mut()[lane] = value.x;
@@ -28,7 +28,7 @@ pub(crate) fn set_lane3<P: Pack>(pack: &mut Pack3<P>, lane: usize, value: Vec3) 
     pack[2].lanes_mut()[lane] = value.z;
 }
 
-/// Overwrites the vectors of some lanes.
+/// Writes the same vector to each of a range of lanes.
 pub(crate) fn fill_lanes3<P: Pack>(pack: &mut Pack3<P>, lanes: &Range<usize>, value: Vec3) {
     for (pack, value) in pack.iter_mut().zip(value.to_array()) {
         pack.lanes_mut()[lanes.clone()].fill(value);
@@ -44,6 +44,7 @@ pub(crate) struct V3<L> {
 }
 
 impl<L: Lane> V3<L> {
+    /// Loads three packs.
     #[inline(always)]
     pub fn load(token: L::Token, pack: &Pack3<L::Pack>) -> Self {
         Self {
@@ -53,6 +54,7 @@ impl<L: Lane> V3<L> {
         }
     }
 
+    /// Stores three packs.
     #[inline(always)]
     pub fn store(self, pack: &mut Pack3<L::Pack>) {
         self.x.store(&mut pack[0]);
@@ -60,12 +62,13 @@ impl<L: Lane> V3<L> {
         self.z.store(&mut pack[2]);
     }
 
-    /// Adds itself to a vector in memory.
+    /// Adds the vector to one in memory.
     #[inline(always)]
     pub fn add_to(self, token: L::Token, pack: &mut Pack3<L::Pack>) {
         (Self::load(token, pack) + self).store(pack);
     }
 
+    /// The vector whose coordinates are all `value`, in every lane.
     #[inline(always)]
     pub fn splat(token: L::Token, value: f32) -> Self {
         let value = L::splat(token, value);
@@ -81,14 +84,14 @@ impl<L: Lane> V3<L> {
             z: self.z.or_where_not(mask, other.z),
         }
     }
-}
 
-impl<L: Lane> V3<L> {
+    /// Scalar product.
     #[inline(always)]
     pub fn dot(self, other: Self) -> L {
         (self.x * other.x).plus_product(self.y, other.y).plus_product(self.z, other.z)
     }
 
+    /// Vector product.
     #[inline(always)]
     pub fn cross(self, other: Self) -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! What keeps a substep stable that is longer than the fastest vibration.
+//! Measures that keep a substep stable which is longer than the period of the fastest vibration.
 
 pub(crate) mod added_mass;
 pub(crate) mod pin_strain;

@@ -1,26 +1,26 @@
-//! Pins that are farther apart than the cloth between them is long.
+//! Strain by pins that are farther apart than the cloth between them is long.
 //!
-//! A way of length s through the cloth, from one pin to another that is d away, is strained by d/s − 1 at
-//! least, whatever the cloth does. So a particle that is s and s' from them at rest has that strain, of
-//! d/(s + s') − 1, about it. Pins stay where they are in the cloth's frame, so it is known before
-//! anything moves.
+//! A path of rest length s through the cloth, between two pins at a distance d, is strained by d/s − 1 or
+//! more, whatever the cloth does. A particle whose distances from the two pins along the cloth at rest are s
+//! and s' lies on a path of length s + s', and so is strained by d/(s + s') − 1 or more. Pins stay where they
+//! are in the cloth's frame, so that this bound is known before anything moves.
 
 use glam::Vec3;
 
 use crate::fabric::Fabric;
 
-/// Strains below this are let be. Smaller: pins that were only turned or moved are too far apart by rounding.
-/// Larger: a cloth of 33 × 33 a square metre rattles at two substeps.
+/// Strains below this are ignored. Smaller: pins that were only turned or moved are too far apart by rounding.
+/// Larger: a cloth of 33 × 33 particles a square metre oscillates at high frequency with two substeps.
 const LEAST_STRAIN: f32 = 1e-4;
 
-/// What a cloth's pins strain it by.
+/// Lower bounds on the strain of a cloth, by its pins.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Overstretch {
-    /// Greatest part by which two pins are too far apart. A flat sheet can be laid between its pins so that
-    /// no two of its points are too far apart by more (Kirszbraun 1934).
+pub(crate) struct PinStrain {
+    /// Greatest strain between two pins. A flat sheet can be laid between its pins so that no two of its
+    /// points are strained by more (Kirszbraun 1934).
     pub greatest: f32,
-    /// Least strain about each particle; none where no pins are too far apart.
-    pub strains: Vec<f32>,
+    /// Least strain about each particle; empty where no pins are too far apart.
+    pub of_particles: Vec<f32>,
 }
 
 /// Two pins that are too far apart.
@@ -28,19 +28,19 @@ struct Pair {
     pins: [usize; 2],
     /// Their distance, m.
     distance: f32,
-    /// The same over that along the cloth at rest.
+    /// Their distance over that along the cloth at rest.
     stretch: f32,
 }
 
-impl Overstretch {
-    /// Given where a cloth's particles are, m.
+impl PinStrain {
+    /// The strain of a cloth whose particles are at these positions, m.
     pub fn of(fabric: &Fabric, positions: &[Vec3]) -> Self {
         let rest = fabric.rest_positions();
-        let places = |of: &[Vec3]| -> Vec<Vec3> {
-            fabric.pins().iter().map(|pin| of[pin.particle as usize]).collect()
+        let of_pins = |positions: &[Vec3]| -> Vec<Vec3> {
+            fabric.pins().iter().map(|pin| positions[pin.particle as usize]).collect()
         };
-        let [at, at_rest] = [positions, rest].map(places);
-        // As the crow flies pins are nearest at rest, so that most cloth is done with here.
+        let [at, at_rest] = [positions, rest].map(of_pins);
+        // Straight distances at rest are no longer than those along the cloth, and settle most cases.
         if at == at_rest
             || too_far(&at, |one, other| at_rest[one].distance(at_rest[other])).is_empty()
         {
@@ -53,25 +53,27 @@ impl Overstretch {
         pairs.sort_by(|one, other| other.stretch.total_cmp(&one.stretch));
         let Some(worst) = pairs.first() else { return Self::default() };
         let stretch_about = |particle: usize| {
-            let mut most = 1.0_f32;
+            let mut greatest = 1.0_f32;
             for pair in &pairs {
-                // No way by a particle is shorter than the shortest.
-                if pair.stretch <= most {
+                // A path through the particle is no shorter than the shortest path, so that it is
+                // stretched no more. Pairs are sorted by their stretch.
+                if pair.stretch <= greatest {
                     break;
                 }
                 let [one, other] = pair.pins.map(|pin| along[pin][particle]);
-                most = most.max(pair.distance / (one + other));
+                greatest = greatest.max(pair.distance / (one + other));
             }
-            most
+            greatest
         };
         Self {
             greatest: worst.stretch - 1.0,
-            strains: (0..rest.len()).map(|particle| stretch_about(particle) - 1.0).collect(),
+            of_particles: (0..rest.len()).map(|particle| stretch_about(particle) - 1.0).collect(),
         }
     }
 }
 
-/// The pairs that are too far apart, given where the pins are and how long the cloth between two is.
+/// The pairs of pins that are too far apart, given their positions, m, and the length of the cloth between
+/// two of them, m.
 fn too_far(at: &[Vec3], length: impl Fn(usize, usize) -> f32) -> Vec<Pair> {
     let mut pairs = Vec::new();
     for (other, there) in at.iter().enumerate() {
@@ -90,29 +92,30 @@ fn too_far(at: &[Vec3], length: impl Fn(usize, usize) -> f32) -> Vec<Pair> {
 mod tests {
     use glam::{Quat, Vec3};
 
-    use super::Overstretch;
+    use super::PinStrain;
     use crate::fabric::{Fabric, FabricBuilder, Grid};
 
     fn sheet(pins: impl IntoIterator<Item = u32>) -> Fabric {
         FabricBuilder::grid(Grid::new(5, 5, 1.0, 1.0)).pin(pins).build().expect("a good fabric")
     }
 
-    fn moved(fabric: &Fabric, to: impl Fn(Vec3) -> Vec3) -> Overstretch {
+    fn moved(fabric: &Fabric, to: impl Fn(Vec3) -> Vec3) -> PinStrain {
         let positions: Vec<Vec3> = fabric.rest_positions().iter().map(|&at| to(at)).collect();
-        Overstretch::of(fabric, &positions)
+        PinStrain::of(fabric, &positions)
     }
 
     #[test]
-    fn two_edges_strain_all_between_them() {
+    fn two_edges_strain_all_particles_between_them() {
         let fabric = sheet((0..5).chain(20..25));
-        let Overstretch { greatest, strains } = moved(&fabric, |at| at * Vec3::new(1.0, 1.1, 1.0));
+        let PinStrain { greatest, of_particles: strains } =
+            moved(&fabric, |at| at * Vec3::new(1.0, 1.1, 1.0));
         let off = |strain: &f32| (strain - 0.1).abs() < 1e-5;
         assert!(off(&greatest) && strains.iter().all(off), "{strains:?}");
     }
 
     #[test]
-    fn two_corners_strain_what_is_near_the_way_between_them() {
-        let Overstretch { greatest, strains } = moved(&sheet([0, 4]), |at| 1.1 * at);
+    fn two_corners_strain_the_particles_between_them() {
+        let PinStrain { greatest, of_particles: strains } = moved(&sheet([0, 4]), |at| 1.1 * at);
         assert!((greatest - 0.1).abs() < 1e-5);
         assert!((strains[2] - 0.1).abs() < 1e-5);
         // Half way, a quarter of a metre below: 1.1 m of 2 √(½² + ¼²) is slack.
@@ -122,15 +125,15 @@ mod tests {
     }
 
     #[test]
-    fn what_is_moved_turned_or_slack_is_not_strained() {
+    fn a_moved_turned_or_slack_cloth_is_not_strained() {
         let fabric = sheet([0, 4, 24]);
         let turn = Quat::from_euler(glam::EulerRot::XYZ, 0.3, -0.7, 1.9);
-        assert_eq!(moved(&fabric, |at| turn * at + Vec3::splat(3.0)), Overstretch::default());
-        assert_eq!(moved(&fabric, |at| 0.5 * at), Overstretch::default());
+        assert_eq!(moved(&fabric, |at| turn * at + Vec3::splat(3.0)), PinStrain::default());
+        assert_eq!(moved(&fabric, |at| 0.5 * at), PinStrain::default());
     }
 
     #[test]
-    fn a_folded_mesh_may_be_opened() {
+    fn opening_a_folded_mesh_does_not_strain_it() {
         // Two squares at a right angle, folded about x = 1, held by their outer edges.
         let positions: Vec<Vec3> = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0)]
             .into_iter()
@@ -140,8 +143,8 @@ mod tests {
         let fabric = FabricBuilder::new(positions, indices).pin([0, 1, 4, 5]).build();
         let fabric = fabric.expect("a good fabric");
         let open = |at: Vec3, stretch: f32| Vec3::new(stretch * (at.x + at.z), at.y, 0.0);
-        assert_eq!(moved(&fabric, |at| open(at, 1.0)), Overstretch::default());
-        let Overstretch { greatest, strains } = moved(&fabric, |at| open(at, 1.2));
+        assert_eq!(moved(&fabric, |at| open(at, 1.0)), PinStrain::default());
+        let PinStrain { greatest, of_particles: strains } = moved(&fabric, |at| open(at, 1.2));
         assert!(
             [greatest, strains[2], strains[3]].iter().all(|strain| (strain - 0.2).abs() < 1e-5)
         );

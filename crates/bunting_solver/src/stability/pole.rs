@@ -1,30 +1,31 @@
-//! The turn about a pole: a cloth whose pins lie on a line may turn about it, and nothing within the
-//! cloth can make it.
+//! The spurious turn of a cloth about its pole, and its removal.
 //!
-//! Each solve of a substep pulls particles along the directions in which it finds them, so each by
-//! itself has no moment; but those that come later find particles moved by those that came before,
-//! and of two pulls the cross product is left. It is small and always of one sign: a flag that hangs
-//! from its pole in folds goes round it for ever. So the moment of all corrections about the pole is
-//! taken out again, by a turn as of a rigid body: with the next prediction, when all particles are moved
-//! anyway. What contacts do is no error, and has a moment of its own.
+//! A cloth whose pins lie on a line, the pole, is free to turn about it, and no internal force can turn it.
+//! Each solve of a constraint moves particles along the directions in which it finds them and so has no
+//! moment. But later solves find particles that earlier ones have moved, and the cross product of two
+//! corrections remains. It is small and always of one sign: a flag that hangs from its pole in folds turns
+//! about it for ever. Therefore the moment of all corrections about the pole is computed, and a rigid turn of
+//! the opposite moment is made with the next prediction, when all particles are moved anyway. Contacts and
+//! users' constraints do turn a cloth: their moment is left out.
 
 use glam::Vec3;
 
-use crate::batch::places::Constant;
 use crate::fabric::Fabric;
+use crate::simd::constant::Constant;
 use crate::simd::lane::Lane;
-use crate::simd::reduce::Sum;
+use crate::simd::sum::Sum;
 use crate::simd::vec3::{V3, splat3};
 
-/// How far pins may lie off the line through them, as a part of its length.
+/// How far pins may lie off the line through them, as a part of its length. Smaller: rounding bends poles.
+/// Larger: cloth that its pins hold counts as free to turn.
 const STRAIGHT: f32 = 1e-3;
 
 /// The line through all pins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pole {
-    /// A point of it, m.
+    /// A point of the line, m.
     at: Vec3,
-    /// Its direction, of unit length.
+    /// Direction of the line, of unit length.
     along: Vec3,
 }
 
@@ -44,7 +45,7 @@ impl Pole {
         straight.then_some(Self { at, along })
     }
 
-    /// The two pins at its ends.
+    /// The two pins at the ends of the pole.
     pub fn ends(&self, fabric: &Fabric) -> [u32; 2] {
         let place = |particle: u32| self.along.dot(fabric.rest_positions()[particle as usize]);
         let order = |a: &u32, b: &u32| place(*a).total_cmp(&place(*b));
@@ -53,17 +54,27 @@ impl Pole {
         ends.map(|end| end.expect("a pole has pins"))
     }
 
-    /// How far the cloth hangs along it: from 0 with the pole across gravity to 1 along it, in steps, as
-    /// much hangs on it that is not computed for every small turn.
+    /// |cos| of the angle between the pole and gravity: 0 of a level pole, 1 of an upright one. Rounded to
+    /// 32 steps, so that inverse masses are not computed anew for every small turn.
     pub fn uprightness(&self, gravity: Vec3) -> f32 {
         const STEPS: f32 = 32.0;
         libm::roundf(STEPS * gravity.normalize_or_zero().dot(self.along).abs()) / STEPS
     }
 
-    /// Moment about it of what a particle was corrected by to where it is, m⁴ given its inertia in m².
+    /// Moment about the pole of a particle's correction, m⁴, given its inertia, m², its corrected position, m,
+    /// and the correction, m.
     pub fn moment(&self, inertia: f32, at: Vec3, correction: Vec3) -> f32 {
         inertia * self.along.cross(at - self.at).dot(correction)
     }
+}
+
+/// A turn about the pole by the corrections of a substep.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct PoleTurn {
+    /// rad.
+    pub angle: f32,
+    /// rad/s.
+    pub rate: f32,
 }
 
 /// A pole in registers.
@@ -74,43 +85,47 @@ pub(crate) struct Axis<L> {
 }
 
 impl<L: Lane> Axis<L> {
+    /// The pole in registers.
     #[inline(always)]
-    pub fn of(token: L::Token, pole: Option<Pole>) -> Option<Self> {
+    pub fn load(token: L::Token, pole: Option<Pole>) -> Option<Self> {
         let Pole { at, along } = pole?;
         Some(Self { at: V3::load(token, &splat3(at)), along: V3::load(token, &splat3(along)) })
     }
 
-    /// What a point is moved by for each radian of a turn about the pole.
+    /// Displacement of a point, m, by a turn of one radian about the pole.
     #[inline(always)]
-    pub fn round(&self, point: V3<L>) -> V3<L> {
+    pub fn turn_of(&self, point: V3<L>) -> V3<L> {
         self.along.cross(point - self.at)
     }
 }
 
-/// Moment and inertia about the pole, in units of the density, m⁴.
+/// Sums over the particles of the moment of corrections about the pole, and of inertia, in units of the
+/// density, m⁴.
 pub(crate) struct Moment<L> {
     moment: Sum<L>,
     inertia: Sum<L>,
 }
 
 impl<L: Lane> Moment<L> {
+    /// Zero.
     #[inline(always)]
     pub fn new(token: L::Token) -> Self {
         Self { moment: Sum::new(token), inertia: Sum::new(token) }
     }
 
-    /// Adds that of a pack's particles, given their inertias, what they move by for each radian, and what
-    /// they were corrected by.
+    /// Adds the terms of a pack, given the particles' inertias, m², their displacement by a turn of one
+    /// radian, m, and their corrections, m.
     #[inline(always)]
-    pub fn add(&mut self, part: u8, inertia: L, round: V3<L>, correction: V3<L>) {
-        self.moment.add_product(part, inertia, round.dot(correction));
-        self.inertia.add_product(part, inertia, round.dot(round));
+    pub fn add(&mut self, partial: u8, inertia: L, turn: V3<L>, correction: V3<L>) {
+        self.moment.add_product(partial, inertia, turn.dot(correction));
+        self.inertia.add_product(partial, inertia, turn.dot(turn));
     }
 
-    /// The turn that it makes, rad, but for a moment that is no error.
+    /// The rigid turn, rad, that has the moment of the corrections less that of corrections from outside the
+    /// cloth, m⁴.
     #[inline(always)]
-    pub fn turn<C: Constant<L::Pack>>(self, token: L::Token, but: L) -> L {
+    pub fn turn<C: Constant<L::Pack>>(self, token: L::Token, external: L) -> L {
         let inertia = self.inertia.total::<C>(token) + L::splat(token, f32::MIN_POSITIVE);
-        (self.moment.total::<C>(token) - but) / inertia
+        (self.moment.total::<C>(token) - external) / inertia
     }
 }

@@ -1,127 +1,131 @@
-//! Trembling at rest.
+//! Under-relaxation of particles that oscillate at rest.
 //!
-//! The directions of a yarn's links are frozen where prediction has left them, so tension pulls on what
-//! lies across it as on the predicted place, and not on the one where it comes to lie. A particle that goes
-//! to and fro by X from substep to substep is predicted at −9.2 X (at −3 X by backward Euler), and pulled to
-//! the other side as soon as (β h)² ω² > 1.1 (1.3), ω² = 4 T/(m l). Where cloth hangs limp that is exceeded
-//! near its supports and along its borders, whatever the order of visits and the passes, and without bias and
-//! bending, too: neighbours go to and fro against one another for ever, in every substep.
+//! The directions of a chain's links are frozen at the predicted positions, so that tension pulls a particle
+//! across its links according to where it was predicted and not where it comes to lie. A particle that
+//! oscillates by X from substep to substep is predicted at −9.2 X (at −3 X by backward Euler), and pulled to
+//! the other side as soon as (β h)² ω² > 1.1 (1.3), ω² = 4 T/(m l). Where cloth hangs limp that is exceeded near
+//! its supports and along its borders, whatever the order of chains and the number of passes, and also without
+//! shear and bending: neighbours oscillate against one another for ever, turning round in every substep.
 //!
-//! Nothing but that does so in each of three substeps. So where a lane hardly moves, such a particle follows
-//! what changes its velocity by half as much as before (dynamic relaxation, as of partitioned fluids and
-//! structures, which fail for the same reason: Küttler and Wall 2008), and by more again once it has stopped.
-//! What keeps its velocity keeps it, and at rest nothing changes, so that rest states are exact.
+//! No other motion turns round in each of three substeps. So where a cloth hardly moves, a particle that does
+//! makes only a part of each change of its velocity, its relaxation factor: half as much with every further
+//! turn, and slowly more again once the turns have stopped (dynamic relaxation, as in partitioned solvers of
+//! fluids and structures, which are unstable for the same reason: Küttler and Wall 2008). A steady velocity is
+//! kept, and at rest nothing changes, so that rest states are exact.
 
 use crate::batch::lane_batch::LaneBatch;
-use crate::batch::places::Constant;
+use crate::batch::layout::Layout;
 use crate::simd::lane::{Lane, Mask, Pack};
 use crate::simd::vec3::{Pack3, V3};
 use crate::step::parameters::Parameters;
 
-/// Speed below which going to and fro is let be, m/s: half of what counts as at rest, and more than rounding
-/// makes of 4,000 substeps a second.
+/// Speed below which oscillation is ignored, m/s. Smaller: at 4,000 substeps a second rounding counts as
+/// oscillation. Larger than twice this: cloth that oscillates never counts as at rest.
 const UNSEEN: f32 = 5e-4;
 
-/// What is left of a particle's share with each substep in which it goes to and fro.
-const EASED: f32 = 0.5;
+/// Change of the factor with each substep in which a particle turns round.
+const REDUCED: f32 = 0.5;
 
-/// What its share grows by with each other substep. Slower: takes longer to wake. Faster: trembles again.
-const WOKEN: f32 = 1.0 + 1.0 / 32.0;
+/// Change of the factor with each other substep. Smaller: cloth is slow to move again. Larger: oscillation
+/// returns.
+const RECOVERED: f32 = 1.0 + 1.0 / 32.0;
 
-/// Least share.
-const LEAST_SHARE: f32 = 1.0 / 32.0;
+/// Least factor.
+const LEAST: f32 = 1.0 / 32.0;
 
-/// Part that is kept of a velocity that a particle is not let change. With all of it what is late in
-/// following swings by itself: the border of a limp flag, at 8 Hz.
+/// Part of the former velocity that a particle keeps in place of a change that it does not make. With all of
+/// it the delay itself makes the border of a limp flag swing, at 8 Hz.
 const KEPT: f32 = 0.9;
 
-impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
-    /// What part each particle of a cloth follows; empty where it does not creep, and all follow wholly.
-    pub fn shares(&self, cloth: usize) -> Vec<f32> {
-        if !self.parameters.creeps(C::lanes(cloth)) {
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Relaxation factor of each particle of a cloth; empty where the cloth is not near rest and all are 1.
+    pub fn relaxation_of(&self, cloth: usize) -> Vec<f32> {
+        if !self.parameters.is_near_rest(Y::lanes(cloth)) {
             return Vec::new();
         }
-        let seats = (0..self.fabric.particle_count()).map(|at| self.seating.seat(at, cloth));
-        seats.map(|(pack, lane)| self.share[pack].lanes()[lane]).collect()
+        let located = (0..self.fabric.particle_count()).map(|at| self.layout.locate(at, cloth));
+        located.map(|(pack, lane)| self.relaxation[pack].lanes()[lane]).collect()
     }
 
-    /// Overwrites them, and with them whether the cloth creeps.
-    pub fn set_shares(&mut self, cloth: usize, shares: &[f32]) {
-        self.forget_tremor(cloth);
-        self.seating.put(cloth, shares, &mut self.share);
-        self.parameters.set_creeps(C::lanes(cloth), !shares.is_empty());
+    /// Overwrites the relaxation factors of a cloth, which is near rest unless there are none.
+    pub fn set_relaxation(&mut self, cloth: usize, factors: &[f32]) {
+        self.reset_relaxation(cloth);
+        self.layout.write_numbers(factors, cloth, &mut self.relaxation);
+        self.parameters.set_near_rest(Y::lanes(cloth), !factors.is_empty());
     }
 
-    /// Lets a cloth's particles follow wholly.
-    pub fn forget_tremor(&mut self, cloth: usize) {
-        for share in &mut self.share {
-            share.lanes_mut()[C::lanes(cloth)].fill(1.0);
+    /// Sets the relaxation factors of a cloth to 1.
+    pub fn reset_relaxation(&mut self, cloth: usize) {
+        for factor in &mut self.relaxation {
+            factor.lanes_mut()[Y::lanes(cloth)].fill(1.0);
         }
     }
 }
 
-/// What calms it, in registers.
-pub(crate) struct Calm<L: Lane> {
-    creeps: L::Mask,
-    /// Scalar product of velocities that are opposed, m²/s².
+/// Under-relaxation of a batch, in registers.
+pub(crate) struct UnderRelaxation<L: Lane> {
+    near_rest: L::Mask,
+    /// Scalar product of two velocities below which they are opposed, m²/s².
     opposed: L,
     one: L,
 }
 
-/// How a particle lags behind.
-pub(crate) struct Lag<L: Lane> {
-    /// Where it does.
-    lags: L::Mask,
-    /// Part that it does not follow.
+/// Factors of a pack of particles, in registers.
+pub(crate) struct RelaxedPack<L: Lane> {
+    /// Lanes whose factor is less than 1.
+    relaxed: L::Mask,
+    /// One less the factor.
     missing: L,
 }
 
-impl<L: Lane> Calm<L> {
-    /// None if no lane hardly moves.
+impl<L: Lane> UnderRelaxation<L> {
+    /// None if no cloth is near rest.
     #[inline(always)]
     pub fn load(token: L::Token, parameters: &Parameters<L::Pack>) -> Option<Self> {
-        if !parameters.creeps_any() {
+        if !parameters.any_near_rest() {
             return None;
         }
         Some(Self {
-            creeps: L::splat(token, 0.0).lt(L::load(token, &parameters.creeps)),
+            near_rest: L::splat(token, 0.0).lt(L::load(token, &parameters.near_rest)),
             opposed: L::splat(token, -UNSEEN * UNSEEN),
             one: L::splat(token, 1.0),
         })
     }
 
-    /// How a particle lags, if it does in any lane, given its velocity, the two before, and its share.
+    /// Updates the factors of a pack, given the velocities of this substep and of the two before, m/s. None
+    /// if the factor is 1 in all lanes.
     #[inline(always)]
-    pub fn lag(
+    pub fn relax(
         &self,
         token: L::Token,
         velocity: V3<L>,
         (older, oldest): (&Pack3<L::Pack>, &Pack3<L::Pack>),
-        share: &mut L::Pack,
-    ) -> Option<Lag<L>> {
+        factor: &mut L::Pack,
+    ) -> Option<RelaxedPack<L>> {
         let older: V3<L> = V3::load(token, older);
-        let turns = velocity.dot(older).lt(self.opposed) & self.creeps;
-        let last = L::load(token, share);
-        // Seldom true of any lane, so that what is older need seldom be read.
+        let turns = velocity.dot(older).lt(self.opposed) & self.near_rest;
+        let last = L::load(token, factor);
+        // Seldom true of any lane, so that the oldest velocities are seldom loaded.
         if !(turns | last.lt(self.one)).any() {
             return None;
         }
         let turns = turns & older.dot(V3::load(token, oldest)).lt(self.opposed);
-        let woken = last * L::splat(token, WOKEN);
-        let woken = self.one.or_where_not(self.one.lt(woken), woken);
-        let eased = (last * L::splat(token, EASED)).max(L::splat(token, LEAST_SHARE));
-        let part = eased.or_where_not(turns, woken).or_where_not(self.creeps, last);
-        part.store(share);
-        let lags = part.lt(self.one) & self.creeps;
-        Some(Lag { lags, missing: self.one - part })
+        let recovered = last * L::splat(token, RECOVERED);
+        let recovered = self.one.or_where_not(self.one.lt(recovered), recovered);
+        let reduced = (last * L::splat(token, REDUCED)).max(L::splat(token, LEAST));
+        let next = reduced.or_where_not(turns, recovered).or_where_not(self.near_rest, last);
+        next.store(factor);
+        let relaxed = next.lt(self.one) & self.near_rest;
+        Some(RelaxedPack { relaxed, missing: self.one - next })
     }
 }
 
-impl<L: Lane> Lag<L> {
-    /// What is to be taken off what has become of something, given what it was; nothing where it follows.
+impl<L: Lane> RelaxedPack<L> {
+    /// What to subtract from the value `now` of a quantity whose value was `before`; zero where the factor
+    /// is 1.
     #[inline(always)]
     pub fn excess(&self, token: L::Token, now: V3<L>, before: V3<L>) -> V3<L> {
         let excess = (now - before * L::splat(token, KEPT)) * self.missing;
-        excess.or_where_not(self.lags, V3::splat(token, 0.0))
+        excess.or_where_not(self.relaxed, V3::splat(token, 0.0))
     }
 }

@@ -1,83 +1,78 @@
 //! Air: pressure and skin friction on each triangle (thesis, eq. 5.1 and 5.2 in one).
 //!
-//! With the air's velocity u relative to a triangle of area A and normal n, the pressure force is
-//! ½ρ C_n A |u·n| (u·n) n and the friction ½ρ C_t A |u| (u − (u·n) n). A third of a triangle's impulse
-//! goes to each corner.
+//! With u the air's velocity relative to a triangle of area A and normal n, the pressure force is
+//! ½ρ C_n A |u·n| (u·n) n and the friction ½ρ C_t A |u| (u − (u·n) n). A third of the impulse goes to each corner.
 //!
-//! In a substep of h seconds that would change a particle's velocity by J = a u, with
-//! a = ½ρ C_n |u·n| h/σ: explicitly, which turns the motion round where a > 1 (the thesis then sets it to
-//! zero). Implicitly it is a/(1 + a) of the relative velocity that all else would bring about by itself.
-//! For that we take all else to do what it did in the substep before, c: j = a (u − c)/(1 + a). Drag alone
-//! (c = 0) is then exact, and so are the force on what is held fast (c = −J) and the terminal speed.
-//! |J| = a² σ/(½ρ C_n h) says what a is. Backward Euler knows no c, and has a/(1 + a min(a, 1)): right to
-//! second order for what is held in weak air, implicit where the air is strong.
+//! Explicitly, a substep of h seconds changes a particle's velocity by J = a u, a = ½ρ C_n |u·n| h/σ, which
+//! reverses the relative motion where a > 1 (the thesis then sets it to zero). Implicitly the change is the part
+//! a/(1 + a) of the relative velocity that all other forces alone would lead to. All other forces are taken to
+//! change the velocity by c, as in the substep before: j = a (u − c)/(1 + a). Drag alone (c = 0) is then exact,
+//! and so are the force on particles that are held fast (c = −J) and the terminal speed. The a of a particle
+//! follows from its J, |J| = a² σ/(½ρ C_n h). Backward Euler has no c, and takes a/(1 + a min(a, 1)): right to
+//! second order for particles that are held in weak air, implicit in strong air.
 //!
-//! With c limited to u, j is never more than 2u, and so never adds energy in still air.
+//! With c limited to u, j is at most 2u, and so never adds energy in still air.
 
 use crate::batch::lane_batch::LaneBatch;
-use crate::batch::places::Constant;
+use crate::batch::layout::{Layout, Positions};
 use crate::constants::LEAST_AREA_SQUARED;
-use crate::fabric::{Fabric, Patch};
-use crate::geometry::corners::{Giver, sum_corners};
-use crate::geometry::normals::face;
+use crate::geometry::corners::{Contribution, CornerSums, Corners};
+use crate::geometry::face::face;
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::vec3::{Pack3, V3};
 use crate::step::parameters::Parameters;
 
-impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
-    /// Gathers what the air does to each particle in this substep.
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Sums over the triangles at each particle the corner area times the change of their velocity by air in
+    /// this substep, m³/s, into `scratch`.
     pub fn gather_air(&mut self) {
-        if C::SIDE > 1
-            && let Some(weave) = &mut self.weave
-        {
-            let (position, velocity) = (&self.position, &self.velocity);
-            weave.gather_air(&self.parameters, position, velocity, &mut self.scratch);
-            return;
-        }
+        let (triangles, velocity) = self.layout.moving_triangles(&self.fabric, &self.velocity);
         P::run(Air {
-            fabric: &self.fabric,
+            triangles,
             parameters: &self.parameters,
-            position: &self.position,
-            velocity: &self.velocity,
-            below: &mut self.below,
-            impulse: &mut self.scratch,
+            position: self.positions.field(),
+            velocity,
+            sums: &mut self.scratch,
         });
     }
 }
 
-struct Air<'a, P: Pack> {
-    fabric: &'a Fabric,
+struct Air<'a, P: Pack, S: CornerSums<P>> {
+    triangles: S,
     parameters: &'a Parameters<P>,
-    position: &'a [Pack3<P>],
-    velocity: &'a [Pack3<P>],
-    below: &'a mut [Pack3<P>],
-    impulse: &'a mut [Pack3<P>],
+    /// m.
+    position: &'a S::Field,
+    /// m/s.
+    velocity: &'a S::Field,
+    sums: &'a mut [Pack3<P>],
 }
 
-impl<P: Pack> Kernel<P> for Air<'_, P> {
+impl<P: Pack, S: CornerSums<P>> Kernel<P> for Air<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let Self { fabric, parameters, position, velocity, below, impulse } = self;
-        let stream = Stream::<L>::load(token, parameters);
-        sum_corners(token, fabric, &Blown { stream, position, velocity }, below, impulse);
+        let Self { triangles, parameters, position, velocity, sums } = self;
+        let airflow = Airflow::<L>::load(token, parameters);
+        triangles.sum(token, &AirImpulse { airflow, position, velocity }, sums);
     }
 }
 
-struct Blown<'a, L: Lane> {
-    stream: Stream<L>,
-    position: &'a [Pack3<L::Pack>],
-    velocity: &'a [Pack3<L::Pack>],
+struct AirImpulse<'a, L: Lane, F: ?Sized> {
+    airflow: Airflow<L>,
+    position: &'a F,
+    velocity: &'a F,
 }
 
-impl<L: Lane> Giver<L> for Blown<'_, L> {
+impl<L: Lane, F: ?Sized> Contribution<L, F> for AirImpulse<'_, L, F> {
     #[inline(always)]
-    fn give(&self, token: L::Token, patch: &Patch) -> [V3<L>; 2] {
-        let [first, second] = patch.corner_areas;
-        self.stream.blow(
-            patch.load(token, self.position),
-            patch.load(token, self.velocity),
-            [L::splat(token, first), L::splat(token, second)],
-        )
+    fn of<C: Corners<L, Field = F>>(&self, token: L::Token, corners: &C) -> [V3<L>; 2] {
+        let [first, second] = face(corners.load(token, self.position));
+        let [a, b, c, d] = corners.load(token, self.velocity);
+        let [first_area, second_area] = corners.areas(token);
+        let shared = a + c;
+        [
+            self.airflow.change(first, shared + b) * first_area,
+            self.airflow.change(second, shared + d) * second_area,
+        ]
     }
 
     #[inline(always)]
@@ -86,20 +81,23 @@ impl<L: Lane> Giver<L> for Blown<'_, L> {
     }
 }
 
-/// The air as a triangle meets it.
-pub(crate) struct Stream<L: Lane> {
+/// Wind and the coefficients of the air, in registers.
+struct Airflow<L: Lane> {
+    /// m/s.
     wind: V3<L>,
+    /// ½ρ C_n h/σ and ½ρ C_t h/σ, s/m.
     pressure: L,
     friction: L,
+    /// Lanes with friction.
     rubs: L::Mask,
     any_rubs: bool,
     third: L,
     least: L,
 }
 
-impl<L: Lane> Stream<L> {
+impl<L: Lane> Airflow<L> {
     #[inline(always)]
-    pub fn load(token: L::Token, parameters: &Parameters<L::Pack>) -> Self {
+    fn load(token: L::Token, parameters: &Parameters<L::Pack>) -> Self {
         let friction = L::load(token, &parameters.friction);
         let rubs = L::splat(token, 0.0).lt(friction);
         Self {
@@ -113,18 +111,8 @@ impl<L: Lane> Stream<L> {
         }
     }
 
-    /// What falls to each corner of the two triangles of a patch: their changes of velocity times their
-    /// shares. Given the positions and velocities of the four corners.
-    #[inline(always)]
-    pub fn blow(&self, at: [V3<L>; 4], velocities: [V3<L>; 4], shares: [L; 2]) -> [V3<L>; 2] {
-        let [first, second] = face(at);
-        let [a, b, c, d] = velocities;
-        let shared = a + c;
-        [self.change(first, shared + b) * shares[0], self.change(second, shared + d) * shares[1]]
-    }
-
-    /// Change of velocity of a triangle in this substep, explicitly, given a normal of any length and the
-    /// sum of its corners' velocities.
+    /// Explicit change of a triangle's velocity in this substep, m/s, given its normal, of any length, and the
+    /// sum of its corners' velocities, m/s.
     #[inline(always)]
     fn change(&self, normal: V3<L>, velocities: V3<L>) -> V3<L> {
         let u = self.wind.minus_scaled(velocities, self.third);
@@ -145,17 +133,17 @@ impl<L: Lane> Stream<L> {
     }
 }
 
-/// How particles give way to the air.
+/// The implicit response of particles to the air.
 pub(crate) struct Response<L: Lane> {
     /// ½ρ (C_n + C_t) h/σ, s/m.
     braking: L,
-    /// Lanes that feel any air.
-    pub blows: L::Mask,
-    keep: L,
-    foresight: L,
-    /// Lanes that have a past.
-    remembers: L::Mask,
-    nothing: L,
+    /// Lanes that the air acts on.
+    pub acts: L::Mask,
+    damping_factor: L,
+    inverse_extrapolation: L,
+    /// Lanes with a formula of second order.
+    second_order: L::Mask,
+    zero: L,
     one: L,
     least: L,
 }
@@ -163,35 +151,42 @@ pub(crate) struct Response<L: Lane> {
 impl<L: Lane> Response<L> {
     #[inline(always)]
     pub fn load(token: L::Token, parameters: &Parameters<L::Pack>) -> Self {
-        let nothing = L::splat(token, 0.0);
+        let zero = L::splat(token, 0.0);
         let pressure = L::load(token, &parameters.pressure);
         let braking = pressure + L::load(token, &parameters.friction);
         Self {
             braking,
-            blows: nothing.lt(braking),
-            keep: L::load(token, &parameters.keep),
-            foresight: L::load(token, &parameters.foresight),
-            remembers: nothing.lt(L::load(token, &parameters.extrapolation[0])),
-            nothing,
+            acts: zero.lt(braking),
+            damping_factor: L::load(token, &parameters.damping_factor),
+            inverse_extrapolation: L::load(token, &parameters.inverse_extrapolation),
+            second_order: zero.lt(L::load(token, &parameters.extrapolation[0])),
+            zero,
             one: L::splat(token, 1.0),
             least: L::splat(token, f32::MIN_POSITIVE),
         }
     }
 
-    /// The change of a particle's velocity in this substep, given what it would be explicitly, the
-    /// particle's area over its inertia, and its velocity at the start of the substep, as it was and
-    /// extrapolated.
+    /// Change j of a particle's velocity in this substep, m/s, given the explicit change J, the part of its
+    /// inertia that is its true mass, its velocity at the start of the substep, and that velocity
+    /// extrapolated, all in m/s.
     #[inline(always)]
-    pub fn to(&self, blown: V3<L>, lightness: L, last: V3<L>, extrapolated: V3<L>) -> V3<L> {
-        let squared = blown.dot(blown).max(self.least);
-        let a = (self.braking * lightness * squared.sqrt()).sqrt();
-        // −c, against which the air holds.
-        let held = (last * self.keep - extrapolated) * self.foresight;
-        let part = squared.plus_product(a, held.dot(blown)).max(self.nothing);
+    pub fn implicit_change(
+        &self,
+        explicit: V3<L>,
+        true_part: L,
+        velocity: V3<L>,
+        extrapolated: V3<L>,
+    ) -> V3<L> {
+        let squared = explicit.dot(explicit).max(self.least);
+        let a = (self.braking * true_part * squared.sqrt()).sqrt();
+        // −c.
+        let held = (velocity * self.damping_factor - extrapolated) * self.inverse_extrapolation;
+        // J·(J − a c), between zero and 2 J²: over J² (1 + a) the part of J that j is.
+        let projected = squared.plus_product(a, held.dot(explicit)).max(self.zero);
         let most = squared + squared;
-        let part = part.or_where_not(part.lt(most), most);
+        let projected = projected.or_where_not(projected.lt(most), most);
         let limited = a.or_where_not(a.lt(self.one), self.one);
-        let limited = self.one.or_where_not(self.remembers, limited);
-        blown * (part / (squared * self.one.plus_product(a, limited)))
+        let limited = self.one.or_where_not(self.second_order, limited);
+        explicit * (projected / (squared * self.one.plus_product(a, limited)))
     }
 }

@@ -1,40 +1,40 @@
-//! Damping that leaves the rigid motion alone (thesis, appendix A), for cloth without pins.
+//! Damping of all but the rigid motion (thesis, appendix A), for cloth without pins.
 //!
-//! The thesis takes centre, momentum and inertia of the whole cloth and pulls each velocity towards
-//! v_cm + ω × r. The rigid motion of a pinned cloth is that of its frame, towards which
-//! [`integrate`](crate::step::integrate) damps.
+//! Mean velocity v_cm and angular velocity ω follow from momentum, angular momentum and inertia of the whole
+//! cloth, and each velocity is drawn towards v_cm + ω × r. The rigid motion of a pinned cloth is that of its
+//! frame, towards which the prediction damps.
 
 use crate::batch::lane_batch::LaneBatch;
-use crate::batch::places::Constant;
+use crate::batch::layout::{Layout, Positions};
 use crate::constants::INERTIA_RIDGE;
+use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
-use crate::simd::reduce::Sum;
+use crate::simd::sum::Sum;
 use crate::simd::vec3::{Pack3, V3};
 use crate::step::parameters::Parameters;
 
-impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
-    /// Damps what is not rigid motion, in the lanes whose material asks for it.
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Damps all but the rigid motion, in lanes whose material has internal damping.
     pub fn damp_internally(&mut self) {
-        if self.parameters.keep_internal.lanes().iter().all(|&keep| keep == 1.0) {
+        if self.parameters.internal_damping_factor.lanes().iter().all(|&factor| factor == 1.0) {
             return;
         }
         P::run(DampInternally {
             area: self.fabric.area(),
-            areas: &self.packs.areas,
-            parts: &self.parts,
+            areas: &self.masses.areas,
+            partial_sums: &self.partial_sums,
             parameters: &self.parameters,
-            position: &self.position,
+            position: self.positions.packs(),
             velocity: &mut self.velocity,
         });
     }
 }
 
 struct DampInternally<'a, P: Pack, C> {
-    /// Of the whole cloth, m².
+    /// Area of the whole cloth, m².
     area: f32,
     areas: &'a [C],
-    /// Into which part of the sums each pack goes.
-    parts: &'a [u8],
+    partial_sums: &'a [u8],
     parameters: &'a Parameters<P>,
     position: &'a [Pack3<P>],
     velocity: &'a mut [Pack3<P>],
@@ -45,12 +45,12 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for DampInternally<'_, P, C> {
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let mut centre = V3::<Sum<L>>::sums(token);
         let mut drift = V3::<Sum<L>>::sums(token);
-        for (((position, velocity), area), &part) in
-            self.position.iter().zip(&*self.velocity).zip(self.areas).zip(self.parts)
+        for (((position, velocity), area), &partial_sum) in
+            self.position.iter().zip(&*self.velocity).zip(self.areas).zip(self.partial_sums)
         {
             let area: L = area.load(token);
-            centre.add_term(part, V3::load(token, position) * area);
-            drift.add_term(part, V3::load(token, velocity) * area);
+            centre.add_term(partial_sum, V3::load(token, position) * area);
+            drift.add_term(partial_sum, V3::load(token, velocity) * area);
         }
         let per_area = L::splat(token, 1.0) / L::splat(token, self.area);
         let centre = centre.total::<C>(token) * per_area;
@@ -60,35 +60,36 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for DampInternally<'_, P, C> {
         let mut spin = V3::<Sum<L>>::sums(token);
         let mut squares = V3::<Sum<L>>::sums(token);
         let mut products = V3::<Sum<L>>::sums(token);
-        for (((position, velocity), area), &part) in
-            self.position.iter().zip(&*self.velocity).zip(self.areas).zip(self.parts)
+        for (((position, velocity), area), &partial_sum) in
+            self.position.iter().zip(&*self.velocity).zip(self.areas).zip(self.partial_sums)
         {
             let area: L = area.load(token);
             let arm = V3::load(token, position) - centre;
             let weighted = arm * area;
             let (x, y, z) = (weighted.x, weighted.y, weighted.z);
-            spin.add_term(part, weighted.cross(V3::load(token, velocity) - drift));
-            squares.add_term(part, V3 { x: x * arm.x, y: y * arm.y, z: z * arm.z });
-            products.add_term(part, V3 { x: y * arm.z, y: z * arm.x, z: x * arm.y });
+            spin.add_term(partial_sum, weighted.cross(V3::load(token, velocity) - drift));
+            squares.add_term(partial_sum, V3 { x: x * arm.x, y: y * arm.y, z: z * arm.z });
+            products.add_term(partial_sum, V3 { x: y * arm.z, y: z * arm.x, z: x * arm.y });
         }
         let squares = squares.total::<C>(token);
         let products = products.total::<C>(token);
         let turning = solve_inertia(token, squares, products, spin.total::<C>(token));
 
-        let keep = L::load(token, &self.parameters.keep_internal);
-        let damps = keep.lt(L::splat(token, 1.0));
+        let factor = L::load(token, &self.parameters.internal_damping_factor);
+        let damps = factor.lt(L::splat(token, 1.0));
         if !damps.any() {
             return;
         }
         for (position, velocity) in self.position.iter().zip(self.velocity) {
             let v: V3<L> = V3::load(token, velocity);
             let rigid = drift + turning.cross(V3::load(token, position) - centre);
-            (rigid + (v - rigid) * keep).or_where_not(damps, v).store(velocity);
+            (rigid + (v - rigid) * factor).or_where_not(damps, v).store(velocity);
         }
     }
 }
 
-/// ω = I⁻¹ L by Cramer's rule, with a ridge: the inertia of a line or a point has no inverse.
+/// ω = I⁻¹ L by Cramer's rule, from Σ m x² and the like, Σ m y z and the like, and L. A ridge is added to the
+/// diagonal, as the inertia of a line or a point has no inverse.
 #[inline(always)]
 fn solve_inertia<L: Lane>(token: L::Token, squares: V3<L>, products: V3<L>, spin: V3<L>) -> V3<L> {
     let trace = squares.x + squares.y + squares.z;

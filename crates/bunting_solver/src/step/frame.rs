@@ -1,8 +1,8 @@
-//! How a cloth's frame moves, and what that does to the cloth's state.
+//! Motion of a cloth's frame, and the change of the state's coordinates by it.
 
 use glam::{Quat, Vec3};
 
-/// Motion of a cloth's frame in one tick: the pose of the new frame seen from the old one.
+/// Motion of a cloth's frame in one tick: the pose of the new frame in the coordinates of the old one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameMotion {
     /// Orientation of the new frame in the old one.
@@ -25,7 +25,7 @@ impl FrameMotion {
         Self { rotation: (inverse * to.1).normalize(), translation: inverse * (to.0 - from.0) }
     }
 
-    /// Whether the frame moves at all.
+    /// Whether the frame stays where it is.
     #[must_use]
     pub fn is_none(&self) -> bool {
         *self == Self::NONE
@@ -44,8 +44,8 @@ impl FrameMotion {
         Quat::from_xyzw(axis.x, axis.y, axis.z, libm::cosf(half_angle))
     }
 
-    /// Turns a direction given along the axes at the tick's end to those after substep `index` of
-    /// `count`.
+    /// Coordinates of a direction along the frame's axes after substep `index` of `count`, given those along
+    /// its axes at the end of the tick.
     pub(crate) fn turn_back(&self, direction: Vec3, index: u32, count: u32) -> Vec3 {
         if self.is_none() {
             return direction;
@@ -54,16 +54,16 @@ impl FrameMotion {
         now.inverse() * (self.rotation * direction)
     }
 
-    /// What substep `index` of `count` does to coordinates: the frame turns at a constant rate while
-    /// its origin moves along a straight line.
-    pub(crate) fn carry(&self, index: u32, count: u32) -> Carry {
+    /// Change of coordinates in substep `index` of `count`: the frame turns at a constant rate while its
+    /// origin moves along a straight line.
+    pub(crate) fn substep(&self, index: u32, count: u32) -> FrameStep {
         if self.is_none() {
-            return Carry::NONE;
+            return FrameStep::NONE;
         }
         let part = 1.0 / count as f32;
         let turned = self.rotation_at((index + 1) as f32 * part);
         let step = self.rotation_at(part);
-        Carry {
+        FrameStep {
             turn: Turn::new(step.inverse()),
             shift: turned.inverse() * (self.translation * -part),
             moves: true,
@@ -77,7 +77,7 @@ impl Default for FrameMotion {
     }
 }
 
-/// A rotation less the identity, so that small turns keep their digits.
+/// A rotation matrix less the identity: of a small turn the rotation matrix itself loses digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Turn {
     pub rows: [Vec3; 3],
@@ -97,26 +97,28 @@ impl Turn {
     }
 }
 
-/// Change of coordinates of what stays in the world when a cloth's frame moves by one substep:
-/// x becomes x + turn · x + shift.
+/// Change of coordinates of points that stay in the world while a cloth's frame moves by one substep: x
+/// becomes x + turn · x + shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Carry {
+pub(crate) struct FrameStep {
     pub turn: Turn,
+    /// m.
     pub shift: Vec3,
+    /// Whether the frame moves.
     pub moves: bool,
 }
 
-impl Carry {
+impl FrameStep {
     pub const NONE: Self =
         Self { turn: Turn { rows: [Vec3::ZERO; 3] }, shift: Vec3::ZERO, moves: false };
 
     /// The new coordinates of a point that stays in the world.
-    pub fn forth(&self, point: Vec3) -> Vec3 {
+    pub fn to_new(self, point: Vec3) -> Vec3 {
         point + (Vec3::from_array(self.turn.rows.map(|row| row.dot(point))) + self.shift)
     }
 
     /// The old coordinates of a point that stays in the world.
-    pub fn back(&self, point: Vec3) -> Vec3 {
+    pub fn to_old(self, point: Vec3) -> Vec3 {
         // The transpose of 1 + turn is its inverse.
         let moved = point - self.shift;
         let [x, y, z] = self.turn.rows;
@@ -128,11 +130,11 @@ impl Carry {
 mod tests {
     use super::*;
 
-    /// What the lanes do with a carry.
-    fn carried(carry: &Carry, point: Vec3) -> Vec3 {
-        let carried = carry.forth(point);
-        assert!(carry.back(carried).distance(point) < 1e-6);
-        carried
+    /// The new coordinates of a point, which lead back to the old ones.
+    fn moved(frame: &FrameStep, point: Vec3) -> Vec3 {
+        let moved = frame.to_new(point);
+        assert!(frame.to_old(moved).distance(point) < 1e-6);
+        moved
     }
 
     #[test]
@@ -143,7 +145,7 @@ mod tests {
         };
         let point = Vec3::new(0.4, 1.0, -0.7);
         let whole = motion.rotation.inverse() * (point - motion.translation);
-        let steps = (0..7).fold(point, |point, index| carried(&motion.carry(index, 7), point));
+        let steps = (0..7).fold(point, |point, index| moved(&motion.substep(index, 7), point));
         assert!(steps.distance(whole) < 1e-6, "{steps} {whole}");
     }
 
@@ -152,7 +154,7 @@ mod tests {
         let angle = 1e-5_f32;
         let motion =
             FrameMotion { rotation: Quat::from_rotation_z(angle), translation: Vec3::ZERO };
-        let moved = carried(&motion.carry(0, 10), Vec3::X);
+        let moved = moved(&motion.substep(0, 10), Vec3::X);
         assert!((moved.y / (-angle / 10.0) - 1.0).abs() < 1e-4, "{moved}");
     }
 

@@ -1,43 +1,43 @@
-//! How many substeps a fabric needs, from what is known before anything moves.
+//! The number of substeps that a fabric needs, from its geometry, the tick and gravity.
 
 use core::ops::RangeInclusive;
 
 use crate::fabric::Fabric;
 use crate::step::{Scheme, StepSettings};
 
-/// Greatest h² T/(m l) of the topmost link of a hanging cloth: beyond, links vibrate faster than the yarns'
-/// frozen directions can follow. At this, grids of 33 × 33 and 65 × 65 a square metre take 2 and 4
-/// substeps of a tick of 1/60 s.
+/// Greatest h² T/(m l) of the topmost link of a hanging cloth. Larger: links vibrate faster than substeps with
+/// frozen directions of the links can resolve. With this, grids of 33 × 33 and 65 × 65 particles a square metre
+/// take 2 and 4 substeps of a tick of 1/60 s.
 const FASTEST_VIBRATION: f32 = 0.75;
 
-/// Between what limits a tick is solved. Within them the number of substeps depends on the fabric, the
-/// tick and gravity alone, so that it is the same for all cloths of a fabric, whatever they do.
+/// Limits within which the number of substeps is chosen. Within them it depends on the fabric, the tick and
+/// gravity alone, so that it is the same for all cloths of a fabric, however they move.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct StepLimits {
     /// How the constraints are solved.
     pub scheme: Scheme,
-    /// Fewest and most substeps in a tick. Strong wind wants more than what hangs: for 25 m/s, five for
-    /// 33 × 33 a square metre.
+    /// Fewest and most substeps in a tick. Strong wind needs more than weight does, and is not considered: at
+    /// 25 m/s five for 33 × 33 particles a square metre.
     pub substeps: RangeInclusive<u32>,
     /// Passes in a substep, see [`StepSettings::passes`].
     pub passes: u32,
 }
 
 impl StepLimits {
-    /// How a fabric is solved in ticks of `tick` seconds under a gravity of so many m/s².
+    /// Settings for a fabric in ticks of `tick` seconds under a gravity of `gravity` m/s².
     ///
-    /// A link under the tension T of what hangs from it vibrates at ω² = 4 T/(m l). At the top of a cloth
-    /// of length L that is 4 g L/l², whatever it weighs.
+    /// A link of length l under the tension T of the cloth below it vibrates at ω² = 4 T/(m l). At the top of a
+    /// cloth of length L that is 4 g L/l², whatever it weighs.
     #[must_use]
     pub fn of_fabric(&self, fabric: &Fabric, tick: f32, gravity: f32) -> StepSettings {
         self.of_tautness(fabric.tautness(), tick, gravity)
     }
 
-    /// How a fabric of a [tautness](Fabric::tautness) in m^−½ is solved.
+    /// Settings for a fabric of a [tautness](Fabric::tautness) in m^−½.
     #[must_use]
     pub fn of_tautness(&self, tautness: f32, tick: f32, gravity: f32) -> StepSettings {
         let wanted = tick * tautness * (gravity / FASTEST_VIBRATION).sqrt();
-        // What is not a number becomes zero.
+        // NaN becomes zero.
         let wanted = wanted.ceil() as u32;
         let (fewest, most) = (*self.substeps.start(), *self.substeps.end());
         StepSettings {
@@ -49,7 +49,7 @@ impl StepLimits {
 }
 
 impl From<StepSettings> for StepLimits {
-    /// Exactly these.
+    /// Limits that leave only these settings.
     fn from(StepSettings { scheme, substeps, passes }: StepSettings) -> Self {
         Self { scheme, substeps: substeps..=substeps, passes }
     }
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn fine_cloth_and_long_ticks_want_more() {
+    fn fine_cloth_and_long_ticks_need_more_substeps() {
         let all = StepLimits { substeps: 1..=100, ..StepLimits::default() };
         let of_size = [9, 17, 33, 65].map(|n| substeps(&all, n, TICK, 9.81));
         assert_eq!(of_size, [1, 1, 2, 4]);

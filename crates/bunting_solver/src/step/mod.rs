@@ -2,11 +2,16 @@
 
 pub(crate) mod air;
 pub(crate) mod bdf;
+mod begin;
+mod carry;
+pub(crate) mod clock;
 mod damping;
 pub(crate) mod frame;
 mod integrate;
 pub(crate) mod limits;
+mod load_stretch;
 pub(crate) mod parameters;
+mod predict;
 mod settings;
 mod velocity;
 

@@ -1,4 +1,4 @@
-//! What a step is told: how finely to solve, and how each cloth is driven.
+//! The input of a step: how finely to solve a batch, and what acts on each cloth.
 
 use glam::Vec3;
 
@@ -8,10 +8,10 @@ use crate::step::frame::FrameMotion;
 /// How the constraints are solved, and with which integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Scheme {
-    /// The thesis's: Gauss–Seidel over every constraint, backward Euler. PBD, and XPBD where the
-    /// material has a compliance. Wants ten substeps or more.
+    /// The thesis's scheme (4.4): Gauss–Seidel over single constraints, and backward Euler. PBD, and XPBD where
+    /// the material has a compliance. Needs ten substeps or more.
     GaussSeidel,
-    /// Each yarn's links solved together, exactly; BDF2, of second order.
+    /// All links of a yarn solved at once, exactly, as a tridiagonal system; BDF2, of second order.
     #[default]
     Yarns,
 }
@@ -21,23 +21,23 @@ pub enum Scheme {
 pub struct StepSettings {
     /// How the constraints are solved.
     pub scheme: Scheme,
-    /// Substeps in a tick; at least 1. More substeps cost in proportion and are worth more than
-    /// passes (Macklin 2019, "Small steps in physics simulation").
+    /// Substeps in a tick; at least 1. Time is in proportion to them, and they improve accuracy more than
+    /// passes do (Macklin 2019, "Small steps in physics simulation").
     pub substeps: u32,
-    /// Passes in a substep; at least 1. Gauss–Seidel goes over all constraints in each; yarns solve
-    /// warp and weft once more. What cracks and folds sharply wants more passes, what swings more
-    /// substeps.
+    /// Passes in a substep; at least 1. Gauss–Seidel solves all constraints in each; the scheme of yarns
+    /// solves warp and weft once more. Cloth that snaps or folds sharply needs more passes, cloth that swings
+    /// more substeps.
     pub passes: u32,
 }
 
 impl StepSettings {
-    /// Gauss–Seidel in `substeps` substeps of one pass.
+    /// The Gauss–Seidel scheme with `substeps` substeps of one pass.
     #[must_use]
     pub const fn gauss_seidel(substeps: u32) -> Self {
         Self { scheme: Scheme::GaussSeidel, substeps, passes: 1 }
     }
 
-    /// Yarns in `substeps` substeps of one pass.
+    /// The scheme of yarns with `substeps` substeps of one pass.
     #[must_use]
     pub const fn yarns(substeps: u32) -> Self {
         Self { scheme: Scheme::Yarns, substeps, passes: 1 }
@@ -45,17 +45,18 @@ impl StepSettings {
 }
 
 impl Default for StepSettings {
-    /// Yarns, two substeps of two passes: for cloth of up to 65 × 65 particles at 60 ticks a second.
+    /// The scheme of yarns with two substeps of two passes: for cloth of up to 65 × 65 particles at 60 ticks a
+    /// second.
     fn default() -> Self {
         Self { passes: 2, ..Self::yarns(2) }
     }
 }
 
-/// What acts on one cloth during a tick. Vectors are along the axes of the cloth's frame as it
-/// stands at the end of the tick.
+/// What acts on one cloth during a tick. Vectors are along the axes that the cloth's frame has at the end of
+/// the tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
-    /// How the cloth's frame moves in this tick.
+    /// Motion of the cloth's frame in this tick.
     pub motion: FrameMotion,
     /// Acceleration of gravity, m/s².
     pub gravity: Vec3,

@@ -1,67 +1,68 @@
 //! Velocities from corrected positions: the thesis's `v = (p − x)/Δt`.
 //!
-//! With p̃ and ṽ the predicted position and velocity this is ṽ + (p − p̃)/Δt, and that is how it is
-//! computed: the difference p − x would round ṽ to a unit in the last place of x over Δt, and lose
-//! whatever accelerates by less.
+//! With p̃ and ṽ the predicted position and velocity, this is ṽ + (p − p̃)/Δt, and is computed so: the
+//! difference p − x would round ṽ to a unit in the last place of x over Δt, and lose accelerations smaller than
+//! that.
 
 use crate::batch::lane_batch::LaneBatch;
-use crate::batch::places::Constant;
+use crate::batch::layout::{Layout, Positions};
+use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
-use crate::stability::pole::{Axis, Moment, Pole};
-use crate::stability::relaxation::Calm;
+use crate::stability::pole::{Axis, Moment, Pole, PoleTurn};
+use crate::stability::relaxation::UnderRelaxation;
 use crate::step::Scheme;
-use crate::step::bdf::Turned;
 use crate::step::parameters::Parameters;
 
-impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
-    /// Ends a substep.
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Ends a substep: computes velocities from the corrected positions.
     pub fn update_velocities(&mut self) {
         if self.clock.stands_still() {
             return;
         }
         let pole = self.pole.filter(|_| self.clock.settings.scheme == Scheme::Yarns);
-        let mut turn = self.contact_moments();
+        let mut turn = self.external_moments();
         P::run(UpdateVelocities {
             pole,
             turn: &mut turn,
-            inertias: &self.lane_inertias,
-            parts: &self.parts,
-            inverse_areas: &self.packs.inverse_areas,
+            inertias: &self.masses.inertia,
+            partial_sums: &self.partial_sums,
+            inverse_areas: &self.masses.inverse_areas,
             parameters: &self.parameters,
-            share: &mut self.share,
-            position: &mut self.position,
+            relaxation: &mut self.relaxation,
+            position: self.positions.packs_mut(),
             start: &self.scratch,
             displacement: &mut self.displacement,
             older_displacement: &self.older_displacement,
             velocity: &mut self.velocity,
-            past: [&self.older_velocity, &self.oldest_velocity],
+            past_velocities: [&self.older_velocity, &self.oldest_velocity],
         });
         if pole.is_some() {
-            self.remember_turn(&turn);
+            self.store_pole_turn(&turn);
         }
         self.damp_internally();
+        self.clock.predicted = false;
     }
 
-    /// Moments of contacts about the pole.
-    fn contact_moments(&self) -> P {
+    /// Moments about the pole of corrections from outside the cloths, m⁴.
+    fn external_moments(&self) -> P {
         let mut moments = P::splat(0.0);
-        for (cloth, slot) in self.slots.iter().enumerate() {
-            if let Some(slot) = slot {
-                moments.lanes_mut()[C::lanes(cloth)].fill(slot.contact_moment);
+        for (cloth, state) in self.lanes.iter().enumerate() {
+            if let Some(state) = state {
+                moments.lanes_mut()[Y::lanes(cloth)].fill(state.external_moment);
             }
         }
         moments
     }
 
-    /// Remembers what cloths have been turned by, rad.
-    fn remember_turn(&mut self, turn: &P) {
-        for (cloth, slot) in self.slots.iter_mut().enumerate() {
-            if let Some(slot) = slot {
-                let lane = C::lanes(cloth).start;
+    /// Stores the turns of the cloths about the pole by the corrections, rad.
+    fn store_pole_turn(&mut self, turn: &P) {
+        for (cloth, state) in self.lanes.iter_mut().enumerate() {
+            if let Some(state) = state {
+                let lane = Y::lanes(cloth).start;
                 let angle = turn.lanes()[lane];
                 let rate = angle * self.parameters.inverse_step.lanes()[lane];
-                slot.past.turned = Turned { angle, rate };
+                state.history.pole_turn = PoleTurn { angle, rate };
             }
         }
     }
@@ -69,41 +70,40 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
 
 struct UpdateVelocities<'a, P: Pack, C> {
     pole: Option<Pole>,
-    /// Before, the moment of contacts about the pole; then what all else has turned the cloth by.
+    /// Before: moments about the pole of corrections from outside the cloths, m⁴. After: turns by all other
+    /// corrections, rad.
     turn: &'a mut P,
-    /// Each particle's inertia, in units of the density, m²; zero where it is pinned.
     inertias: &'a [P],
-    /// Into which part of the sums each pack goes.
-    parts: &'a [u8],
+    partial_sums: &'a [u8],
     inverse_areas: &'a [C],
     parameters: &'a Parameters<P>,
-    /// What part of its changes each particle follows.
-    share: &'a mut [P],
+    relaxation: &'a mut [P],
     position: &'a mut [Pack3<P>],
+    /// Positions at the start of the substep, m.
     start: &'a [Pack3<P>],
     displacement: &'a mut [Pack3<P>],
     older_displacement: &'a [Pack3<P>],
     velocity: &'a mut [Pack3<P>],
-    /// Velocities at the start of the substep and of the one before.
-    past: [&'a [Pack3<P>]; 2],
+    /// Velocities at the start of the substep and of the one before, m/s.
+    past_velocities: [&'a [Pack3<P>]; 2],
 }
 
 impl<P: Pack, C: Constant<P>> Kernel<P> for UpdateVelocities<'_, P, C> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let inverse_step = L::load(token, &self.parameters.inverse_step);
-        let axis = Axis::<L>::of(token, self.pole);
+        let axis = Axis::<L>::load(token, self.pole);
         let mut moment = Moment::new(token);
-        let calm = Calm::<L>::load(token, self.parameters);
-        let [older_velocity, oldest_velocity] = self.past;
-        let places = self.position.iter_mut().zip(self.start);
+        let under_relaxation = UnderRelaxation::<L>::load(token, self.parameters);
+        let [older_velocity, oldest_velocity] = self.past_velocities;
+        let positions = self.position.iter_mut().zip(self.start);
         let displacements = self.displacement.iter_mut().zip(self.older_displacement);
         let velocities = self.velocity.iter_mut().zip(older_velocity.iter().zip(oldest_velocity));
-        let constants = self.inverse_areas.iter().zip(self.inertias).zip(self.parts);
+        let masses = self.inverse_areas.iter().zip(self.inertias).zip(self.partial_sums);
         for (
-            (((position, start), (displacement, older_displacement)), (velocity, past)),
-            (((inverse_area, inertia), &part), share),
-        ) in places.zip(displacements).zip(velocities).zip(constants.zip(self.share))
+            (((position, start), (displacement, older_displacement)), (velocity, past_velocities)),
+            (((inverse_area, inertia), &partial_sum), relaxation),
+        ) in positions.zip(displacements).zip(velocities).zip(masses.zip(self.relaxation))
         {
             if inverse_area.is_zero() {
                 continue;
@@ -113,20 +113,23 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for UpdateVelocities<'_, P, C> {
             let v: V3<L> = V3::load(token, velocity);
             let correction = x - (V3::load(token, start) + moved);
             if let Some(axis) = &axis {
-                moment.add(part, L::load(token, inertia), axis.round(x), correction);
+                let inertia = L::load(token, inertia);
+                moment.add(partial_sum, inertia, axis.turn_of(x), correction);
             }
             let mut change = moved + correction;
-            let mut speed = v.plus_scaled(correction, inverse_step);
-            if let Some(calm) = &calm
-                && let Some(lag) = calm.lag(token, speed, past, share)
+            let mut corrected = v.plus_scaled(correction, inverse_step);
+            if let Some(under_relaxation) = &under_relaxation
+                && let Some(relaxed) =
+                    under_relaxation.relax(token, corrected, past_velocities, relaxation)
             {
-                let excess = lag.excess(token, change, V3::load(token, older_displacement));
-                inverse_area.choose3(token, x - excess, x).store(position);
+                let excess = relaxed.excess(token, change, V3::load(token, older_displacement));
+                inverse_area.select3(token, x - excess, x).store(position);
                 change = change - excess;
-                speed = speed - lag.excess(token, speed, V3::load(token, past.0));
+                let before = V3::load(token, past_velocities.0);
+                corrected = corrected - relaxed.excess(token, corrected, before);
             }
-            inverse_area.choose3(token, change, moved).store(displacement);
-            inverse_area.choose3(token, speed, v).store(velocity);
+            inverse_area.select3(token, change, moved).store(displacement);
+            inverse_area.select3(token, corrected, v).store(velocity);
         }
         if axis.is_some() {
             moment.turn::<C>(token, L::load(token, self.turn)).store(self.turn);

@@ -77,7 +77,7 @@ impl Settler {
                 }
             }
             // Every step is of first order, which extrapolates no correction of the step before.
-            batch.forget_past(0);
+            batch.restart_integrator(0);
             batch.integrate();
             batch.solve_constraints();
             batch.update_velocities();

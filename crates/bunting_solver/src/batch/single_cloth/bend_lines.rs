@@ -1,52 +1,43 @@
-//! The lines along which a grid bends, side by side in the lanes.
+//! Bend lines of a single cloth, in packs of lines that lie side by side.
 
-use super::{Facing, OfLanes, Sheets};
-use crate::batch::places::Constant;
+use super::LaneIndices;
+use super::grid_shape::GridShape;
+use crate::batch::layout::Order;
 use crate::fabric::{BendLine, Fabric};
 use crate::simd::lane::Pack;
-use crate::step::parameters::BendFactors;
 
-/// Rows, then columns, and their profiles: each pack of lines has its own.
-pub(super) fn lines<P: Pack>(
-    fabric: &Fabric,
-    sheets: &Sheets,
-) -> (Vec<(Facing, Vec<BendLine>)>, Vec<OfLanes>) {
-    let mut profiles = Vec::new();
-    let is_row = |line: &&BendLine| line.particles[1] == line.particles[0] + 1;
-    let lines = [Facing::Turned, Facing::Straight].map(|facing| {
-        let alike: Vec<&BendLine> = fabric
-            .bend_lines()
-            .iter()
-            .filter(|line| is_row(line) == (facing == Facing::Turned))
-            .collect();
-        let side_by_side = alike.chunks(P::WIDTH).enumerate().map(|(block, lines)| {
-            profiles.push((0..P::WIDTH).map(|lane| Some(lines.get(lane)?.profile)).collect());
-            let places = 0..lines[0].particles.len();
-            BendLine {
-                particles: places
-                    .map(|place| sheets.at(facing, place, (block * P::WIDTH) as isize))
-                    .collect(),
-                profile: profiles.len() as u32 - 1,
-            }
-        });
-        (facing, side_by_side.collect())
-    });
-    (lines.into(), profiles)
+/// Packs of lines of either direction.
+#[derive(Clone, Debug)]
+pub(super) struct BendLinePacks {
+    /// The rows, one in each lane, then the columns. The `profile` of a pack is an index into `profiles`.
+    pub lines: [(Order, Vec<BendLine>); 2],
+    /// For each pack, the fabric's profile in each lane.
+    pub profiles: Vec<LaneIndices>,
 }
 
-/// Room for the factors of lines with these profiles, and what moments move their particles by.
-pub(super) fn factors<P: Pack>(fabric: &Fabric, profiles: &OfLanes) -> BendFactors<P, P> {
-    let of_lanes: Vec<Option<BendFactors<P>>> = profiles
-        .iter()
-        .map(|profile| Some(BendFactors::new(&fabric.bend_profiles()[(*profile)? as usize])))
-        .collect();
-    // Lines that lie side by side are of one length.
-    let first = of_lanes.iter().flatten().next();
-    let rows = first.map_or(Vec::new(), |of_lane| of_lane.rows.clone());
-    let places = first.map_or(0, |of_lane| of_lane.weights.len());
-    let weight = |lane: usize, place: usize| {
-        of_lanes[lane].as_ref().map_or(0.0, |of_lane| of_lane.weights[place])
-    };
-    let weights = (0..places).map(|place| P::of(|lane| weight(lane, place))).collect();
-    BendFactors { rows, weights }
+impl BendLinePacks {
+    pub fn new<P: Pack>(fabric: &Fabric, shape: GridShape) -> Self {
+        let mut profiles = Vec::new();
+        let is_row = |line: &&BendLine| line.particles[1] == line.particles[0] + 1;
+        // Rows that lie side by side are consecutive in column-major order.
+        let lines = [Order::ColumnMajor, Order::RowMajor].map(|order| {
+            let parallel: Vec<&BendLine> = fabric
+                .bend_lines()
+                .iter()
+                .filter(|line| is_row(line) == (order == Order::ColumnMajor))
+                .collect();
+            let packs = parallel.chunks(P::WIDTH).enumerate().map(|(pack, lines)| {
+                profiles.push((0..P::WIDTH).map(|lane| Some(lines.get(lane)?.profile)).collect());
+                let first = (pack * P::WIDTH) as isize;
+                BendLine {
+                    particles: (0..lines[0].particles.len())
+                        .map(|line| shape.index(order, line, first))
+                        .collect(),
+                    profile: profiles.len() as u32 - 1,
+                }
+            });
+            (order, packs.collect())
+        });
+        Self { lines, profiles }
+    }
 }

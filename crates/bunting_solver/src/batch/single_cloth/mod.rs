@@ -1,168 +1,248 @@
-//! A lone cloth fills the lanes with its own yarns.
+//! The layout of a single cloth across the lanes, for cloth cut from a grid.
 //!
-//! Yarns of one colour share no particle, so it makes no difference which are solved first, or whether
-//! all at once. Those of a grid run along its rows, columns and diagonals. With the particles of a row
-//! side by side in memory, columns that lie side by side are yarns, one in each lane; so are diagonals,
-//! where each row begins one particle further on; and rows are, once the sheet is turned. The kernels
-//! are those of cloths in the lanes, and every yarn has its scalar bits.
+//! Chains of one colour share no particle, so that their order does not matter, nor whether they are solved
+//! at once. Those of a grid are its rows, columns and diagonals. In row-major order consecutive particles
+//! belong to consecutive columns, so that a pack of them is one particle of each of as many chains; of
+//! diagonals, too, where each row begins one particle further on. In column-major order the same holds for
+//! rows. The kernels are those of cloths side by side, and every chain has the bits of scalar code.
 //!
-//! What is done to each particle by itself is done to a pack of one row, and triangles are summed by
-//! packs of cells.
+//! What concerns each particle by itself is done to packs of one row, and triangles are summed in packs of
+//! cells.
 
-mod air;
 mod bend_lines;
 mod cells;
-mod normals;
+mod chains;
+mod grid_shape;
+mod position_grids;
 mod ribbons;
-mod sheets;
 mod tethers;
-mod threads;
+mod vector_grid;
 
-pub(crate) use sheets::{Facing, Sheets};
-pub(crate) use tethers::PackedTethers;
+use core::ops::Range;
 
-use cells::Cells;
 use glam::Vec3;
-use ribbons::Ribbons;
-use sheets::Plane;
 
-use crate::batch::lane_batch::LaneBatch;
-use crate::batch::places::Constant;
-use crate::constraints::Knot;
-use crate::fabric::{BendLine, CHAINS_PER_PAIR, Chains, Fabric};
+use self::bend_lines::BendLinePacks;
+use self::cells::Cells;
+use self::chains::ChainPacks;
+use self::grid_shape::GridShape;
+use self::position_grids::PositionGrids;
+use self::ribbons::RibbonPacks;
+use self::tethers::{TetherPack, TetherPacks};
+use self::vector_grid::VectorGrid;
+use crate::batch::layout::{Layout, OfCloth, Order};
+use crate::constraints::bend_factors::BendFactors;
+use crate::constraints::factors::{ClothFactors, Factors};
+use crate::constraints::stiffness::Stiffness;
+use crate::constraints::twist_factors::TwistFactors;
+use crate::fabric::{BendLine, Chains, Fabric, Ribbon};
+use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;
-use crate::simd::vec3::{Pack3, splat3};
-use crate::step::parameters::{BendFactors, Parameters};
+use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
 
-/// What the lanes of a pack are of the fabric: links' classes, lines' profiles.
-type OfLanes = Vec<Option<u32>>;
+/// For each lane of a pack an index into a list of the fabric; none in lanes without a constraint.
+type LaneIndices = Vec<Option<u32>>;
 
-/// One cloth, cut from a grid.
+/// One cloth across the lanes, with the constraints of its grid in packs.
 #[derive(Clone, Debug)]
-pub(crate) struct Weave<P: Pack> {
-    pub sheets: Sheets,
-    /// Whether the positions are here, and not in the batch.
-    holds_positions: bool,
-
-    pub strands: Chains<P>,
-    /// For each colour of the strands, along what its yarns lie.
-    pub facings: Vec<Facing>,
-    pub target: Vec<P>,
-    pub knots: Vec<Knot<P>>,
-    /// For each class of the strands' links, the fabric's class in each lane.
-    classes: Vec<OfLanes>,
-    /// For each class, one in lanes that have a link, zero in others.
-    pub present: Vec<P>,
-    /// For each class, as in the batch's parameters.
-    pub compliance: Vec<P>,
-
-    /// Rows, then columns.
-    pub bend_lines: Vec<(Facing, Vec<BendLine>)>,
-    /// For each profile of these lines, the fabric's profile in each lane.
-    profiles: Vec<OfLanes>,
-    pub bend_factors: Vec<BendFactors<P, P>>,
-    pub ribbons: Ribbons<P>,
-    pub moments: Vec<Pack3<P>>,
-
-    pub tethers: PackedTethers<P>,
-    pub far_tethers: PackedTethers<P>,
+pub(crate) struct SingleCloth<P: Pack> {
+    shape: GridShape,
+    chains: ChainPacks<P>,
+    /// For each class of links, one in lanes that have a link, zero in others.
+    linked: Vec<P>,
+    bend_lines: BendLinePacks,
+    ribbons: RibbonPacks,
+    factors: Factors<P, P>,
+    /// To the farthest pins, and to the nearest.
+    tethers: [TetherPacks<P>; 2],
     cells: Cells<P>,
-    velocity: Plane,
+    /// m/s.
+    velocity: VectorGrid,
 }
 
-impl<P: Pack> Weave<P> {
-    /// None unless the fabric is a grid whose yarns run straight.
+impl<P: Pack> SingleCloth<P> {
+    /// The layout of a fabric; none unless it is a grid whose yarns run straight.
     pub fn of(fabric: &Fabric) -> Option<Self> {
-        let grid = fabric.grid()?;
-        let sheets = Sheets::new::<P>(grid);
-        let (strands, facings, classes) = threads::strands(fabric, &sheets)?;
-        let cells = Cells::of(fabric, sheets.stride())?;
-        let nothing = P::splat(0.0);
-        let (bend_lines, profiles) = bend_lines::lines::<P>(fabric, &sheets);
-        let present = |of_lanes: &OfLanes| P::of(|lane| f32::from(of_lanes[lane].is_some()));
-        let mut weave = Self {
-            holds_positions: false,
-            target: vec![nothing; strands.target_count()],
-            knots: vec![Knot::new(); CHAINS_PER_PAIR * strands.longest()],
-            present: classes.iter().map(present).collect(),
-            compliance: vec![nothing; classes.len()],
-            bend_factors: profiles.iter().map(|of| bend_lines::factors(fabric, of)).collect(),
-            moments: vec![splat3(Vec3::ZERO); grid.columns.max(grid.rows) as usize],
-            ribbons: Ribbons::of(fabric, &sheets),
-            tethers: PackedTethers::of(fabric, fabric.tethers()),
-            far_tethers: PackedTethers::of(fabric, fabric.far_tethers()),
-            velocity: sheets.plane(),
-            cells,
-            sheets,
-            strands,
-            facings,
-            classes,
+        let shape = GridShape::new::<P>(fabric.grid()?);
+        let chains = ChainPacks::new(fabric, shape)?;
+        let cells = Cells::new(fabric, shape)?;
+        let bend_lines = BendLinePacks::new::<P>(fabric, shape);
+        let ribbons = RibbonPacks::new::<P>(fabric, shape);
+        let linked = |of_lanes: &LaneIndices| P::of(|lane| f32::from(of_lanes[lane].is_some()));
+        let bending = bend_lines
+            .profiles
+            .iter()
+            .map(|of_lanes| BendFactors::new(&of_fabric(of_lanes, fabric.bend_profiles())));
+        let twist = ribbons
+            .profiles
+            .iter()
+            .map(|of_lanes| TwistFactors::new(&of_fabric(of_lanes, fabric.ribbon_profiles())));
+        let locate = |particle: u32| locate::<P>(shape, particle as usize);
+        Some(Self {
+            factors: Factors {
+                link_compliance: vec![P::splat(0.0); chains.classes.len()],
+                bending: bending.collect(),
+                twist: twist.collect(),
+            },
+            linked: chains.classes.iter().map(linked).collect(),
+            tethers: [fabric.far_tethers(), fabric.tethers()]
+                .map(|tethers| TetherPacks::new(tethers, locate)),
+            velocity: VectorGrid::new(shape.column_stride, shape.row_stride),
+            shape,
+            chains,
             bend_lines,
-            profiles,
-        };
-        weave.sheets.set_weights(fabric.inverse_areas());
-        Some(weave)
+            ribbons,
+            cells,
+        })
+    }
+}
+
+/// What lanes refer to in a list of the fabric.
+fn of_fabric<'a, T>(of_lanes: &LaneIndices, list: &'a [T]) -> Vec<Option<&'a T>> {
+    of_lanes.iter().map(|index| index.map(|index| &list[index as usize])).collect()
+}
+
+/// The pack and the lane of a particle.
+#[inline]
+fn locate<P: Pack>(shape: GridShape, particle: usize) -> (usize, usize) {
+    let (row, column) = (particle / shape.columns, particle % shape.columns);
+    (row * shape.packs_in_row::<P>() + column / P::WIDTH, column % P::WIDTH)
+}
+
+impl<P: Pack> Layout<P> for SingleCloth<P> {
+    type Constant = P;
+    type Positions = PositionGrids<P>;
+    type Tether = TetherPack<P>;
+    type Triangles<'a> = &'a mut Cells<P>;
+
+    const CLOTHS: usize = 1;
+
+    fn lanes(_: usize) -> Range<usize> {
+        0..P::WIDTH
     }
 
-    /// Begins with a cloth's positions, of which the pins' stay.
-    pub fn begin(&mut self, positions: &[Vec3]) {
-        self.sheets.clear();
-        self.tethers.set_pins(positions);
-        self.far_tethers.set_pins(positions);
+    fn pack_count(&self) -> usize {
+        self.shape.rows * self.shape.packs_in_row::<P>()
     }
 
-    /// Takes over what is constant over many substeps.
-    pub fn set_parameters(&mut self, parameters: &Parameters<P>) {
-        let only = |pack: &P| pack.lanes()[0];
-        for (compliance, of_lanes) in self.compliance.iter_mut().zip(&self.classes) {
-            *compliance = P::of(|lane| {
-                of_lanes[lane]
-                    .map_or(0.0, |class| only(&parameters.link_compliance[class as usize]))
-            });
-        }
-        self.ribbons.set_parameters(parameters);
-        for (factors, of_lanes) in self.bend_factors.iter_mut().zip(&self.profiles) {
-            for (row, factor) in factors.rows.iter_mut().enumerate() {
-                let of = |lane: usize| {
-                    of_lanes[lane]
-                        .map(|profile| &parameters.bend_factors[profile as usize].rows[row])
-                };
-                factor.near = P::of(|lane| of(lane).map_or(0.0, |row| only(&row.near)));
-                factor.far = P::of(|lane| of(lane).map_or(0.0, |row| only(&row.far)));
-                factor.inverse = P::of(|lane| of(lane).map_or(0.0, |row| only(&row.inverse)));
+    #[inline]
+    fn locate(&self, particle: usize, _: usize) -> (usize, usize) {
+        locate::<P>(self.shape, particle)
+    }
+
+    fn read(&self, packs: &[Pack3<P>], _: usize, into: &mut Vec<Vec3>) {
+        let GridShape { columns, rows, .. } = self.shape;
+        into.resize(columns * rows, Vec3::ZERO);
+        let packs = packs.chunks(self.shape.packs_in_row::<P>());
+        for (values, packs) in into.chunks_mut(columns).zip(packs) {
+            for (values, pack) in values.chunks_mut(P::WIDTH).zip(packs) {
+                for (lane, value) in values.iter_mut().enumerate() {
+                    *value = lane3(pack, lane);
+                }
             }
         }
     }
-}
 
-impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
-    /// The cloth in its weave, positions and all, if it is woven. Where several cloths lie in the lanes
-    /// (`C::SIDE` is 1) it is none: asked first, that spares the compiler all that is done with it.
-    pub fn woven(&mut self) -> Option<&mut Weave<P>> {
-        let weave = self.weave.as_deref_mut()?;
-        if !weave.holds_positions {
-            weave.sheets.read(&self.position);
-            weave.holds_positions = true;
+    fn write(&self, packs: &mut [Pack3<P>], cloths: &[OfCloth]) {
+        for &(_, values) in cloths {
+            packs.fill(splat3(Vec3::ZERO));
+            let rows = values.unwrap_or_default().chunks(self.shape.columns);
+            let packs = packs.chunks_mut(self.shape.packs_in_row::<P>());
+            for (row, packs) in rows.zip(packs) {
+                for (values, pack) in row.chunks(P::WIDTH).zip(packs) {
+                    for (lane, &value) in values.iter().enumerate() {
+                        set_lane3(pack, lane, value);
+                    }
+                }
+            }
         }
-        Some(weave)
     }
 
-    /// Gives the positions back to the batch, if the weave has them.
-    pub fn unravel(&mut self) {
-        if let Some(weave) = &mut self.weave
-            && weave.holds_positions
-        {
-            weave.sheets.write(&mut self.position);
-            weave.holds_positions = false;
+    fn constants(&self, of_particles: &[f32]) -> Vec<P> {
+        let rows = of_particles.chunks(self.shape.columns);
+        let packs = rows.flat_map(|row| row.chunks(P::WIDTH));
+        packs.map(|pack| P::of(|lane| pack.get(lane).copied().unwrap_or(0.0))).collect()
+    }
+
+    /// All packs add to the first partial sum, whose lanes are the partial sums of the cloth.
+    fn partial_sums(&self) -> Vec<u8> {
+        vec![0; self.pack_count()]
+    }
+
+    fn positions(&self, packs: Vec<Pack3<P>>) -> PositionGrids<P> {
+        PositionGrids::new(self.shape, packs)
+    }
+
+    fn chains<'a>(&'a self, _: &'a Fabric) -> &'a Chains<P> {
+        &self.chains.chains
+    }
+
+    fn order_of_chains(&self, colour: usize) -> Order {
+        self.chains.orders[colour]
+    }
+
+    fn linked(&self) -> &[P] {
+        &self.linked
+    }
+
+    fn bend_lines<'a>(&'a self, _: &'a Fabric) -> impl Iterator<Item = (Order, &'a [BendLine])> {
+        self.bend_lines.lines.iter().map(|(order, lines)| (*order, &lines[..]))
+    }
+
+    fn ribbons<'a>(&'a self, _: &'a Fabric) -> (Order, &'a [Ribbon]) {
+        (self.ribbons.order, &self.ribbons.ribbons)
+    }
+
+    fn tethers<'a>(&'a self, _: &'a Fabric) -> [&'a [TetherPack<P>]; 2] {
+        self.tethers.each_ref().map(|tethers| &tethers.packs[..])
+    }
+
+    fn factors(&self) -> &Factors<P, P> {
+        &self.factors
+    }
+
+    fn set_stiffness(&mut self, _: usize, fabric: &Fabric, stiffness: &Stiffness) {
+        let of_cloth = ClothFactors::new(fabric, stiffness);
+        let Factors { link_compliance, bending, twist } = &mut self.factors;
+        for (pack, classes) in link_compliance.iter_mut().zip(&self.chains.classes) {
+            let of_class = |class: u32| of_cloth.link_compliance[class as usize];
+            *pack = P::of(|lane| classes[lane].map_or(0.0, of_class));
         }
+        for (factors, profiles) in bending.iter_mut().zip(&self.bend_lines.profiles) {
+            for (lane, rows) in of_fabric(profiles, &of_cloth.bending).iter().enumerate() {
+                rows.iter().for_each(|rows| factors.set_lane(lane, rows));
+            }
+        }
+        for (factors, profiles) in twist.iter_mut().zip(&self.ribbons.profiles) {
+            for (lane, rows) in of_fabric(profiles, &of_cloth.twist).iter().enumerate() {
+                rows.iter().for_each(|rows| factors.set_lane(lane, rows));
+            }
+        }
+    }
+
+    fn set_pins(&mut self, positions: &[Vec3]) {
+        self.tethers.iter_mut().for_each(|tethers| tethers.set_pins(positions));
+    }
+
+    fn triangles<'a>(&'a mut self, _: &'a Fabric) -> &'a mut Cells<P> {
+        &mut self.cells
+    }
+
+    fn moving_triangles<'a>(
+        &'a mut self,
+        _: &'a Fabric,
+        velocity: &'a [Pack3<P>],
+    ) -> (&'a mut Cells<P>, &'a VectorGrid) {
+        self.velocity.read(velocity);
+        (&mut self.cells, &self.velocity)
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::Weave;
+    use super::SingleCloth;
     use crate::fabric::{Fabric, FabricBuilder, Grid};
-    use crate::simd::lane::Pack8;
+    use crate::simd::registers::Pack8;
 
     fn flag(columns: u32, rows: u32, cell_height: f32) -> Fabric {
         let (width, height) = ((columns - 1) as f32, (rows - 1) as f32 * cell_height);
@@ -171,15 +251,15 @@ mod tests {
     }
 
     #[test]
-    fn grids_are_woven() {
+    fn grids_with_straight_yarns_have_the_layout() {
         for (columns, rows) in [(33, 33), (17, 9), (5, 23), (8, 16), (2, 9), (9, 2), (2, 2)] {
-            let weave = Weave::<Pack8>::of(&flag(columns, rows, 0.8));
-            assert!(weave.is_some(), "{columns} × {rows}");
+            let layout = SingleCloth::<Pack8>::of(&flag(columns, rows, 0.8));
+            assert!(layout.is_some(), "{columns} × {rows}");
         }
     }
 
     #[test]
-    fn what_zigzags_is_not() {
-        assert!(Weave::<Pack8>::of(&flag(5, 17, 0.1)).is_none());
+    fn grids_whose_diagonals_zigzag_have_not() {
+        assert!(SingleCloth::<Pack8>::of(&flag(5, 17, 0.1)).is_none());
     }
 }

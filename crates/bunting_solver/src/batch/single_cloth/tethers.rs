@@ -1,53 +1,77 @@
-//! Tethers of packs of particles.
+//! Tethers of a single cloth, in packs of consecutive particles.
 
 use glam::Vec3;
 
-use super::Sheets;
-use crate::batch::layout::Seating;
-use crate::fabric::{Fabric, Tether};
-use crate::simd::lane::Pack;
-use crate::simd::vec3::{Pack3, set_lane3, splat3};
+use super::grid_shape::GridShape;
+use crate::batch::layout::{PackedTether, Particles};
+use crate::fabric::Tether;
+use crate::simd::lane::{Lane, Pack};
+use crate::simd::vec3::{Pack3, V3, set_lane3, splat3};
 
-/// Packs of particles with tethers, and where the pins are to which they are tethered.
+/// Tethers in the order of their packs.
 #[derive(Clone, Debug)]
-pub(crate) struct PackedTethers<P: Pack> {
-    /// Where the packs begin.
-    pub at: Vec<u32>,
-    /// Positions of the pins, m.
-    pub pins: Vec<Pack3<P>>,
-    /// Lengths at rest, m; infinite where there is no tether.
-    pub lengths: Vec<P>,
-    /// The seats of tethers among these, and their pins.
-    seats: Vec<((usize, usize), u32)>,
+pub(super) struct TetherPacks<P: Pack> {
+    pub packs: Vec<TetherPack<P>>,
+    /// For each tether of the fabric its index among the packs, its lane, and its pin.
+    pins: Vec<(usize, usize, u32)>,
 }
 
-impl<P: Pack> PackedTethers<P> {
-    pub fn of(fabric: &Fabric, tethers: &[Tether]) -> Self {
-        let seating = Seating::of::<P, P>(fabric);
-        let seat = |tether: &Tether| seating.seat(tether.particle as usize, 0);
-        let mut packs: Vec<usize> = tethers.iter().map(|tether| seat(tether).0).collect();
-        packs.sort_unstable();
-        packs.dedup();
-        let mut lengths = vec![P::splat(f32::INFINITY); packs.len()];
-        let mut seats = Vec::new();
+/// The tethers of a pack of particles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TetherPack<P: Pack> {
+    /// Index of the first particle in row-major order.
+    first: u32,
+    /// Positions of the pins, m.
+    pins: Pack3<P>,
+    /// Lengths at rest, m; infinite in lanes without a tether.
+    lengths: P,
+}
+
+impl<P: Pack> TetherPacks<P> {
+    /// Tethers without the positions of their pins. `locate` gives a particle's pack and lane.
+    pub fn new(tethers: &[Tether], locate: impl Fn(u32) -> (usize, usize)) -> Self {
+        let mut occupied: Vec<usize> =
+            tethers.iter().map(|tether| locate(tether.particle).0).collect();
+        occupied.sort_unstable();
+        occupied.dedup();
+        let empty = |&pack: &usize| TetherPack {
+            first: GridShape::start_of_pack::<P>(pack),
+            pins: splat3(Vec3::ZERO),
+            lengths: P::splat(f32::INFINITY),
+        };
+        let mut packs: Vec<TetherPack<P>> = occupied.iter().map(empty).collect();
+        let mut pins = Vec::new();
         for tether in tethers {
-            let (pack, lane) = seat(tether);
-            let index = packs.partition_point(|&other| other < pack);
-            lengths[index].lanes_mut()[lane] = tether.length;
-            seats.push(((index, lane), tether.pin));
+            let (pack, lane) = locate(tether.particle);
+            let index = occupied.partition_point(|&other| other < pack);
+            packs[index].lengths.lanes_mut()[lane] = tether.length;
+            pins.push((index, lane, tether.pin));
         }
-        Self {
-            at: packs.iter().map(|&pack| Sheets::pack::<P>(pack)).collect(),
-            pins: vec![splat3(Vec3::ZERO); packs.len()],
-            lengths,
-            seats,
-        }
+        Self { packs, pins }
     }
 
-    /// Pins stay where they are until the cloth's state is overwritten.
+    /// Takes over where the pins are, given the positions of all particles, m. Pins stay there until the
+    /// cloth's state is overwritten.
     pub fn set_pins(&mut self, positions: &[Vec3]) {
-        for &((index, lane), pin) in &self.seats {
-            set_lane3(&mut self.pins[index], lane, positions[pin as usize]);
+        for &(index, lane, pin) in &self.pins {
+            set_lane3(&mut self.packs[index].pins, lane, positions[pin as usize]);
         }
+    }
+}
+
+impl<P: Pack> PackedTether<P> for TetherPack<P> {
+    #[inline(always)]
+    fn particle(&self) -> u32 {
+        self.first
+    }
+
+    #[inline(always)]
+    fn pin<L: Lane<Pack = P>, S: Particles<P>>(&self, token: L::Token, _: &S) -> V3<L> {
+        V3::load(token, &self.pins)
+    }
+
+    #[inline(always)]
+    fn length<L: Lane<Pack = P>>(&self, token: L::Token) -> L {
+        L::load(token, &self.lengths)
     }
 }

@@ -1,21 +1,21 @@
-//! Distance: C = |x₂ − x₁| − l (thesis, eq. 4.15 to 4.18), along warp, weft and bias.
+//! Distance: C = |x₂ − x₁| − l (thesis, eq. 4.15 to 4.18), along warp, weft and diagonals.
 
 use crate::batch::lane_batch::LaneBatch;
-use crate::batch::places::Constant;
+use crate::batch::layout::{Layout, Positions};
 use crate::constants::LEAST_LENGTH;
 use crate::fabric::Link;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
-impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
-    /// Projects every link once.
+impl<P: Pack> LaneBatch<P> {
+    /// Projects every link once. `accumulate` says that targets are kept from pass to pass.
     pub fn solve_distance(&mut self, accumulate: bool) {
         let solve = Distance {
             links: self.fabric.links(),
-            weights: self.fabric.inverse_areas(),
-            compliance: &self.parameters.link_compliance,
+            inverse_masses: self.fabric.inverse_areas(),
+            compliance: &self.layout.factors().link_compliance,
             target: &mut self.link_target,
-            position: &mut self.position,
+            position: self.positions.packs_mut(),
         };
         if accumulate {
             P::run(Accumulating(solve));
@@ -27,8 +27,9 @@ impl<P: Pack, C: Constant<P>> LaneBatch<P, C> {
 
 struct Distance<'a, P: Pack> {
     links: &'a [Link],
-    weights: &'a [f32],
+    inverse_masses: &'a [f32],
     compliance: &'a [P],
+    /// Length that each link has under the tension found so far, l − α̃ λ, m.
     target: &'a mut [P],
     position: &'a mut [Pack3<P>],
 }
@@ -36,25 +37,26 @@ struct Distance<'a, P: Pack> {
 impl<P: Pack> Distance<'_, P> {
     #[inline(always)]
     fn solve<L: Lane<Pack = P>, const ACCUMULATE: bool>(self, token: L::Token) {
-        let weights = self.weights;
+        let inverse_masses = self.inverse_masses;
         let least = L::splat(token, LEAST_LENGTH);
-        for (link, target) in self.links.iter().zip(self.target) {
+        for (link, stored) in self.links.iter().zip(self.target) {
             let (a, b) = (link.particles[0] as usize, link.particles[1] as usize);
-            let (wa, wb) = (L::splat(token, weights[a]), L::splat(token, weights[b]));
+            let [mass_a, mass_b] =
+                [L::splat(token, inverse_masses[a]), L::splat(token, inverse_masses[b])];
             let compliance = L::load(token, &self.compliance[link.class as usize]);
             let from: V3<L> = V3::load(token, &self.position[a]);
             let to: V3<L> = V3::load(token, &self.position[b]);
             let along = to - from;
             let length = along.dot(along).sqrt().max(least);
-            let held =
-                if ACCUMULATE { L::load(token, target) } else { L::splat(token, link.rest_length) };
-            // −Δλ/|d| with one division: the gradient's length goes into the denominator.
-            let pull = (length - held) / ((wa + wb + compliance) * length);
+            let target =
+                if ACCUMULATE { L::load(token, stored) } else { L::splat(token, link.rest_length) };
+            // −Δλ/|d| with one division: the length of d is part of the denominator.
+            let pull = (length - target) / ((mass_a + mass_b + compliance) * length);
             if ACCUMULATE {
-                held.plus_product(compliance * length, pull).store(target);
+                target.plus_product(compliance * length, pull).store(stored);
             }
-            from.plus_scaled(along, pull * wa).store(&mut self.position[a]);
-            to.minus_scaled(along, pull * wb).store(&mut self.position[b]);
+            from.plus_scaled(along, pull * mass_a).store(&mut self.position[a]);
+            to.minus_scaled(along, pull * mass_b).store(&mut self.position[b]);
         }
     }
 }

@@ -1,0 +1,140 @@
+//! Cloths that come into a batch, leave it, or are given another state.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::batch::lane_batch::{LaneBatch, without_minus_zero};
+use crate::batch::lane_state::LaneState;
+use crate::batch::layout::{Layout, OfCloth, Positions};
+use crate::batch::single_cloth::SingleCloth;
+use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
+use crate::fabric::{Fabric, FabricMaterial};
+use crate::simd::lane::Pack;
+use crate::simd::registers::Pack1;
+use crate::simd::vec3::set_lane3;
+use crate::stability::pin_strain::PinStrain;
+use crate::step::bdf::IntegratorHistory;
+
+/// One of the vectors of each particle, if the state has it.
+type VectorsOf = fn(&ClothSnapshot) -> Option<&[Vec3]>;
+
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Takes cloths out of lanes, and puts others in.
+    pub fn exchange(&mut self, leave: &[usize], come: &[(usize, &ClothSnapshot, FabricMaterial)]) {
+        // The state of an empty lane matters to no other and is left, unless it is not finite, which would
+        // stay so and be slow.
+        let rest = ClothSnapshot::at_rest(&self.fabric);
+        let mut states = Vec::new();
+        for &lane in leave {
+            self.lanes[lane] = None;
+            if !self.is_finite(lane) {
+                states.push((lane, &rest));
+            }
+        }
+        for &(lane, snapshot, material) in come {
+            self.lanes[lane] = Some(LaneState::new(material));
+            states.push((lane, snapshot));
+        }
+        self.restore(&states);
+    }
+
+    /// Overwrites the states of lanes, all in one pass over each array. Cloths without a history continue
+    /// with a substep of first order.
+    pub fn restore(&mut self, states: &[(usize, &ClothSnapshot)]) {
+        let positions: Vec<Vec<Vec3>> = states
+            .iter()
+            .map(|(_, state)| state.positions.iter().copied().map(without_minus_zero).collect())
+            .collect();
+        let of_cloths: Vec<OfCloth> =
+            states.iter().zip(&positions).map(|(&(lane, _), at)| (lane, Some(&at[..]))).collect();
+        // Formulas of first order multiply the history by zero, so that without one what a lane holds does
+        // not matter as long as it is finite.
+        let counts = |&(lane, state): &(usize, &ClothSnapshot)| {
+            state.history.is_some() || !self.is_finite(lane)
+        };
+        let with_history: Vec<_> = states.iter().copied().filter(counts).collect();
+        self.layout.write(self.positions.packs_mut(), &of_cloths);
+        self.write_vectors(states, &with_history);
+        for (&(lane, state), positions) in states.iter().zip(&positions) {
+            self.restore_lane(lane, state, positions);
+        }
+    }
+
+    /// Writes velocities and predicted stretch of some lanes, and the integrator's history of others.
+    fn write_vectors(
+        &mut self,
+        states: &[(usize, &ClothSnapshot)],
+        with_history: &[(usize, &ClothSnapshot)],
+    ) {
+        fn history(state: &ClothSnapshot) -> Option<&SnapshotHistory> {
+            state.history.as_ref()
+        }
+        let arrays: [(_, &[_], VectorsOf); 6] = [
+            (&mut self.velocity, states, |state| Some(&state.velocities)),
+            (&mut self.predicted_stretch, states, |state| Some(&history(state)?.predicted_stretch)),
+            (&mut self.displacement, with_history, |state| Some(&history(state)?.displacements[0])),
+            (&mut self.older_displacement, with_history, |state| {
+                Some(&history(state)?.displacements[1])
+            }),
+            (&mut self.older_velocity, with_history, |state| {
+                Some(&history(state)?.older_velocities[0])
+            }),
+            (&mut self.oldest_velocity, with_history, |state| {
+                Some(&history(state)?.older_velocities[1])
+            }),
+        ];
+        for (packs, states, vectors) in arrays {
+            let of_cloths: Vec<OfCloth> =
+                states.iter().map(|&(lane, state)| (lane, vectors(state))).collect();
+            self.layout.write(packs, &of_cloths);
+        }
+    }
+
+    /// Restores what a lane has besides its vectors.
+    fn restore_lane(&mut self, lane: usize, state: &ClothSnapshot, positions: &[Vec3]) {
+        let history = state.history.as_ref();
+        self.set_relaxation(lane, history.map_or(&[], |history| &history.relaxation));
+        // At the start of a tick they are computed anew.
+        if (1..self.clock.settings.substeps).contains(&self.clock.begun) {
+            self.set_diagonals_at_rest(Y::lanes(lane));
+        }
+        for pin in self.fabric.pins() {
+            let (pack, lane) = self.layout.locate(pin.particle as usize, lane);
+            set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
+        }
+        self.positions.clear();
+        self.layout.set_pins(positions);
+        if let Some(cloth) = &mut self.lanes[lane] {
+            cloth.history =
+                history.map_or_else(IntegratorHistory::default, |history| history.integrator);
+            let pin_strain = PinStrain::of(&self.fabric, positions);
+            if cloth.pin_strain != pin_strain {
+                cloth.pin_strain = pin_strain;
+                cloth.added_mass = None;
+            }
+        }
+    }
+}
+
+impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
+    /// An empty batch of one cloth across the lanes; none unless the fabric is a grid whose yarns run
+    /// straight.
+    pub fn single_cloth(fabric: &Arc<Fabric>) -> Option<Self> {
+        let layout = SingleCloth::of(fabric)?;
+        Some(Self::new(Arc::clone(fabric), layout))
+    }
+
+    /// The same cloth in a batch of one lane, for a scheme without chains.
+    pub fn to_one_lane(&self) -> LaneBatch<Pack1> {
+        let mut batch = LaneBatch::side_by_side(Arc::clone(&self.fabric));
+        if let Some(cloth) = &self.lanes[0] {
+            batch.exchange(&[], &[(0, &self.snapshot(0), cloth.material)]);
+            batch.lanes[0] = Some(LaneState { inputs: None, added_mass: None, ..cloth.clone() });
+        }
+        for (pack, normal) in batch.scratch.iter_mut().zip(self.of_cloth(&self.scratch, 0)) {
+            set_lane3(pack, 0, normal);
+        }
+        batch
+    }
+}

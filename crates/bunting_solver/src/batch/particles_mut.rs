@@ -1,0 +1,208 @@
+//! A view of one cloth's particles within a substep, for forces and constraints from outside the solver.
+
+use glam::Vec3;
+
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::layout::{Layout, Positions};
+use crate::simd::lane::Pack;
+use crate::simd::vec3::{Pack3, lane3, set_lane3};
+
+/// The particles of one cloth between [`integrate`](crate::ClothBatch::integrate) and
+/// [`update_velocities`](crate::ClothBatch::update_velocities): positions are predictions, which constraints
+/// correct, and `update_velocities` turns corrections into velocity.
+///
+/// - A **constraint** moves predicted positions by [`set_position`](Self::set_position), before or after
+///   `solve_constraints`; after it, nothing but the constraint itself decides where the particle ends.
+/// - A **force** is given right after `integrate`, in every substep that it acts in, by
+///   [`add_acceleration`](Self::add_acceleration).
+/// - An **impulse** is given once, by [`add_velocity`](Self::add_velocity).
+///
+/// Vectors are along the axes of the cloth's frame as it is in this substep. Particles are numbered as in the
+/// [`Fabric`](crate::Fabric); methods panic where there is no particle of that number. Pinned particles cannot be
+/// moved: what is written to them is ignored.
+pub struct ParticlesMut<'a> {
+    batch: &'a mut dyn ParticleAccess,
+    lane: usize,
+}
+
+impl<'a> ParticlesMut<'a> {
+    /// The cloth of a lane; none if it is empty, or if no substep is under way.
+    pub(crate) fn new<P: Pack, Y: Layout<P>>(
+        batch: &'a mut LaneBatch<P, Y>,
+        lane: usize,
+    ) -> Option<Self> {
+        let exists = batch.clock.predicted && batch.lanes.get(lane)?.is_some();
+        exists.then_some(Self { batch, lane })
+    }
+
+    /// Number of particles.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.batch.count()
+    }
+
+    /// Effective length of the substep, s: a correction of a position by Δx changes the velocity by Δx over this.
+    /// With formulas of second order it is shorter than the substep.
+    #[must_use]
+    pub fn effective_step(&self) -> f32 {
+        self.batch.effective_step(self.lane)
+    }
+
+    /// Inverse mass of a particle, 1/kg; zero where it is pinned. It includes the mass that the solver adds where
+    /// few particles carry a large load.
+    #[must_use]
+    pub fn inverse_mass(&self, particle: usize) -> f32 {
+        self.batch.inverse_mass(particle, self.lane)
+    }
+
+    /// Predicted position of a particle, with the corrections so far, m.
+    #[must_use]
+    pub fn position(&self, particle: usize) -> Vec3 {
+        self.batch.position(particle, self.lane)
+    }
+
+    /// Velocity of a particle relative to the world, as predicted, m/s. Corrections of the position are not in
+    /// it yet.
+    #[must_use]
+    pub fn velocity(&self, particle: usize) -> Vec3 {
+        self.batch.velocity(particle, self.lane)
+    }
+
+    /// Corrects the predicted position of a particle, m. The correction becomes velocity at the end of the
+    /// substep.
+    pub fn set_position(&mut self, particle: usize, position: Vec3) {
+        self.batch.set_position(particle, self.lane, position);
+    }
+
+    /// Accelerates a particle over this substep, m/s², as gravity does: velocity and predicted position change
+    /// as if the acceleration had been part of the prediction. To be called right after `integrate`.
+    ///
+    /// Contacts, tethers and the number of substeps are prepared for gravity and wind, and not for this
+    /// acceleration.
+    pub fn add_acceleration(&mut self, particle: usize, acceleration: Vec3) {
+        self.batch.add_acceleration(particle, self.lane, acceleration);
+    }
+
+    /// Changes the velocity of a particle by an impulse, m/s: velocity and predicted position change as if the
+    /// particle had entered this substep, and those before, with the changed velocity, so that the change is
+    /// not extrapolated. To be called right after `integrate`.
+    pub fn add_velocity(&mut self, particle: usize, change: Vec3) {
+        self.batch.add_velocity(particle, self.lane, change);
+    }
+
+    /// Gives a particle this velocity relative to the world, m/s, by an impulse: see
+    /// [`add_velocity`](Self::add_velocity).
+    pub fn set_velocity(&mut self, particle: usize, velocity: Vec3) {
+        self.add_velocity(particle, velocity - self.velocity(particle));
+    }
+}
+
+impl core::fmt::Debug for ParticlesMut<'_> {
+    fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        let Self { lane, .. } = self;
+        formatter.debug_struct("ParticlesMut").field("lane", lane).finish_non_exhaustive()
+    }
+}
+
+/// Access to a particle of a cloth, at any width and in any layout.
+trait ParticleAccess {
+    fn count(&self) -> usize;
+    fn effective_step(&self, cloth: usize) -> f32;
+    fn inverse_mass(&self, particle: usize, cloth: usize) -> f32;
+    fn position(&self, particle: usize, cloth: usize) -> Vec3;
+    fn velocity(&self, particle: usize, cloth: usize) -> Vec3;
+    fn set_position(&mut self, particle: usize, cloth: usize, position: Vec3);
+    fn add_acceleration(&mut self, particle: usize, cloth: usize, acceleration: Vec3);
+    fn add_velocity(&mut self, particle: usize, cloth: usize, change: Vec3);
+}
+
+impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
+    fn count(&self) -> usize {
+        self.fabric.particle_count()
+    }
+
+    fn effective_step(&self, cloth: usize) -> f32 {
+        self.parameters.step.lanes()[Y::lanes(cloth).start]
+    }
+
+    fn inverse_mass(&self, particle: usize, cloth: usize) -> f32 {
+        let (pack, lane) = self.layout.locate(particle, cloth);
+        let density = self.lanes[cloth].as_ref().map_or(1.0, |state| state.material.area_density);
+        self.masses.inverse[pack].lanes()[lane] / density
+    }
+
+    fn position(&self, particle: usize, cloth: usize) -> Vec3 {
+        let (pack, lane) = self.layout.locate(particle, cloth);
+        lane3(&self.positions.packs()[pack], lane)
+    }
+
+    fn velocity(&self, particle: usize, cloth: usize) -> Vec3 {
+        let (pack, lane) = self.layout.locate(particle, cloth);
+        lane3(&self.velocity[pack], lane)
+    }
+
+    fn set_position(&mut self, particle: usize, cloth: usize, position: Vec3) {
+        if self.fabric.is_pinned(particle) {
+            return;
+        }
+        let (pack, lane) = self.layout.locate(particle, cloth);
+        let stored = &mut self.positions.packs_mut()[pack];
+        let before = lane3(stored, lane);
+        set_lane3(stored, lane, position);
+        // A correction from outside may turn the cloth about its pole.
+        if let (Some(pole), Some(state)) = (self.pole, &mut self.lanes[cloth]) {
+            let predicted =
+                lane3(&self.scratch[pack], lane) + lane3(&self.displacement[pack], lane);
+            let inertia = self.masses.inertia[pack].lanes()[lane];
+            let moment = |at: Vec3| pole.moment(inertia, at, at - predicted);
+            state.external_moment += moment(position) - moment(before);
+        }
+    }
+
+    fn add_acceleration(&mut self, particle: usize, cloth: usize, acceleration: Vec3) {
+        let (pack, lane) = self.layout.locate(particle, cloth);
+        let step = self.effective_step(cloth);
+        // As gravity, on the true mass, whatever inertia is added to it; zero for pins.
+        let true_part =
+            self.masses.inverse[pack].lanes()[lane] * self.fabric.particle_areas()[particle];
+        let change = acceleration * (true_part * step);
+        add(&mut self.velocity[pack], lane, change);
+        self.shift_prediction(pack, lane, change * step);
+    }
+
+    fn add_velocity(&mut self, particle: usize, cloth: usize, change: Vec3) {
+        if self.fabric.is_pinned(particle) {
+            return;
+        }
+        let (pack, lane) = self.layout.locate(particle, cloth);
+        for velocity in [&mut self.velocity, &mut self.older_velocity, &mut self.oldest_velocity] {
+            add(&mut velocity[pack], lane, change);
+        }
+        // β h Δv by the new velocity and (γ₁ + γ₂) h Δv by the extrapolated displacements.
+        let moved = change * self.clock.step;
+        self.shift_prediction(pack, lane, moved);
+        add(&mut self.older_displacement[pack], lane, moved);
+    }
+}
+
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Shifts the predicted position of a particle, m, without a correction. The position is the sum of that at
+    /// the start and the displacement, as `update_velocities` computes it: a rounding error between them would
+    /// count as a correction, and become a velocity.
+    fn shift_prediction(&mut self, pack: usize, lane: usize, change: Vec3) {
+        let start = lane3(&self.scratch[pack], lane);
+        let before = lane3(&self.displacement[pack], lane);
+        let position = &mut self.positions.packs_mut()[pack];
+        let correction = lane3(position, lane) - (start + before);
+        set_lane3(&mut self.displacement[pack], lane, before + change);
+        set_lane3(position, lane, start + (before + change) + correction);
+    }
+}
+
+/// Adds to the vector of one lane.
+fn add<P: Pack>(pack: &mut Pack3<P>, lane: usize, change: Vec3) {
+    set_lane3(pack, lane, lane3(pack, lane) + change);
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,235 @@
+//! The layout of cloths side by side: a pack holds the same particle of each cloth, one cloth a lane.
+
+use core::ops::Range;
+
+use glam::Vec3;
+
+use crate::batch::layout::{Layout, OfCloth, Order, Particles, Positions};
+use crate::constraints::bend_factors::BendFactors;
+use crate::constraints::factors::{ClothFactors, Factors};
+use crate::constraints::stiffness::Stiffness;
+use crate::constraints::twist_factors::TwistFactors;
+use crate::fabric::{BendLine, Chains, Fabric, Ribbon, Tether};
+use crate::geometry::corners::PatchSums;
+use crate::simd::constant::PARTIAL_SUMS;
+use crate::simd::lane::{Lane, Pack};
+use crate::simd::vec3::{Pack3, V3, lane3, set_lane3, splat3};
+
+/// Cloths side by side, solved in the order of the fabric's own lists.
+#[derive(Clone, Debug)]
+pub(crate) struct SideBySide<P: Pack> {
+    /// Particles in a row of the grid; all particles of a mesh that is no grid.
+    columns: usize,
+    particles: usize,
+    factors: Factors<P, f32>,
+    /// Compliance of each class of hinges, σ/(k h²), 1/m⁴.
+    pub hinge_compliance: Vec<P>,
+    /// XPBD multiplier of each hinge, kept from pass to pass of a substep.
+    pub hinge_multiplier: Vec<P>,
+    /// What the cells of a row of a grid contribute to the particles below it.
+    below: Vec<Pack3<P>>,
+}
+
+impl<P: Pack> SideBySide<P> {
+    /// The layout of a fabric.
+    pub fn new(fabric: &Fabric) -> Self {
+        let zero = P::splat(0.0);
+        let particles = fabric.particle_count();
+        let bending = fabric.bend_profiles().iter();
+        let twist = fabric.ribbon_profiles().iter();
+        Self {
+            columns: fabric.grid().map_or(particles, |grid| grid.columns as usize),
+            particles,
+            factors: Factors {
+                link_compliance: vec![zero; fabric.link_classes().len()],
+                bending: bending.map(|profile| BendFactors::new(&[Some(profile)])).collect(),
+                twist: twist.map(|profile| TwistFactors::new(&[Some(profile)])).collect(),
+            },
+            hinge_compliance: vec![zero; fabric.hinge_classes().len()],
+            hinge_multiplier: vec![zero; fabric.hinges().len()],
+            below: vec![splat3(Vec3::ZERO); fabric.patch_grid_columns().unwrap_or(0)],
+        }
+    }
+}
+
+impl<P: Pack> Layout<P> for SideBySide<P> {
+    type Constant = f32;
+    type Positions = Packs<P>;
+    type Tether = Tether;
+    type Triangles<'a> = PatchSums<'a, P>;
+
+    const CLOTHS: usize = P::WIDTH;
+
+    fn lanes(cloth: usize) -> Range<usize> {
+        cloth..cloth + 1
+    }
+
+    fn pack_count(&self) -> usize {
+        self.particles
+    }
+
+    #[inline]
+    fn locate(&self, particle: usize, cloth: usize) -> (usize, usize) {
+        (particle, cloth)
+    }
+
+    fn read(&self, packs: &[Pack3<P>], cloth: usize, into: &mut Vec<Vec3>) {
+        // Checked once, and not for every number.
+        assert!(cloth < P::WIDTH, "lanes of the batch");
+        into.resize(packs.len(), Vec3::ZERO);
+        for (value, pack) in into.iter_mut().zip(packs) {
+            *value = lane3(pack, cloth);
+        }
+    }
+
+    /// Writes pack by pack, so that each is fetched once for all cloths.
+    fn write(&self, packs: &mut [Pack3<P>], cloths: &[OfCloth]) {
+        for (particle, pack) in packs.iter_mut().enumerate() {
+            for &(lane, values) in cloths {
+                let value = values.and_then(|values| values.get(particle));
+                set_lane3(pack, lane, value.copied().unwrap_or(Vec3::ZERO));
+            }
+        }
+    }
+
+    fn constants(&self, of_particles: &[f32]) -> Vec<f32> {
+        of_particles.to_vec()
+    }
+
+    fn partial_sums(&self) -> Vec<u8> {
+        (0..self.particles).map(|at| (at % self.columns % PARTIAL_SUMS) as u8).collect()
+    }
+
+    fn positions(&self, packs: Vec<Pack3<P>>) -> Packs<P> {
+        Packs(packs)
+    }
+
+    fn chains<'a>(&'a self, fabric: &'a Fabric) -> &'a Chains {
+        fabric.chains()
+    }
+
+    fn order_of_chains(&self, _: usize) -> Order {
+        Order::RowMajor
+    }
+
+    fn linked(&self) -> &[P] {
+        &[]
+    }
+
+    fn bend_lines<'a>(
+        &'a self,
+        fabric: &'a Fabric,
+    ) -> impl Iterator<Item = (Order, &'a [BendLine])> {
+        core::iter::once((Order::RowMajor, fabric.bend_lines()))
+    }
+
+    fn ribbons<'a>(&'a self, fabric: &'a Fabric) -> (Order, &'a [Ribbon]) {
+        (Order::RowMajor, fabric.ribbons())
+    }
+
+    fn tethers<'a>(&'a self, fabric: &'a Fabric) -> [&'a [Tether]; 2] {
+        [fabric.far_tethers(), fabric.tethers()]
+    }
+
+    fn factors(&self) -> &Factors<P, f32> {
+        &self.factors
+    }
+
+    fn set_stiffness(&mut self, cloth: usize, fabric: &Fabric, stiffness: &Stiffness) {
+        let lane = cloth;
+        let of_cloth = ClothFactors::new(fabric, stiffness);
+        let Factors { link_compliance, bending, twist } = &mut self.factors;
+        for (pack, compliance) in link_compliance.iter_mut().zip(of_cloth.link_compliance) {
+            pack.lanes_mut()[lane] = compliance;
+        }
+        for (factors, rows) in bending.iter_mut().zip(&of_cloth.bending) {
+            factors.set_lane(lane, rows);
+        }
+        for (factors, rows) in twist.iter_mut().zip(&of_cloth.twist) {
+            factors.set_lane(lane, rows);
+        }
+        let hinges = stiffness.of_hinges(fabric);
+        for (pack, compliance) in self.hinge_compliance.iter_mut().zip(hinges) {
+            pack.lanes_mut()[lane] = compliance;
+        }
+    }
+
+    fn set_pins(&mut self, _: &[Vec3]) {}
+
+    fn triangles<'a>(&'a mut self, fabric: &'a Fabric) -> PatchSums<'a, P> {
+        PatchSums { fabric, below: &mut self.below }
+    }
+
+    fn moving_triangles<'a>(
+        &'a mut self,
+        fabric: &'a Fabric,
+        velocity: &'a [Pack3<P>],
+    ) -> (PatchSums<'a, P>, &'a [Pack3<P>]) {
+        (self.triangles(fabric), velocity)
+    }
+}
+
+/// Positions in packs alone, m: constraints move them where they are.
+#[derive(Clone, Debug)]
+pub(crate) struct Packs<P: Pack>(Vec<Pack3<P>>);
+
+impl<P: Pack> Positions<P> for Packs<P> {
+    type Constant = f32;
+    type Particles<'a> = PackParticles<'a, P>;
+    type Field = [Pack3<P>];
+
+    fn packs(&self) -> &[Pack3<P>] {
+        &self.0
+    }
+
+    fn packs_mut(&mut self) -> &mut Vec<Pack3<P>> {
+        &mut self.0
+    }
+
+    fn particles<'a>(
+        &'a mut self,
+        _: Order,
+        inverse_masses: &'a [P],
+        _: &'a [P],
+    ) -> PackParticles<'a, P> {
+        PackParticles { inverse_masses, position: &mut self.0 }
+    }
+
+    fn field(&mut self) -> &[Pack3<P>] {
+        &self.0
+    }
+
+    fn set_inverse_masses(&mut self, _: &[f32]) {}
+
+    fn clear(&mut self) {}
+}
+
+/// Particles in packs, each the same of all cloths.
+pub(crate) struct PackParticles<'a, P: Pack> {
+    inverse_masses: &'a [P],
+    position: &'a mut [Pack3<P>],
+}
+
+impl<P: Pack> Particles<P> for PackParticles<'_, P> {
+    type Constant = f32;
+
+    #[inline(always)]
+    fn position<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> V3<L> {
+        V3::load(token, &self.position[at as usize])
+    }
+
+    #[inline(always)]
+    fn set_position<L: Lane<Pack = P>>(&mut self, at: u32, position: V3<L>) {
+        position.store(&mut self.position[at as usize]);
+    }
+
+    #[inline(always)]
+    fn inverse_mass<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> L {
+        L::load(token, &self.inverse_masses[at as usize])
+    }
+
+    #[inline(always)]
+    fn one_if_linked<L: Lane<Pack = P>>(&self, token: L::Token, _: u32) -> L {
+        L::splat(token, 1.0)
+    }
+}

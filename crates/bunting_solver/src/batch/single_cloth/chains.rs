@@ -1,0 +1,188 @@
+//! Chains of a single cloth, in packs of yarns that lie side by side.
+//!
+//! A pack of chains has one yarn in each lane. Its links lie between consecutive lines of the arrays, and
+//! where the yarns are diagonals each line begins one particle further on than the line before.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::LaneIndices;
+use super::grid_shape::GridShape;
+use crate::batch::layout::Order;
+use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Grid, Link, LinkFamily, Yarn};
+use crate::simd::constant::Constant;
+use crate::simd::lane::Pack;
+
+/// Links of yarns in one direction, and the index of each on its yarn: by the line of the arrays on which the
+/// link begins, and by the yarn.
+type Links<'a> = HashMap<(usize, isize), (&'a Link, usize)>;
+
+/// Direction of a yarn: columns and rows from each particle to the next.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Direction {
+    columns: isize,
+    rows: isize,
+}
+
+impl Direction {
+    /// The direction of a straight yarn; none if the yarn bends, or its direction is not that of a row, a
+    /// column or a diagonal.
+    fn of(grid: &Grid, yarn: &Yarn) -> Option<Self> {
+        let place = |particle: u32| {
+            ((particle % grid.columns) as isize, (particle / grid.columns) as isize)
+        };
+        let mut steps = yarn.particles.windows(2).map(|ends| {
+            let ((c0, r0), (c1, r1)) = (place(ends[0]), place(ends[1]));
+            Self { columns: c1 - c0, rows: r1 - r0 }
+        });
+        let direction = steps.next()?;
+        let fits = matches!((direction.columns, direction.rows), (1, 0) | (-1..=1, 1));
+        (fits && steps.all(|step| step == direction)).then_some(direction)
+    }
+
+    /// The order in which yarns that lie side by side are consecutive.
+    fn order(self) -> Order {
+        if self.rows == 0 { Order::ColumnMajor } else { Order::RowMajor }
+    }
+
+    /// How many particles further on each line begins than the line before.
+    fn skew(self) -> isize {
+        if self.rows == 0 { 0 } else { self.columns }
+    }
+
+    /// The line of the arrays on which a particle lies, and the number of its yarn.
+    fn line_and_yarn(self, grid: &Grid, particle: u32) -> (usize, isize) {
+        let (column, row) = (particle % grid.columns, particle / grid.columns);
+        match self.order() {
+            Order::ColumnMajor => (column as usize, row as isize),
+            Order::RowMajor => (row as usize, column as isize - self.skew() * row as isize),
+        }
+    }
+}
+
+/// Packs of chains.
+#[derive(Clone, Debug)]
+pub(super) struct ChainPacks<P: Pack> {
+    /// The `class` of a link is an index into `classes`.
+    pub chains: Chains<P>,
+    /// For each colour, the order in which its yarns are consecutive.
+    pub orders: Vec<Order>,
+    /// For each class of links of packs, the fabric's class in each lane.
+    pub classes: Vec<LaneIndices>,
+}
+
+impl<P: Pack> ChainPacks<P> {
+    /// The chains of a grid; none where its yarns do not run straight.
+    pub fn new(fabric: &Fabric, shape: GridShape) -> Option<Self> {
+        let grid = fabric.grid()?;
+        let mut packer = Packer { shape, classes: Vec::new() };
+        let mut colours: Vec<(LinkFamily, Vec<Chain<P>>)> = Vec::new();
+        let mut orders = Vec::new();
+        for range in fabric.yarn_colours().ranges() {
+            let yarns = &fabric.yarns()[range.clone()];
+            let family = fabric.links()[yarns[0].links[0] as usize].family;
+            for (direction, links) in by_direction(fabric, grid, yarns)? {
+                colours.push((family, packer.pack(direction, &links)?));
+                orders.push(direction.order());
+            }
+        }
+        let mut chains = Chains::of_colours(colours.into_iter());
+        chains.cells = cells(&chains, shape);
+        Some(Self { chains, orders, classes: packer.classes })
+    }
+}
+
+/// The links of yarns of one colour; diagonals that cross between particles may be of one colour. None where
+/// a yarn does not run straight.
+fn by_direction<'a>(
+    fabric: &'a Fabric,
+    grid: &Grid,
+    yarns: &[Yarn],
+) -> Option<BTreeMap<Direction, Links<'a>>> {
+    let mut directions: BTreeMap<Direction, Links> = BTreeMap::new();
+    for yarn in yarns {
+        let direction = Direction::of(grid, yarn)?;
+        let links = directions.entry(direction).or_default();
+        for (index, (&particle, &link)) in yarn.particles.iter().zip(&yarn.links).enumerate() {
+            let at = direction.line_and_yarn(grid, particle);
+            links.insert(at, (&fabric.links()[link as usize], index));
+        }
+    }
+    Some(directions)
+}
+
+/// The cells whose diagonals are links, one for each link of a pack of diagonals.
+fn cells<P: Pack>(chains: &Chains<P>, shape: GridShape) -> Vec<Cell> {
+    let stride = shape.row_stride as u32;
+    let of_diagonal = |([above, below], target): ([u32; 2], u32)| {
+        let left = if below > above + stride { above } else { above - 1 };
+        Cell { corners: [left, left + 1, left + stride, left + stride + 1], targets: [target; 2] }
+    };
+    chains.diagonals().map(of_diagonal).collect()
+}
+
+/// Packs yarns that lie side by side.
+struct Packer {
+    shape: GridShape,
+    classes: Vec<LaneIndices>,
+}
+
+impl Packer {
+    /// Packs the yarns of one direction, the longest first.
+    fn pack<P: Pack>(&mut self, direction: Direction, links: &Links) -> Option<Vec<Chain<P>>> {
+        let first = links.keys().map(|&(_, yarn)| yarn).min()?;
+        let last = links.keys().map(|&(_, yarn)| yarn).max()?;
+        let mut chains: Vec<Chain<P>> = (first..=last)
+            .step_by(<P as Pack>::WIDTH)
+            .filter_map(|first| self.chain(direction, first, links))
+            .collect();
+        chains.sort_by_key(|chain| core::cmp::Reverse(chain.links.len()));
+        Some(chains)
+    }
+
+    /// Packs the yarns from `first` on; none where there are no links.
+    fn chain<P: Pack>(
+        &mut self,
+        direction: Direction,
+        first: isize,
+        links: &Links,
+    ) -> Option<Chain<P>> {
+        let yarns = first..first + P::WIDTH as isize;
+        let lines = || links.keys().filter(|(_, yarn)| yarns.contains(yarn)).map(|&(line, _)| line);
+        let (begin, end) = (lines().min()?, lines().max()? + 1);
+        let mut chain_links = Vec::new();
+        let mut sweep = [Vec::new(), Vec::new()];
+        for line in begin..end {
+            let lanes: Vec<Option<(&Link, usize)>> =
+                yarns.clone().map(|yarn| links.get(&(line, yarn)).copied()).collect();
+            let of_link = |(link, _): (&Link, usize)| link.class;
+            chain_links.push(ChainLink {
+                class: self.class(lanes.iter().map(|link| link.map(of_link)).collect()),
+                rest_length: P::of(|lane| lanes[lane].map_or(0.0, |(link, _)| link.rest_length)),
+            });
+            // Even and odd links are counted from the beginning of each yarn, which pins may put off.
+            for (parity, sweep) in sweep.iter_mut().enumerate() {
+                let of_parity = lanes.iter().map(|link| link.filter(|(_, at)| at % 2 == parity));
+                let of_lanes: LaneIndices = of_parity.map(|link| link.map(of_link)).collect();
+                if of_lanes.iter().any(Option::is_some) {
+                    sweep.push((line - begin, self.class(of_lanes)));
+                }
+            }
+        }
+        let skewed = |line| first + direction.skew() * line as isize;
+        let at = |line| self.shape.index(direction.order(), line, skewed(line));
+        Some(Chain {
+            particles: (begin..=end).map(at).collect(),
+            links: chain_links,
+            sweep_order: sweep.concat(),
+        })
+    }
+
+    /// The class of links with these classes of the fabric in their lanes.
+    fn class(&mut self, of_lanes: LaneIndices) -> u32 {
+        let known = self.classes.iter().position(|known| *known == of_lanes);
+        known.unwrap_or_else(|| {
+            self.classes.push(of_lanes);
+            self.classes.len() - 1
+        }) as u32
+    }
+}

@@ -1,0 +1,52 @@
+//! How the arrays of a grid are arranged in memory, in row-major and in column-major order.
+
+use crate::batch::layout::Order;
+use crate::fabric::Grid;
+use crate::simd::lane::Pack;
+
+/// Numbers before the first line of an array and after the last: a pack of diagonals begins up to all lanes
+/// but one before a line, or ends that far behind it.
+pub(super) const MARGIN: usize = 16;
+
+/// Extent of a grid and of the arrays with a number for each particle.
+///
+/// A line is a row in row-major order and a column in column-major order. Lines are filled up to whole packs
+/// by particles that are pinned to the origin.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GridShape {
+    pub columns: usize,
+    pub rows: usize,
+    /// Numbers from one line to the next in row-major order, a multiple of the lanes.
+    pub row_stride: usize,
+    /// The same in column-major order.
+    pub column_stride: usize,
+}
+
+impl GridShape {
+    pub fn new<P: Pack>(grid: &Grid) -> Self {
+        let [columns, rows] = [grid.columns, grid.rows].map(|count| count as usize);
+        let [row_stride, column_stride] =
+            [columns, rows].map(|count| count.next_multiple_of(P::WIDTH));
+        Self { columns, rows, row_stride, column_stride }
+    }
+
+    /// Packs in a row.
+    pub fn packs_in_row<P: Pack>(&self) -> usize {
+        self.row_stride / P::WIDTH
+    }
+
+    /// Index in row-major order of the first particle of a pack of the state.
+    pub fn start_of_pack<P: Pack>(pack: usize) -> u32 {
+        (MARGIN + pack * P::WIDTH) as u32
+    }
+
+    /// Index of the particle at a place on a line. Places before the line and behind it are other particles,
+    /// or lie in the margin.
+    pub fn index(&self, order: Order, line: usize, place: isize) -> u32 {
+        let stride = match order {
+            Order::RowMajor => self.row_stride,
+            Order::ColumnMajor => self.column_stride,
+        };
+        ((MARGIN + line * stride) as isize + place) as u32
+    }
+}

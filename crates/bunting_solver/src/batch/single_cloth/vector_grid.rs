@@ -1,0 +1,112 @@
+//! A vector for each particle of a grid, coordinate by coordinate.
+
+use fearless_simd::{Simd, SimdBase, dispatch, f32x4};
+
+use super::grid_shape::MARGIN;
+use crate::simd::lane::{Lane, Pack};
+use crate::simd::level::level;
+use crate::simd::vec3::{Pack3, V3};
+
+/// Numbers along each side of the tiles in which a grid is transposed: those of four registers.
+const TILE: usize = 4;
+
+/// A vector for each particle of a grid: arrays of x, y and z.
+#[derive(Clone, Debug)]
+pub(crate) struct VectorGrid([Vec<f32>; 3]);
+
+impl VectorGrid {
+    /// Zero for each particle.
+    pub fn new(lines: usize, stride: usize) -> Self {
+        let numbers = vec![0.0; lines * stride + 2 * MARGIN];
+        Self([numbers.clone(), numbers.clone(), numbers])
+    }
+
+    /// The arrays.
+    pub fn coordinates_mut(&mut self) -> [&mut [f32]; 3] {
+        let Self([x, y, z]) = self;
+        [x, y, z]
+    }
+
+    /// The vectors of consecutive particles from index `at` on.
+    #[inline(always)]
+    pub fn load<L: Lane>(&self, token: L::Token, at: usize) -> V3<L> {
+        let Self([x, y, z]) = self;
+        V3 { x: L::load_at(token, x, at), y: L::load_at(token, y, at), z: L::load_at(token, z, at) }
+    }
+
+    /// Overwrites the vectors of consecutive particles from index `at` on.
+    #[inline(always)]
+    pub fn store<L: Lane>(&mut self, at: usize, vector: V3<L>) {
+        let Self([x, y, z]) = self;
+        vector.x.store_at(x, at);
+        vector.y.store_at(y, at);
+        vector.z.store_at(z, at);
+    }
+
+    /// Overwrites all vectors in row-major order by those of packs.
+    pub fn read<P: Pack>(&mut self, packs: &[Pack3<P>]) {
+        let [x, y, z] = self.0.each_mut().map(|axis| axis[MARGIN..].chunks_exact_mut(P::WIDTH));
+        for (((x, y), z), pack) in x.zip(y).zip(z).zip(packs) {
+            x.copy_from_slice(pack[0].lanes());
+            y.copy_from_slice(pack[1].lanes());
+            z.copy_from_slice(pack[2].lanes());
+        }
+    }
+
+    /// Overwrites packs by the vectors in row-major order.
+    pub fn write<P: Pack>(&self, packs: &mut [Pack3<P>]) {
+        let [x, y, z] = self.0.each_ref().map(|axis| axis[MARGIN..].chunks_exact(P::WIDTH));
+        for (((x, y), z), pack) in x.zip(y).zip(z).zip(packs) {
+            pack[0].lanes_mut().copy_from_slice(x);
+            pack[1].lanes_mut().copy_from_slice(y);
+            pack[2].lanes_mut().copy_from_slice(z);
+        }
+    }
+
+    /// Sets all vectors to zero.
+    pub fn clear(&mut self) {
+        for coordinate in &mut self.0 {
+            coordinate.fill(0.0);
+        }
+    }
+
+    /// Takes over the vectors of the other order: `extent` says how long its lines are and how many,
+    /// `strides` how far its lines lie apart and how far these do.
+    pub fn transpose_from(&mut self, other: &Self, strides: [usize; 2], extent: [usize; 2]) {
+        for (into, from) in self.0.iter_mut().zip(&other.0) {
+            let (into, from) = (&mut into[MARGIN..], &from[MARGIN..]);
+            dispatch!(level(), token => transpose(token, from, into, strides, extent));
+        }
+    }
+}
+
+/// Transposes `lines` lines of `length` numbers, tile by tile.
+#[inline(always)]
+fn transpose<S: Simd>(
+    token: S,
+    from: &[f32],
+    into: &mut [f32],
+    [from_stride, into_stride]: [usize; 2],
+    [length, lines]: [usize; 2],
+) {
+    for line in (0..lines).step_by(TILE) {
+        for place in (0..length).step_by(TILE) {
+            let from = &from[line * from_stride + place..][..3 * from_stride + TILE];
+            let a = f32x4::from_slice(token, &from[..TILE]);
+            let b = f32x4::from_slice(token, &from[from_stride..from_stride + TILE]);
+            let c = f32x4::from_slice(token, &from[2 * from_stride..2 * from_stride + TILE]);
+            let d = f32x4::from_slice(token, &from[3 * from_stride..3 * from_stride + TILE]);
+            let (ac_low, ac_high) = (a.zip_low(c), a.zip_high(c));
+            let (bd_low, bd_high) = (b.zip_low(d), b.zip_high(d));
+            let into = &mut into[place * into_stride + line..][..3 * into_stride + TILE];
+            ac_low.zip_low(bd_low).store_slice(&mut into[..TILE]);
+            ac_low.zip_high(bd_low).store_slice(&mut into[into_stride..into_stride + TILE]);
+            ac_high
+                .zip_low(bd_high)
+                .store_slice(&mut into[2 * into_stride..2 * into_stride + TILE]);
+            ac_high
+                .zip_high(bd_high)
+                .store_slice(&mut into[3 * into_stride..3 * into_stride + TILE]);
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Compliances and factorised systems of the constraints: of one cloth, and in lanes.
+
+use crate::constraints::bend_factors::{self, BendFactors, BendRow};
+use crate::constraints::stiffness::{Stiffness, resists_twist};
+use crate::constraints::twist_factors::{self, TwistFactors, TwistRow};
+use crate::fabric::Fabric;
+use crate::simd::lane::Pack;
+
+/// Compliances and factorised systems in lanes, as kernels read them.
+#[derive(Clone, Debug)]
+pub(crate) struct Factors<P: Pack, C> {
+    /// Of each class of links, σ/(k h²), 1/m².
+    pub link_compliance: Vec<P>,
+    /// Of each profile of bend lines.
+    pub bending: Vec<BendFactors<P, C>>,
+    /// Of each profile of ribbons.
+    pub twist: Vec<TwistFactors<P, C>>,
+}
+
+impl<P: Pack, C> Factors<P, C> {
+    /// Whether any lane resists twist.
+    pub fn resist_twist(&self) -> bool {
+        let first = self.twist.first().and_then(|factors| factors.rows.first());
+        first.is_some_and(|row| row.inverse_diagonal.lanes().iter().any(|&inverse| inverse != 0.0))
+    }
+}
+
+/// The same of one cloth, for each class and profile of its fabric.
+pub(crate) struct ClothFactors {
+    pub link_compliance: Vec<f32>,
+    pub bending: Vec<Vec<BendRow<f32>>>,
+    pub twist: Vec<Vec<TwistRow<f32>>>,
+}
+
+impl ClothFactors {
+    /// Computes compliances, and factorises the systems.
+    pub fn new(fabric: &Fabric, stiffness: &Stiffness) -> Self {
+        let compliance = stiffness.of_bending();
+        let bend = |profile| bend_factors::factorise(profile, compliance);
+        let twists = resists_twist(fabric, stiffness.material);
+        let twist = |profile| {
+            if twists {
+                twist_factors::factorise(profile, compliance)
+            } else {
+                twist_factors::without_twist(profile)
+            }
+        };
+        Self {
+            link_compliance: stiffness.of_links(fabric),
+            bending: fabric.bend_profiles().iter().map(bend).collect(),
+            twist: fabric.ribbon_profiles().iter().map(twist).collect(),
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Bending of any mesh: C = θ − θ₀, the angle between the two triangles of a hinge (thesis, eq. 4.19 to 4.33).
+//!
+//! The correction is scaled by the gradients and masses (thesis, eq. 4.13 and 4.14: eq. 4.34 holds for equal
+//! masses only).
+
+use super::fold::{Fold, fold};
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::layout::Positions;
+use crate::fabric::Fabric;
+use crate::simd::lane::{Kernel, Lane, Pack};
+use crate::simd::vec3::{Pack3, V3};
+
+impl<P: Pack> LaneBatch<P> {
+    /// Projects every hinge once. `accumulate` says that multipliers are kept from pass to pass.
+    pub fn solve_dihedral(&mut self, accumulate: bool) {
+        P::run(Dihedral {
+            fabric: &self.fabric,
+            compliance: &self.layout.hinge_compliance,
+            multiplier: &mut self.layout.hinge_multiplier,
+            position: self.positions.packs_mut(),
+            accumulate,
+        });
+    }
+}
+
+struct Dihedral<'a, P: Pack> {
+    fabric: &'a Fabric,
+    compliance: &'a [P],
+    multiplier: &'a mut [P],
+    position: &'a mut [Pack3<P>],
+    accumulate: bool,
+}
+
+impl<P: Pack> Kernel<P> for Dihedral<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let inverse_masses = self.fabric.inverse_areas();
+        for (hinge, multiplier) in self.fabric.hinges().iter().zip(self.multiplier) {
+            let mut at = [V3::<L>::splat(token, 0.0); 4];
+            let mut masses = [L::splat(token, 0.0); 4];
+            for (corner, &particle) in hinge.particles.iter().enumerate() {
+                at[corner] = V3::load(token, &self.position[particle as usize]);
+                masses[corner] = L::splat(token, inverse_masses[particle as usize]);
+            }
+            let Fold { angle, gradient } = fold(token, at);
+            let compliance = L::load(token, &self.compliance[hinge.class as usize]);
+            let mut excess = shortest_turn(token, angle - L::splat(token, hinge.rest_angle));
+            if self.accumulate {
+                excess = excess + compliance * L::load(token, multiplier);
+            }
+            let mut denominator = compliance;
+            for (w, g) in masses.into_iter().zip(gradient) {
+                denominator = denominator + w * g.dot(g);
+            }
+            // A collapsed hinge has no gradient; without compliance its denominator would be zero.
+            let step = -excess / denominator.max(L::splat(token, f32::MIN_POSITIVE));
+            if self.accumulate {
+                (L::load(token, multiplier) + step).store(multiplier);
+            }
+            for ((particle, x), (w, g)) in
+                hinge.particles.into_iter().zip(at).zip(masses.into_iter().zip(gradient))
+            {
+                (x + g * (w * step)).store(&mut self.position[particle as usize]);
+            }
+        }
+    }
+}
+
+/// The angle plus or minus full turns, between −π and π, so that a hinge folded past π opens the short way.
+#[inline(always)]
+fn shortest_turn<L: Lane>(token: L::Token, angle: L) -> L {
+    let half = L::splat(token, core::f32::consts::PI);
+    let full = L::splat(token, core::f32::consts::TAU);
+    let angle = (angle - full).or_where_not(half.lt(angle), angle);
+    (angle + full).or_where_not(angle.lt(-half), angle)
+}

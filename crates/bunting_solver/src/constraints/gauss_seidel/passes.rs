@@ -1,0 +1,24 @@
+//! Passes over all constraints.
+
+use crate::batch::lane_batch::LaneBatch;
+use crate::simd::lane::Pack;
+
+impl<P: Pack> LaneBatch<P> {
+    /// Solves bending, stretch and contacts in each of as many passes as the settings say.
+    pub fn solve_gauss_seidel(&mut self) {
+        let passes = self.clock.settings.passes;
+        // With a single pass no other reads the multipliers.
+        let accumulate = passes > 1;
+        if accumulate {
+            for (target, link) in self.link_target.iter_mut().zip(self.fabric.links()) {
+                *target = P::splat(link.rest_length);
+            }
+            self.layout.hinge_multiplier.fill(P::splat(0.0));
+        }
+        for _ in 0..passes {
+            self.solve_dihedral(accumulate);
+            self.solve_distance(accumulate);
+            self.solve_contacts();
+        }
+    }
+}

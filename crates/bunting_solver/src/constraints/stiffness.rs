@@ -1,0 +1,76 @@
+//! Compliances of one cloth's constraints in its substep, and what follows from how stiff it is.
+
+use crate::constants::{GRAVITY, GREATEST_COMPLIANCE, LEAST_LINK_COMPLIANCE};
+use crate::fabric::{Fabric, FabricMaterial};
+use crate::step::Scheme;
+
+/// Γ = σ g L³/B above which a cloth does not resist twist. At this Γ a sheet of length L that is clamped
+/// level at one edge reaches out by a twentieth of L, and twist is small beside weight. Larger: twist is
+/// solved for cloth in which it cannot be seen. A flag of a metre has 100,000.
+const LIMP: f32 = 1000.0;
+
+/// Square of the phase that the fastest bending wave turns by in a substep, 16 h² B/(σ l⁴), above which
+/// bending is solved at the positions that stretch is predicted to lead to. Larger: stiff strips droop too
+/// far. A 33 × 33 flag has 0.02.
+const STIFF_BENDING: f32 = 1.0;
+
+/// Part of the predicted stretch that bending is solved with. With all of it an oscillation of the
+/// prediction would not die out.
+const PREDICTED_PART: f32 = 0.9;
+
+/// Whether a cloth is so stiff that its resistance to twist shows.
+pub(crate) fn resists_twist(fabric: &Fabric, material: &FabricMaterial) -> bool {
+    let Some(grid) = fabric.grid() else { return false };
+    let length = grid.width.max(grid.height);
+    material.area_density * GRAVITY * length.powi(3) < LIMP * material.bend_stiffness
+}
+
+/// How stiff one cloth is in a substep.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stiffness<'a> {
+    pub material: &'a FabricMaterial,
+    /// Effective length β h of the substep, s.
+    pub step: f32,
+    pub scheme: Scheme,
+}
+
+impl Stiffness<'_> {
+    /// σ/(k h²): XPBD's compliance in units of the density, 1/m² for k in N/m.
+    fn compliance(&self, stiffness: f32) -> f32 {
+        let density = self.material.area_density;
+        (density / (stiffness * self.step * self.step)).min(GREATEST_COMPLIANCE)
+    }
+
+    /// Compliance of each class of links, 1/m².
+    pub fn of_links(&self, fabric: &Fabric) -> Vec<f32> {
+        let least = LEAST_LINK_COMPLIANCE / fabric.particle_areas()[0];
+        let classes = fabric.link_classes().iter();
+        let stiffnesses = classes.map(|class| match self.scheme {
+            Scheme::Yarns if fabric.has_shear_cells() => class.uncoupled_stiffness(self.material),
+            _ => class.stiffness(self.material),
+        });
+        stiffnesses.map(|stiffness| self.compliance(stiffness).max(least)).collect()
+    }
+
+    /// Compliance of each class of hinges, 1/m⁴.
+    pub fn of_hinges(&self, fabric: &Fabric) -> Vec<f32> {
+        let classes = fabric.hinge_classes().iter();
+        classes.map(|class| self.compliance(class.stiffness(self.material))).collect()
+    }
+
+    /// σ/(B h²), 1/m⁴: compliance against bending and twist of a line of unit weight.
+    pub fn of_bending(&self) -> f32 {
+        self.compliance(self.material.bend_stiffness)
+    }
+
+    /// Part of the predicted stretch that bending is solved with; zero where bending is not stiff, and where
+    /// diagonals count as warp or weft.
+    pub fn predicted_part(&self, fabric: &Fabric) -> f32 {
+        let spacing = fabric.bend_profiles().iter().map(|profile| profile.inverse_spacing);
+        let finest = spacing.fold(0.0, f32::max);
+        let FabricMaterial { bend_stiffness, area_density, .. } = *self.material;
+        let phase_squared =
+            16.0 * self.step * self.step * bend_stiffness / area_density * finest.powi(4);
+        if fabric.has_shear_cells() && phase_squared > STIFF_BENDING { PREDICTED_PART } else { 0.0 }
+    }
+}

@@ -1,0 +1,25 @@
+//! Rows of the tridiagonal systems of chains.
+
+use crate::simd::lane::Pack;
+use crate::simd::vec3::Pack3;
+
+/// What the elimination of a chain's system (Thomas's algorithm) stores for the substitution, of one link.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TridiagonalRow<P: Pack> {
+    /// Vector d from the link's first particle to its second, m.
+    pub along: Pack3<P>,
+    /// Thomas coefficient: the part of this row's unknown in that of the row before.
+    pub multiplier: P,
+    /// This row's unknown, λ/|d|, less its part in the next.
+    pub unknown: P,
+    /// Change of the link's target for a unit change of the unknown, α̃ |d|, m.
+    pub target_change: P,
+}
+
+impl<P: Pack> TridiagonalRow<P> {
+    /// A row of zeros.
+    pub fn new() -> Self {
+        let zero = P::splat(0.0);
+        Self { along: [zero; 3], multiplier: zero, unknown: zero, target_change: zero }
+    }
+}

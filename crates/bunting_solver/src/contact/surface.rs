@@ -1,0 +1,108 @@
+//! Projection of a particle onto the surface of a shape: C = n·(x − q) − d ≥ 0, with Coulomb friction.
+
+use glam::Vec3;
+use parry3d::query::Ray;
+use parry3d::shape::{HeightField, Shape};
+
+use crate::constants::LEAST_LENGTH;
+use crate::contact::ground;
+
+/// The surface of a shape, in the shape's frame.
+pub(super) struct Surface<'a> {
+    pub shape: &'a dyn Shape,
+    /// The shape as ground, if it is a heightfield.
+    pub ground: Option<&'a HeightField>,
+    /// Distance by which a particle deep in the ground rises in this substep, m.
+    pub rise: f32,
+    /// Least distance of particles from the shape, m.
+    pub clearance: f32,
+    /// Coulomb friction coefficient of the contact.
+    pub friction: f32,
+}
+
+/// The nearest plane of the surface to a particle that is closer than the clearance.
+struct Overlap {
+    /// Unit normal, out of the shape.
+    normal: Vec3,
+    /// Clearance less distance, m.
+    depth: f32,
+}
+
+/// The projection of a particle by a contact.
+pub(super) struct Projection {
+    /// Position, m.
+    pub to: Vec3,
+    /// Unit normal of the surface, out of the shape.
+    pub normal: Vec3,
+}
+
+impl Surface<'_> {
+    /// Projects a particle that moves from one point to another, m; none if it does not come closer than the
+    /// clearance.
+    pub fn project(&self, from: Vec3, to: Vec3) -> Option<Projection> {
+        match self.cross(from, to) {
+            Some(projection) => Some(projection),
+            None => self.slide(from, to),
+        }
+    }
+
+    /// Projects a particle whose path enters the shape from outside. A particle that a fast shape overtakes
+    /// moves with the shape and does not slide: a slide as long as the path would take it round the shape
+    /// within the substep.
+    fn cross(&self, from: Vec3, to: Vec3) -> Option<Projection> {
+        if self.contains(from) {
+            return None;
+        }
+        let path = Ray::new(from, to - from);
+        let hit = self.shape.cast_local_ray_and_get_normal(&path, 1.0, true)?;
+        let entry = path.point_at(hit.time_of_impact);
+        let above = |at: Vec3| hit.normal.dot(at - entry) - self.clearance;
+        if above(to) >= 0.0 {
+            return None;
+        }
+        let at = from - hit.normal * above(from);
+        // Beside an edge this may lie within another face; and normals of rays against round shapes are
+        // estimates.
+        let overlap = self.overlap(from, at);
+        let to = overlap.map_or(at, |Overlap { normal, depth }| at + normal * depth);
+        Some(Projection { to, normal: hit.normal })
+    }
+
+    /// Projects a particle that comes closer than the clearance, with friction.
+    fn slide(&self, from: Vec3, to: Vec3) -> Option<Projection> {
+        let Overlap { normal, depth } = self.overlap(from, to)?;
+        let moved = to - from;
+        let slide = moved - normal * moved.dot(normal);
+        // Friction shortens the slide by at most its coefficient times the depth (Coulomb's cone).
+        let held = (self.friction * depth / slide.length().max(LEAST_LENGTH)).min(1.0);
+        Some(Projection { to: to + normal * depth - slide * held, normal })
+    }
+
+    /// The nearest plane of the surface to `to`, if that is closer than the clearance.
+    fn overlap(&self, from: Vec3, to: Vec3) -> Option<Overlap> {
+        let nearest = match self.ground {
+            Some(field) => ground::project(field, to, self.clearance)?,
+            None => self.shape.project_local_point(to, false),
+        };
+        let away = if nearest.is_inside { nearest.point - to } else { to - nearest.point };
+        let distance = away.length();
+        let signed = if nearest.is_inside { -distance } else { distance };
+        if signed >= self.clearance {
+            return None;
+        }
+        // On the surface itself, and at the centre of a ball, the path tells the side.
+        let normal =
+            if distance > LEAST_LENGTH { away / distance } else { (from - to).try_normalize()? };
+        let depth = self.clearance - signed;
+        let rises = self.ground.is_some() && nearest.is_inside;
+        Some(Overlap { normal, depth: if rises { depth.min(self.rise) } else { depth } })
+    }
+
+    /// Whether a point is inside of the shape, or in the ground.
+    fn contains(&self, at: Vec3) -> bool {
+        match self.ground {
+            Some(field) => ground::depth(field, at).is_some_and(|depth| depth > 0.0),
+            None => self.shape.contains_local_point(at),
+        }
+    }
+}

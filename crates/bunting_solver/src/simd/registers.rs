@@ -1,0 +1,294 @@
+//! The widths: one float, eight and sixteen, in memory and in registers. The only file that knows them.
+
+use core::ops::{Add, Div, Mul, Neg, Sub};
+
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f32x4, f32x8, f32x16};
+
+use crate::simd::lane::{Kernel, Lane, Mask, Pack};
+use crate::simd::level::level;
+
+/// A single lane: the scalar solver, against which the wide ones are tested.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub(crate) struct Pack1([f32; 1]);
+
+/// Eight lanes: one AVX register, or two of SSE or NEON.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(crate) struct Pack8([f32; 8]);
+
+/// Sixteen lanes: one AVX-512 register, or two of AVX.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Pack16([f32; 16]);
+
+macro_rules! pack_memory {
+    ($width:literal) => {
+        const WIDTH: usize = $width;
+
+        #[inline(always)]
+        fn splat(value: f32) -> Self {
+            Self([value; $width])
+        }
+
+        #[inline(always)]
+        fn lanes(&self) -> &[f32] {
+            &self.0
+        }
+
+        #[inline(always)]
+        fn lanes_mut(&mut self) -> &mut [f32] {
+            &mut self.0
+        }
+    };
+}
+
+impl Pack for Pack1 {
+    pack_memory!(1);
+
+    fn run<K: Kernel<Self>>(kernel: K) {
+        #[inline(always)]
+        fn with_token<S: Simd, K: Kernel<Pack1>>(token: S, kernel: K) {
+            kernel.run::<Single<S>>(token);
+        }
+        dispatch!(level(), token => with_token(token, kernel));
+    }
+}
+
+/// Whether the instruction set has a fused multiply-add. Where it has none, a sum with a product is done in
+/// software, which is too long to be inlined.
+#[inline(always)]
+fn fuses<S: Simd>(token: S) -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        matches!(token.level(), Level::Avx2(_) | Level::Avx512(_))
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    {
+        let _ = token;
+        cfg!(target_arch = "aarch64")
+    }
+}
+
+macro_rules! wide {
+    ($pack:ident, $vector:ident, $width:literal) => {
+        impl Pack for $pack {
+            pack_memory!($width);
+
+            fn run<K: Kernel<Self>>(kernel: K) {
+                #[inline(always)]
+                fn with_token<S: Simd, K: Kernel<$pack>>(token: S, kernel: K) {
+                    kernel.run::<$vector<S>>(token);
+                }
+                dispatch!(level(), token => with_token(token, kernel));
+            }
+        }
+
+        impl<S: Simd> Lane for $vector<S> {
+            type Pack = $pack;
+            type Token = S;
+            type Mask = <$vector<S> as SimdBase<S>>::Mask;
+
+            #[inline(always)]
+            fn splat(token: S, value: f32) -> Self {
+                SimdBase::splat(token, value)
+            }
+
+            #[inline(always)]
+            fn load(token: S, pack: &$pack) -> Self {
+                SimdBase::load_array_ref(token, &pack.0)
+            }
+
+            #[inline(always)]
+            fn store(self, pack: &mut $pack) {
+                SimdBase::store_array(self, &mut pack.0);
+            }
+
+            #[inline(always)]
+            fn load_at(token: S, values: &[f32], at: usize) -> Self {
+                SimdBase::from_slice(token, &values[at..at + $width])
+            }
+
+            #[inline(always)]
+            fn store_at(self, values: &mut [f32], at: usize) {
+                SimdBase::store_slice(&self, &mut values[at..at + $width]);
+            }
+
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                SimdFloat::sqrt(self)
+            }
+
+            #[inline(always)]
+            fn abs(self) -> Self {
+                SimdBase::abs(self)
+            }
+
+            #[inline(always)]
+            fn lt(self, other: Self) -> Self::Mask {
+                self.simd_lt(other)
+            }
+
+            #[inline(always)]
+            fn plus_product(self, a: Self, b: Self) -> Self {
+                #[cold]
+                #[inline(never)]
+                fn in_software<S: Simd>(sum: $vector<S>, a: $vector<S>, b: $vector<S>) -> $vector<S> {
+                    a.mul_add_precise(b, sum)
+                }
+                if fuses(self.simd) {
+                    a.mul_add_precise(b, self)
+                } else {
+                    in_software(self, a, b)
+                }
+            }
+
+            #[inline(always)]
+            fn minus_product(self, a: Self, b: Self) -> Self {
+                self.plus_product(-a, b)
+            }
+
+            #[inline(always)]
+            fn or_where_not(self, mask: Self::Mask, other: Self) -> Self {
+                mask.select(self, other)
+            }
+        }
+    };
+}
+
+wide!(Pack8, f32x8, 8);
+wide!(Pack16, f32x16, 16);
+
+impl<S: Simd> Mask for fearless_simd::mask32x8<S> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        fearless_simd::SimdMask::any_true(self)
+    }
+}
+
+impl<S: Simd> Mask for fearless_simd::mask32x16<S> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        fearless_simd::SimdMask::any_true(self)
+    }
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+}
+
+/// A single float in a register, with proof of the instruction set: only the token tells whether a fused
+/// multiply-add exists.
+#[derive(Clone, Copy)]
+struct Single<S> {
+    value: f32,
+    token: S,
+}
+
+impl<S: Simd> Single<S> {
+    #[inline(always)]
+    fn with(self, value: f32) -> Self {
+        Self { value, ..self }
+    }
+}
+
+macro_rules! single_operator {
+    ($($operator:ident :: $method:ident),*) => {
+        $(impl<S: Simd> $operator for Single<S> {
+            type Output = Self;
+
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.with($operator::$method(self.value, other.value))
+            }
+        })*
+    };
+}
+
+single_operator!(Add::add, Sub::sub, Mul::mul, Div::div);
+
+impl<S: Simd> Neg for Single<S> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.with(-self.value)
+    }
+}
+
+impl<S: Simd> Lane for Single<S> {
+    type Pack = Pack1;
+    type Token = S;
+    type Mask = bool;
+
+    #[inline(always)]
+    fn splat(token: S, value: f32) -> Self {
+        Self { value, token }
+    }
+
+    #[inline(always)]
+    fn load(token: S, pack: &Pack1) -> Self {
+        Self { value: pack.0[0], token }
+    }
+
+    #[inline(always)]
+    fn store(self, pack: &mut Pack1) {
+        pack.0[0] = self.value;
+    }
+
+    #[inline(always)]
+    fn load_at(token: S, values: &[f32], at: usize) -> Self {
+        Self { value: values[at], token }
+    }
+
+    #[inline(always)]
+    fn store_at(self, values: &mut [f32], at: usize) {
+        values[at] = self.value;
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // Correctly rounded by IEEE 754 on every target.
+        self.with(f32::sqrt(self.value))
+    }
+
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.with(f32::abs(self.value))
+    }
+
+    #[inline(always)]
+    fn lt(self, other: Self) -> bool {
+        self.value < other.value
+    }
+
+    #[inline(always)]
+    #[expect(clippy::disallowed_methods, reason = "reached only where the instruction set has it")]
+    fn plus_product(self, a: Self, b: Self) -> Self {
+        #[cold]
+        #[inline(never)]
+        fn in_software<S: Simd>(token: S, [sum, a, b]: [f32; 3]) -> f32 {
+            let [sum, a, b] =
+                [sum, a, b].map(|value| <f32x4<S> as SimdBase<S>>::splat(token, value));
+            a.mul_add_precise(b, sum).as_slice()[0]
+        }
+        self.with(if fuses(self.token) {
+            a.value.mul_add(b.value, self.value)
+        } else {
+            in_software(self.token, [self.value, a.value, b.value])
+        })
+    }
+
+    #[inline(always)]
+    fn minus_product(self, a: Self, b: Self) -> Self {
+        self.plus_product(-a, b)
+    }
+
+    #[inline(always)]
+    fn or_where_not(self, mask: bool, other: Self) -> Self {
+        if mask { self } else { other }
+    }
+}

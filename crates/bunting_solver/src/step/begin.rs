@@ -1,0 +1,109 @@
+//! The beginning of a tick and of a substep: everything that is constant over it is computed.
+
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::lane_state::LaneState;
+use crate::batch::layout::{Layout, Positions};
+use crate::constraints::stiffness::Stiffness;
+use crate::simd::lane::Pack;
+use crate::stability::added_mass::{AddedMass, InverseMasses, inertias};
+use crate::step::bdf::Formula;
+use crate::step::clock::Clock;
+use crate::step::load_stretch::LoadStretch;
+use crate::step::parameters::ParameterInputs;
+use crate::step::{Scheme, StepSettings};
+
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Begins a tick of `tick` seconds: computes what is constant over it, and gathers contact candidates.
+    pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
+        let step = tick / settings.substeps as f32;
+        self.clock = Clock { settings, step, begun: 0, predicted: false };
+        if self.clock.stands_still() {
+            return;
+        }
+        let substep = match settings.scheme {
+            Scheme::GaussSeidel => 0.0,
+            Scheme::Yarns => Formula::BDF2_OPT.beta * step,
+        };
+        if self.masses.substep != substep {
+            self.masses.substep = substep;
+            self.masses.of_substep = InverseMasses::new(&self.fabric, substep);
+            self.lanes.iter_mut().flatten().for_each(|cloth| cloth.added_mass = None);
+        }
+        self.gather_contacts(tick);
+    }
+
+    /// Computes what is constant over the coming substep.
+    pub fn begin_substep(&mut self) {
+        let moved = self.parameters.any_frame_moves();
+        for cloth in 0..self.lanes.len() {
+            // Taken out, so that the rest of the batch can be written.
+            match self.lanes[cloth].take() {
+                Some(mut state) => {
+                    self.begin_substep_of(cloth, &mut state);
+                    self.lanes[cloth] = Some(state);
+                }
+                None => self.parameters.set_empty(Y::lanes(cloth)),
+            }
+        }
+        // One substep more than the motion lasts, so that the velocities of pins become zero again.
+        self.parameters.any_frame_moved = moved || self.parameters.any_frame_moves();
+    }
+
+    fn begin_substep_of(&mut self, cloth: usize, state: &mut LaneState) {
+        let Clock { settings, step, .. } = self.clock;
+        state.external_moment = 0.0;
+        let formula = state.history.begin_substep(step, settings.scheme);
+        self.parameters.set_pole_turn(Y::lanes(cloth), state.history.pole_turn);
+        let inputs = ParameterInputs {
+            material: state.material,
+            air_density: state.drive.air_density,
+            step,
+            formula,
+            scheme: settings.scheme,
+        };
+        if state.inputs.replace(inputs) != Some(inputs) {
+            self.set_inputs(cloth, &inputs);
+        }
+        self.set_added_mass(cloth, state);
+        self.parameters.set_drive(Y::lanes(cloth), &state.drive, &self.clock);
+        let reach = match self.fabric.grid() {
+            // A cloth without pins is held by its own inertia.
+            Some(grid) if !self.fabric.has_pins() => grid.width.max(grid.height),
+            _ => self.fabric.reach(),
+        };
+        let stretch =
+            LoadStretch::new(&state.material, &state.drive, reach, state.pin_strain.greatest);
+        self.parameters.set_load_stretch(Y::lanes(cloth), &stretch);
+    }
+
+    /// Computes what depends on a cloth's material and on the formula.
+    fn set_inputs(&mut self, cloth: usize, inputs: &ParameterInputs) {
+        let stiffness = Stiffness {
+            material: &inputs.material,
+            step: inputs.effective_step(),
+            scheme: inputs.scheme,
+        };
+        self.layout.set_stiffness(cloth, &self.fabric, &stiffness);
+        let predicted_part = stiffness.predicted_part(&self.fabric);
+        self.parameters.set_inputs(Y::lanes(cloth), &self.fabric, inputs, predicted_part);
+    }
+
+    /// Computes a cloth's inverse masses, where what they depend on has changed.
+    fn set_added_mass(&mut self, cloth: usize, state: &mut LaneState) {
+        let uprightness = self.pole.map_or(0.0, |pole| pole.uprightness(state.drive.gravity));
+        let added_mass = AddedMass::new(
+            uprightness,
+            &state.pin_strain,
+            &self.fabric,
+            &state.material,
+            self.masses.substep,
+        );
+        if state.added_mass.replace(added_mass) == Some(added_mass) {
+            return;
+        }
+        let inverse_masses = self.masses.of_substep.of_cloth(added_mass, &state.pin_strain);
+        self.layout.write_numbers(&inverse_masses, cloth, &mut self.masses.inverse);
+        self.layout.write_numbers(&inertias(&inverse_masses), cloth, &mut self.masses.inertia);
+        self.positions.set_inverse_masses(&inverse_masses);
+    }
+}
