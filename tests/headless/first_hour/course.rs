@@ -43,7 +43,6 @@ fn lateness(rate: f64) -> f32 {
 fn colliders_act_where_they_are_seen() {
     for rate in [30.0, 47.0, 60.0, 144.0] {
         let late = lateness(rate);
-        println!("{late} m at {rate} Hz");
         // Up to a tick may pass between the last tick and the frame.
         assert!(late < SPEED / 64.0 + 0.02, "{late} m late at {rate} Hz");
     }

@@ -78,7 +78,6 @@ fn uneven_frames_look_like_even_ones() {
     let even = ride(0.0);
     for jitter in [0.03, 0.1, 0.2] {
         let uneven = ride(jitter);
-        println!("{uneven:?} {even:?}");
         assert!(uneven.strain < 1.05 * even.strain, "± {jitter}: {uneven:?}, even: {even:?}");
         assert!(uneven.speed < 1.05 * even.speed, "± {jitter}: {uneven:?}, even: {even:?}");
     }

@@ -235,13 +235,16 @@ impl Governor {
         let mut left = [limits.switches; 2];
         let mut changes = 0.0;
         let mut cost = self.counts.count(tables, cloths, cloths.iter().map(|cloth| cloth.level));
-        cost = self.start_fresh(tables, cloths, limits.budget, cost);
+        // More may come in the next tick than others become coarser for.
+        let has_fresh = cloths.iter().any(|cloth| cloth.fresh);
+        let budget = if has_fresh { (1.0 - MOST_RESERVED) * limits.budget } else { limits.budget };
+        cost = self.start_fresh(tables, cloths, budget, cost);
         let switches = &mut self.choice.switches;
         for (index, (cloth, &to)) in cloths.iter().zip(&self.chosen).enumerate() {
             if cloth.fresh {
                 continue;
             }
-            let may = cloth.ready || cost > limits.budget;
+            let may = cloth.ready || cost > budget;
             let left = &mut left[usize::from(cloth.on_screen)];
             if to > cloth.level && may && *left > 0 {
                 *left -= 1;
@@ -261,7 +264,7 @@ impl Governor {
             }
             let more = self.counts.difference(tables, cloth.table, cloth.level, to);
             let change = cloth.cost_of_change(tables, to);
-            let room = limits.budget - (changes + change).min(MOST_RESERVED * limits.budget);
+            let room = budget - (changes + change).min(MOST_RESERVED * limits.budget);
             if more <= 0.0 || cost + more <= room {
                 cost += more;
                 changes += change;
