@@ -112,8 +112,8 @@ impl FabricMaterial {
         let density = |value: f32| value > 0.0 && value.is_finite();
         let stretch = |value: f32| value > 0.0;
         let other = |value: f32| value >= 0.0 && value.is_finite();
-        let checks: [(_, _, fn(f32) -> bool); 11] = [
-            ("area_density", self.area_density, density),
+        let checks = [
+            ("area_density", self.area_density, density as fn(f32) -> bool),
             ("warp_stiffness", self.warp_stiffness, stretch),
             ("weft_stiffness", self.weft_stiffness, stretch),
             ("shear_stiffness", self.shear_stiffness, other),

@@ -33,7 +33,8 @@ impl StepLimits {
         self.of_tautness(fabric.tautness(), tick, gravity)
     }
 
-    /// How a fabric of a [tautness](Fabric::tautness) in m^−½ is solved.
+    /// How a fabric of a tautness √L/l in m^−½ is solved, with L the greatest distance of a particle from its nearest
+    /// pin and l the length of the shortest link of warp and weft.
     #[must_use]
     pub fn of_tautness(&self, tautness: f32, tick: f32, gravity: f32) -> StepSettings {
         let wanted = tick * tautness * (gravity / FASTEST_VIBRATION).sqrt();
