@@ -47,6 +47,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         for _ in 0..passes / 2 {
             self.sweep_links();
         }
+        // Takes the positions back from the constraints.
         self.positions.packs_mut();
         self.update_prediction();
         self.solve_contacts();
