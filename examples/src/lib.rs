@@ -16,7 +16,21 @@ pub use example::{Example, Options, Record};
 /// Folder of scenes and models.
 pub const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets");
 
-/// The README, whose example is tested here.
+/// The README, whose first example is tested here.
 #[cfg(doctest)]
 #[doc = include_str!("../../README.md")]
 pub struct Readme;
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_readme_shows_the_example_that_is_compiled() {
+        let example = include_str!("../hello_flag/main.rs");
+        let (_, code) = example.split_once("\n\n").expect("a header");
+        let readme = include_str!("../../README.md");
+        assert!(
+            readme.contains(code),
+            "README.md shows another hello_flag than examples/hello_flag"
+        );
+    }
+}
