@@ -126,6 +126,7 @@ pub use cloth::state::ClothState;
 pub use cloth::weights::WeightsError;
 pub use diagnostics::ClothDiagnosticsPlugin;
 pub use display::ease::EasingPlugin;
+pub use display::lift::LiftPlugin;
 pub use display::surface::{ClothSurface, SurfacePlugin};
 pub use environment::collider::{ClothCollider, ColliderPlugin};
 pub use environment::drive::DrivePlugin;
@@ -204,6 +205,7 @@ impl PluginGroup for ClothPlugins {
             .add(SolverPlugin)
             .add(PublishPlugin)
             .add(EasingPlugin)
+            .add(LiftPlugin)
             .add(SurfacePlugin)
             .add(ClothDiagnosticsPlugin);
         #[cfg(feature = "render")]

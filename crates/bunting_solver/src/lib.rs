@@ -76,6 +76,7 @@ pub use batch::lane_count::LaneCount;
 pub use batch::snapshot::ClothSnapshot;
 pub use batch::{BatchError, ClothBatch, LaneSurface, ParticlesMut};
 pub use contact::collider::Collider;
+pub use contact::lift::SurfaceLift;
 pub use fabric::{
     CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link, LinkFamily,
 };

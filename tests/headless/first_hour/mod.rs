@@ -9,6 +9,7 @@ mod plane;
 mod platform;
 mod scale;
 mod scene;
+mod sharp_edges;
 mod spawning;
 mod teleport;
 mod terrain;

@@ -7,7 +7,7 @@ use bevy_ecs::prelude::*;
 use bevy_platform::time::Instant;
 use bevy_tasks::ComputeTaskPool;
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Fabric, LaneCount, LaneSurface, ParticlesMut, StepSettings,
+    ClothBatch, ClothSnapshot, Collider, Fabric, LaneCount, LaneSurface, ParticlesMut, StepSettings,
 };
 
 use crate::batch::group::Group;
@@ -81,6 +81,11 @@ impl ClothBatches {
         let batch = self.groups.get(lane.group)?.batches.get(lane.batch)?;
         let occupant = batch.occupants.get(lane.lane)?.as_ref()?;
         (occupant.entity != cloth).then(|| batch.batch.snapshot(lane.lane))
+    }
+
+    /// The colliders that the cloth in a lane could touch in the last tick.
+    pub(crate) fn near_colliders(&self, lane: LaneHandle) -> impl Iterator<Item = &Collider> {
+        self.groups[lane.group].batches[lane.batch].batch.near_colliders(lane.lane)
     }
 
     /// Removes a cloth from its lane.

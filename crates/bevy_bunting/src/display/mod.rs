@@ -3,4 +3,5 @@
 pub mod decay;
 pub mod ease;
 pub mod easing;
+pub mod lift;
 pub mod surface;

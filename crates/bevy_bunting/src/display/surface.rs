@@ -9,6 +9,7 @@ use bevy_time::{Time, Virtual};
 
 use crate::cloth::state::ClothState;
 use crate::display::easing::ClothEasing;
+use crate::display::lift::ClothLift;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// The surface of a cloth for display, in the cloth's frame: [`ClothState`] interpolated between its last
@@ -20,11 +21,14 @@ use crate::schedule::{ClothSystems, ClothTick};
 /// After a change of level the surface continues the motion that was shown, with the vertices of the
 /// finer level, and approaches that of the new level within 0.25 s.
 ///
+/// Where a triangle between particles would cut a [`ClothCollider`](crate::ClothCollider) that has an inside, the
+/// surface is lifted out of it.
+///
 /// Optional: only cloths with this component are interpolated. Written each frame in
 /// `RunFixedMainLoopSystems::AfterFixedMainLoop`.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
-#[require(ClothEasing)]
+#[require(ClothEasing, ClothLift)]
 pub struct ClothSurface {
     /// Positions of the particles, m.
     pub positions: Vec<Vec3>,
@@ -69,14 +73,14 @@ fn note_tick(mut tick: ResMut<LastTick>, time: Res<Time>) {
 }
 
 fn interpolate_surfaces(
-    mut surfaces: Query<(&ClothState, &ClothEasing, &mut ClothSurface)>,
+    mut surfaces: Query<(&ClothState, &ClothEasing, &ClothLift, &mut ClothSurface)>,
     tick: Res<LastTick>,
     time: Res<Time<Virtual>>,
 ) {
     let fraction =
         if tick.length > 0.0 { (time.elapsed_secs_f64() - tick.end) / tick.length } else { 1.0 };
     let fraction = fraction.clamp(0.0, 1.0) as f32;
-    for (state, easing, mut surface) in &mut surfaces {
+    for (state, easing, lift, mut surface) in &mut surfaces {
         let (level, [from, to], normals) = match easing.level() {
             Some(level) => (
                 level,
@@ -92,6 +96,7 @@ fn interpolate_surfaces(
         surface.level = level;
         surface.positions.clear();
         surface.positions.extend(interpolate(from, to, fraction));
+        lift.apply(level, fraction, &mut surface.positions);
         surface.normals.clear();
         let normals = interpolate(normals[0], normals[1], fraction);
         surface.normals.extend(normals.map(Vec3::normalize_or_zero));

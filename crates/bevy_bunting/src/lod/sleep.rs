@@ -10,7 +10,7 @@ use crate::batch::publish::reset_diverged;
 use crate::cloth::activity::ClothActivity;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
-use crate::display::ease::ease_surfaces;
+use crate::display::lift::lift_surfaces;
 use crate::environment::collider::ClothCollider;
 use crate::environment::wind::TickWind;
 use crate::lod::record::{LodRecord, RestTimer};
@@ -56,7 +56,7 @@ impl Plugin for SleepPlugin {
                 send_to_sleep
                     .in_set(ClothSystems::Publish)
                     .after(reset_diverged)
-                    .after(ease_surfaces),
+                    .after(lift_surfaces),
             ),
         );
     }

@@ -221,6 +221,13 @@ impl ClothBatch {
         });
     }
 
+    /// The colliders that a lane's cloth could touch in the last tick.
+    pub fn near_colliders(&self, lane: usize) -> impl Iterator<Item = &Collider> {
+        let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
+        let near = cloth.into_iter().flat_map(|cloth| cloth.colliders.iter().zip(&cloth.contacts));
+        near.filter(|(_, candidates)| !candidates.is_empty()).map(|(collider, _)| collider)
+    }
+
     /// Begins a tick of `tick` seconds: sets the length of its substeps, and finds the particles that may touch
     /// each collider. In a tick without length nothing moves.
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {

@@ -3,6 +3,7 @@
 mod candidates;
 pub(crate) mod collider;
 mod ground;
+pub(crate) mod lift;
 mod near;
 mod solve;
 mod surface;

@@ -1,0 +1,75 @@
+//! Item 13: the drawn surface keeps clear of what its particles keep clear of.
+
+use bevy_app::App;
+use bevy_bunting::prelude::*;
+use bevy_ecs::prelude::*;
+use bevy_math::{Quat, Vec3};
+use bevy_transform::prelude::*;
+use bunting_tests::{app, bits, run, state};
+
+/// Half extents of the box, m.
+const BOX: Vec3 = Vec3::new(0.3, 0.2, 0.25);
+
+const MARGIN: f32 = 0.008;
+
+/// Points along each side of a triangle at which it is probed.
+const PROBES: u32 = 12;
+
+/// A sheet of 33 × 33 particles, 3 cm apart, above a sharp box of world axes at the origin.
+fn draped(app: &mut App, turn: f32) -> Entity {
+    let flat = Quat::from_rotation_y(turn) * Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2);
+    let middle = flat * Vec3::new(0.5, -0.5, 0.0);
+    let place = Transform::from_translation(Vec3::Y * 0.25 - middle).with_rotation(flat);
+    let sheet = (ClothMesh::grid(33, 33, 1.0, 1.0), ClothSurface::default(), place);
+    let collider = ClothCollider { margin: MARGIN, ..ClothCollider::cuboid(BOX) };
+    app.world_mut().spawn((collider, Transform::default()));
+    app.world_mut().spawn(sheet).id()
+}
+
+/// How deep a surface with given positions cuts into the box, m; negative where it stays clear.
+fn depth(app: &App, sheet: Entity, positions: &[Vec3]) -> f32 {
+    let placed = *app.world().get::<GlobalTransform>(sheet).expect("placed");
+    let fabric = state(app, sheet).fabric().expect("a fabric");
+    let mut deepest = f32::MIN;
+    for triangle in fabric.triangles() {
+        let [a, b, c] = triangle.map(|at| placed.transform_point(positions[at as usize]));
+        for i in 0..=PROBES {
+            for j in 0..=PROBES - i {
+                let (u, v) = (i as f32 / PROBES as f32, j as f32 / PROBES as f32);
+                let at = a + (b - a) * u + (c - a) * v;
+                deepest = deepest.max((BOX - at.abs()).min_element());
+            }
+        }
+    }
+    deepest
+}
+
+#[test]
+fn a_sharp_box_does_not_show_through() {
+    for turn in [0.0, 0.4, 0.8] {
+        let mut app = app();
+        let sheet = draped(&mut app, turn);
+        run(&mut app, 20);
+        let mut cut = f32::MIN;
+        for tick in 0..180 {
+            app.update();
+            cut = cut.max(depth(&app, sheet, state(&app, sheet).positions()));
+            let shown = &app.world().get::<ClothSurface>(sheet).expect("a surface").positions;
+            let shown = depth(&app, sheet, shown);
+            assert!(shown < 0.0, "the box shows by {shown} m in tick {tick}, turned by {turn}");
+        }
+        assert!(cut > 1e-3, "triangles between particles cut into the box by {cut} m only");
+    }
+}
+
+#[test]
+fn the_lift_changes_no_particle() {
+    let mut app = app();
+    let sheet = draped(&mut app, 0.4);
+    let mut other = self::app();
+    let same = draped(&mut other, 0.4);
+    other.world_mut().entity_mut(same).remove::<ClothSurface>();
+    run(&mut app, 60);
+    run(&mut other, 60);
+    assert_eq!(bits(&app, sheet), bits(&other, same));
+}
