@@ -3,8 +3,10 @@
 use bevy_bunting::bunting_solver::FabricMaterial;
 use bevy_bunting::parry3d::shape::SharedShape;
 use bevy_bunting::prelude::*;
+use bevy_ecs::entity::{EntityHashMap, SceneEntityMapper};
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
+use bevy_ecs::relationship::RelationshipHookMode;
 use bevy_math::{Vec2, Vec3};
 use bevy_reflect::serde::{
     ReflectDeserializer, ReflectDeserializerProcessor, ReflectSerializer,
@@ -12,7 +14,7 @@ use bevy_reflect::serde::{
 };
 use bevy_reflect::{GetPath, PartialReflect, ReflectRef, TypeRegistration, TypeRegistry};
 use bevy_transform::prelude::*;
-use bunting_tests::{app, run, state};
+use bunting_tests::{FLAG, Seen, app, run, state};
 use serde::de::DeserializeSeed;
 use serde::{Deserialize, Deserializer, Serializer};
 
@@ -64,18 +66,27 @@ fn save(world: &World, entity: Entity) -> Vec<String> {
         .collect()
 }
 
-fn load(world: &mut World, components: &[String]) -> Entity {
+/// Loads the components of a saved entity as scenes do, which know no other entity than the saved ones.
+fn load(world: &mut World, saved: &[(Entity, Vec<String>)]) -> Vec<Entity> {
     let types = world.resource::<AppTypeRegistry>().clone();
     let types = types.read();
-    let entity = world.spawn_empty().id();
-    for text in components {
-        let value = read(text, &types);
-        let path = value.get_represented_type_info().expect("a type").type_path();
-        let registered = types.get_with_type_path(path).expect("registered");
-        let component = registered.data::<ReflectComponent>().expect("a component");
-        component.insert(&mut world.entity_mut(entity), &*value, &types);
+    let mut loaded: EntityHashMap<Entity> =
+        saved.iter().map(|(entity, _)| (*entity, world.spawn_empty().id())).collect();
+    for (entity, components) in saved {
+        let entity = loaded[entity];
+        for text in components {
+            let value = read(text, &types);
+            let path = value.get_represented_type_info().expect("a type").type_path();
+            let registered = types.get_with_type_path(path).expect("registered");
+            let component = registered.data::<ReflectComponent>().expect("a component");
+            SceneEntityMapper::world_scope(&mut loaded, world, |world, mapper| {
+                let mut entity = world.entity_mut(entity);
+                let mode = RelationshipHookMode::Skip;
+                component.apply_or_insert_mapped(&mut entity, &*value, &types, mapper, mode);
+            });
+        }
     }
-    entity
+    saved.iter().map(|(entity, _)| loaded[entity]).collect()
 }
 
 fn read(text: &str, types: &TypeRegistry) -> Box<dyn PartialReflect> {
@@ -112,14 +123,32 @@ fn cloths_make_the_round_trip() {
         run(&mut first, 5);
         let saved = save(first.world(), cloth);
         let mut second = app();
-        let loaded = load(second.world_mut(), &saved);
+        let loaded = load(second.world_mut(), &[(cloth, saved.clone())])[0];
         assert_eq!(save(second.world(), loaded), saved);
         let of = |entity, world: &World| world.get::<ClothMaterial>(entity).copied();
         assert_eq!(of(loaded, second.world()), of(cloth, first.world()));
         second.world_mut().entity_mut(loaded).remove::<ClothPaused>();
         run(&mut second, 5);
         assert!(!state(&second, loaded).positions().is_empty());
+        assert!(second.world().resource::<Seen<ClothFailed>>().0.is_empty());
     }
+}
+
+#[test]
+fn a_flag_is_loaded_with_its_pole() {
+    let mut first = app();
+    let pole = first.world_mut().spawn(Transform::from_xyz(1.0, 2.0, 3.0)).id();
+    let flag = (FLAG, Attachment::new(pole, ClothEdge::Left));
+    let flag = first.world_mut().spawn(flag).id();
+    run(&mut first, 2);
+    let saved = [pole, flag].map(|entity| (entity, save(first.world(), entity)));
+    let mut second = app();
+    // So that the entities have other numbers than before.
+    second.world_mut().spawn_batch([Transform::default(); 7]);
+    let [pole, flag] = load(second.world_mut(), &saved)[..] else { panic!("two entities") };
+    run(&mut second, 2);
+    assert_eq!(second.world().get::<Attachment>(flag).map(|held| held.target), Some(pole));
+    assert!(!state(&second, flag).positions().is_empty());
 }
 
 #[test]
@@ -138,7 +167,7 @@ fn colliders_winds_and_viewers_make_the_round_trip() {
         run(&mut first, 2);
         let saved = save(first.world(), all);
         let mut second = app();
-        let loaded = load(second.world_mut(), &saved);
+        let loaded = load(second.world_mut(), &[(all, saved.clone())])[0];
         assert_eq!(save(second.world(), loaded), saved);
         let collider = second.world().get::<ClothCollider>(loaded).expect("a collider");
         let original = first.world().get::<ClothCollider>(all).expect("a collider");

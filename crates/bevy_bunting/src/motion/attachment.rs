@@ -1,5 +1,6 @@
 //! Attachments: chosen vertices of a cloth stay on another entity.
 
+use bevy_ecs::entity::EntityMapper;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec2;
 use bevy_reflect::Reflect;
@@ -29,11 +30,11 @@ const EDGE_TOLERANCE: f32 = 1e-4;
 /// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. Its scale scales
 /// the offset's translation and is otherwise ignored.
 #[derive(Component, Clone, Debug, Reflect)]
+#[component(map_entities = map_target)]
 #[reflect(Component, Debug, Clone)]
 pub struct Attachment {
     /// The entity that the vertices stay on. [`Entity::PLACEHOLDER`], or the cloth itself, holds
     /// them on the cloth's own [`Transform`].
-    #[entities]
     pub target: Entity,
     /// The vertices that are held.
     pub vertices: AttachedVertices,
@@ -46,6 +47,13 @@ pub struct Attachment {
     /// extrapolated motion by 0.4 m. The same holds for a turn that moves as fast what is a metre away, and for
     /// any of more than 90°.
     pub teleport_speed: f32,
+}
+
+/// Maps the target when a scene is loaded. The placeholder is no entity of any scene.
+fn map_target<M: EntityMapper>(attachment: &mut Attachment, mapper: &mut M) {
+    if attachment.target != Entity::PLACEHOLDER {
+        attachment.target = mapper.get_mapped(attachment.target);
+    }
 }
 
 impl Attachment {
