@@ -14,6 +14,7 @@ use crate::cloth::activity::ClothActivity;
 use crate::cloth::imperfection::{ClothSeed, almost_at_rest};
 use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
+use crate::motion::take_up::TakingUp;
 
 /// Where the state of a cloth is stored.
 #[derive(Clone, Debug, Default)]
@@ -54,6 +55,8 @@ pub(crate) struct ClothInstance {
     pub frozen: bool,
     /// A target without a transform, which was reported, and is looked for in each tick.
     pub missing_target: Option<Entity>,
+    /// The way of attached vertices that are not in their places yet.
+    pub taking_up: Option<TakingUp>,
     /// Whether the pose to follow is not finite, and that was reported.
     pub pose_reported: bool,
 }
@@ -173,6 +176,7 @@ impl ClothInstance {
     /// Puts the cloth back to its shape at rest, without velocity, and shows it so.
     pub fn reset(&mut self, state: &mut ClothState, batches: &mut ClothBatches) {
         self.wake();
+        self.taking_up = None;
         let Some(levels) = self.levels.clone() else { return };
         let rest = almost_at_rest(levels.fabric(self.level), self.seed);
         state.restart(self.level, &levels, &rest.positions);
@@ -184,6 +188,7 @@ impl ClothInstance {
 
     /// Lets the cloth wait for a lane, almost at rest.
     fn start_at_rest(&mut self) {
+        self.taking_up = None;
         if let Some(fabric) = self.fabric() {
             self.storage = StateStorage::Snapshot(almost_at_rest(fabric, self.seed));
             self.unmoved = true;

@@ -111,7 +111,7 @@ type New<'a> =
     (Entity, &'a ClothPreroll, &'a mut ClothInstance, &'a mut ClothState, Option<&'a Attachment>);
 
 fn begin_prerolls(
-    mut cloths: Query<New>,
+    mut cloths: Query<New, Without<Rolling>>,
     transforms: TransformHelper,
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
@@ -155,10 +155,7 @@ fn begin_prerolls(
             Some(pool) => RollingTask::Running(pool.spawn(async move { preroll.run() })),
             None => RollingTask::Done(preroll.run()),
         };
-        commands
-            .entity(entity)
-            .remove::<ClothPreroll>()
-            .insert(Rolling { level: instance.level, task });
+        commands.entity(entity).insert(Rolling { level: instance.level, task });
     }
 }
 
@@ -172,8 +169,8 @@ fn end_prerolls(
             RollingTask::Done(snapshot) => Some(core::mem::take(snapshot)),
         };
         let Some(snapshot) = snapshot else { continue };
-        commands.entity(entity).remove::<Rolling>();
-        // Cut anew in the meantime, it begins as that cloth does.
+        commands.entity(entity).remove::<(Rolling, ClothPreroll)>();
+        // A cloth that was cut anew in the meantime begins as any other.
         let Some(levels) = instance.levels.clone() else { continue };
         let fits = levels.fabric(rolling.level).particle_count() == snapshot.positions.len();
         if !fits || !matches!(instance.storage, StateStorage::None) {

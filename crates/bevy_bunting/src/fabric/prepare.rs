@@ -197,14 +197,13 @@ impl CutClothItem<'_, '_> {
         if let Some(shortage) = levels.shortage(self.entity, self.mesh.as_grid()) {
             ClothFailed::report(commands, self.entity, shortage);
         }
-        let fabric = Arc::clone(levels.fabric(instance.level));
         let keeps_state = instance.replace_levels(levels, batches);
-        if let (true, StateStorage::Snapshot(state)) = (keeps_state, &mut instance.storage) {
-            match TakingUp::begin(state, &fabric, change) {
-                Some(taking_up) => commands.entity(self.entity).insert(taking_up),
-                None => commands.entity(self.entity).remove::<TakingUp>(),
-            };
-        }
+        instance.taking_up = match (instance.fabric().cloned(), &mut instance.storage) {
+            (Some(fabric), StateStorage::Snapshot(state)) if keeps_state => {
+                TakingUp::begin(state, &fabric, change)
+            }
+            _ => None,
+        };
         if let Some((levels, snapshot)) = instance.levels.as_ref().zip(instance.snapshot()) {
             self.state.restart(instance.level, levels, &snapshot.positions);
         }

@@ -13,7 +13,6 @@ use crate::lod::lod_set::LodSet;
 use crate::lod::record::LodRecord;
 use crate::lod::view::{Sight, Sighting, View};
 use crate::motion::pose::PoseHistory;
-use crate::motion::take_up::TakingUp;
 
 /// Ticks from one in which a cloth is examined to the next. Cloths take turns.
 pub(super) const EXAMINED_EVERY: u32 = 4;
@@ -33,7 +32,6 @@ pub(crate) struct LodCloth {
     pub state: &'static mut ClothState,
     pub record: &'static mut LodRecord,
     pub paused: Has<ClothPaused>,
-    pub is_taking_up: Has<TakingUp>,
 }
 
 impl LodClothItem<'_, '_> {

@@ -245,7 +245,8 @@ impl LevelSelector {
         };
         let on_screen = sighting.is_none_or(|it| it.sight == Sight::OnScreen);
         // While vertices are led to their places, another level would hold others.
-        let to = if cloth.is_taking_up { cloth.instance.level } else { to };
+        let is_taking_up = cloth.instance.taking_up.is_some();
+        let to = if is_taking_up { cloth.instance.level } else { to };
         self.change(cloth, to, on_screen, batches, commands);
         let mut candidate = Candidate {
             table: table as u32,
@@ -254,10 +255,10 @@ impl LevelSelector {
             importance: sighting.map_or(0.0, |it| importance(&it, cloth.record.radius)),
             ready: false,
             fresh: false,
-            fixed: sighting.is_none() || cloth.lods.pinned.is_some() || cloth.is_taking_up,
+            fixed: sighting.is_none() || cloth.lods.pinned.is_some() || is_taking_up,
             on_screen,
         };
-        if let Some(sighting) = sighting.filter(|_| !cloth.paused && !cloth.is_taking_up) {
+        if let Some(sighting) = sighting.filter(|_| !cloth.paused && !is_taking_up) {
             let sight = sighting.sight;
             self.update_activity(cloth, &mut candidate, sight, examination, batches, commands);
         }

@@ -164,7 +164,8 @@ fn send_to_sleep(mut cloths: Query<RestingCloth>, mut changes: ResMut<Changes>, 
             continue;
         }
         let pose = frame.end();
-        let is_disturbed = changes.act_on(state, pose, &timer, record.radius);
+        let is_disturbed =
+            changes.act_on(state, pose, &timer, record.radius) || instance.taking_up.is_some();
         timer.pose = Some(pose);
         let is_still = !is_disturbed && speed(state, tick) <= REST_SPEED;
         timer.ticks = if is_still { timer.ticks + 1 } else { 0 };

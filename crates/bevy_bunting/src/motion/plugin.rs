@@ -9,11 +9,11 @@ use bevy_transform::systems::{propagate_parent_transforms, sync_simple_transform
 use crate::environment::drive::drive_cloths;
 use crate::motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
 use crate::motion::follow::{follow_targets, stop_following};
+use crate::motion::lead::lead_pins;
 use crate::motion::observe::{observe_frames, observe_ticks};
 use crate::motion::place::place_cloths;
 use crate::motion::pose::ObservationTimes;
 use crate::motion::scale::remove_scales;
-use crate::motion::take_up::lead_pins;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// Follows the targets of attachments, and places cloths on them.

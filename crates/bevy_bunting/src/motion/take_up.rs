@@ -1,12 +1,7 @@
 //! Vertices that are attached while they are elsewhere: they are led to their places.
 
-use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
-use bevy_time::Time;
 use bunting_solver::{ClothSnapshot, Fabric};
-
-use crate::batch::batches::ClothBatches;
-use crate::cloth::instance::ClothInstance;
 
 /// Time in which vertices go to where they are attached, s. In half of it they go twice as fast, and cloth
 /// at a distance of [`REACH`] is stretched by a tenth.
@@ -17,7 +12,7 @@ const TIME: f32 = 1.0;
 const REACH: f32 = 2.0;
 
 /// Attached vertices on the way to their places.
-#[derive(Component, Clone, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct TakingUp {
     /// The pinned particles, and where they began, m.
     from: Vec<(usize, Vec3)>,
@@ -54,7 +49,7 @@ impl TakingUp {
     }
 
     /// Goes on for so many seconds; whether all are in their places.
-    fn go_on(&mut self, tick: f32, fabric: &Fabric, positions: &mut [Vec3]) -> bool {
+    pub fn go_on(&mut self, tick: f32, fabric: &Fabric, positions: &mut [Vec3]) -> bool {
         self.passed += tick;
         let part = (self.passed / TIME).min(1.0);
         let eased = part * part * (3.0 - 2.0 * part);
@@ -63,24 +58,5 @@ impl TakingUp {
             positions[pin] = if part < 1.0 { from.lerp(rest, eased) } else { rest };
         }
         part == 1.0
-    }
-}
-
-/// Leads pins to their places.
-pub(crate) fn lead_pins(
-    mut cloths: Query<(Entity, &ClothInstance, &mut TakingUp)>,
-    time: Res<Time>,
-    mut batches: ResMut<ClothBatches>,
-    mut commands: Commands,
-) {
-    for (entity, instance, mut way) in &mut cloths {
-        let (Some(lane), Some(fabric)) = (instance.lane(), instance.fabric()) else { continue };
-        let mut lane = batches.lane(lane);
-        let mut state = lane.snapshot();
-        let arrived = way.go_on(time.delta_secs(), fabric, &mut state.positions);
-        lane.restore(&state);
-        if arrived {
-            commands.entity(entity).remove::<TakingUp>();
-        }
     }
 }
