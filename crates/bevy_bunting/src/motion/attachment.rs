@@ -23,7 +23,7 @@ const EDGE_TOLERANCE: f32 = 1e-4;
 /// that frame where the [`ClothMesh`](crate::ClothMesh) has them. The cloth's own [`Transform`] is
 /// overwritten with the frame, whether the cloth is a child of its target or not.
 ///
-/// A change of target, or of the held vertices, never whips the cloth: it moves with its frame rigidly, and newly
+/// A change of target, offset or held vertices never whips the cloth: it moves with its frame rigidly, and newly
 /// held vertices move to their places within a second. From more than 2 m away the cloth is first put in place,
 /// as by a teleport.
 ///

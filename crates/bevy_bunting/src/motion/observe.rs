@@ -13,9 +13,15 @@ use crate::motion::follow::MovedEntities;
 use crate::motion::frame::{frame_of, is_finite};
 use crate::motion::pose::{ObservationTimes, PoseHistory};
 
+/// The same where the attachment itself is changed in this tick, m/s: an offset that is set to another value is no
+/// motion. Smaller: an offset that is moved along does not swing the cloth. Larger: a change of the offset by some
+/// centimetres whips the cloth.
+const EDIT_SPEED: f32 = 3.0;
+
 type ChangedHistories<'w, 's> = Query<'w, 's, Entity, Changed<PoseHistory>>;
 
-type Histories<'w, 's> = Query<'w, 's, (&'static mut PoseHistory, Option<&'static Attachment>)>;
+type Histories<'w, 's> =
+    Query<'w, 's, (&'static mut PoseHistory, Option<Ref<'static, Attachment>>)>;
 
 /// The entities with a [`PoseHistory`] that are to be observed: those that may have moved, and those
 /// that do not rest yet.
@@ -30,7 +36,10 @@ pub(super) struct Observer<'w, 's> {
 
 impl Observer<'_, '_> {
     /// Calls `observe` with each of these entities.
-    fn for_each(&mut self, mut observe: impl FnMut(Entity, &mut PoseHistory, Option<&Attachment>)) {
+    fn for_each(
+        &mut self,
+        mut observe: impl FnMut(Entity, &mut PoseHistory, Option<Ref<Attachment>>),
+    ) {
         let changed = self.histories.p0();
         let moved = self.moved.find(self.restless.drain(..).chain(&changed));
         let mut histories = self.histories.p1();
@@ -62,7 +71,8 @@ pub(super) fn observe_frames<const EARLY: bool>(
         times.note_frame(time.delta_secs_f64());
     }
     observer.for_each(|entity, history, attachment| {
-        if let Some(pose) = frame_of(entity, attachment, &transforms).filter(is_finite) {
+        let pose = frame_of(entity, attachment.as_deref(), &transforms);
+        if let Some(pose) = pose.filter(is_finite) {
             history.observe_frame(&times, now, pose, teleport_speed(attachment), EARLY);
         }
     });
@@ -87,7 +97,7 @@ pub(super) fn observe_ticks(
     };
     let tick = time.delta_secs_f64();
     observer.for_each(|entity, history, attachment| {
-        let pose = frame_of(entity, attachment, &transforms);
+        let pose = frame_of(entity, attachment.as_deref(), &transforms);
         match pose.filter(is_finite) {
             Some(pose) => {
                 history.observe_tick(&times, &now, tick, pose, teleport_speed(attachment));
@@ -107,6 +117,11 @@ pub(super) fn observe_ticks(
     *times = now;
 }
 
-fn teleport_speed(attachment: Option<&Attachment>) -> f32 {
-    attachment.map_or(TELEPORT_SPEED, |attachment| attachment.teleport_speed)
+/// The change of velocity from which on a change of pose is a teleport, m/s.
+fn teleport_speed(attachment: Option<Ref<Attachment>>) -> f32 {
+    match attachment {
+        Some(it) if it.is_changed() => it.teleport_speed.min(EDIT_SPEED),
+        Some(it) => it.teleport_speed,
+        None => TELEPORT_SPEED,
+    }
 }
