@@ -74,6 +74,8 @@ pub(crate) fn assign_lanes(
     }
     batches.assign_lanes(settings.lanes, |entity, lane| {
         if let Ok((_, mut instance, _)) = cloths.get_mut(entity) {
+            // Another lane is no change of the cloth: what depends on changes must not depend on other cloths.
+            let instance = instance.bypass_change_detection();
             instance.storage = StateStorage::Lane(lane);
             instance.unmoved = false;
         }
