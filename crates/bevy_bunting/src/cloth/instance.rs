@@ -39,8 +39,8 @@ pub(crate) struct ClothInstance {
     pub seed: ClothSeed,
     /// Whether it is almost at rest, as it was cut, and was in no lane since.
     pub unmoved: bool,
-    /// Whether the fabrics are being cut on another thread.
-    pub cutting: bool,
+    /// What the fabrics depend on that are being cut on another thread, see `FabricLibrary`.
+    pub cutting: Option<Vec<u32>>,
     pub activity: ClothActivity,
     /// The last valid material.
     pub material: FabricMaterial,

@@ -39,15 +39,30 @@ pub(crate) struct FabricLibrary {
 /// Everything that the levels of a cloth depend on, bit for bit; each list after its length.
 type ContentKey = Vec<u32>;
 
+/// The levels of a cloth.
+pub(crate) enum Found {
+    Levels(Arc<ClothLevels>),
+    /// They are being cut; what they depend on.
+    Awaited(ContentKey),
+}
+
 impl FabricLibrary {
-    /// Begins a tick, in which no cloth waits yet.
+    /// Begins a tick, in which no cloth waits yet. What no cloth waited for in the last one is not cut further.
     pub fn begin_tick(&mut self) {
+        if !self.awaited {
+            self.cutting.clear();
+        }
         self.awaited = false;
         self.cut_vertices = 0;
     }
 
-    /// The levels of a cloth, cut now or before. None while they are being cut on another thread: ask
-    /// again in a later tick.
+    /// Whether levels are still being cut on another thread.
+    pub fn is_cutting(&self, key: &ContentKey) -> bool {
+        self.cutting.get(key).is_some_and(|task| !task.is_finished())
+    }
+
+    /// The levels of a cloth, cut now or before. While they are being cut on another thread, what they depend on:
+    /// ask again in a later tick.
     ///
     /// # Errors
     ///
@@ -58,7 +73,7 @@ impl FabricLibrary {
         mesh: &ClothMesh,
         attachment: Option<&Attachment>,
         lods: &LodSet,
-    ) -> Result<Option<Arc<ClothLevels>>, ClothError> {
+    ) -> Result<Found, ClothError> {
         lods.validate(entity)?;
         let attached = attachment.map(|attachment| attachment.vertices.choose(&mesh.uvs()));
         check_weights(mesh.weights(), mesh.vertex_count())
@@ -70,16 +85,16 @@ impl FabricLibrary {
         let attached = attached.unwrap_or_default();
         let key = content_key(mesh, &attached, lods.levels());
         if let Some(levels) = self.cut.get(&key).and_then(Weak::upgrade) {
-            return Ok(Some(levels));
+            return Ok(Found::Levels(levels));
         }
         let Some(cut) = self.cut_or_poll(&key, mesh, attached, lods.levels()) else {
-            return Ok(None);
+            return Ok(Found::Awaited(key));
         };
         self.cutting.remove(&key);
         let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
         self.cut.retain(|_, levels| levels.strong_count() > 0);
         self.cut.insert(key, Arc::downgrade(&levels));
-        Ok(Some(levels))
+        Ok(Found::Levels(levels))
     }
 
     /// Cuts levels on this thread, or starts or polls the task that cuts them on another.
@@ -137,6 +152,13 @@ mod tests {
     use super::*;
     use crate::motion::attachment::ClothEdge;
 
+    fn at_once(found: Found) -> Arc<ClothLevels> {
+        match found {
+            Found::Levels(levels) => levels,
+            Found::Awaited(_) => panic!("small cloths are cut at once"),
+        }
+    }
+
     const FLAG: ClothMesh = ClothMesh::grid(9, 5, 1.5, 1.0);
 
     fn levels(
@@ -145,8 +167,7 @@ mod tests {
         lods: LodSet,
     ) -> Result<Arc<ClothLevels>, ClothError> {
         let attachment = Attachment::in_place(edge);
-        let levels = library.levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods);
-        levels.map(|levels| levels.expect("small cloths are cut at once"))
+        library.levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods).map(at_once)
     }
 
     #[test]
@@ -205,8 +226,8 @@ mod tests {
         let lods = LodSet::new([5.0, 10.0, 20.0]);
         let levels = FabricLibrary::default()
             .levels(Entity::PLACEHOLDER, &mesh, Some(&attachment), &lods)
-            .expect("a cloth")
-            .expect("at once");
+            .map(at_once)
+            .expect("a cloth");
         let fabric = levels.fabric(1);
         assert!(fabric.particle_count() < 45);
         let pinned = (0..fabric.particle_count()).filter(|&particle| fabric.is_pinned(particle));

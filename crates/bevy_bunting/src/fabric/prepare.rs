@@ -19,7 +19,7 @@ use crate::cloth::material::ClothMaterial;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
-use crate::fabric::library::FabricLibrary;
+use crate::fabric::library::{FabricLibrary, Found};
 use crate::lod::lod_set::LodSet;
 use crate::motion::attachment::Attachment;
 use crate::motion::frame::{frame_of, is_finite};
@@ -106,15 +106,20 @@ fn cut_cloths(
     library.begin_tick();
     for mut cloth in &mut cloths {
         let target = cloth.target();
+        let is_cutting = cloth.instance.cutting.as_ref().is_some_and(|key| library.is_cutting(key));
+        if is_cutting && !cloth.is_edited() {
+            library.awaited = true;
+            continue;
+        }
         if !cloth.is_stale(target) {
             continue;
         }
         match cloth.find_levels(target, &targets, &mut library) {
-            Ok(None) => {
-                cloth.instance.cutting = true;
+            Ok(Found::Awaited(key)) => {
+                cloth.instance.cutting = Some(key);
                 library.awaited = true;
             }
-            Ok(Some(levels)) => {
+            Ok(Found::Levels(levels)) => {
                 let frame = frame_of(cloth.entity, cloth.attachment.as_deref(), &transforms);
                 cloth.set_levels(levels, target, frame, &mut batches, &mut commands);
             }
@@ -143,24 +148,29 @@ impl CutClothItem<'_, '_> {
         Some(attachment.target_other_than(self.entity).unwrap_or(self.entity))
     }
 
-    /// Whether the fabrics must be looked up or cut again.
-    fn is_stale(&self, target: Option<Entity>) -> bool {
-        self.instance.cutting
-            || self.instance.missing_target.is_some()
-            || self.mesh.is_changed()
+    /// Whether the user has changed what the fabrics depend on.
+    fn is_edited(&self) -> bool {
+        self.mesh.is_changed()
             || self.lods.is_changed()
             || self.attachment.as_ref().is_some_and(|attachment| attachment.is_changed())
+    }
+
+    /// Whether the fabrics must be looked up or cut again.
+    fn is_stale(&self, target: Option<Entity>) -> bool {
+        self.instance.cutting.is_some()
+            || self.instance.missing_target.is_some()
+            || self.is_edited()
             || (self.instance.target != target && self.instance.levels.is_some())
             || (self.material.is_changed() && self.instance.levels.is_none())
     }
 
-    /// The levels of the cloth; none while they are being cut.
+    /// The levels of the cloth.
     fn find_levels(
         &self,
         target: Option<Entity>,
         targets: &Query<(), With<Transform>>,
         library: &mut FabricLibrary,
-    ) -> Result<Option<Arc<ClothLevels>>, ClothError> {
+    ) -> Result<Found, ClothError> {
         let entity = self.entity;
         let is_missing = |target: &Entity| !self.instance.target_lost && !targets.contains(*target);
         if let Some(target) = target.filter(is_missing) {
@@ -184,7 +194,7 @@ impl CutClothItem<'_, '_> {
     ) {
         let change = self.set_target(target, frame, commands);
         let instance = &mut *self.instance;
-        instance.cutting = false;
+        instance.cutting = None;
         instance.missing_target = None;
         if instance.levels.as_ref().is_some_and(|old| Arc::ptr_eq(old, &levels)) {
             return;
