@@ -7,6 +7,7 @@ pub mod many_flags;
 pub mod parts;
 pub mod phases;
 pub mod plots;
+pub mod spawning;
 pub mod tables;
 pub mod thesis;
 pub mod thousand;

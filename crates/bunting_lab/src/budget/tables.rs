@@ -9,6 +9,7 @@ use super::{
     many_flags::ManyFlags,
     parts::{EXTRAS, Part},
     phases::Phase,
+    spawning::Spawning,
     thesis,
     thousand::Thousand,
 };
@@ -84,6 +85,26 @@ pub fn kernel_table(kernels: &Kernels) -> Table {
             ],
             vec!["triangle in the wind".into(), figure(kernels.ns_per_wind_triangle)],
         ],
+    }
+}
+
+/// What spawning costs.
+#[must_use]
+pub fn spawning_table(spawning: &Spawning) -> Table {
+    let all = spawning.seconds_to_all.map_or("never".into(), figure);
+    let rows = [
+        ("budget of a tick, ms", figure(spawning.ms_budget)),
+        ("first tick, ms", figure(spawning.ms_first)),
+        ("later ticks, ms, 95 %", figure(spawning.ms_p95)),
+        ("worst second, ms, 95 %", figure(spawning.ms_p95_worst_second)),
+        ("slowest later tick, ms", figure(spawning.ms_worst)),
+        ("all are simulated after, s", all),
+    ];
+    Table {
+        name: "budget_spawning".into(),
+        title: "200 different flags spawned at once, through the plugin".into(),
+        headers: vec!["", ""],
+        rows: rows.into_iter().map(|(name, value)| vec![name.into(), value]).collect(),
     }
 }
 

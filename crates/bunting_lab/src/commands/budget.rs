@@ -5,14 +5,14 @@ use serde_json::json;
 
 use super::progress;
 use crate::{
-    budget::{distance, kernels, many_flags, parts, phases, plots, tables, thousand},
+    budget::{distance, kernels, many_flags, parts, phases, plots, spawning, tables, thousand},
     effort::Effort,
     output::Outcome,
     settings::{scheme_name, schemes},
 };
 
 /// Number of measurements other than [`many_flags`].
-const OTHERS: usize = 5;
+const OTHERS: usize = 6;
 
 /// Measures many flags at once, flags at a distance, the phases and parts of a tick, kernels, and a
 /// thousand flags under levels of detail.
@@ -36,6 +36,9 @@ pub fn run(quick: bool) -> Outcome {
     bar.inc(1);
     bar.set_message("a thousand flags");
     let thousand = thousand::measure(quick);
+    bar.inc(1);
+    bar.set_message("spawning");
+    let spawning = spawning::measure(quick);
     bar.finish_and_clear();
     let mut all_plots: Vec<_> = schemes()
         .map(scheme_name)
@@ -52,12 +55,14 @@ pub fn run(quick: bool) -> Outcome {
             "parts": parts,
             "kernels": kernels,
             "thousand": thousand,
+            "spawning": spawning,
         }),
         tables: vec![
             tables::eight_flags_table(&many_flags),
             tables::distance_table(&distances),
             tables::part_table(&parts),
             tables::thousand_table(&thousand),
+            tables::spawning_table(&spawning),
             tables::many_flags_table(&many_flags),
             tables::phase_table(&phases),
             tables::kernel_table(&kernels),

@@ -30,7 +30,7 @@ fn height(triangle: &Triangle, at: Vec3) -> Option<f32> {
     // A point on the diagonal of a cell is on either side.
     const BESIDE: f32 = -1e-4;
     let inside = along_ab >= BESIDE && along_ac >= BESIDE && along_ab + along_ac <= 1.0 - BESIDE;
-    inside.then(|| triangle.a.y + along_ab * ab.y + along_ac * ac.y)
+    inside.then_some(triangle.a.y + along_ab * ab.y + along_ac * ac.y)
 }
 
 /// The point of the surface where a particle should go that is nearer than `keep` or under ground.

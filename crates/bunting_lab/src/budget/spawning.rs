@@ -1,0 +1,96 @@
+//! Two hundred flags, no two of a size, spawned at once in front of a camera: each is a fabric of its own.
+
+use std::{
+    thread,
+    time::{Duration, Instant},
+};
+
+use bevy_app::App;
+use bevy_bunting::{Attachment, ClothEdge, ClothMesh};
+use bevy_bunting::{ClothBudget, ClothState, ClothTimings, LodSet, LodViewer};
+use bevy_transform::components::Transform;
+use glam::Vec3;
+use serde::Serialize;
+
+use crate::{game, product::TICK, scenes::TICK_RATE, settings::steps_of_levels, timing::Timing};
+
+/// Flags.
+const FLAGS: usize = 200;
+/// Particles a side at the finest level, and number of levels.
+const SIDE: u32 = 33;
+const LEVELS: usize = 4;
+/// Flags in a row.
+const ROW: usize = 20;
+/// Difference in width from one flag to the next, m.
+const DIFFERENCE: f32 = 1e-3;
+/// Time that is watched, s.
+const SECONDS: usize = 6;
+/// The same where it is to be quick.
+const QUICK_SECONDS: usize = 1;
+
+/// What spawning costs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Spawning {
+    /// The budget of a tick, ms.
+    pub ms_budget: f64,
+    /// The first tick, ms.
+    pub ms_first: f64,
+    /// The tick of the plugin, after the first: 95th percentile, ms.
+    pub ms_p95: f64,
+    /// The same in the second in which that is greatest, ms.
+    pub ms_p95_worst_second: f64,
+    /// The slowest tick after the first, ms.
+    pub ms_worst: f64,
+    /// Time until all flags are simulated, s; none if some never are.
+    pub seconds_to_all: Option<f64>,
+}
+
+/// Spawns the flags and watches, at the pace of the clock, as fabrics are cut on another thread.
+#[must_use]
+pub fn measure(quick: bool) -> Spawning {
+    let mut app = game::app_in_wind(steps_of_levels());
+    app.update();
+    furnish(&mut app);
+    let ticks = TICK_RATE as usize * if quick { QUICK_SECONDS } else { SECONDS };
+    let (mut times, mut ms_first, mut seconds_to_all) = (Timing::default(), 0.0, None);
+    for tick in 0..ticks {
+        let due = Instant::now() + Duration::from_secs_f32(TICK);
+        app.update();
+        let time = app.world().resource::<ClothTimings>().total().as_secs_f64();
+        if tick == 0 {
+            ms_first = time * 1e3;
+        } else {
+            times.push(time * 1e6);
+        }
+        if seconds_to_all.is_none() && simulated(&mut app) == FLAGS {
+            seconds_to_all = Some((tick + 1) as f64 / f64::from(TICK_RATE));
+        }
+        thread::sleep(due.saturating_duration_since(Instant::now()));
+    }
+    Spawning {
+        ms_budget: app.world().resource::<ClothBudget>().tick.as_secs_f64() * 1e3,
+        ms_first,
+        ms_p95: times.percentile(0.95) / 1e3,
+        ms_p95_worst_second: times.worst_percentile(TICK_RATE as usize, 0.95) / 1e3,
+        ms_worst: times.percentile(1.0) / 1e3,
+        seconds_to_all,
+    }
+}
+
+fn furnish(app: &mut App) {
+    let view = Transform::from_xyz(0.0, 3.0, 12.0);
+    app.world_mut().spawn((LodViewer::default(), view));
+    for flag in 0..FLAGS {
+        let (column, row) = ((flag % ROW) as f32 - 0.5 * ROW as f32, (flag / ROW) as f32);
+        let place = Transform::from_translation(Vec3::new(1.5 * column, 0.0, -2.0 * row));
+        let mesh = ClothMesh::grid(SIDE, SIDE, 1.0 + DIFFERENCE * flag as f32, 1.0);
+        let held = Attachment::in_place(ClothEdge::Left);
+        app.world_mut().spawn((mesh, held, LodSet::automatic(LEVELS), place));
+    }
+}
+
+fn simulated(app: &mut App) -> usize {
+    let world = app.world_mut();
+    let mut states = world.query::<&ClothState>();
+    states.iter(world).filter(|state| !state.positions().is_empty()).count()
+}
