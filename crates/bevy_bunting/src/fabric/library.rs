@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
 use bevy_ecs::prelude::*;
-use bevy_tasks::{AsyncComputeTaskPool, Task, futures::check_ready};
+use bevy_tasks::{AsyncComputeTaskPool, Task, block_on};
 use bunting_solver::FabricError;
 
 use crate::cloth::error::ClothError;
@@ -19,21 +19,34 @@ use crate::motion::attachment::Attachment;
 /// longer than a tick then. Fewer: cloths appear some ticks late without need.
 const ASYNC_VERTICES: usize = 8192;
 
-/// Number of vertices of different cloths that are cut on this thread in a tick, the first cloth apart: a flag of
-/// 33 × 33 with its levels takes some milliseconds. The others are cut on another thread or, where there is none,
-/// in the ticks after. Larger: many new cloths make a tick late.
+/// Number of vertices of different cloths whose fabrics are expected in a tick: a flag of 33 × 33 with its levels
+/// takes some milliseconds to be cut. Larger: ticks wait for other threads. Smaller: many new cloths appear late
+/// without need.
 const VERTICES_PER_TICK: usize = 1024;
 
 /// The levels of all cloths in use, by content.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct FabricLibrary {
     cut: HashMap<ContentKey, Weak<ClothLevels>>,
-    /// Levels that are being cut on another thread.
-    cutting: HashMap<ContentKey, Task<Result<ClothLevels, FabricError>>>,
-    /// Number of vertices cut on this thread in this tick.
-    cut_vertices: usize,
+    /// Levels that are expected in a later tick.
+    cutting: HashMap<ContentKey, Cutting>,
+    /// Number of ticks so far.
+    tick: u64,
+    /// Number of vertices that are expected in this tick and later ones.
+    expected: usize,
     /// Whether a cloth waits for its levels, or for others than it has.
     pub awaited: bool,
+}
+
+/// Levels that are being cut on another thread or, where there is none, will be cut on this one.
+///
+/// They are taken in a tick that follows from the numbers of vertices, and waited for then: so the ticks in which
+/// cloths start are the same on every machine.
+#[derive(Debug)]
+struct Cutting {
+    /// The tick in which they are taken.
+    due: u64,
+    task: Option<Task<Result<ClothLevels, FabricError>>>,
 }
 
 /// Everything that the levels of a cloth depend on, bit for bit; each list after its length.
@@ -51,14 +64,16 @@ impl FabricLibrary {
     pub fn begin_tick(&mut self) {
         if !self.awaited {
             self.cutting.clear();
+            self.expected = 0;
         }
         self.awaited = false;
-        self.cut_vertices = 0;
+        self.tick += 1;
+        self.expected = self.expected.saturating_sub(VERTICES_PER_TICK);
     }
 
-    /// Whether levels are still being cut on another thread.
+    /// Whether levels are expected in a later tick.
     pub fn is_cutting(&self, key: &ContentKey) -> bool {
-        self.cutting.get(key).is_some_and(|task| !task.is_finished())
+        self.cutting.get(key).is_some_and(|cutting| self.tick < cutting.due)
     }
 
     /// The levels of a cloth, cut now or before. While they are being cut on another thread, what they depend on:
@@ -87,40 +102,48 @@ impl FabricLibrary {
         if let Some(levels) = self.cut.get(&key).and_then(Weak::upgrade) {
             return Ok(Found::Levels(levels));
         }
-        let Some(cut) = self.cut_or_poll(&key, mesh, attached, lods.levels()) else {
+        let Some(cut) = self.cut_or_wait(&key, mesh, attached, lods.levels()) else {
             return Ok(Found::Awaited(key));
         };
-        self.cutting.remove(&key);
         let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
         self.cut.retain(|_, levels| levels.strong_count() > 0);
         self.cut.insert(key, Arc::downgrade(&levels));
         Ok(Found::Levels(levels))
     }
 
-    /// Cuts levels on this thread, or starts or polls the task that cuts them on another.
-    fn cut_or_poll(
+    /// Cuts levels, now or in the tick in which they are due; none before.
+    fn cut_or_wait(
         &mut self,
         key: &ContentKey,
         mesh: &ClothMesh,
         attached: Vec<u32>,
         asked: usize,
     ) -> Option<Result<ClothLevels, FabricError>> {
-        let vertices = mesh.vertex_count();
-        let fits = self.cut_vertices == 0 || self.cut_vertices + vertices <= VERTICES_PER_TICK;
-        match (self.cutting.get_mut(key), AsyncComputeTaskPool::try_get()) {
-            (Some(task), _) => check_ready(task),
-            (None, Some(pool)) if vertices >= ASYNC_VERTICES || !fits => {
-                let mesh = mesh.clone();
-                let task = pool.spawn(async move { cut_levels(&mesh, &attached, asked) });
-                self.cutting.insert(key.clone(), task);
-                None
-            }
-            (None, None) if !fits => None,
-            _ => {
-                self.cut_vertices += vertices;
-                Some(cut_levels(mesh, &attached, asked))
-            }
+        if self.is_cutting(key) {
+            return None;
         }
+        if let Some(cutting) = self.cutting.remove(key) {
+            let cut_here = || cut_levels(mesh, &attached, asked);
+            return Some(cutting.task.map_or_else(cut_here, block_on));
+        }
+        let vertices = mesh.vertex_count();
+        let fits = self.expected == 0 || self.expected + vertices <= VERTICES_PER_TICK;
+        // Small cloths do not wait for large ones.
+        let is_large = vertices >= ASYNC_VERTICES;
+        let expected = if is_large { vertices } else { self.expected + vertices };
+        if !is_large {
+            self.expected = expected;
+        }
+        if fits && !is_large {
+            return Some(cut_levels(mesh, &attached, asked));
+        }
+        let due = self.tick + expected.div_ceil(VERTICES_PER_TICK) as u64;
+        let task = AsyncComputeTaskPool::try_get().map(|pool| {
+            let mesh = mesh.clone();
+            pool.spawn(async move { cut_levels(&mesh, &attached, asked) })
+        });
+        self.cutting.insert(key.clone(), Cutting { due, task });
+        None
     }
 }
 
