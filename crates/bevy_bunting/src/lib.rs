@@ -130,7 +130,7 @@ pub use display::lift::LiftPlugin;
 pub use display::surface::{ClothSurface, SurfacePlugin};
 pub use environment::collider::{ClothCollider, ColliderPlugin};
 pub use environment::drive::DrivePlugin;
-pub use environment::wind::{TickWind, WindField, WindPlugin};
+pub use environment::wind::{GustTravel, TickWind, WindField, WindPlugin};
 pub use fabric::prepare::PreparePlugin;
 pub use lod::budget::{ClothBudget, LodCosts};
 pub use lod::cost_table::CostTable;

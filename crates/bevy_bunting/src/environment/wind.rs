@@ -2,7 +2,7 @@
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{DVec3, Vec3};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_time::Time;
@@ -18,10 +18,11 @@ const LEAST_GUST_LENGTH: f32 = 2.0;
 ///
 /// Gusts are simplex noise that the mean wind carries along (Taylor's hypothesis of frozen turbulence): their
 /// length is the distance that the mean wind covers in 1/`gust_frequency`, at least 2 m, and a cloth downwind
-/// feels a gust later. They depend on position, time and seed, and not on the frame rate. A cloth feels
-/// the air at its middle.
+/// feels a gust later. They depend on position, time and seed, and not on the frame rate. A change of the
+/// mean velocity changes how fast gusts travel from then on. A cloth feels the air at its middle.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[require(GustTravel)]
 pub struct WindField {
     /// Mean velocity of the air relative to the world, m/s.
     pub velocity: Vec3,
@@ -49,26 +50,46 @@ impl WindField {
         self
     }
 
-    /// Velocity of the air (m/s) at a position in the world (m) and a time (s).
+    /// Velocity of the air (m/s) at a position in the world (m), after the mean wind has carried the gusts by
+    /// `travel` of their lengths.
     #[must_use]
-    pub fn velocity_at(&self, position: Vec3, seconds: f64) -> Vec3 {
+    pub fn velocity_at(&self, position: Vec3, travel: DVec3) -> Vec3 {
         if self.gust_strength == 0.0 {
             return self.velocity;
         }
         let mut noise = FastNoiseLite::with_seed(self.seed);
         noise.set_noise_type(Some(NoiseType::OpenSimplex2));
         noise.set_frequency(Some(1.0));
-        let speed = self.velocity.length();
-        let length = (speed / self.gust_frequency).max(LEAST_GUST_LENGTH);
-        // In a light wind gusts of the least length would be rarer than asked: they move faster than the air.
-        let excess = (self.gust_frequency * length - speed).max(0.0) * Vec3::X;
-        let carried = (self.velocity + excess).as_dvec3() * seconds;
-        let at = ((position.as_dvec3() - carried) / f64::from(length)).as_vec3();
+        let at = (position.as_dvec3() / self.gust_length() - travel).as_vec3();
         // Layers of the noise at great distance are independent: one for each axis.
         let axis = |layer: f32| noise.get_noise_3d(at.x, at.y + 100.0 * layer, at.z);
         self.velocity + self.gust_strength * Vec3::new(axis(1.0), axis(2.0), axis(3.0))
     }
+
+    /// How far gusts travel in a second, in lengths of a gust; zero without gusts.
+    #[must_use]
+    pub fn travel_rate(&self) -> DVec3 {
+        if self.gust_strength == 0.0 || !self.velocity.is_finite() {
+            return DVec3::ZERO;
+        }
+        // In a light wind gusts of the least length would be rarer than asked: they move faster than the air.
+        let frequency = f64::from(self.gust_frequency);
+        let along = self.velocity.try_normalize().unwrap_or(Vec3::X).as_dvec3();
+        let rate = along * frequency.max(f64::from(self.velocity.length()) / self.gust_length());
+        if rate.is_finite() { rate } else { DVec3::ZERO }
+    }
+
+    /// Length of a gust, m.
+    fn gust_length(&self) -> f64 {
+        f64::from((self.velocity.length() / self.gust_frequency).max(LEAST_GUST_LENGTH))
+    }
 }
+
+/// How far the mean wind has carried the gusts of a [`WindField`], in lengths of a gust. It is added up tick by
+/// tick, so that gusts stay continuous where the field's velocity changes.
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
+pub struct GustTravel(pub DVec3);
 
 impl Default for WindField {
     fn default() -> Self {
@@ -76,28 +97,18 @@ impl Default for WindField {
     }
 }
 
-/// The air in this tick: all [`WindField`]s.
+/// The air in this tick: all [`WindField`]s, and how far their gusts have travelled.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
-pub struct TickWind {
-    fields: Vec<WindField>,
-    /// End of the tick, s.
-    seconds: f64,
-}
+pub struct TickWind(Vec<(WindField, DVec3)>);
 
 impl TickWind {
     /// Velocity of the air (m/s) at a position in the world (m): the sum of all fields. A field that is not
     /// finite counts as no wind at all.
     #[must_use]
     pub fn at(&self, position: Vec3) -> Vec3 {
-        let velocities = self.fields.iter().map(|field| field.velocity_at(position, self.seconds));
+        let velocities = self.0.iter().map(|(field, travel)| field.velocity_at(position, *travel));
         velocities.filter(|velocity| velocity.is_finite()).sum()
-    }
-
-    /// Whether the velocity of the air differs from that in another tick.
-    pub(crate) fn differs_from(&self, other: &Self) -> bool {
-        let has_gusts = self.fields.iter().any(|field| field.gust_strength != 0.0);
-        self.fields != other.fields || (has_gusts && self.seconds != other.seconds)
     }
 }
 
@@ -108,16 +119,23 @@ pub struct WindPlugin;
 impl Plugin for WindPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<WindField>()
+            .register_type::<GustTravel>()
             .register_type::<TickWind>()
             .init_resource::<TickWind>()
             .add_systems(ClothTick, collect_winds.in_set(ClothSystems::Prepare));
     }
 }
 
-fn collect_winds(fields: Query<&WindField>, time: Res<Time>, mut wind: ResMut<TickWind>) {
-    wind.seconds = time.elapsed_secs_f64();
-    wind.fields.clear();
-    wind.fields.extend(&fields);
+fn collect_winds(
+    mut fields: Query<(&WindField, &mut GustTravel)>,
+    time: Res<Time>,
+    mut wind: ResMut<TickWind>,
+) {
+    wind.0.clear();
+    wind.0.extend(fields.iter_mut().map(|(field, mut travel)| {
+        travel.0 += field.travel_rate() * time.delta_secs_f64();
+        (*field, travel.0)
+    }));
 }
 
 #[cfg(test)]
@@ -130,14 +148,15 @@ mod tests {
         let other = WindField { seed: 8, ..wind };
         let mut greatest = 0.0_f32;
         for tick in 0..6400 {
-            let at = |tick: i32| wind.velocity_at(Vec3::Y, f64::from(tick) / 64.0);
+            let travel = |tick: i32| wind.travel_rate() * f64::from(tick) / 64.0;
+            let at = |tick: i32| wind.velocity_at(Vec3::Y, travel(tick));
             let gust = at(tick) - Vec3::X;
             assert!(gust.abs().max_element() <= 2.0);
             assert!(at(tick).distance(at(tick + 1)) < 0.2);
             greatest = greatest.max(gust.length());
         }
         assert!(greatest > 1.0, "{greatest}");
-        let at = |wind: WindField| wind.velocity_at(Vec3::Y, 1.3);
+        let at = |wind: WindField| wind.velocity_at(Vec3::Y, 1.3 * wind.travel_rate());
         assert_ne!(at(wind), at(other));
     }
 }

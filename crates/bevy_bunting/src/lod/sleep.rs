@@ -109,7 +109,7 @@ fn note_changes(
     mut changes: ResMut<Changes>,
 ) {
     let changes = &mut *changes;
-    changes.everywhere = settings.is_changed() || wind.differs_from(&changes.wind);
+    changes.everywhere = settings.is_changed() || *wind != changes.wind;
     changes.wind.clone_from(&wind);
     for entity in removed.read() {
         changes.collider_poses.remove(&entity);
