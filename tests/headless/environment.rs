@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use bevy_app::prelude::*;
-use bevy_bunting::{GustTravel, TickWind};
 use bevy_bunting::prelude::*;
+use bevy_bunting::{GustTravel, TickWind};
 use bevy_ecs::prelude::*;
-use bevy_math::{Quat, Vec2, Vec3};
-use bevy_time::{Fixed, Time};
+use bevy_math::{DVec3, Quat, Vec2, Vec3};
+use bevy_time::Time;
 use bevy_transform::prelude::*;
 use bunting_tests::{FLAG, app, app_at, assert_finite, greatest, run, state};
 

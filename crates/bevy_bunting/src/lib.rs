@@ -43,7 +43,7 @@
 //! | [`ClothSurface`] | a cloth | positions and normals between two ticks, for display |
 //! | [`WindField`] | any entity | velocity of the air |
 //! | [`ClothCollider`] | any entity | a shape that cloth does not enter |
-//! | [`LodViewer`] | a camera | a viewer for whom levels of detail are chosen |
+//! | [`LodViewer`] | a camera | a viewer in whose picture errors of levels are measured |
 //!
 //! The resource [`ClothSettings`] holds gravity, the density of air and the numbers of substeps and
 //! passes; [`ClothBudget`] the time that cloths with [`LodSet::automatic`] may take, and [`LodReport`]

@@ -16,7 +16,7 @@ use crate::material::{MaterialRecipe, preset};
 pub struct Scene {
     /// The wind; several add up.
     pub winds: Vec<Wind>,
-    /// The viewer, for whom levels of detail are chosen.
+    /// The viewer in whose picture errors of levels are measured.
     pub viewer: Viewer,
     /// Resolutions of the flags.
     pub levels: Levels,

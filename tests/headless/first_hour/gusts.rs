@@ -1,5 +1,6 @@
 //! Item 4: equal flags in a row move differently, and alike in every run.
 
+use bevy_bunting::TickWind;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
@@ -77,7 +78,7 @@ fn gusts_stay_continuous_where_the_mean_wind_changes() {
     let mut app = app();
     let field = app.world_mut().spawn(GUSTY).id();
     run(&mut app, 6400);
-    let gust = |app: &mut App, speed: f32| {
+    let gust = |app: &mut bevy_app::App, speed: f32| {
         app.world_mut().get_mut::<WindField>(field).unwrap().velocity = Vec3::X * speed;
         run(app, 1);
         app.world().resource::<TickWind>().at(Vec3::ZERO) - Vec3::X * speed

@@ -1,4 +1,4 @@
-//! Viewers: for whom levels of detail are chosen.
+//! Viewers: the cameras in whose pictures levels of detail are chosen.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;

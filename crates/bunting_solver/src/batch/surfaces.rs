@@ -3,13 +3,13 @@
 //! The vector of a cloth's particle is spread over three packs. Four lanes at once are transposed in
 //! registers: that takes a third of the time of reading each vector by itself.
 
-use fearless_simd::{Simd, SimdBase, dispatch, f32x4};
+use fearless_simd::{Simd, SimdBase, f32x4};
 use glam::Vec3;
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
 use crate::simd::lane::Pack;
-use crate::simd::level::level;
+use crate::simd::level::dispatch;
 use crate::simd::vec3::Pack3;
 
 /// What a lane shows.
@@ -43,7 +43,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             }
         }
         if surfaces.len().is_multiple_of(QUAD) {
-            dispatch!(level(), token => self.copy_by_quads(token, surfaces));
+            dispatch!(token => self.copy_by_quads(token, surfaces));
         } else if self.lanes[0].is_some() {
             let LaneSurface { positions, normals, is_finite } = &mut surfaces[0];
             self.copy_positions(0, positions);

@@ -14,6 +14,39 @@ pub(crate) fn level() -> Level {
     CHOSEN.get().unwrap_or_else(Level::new)
 }
 
+/// Evaluates an expression with the token of this thread's instruction set, compiled for that set.
+///
+/// SSE4.2 runs what is compiled for SSE2: both compute fused multiply-adds in software, which takes most of
+/// their time, and each further set adds about a fifth to the time that this crate takes to compile.
+macro_rules! dispatch {
+    ($token:pat => $work:expr) => {{
+        #[cfg(target_arch = "x86_64")]
+        {
+            use fearless_simd::{Level, Simd};
+            macro_rules! compiled_for {
+                ($set:expr) => {{
+                    let set = $set;
+                    set.vectorize(
+                        #[inline(always)]
+                        || {
+                            let $token = set;
+                            $work
+                        },
+                    )
+                }};
+            }
+            match $crate::simd::level::level() {
+                Level::Avx512(set) => compiled_for!(set),
+                Level::Avx2(set) => compiled_for!(set),
+                set => compiled_for!(set.as_sse2().expect("SSE2 is part of x86-64")),
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        fearless_simd::dispatch!($crate::simd::level::level(), $token => $work)
+    }};
+}
+pub(crate) use dispatch;
+
 /// Name of the instruction set that kernels run with on this machine, for reports.
 #[must_use]
 pub fn instruction_set() -> &'static str {
@@ -23,9 +56,7 @@ pub fn instruction_set() -> &'static str {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx2(_) => "AVX2",
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Sse4_2(_) => "SSE4.2",
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Sse2(_) => "SSE2",
+        Level::Sse2(_) | Level::Sse4_2(_) => "SSE2",
         #[cfg(target_arch = "aarch64")]
         Level::Neon(_) => "NEON",
         _ => "scalar",
@@ -53,7 +84,6 @@ fn levels() -> Vec<Level> {
         let all = [
             best.as_avx512().map(Simd::level),
             best.as_avx2().map(Simd::level),
-            best.as_sse4_2().map(Simd::level),
             best.as_sse2().map(Simd::level),
         ];
         all.into_iter().flatten().collect()

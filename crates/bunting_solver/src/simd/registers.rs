@@ -2,10 +2,10 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, dispatch, f32x4, f32x8, f32x16};
+use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, f32x4, f32x8, f32x16};
 
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
-use crate::simd::level::level;
+use crate::simd::level::dispatch;
 
 /// A single lane: the scalar solver, against which the wide ones are tested.
 #[derive(Clone, Copy, Debug)]
@@ -51,7 +51,7 @@ impl Pack for Pack1 {
         fn with_token<S: Simd, K: Kernel<Pack1>>(token: S, kernel: K) {
             kernel.run::<Single<S>>(token);
         }
-        dispatch!(level(), token => with_token(token, kernel));
+        dispatch!(token => with_token(token, kernel));
     }
 }
 
@@ -80,7 +80,7 @@ macro_rules! wide {
                 fn with_token<S: Simd, K: Kernel<$pack>>(token: S, kernel: K) {
                     kernel.run::<$vector<S>>(token);
                 }
-                dispatch!(level(), token => with_token(token, kernel));
+                dispatch!(token => with_token(token, kernel));
             }
         }
 

@@ -1,10 +1,10 @@
 //! A vector for each particle of a grid, coordinate by coordinate.
 
-use fearless_simd::{Simd, SimdBase, dispatch, f32x4};
+use fearless_simd::{Simd, SimdBase, f32x4};
 
 use super::grid_shape::MARGIN;
 use crate::simd::lane::{Lane, Pack};
-use crate::simd::level::level;
+use crate::simd::level::dispatch;
 use crate::simd::vec3::{Pack3, V3};
 
 /// Numbers along each side of the tiles in which a grid is transposed: those of four registers.
@@ -75,7 +75,7 @@ impl VectorGrid {
     pub fn transpose_from(&mut self, other: &Self, strides: [usize; 2], extent: [usize; 2]) {
         for (into, from) in self.0.iter_mut().zip(&other.0) {
             let (into, from) = (&mut into[MARGIN..], &from[MARGIN..]);
-            dispatch!(level(), token => transpose(token, from, into, strides, extent));
+            dispatch!(token => transpose(token, from, into, strides, extent));
         }
     }
 }
