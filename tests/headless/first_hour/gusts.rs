@@ -70,23 +70,28 @@ fn a_gust_is_carried_along_by_the_mean_wind() {
     assert!(differences.fold(0.0, f32::max) > 1.0, "it blows alike everywhere");
 }
 
-/// Greatest change of gusts of 1.5 m/s and 0.5 Hz in a tick of 1/64 s, m/s; 0.04 is measured in steady wind.
-const GUST_STEP: f32 = 0.1;
-
-#[test]
-fn gusts_stay_continuous_where_the_mean_wind_changes() {
+/// Greatest change of the gusts in a tick (m/s), in a wind whose speed (m/s) in each tick is given.
+fn greatest_change(speed: impl Fn(i32) -> f32) -> f32 {
     let mut app = app();
     let field = app.world_mut().spawn(GUSTY).id();
     run(&mut app, 6400);
-    let gust = |app: &mut bevy_app::App, speed: f32| {
-        app.world_mut().get_mut::<WindField>(field).unwrap().velocity = Vec3::X * speed;
-        run(app, 1);
-        app.world().resource::<TickWind>().at(Vec3::ZERO) - Vec3::X * speed
+    let mut gust = |tick: i32| {
+        let mean = Vec3::X * speed(tick);
+        app.world_mut().get_mut::<WindField>(field).unwrap().velocity = mean;
+        run(&mut app, 1);
+        app.world().resource::<TickWind>().at(Vec3::ZERO) - mean
     };
-    let mut last = gust(&mut app, 6.0);
-    for tick in 0..640 {
-        let now = gust(&mut app, 6.0 + 6.0 * (tick as f32 / 64.0).sin());
-        assert!(now.distance(last) < GUST_STEP, "{} m/s in tick {tick}", now.distance(last));
-        last = now;
-    }
+    let mut last = gust(0);
+    let changes = (1..640).map(|tick| {
+        let now = gust(tick);
+        core::mem::replace(&mut last, now).distance(now)
+    });
+    changes.fold(0.0, f32::max)
+}
+
+#[test]
+fn gusts_stay_continuous_where_the_mean_wind_changes() {
+    let steady = greatest_change(|_| 6.0);
+    let changing = greatest_change(|tick| 6.0 + 6.0 * (tick as f32 / 64.0).sin());
+    assert!(changing < 1.5 * steady, "{changing} m/s in a tick, {steady} in steady wind");
 }
