@@ -91,6 +91,7 @@
 //! cloths nor on the number of threads. Only [`LodSet::automatic`] shares a budget among all cloths, and
 //! by default measures their costs; with [`LodCosts::Fixed`] its choice, too, is the same on every machine.
 
+mod background;
 mod batch;
 mod cloth;
 mod diagnostics;

@@ -1,9 +1,12 @@
 //! Item 10: spawning many different flags.
 
+use std::{thread, time::Duration};
+
 use bevy_bunting::prelude::*;
 use bevy_bunting::{CostTable, LodCosts, LodReport};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
+use bevy_tasks::{AsyncComputeTaskPool, TaskPoolBuilder, block_on};
 use bevy_transform::prelude::*;
 use bunting_tests::{FLAG, Seen, app, greatest_speed, run, state};
 
@@ -102,4 +105,29 @@ fn a_cloth_may_have_hung_for_a_while() {
     assert!(apart < 0.2, "{apart} m");
     assert!(app.world().get::<ClothPreroll>(rolled).is_none());
     assert!(app.world().resource::<Seen<ClothFailed>>().0.is_empty());
+}
+
+/// The tick in which a cloth that has hung for a minute is first seen. Threads in the background are busy for a
+/// while, if asked for.
+fn tick_of_preroll(busy: bool) -> usize {
+    let mut app = app();
+    let pool = AsyncComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
+    let hog = || pool.spawn(async { thread::sleep(Duration::from_millis(300)) });
+    let hogs: Vec<_> =
+        if busy { (0..pool.thread_num()).map(|_| hog()).collect() } else { Vec::new() };
+    let held = Attachment::in_place(ClothEdge::Left);
+    let flag = app.world_mut().spawn((FLAG, held, ClothPreroll::seconds(60.0))).id();
+    let seen = (0..200).find(|_| {
+        app.update();
+        !state(&app, flag).positions().is_empty()
+    });
+    hogs.into_iter().for_each(block_on);
+    seen.expect("it is seen")
+}
+
+#[test]
+fn cloths_that_have_hung_are_seen_in_the_same_tick_on_every_machine() {
+    let tick = tick_of_preroll(false);
+    assert!(tick > 0, "a minute takes longer than a tick");
+    assert_eq!(tick, tick_of_preroll(true));
 }

@@ -6,17 +6,18 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
-use bevy_tasks::{AsyncComputeTaskPool, Task, futures::check_ready};
 use bevy_time::Time;
 use bevy_transform::helper::TransformHelper;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, FrameMotion, LaneCount, StepSettings,
 };
 
+use crate::background::Background;
 use crate::batch::assign::assign_lanes;
 use crate::cloth::instance::{ClothInstance, StateStorage};
 use crate::cloth::state::ClothState;
 use crate::environment::wind::TickWind;
+use crate::fabric::library::FabricLibrary;
 use crate::lod::select::select_levels;
 use crate::motion::attachment::Attachment;
 use crate::motion::frame::frame_of;
@@ -26,9 +27,13 @@ use crate::settings::ClothSettings;
 /// Longest time that is simulated in advance, s: 0.2 s of computing for a flag of 33 × 33.
 const LONGEST: f32 = 60.0;
 
+/// Steps of one particle through one substep that are expected to be done in a tick: half of what one thread does.
+/// Larger: ticks wait for other threads. Smaller: cloths appear late without need.
+const STEPS_PER_TICK: u64 = 1 << 18;
+
 /// Simulates a cloth for so many seconds before it is first seen: in the wind that blows where it is spawned, on a
 /// frame at rest, without colliders. That is done beside the main thread where there are threads; the cloth has no
-/// [`ClothState`] until it is done, and then loses this component.
+/// [`ClothState`] until a tick that follows from the amount of work, and then loses this component.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothPreroll {
@@ -57,7 +62,7 @@ pub struct PrerollPlugin;
 
 impl Plugin for PrerollPlugin {
     fn build(&self, app: &mut App) {
-        app.register_type::<ClothPreroll>().add_systems(
+        app.register_type::<ClothPreroll>().init_resource::<PrerollQueue>().add_systems(
             ClothTick,
             (begin_prerolls, end_prerolls)
                 .chain()
@@ -68,17 +73,32 @@ impl Plugin for PrerollPlugin {
     }
 }
 
-/// A cloth that is simulated in advance, at a level.
+/// A cloth that is simulated in advance.
 #[derive(Component, Debug)]
 struct Rolling {
     level: usize,
-    task: RollingTask,
+    /// The tick in which the state is taken.
+    due: u64,
+    /// The state at the end. None once it is taken.
+    state: Option<Background<ClothSnapshot>>,
 }
 
-#[derive(Debug)]
-enum RollingTask {
-    Running(Task<ClothSnapshot>),
-    Done(ClothSnapshot),
+/// When states are due, which are computed one after the other.
+#[derive(Resource, Debug, Default)]
+struct PrerollQueue {
+    /// Number of ticks so far.
+    tick: u64,
+    /// Number of steps before the end of the queue, counted as if they had been done since the first tick.
+    end: u64,
+}
+
+impl PrerollQueue {
+    /// Adds steps, which begin at least so many ticks from now. Returns the tick in which they are expected to be
+    /// done, which is a later one.
+    fn add(&mut self, steps: u64, begin_after: u64) -> u64 {
+        self.end = self.end.max((self.tick + begin_after) * STEPS_PER_TICK) + steps.max(1);
+        self.end.div_ceil(STEPS_PER_TICK)
+    }
 }
 
 /// What is simulated in advance.
@@ -94,6 +114,13 @@ struct Preroll {
 }
 
 impl Preroll {
+    /// Number of steps of one particle through one substep.
+    fn steps(&self) -> u64 {
+        self.fabric.particle_count() as u64
+            * u64::from(self.settings.substeps)
+            * u64::from(self.ticks)
+    }
+
     /// The state at the end; that at the start where it does not stay finite.
     fn run(self) -> ClothSnapshot {
         let mut batch = ClothBatch::new(self.fabric, LaneCount::One);
@@ -116,8 +143,10 @@ fn begin_prerolls(
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
     time: Res<Time>,
+    (library, mut queue): (Res<FabricLibrary>, ResMut<PrerollQueue>),
     mut commands: Commands,
 ) {
+    queue.tick += 1;
     let tick = time.delta_secs();
     for (entity, preroll, mut instance, mut state, attachment) in &mut cloths {
         // What has been simulated already is too late.
@@ -151,24 +180,21 @@ fn begin_prerolls(
             tick,
             ticks: (seconds.clamp(0.0, LONGEST) / tick) as u32,
         };
-        let task = match AsyncComputeTaskPool::try_get() {
-            Some(pool) => RollingTask::Running(pool.spawn(async move { preroll.run() })),
-            None => RollingTask::Done(preroll.run()),
-        };
-        commands.entity(entity).insert(Rolling { level: instance.level, task });
+        // Fabrics that are being cut come first.
+        let due = queue.add(preroll.steps(), library.ticks_to_cut());
+        let state = Some(Background::begin(move || preroll.run()));
+        commands.entity(entity).insert(Rolling { level: instance.level, due, state });
     }
 }
 
 fn end_prerolls(
     mut cloths: Query<(Entity, &mut Rolling, &mut ClothInstance, &mut ClothState)>,
+    queue: Res<PrerollQueue>,
     mut commands: Commands,
 ) {
-    for (entity, mut rolling, mut instance, mut state) in &mut cloths {
-        let snapshot = match &mut rolling.task {
-            RollingTask::Running(task) => check_ready(task),
-            RollingTask::Done(snapshot) => Some(core::mem::take(snapshot)),
-        };
-        let Some(snapshot) = snapshot else { continue };
+    let due = cloths.iter_mut().filter(|(_, rolling, ..)| rolling.due <= queue.tick);
+    for (entity, mut rolling, mut instance, mut state) in due {
+        let Some(snapshot) = rolling.state.take().map(Background::take) else { continue };
         commands.entity(entity).remove::<(Rolling, ClothPreroll)>();
         // A cloth that was cut anew in the meantime begins as any other.
         let Some(levels) = instance.levels.clone() else { continue };
@@ -179,5 +205,20 @@ fn end_prerolls(
         instance.level = rolling.level;
         state.restart(rolling.level, &levels, &snapshot.positions);
         instance.storage = StateStorage::Snapshot(snapshot);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn states_are_due_after_all_work_before() {
+        let mut queue = PrerollQueue { tick: 10, end: 0 };
+        assert_eq!(queue.add(1, 0), 11);
+        assert_eq!(queue.add(2 * STEPS_PER_TICK, 0), 13);
+        assert_eq!(queue.add(1, 5), 16);
+        queue.tick = 40;
+        assert_eq!(queue.add(STEPS_PER_TICK, 0), 41);
     }
 }

@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
 use bevy_ecs::prelude::*;
-use bevy_tasks::{AsyncComputeTaskPool, Task, block_on};
 use bunting_solver::FabricError;
 
+use crate::background::Background;
 use crate::cloth::error::ClothError;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::weights::check_weights;
@@ -38,15 +38,12 @@ pub(crate) struct FabricLibrary {
     pub awaited: bool,
 }
 
-/// Levels that are being cut on another thread or, where there is none, will be cut on this one.
-///
-/// They are taken in a tick that follows from the numbers of vertices, and waited for then: so the ticks in which
-/// cloths start are the same on every machine.
+/// Levels that are being cut in the background. They are taken in a tick that follows from the numbers of vertices.
 #[derive(Debug)]
 struct Cutting {
     /// The tick in which they are taken.
     due: u64,
-    task: Option<Task<Result<ClothLevels, FabricError>>>,
+    levels: Background<Result<ClothLevels, FabricError>>,
 }
 
 /// Everything that the levels of a cloth depend on, bit for bit; each list after its length.
@@ -74,6 +71,12 @@ impl FabricLibrary {
     /// Whether levels are expected in a later tick.
     pub fn is_cutting(&self, key: &ContentKey) -> bool {
         self.cutting.get(key).is_some_and(|cutting| self.tick < cutting.due)
+    }
+
+    /// Number of ticks after which nothing is being cut any more.
+    pub fn ticks_to_cut(&self) -> u64 {
+        let left = |cutting: &Cutting| cutting.due.saturating_sub(self.tick);
+        self.cutting.values().map(left).max().unwrap_or(0)
     }
 
     /// The levels of a cloth, cut now or before. While they are being cut on another thread, what they depend on:
@@ -123,8 +126,7 @@ impl FabricLibrary {
             return None;
         }
         if let Some(cutting) = self.cutting.remove(key) {
-            let cut_here = || cut_levels(mesh, &attached, asked);
-            return Some(cutting.task.map_or_else(cut_here, block_on));
+            return Some(cutting.levels.take());
         }
         let vertices = mesh.vertex_count();
         let fits = self.expected == 0 || self.expected + vertices <= VERTICES_PER_TICK;
@@ -138,11 +140,9 @@ impl FabricLibrary {
             return Some(cut_levels(mesh, &attached, asked));
         }
         let due = self.tick + expected.div_ceil(VERTICES_PER_TICK) as u64;
-        let task = AsyncComputeTaskPool::try_get().map(|pool| {
-            let mesh = mesh.clone();
-            pool.spawn(async move { cut_levels(&mesh, &attached, asked) })
-        });
-        self.cutting.insert(key.clone(), Cutting { due, task });
+        let mesh = mesh.clone();
+        let levels = Background::begin(move || cut_levels(&mesh, &attached, asked));
+        self.cutting.insert(key.clone(), Cutting { due, levels });
         None
     }
 }

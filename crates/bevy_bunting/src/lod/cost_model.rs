@@ -24,7 +24,16 @@ struct BatchFactor {
     particles: usize,
     settings: StepSettings,
     lanes: LaneCount,
-    factor: f32,
+    /// None until the end of the first tick in which there are such batches.
+    factor: Option<f32>,
+    /// Costs of all such batches in the tick that is learnt from, µs: tabulated and measured.
+    sums: [f32; 2],
+}
+
+impl BatchFactor {
+    fn is_of(&self, particles: usize, settings: StepSettings, lanes: LaneCount) -> bool {
+        (self.particles, self.settings, self.lanes) == (particles, settings, lanes)
+    }
 }
 
 /// Expects of every batch the cost in the table, times what was measured of such batches.
@@ -46,33 +55,38 @@ impl Default for CostModel {
 }
 
 impl CostModel {
-    /// Learns from the measured batches of a tick.
+    /// Learns from the measured batches of a tick. Those of one size, settings and width count as one: of many, some
+    /// always take long.
     pub fn learn_batches(&mut self, table: &CostTable, batches: impl Iterator<Item = BatchTiming>) {
-        let (mut tabulated, mut measured) = (0.0, 0.0);
-        for batch in batches {
-            let by_table = table.batch(batch.particles, batch.settings, batch.lanes);
-            if by_table <= 0.0 || !batch.time.is_finite() {
+        for BatchTiming { particles, settings, lanes, time } in batches {
+            let by_table = table.batch(particles, settings, lanes);
+            if by_table <= 0.0 || !time.is_finite() {
                 continue;
             }
-            tabulated += by_table;
-            measured += batch.time;
-            let ratio = batch.time / by_table;
-            let is_same = |factor: &&mut BatchFactor| {
-                (factor.particles, factor.settings, factor.lanes)
-                    == (batch.particles, batch.settings, batch.lanes)
-            };
-            match self.factors.iter_mut().find(is_same) {
-                Some(known) => approach(&mut known.factor, ratio),
-                None => self.factors.push(BatchFactor {
-                    particles: batch.particles,
-                    settings: batch.settings,
-                    lanes: batch.lanes,
-                    factor: ratio.min(GREATEST_RATIO * self.general_factor),
-                }),
+            let known = self.factors.iter().position(|it| it.is_of(particles, settings, lanes));
+            let index = known.unwrap_or(self.factors.len());
+            if known.is_none() {
+                let new = BatchFactor { particles, settings, lanes, factor: None, sums: [0.0; 2] };
+                self.factors.push(new);
+            }
+            let [tabulated, measured] = &mut self.factors[index].sums;
+            *tabulated += by_table;
+            *measured += time;
+        }
+        let mut all = [0.0; 2];
+        for BatchFactor { factor, sums, .. } in &mut self.factors {
+            let [tabulated, measured] = core::mem::take(sums);
+            if tabulated > 0.0 {
+                let ratio = measured / tabulated;
+                match factor {
+                    Some(factor) => approach(factor, ratio),
+                    None => *factor = Some(ratio.min(GREATEST_RATIO * self.general_factor)),
+                }
+                all = [all[0] + tabulated, all[1] + measured];
             }
         }
-        if tabulated > 0.0 {
-            approach(&mut self.general_factor, measured / tabulated);
+        if all[0] > 0.0 {
+            approach(&mut self.general_factor, all[1] / all[0]);
         }
     }
 
@@ -114,10 +128,8 @@ impl CostModel {
         most_single: u32,
     ) -> BatchCosts {
         let cost = |lanes: LaneCount| {
-            let known = self.factors.iter().find(|factor| {
-                (factor.particles, factor.settings, factor.lanes) == (particles, settings, lanes)
-            });
-            let factor = known.map_or(self.general_factor, |known| known.factor);
+            let known = self.factors.iter().find(|it| it.is_of(particles, settings, lanes));
+            let factor = known.and_then(|known| known.factor).unwrap_or(self.general_factor);
             factor * table.batch(particles, settings, lanes)
         };
         let one = cost(LaneCount::One);
@@ -203,6 +215,17 @@ mod tests {
         assert!((costs(500).eight / 600.0 - 1.0).abs() < 0.01);
         assert!((model.empty_tick(&TABLE) / 40.0 - 1.0).abs() < 0.01);
         assert!((costs(1000).change / 100.0 - 1.0).abs() < 0.01);
+    }
+
+    #[test]
+    fn of_many_batches_the_mean_counts() {
+        let mut model = CostModel::default();
+        for _ in 0..50 {
+            let times = (0..200).map(|batch| if batch % 10 == 0 { 1500.0 } else { 500.0 });
+            model.learn_batches(&TABLE, times.map(sixteen));
+        }
+        let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1);
+        assert!((costs.sixteen.expect("wide") / 600.0 - 1.0).abs() < 0.01, "{costs:?}");
     }
 
     #[test]

@@ -2,9 +2,10 @@
 
 use std::sync::{Arc, Weak};
 
-use bunting_solver::{Fabric, LaneCount, instruction_set};
+use bunting_solver::{Fabric, LaneCount, StepSettings, instruction_set};
 
 use crate::fabric::levels::ClothLevels;
+use crate::lod::batch_costs::BatchCosts;
 use crate::lod::candidate::LevelTable;
 use crate::lod::cost_model::CostModel;
 use crate::lod::cost_table::CostTable;
@@ -15,9 +16,23 @@ use crate::settings::ClothSettings;
 /// stretched cloth is taken for off-screen while its border is still seen.
 const STRETCH: f32 = 1.1;
 
+/// What the costs of a level depend on, besides the machine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Work {
+    particles: usize,
+    step: StepSettings,
+    most_single: u32,
+}
+
 /// One table for each [`ClothLevels`] in use.
 #[derive(Debug, Default)]
 pub(crate) struct LevelTables {
+    /// Work of each level; empty where it is not known yet.
+    work: Vec<Vec<Work>>,
+    /// Length of the ticks that it is known for, s.
+    tick: f32,
+    /// Costs of each kind of work in this tick.
+    costs: Vec<(Work, BatchCosts)>,
     levels: Vec<Weak<ClothLevels>>,
     /// Number of particles at each level.
     particles: Vec<Vec<usize>>,
@@ -40,11 +55,13 @@ impl LevelTables {
         let index = unused.unwrap_or(self.tables.len());
         if unused.is_none() {
             self.levels.push(Weak::new());
+            self.work.push(Vec::new());
             self.particles.push(Vec::new());
             self.radii.push(0.0);
             self.tables.push(LevelTable::default());
         }
         self.levels[index] = Arc::downgrade(levels);
+        self.work[index].clear();
         self.particles[index] = fabrics().map(|fabric| fabric.particle_count()).collect();
         // The middle particle may be another one at each level.
         let radius = fabrics().map(|fabric| rest_radius(fabric)).fold(0.0, f32::max);
@@ -66,14 +83,13 @@ impl LevelTables {
         self.particles[table][level]
     }
 
-    /// Updates all costs, for ticks of `tick` seconds. `fixed` costs are those of sixteen lanes whatever
-    /// the machine's width.
+    /// Updates all costs. `fixed` costs are those of sixteen lanes whatever the machine's width. Cloths of different
+    /// fabrics are mostly of few sizes, so that few costs are computed.
     pub fn update_costs(
         &mut self,
         table: &CostTable,
         model: &CostModel,
-        settings: &ClothSettings,
-        tick: f32,
+        widest: Option<LaneCount>,
         fixed: bool,
     ) {
         let machine = if fixed || instruction_set() == "AVX-512" {
@@ -81,19 +97,44 @@ impl LevelTables {
         } else {
             LaneCount::Eight
         };
-        let widest = settings.lanes.unwrap_or(machine);
+        let widest = widest.unwrap_or(machine);
+        self.costs.clear();
+        for (levels, table_of_costs) in self.work.iter().zip(&mut self.tables) {
+            for (work, cost) in levels.iter().zip(&mut table_of_costs.costs) {
+                let known = self.costs.iter().find(|(known, _)| known == work);
+                *cost = known.map(|(_, cost)| *cost).unwrap_or_else(|| {
+                    let Work { particles, step, most_single } = *work;
+                    let new = model.costs(table, particles, step, widest, most_single);
+                    self.costs.push((*work, new));
+                    new
+                });
+            }
+        }
+    }
+
+    /// Updates the work of all levels, for ticks of `tick` seconds, if these or the settings are others, and of new
+    /// tables.
+    pub fn update_work(&mut self, settings: &ClothSettings, changed: bool, tick: f32) {
+        if changed || self.tick != tick {
+            self.tick = tick;
+            self.work.iter_mut().for_each(Vec::clear);
+        }
         let gravity = settings.gravity.length();
-        for (levels, costs) in self.levels.iter().zip(&mut self.tables) {
+        for (levels, work) in self.levels.iter().zip(&mut self.work) {
+            if !work.is_empty() {
+                continue;
+            }
             let Some(levels) = levels.upgrade() else { continue };
-            for (level, costs) in costs.costs.iter_mut().enumerate() {
+            let work_of = |level: usize| {
                 let fabric = levels.fabric(level);
                 let step = settings.limits(level).of_fabric(fabric, tick, gravity);
                 let most_single = match settings.lanes {
                     None => LaneCount::most_alone(fabric, step.scheme) as u32,
                     Some(_) => 0,
                 };
-                *costs = model.costs(table, fabric.particle_count(), step, widest, most_single);
-            }
+                Work { particles: fabric.particle_count(), step, most_single }
+            };
+            work.extend((0..levels.count()).map(work_of));
         }
     }
 }

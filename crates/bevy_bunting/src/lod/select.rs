@@ -339,7 +339,8 @@ impl LevelSelector {
     fn choose(&mut self, table: &CostTable, conditions: &Conditions, limits: &Limits) -> Choice {
         let (settings, tick) = (&conditions.settings, conditions.time.delta_secs());
         let fixed = conditions.has_fixed_costs();
-        self.tables.update_costs(table, &self.model, settings, tick, fixed);
+        self.tables.update_work(settings, settings.is_changed(), tick);
+        self.tables.update_costs(table, &self.model, settings.lanes, fixed);
         let particles = self
             .candidates
             .iter()

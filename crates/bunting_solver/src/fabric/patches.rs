@@ -3,8 +3,6 @@
 //! A pair has four corners where two triangles have six, so that a third fewer positions are loaded and results
 //! added. Neighbours in the list are neighbours in space.
 
-use std::collections::HashMap;
-
 use super::grid::Grid;
 use crate::simd::lane::Lane;
 use crate::simd::vec3::{Pack3, V3};
@@ -47,12 +45,12 @@ pub(super) fn are_cells(patches: &[Patch], grid: &Grid) -> bool {
 /// Pairs each triangle with the first neighbour that has no partner yet and faces the same way, given the areas of
 /// the triangles, m².
 pub(super) fn patches(triangles: &[[u32; 3]], areas: &[f32]) -> Vec<Patch> {
-    let mut triangles_at: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
-    for (index, &[a, b, c]) in triangles.iter().enumerate() {
-        for edge in [[a, b], [b, c], [c, a]] {
-            triangles_at.entry(edge).or_default().push(index);
-        }
-    }
+    let sides = |(index, &[a, b, c]): (usize, &[u32; 3])| {
+        [[a, b], [b, c], [c, a]].map(|edge| (edge, index))
+    };
+    let mut triangles_at: Vec<([u32; 2], usize)> =
+        triangles.iter().enumerate().flat_map(sides).collect();
+    triangles_at.sort_unstable();
     let mut taken = vec![false; triangles.len()];
     let mut patches = Vec::with_capacity(triangles.len().div_ceil(2));
     for (index, &[p, q, r]) in triangles.iter().enumerate() {
@@ -65,8 +63,11 @@ pub(super) fn patches(triangles: &[[u32; 3]], areas: &[f32]) -> Vec<Patch> {
         let partner = [[p, q, r], [q, r, p], [r, p, q]]
             .into_iter()
             .flat_map(|corners| {
-                let across = triangles_at.get(&[corners[0], corners[2]]);
-                across.into_iter().flatten().map(move |&partner| (partner, corners))
+                let shared = [corners[0], corners[2]];
+                let first = triangles_at.partition_point(|(edge, _)| *edge < shared);
+                let across =
+                    triangles_at[first..].iter().take_while(move |(edge, _)| *edge == shared);
+                across.map(move |&(_, partner)| (partner, corners))
             })
             .filter(|&(partner, _)| !taken[partner])
             .min_by_key(|&(partner, _)| partner);

@@ -1,7 +1,5 @@
 //! Edges of a triangle mesh, each with the triangles on its two sides.
 
-use std::collections::BTreeMap;
-
 /// An edge and the corners opposite to it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
@@ -19,18 +17,17 @@ pub(super) struct Edge {
 ///
 /// The ends of an edge that more than two triangles share.
 pub(super) fn edges(triangles: &[[u32; 3]]) -> Result<Vec<Edge>, [u32; 2]> {
-    let mut edges: BTreeMap<[u32; 2], Edge> = BTreeMap::new();
-    for &[a, b, c] in triangles {
-        for (from, to, opposite) in [(a, b, c), (b, c, a), (c, a, b)] {
-            let ends = [from.min(to), from.max(to)];
-            match edges.get_mut(&ends) {
-                None => {
-                    edges.insert(ends, Edge { ends, opposite, other_opposite: None });
-                }
-                Some(edge) if edge.other_opposite.is_none() => edge.other_opposite = Some(opposite),
-                Some(_) => return Err(ends),
-            }
-        }
-    }
-    Ok(edges.into_values().collect())
+    let corners = |&[a, b, c]: &[u32; 3]| [(a, b, c), (b, c, a), (c, a, b)];
+    let sides = triangles.iter().flat_map(corners);
+    let mut sides: Vec<([u32; 2], u32)> =
+        sides.map(|(from, to, opposite)| ([from.min(to), from.max(to)], opposite)).collect();
+    // Stable: the triangles at an edge stay in their order.
+    sides.sort_by_key(|&(ends, _)| ends);
+    let at_edges = sides.chunk_by(|(ends, _), (others, _)| ends == others);
+    let edge = |sides: &[([u32; 2], u32)]| match *sides {
+        [(ends, opposite)] => Ok(Edge { ends, opposite, other_opposite: None }),
+        [(ends, opposite), (_, other)] => Ok(Edge { ends, opposite, other_opposite: Some(other) }),
+        _ => Err(sides[0].0),
+    };
+    at_edges.map(edge).collect()
 }

@@ -3,7 +3,7 @@
 //! A pack of chains has one yarn in each lane. Its links lie between consecutive lines of the arrays, and
 //! where the yarns are diagonals each line begins one particle further on than the line before.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 use super::LaneIndices;
 use super::grid_shape::GridShape;
@@ -12,9 +12,43 @@ use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Grid, Link, LinkFami
 use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;
 
-/// Links of yarns in one direction, and the index of each on its yarn: by the line of the arrays on which the
-/// link begins, and by the yarn.
-type Links<'a> = HashMap<(usize, isize), (&'a Link, usize)>;
+/// A link of a yarn, and its index on it.
+type OnYarn<'a> = (&'a Link, usize);
+
+/// Links of yarns in one direction: by the line of the arrays on which the link begins, and by the yarn.
+struct Links<'a> {
+    /// Number of the first yarn.
+    first: isize,
+    /// Line after line, one of each yarn.
+    table: Vec<Option<OnYarn<'a>>>,
+    /// Number of yarns.
+    yarns: usize,
+}
+
+impl<'a> Links<'a> {
+    /// Links with their lines and yarns; none where there are no links.
+    fn of(links: &[((usize, isize), OnYarn<'a>)]) -> Option<Self> {
+        let numbers = || links.iter().map(|&((_, yarn), _)| yarn);
+        let (first, last) = (numbers().min()?, numbers().max()?);
+        let lines = links.iter().map(|&((line, _), _)| line).max()? + 1;
+        let yarns = (last - first) as usize + 1;
+        let mut table = vec![None; lines * yarns];
+        for &((line, yarn), link) in links {
+            table[line * yarns + (yarn - first) as usize] = Some(link);
+        }
+        Some(Self { first, table, yarns })
+    }
+
+    /// Number of lines.
+    fn lines(&self) -> usize {
+        self.table.len() / self.yarns
+    }
+
+    /// The link of a yarn, counted from the first one, that begins on a line.
+    fn get(&self, line: usize, yarn: usize) -> Option<OnYarn<'a>> {
+        if yarn < self.yarns { self.table[line * self.yarns + yarn] } else { None }
+    }
+}
 
 /// Direction of a yarn: columns and rows from each particle to the next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -81,7 +115,7 @@ impl<P: Pack> ChainPacks<P> {
             let yarns = &fabric.yarns()[range.clone()];
             let family = fabric.links()[yarns[0].links[0] as usize].family;
             for (direction, links) in by_direction(fabric, grid, yarns)? {
-                colours.push((family, packer.pack(direction, &links)?));
+                colours.push((family, packer.pack(direction, &links)));
                 orders.push(direction.order());
             }
         }
@@ -98,16 +132,17 @@ fn by_direction<'a>(
     grid: &Grid,
     yarns: &[Yarn],
 ) -> Option<BTreeMap<Direction, Links<'a>>> {
-    let mut directions: BTreeMap<Direction, Links> = BTreeMap::new();
+    let mut directions: BTreeMap<Direction, Vec<_>> = BTreeMap::new();
     for yarn in yarns {
         let direction = Direction::of(grid, yarn)?;
         let links = directions.entry(direction).or_default();
         for (index, (&particle, &link)) in yarn.particles.iter().zip(&yarn.links).enumerate() {
             let at = direction.line_and_yarn(grid, particle);
-            links.insert(at, (&fabric.links()[link as usize], index));
+            links.push((at, (&fabric.links()[link as usize], index)));
         }
     }
-    Some(directions)
+    let links_of = |(direction, links): (Direction, Vec<_>)| Some((direction, Links::of(&links)?));
+    directions.into_iter().map(links_of).collect()
 }
 
 /// The cells whose diagonals are links, one for each link of a pack of diagonals.
@@ -128,32 +163,31 @@ struct Packer {
 
 impl Packer {
     /// Packs the yarns of one direction, the longest first.
-    fn pack<P: Pack>(&mut self, direction: Direction, links: &Links) -> Option<Vec<Chain<P>>> {
-        let first = links.keys().map(|&(_, yarn)| yarn).min()?;
-        let last = links.keys().map(|&(_, yarn)| yarn).max()?;
-        let mut chains: Vec<Chain<P>> = (first..=last)
+    fn pack<P: Pack>(&mut self, direction: Direction, links: &Links) -> Vec<Chain<P>> {
+        let mut chains: Vec<Chain<P>> = (0..links.yarns)
             .step_by(<P as Pack>::WIDTH)
             .filter_map(|first| self.chain(direction, first, links))
             .collect();
         chains.sort_by_key(|chain| core::cmp::Reverse(chain.links.len()));
-        Some(chains)
+        chains
     }
 
-    /// Packs the yarns from `first` on; none where there are no links.
+    /// Packs the yarns from the `first` of all on; none where there are no links.
     fn chain<P: Pack>(
         &mut self,
         direction: Direction,
-        first: isize,
+        first: usize,
         links: &Links,
     ) -> Option<Chain<P>> {
-        let yarns = first..first + P::WIDTH as isize;
-        let lines = || links.keys().filter(|(_, yarn)| yarns.contains(yarn)).map(|&(line, _)| line);
-        let (begin, end) = (lines().min()?, lines().max()? + 1);
+        let yarns = first..first + P::WIDTH;
+        let is_linked = |&line: &usize| yarns.clone().any(|yarn| links.get(line, yarn).is_some());
+        let begin = (0..links.lines()).find(is_linked)?;
+        let end = (0..links.lines()).rfind(is_linked)? + 1;
         let mut chain_links = Vec::new();
         let mut sweep = [Vec::new(), Vec::new()];
         for line in begin..end {
-            let lanes: Vec<Option<(&Link, usize)>> =
-                yarns.clone().map(|yarn| links.get(&(line, yarn)).copied()).collect();
+            let lanes: Vec<Option<OnYarn>> =
+                yarns.clone().map(|yarn| links.get(line, yarn)).collect();
             let of_link = |(link, _): (&Link, usize)| link.class;
             chain_links.push(ChainLink {
                 class: self.class(lanes.iter().map(|link| link.map(of_link)).collect()),
@@ -168,6 +202,7 @@ impl Packer {
                 }
             }
         }
+        let first = links.first + first as isize;
         let skewed = |line| first + direction.skew() * line as isize;
         let at = |line| self.shape.index(direction.order(), line, skewed(line));
         Some(Chain {
@@ -179,7 +214,8 @@ impl Packer {
 
     /// The class of links with these classes of the fabric in their lanes.
     fn class(&mut self, of_lanes: LaneIndices) -> u32 {
-        let known = self.classes.iter().position(|known| *known == of_lanes);
+        // Neighbours are mostly of the same classes, which are the last ones.
+        let known = self.classes.iter().rposition(|known| *known == of_lanes);
         known.unwrap_or_else(|| {
             self.classes.push(of_lanes);
             self.classes.len() - 1

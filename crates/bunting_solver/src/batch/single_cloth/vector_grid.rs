@@ -73,14 +73,28 @@ impl VectorGrid {
     /// Takes over the vectors of the other order: `extent` says how long its lines are and how many,
     /// `strides` how far its lines lie apart and how far these do.
     pub fn transpose_from(&mut self, other: &Self, strides: [usize; 2], extent: [usize; 2]) {
-        for (into, from) in self.0.iter_mut().zip(&other.0) {
-            let (into, from) = (&mut into[MARGIN..], &from[MARGIN..]);
-            dispatch!(token => transpose(token, from, into, strides, extent));
-        }
+        dispatch!(token => transpose_all(token, &other.0, &mut self.0, strides, extent));
+    }
+}
+
+/// Transposes each coordinate.
+#[inline(always)]
+fn transpose_all<S: Simd>(
+    token: S,
+    from: &[Vec<f32>; 3],
+    into: &mut [Vec<f32>; 3],
+    strides: [usize; 2],
+    extent: [usize; 2],
+) {
+    for (into, from) in into.iter_mut().zip(from) {
+        transpose(token, &from[MARGIN..], &mut into[MARGIN..], strides, extent);
     }
 }
 
 /// Transposes `lines` lines of `length` numbers, tile by tile.
+///
+/// The loops count by hand: `step_by` divides to find its number of steps, which took two thirds of the time for
+/// 5 × 5 particles.
 #[inline(always)]
 fn transpose<S: Simd>(
     token: S,
@@ -89,8 +103,10 @@ fn transpose<S: Simd>(
     [from_stride, into_stride]: [usize; 2],
     [length, lines]: [usize; 2],
 ) {
-    for line in (0..lines).step_by(TILE) {
-        for place in (0..length).step_by(TILE) {
+    let mut line = 0;
+    while line < lines {
+        let mut place = 0;
+        while place < length {
             let from = &from[line * from_stride + place..][..3 * from_stride + TILE];
             let a = f32x4::from_slice(token, &from[..TILE]);
             let b = f32x4::from_slice(token, &from[from_stride..from_stride + TILE]);
@@ -107,6 +123,8 @@ fn transpose<S: Simd>(
             ac_high
                 .zip_high(bd_high)
                 .store_slice(&mut into[3 * into_stride..3 * into_stride + TILE]);
+            place += TILE;
         }
+        line += TILE;
     }
 }

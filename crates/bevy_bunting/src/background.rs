@@ -1,0 +1,69 @@
+//! Work that another thread does, where there are threads.
+
+use core::fmt;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use bevy_tasks::{AsyncComputeTaskPool, Task, block_on};
+
+type Work<T> = Box<dyn FnOnce() -> T + Send>;
+
+/// Work whose result is taken in a tick that follows from the amount of work, and not when the work happens to be
+/// done: so it is the same tick on every machine.
+pub(crate) struct Background<T> {
+    /// None once it has begun.
+    work: Arc<Mutex<Option<Work<T>>>>,
+    /// None in browsers, which have no threads. The result is none where the work was done elsewhere.
+    task: Option<Task<Option<T>>>,
+}
+
+impl<T: Send + 'static> Background<T> {
+    /// Has work done on another thread, after all work before.
+    pub fn begin(work: impl FnOnce() -> T + Send + 'static) -> Self {
+        let work: Arc<Mutex<Option<Work<T>>>> = Arc::new(Mutex::new(Some(Box::new(work))));
+        let pool = AsyncComputeTaskPool::try_get().filter(|_| !cfg!(target_arch = "wasm32"));
+        let task = pool.map(|pool| {
+            let work = Arc::clone(&work);
+            pool.spawn(async move { take(&work).map(|work| work()) })
+        });
+        Self { work, task }
+    }
+
+    /// The result. Work that has not begun is done on this thread: the others may be busy for long.
+    pub fn take(self) -> T {
+        let done = match take(&self.work) {
+            Some(work) => Some(work()),
+            None => self.task.and_then(block_on),
+        };
+        done.expect("work that has begun ends")
+    }
+}
+
+fn take<T>(work: &Mutex<Option<Work<T>>>) -> Option<Work<T>> {
+    work.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+impl<T> fmt::Debug for Background<T> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.debug_struct("Background").finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+
+    use bevy_tasks::TaskPoolBuilder;
+
+    use super::*;
+
+    #[test]
+    fn work_behind_long_work_is_not_waited_for() {
+        AsyncComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
+        let (go, long) = mpsc::channel::<u32>();
+        let long = Background::begin(move || long.recv());
+        let short = Background::begin(|| 2);
+        assert_eq!(short.take(), 2);
+        go.send(1).expect("it waits");
+        assert_eq!(long.take(), Ok(1));
+    }
+}
