@@ -9,6 +9,7 @@ mod levels;
 mod lifecycle;
 mod order;
 mod rest;
+mod substep;
 mod thread_probe;
 mod threads;
 mod weights;

@@ -11,7 +11,7 @@ use bunting_tests::{FLAG, Seen, app, assert_finite, bits, run, state};
 
 use crate::thread_probe::ThreadProbe;
 
-/// Threads of the compute pool: few machines have fewer cores.
+/// Threads of the compute pool where this test creates it.
 const THREADS: usize = 3;
 
 #[test]
@@ -29,7 +29,8 @@ fn threads_change_no_bit() {
     let one = spawn(&mut lone, 1);
     run(&mut lone, 6);
     let pool = ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(THREADS).build());
-    assert_eq!(pool.thread_num(), THREADS, "another test has created the pool");
+    // Schedules of other tests in this process may have created the pool before, with a thread a core.
+    assert!(pool.thread_num() > 1, "the pool has one thread");
     let mut many = app();
     let probe = ThreadProbe::default();
     many.world_mut().spawn((ClothCollider::new(probe.shape()), Transform::default()));

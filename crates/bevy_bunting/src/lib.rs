@@ -69,13 +69,15 @@
 //! | [`ClothSubstepSystems`] | What happens |
 //! | --- | --- |
 //! | [`Integrate`](ClothSubstepSystems::Integrate) | frame motion, external forces, prediction |
+//! | [`UserForces`](ClothSubstepSystems::UserForces) | forces of the user, see [`ClothParticles`] |
 //! | [`SolveConstraints`](ClothSubstepSystems::SolveConstraints) | constraints and contacts |
+//! | [`UserConstraints`](ClothSubstepSystems::UserConstraints) | constraints of the user |
 //! | [`UpdateVelocities`](ClothSubstepSystems::UpdateVelocities) | velocities from positions |
 //!
 //! # Events
 //!
 //! [`ClothFailed`], [`ClothLevelChanged`] and [`ClothTargetLost`] are triggered on the cloth;
-//! [`TeleportCloth`] is triggered by the user.
+//! [`TeleportCloth`] and [`WakeCloth`] are triggered by the user.
 //!
 //! # Drawing
 //!
@@ -109,6 +111,7 @@ use bevy_ecs::schedule::ScheduleLabel;
 
 pub use batch::assign::LanePlugin;
 pub use batch::batches::ClothBatches;
+pub use batch::particles::{ClothParticles, SubstepParticles};
 pub use batch::publish::PublishPlugin;
 pub use batch::solve::SolverPlugin;
 pub use bunting_solver;
@@ -131,7 +134,7 @@ pub use lod::cost_table::CostTable;
 pub use lod::lod_set::{LodChoice, LodSet};
 pub use lod::report::{ClothCounts, LodReport};
 pub use lod::select::LodPlugin;
-pub use lod::sleep::SleepPlugin;
+pub use lod::sleep::{SleepPlugin, WakeCloth};
 pub use lod::viewer::{Lens, LodViewer};
 pub use motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
 pub use motion::plugin::AttachmentPlugin;

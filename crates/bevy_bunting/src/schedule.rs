@@ -51,10 +51,26 @@ impl ClothSystems {
 pub enum ClothSubstepSystems {
     /// States are transformed into the moved frame; external forces, damping, predicted positions.
     Integrate,
+    /// For forces of the user, see [`ClothParticles`](crate::ClothParticles).
+    UserForces,
     /// Constraints and contacts correct the predicted positions.
     SolveConstraints,
+    /// For constraints of the user, which correct positions after all others, see
+    /// [`ClothParticles`](crate::ClothParticles).
+    UserConstraints,
     /// Velocities from the corrected positions.
     UpdateVelocities,
+}
+
+impl ClothSubstepSystems {
+    /// All sets in the order in which they run.
+    pub const ORDER: [Self; 5] = [
+        Self::Integrate,
+        Self::UserForces,
+        Self::SolveConstraints,
+        Self::UserConstraints,
+        Self::UpdateVelocities,
+    ];
 }
 
 /// Makes the schedules and their sets, and runs [`ClothTick`].
@@ -87,14 +103,9 @@ impl Plugin for SchedulePlugin {
                     .configure_sets((prepare, select, drive, step, normals, publish).chain());
             })
             .edit_schedule(ClothSubstep, |schedule| {
-                own(schedule).configure_sets(
-                    (
-                        ClothSubstepSystems::Integrate,
-                        ClothSubstepSystems::SolveConstraints,
-                        ClothSubstepSystems::UpdateVelocities,
-                    )
-                        .chain(),
-                );
+                let [integrate, forces, solve, constraints, update] = ClothSubstepSystems::ORDER;
+                own(schedule)
+                    .configure_sets((integrate, forces, solve, constraints, update).chain());
             })
             .add_systems(self.host, run_cloth_tick);
     }

@@ -5,7 +5,9 @@ use std::time::{Duration, Instant};
 
 use bevy_ecs::prelude::*;
 use bevy_tasks::ComputeTaskPool;
-use bunting_solver::{ClothBatch, ClothSnapshot, Fabric, LaneCount, LaneSurface, StepSettings};
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Fabric, LaneCount, LaneSurface, ParticlesMut, StepSettings,
+};
 
 use crate::batch::group::Group;
 use crate::batch::lane_handle::LaneHandle;
@@ -142,6 +144,14 @@ impl ClothBatches {
         LaneMut { occupied: &mut self.groups[lane.group].batches[lane.batch], lane: lane.lane }
     }
 
+    /// The particles of a cloth in the current substep, and the fraction of the tick at its end. None if
+    /// the cloth does not take part in the substep.
+    pub(crate) fn particles_mut(&mut self, lane: LaneHandle) -> Option<(ParticlesMut<'_>, f32)> {
+        let batch = &mut self.groups[lane.group].batches[lane.batch];
+        let covered = batch.covered;
+        Some((batch.batch.particles_mut(lane.lane)?, covered))
+    }
+
     /// The time that each batch took in the last tick, if it was measured.
     pub(crate) fn timings(&self) -> impl Iterator<Item = BatchTiming> + '_ {
         self.groups.iter().flat_map(|group| {
@@ -170,10 +180,13 @@ impl ClothBatches {
     /// has, evenly spread.
     pub(crate) fn begin_substep(&mut self, index: u32, count: u32) {
         for group in &mut self.groups {
-            let done = |index: u32| index * group.settings.substeps / count;
+            let substeps = group.settings.substeps;
+            let done = |index: u32| index * substeps / count;
             let joins = done(index + 1) > done(index);
+            let covered = done(index + 1) as f32 / substeps as f32;
             for batch in &mut group.batches {
                 batch.joins = joins;
+                batch.covered = covered;
             }
         }
     }

@@ -5,5 +5,6 @@ pub mod batches;
 pub mod group;
 pub mod lane_handle;
 pub mod occupancy;
+pub mod particles;
 pub mod publish;
 pub mod solve;

@@ -36,6 +36,8 @@ pub(crate) struct OccupiedBatch {
     pub substeps: u32,
     /// Whether the batch takes part in the current substep.
     pub joins: bool,
+    /// Fraction of the tick that the batch has covered at the end of its current substep.
+    pub covered: f32,
     /// Time that the batch has taken in this tick, where that is measured.
     pub time: Duration,
 }
@@ -50,6 +52,7 @@ impl OccupiedBatch {
             width,
             substeps: 0,
             joins: true,
+            covered: 0.0,
             time: Duration::ZERO,
         }
     }

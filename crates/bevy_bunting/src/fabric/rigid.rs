@@ -20,10 +20,6 @@ pub(crate) struct RigidPart {
     /// The vertices without particles.
     pub vertices: Vec<RestVertex>,
     /// The triangles without simulated corners, as vertices of the mesh.
-    #[cfg_attr(
-        not(any(test, feature = "render")),
-        expect(dead_code, reason = "only meshes to be drawn need them")
-    )]
     pub triangles: Vec<[u32; 3]>,
     /// Simulated vertices of a weight below 1, with their weights.
     pub blended: Vec<(RestVertex, f32)>,

@@ -43,10 +43,8 @@ impl SimulatedPart {
         for &corner in triangles.iter().flat_map(|&triangle| &corners[triangle]) {
             is_simulated[corner as usize] = true;
         }
-        let mut rigid = RigidPart {
-            triangles: rigid_triangles.iter().map(|&triangle| corners[triangle]).collect(),
-            ..RigidPart::default()
-        };
+        let mut rigid = RigidPart::default();
+        rigid.triangles.extend(rigid_triangles.iter().map(|&triangle| corners[triangle]));
         let mut vertices = Vec::new();
         for (vertex, (&position, &normal)) in whole.positions().iter().zip(&normals).enumerate() {
             let rest = RestVertex { vertex: vertex as u32, position, normal };

@@ -31,13 +31,22 @@ const REST_TIME: f32 = 0.5;
 /// Smaller: fast colliders enter sleeping cloth.
 const CLEARANCE: f32 = 0.5;
 
+/// Wakes a cloth that sleeps at rest: trigger it when something begins to act on the cloth that the plugin
+/// does not know of, as a force or a constraint of the user. A cloth that sleeps because no viewer sees it is
+/// not woken.
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WakeCloth {
+    /// The cloth.
+    pub entity: Entity,
+}
+
 /// Sends cloths at rest to sleep, and wakes them.
 #[derive(Debug, Default)]
 pub struct SleepPlugin;
 
 impl Plugin for SleepPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Changes>().add_systems(
+        app.init_resource::<Changes>().add_observer(wake).add_systems(
             ClothTick,
             (
                 (note_changes, wake_cloths)
@@ -82,6 +91,13 @@ impl Changes {
         let is_near =
             |&(centre, other): &(Vec3, f32)| middle.distance(centre) < radius + other + CLEARANCE;
         timer.pose != Some(frame) || self.moving_colliders.iter().any(is_near)
+    }
+}
+
+fn wake(request: On<WakeCloth>, mut cloths: Query<(&mut ClothInstance, &mut RestTimer)>) {
+    if let Ok((mut instance, mut timer)) = cloths.get_mut(request.entity) {
+        timer.ticks = 0;
+        instance.wake();
     }
 }
 

@@ -56,6 +56,21 @@ struct Jump {
     energy: f64,
 }
 
+impl Jump {
+    /// The jump of a cloth whose vertices are so far, m, from where they would be without it.
+    fn new(moved: &[f64], [old, new]: [Motion; 2]) -> Self {
+        let momentum = (new.momentum - old.momentum).length();
+        Self {
+            pop_rms: stats::mean(&moved.iter().map(|d| d * d).collect::<Vec<_>>()).sqrt(),
+            pop_max: moved.iter().copied().fold(0.0, worse),
+            momentum: momentum / old.momentum_sizes,
+            momentum_of_sum: momentum / old.momentum.length(),
+            kinetic: (new.kinetic - old.kinetic) / old.kinetic,
+            energy: (new.total - old.total) / old.kinetic,
+        }
+    }
+}
+
 impl Switch {
     /// Flags of `from` vertices a side change to `to`, the next level, at `moments` moments.
     ///
@@ -95,15 +110,8 @@ impl Switch {
             let surfaces = flying.snapshots().zip(changed.snapshots());
             for ((before, after), (stayed, changed)) in before.iter().zip(&after).zip(surfaces) {
                 let moved = distances(&refined(stayed), &refined(changed));
-                let [old, new] = [(&grids[0], before), (&grids[1], after)].map(Motion::of);
-                jumps.push(Jump {
-                    pop_rms: stats::mean(&moved.iter().map(|d| d * d).collect::<Vec<_>>()).sqrt(),
-                    pop_max: moved.into_iter().fold(0.0, worse),
-                    momentum: (new.momentum - old.momentum).length() / old.momentum_sizes,
-                    momentum_of_sum: (new.momentum - old.momentum).length() / old.momentum.length(),
-                    kinetic: (new.kinetic - old.kinetic) / old.kinetic,
-                    energy: (new.total - old.total) / old.kinetic,
-                });
+                let motions = [(&grids[0], before), (&grids[1], after)].map(Motion::of);
+                jumps.push(Jump::new(&moved, motions));
             }
         }
         let average =

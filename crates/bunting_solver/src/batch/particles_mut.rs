@@ -167,8 +167,7 @@ impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
             self.masses.inverse[pack].lanes()[lane] * self.fabric.particle_areas()[particle];
         let change = acceleration * (true_part * step);
         add(&mut self.velocity[pack], lane, change);
-        add(&mut self.displacement[pack], lane, change * step);
-        add(&mut self.positions.packs_mut()[pack], lane, change * step);
+        self.shift_prediction(pack, lane, change * step);
     }
 
     fn add_velocity(&mut self, particle: usize, cloth: usize, change: Vec3) {
@@ -181,9 +180,22 @@ impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
         }
         // β h Δv by the new velocity and (γ₁ + γ₂) h Δv by the extrapolated displacements.
         let moved = change * self.clock.step;
-        add(&mut self.displacement[pack], lane, moved);
+        self.shift_prediction(pack, lane, moved);
         add(&mut self.older_displacement[pack], lane, moved);
-        add(&mut self.positions.packs_mut()[pack], lane, moved);
+    }
+}
+
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Shifts the predicted position of a particle, m, without a correction. The position is the sum of that at
+    /// the start and the displacement, as `update_velocities` computes it: a rounding error between them would
+    /// count as a correction, and become a velocity.
+    fn shift_prediction(&mut self, pack: usize, lane: usize, change: Vec3) {
+        let start = lane3(&self.scratch[pack], lane);
+        let before = lane3(&self.displacement[pack], lane);
+        let position = &mut self.positions.packs_mut()[pack];
+        let correction = lane3(position, lane) - (start + before);
+        set_lane3(&mut self.displacement[pack], lane, before + change);
+        set_lane3(position, lane, start + (before + change) + correction);
     }
 }
 
@@ -193,185 +205,4 @@ fn add<P: Pack>(pack: &mut Pack3<P>, lane: usize, change: Vec3) {
 }
 
 #[cfg(test)]
-mod tests {
-    use std::sync::Arc;
-
-    use glam::Vec3;
-
-    use crate::batch::lane_count::LaneCount;
-    use crate::batch::snapshot::ClothSnapshot;
-    use crate::batch::{ClothBatch, ParticlesMut};
-    use crate::fabric::{Fabric, FabricBuilder, FabricMaterial, Grid};
-    use crate::step::{Drive, StepSettings};
-
-    const TICK: f32 = 1.0 / 60.0;
-    const SETTINGS: [StepSettings; 2] = [StepSettings::yarns(3), StepSettings::gauss_seidel(4)];
-    /// A single cloth across the lanes, or a single lane with the scheme that has no chains; and cloths side by
-    /// side.
-    const LAYOUTS: [LaneCount; 2] = [LaneCount::One, LaneCount::Eight];
-
-    fn sheet(pins: impl IntoIterator<Item = u32>) -> Arc<Fabric> {
-        let builder = FabricBuilder::grid(Grid::new(9, 7, 1.0, 0.8)).pin(pins);
-        Arc::new(builder.build().expect("a good fabric"))
-    }
-
-    /// A batch with a cloth in its last lane.
-    fn batch_of(fabric: &Arc<Fabric>, lanes: LaneCount, drive: Drive) -> (ClothBatch, usize) {
-        let mut batch = ClothBatch::new(Arc::clone(fabric), lanes);
-        let lane = batch.lane_count() - 1;
-        let rest = ClothSnapshot::at_rest(fabric);
-        batch.replace(lane, &rest, FabricMaterial::COTTON).expect("a good cloth");
-        batch.drive(lane, drive);
-        (batch, lane)
-    }
-
-    /// Runs ticks with a force after the prediction and a constraint after the solver's own.
-    fn run(
-        (batch, lane): (&mut ClothBatch, usize),
-        settings: StepSettings,
-        ticks: usize,
-        mut force: impl FnMut(&mut ParticlesMut),
-        mut constraint: impl FnMut(&mut ParticlesMut),
-    ) -> ClothSnapshot {
-        for _ in 0..ticks {
-            batch.begin_tick(TICK, settings);
-            for _ in 0..settings.substeps {
-                batch.integrate();
-                force(&mut batch.particles_mut(lane).expect("a cloth"));
-                batch.solve_constraints();
-                constraint(&mut batch.particles_mut(lane).expect("a cloth"));
-                batch.update_velocities();
-            }
-        }
-        batch.snapshot_without_history(lane)
-    }
-
-    fn everywhere() -> impl Iterator<Item = (LaneCount, StepSettings)> {
-        LAYOUTS.into_iter().flat_map(|lanes| SETTINGS.map(|settings| (lanes, settings)))
-    }
-
-    fn farthest(one: &[Vec3], other: &[Vec3]) -> f32 {
-        one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f32::max)
-    }
-
-    const ACCELERATION: Vec3 = Vec3::new(1.0, -3.0, 0.5);
-
-    fn accelerate(particles: &mut ParticlesMut) {
-        (0..particles.count()).for_each(|at| particles.add_acceleration(at, ACCELERATION));
-    }
-
-    #[test]
-    fn an_acceleration_equals_gravity() {
-        let fabric = sheet([]);
-        let gravity = Drive { gravity: ACCELERATION, ..Drive::NONE };
-        for (lanes, settings) in everywhere() {
-            let (mut batch, lane) = batch_of(&fabric, lanes, gravity);
-            let expected = run((&mut batch, lane), settings, 20, |_| {}, |_| {});
-            let (mut batch, lane) = batch_of(&fabric, lanes, Drive::NONE);
-            let found = run((&mut batch, lane), settings, 20, accelerate, |_| {});
-            let off = farthest(&expected.positions, &found.positions);
-            assert!(off < 1e-5, "{lanes:?} {settings:?}: {off} m");
-            let off = farthest(&expected.velocities, &found.velocities);
-            assert!(off < 1e-5, "{lanes:?} {settings:?}: {off} m/s");
-        }
-    }
-
-    /// Beside pins that stand alone mass is added, on which gravity does not act.
-    #[test]
-    fn an_acceleration_acts_on_the_true_mass() {
-        let fabric = sheet([0, 8]);
-        let gravity = Drive { gravity: ACCELERATION, ..Drive::NONE };
-        for (lanes, settings) in everywhere() {
-            let (mut batch, lane) = batch_of(&fabric, lanes, gravity);
-            batch.begin_tick(TICK, settings);
-            batch.integrate();
-            let expected = batch.snapshot_without_history(lane);
-            let (mut batch, lane) = batch_of(&fabric, lanes, Drive::NONE);
-            batch.begin_tick(TICK, settings);
-            batch.integrate();
-            accelerate(&mut batch.particles_mut(lane).expect("a cloth"));
-            let found = batch.snapshot_without_history(lane);
-            let off = farthest(&expected.positions, &found.positions);
-            assert!(off < 1e-7, "{lanes:?} {settings:?}: {off} m");
-            let off = farthest(&expected.velocities, &found.velocities);
-            assert!(off < 1e-7, "{lanes:?} {settings:?}: {off} m/s");
-        }
-    }
-
-    #[test]
-    fn an_impulse_moves_a_free_cloth_steadily() {
-        let change = Vec3::new(0.5, 1.0, -2.0);
-        let fabric = sheet([]);
-        for (lanes, settings) in everywhere() {
-            let (mut batch, lane) = batch_of(&fabric, lanes, Drive::NONE);
-            run((&mut batch, lane), settings, 2, |_| {}, |_| {});
-            let mut given = false;
-            let push = |particles: &mut ParticlesMut| {
-                if !core::mem::replace(&mut given, true) {
-                    (0..particles.count()).for_each(|at| particles.set_velocity(at, change));
-                }
-            };
-            let found = run((&mut batch, lane), settings, 10, push, |_| {});
-            let moved = change * (10.0 * TICK);
-            let expected: Vec<Vec3> =
-                fabric.rest_positions().iter().map(|at| *at + moved).collect();
-            let damped = FabricMaterial::COTTON.damping * 10.0 * TICK;
-            let off = farthest(&expected, &found.positions);
-            assert!(off < 1e-5 + damped * moved.length(), "{lanes:?} {settings:?}: {off} m");
-        }
-    }
-
-    #[test]
-    fn a_position_constraint_holds() {
-        let fabric = sheet([]);
-        let held = [0, 8];
-        for (lanes, settings) in everywhere() {
-            let (mut batch, lane) = batch_of(&fabric, lanes, Drive::default());
-            let hold = |particles: &mut ParticlesMut| {
-                for at in held {
-                    particles.set_position(at, fabric.rest_positions()[at]);
-                }
-            };
-            let found = run((&mut batch, lane), settings, 60, |_| {}, hold);
-            for at in held {
-                assert_eq!(found.positions[at], fabric.rest_positions()[at], "{lanes:?}");
-                assert!(found.velocities[at].length() < 1e-4, "{lanes:?} {settings:?}");
-            }
-            // Without the constraint the cloth would have fallen by 4.9 m.
-            let mean: Vec3 = found.positions.iter().sum::<Vec3>() / found.positions.len() as f32;
-            assert!(mean.y > -1.0, "{lanes:?} {settings:?}: {mean}");
-        }
-    }
-
-    #[test]
-    fn masses_are_those_of_the_cloth_and_pins_stay() {
-        let fabric = sheet([0, 1, 2]);
-        for (lanes, settings) in everywhere() {
-            let (mut batch, lane) = batch_of(&fabric, lanes, Drive::NONE);
-            batch.begin_tick(TICK, settings);
-            assert!(batch.particles_mut(lane).is_none(), "no substep is under way");
-            batch.integrate();
-            let mut particles = batch.particles_mut(lane).expect("a cloth");
-            let step = particles.effective_step();
-            assert!(step > 0.0 && step <= TICK / settings.substeps as f32);
-            for at in 0..particles.count() {
-                let inverse_mass = particles.inverse_mass(at);
-                let area = fabric.particle_areas()[at];
-                let mass = FabricMaterial::COTTON.area_density * area;
-                let pinned = fabric.is_pinned(at);
-                let right = if pinned { 0.0 } else { 1.0 / mass };
-                assert!(inverse_mass <= right * 1.001 && (inverse_mass == 0.0) == pinned);
-                particles.set_position(at, Vec3::ONE);
-                particles.add_acceleration(at, Vec3::ONE);
-                particles.add_velocity(at, Vec3::ONE);
-                if pinned {
-                    assert_eq!(particles.position(at), fabric.rest_positions()[at]);
-                    assert_eq!(particles.velocity(at), Vec3::ZERO);
-                }
-            }
-            batch.update_velocities();
-            assert!(batch.particles_mut(lane).is_none());
-            assert!(batch.particles_mut(batch.lane_count()).is_none());
-        }
-    }
-}
+mod tests;

@@ -58,6 +58,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.solve_chains_both_ways(passes);
             self.solve_tethers();
         }
+        // Takes the positions back from the constraints.
         self.positions.packs_mut();
         self.update_prediction();
         self.solve_contacts();

@@ -109,12 +109,11 @@ impl FabricMaterial {
     /// and finite, a stretch stiffness that is not positive, anything else that is negative or not
     /// a number.
     pub fn validate(&self) -> Result<(), FabricError> {
-        type Check = (&'static str, f32, fn(f32) -> bool);
         let density = |value: f32| value > 0.0 && value.is_finite();
         let stretch = |value: f32| value > 0.0;
         let other = |value: f32| value >= 0.0 && value.is_finite();
-        let checks: [Check; 11] = [
-            ("area_density", self.area_density, density),
+        let checks = [
+            ("area_density", self.area_density, density as fn(f32) -> bool),
             ("warp_stiffness", self.warp_stiffness, stretch),
             ("weft_stiffness", self.weft_stiffness, stretch),
             ("shear_stiffness", self.shear_stiffness, other),

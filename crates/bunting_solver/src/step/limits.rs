@@ -30,13 +30,7 @@ impl StepLimits {
     /// cloth of length L that is 4 g L/l², whatever it weighs.
     #[must_use]
     pub fn of_fabric(&self, fabric: &Fabric, tick: f32, gravity: f32) -> StepSettings {
-        self.of_tautness(fabric.tautness(), tick, gravity)
-    }
-
-    /// Settings for a fabric of a [tautness](Fabric::tautness) in m^−½.
-    #[must_use]
-    pub fn of_tautness(&self, tautness: f32, tick: f32, gravity: f32) -> StepSettings {
-        let wanted = tick * tautness * (gravity / FASTEST_VIBRATION).sqrt();
+        let wanted = tick * fabric.tautness() * (gravity / FASTEST_VIBRATION).sqrt();
         // NaN becomes zero.
         let wanted = wanted.ceil() as u32;
         let (fewest, most) = (*self.substeps.start(), *self.substeps.end());

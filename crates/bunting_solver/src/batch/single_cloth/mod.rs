@@ -72,11 +72,11 @@ impl<P: Pack> SingleCloth<P> {
         let bending = bend_lines
             .profiles
             .iter()
-            .map(|of_lanes| BendFactors::new(&of_fabric(of_lanes, fabric.bend_profiles())));
+            .map(|of_lanes| BendFactors::new(&of_lanes_in(of_lanes, fabric.bend_profiles())));
         let twist = ribbons
             .profiles
             .iter()
-            .map(|of_lanes| TwistFactors::new(&of_fabric(of_lanes, fabric.ribbon_profiles())));
+            .map(|of_lanes| TwistFactors::new(&of_lanes_in(of_lanes, fabric.ribbon_profiles())));
         let locate = |particle: u32| locate::<P>(shape, particle as usize);
         Some(Self {
             factors: Factors {
@@ -97,8 +97,8 @@ impl<P: Pack> SingleCloth<P> {
     }
 }
 
-/// What lanes refer to in a list of the fabric.
-fn of_fabric<'a, T>(of_lanes: &LaneIndices, list: &'a [T]) -> Vec<Option<&'a T>> {
+/// The elements of a list of the fabric that the lanes' indices refer to.
+fn of_lanes_in<'a, T>(of_lanes: &LaneIndices, list: &'a [T]) -> Vec<Option<&'a T>> {
     of_lanes.iter().map(|index| index.map(|index| &list[index as usize])).collect()
 }
 
@@ -209,12 +209,12 @@ impl<P: Pack> Layout<P> for SingleCloth<P> {
             *pack = P::of(|lane| classes[lane].map_or(0.0, of_class));
         }
         for (factors, profiles) in bending.iter_mut().zip(&self.bend_lines.profiles) {
-            for (lane, rows) in of_fabric(profiles, &of_cloth.bending).iter().enumerate() {
+            for (lane, rows) in of_lanes_in(profiles, &of_cloth.bending).iter().enumerate() {
                 rows.iter().for_each(|rows| factors.set_lane(lane, rows));
             }
         }
         for (factors, profiles) in twist.iter_mut().zip(&self.ribbons.profiles) {
-            for (lane, rows) in of_fabric(profiles, &of_cloth.twist).iter().enumerate() {
+            for (lane, rows) in of_lanes_in(profiles, &of_cloth.twist).iter().enumerate() {
                 rows.iter().for_each(|rows| factors.set_lane(lane, rows));
             }
         }

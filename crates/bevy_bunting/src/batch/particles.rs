@@ -1,0 +1,140 @@
+//! Access to the particles of a cloth within a substep, for forces and constraints of the user.
+
+use core::ops::{Deref, DerefMut};
+
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::SystemParam;
+use bevy_math::{Isometry3d, Vec3};
+use bunting_solver::ParticlesMut;
+
+use crate::batch::batches::ClothBatches;
+use crate::cloth::instance::ClothInstance;
+use crate::lod::record::RestTimer;
+use crate::motion::pose::PoseHistory;
+
+/// The particles of cloths in a substep: a system parameter for systems in
+/// [`ClothSubstepSystems::UserForces`](crate::ClothSubstepSystems::UserForces) and
+/// [`ClothSubstepSystems::UserConstraints`](crate::ClothSubstepSystems::UserConstraints).
+///
+/// ```
+/// # use bevy_app::prelude::*;
+/// # use bevy_ecs::prelude::*;
+/// # use bevy_math::Vec3;
+/// use bevy_bunting::prelude::*;
+/// use bevy_bunting::{ClothParticles, ClothSubstep, ClothSubstepSystems};
+///
+/// /// A lift of 2 m/s² on each particle below the plane y = 0 of the world.
+/// fn lift(mut particles: ClothParticles, cloths: Query<Entity, With<ClothMesh>>) {
+///     for entity in &cloths {
+///         let Some(mut cloth) = particles.get_mut(entity) else { continue };
+///         for particle in 0..cloth.count() {
+///             if cloth.to_world(cloth.position(particle)).y < 0.0 {
+///                 let acceleration = cloth.direction_to_local(2.0 * Vec3::Y);
+///                 cloth.add_acceleration(particle, acceleration);
+///             }
+///         }
+///     }
+/// }
+///
+/// # let mut app = App::new();
+/// # app.add_plugins(ClothPlugins::default());
+/// app.add_systems(ClothSubstep, lift.in_set(ClothSubstepSystems::UserForces));
+/// ```
+///
+/// Several such systems access the same particles, and must be ordered against one another.
+///
+/// As long as the schedule has no system with this parameter, cloths are solved batch by batch, each in the
+/// processor's cache; with one, each phase of a substep passes over all batches.
+#[derive(SystemParam)]
+pub struct ClothParticles<'w, 's> {
+    batches: ResMut<'w, ClothBatches>,
+    cloths: Query<'w, 's, (&'static ClothInstance, &'static PoseHistory, &'static mut RestTimer)>,
+}
+
+impl ClothParticles<'_, '_> {
+    /// The particles of a cloth in the current substep.
+    ///
+    /// None if the cloth does not take part in this substep: cloths at coarse levels have fewer substeps in
+    /// a tick than those at fine ones, and take part in only some of them. None, too, of a cloth that is
+    /// paused, asleep or invalid, and outside of the time from
+    /// [`Integrate`](crate::ClothSubstepSystems::Integrate) to
+    /// [`UpdateVelocities`](crate::ClothSubstepSystems::UpdateVelocities).
+    pub fn get_mut(&mut self, cloth: Entity) -> Option<SubstepParticles<'_>> {
+        let (instance, history, rest_timer) = self.cloths.get_mut(cloth).ok()?;
+        let (particles, fraction) = self.batches.particles_mut(instance.lane()?)?;
+        let frame = frame_at(history, fraction);
+        Some(SubstepParticles { particles, frame, rest_timer })
+    }
+}
+
+/// The frame of a cloth at a fraction of the tick: as in the solver it turns at a constant rate about a fixed
+/// axis while its origin moves along a straight line.
+fn frame_at(history: &PoseHistory, fraction: f32) -> Isometry3d {
+    let (start, end) = (history.start(), history.end());
+    if start == end {
+        return end;
+    }
+    let translation = start.translation.lerp(end.translation, fraction);
+    Isometry3d::new(translation, start.rotation.slerp(end.rotation, fraction).normalize())
+}
+
+/// The particles of one cloth in a substep, with the methods of [`ParticlesMut`]: positions (m), velocities
+/// (m/s) and inverse masses (1/kg) of particles to read, accelerations (m/s²), impulses and corrections of
+/// positions to write. Coordinates are those of the cloth's frame in this substep; velocities are relative to
+/// the world, along the axes of the frame.
+///
+/// Particles are numbered as in [`ClothState::fabric`](crate::ClothState::fabric). A cloth does not fall asleep
+/// in a tick in which its particles are written.
+#[derive(Debug)]
+pub struct SubstepParticles<'a> {
+    particles: ParticlesMut<'a>,
+    frame: Isometry3d,
+    rest_timer: Mut<'a, RestTimer>,
+}
+
+impl SubstepParticles<'_> {
+    /// Pose in the world (m) of the cloth's frame at the end of this substep.
+    #[must_use]
+    pub fn frame(&self) -> Isometry3d {
+        self.frame
+    }
+
+    /// The point in the world (m) of a point in the cloth's frame.
+    #[must_use]
+    pub fn to_world(&self, point: Vec3) -> Vec3 {
+        self.frame * point
+    }
+
+    /// The point in the cloth's frame (m) of a point in the world.
+    #[must_use]
+    pub fn to_local(&self, point: Vec3) -> Vec3 {
+        self.frame.rotation.inverse() * (point - Vec3::from(self.frame.translation))
+    }
+
+    /// The direction in the world of a direction in the cloth's frame, as of a velocity.
+    #[must_use]
+    pub fn direction_to_world(&self, direction: Vec3) -> Vec3 {
+        self.frame.rotation * direction
+    }
+
+    /// The direction in the cloth's frame of a direction in the world, as of an acceleration.
+    #[must_use]
+    pub fn direction_to_local(&self, direction: Vec3) -> Vec3 {
+        self.frame.rotation.inverse() * direction
+    }
+}
+
+impl<'a> Deref for SubstepParticles<'a> {
+    type Target = ParticlesMut<'a>;
+
+    fn deref(&self) -> &ParticlesMut<'a> {
+        &self.particles
+    }
+}
+
+impl<'a> DerefMut for SubstepParticles<'a> {
+    fn deref_mut(&mut self) -> &mut ParticlesMut<'a> {
+        self.rest_timer.ticks = 0;
+        &mut self.particles
+    }
+}
