@@ -15,11 +15,12 @@ use crate::step::carry::FrameRegisters;
 use crate::step::parameters::Parameters;
 
 /// Added to a velocity in m/s or a position in m and subtracted again, this rounds values below 10⁻⁵ to multiples
-/// of 2⁻⁴³, 1.1 × 10⁻¹³, and keeps the bits of larger ones. Damped motion decays exponentially, to values that are
-/// subnormal, or whose products are, and processors take a hundred times as long over each. One and a half times a
-/// power of two rounds both signs alike. Smaller: products of three values are subnormal. Larger: the rounding is
-/// seen in slow motion.
-const ROUNDING: f32 = 1.5 / (1 << 20) as f32;
+/// of 2⁻⁴³, 1.1 × 10⁻¹³, and returns larger ones but for rare units in the last place. Damped motion decays
+/// exponentially, to values that are subnormal, or whose products are, and processors take a hundred times as long
+/// over each. Near one and a half times a power of two it rounds both signs alike. Its last place is odd, so that it
+/// is half a unit in the last place of no larger value: a tie to even would change every odd one. Smaller: products
+/// of three values are subnormal. Larger: the rounding is seen in slow motion.
+const ROUNDING: f32 = 1.430_511_6e-6;
 
 /// The same for the change of velocity by air in a substep, m/s, which is squared: it is rounded to multiples of
 /// 2⁻⁵³.
