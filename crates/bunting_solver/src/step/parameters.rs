@@ -38,7 +38,7 @@ impl ParameterInputs {
 pub(crate) struct Parameters<P: Pack> {
     /// γ₁ and γ₂ of the [`Formula`].
     pub extrapolation: [P; 2],
-    /// One over their sum, see [`Formula::inverse_extrapolation`].
+    /// See [`Formula::inverse_extrapolation`].
     pub inverse_extrapolation: P,
     /// Effective length β h of the substep, s. Everything below that is "in a substep" is in this one.
     pub step: P,
@@ -141,7 +141,7 @@ impl<P: Pack> Parameters<P> {
         for (pack, part) in self.extrapolation.iter_mut().zip(formula.extrapolation) {
             set(pack, part);
         }
-        set(&mut self.inverse_extrapolation, formula.inverse_extrapolation());
+        set(&mut self.inverse_extrapolation, formula.inverse_extrapolation);
         set(&mut self.step, step);
         set(&mut self.inverse_step, 1.0 / step);
         set(&mut self.predicted_part, predicted_part);
