@@ -28,9 +28,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if self.clock.begun == 1 {
             self.find_diagonal_targets();
         }
-        self.leave_out_of_prediction(-1.0);
         self.solve_diagonals();
-        self.leave_out_of_prediction(1.0);
         // After the last pass only the sweep reads targets, and there is none with a single pass.
         let pass = if passes > 1 { Pass::Again } else { Pass::Last };
         for _ in 0..passes {
@@ -50,7 +48,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
-    fn solve_warp_and_weft(&mut self, pass: Pass) {
+    /// Solves warp and weft once.
+    pub(super) fn solve_warp_and_weft(&mut self, pass: Pass) {
         self.solve_colours(pass, |family| family != LinkFamily::Diagonal);
     }
 

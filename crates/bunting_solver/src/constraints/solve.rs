@@ -23,7 +23,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             Scheme::GaussSeidel => self.solve_gauss_seidel(),
             Scheme::Yarns => {
                 if self.fabric.grid().is_some() {
-                    self.solve_bending_with_prediction();
+                    self.solve_bending_before_stretch();
                 } else {
                     self.solve_dihedral_both_ways();
                 }
@@ -37,7 +37,7 @@ impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
     /// Projects the predicted positions onto all constraints. The cloth is a grid, and the scheme that of yarns.
     pub fn solve_constraints(&mut self) {
         if !self.clock.stands_still() {
-            self.solve_bending_with_prediction();
+            self.solve_bending_before_stretch();
             self.solve_stretch_and_contacts();
         }
     }
@@ -60,7 +60,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         // Takes the positions back from the constraints.
         self.positions.packs_mut();
-        self.update_prediction();
         self.solve_contacts();
     }
 }
