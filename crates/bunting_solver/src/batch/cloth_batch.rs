@@ -11,10 +11,12 @@ use crate::batch::particles_mut::ParticlesMut;
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::snapshot::ClothSnapshot;
 use crate::batch::surfaces::LaneSurface;
+use crate::constants::GRAVITY;
 use crate::contact::collider::Collider;
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::simd::registers::{Pack1, Pack8, Pack16};
 use crate::step::bdf::IntegratorHistory;
+use crate::step::limits::StepLimits;
 use crate::step::{Drive, Scheme, StepSettings};
 
 /// The state of up to [`LaneCount`] cloths of one [`Fabric`], stepped together.
@@ -308,8 +310,11 @@ impl ClothBatch {
         with_batch!(&mut self.0, batch => batch.compute_normals());
     }
 
-    /// Runs one whole tick of `tick` seconds: all substeps, then the normals.
-    pub fn step(&mut self, tick: f32, settings: StepSettings) {
+    /// Runs one whole tick of `tick` seconds: all substeps, then the normals. Their number is chosen within the limits
+    /// for this fabric under standard gravity; settings are limits that leave no choice. Where gravity is stronger, see
+    /// [`StepLimits::of_fabric`].
+    pub fn step(&mut self, tick: f32, limits: impl Into<StepLimits>) {
+        let settings = limits.into().of_fabric(self.fabric(), tick, GRAVITY);
         self.begin_tick(tick, settings);
         for _ in 0..settings.substeps {
             self.integrate();

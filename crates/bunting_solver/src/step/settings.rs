@@ -46,7 +46,7 @@ impl StepSettings {
 
 impl Default for StepSettings {
     /// The scheme of yarns with two substeps of two passes: for cloth of up to 65 × 65 particles at 60 ticks a
-    /// second.
+    /// second. [`StepLimits`](crate::StepLimits) choose substeps for other ticks.
     fn default() -> Self {
         Self { passes: 2, ..Self::yarns(2) }
     }

@@ -24,7 +24,7 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     let mut cases = free::cases(quick);
     cases.extend(strips::cases(quick));
     cases.extend(jerk::cases(quick));
-    cases.push(rates::random_ticks());
+    cases.extend(rates::cases());
     cases.extend(hang::cases(quick));
     cases
 }
