@@ -30,7 +30,7 @@ fn flag() -> Arc<Fabric> {
 fn material(seed: usize) -> FabricMaterial {
     match seed % 3 {
         0 => FabricMaterial { friction_coefficient: 0.0, ..FabricMaterial::SILK },
-        // Stiff enough for bending to use the predicted stretch.
+        // So stiff that bending is solved where stretch leads to.
         1 => FabricMaterial { bend_stiffness: 10.0, ..FabricMaterial::DENIM },
         _ => FabricMaterial { internal_damping: 1.0, ..FabricMaterial::COTTON },
     }
