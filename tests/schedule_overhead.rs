@@ -82,7 +82,7 @@ fn batch() -> ClothBatch {
     for lane in 0..FLAGS {
         let rest = ClothSnapshot::at_rest(&fabric);
         batch.insert(&rest, FabricMaterial::default()).expect("a lane is free");
-        batch.drive(lane, Drive { wind: WIND, ..Drive::default() });
+        batch.drive(lane, Drive { wind: WIND, ..Drive::default() }).expect("a good drive");
     }
     batch
 }

@@ -168,7 +168,7 @@ fn drive(batch: &mut ClothBatch, scene: &Scene, tick: u32, mut cloth: usize) -> 
     for lane in 0..batch.lane_count() {
         let wind = scene.air.wind_at(seconds + GUST_LAG * cloth as f64).as_vec3();
         let gravity = Vec3::NEG_Y * scene.gravity as f32;
-        batch.drive(lane, Drive { gravity, wind, ..Drive::default() });
+        batch.drive(lane, Drive { gravity, wind, ..Drive::default() }).expect("a good drive");
         cloth += 1;
     }
     cloth

@@ -180,7 +180,7 @@ impl Cloth {
         let middle = self.seconds + 0.5 * f64::from(tick);
         let drive = Drive { wind: self.scene.air.wind_at(middle).as_vec3(), ..self.drive };
         for lane in 0..self.batch.lane_count() {
-            self.batch.drive(lane, drive);
+            self.batch.drive(lane, drive).expect("a good drive");
         }
         self.batch.begin_tick(tick, self.settings);
         for _ in 0..self.settings.substeps {
@@ -222,7 +222,7 @@ impl Cloth {
     /// Sets what every lane may touch.
     pub fn touch(&mut self, colliders: &[Collider]) {
         for lane in 0..self.batch.lane_count() {
-            self.batch.set_colliders(lane, colliders.iter().cloned());
+            self.batch.set_colliders(lane, colliders.iter().cloned()).expect("good shapes");
         }
     }
 

@@ -7,7 +7,7 @@
 //! ```
 //! use std::sync::Arc;
 //! use bunting_solver::{
-//!     ClothBatch, ClothSnapshot, FabricBuilder, FabricMaterial, Grid, LaneCount, StepSettings,
+//!     ClothBatch, ClothSnapshot, FabricBuilder, FabricMaterial, Grid, LaneCount, StepLimits,
 //! };
 //!
 //! // A flag of one square metre, pinned along its left edge, u = 0.
@@ -17,7 +17,7 @@
 //! let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
 //! let flag = batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::FLAG_POLYESTER)?;
 //! for _ in 0..60 {
-//!     batch.step(1.0 / 60.0, StepSettings::default());
+//!     batch.step(1.0 / 60.0, StepLimits::default());
 //! }
 //!
 //! let mut positions = Vec::new();

@@ -34,7 +34,7 @@ fn fall() -> Drive {
 fn cloth(fabric: &Arc<Fabric>, material: FabricMaterial) -> ClothBatch {
     let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
     let lane = batch.insert(&ClothSnapshot::at_rest(fabric), material).expect("a free lane");
-    batch.drive(lane, fall());
+    batch.drive(lane, fall()).expect("a good drive");
     batch
 }
 
@@ -77,7 +77,9 @@ fn cloth_comes_to_lie_on_every_shape() {
             let top = centre.z + height;
             let fabric = horizontal(17, false);
             let mut batch = cloth(&fabric, material());
-            batch.set_colliders(0, [Collider::fixed(shape.clone(), centre, Quat::IDENTITY)]);
+            batch
+                .set_colliders(0, [Collider::fixed(shape.clone(), centre, Quat::IDENTITY)])
+                .expect("good shapes");
             for _ in 0..45 {
                 batch.step(TICK, settings);
                 assert!(deepest(&batch, shape, centre) < 1e-3, "{context}");
@@ -107,7 +109,7 @@ fn a_fast_ball_does_not_tunnel() {
                 to: pose(tick + 1),
                 ..Collider::fixed(shape.clone(), at(tick), Quat::IDENTITY)
             };
-            batch.set_colliders(0, [ball]);
+            batch.set_colliders(0, [ball]).expect("good shapes");
             batch.step(TICK, settings);
             let ball = at(tick + 1);
             for at in batch.snapshot(0).positions {
@@ -138,15 +140,17 @@ fn nothing_stays_inside_a_fast_shape() {
                 ..material()
             },
         );
-        batch.drive(0, Drive { air_density: 0.0, ..Drive::default() });
+        batch.drive(0, Drive { air_density: 0.0, ..Drive::default() }).expect("a good drive");
         let at = |tick: usize| Vec3::new(0.5, -0.5, -0.5 + 20.0 * TICK * tick as f32);
         for tick in 0..4 {
             let from = (at(tick), turned);
             let to = (at(tick + 1), turned);
-            batch.set_colliders(
-                0,
-                [Collider { from, to, ..Collider::fixed(shape.clone(), at(tick), turned) }],
-            );
+            batch
+                .set_colliders(
+                    0,
+                    [Collider { from, to, ..Collider::fixed(shape.clone(), at(tick), turned) }],
+                )
+                .expect("good shapes");
             batch.step(TICK, StepSettings { passes: 2, ..StepSettings::yarns(2) });
             for position in batch.snapshot(0).positions {
                 let local = turned.inverse() * (position - at(tick + 1));
@@ -173,9 +177,11 @@ fn friction_holds_a_cloth_on_a_slope_and_its_absence_does_not() {
             let fabric = horizontal(9, false);
             let material = FabricMaterial { surface_friction: friction, ..material() };
             let mut batch = cloth(&fabric, material);
-            batch.drive(0, Drive { gravity, air_density: 0.0, ..Drive::default() });
+            batch
+                .drive(0, Drive { gravity, air_density: 0.0, ..Drive::default() })
+                .expect("a good drive");
             // The coefficient of a contact is the root of the product of the cloth's and the collider's.
-            batch.set_colliders(0, [Collider { friction, ..ground.clone() }]);
+            batch.set_colliders(0, [Collider { friction, ..ground.clone() }]).expect("good shapes");
             for _ in 0..60 {
                 batch.step(TICK, settings);
             }
@@ -197,8 +203,10 @@ fn a_cloth_that_starts_inside_is_pushed_out_slowly() {
     let centre = Vec3::new(0.5, -0.5, -0.1);
     for settings in schemes(4) {
         let mut batch = cloth(&fabric, material());
-        batch.drive(0, Drive::NONE);
-        batch.set_colliders(0, [Collider::fixed(shape.clone(), centre, Quat::IDENTITY)]);
+        batch.drive(0, Drive::NONE).expect("a good drive");
+        batch
+            .set_colliders(0, [Collider::fixed(shape.clone(), centre, Quat::IDENTITY)])
+            .expect("good shapes");
         for _ in 0..30 {
             batch.step(TICK, settings);
         }
@@ -217,16 +225,16 @@ fn a_pushed_flag_turns_about_its_pole() {
     let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0));
     let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build().expect("a good fabric"));
     let mut batch = cloth(&fabric, material());
-    batch.drive(0, Drive::NONE);
+    batch.drive(0, Drive::NONE).expect("a good drive");
     let shape = SharedShape::cuboid(0.4, 0.6, 0.05);
     let at = |tick: usize| Vec3::new(0.6, -0.5, -0.06 + TICK * tick as f32);
     for tick in 0..6 {
         let [from, to] = [tick, tick + 1].map(|tick| (at(tick), Quat::IDENTITY));
         let plate = Collider { from, to, ..Collider::fixed(shape.clone(), at(tick), to.1) };
-        batch.set_colliders(0, [plate]);
+        batch.set_colliders(0, [plate]).expect("good shapes");
         batch.step(TICK, StepSettings::yarns(2));
     }
-    batch.set_colliders(0, []);
+    batch.set_colliders(0, []).expect("good shapes");
     batch.step(TICK, StepSettings::yarns(2));
     let state = batch.snapshot(0);
     let areas = fabric.particle_areas();
@@ -245,10 +253,10 @@ fn a_sheet_that_falls_on_a_floor_stays_there() {
     for (substeps, passes) in [(1, 4), (2, 2), (4, 2)] {
         let fabric = horizontal(9, false);
         let mut batch = cloth(&fabric, material());
-        batch.drive(0, Drive { air_density: 0.0, ..fall() });
+        batch.drive(0, Drive { air_density: 0.0, ..fall() }).expect("a good drive");
         let floor =
             Collider::fixed(SharedShape::halfspace(Vec3::Z), -0.3 * Vec3::Z, Quat::IDENTITY);
-        batch.set_colliders(0, [floor]);
+        batch.set_colliders(0, [floor]).expect("good shapes");
         let mut fastest = 0.0_f32;
         for _ in 0..40 {
             batch.step(TICK, StepSettings { passes, ..StepSettings::yarns(substeps) });

@@ -42,7 +42,7 @@ fn collapsed_starts_stay_finite() {
         for (index, place) in places.into_iter().enumerate() {
             for wind in [Vec3::ZERO, Vec3::new(5.0, 0.0, 3.0)] {
                 let mut batch = cloth(&fabric, place);
-                batch.drive(0, Drive { wind, ..Drive::default() });
+                batch.drive(0, Drive { wind, ..Drive::default() }).expect("a good drive");
                 for tick in 0..60 {
                     batch.step(TICK, settings);
                     assert!(batch.is_finite(0), "{settings:?}, start {index}, {wind}, tick {tick}");
@@ -98,7 +98,7 @@ fn stiff_strips_displaced_in_their_plane_do_not_swing_farther() {
         }
         let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
         batch.insert(&start, material).expect("a free lane");
-        batch.drive(0, Drive::NONE);
+        batch.drive(0, Drive::NONE).expect("a good drive");
         for tick in 0..400 {
             batch.step(TICK, StepSettings::default());
             let positions = batch.snapshot(0).positions;
@@ -127,7 +127,7 @@ fn pins_too_far_apart_hold_the_cloth_still() {
         let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
         let mut state = ClothSnapshot::at_rest(&fabric);
         batch.insert(&state, material).expect("a free lane");
-        batch.drive(0, Drive { air_density: 0.0, ..Drive::default() });
+        batch.drive(0, Drive { air_density: 0.0, ..Drive::default() }).expect("a good drive");
         for stretch in [1.1, 1.0] {
             for (particle, rest) in fabric.rest_positions().iter().enumerate() {
                 if fabric.is_pinned(particle) {
@@ -160,7 +160,9 @@ fn a_shaken_flag_stays_within_its_reach_of_both_ends_of_the_pole() {
     let mut reach = 0.0_f32;
     for tick in 0..120 {
         let motion = FrameMotion::between(pose(tick), pose(tick + 1));
-        batch.drive(0, Drive { motion, air_density: 0.0, ..Drive::default() });
+        batch
+            .drive(0, Drive { motion, air_density: 0.0, ..Drive::default() })
+            .expect("a good drive");
         batch.step(TICK, StepSettings::yarns(2));
         batch.copy_positions(0, &mut positions);
         reach = positions.iter().map(|at| at.distance(positions[0])).fold(reach, f32::max);

@@ -5,8 +5,9 @@ use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion,
-    Grid, LaneCount, LaneSurface, StepSettings, instruction_set, with_every_instruction_set,
+    BatchError, ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial,
+    FrameMotion, Grid, LaneCount, LaneSurface, StepSettings, instruction_set,
+    with_every_instruction_set,
 };
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
@@ -29,7 +30,7 @@ fn flag() -> Arc<Fabric> {
 fn material(seed: usize) -> FabricMaterial {
     match seed % 3 {
         0 => FabricMaterial { friction_coefficient: 0.0, ..FabricMaterial::SILK },
-        // Stiff enough for bending to use the predicted stretch.
+        // So stiff that bending is solved where stretch leads to.
         1 => FabricMaterial { bend_stiffness: 10.0, ..FabricMaterial::DENIM },
         _ => FabricMaterial { internal_damping: 1.0, ..FabricMaterial::COTTON },
     }
@@ -64,11 +65,11 @@ fn fly(
     for &seed in seeds {
         let lane =
             batch.insert(&ClothSnapshot::at_rest(fabric), material(seed)).expect("a free lane");
-        batch.set_colliders(lane, colliders(seed));
+        batch.set_colliders(lane, colliders(seed)).expect("good shapes");
     }
     for tick in 0..60 {
         for (lane, &seed) in seeds.iter().enumerate() {
-            batch.drive(lane, drive(seed, tick));
+            batch.drive(lane, drive(seed, tick)).expect("a good drive");
         }
         batch.step(TICK, settings);
     }
@@ -133,9 +134,11 @@ fn a_lane_that_is_not_finite_does_not_change_its_neighbours() {
     let bad = batch.insert(&ClothSnapshot::at_rest(&fabric), material(2)).expect("a free lane");
     for tick in 0..60 {
         for seed in [0, 1] {
-            batch.drive(seed, drive(seed, tick));
+            batch.drive(seed, drive(seed, tick)).expect("a good drive");
         }
-        batch.drive(bad, Drive { wind: Vec3::splat(f32::NAN), ..Drive::default() });
+        batch
+            .drive(bad, Drive { wind: Vec3::splat(f32::MAX), ..Drive::default() })
+            .expect("a good drive");
         batch.step(TICK, settings);
     }
     assert!(!batch.is_finite(bad));
@@ -159,7 +162,7 @@ fn a_cloth_moved_between_batches_keeps_its_bits() {
                 batch.insert(&ClothSnapshot::at_rest(&fabric), material(0)).expect("a free lane");
                 lane = batch.insert(&moving, material(1)).expect("a free lane");
             }
-            batch.drive(lane, drive(1, tick));
+            batch.drive(lane, drive(1, tick)).expect("a good drive");
             batch.step(TICK, settings);
         }
         assert_eq!(bits(&stayed), bits(&batch.snapshot(lane)));
@@ -172,10 +175,12 @@ fn a_lane_that_was_not_finite_can_be_used_again() {
     let mut batch = ClothBatch::new(fabric.clone(), LaneCount::Eight);
     let rest = ClothSnapshot::at_rest(&fabric);
     let lane = batch.insert(&rest, material(1)).expect("a free lane");
-    batch.drive(lane, Drive { wind: Vec3::splat(f32::NAN), ..Drive::default() });
+    batch
+        .drive(lane, Drive { wind: Vec3::splat(f32::MAX), ..Drive::default() })
+        .expect("a good drive");
     batch.step(TICK, StepSettings::default());
     assert!(!batch.is_finite(lane));
-    batch.remove(lane);
+    batch.remove(lane).expect("an occupied lane");
     assert_eq!(batch.insert(&rest, material(1)), Ok(lane));
     for _ in 0..10 {
         batch.step(TICK, StepSettings::default());
@@ -212,7 +217,7 @@ fn an_exchange_of_many_lanes_equals_single_replacements() {
             .collect();
         let leave: Vec<usize> = seeds.iter().copied().filter(|lane| !stays(lane)).collect();
         at_once.exchange(&leave, &come).expect("good states");
-        leave.iter().for_each(|&lane| one_by_one.remove(lane));
+        leave.iter().for_each(|&lane| one_by_one.remove(lane).expect("a lane"));
         for &(lane, state, material) in &come {
             one_by_one.replace(lane, state, material).expect("a good state");
         }
@@ -238,7 +243,7 @@ fn a_lane_keeps_nothing_of_the_cloth_before() {
         let mut unused = used.clone();
         for (lane, state) in flown.iter().enumerate() {
             used.replace(lane, state, material(lane)).expect("a good state");
-            used.drive(lane, drive(lane, 0));
+            used.drive(lane, drive(lane, 0)).expect("a good drive");
         }
         used.step(TICK, settings);
         // Lane 1 replaces a cloth; lanes 2 and 3 have been empty for a tick.
@@ -251,7 +256,7 @@ fn a_lane_keeps_nothing_of_the_cloth_before() {
             let state = flown[seed].clone().without_history();
             for batch in [&mut used, &mut unused] {
                 batch.replace(lane, &state, material(seed)).expect("a good state");
-                batch.drive(lane, drive(seed, 0));
+                batch.drive(lane, drive(seed, 0)).expect("a good drive");
             }
         }
         for batch in [&mut used, &mut unused] {
@@ -271,13 +276,13 @@ fn surfaces_are_copies_of_the_lanes() {
         let mut batch = ClothBatch::new(fabric.clone(), lanes);
         for seed in 0..lanes.get() {
             let lane = batch.insert(&ClothSnapshot::at_rest(&fabric), material(seed));
-            batch.drive(lane.expect("a free lane"), drive(seed, 0));
+            batch.drive(lane.expect("a free lane"), drive(seed, 0)).expect("a good drive");
         }
         batch.step(TICK, EVERY_SCHEME[3]);
         let empty = lanes.get() / 2;
         let untouched = vec![Vec3::ONE; 3];
         if empty > 0 {
-            batch.remove(empty);
+            batch.remove(empty).expect("a lane");
         }
         let begun = LaneSurface { positions: untouched.clone(), ..LaneSurface::default() };
         let mut surfaces = vec![begun; lanes.get()];
@@ -328,15 +333,15 @@ fn under_relaxation_at_rest_gives_the_same_bits() {
     for tick in 0..300 {
         for (batch, lane) in &mut batches {
             let still = Drive { air_density: 0.0, ..Drive::default() };
-            batch.drive(*lane, still);
+            batch.drive(*lane, still).expect("a good drive");
             if *lane == 1 {
-                batch.drive(0, drive(1, tick));
+                batch.drive(0, drive(1, tick)).expect("a good drive");
                 let moving = batch.snapshot(1);
                 let mut other = ClothBatch::new(fabric.clone(), LaneCount::Eight);
                 other.insert(&batch.snapshot(0), FabricMaterial::SILK).expect("a free lane");
                 other.insert(&moving, material).expect("a free lane");
-                other.drive(0, drive(1, tick));
-                other.drive(1, still);
+                other.drive(0, drive(1, tick)).expect("a good drive");
+                other.drive(1, still).expect("a good drive");
                 *batch = other;
             }
             batch.step(TICK, SETTINGS);
@@ -346,4 +351,52 @@ fn under_relaxation_at_rest_gives_the_same_bits() {
             assert_eq!(bits(&first.0.snapshot(0)), bits(&batch.snapshot(*lane)), "tick {tick}");
         }
     }
+}
+
+#[test]
+fn a_drive_that_is_not_finite_is_refused() {
+    let mut batch = ClothBatch::new(flag(), LaneCount::Eight);
+    let rest = ClothSnapshot::at_rest(&flag());
+    let lane = batch.insert(&rest, material(0)).expect("a free lane");
+    let nan = Vec3::splat(f32::NAN);
+    let motion = FrameMotion { translation: nan, ..FrameMotion::NONE };
+    for (name, bad) in [
+        ("motion", Drive { motion, ..Drive::default() }),
+        ("gravity", Drive { gravity: nan, ..Drive::default() }),
+        ("wind", Drive { wind: Vec3::splat(f32::INFINITY), ..Drive::default() }),
+        ("air_density", Drive { air_density: -1.0, ..Drive::default() }),
+    ] {
+        assert_eq!(batch.drive(lane, bad), Err(BatchError::Drive { name }));
+    }
+    batch.step(TICK, StepSettings::default());
+    assert!(batch.is_finite(lane));
+    let beyond = Err(BatchError::NoLane { lane: 8, lanes: 8 });
+    assert_eq!(batch.drive(8, Drive::NONE), beyond);
+    assert_eq!(batch.restore(8, &rest), beyond);
+    assert_eq!(batch.set_material(8, material(0)), beyond);
+    assert_eq!(batch.replace(8, &rest, material(0)), beyond);
+    assert_eq!(batch.exchange(&[8], &[]), beyond);
+    assert_eq!(batch.remove(8), beyond);
+    assert_eq!(batch.set_colliders(8, colliders(0)), beyond);
+    assert!(batch.particles_mut(8).is_none());
+}
+
+#[test]
+fn a_collider_that_is_not_finite_is_refused_alone() {
+    let mut batch = ClothBatch::new(flag(), LaneCount::One);
+    let rest = ClothSnapshot::at_rest(&flag());
+    batch.insert(&rest, material(0)).expect("a free lane");
+    let good = colliders(2);
+    let bad = Collider { margin: f32::NAN, ..good[0].clone() };
+    let given = [good[0].clone(), bad];
+    assert_eq!(batch.set_colliders(0, given), Err(BatchError::Collider { index: 1 }));
+    batch.step(TICK, StepSettings::default());
+    assert!(batch.is_finite(0));
+}
+
+#[test]
+#[should_panic(expected = "there is no lane 1")]
+fn a_single_cloth_answers_for_its_own_lane_only() {
+    let batch = ClothBatch::new(flag(), LaneCount::One);
+    let _ = batch.snapshot(1);
 }

@@ -49,7 +49,7 @@ fn square(n: u32, pinned: impl Fn(Vec3) -> bool) -> Arc<Fabric> {
 fn lone(fabric: &Arc<Fabric>, material: FabricMaterial, drive: Drive) -> ClothBatch {
     let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
     let lane = batch.insert(&ClothSnapshot::at_rest(fabric), material).expect("a free lane");
-    batch.drive(lane, drive);
+    batch.drive(lane, drive).expect("a good drive");
     batch
 }
 
@@ -147,7 +147,7 @@ fn drag_alone_slows_by_its_closed_form() {
     start.velocities.fill(Vec3::new(0.0, 0.0, 20.0));
     let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
     batch.insert(&start, material).expect("a free lane");
-    batch.drive(0, Drive { gravity: Vec3::ZERO, ..Drive::default() });
+    batch.drive(0, Drive { gravity: Vec3::ZERO, ..Drive::default() }).expect("a good drive");
     for tick in 1..=60 {
         batch.step(TICK, StepSettings::yarns(2));
         let k = 0.5 * 1.225 * 1.2 / 0.1;
@@ -228,7 +228,7 @@ fn free_cloth_keeps_its_momenta() {
     for settings in schemes(4) {
         let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
         batch.insert(&start, material).expect("a free lane");
-        batch.drive(0, Drive::NONE);
+        batch.drive(0, Drive::NONE).expect("a good drive");
         for _ in 0..60 {
             batch.step(TICK, settings);
         }
@@ -258,7 +258,7 @@ fn internal_damping_leaves_a_rigid_spin_and_stops_a_wobble() {
     for settings in schemes(4) {
         let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
         batch.insert(&start, material).expect("a free lane");
-        batch.drive(0, Drive::NONE);
+        batch.drive(0, Drive::NONE).expect("a good drive");
         for _ in 0..60 {
             batch.step(TICK, settings);
         }
@@ -292,7 +292,7 @@ fn a_moving_frame_changes_nothing_in_the_world() {
             origin += axes * motion.translation;
             axes = (axes * motion.rotation).normalize();
             let gravity = axes.inverse() * Vec3::NEG_Y * GRAVITY;
-            moving.drive(0, Drive { motion, gravity, ..Drive::default() });
+            moving.drive(0, Drive { motion, gravity, ..Drive::default() }).expect("a good drive");
             fixed.step(TICK, settings);
             moving.step(TICK, settings);
         }
@@ -318,7 +318,9 @@ fn damping_does_not_hold_back_a_frame_that_travels() {
     for settings in schemes(4) {
         let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
         batch.insert(&start, material).expect("a free lane");
-        batch.drive(0, Drive { motion, gravity: Vec3::ZERO, ..Drive::default() });
+        batch
+            .drive(0, Drive { motion, gravity: Vec3::ZERO, ..Drive::default() })
+            .expect("a good drive");
         for _ in 0..60 {
             batch.step(TICK, settings);
         }

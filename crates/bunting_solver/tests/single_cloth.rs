@@ -39,10 +39,10 @@ fn fly(
     let mut batch = ClothBatch::new(fabric.clone(), lanes);
     let lane = batch.insert(&ClothSnapshot::at_rest(fabric), material).expect("a free lane");
     let ball = Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.5, -0.5, 0.3), Quat::IDENTITY);
-    batch.set_colliders(lane, [ball]);
+    batch.set_colliders(lane, [ball]).expect("good shapes");
     let mut normals = Vec::new();
     for tick in 0..200 {
-        batch.drive(lane, drive(tick));
+        batch.drive(lane, drive(tick)).expect("a good drive");
         // A cloth that is taken out and put back goes on with the same bits.
         if tick == 100 {
             let moving = batch.snapshot(lane);
@@ -113,11 +113,13 @@ fn a_lane_that_was_not_finite_can_be_used_again() {
     let rest = ClothSnapshot::at_rest(&fabric);
     let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
     batch.insert(&rest, FabricMaterial::SILK).expect("a free lane");
-    batch.drive(0, Drive { wind: Vec3::splat(f32::NAN), ..Drive::default() });
+    batch
+        .drive(0, Drive { wind: Vec3::splat(f32::MAX), ..Drive::default() })
+        .expect("a good drive");
     batch.step(TICK, yarns(2, 2));
     assert!(!batch.is_finite(0));
     batch.restore(0, &rest).expect("a good state");
-    batch.drive(0, Drive::default());
+    batch.drive(0, Drive::default()).expect("a good drive");
     (0..10).for_each(|_| batch.step(TICK, yarns(2, 2)));
     assert!(batch.is_finite(0));
 }
@@ -130,7 +132,7 @@ fn a_change_of_scheme_between_ticks_agrees() {
         let mut batch = ClothBatch::new(fabric.clone(), lanes);
         batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::SILK).expect("a free lane");
         for tick in 0..90 {
-            batch.drive(0, drive(tick));
+            batch.drive(0, drive(tick)).expect("a good drive");
             let sweeps = (30..60).contains(&tick);
             batch.step(TICK, if sweeps { StepSettings::gauss_seidel(5) } else { yarns(2, 2) });
         }
@@ -154,7 +156,7 @@ fn pins_too_far_apart_agree() {
         }
         let lane = batch.insert(&wide, FabricMaterial::SILK).expect("a free lane");
         for tick in 0..90 {
-            batch.drive(lane, drive(tick));
+            batch.drive(lane, drive(tick)).expect("a good drive");
             batch.step(TICK, yarns(2, 2));
         }
         batch.snapshot(lane)

@@ -29,7 +29,7 @@ const STANDARD: FabricMaterial = FabricMaterial {
 fn lone(fabric: &Arc<Fabric>, material: FabricMaterial, drive: Drive) -> ClothBatch {
     let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
     let lane = batch.insert(&ClothSnapshot::at_rest(fabric), material).expect("a free lane");
-    batch.drive(lane, drive);
+    batch.drive(lane, drive).expect("a good drive");
     batch
 }
 
@@ -144,10 +144,12 @@ fn a_heavy_cantilever_droops_as_its_closed_form() {
         for tick in 0..ticks {
             // The load grows slowly, since other equilibria exist.
             let load = (2.0 * tick as f32 / ticks as f32).min(1.0);
-            batch.drive(
-                0,
-                Drive { gravity: Vec3::new(0.0, 0.0, -GRAVITY * load), ..Drive::default() },
-            );
+            batch
+                .drive(
+                    0,
+                    Drive { gravity: Vec3::new(0.0, 0.0, -GRAVITY * load), ..Drive::default() },
+                )
+                .expect("a good drive");
             batch.step(TICK, StepSettings::yarns(3));
         }
         let tip = batch.snapshot(0).positions[grid.index(cells + 1, 2) as usize];
@@ -243,7 +245,7 @@ fn a_flag_in_the_wind_does_not_feed_its_vibration() {
         for &lane in &lanes {
             let phase = 1.7 * TICK * tick as f32 + 0.4 * lane as f32;
             let wind = Vec3::new(6.0 + 0.12 * lane as f32, 0.0, 0.9 * libm::sinf(phase));
-            batch.drive(lane, Drive { wind, ..Drive::default() });
+            batch.drive(lane, Drive { wind, ..Drive::default() }).expect("a good drive");
         }
         batch.step(TICK, StepSettings { passes: 3, ..StepSettings::yarns(2) });
         for &lane in &lanes {

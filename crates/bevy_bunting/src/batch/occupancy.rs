@@ -118,14 +118,19 @@ pub(crate) struct LaneMut<'a> {
 }
 
 impl LaneMut<'_> {
-    /// Sets what acts on the cloth in the next tick.
+    /// Sets what acts on the cloth in the next tick. Nothing acts where a number is not finite: poses, gravity and
+    /// wind are, but a motion between poses may overflow.
     pub fn drive(&mut self, drive: Drive) {
-        self.occupied.batch.drive(self.lane, drive);
+        let batch = &mut self.occupied.batch;
+        if batch.drive(self.lane, drive).is_err() {
+            batch.drive(self.lane, Drive::NONE).expect("an occupied lane");
+        }
     }
 
-    /// Sets the shapes that the cloth may touch in the next tick.
+    /// Sets the shapes that the cloth may touch in the next tick. It does not feel shapes whose numbers are not
+    /// finite.
     pub fn set_colliders(&mut self, colliders: impl IntoIterator<Item = Collider>) {
-        self.occupied.batch.set_colliders(self.lane, colliders);
+        let _ = self.occupied.batch.set_colliders(self.lane, colliders);
     }
 
     /// Changes the material, which must be valid.

@@ -125,7 +125,9 @@ impl Preroll {
     fn run(self) -> ClothSnapshot {
         let mut batch = ClothBatch::new(self.fabric, LaneCount::One);
         let Ok(lane) = batch.insert(&self.state, self.material) else { return self.state };
-        batch.drive(lane, self.drive);
+        if batch.drive(lane, self.drive).is_err() {
+            return self.state;
+        }
         for _ in 0..self.ticks {
             batch.step(self.tick, self.settings);
         }

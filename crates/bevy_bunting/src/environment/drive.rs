@@ -30,11 +30,12 @@ pub(crate) fn drive_cloths(
     wind: Res<TickWind>,
     mut batches: ResMut<ClothBatches>,
 ) {
+    let (gravity, air_density) = gravity_and_air(&settings);
     for (mut instance, frame) in &mut cloths {
         let Some(lane) = instance.lane() else { continue };
         let (start, end) = (frame.start(), frame.end());
         let inverse = end.rotation.inverse();
-        let gravity = inverse * settings.gravity;
+        let gravity = inverse * gravity;
         // Written in every tick: it must not mark the cloth as changed.
         instance.bypass_change_detection().gravity = gravity;
         let middle = end * instance.rest_middle();
@@ -42,9 +43,23 @@ pub(crate) fn drive_cloths(
             motion: FrameMotion::between(pose_parts(start), pose_parts(end)),
             gravity,
             wind: inverse * wind.at(middle),
-            air_density: settings.air_density,
+            air_density,
         });
     }
+}
+
+/// Gravity, m/s², and the density of the air, kg/m³. One that is not finite, or a negative density, counts as zero;
+/// that is logged whenever settings change.
+fn gravity_and_air(settings: &Res<ClothSettings>) -> (Vec3, f32) {
+    let (gravity, air_density) = (settings.gravity, settings.air_density);
+    let is_gravity = gravity.is_finite();
+    let is_density = air_density >= 0.0 && air_density.is_finite();
+    if settings.is_changed() && !(is_gravity && is_density) {
+        log::error!(
+            "ClothSettings: gravity {gravity} and air density {air_density} must be finite, and the density not negative; what is not counts as zero"
+        );
+    }
+    (if is_gravity { gravity } else { Vec3::ZERO }, if is_density { air_density } else { 0.0 })
 }
 
 /// Translation (m) and rotation of a pose.

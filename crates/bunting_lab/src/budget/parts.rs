@@ -120,6 +120,6 @@ fn put_on_a_ball(fleet: &mut Fleet) {
     let ball = Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.5, -0.5, 0.1), Quat::IDENTITY);
     let batch = &mut fleet.batches_mut()[0];
     for lane in 0..batch.lane_count() {
-        batch.set_colliders(lane, [ball.clone()]);
+        batch.set_colliders(lane, [ball.clone()]).expect("good shapes");
     }
 }

@@ -56,8 +56,10 @@ impl Pair {
     }
 
     fn tick(&mut self, drive: Drive) {
-        self.batch.drive(0, Drive { wind: Vec3::new(3.0, 1.0, -7.0), ..Drive::default() });
-        self.batch.drive(self.lane, drive);
+        self.batch
+            .drive(0, Drive { wind: Vec3::new(3.0, 1.0, -7.0), ..Drive::default() })
+            .expect("a good drive");
+        self.batch.drive(self.lane, drive).expect("a good drive");
         self.batch.step(TICK, self.settings);
     }
 
@@ -154,7 +156,7 @@ fn gauss_seidel(lanes: LaneCount, ticks: u32) -> u64 {
     let settings = StepSettings { passes: 2, ..StepSettings::gauss_seidel(5) };
     let mut pair = Pair::new(&fabric, lanes, FabricMaterial::DENIM, settings);
     let ball = Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.5, -0.6, 0.1), Quat::IDENTITY);
-    pair.batch.set_colliders(pair.lane, [ball]);
+    pair.batch.set_colliders(pair.lane, [ball]).expect("good shapes");
     pair.run(ticks, |tick| Drive { wind: 0.5 * gusts(tick), ..Drive::default() })
 }
 
@@ -179,7 +181,7 @@ fn free_sheet(lanes: LaneCount, ticks: u32) -> u64 {
     );
     let gravity = Drive::default().gravity;
     for it in [&mut pair, &mut other] {
-        it.batch.set_colliders(it.lane, [floor.clone(), post.clone()]);
+        it.batch.set_colliders(it.lane, [floor.clone(), post.clone()]).expect("good shapes");
     }
     for tick in 0..ticks {
         if tick == 150 || tick == 450 {

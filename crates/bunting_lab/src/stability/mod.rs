@@ -9,6 +9,7 @@ mod levels;
 mod motion;
 mod rig;
 mod sleep;
+mod soundness;
 mod sweeps;
 mod touch;
 mod weather;
@@ -19,7 +20,7 @@ pub use case::{HardCase, Status};
 pub type Family = fn(quick: bool) -> Vec<HardCase>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 7] = [
+pub const ALL: [(&str, Family); 8] = [
     ("sweeps of size, passes and rate", sweeps::cases),
     ("motion of pins and frames", motion::cases),
     ("wind and weight", weather::cases),
@@ -27,4 +28,5 @@ pub const ALL: [(&str, Family); 7] = [
     ("levels, lanes and input", levels::cases),
     ("colliders", touch::cases),
     ("sleep", sleep::cases),
+    ("soundness", soundness::cases),
 ];

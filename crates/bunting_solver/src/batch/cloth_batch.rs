@@ -11,16 +11,18 @@ use crate::batch::particles_mut::ParticlesMut;
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::snapshot::ClothSnapshot;
 use crate::batch::surfaces::LaneSurface;
+use crate::constants::GRAVITY;
 use crate::contact::collider::Collider;
-use crate::fabric::{Fabric, FabricError, FabricMaterial};
+use crate::fabric::{Fabric, FabricMaterial};
 use crate::simd::registers::{Pack1, Pack8, Pack16};
 use crate::step::bdf::IntegratorHistory;
+use crate::step::limits::StepLimits;
 use crate::step::{Drive, Scheme, StepSettings};
 
 /// The state of up to [`LaneCount`] cloths of one [`Fabric`], stepped together.
 ///
 /// Each cloth has a lane, numbered from 0. The bits of its state depend on its own history only. Methods that
-/// take a lane panic where there is none of that number.
+/// change a lane return [`BatchError::NoLane`] where there is none of that number, and those that read one panic.
 #[derive(Clone, Debug)]
 pub struct ClothBatch(Lanes);
 
@@ -125,8 +127,8 @@ impl ClothBatch {
     ///
     /// # Errors
     ///
-    /// The material is bad, or the state is not finite or of another fabric. The batch is then as it
-    /// was.
+    /// The material is bad, the state is not finite or of another fabric, or there is no such lane. The batch is
+    /// then as it was.
     pub fn replace(
         &mut self,
         lane: usize,
@@ -141,13 +143,18 @@ impl ClothBatch {
     ///
     /// # Errors
     ///
-    /// A material is bad, or a state is not finite or of another fabric. The batch is then as it was.
+    /// A material is bad, a state is not finite or of another fabric, or there is no such lane. The batch is then
+    /// as it was.
     pub fn exchange(
         &mut self,
         leave: &[usize],
         come: &[(usize, &ClothSnapshot, FabricMaterial)],
     ) -> Result<(), BatchError> {
-        for (_, snapshot, material) in come {
+        for &lane in leave {
+            self.check_lane(lane)?;
+        }
+        for (lane, snapshot, material) in come {
+            self.check_lane(*lane)?;
             material.validate()?;
             self.check(snapshot)?;
         }
@@ -156,8 +163,12 @@ impl ClothBatch {
     }
 
     /// Takes the cloth out of a lane.
-    pub fn remove(&mut self, lane: usize) {
-        with_batch!(&mut self.0, batch => batch.exchange(&[lane], &[]));
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane.
+    pub fn remove(&mut self, lane: usize) -> Result<(), BatchError> {
+        self.exchange(&[lane], &[])
     }
 
     /// Overwrites the state of a lane. A state without the integrator's history is continued by a substep of
@@ -165,11 +176,24 @@ impl ClothBatch {
     ///
     /// # Errors
     ///
-    /// The state is not finite or of another fabric. The lane is then as it was.
+    /// The state is not finite or of another fabric, or there is no such lane. The lane is then as it was.
     pub fn restore(&mut self, lane: usize, snapshot: &ClothSnapshot) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
         self.check(snapshot)?;
         with_batch!(&mut self.0, batch => batch.restore(&[(lane, snapshot)]));
         Ok(())
+    }
+
+    fn check_lane(&self, lane: usize) -> Result<(), BatchError> {
+        let lanes = self.lane_count();
+        if lane < lanes { Ok(()) } else { Err(BatchError::NoLane { lane, lanes }) }
+    }
+
+    /// Panics where there is no such lane: a single cloth would answer for every lane.
+    #[track_caller]
+    fn expect_lane(&self, lane: usize) {
+        let lanes = self.lane_count();
+        assert!(lane < lanes, "there is no lane {lane}: there are {lanes}");
     }
 
     fn check(&self, snapshot: &ClothSnapshot) -> Result<(), BatchError> {
@@ -186,12 +210,13 @@ impl ClothBatch {
     ///
     /// # Errors
     ///
-    /// The material cannot be simulated. The lane keeps its material.
+    /// The material cannot be simulated, or there is no such lane. The lane keeps its material.
     pub fn set_material(
         &mut self,
         lane: usize,
         material: FabricMaterial,
-    ) -> Result<(), FabricError> {
+    ) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
         material.validate()?;
         with_batch!(&mut self.0, batch => {
             if let Some(cloth) = &mut batch.lanes[lane] {
@@ -203,22 +228,47 @@ impl ClothBatch {
 
     /// Sets what acts on a lane from the next tick on. The frame's motion is repeated every tick until it is
     /// set again. An empty lane stays empty.
-    pub fn drive(&mut self, lane: usize, drive: Drive) {
+    ///
+    /// # Errors
+    ///
+    /// A number is not finite, the air's density is negative, or there is no such lane. The lane is then driven
+    /// as before.
+    pub fn drive(&mut self, lane: usize, drive: Drive) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        drive.validate().map_err(|name| BatchError::Drive { name })?;
         with_batch!(&mut self.0, batch => {
             if let Some(cloth) = &mut batch.lanes[lane] {
                 cloth.drive = drive;
             }
         });
+        Ok(())
     }
 
     /// Sets the shapes that a lane's cloth cannot enter, from the next tick on. An empty lane stays empty.
-    pub fn set_colliders(&mut self, lane: usize, colliders: impl IntoIterator<Item = Collider>) {
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane, or a number of a collider is not finite. The cloth then does not feel that collider.
+    pub fn set_colliders(
+        &mut self,
+        lane: usize,
+        colliders: impl IntoIterator<Item = Collider>,
+    ) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        let mut refused = None;
         with_batch!(&mut self.0, batch => {
             if let Some(cloth) = &mut batch.lanes[lane] {
                 cloth.colliders.clear();
-                cloth.colliders.extend(colliders);
+                for (index, collider) in colliders.into_iter().enumerate() {
+                    if collider.is_finite() {
+                        cloth.colliders.push(collider);
+                    } else {
+                        refused.get_or_insert(index);
+                    }
+                }
             }
         });
+        refused.map_or(Ok(()), |index| Err(BatchError::Collider { index }))
     }
 
     /// The colliders that a lane's cloth could touch in the last tick.
@@ -267,8 +317,11 @@ impl ClothBatch {
         with_batch!(&mut self.0, batch => batch.compute_normals());
     }
 
-    /// Runs one whole tick of `tick` seconds: all substeps, then the normals.
-    pub fn step(&mut self, tick: f32, settings: StepSettings) {
+    /// Runs one whole tick of `tick` seconds: all substeps, then the normals. Their number is chosen within the limits
+    /// for this fabric under standard gravity; settings are limits that leave no choice. Where gravity is stronger, see
+    /// [`StepLimits::of_fabric`].
+    pub fn step(&mut self, tick: f32, limits: impl Into<StepLimits>) {
+        let settings = limits.into().of_fabric(self.fabric(), tick, GRAVITY);
         self.begin_tick(tick, settings);
         for _ in 0..settings.substeps {
             self.integrate();
@@ -280,17 +333,20 @@ impl ClothBatch {
 
     /// Positions of a lane's particles in the cloth's frame, m.
     pub fn copy_positions(&self, lane: usize, into: &mut Vec<Vec3>) {
+        self.expect_lane(lane);
         with_batch!(&self.0, batch => batch.copy_positions(lane, into));
     }
 
     /// Velocities of a lane's particles relative to the world, along the frame's axes, m/s.
     pub fn copy_velocities(&self, lane: usize, into: &mut Vec<Vec3>) {
+        self.expect_lane(lane);
         with_batch!(&self.0, batch => batch.copy_velocities(lane, into));
     }
 
     /// Unit normals of a lane's particles, as of the last
     /// [`compute_normals`](Self::compute_normals).
     pub fn copy_normals(&self, lane: usize, into: &mut Vec<Vec3>) {
+        self.expect_lane(lane);
         with_batch!(&self.0, batch => batch.copy_normals(lane, into));
     }
 
@@ -307,12 +363,14 @@ impl ClothBatch {
     /// The state of a lane, with the integrator's history.
     #[must_use]
     pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
+        self.expect_lane(lane);
         with_batch!(&self.0, batch => batch.snapshot(lane))
     }
 
     /// The state of a lane, without the integrator's history.
     #[must_use]
     pub fn snapshot_without_history(&self, lane: usize) -> ClothSnapshot {
+        self.expect_lane(lane);
         with_batch!(&self.0, batch => batch.snapshot_without_history(lane))
     }
 
@@ -320,12 +378,14 @@ impl ClothBatch {
     /// fabric that has these particles.
     #[must_use]
     pub fn snapshot_of(&self, lane: usize, particles: &[u32]) -> ClothSnapshot {
+        self.expect_lane(lane);
         with_batch!(&self.0, batch => batch.snapshot_of(lane, particles))
     }
 
     /// Whether every number of a lane's state is finite.
     #[must_use]
     pub fn is_finite(&self, lane: usize) -> bool {
+        self.expect_lane(lane);
         with_batch!(&self.0, batch => batch.is_finite(lane))
     }
 }

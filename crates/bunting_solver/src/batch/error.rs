@@ -1,8 +1,8 @@
-//! Why a cloth cannot be put into a batch.
+//! Why a cloth cannot be put into a batch, or changed in it.
 
 use crate::fabric::FabricError;
 
-/// Why a cloth cannot be put into a batch.
+/// Why a cloth cannot be put into a batch, or changed in it.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BatchError {
@@ -23,6 +23,26 @@ pub enum BatchError {
     /// The state is infinite or not a number.
     #[error("the state is not finite")]
     NotFinite,
+    /// There is no such lane.
+    #[error("there is no lane {lane}: there are {lanes}")]
+    NoLane {
+        /// The lane.
+        lane: usize,
+        /// Number of lanes.
+        lanes: usize,
+    },
+    /// A number of the drive is infinite or not a number, or the air's density is negative.
+    #[error("the drive's {name} is not finite, or negative where it cannot be")]
+    Drive {
+        /// The field's name.
+        name: &'static str,
+    },
+    /// A number of a collider is infinite or not a number.
+    #[error("the pose, margin or friction of collider {index} is not finite")]
+    Collider {
+        /// Its index among those given.
+        index: usize,
+    },
     /// The material cannot be simulated.
     #[error(transparent)]
     Material(#[from] FabricError),

@@ -61,7 +61,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
-    /// Writes velocities and predicted stretch of some lanes, and the integrator's history of others.
+    /// Writes velocities of some lanes, and the integrator's history of others.
     fn write_vectors(
         &mut self,
         states: &[(usize, &ClothSnapshot)],
@@ -70,9 +70,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         fn history(state: &ClothSnapshot) -> Option<&SnapshotHistory> {
             state.history.as_ref()
         }
-        let arrays: [(_, &[_], VectorsOf); 6] = [
+        let arrays: [(_, &[_], VectorsOf); 5] = [
             (&mut self.velocity, states, |state| Some(&state.velocities)),
-            (&mut self.predicted_stretch, states, |state| Some(&history(state)?.predicted_stretch)),
             (&mut self.displacement, with_history, |state| Some(&history(state)?.displacements[0])),
             (&mut self.older_displacement, with_history, |state| {
                 Some(&history(state)?.displacements[1])

@@ -49,10 +49,10 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     /// Length that each link has under the tension found so far in the substep, l − α̃ λ, m, in the order in
     /// which the scheme solves links.
     pub link_target: Vec<P>,
-    /// Positions after bending and before stretch, m, less what diagonals have changed since.
-    pub bent_position: Vec<Pack3<P>>,
-    /// Predicted stretch: the acceleration that stretch has given to each particle, m/s².
-    pub predicted_stretch: Vec<Pack3<P>>,
+    /// Room for predicted positions, m, where a lane bends stiffly.
+    pub predicted_position: Vec<Pack3<P>>,
+    /// Room for the displacement by stretch, m, where a lane bends stiffly.
+    pub stretch_shift: Vec<Pack3<P>>,
     /// Room for the tridiagonal systems of a pair of chains.
     pub rows: Vec<TridiagonalRow<P>>,
     /// Room for the bending moments of a line, and the twisting moments of a ribbon.
@@ -96,8 +96,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             older_displacement: zero.clone(),
             older_velocity: zero.clone(),
             oldest_velocity: zero.clone(),
-            bent_position: zero.clone(),
-            predicted_stretch: zero.clone(),
+            predicted_position: Vec::new(),
+            stretch_shift: Vec::new(),
             velocity: zero,
             relaxation: vec![P::splat(1.0); layout.pack_count()],
             link_target: vec![P::splat(0.0); chains.target_count()],

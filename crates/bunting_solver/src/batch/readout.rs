@@ -20,7 +20,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             integrator,
             displacements: [read(&self.displacement), read(&self.older_displacement)],
             older_velocities: [read(&self.older_velocity), read(&self.oldest_velocity)],
-            predicted_stretch: read(&self.predicted_stretch),
             relaxation: self.relaxation_of(lane),
         });
         ClothSnapshot { history, ..self.snapshot_without_history(lane) }

@@ -18,7 +18,7 @@ pub struct ClothSnapshot {
     pub(crate) history: Option<SnapshotHistory>,
 }
 
-/// State of earlier substeps, for the integrator's second order and for stiff bending.
+/// State of earlier substeps, for the integrator's second order.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct SnapshotHistory {
     pub integrator: IntegratorHistory,
@@ -26,8 +26,6 @@ pub(crate) struct SnapshotHistory {
     pub displacements: [Vec<Vec3>; 2],
     /// Velocities one and two substeps earlier, m/s.
     pub older_velocities: [Vec<Vec3>; 2],
-    /// Acceleration that stretch has given to each particle, m/s².
-    pub predicted_stretch: Vec<Vec3>,
     /// Under-relaxation factor of each particle; empty where all are 1.
     pub relaxation: Vec<f32>,
 }

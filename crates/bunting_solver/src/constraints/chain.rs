@@ -19,67 +19,77 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves warp, weft and diagonals, then warp and weft again in each pass. The targets of a grid's diagonals
-    /// follow from the first solution of warp and weft.
+    /// Solves warp, weft and diagonals, then warp and weft again in each pass: the chains of a grid whose diagonals
+    /// carry shear alone. The diagonals' targets follow from the first solution of warp and weft.
     ///
     /// Diagonals must not come last: they move particles far, measured by the strain of warp and weft.
     pub fn solve_chains(&mut self, passes: u32) {
-        self.solve_chains_once(Pass::First);
-        if self.fabric.has_shear_cells() {
-            if self.clock.begun == 1 {
-                self.find_diagonal_targets();
-            }
-            self.leave_out_of_prediction(-1.0);
-            self.solve_chains_once(Pass::Shear);
-            self.leave_out_of_prediction(1.0);
-        } else {
-            self.solve_chains_once(Pass::Diagonals);
+        self.solve_warp_and_weft(Pass::First);
+        if self.clock.begun == 1 {
+            self.find_diagonal_targets();
         }
+        self.solve_diagonals();
         // After the last pass only the sweep reads targets, and there is none with a single pass.
         let pass = if passes > 1 { Pass::Again } else { Pass::Last };
         for _ in 0..passes {
-            self.solve_chains_once(pass);
+            self.solve_warp_and_weft(pass);
         }
     }
 
-    fn solve_chains_once(&mut self, pass: Pass) {
-        let chains = self.layout.chains(&self.fabric);
-        for (index, colour) in chains.colours.iter().enumerate() {
-            if pass.solves(colour.family) {
-                let order = self.layout.order_of_chains(index);
-                let (masses, linked) = (&self.masses.inverse, self.layout.linked());
-                P::run(SolveChains {
-                    pairs: &chains.pairs[colour.pairs.clone()],
-                    pass,
-                    compliance: &self.layout.factors().link_compliance,
-                    rows: &mut self.rows,
-                    target: &mut self.link_target,
-                    particles: self.positions.particles(order, masses, linked),
-                });
+    /// Solves the chains of all colours, diagonals with them, forwards and then backwards in each pass.
+    pub fn solve_chains_both_ways(&mut self, passes: u32) {
+        let colours = self.layout.chains(&self.fabric).colours.len();
+        for pass in 0..passes {
+            // The first colour of a pass is the last of the pass before.
+            let (first, forwards) = if pass == 0 { (0, Pass::First) } else { (1, Pass::Again) };
+            (first..colours).for_each(|colour| self.solve_colour(colour, forwards));
+            let backwards = (0..colours.saturating_sub(1)).rev();
+            backwards.for_each(|colour| self.solve_colour(colour, Pass::Again));
+        }
+    }
+
+    /// Solves warp and weft once.
+    pub(super) fn solve_warp_and_weft(&mut self, pass: Pass) {
+        self.solve_colours(pass, |family| family != LinkFamily::Diagonal);
+    }
+
+    fn solve_diagonals(&mut self) {
+        self.solve_colours(Pass::Last, |family| family == LinkFamily::Diagonal);
+    }
+
+    pub(super) fn solve_colours(&mut self, pass: Pass, is_solved: impl Fn(LinkFamily) -> bool) {
+        for colour in 0..self.layout.chains(&self.fabric).colours.len() {
+            if is_solved(self.layout.chains(&self.fabric).colours[colour].family) {
+                self.solve_colour(colour, pass);
             }
         }
     }
-}
 
-/// A pass over the chains of a substep.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Pass {
-    /// Over warp and weft, without tension yet: targets are the lengths at rest.
-    First,
-    /// Over warp and weft, from the targets of the pass before.
-    Again,
-    /// Over warp and weft, from the targets of the pass before; none are stored, as nothing reads them.
-    Last,
-    /// Over diagonals, from their lengths at rest; no targets are stored.
-    Diagonals,
-    /// Over the diagonals of a grid, from their targets for shear; no targets are stored.
-    Shear,
-}
-
-impl Pass {
-    fn solves(self, family: LinkFamily) -> bool {
-        (family == LinkFamily::Diagonal) == matches!(self, Self::Diagonals | Self::Shear)
+    /// Solves the chains of one colour, which share no particle.
+    fn solve_colour(&mut self, colour: usize, pass: Pass) {
+        let chains = self.layout.chains(&self.fabric);
+        let order = self.layout.order_of_chains(colour);
+        let (masses, linked) = (&self.masses.inverse, self.layout.linked());
+        P::run(SolveChains {
+            pairs: &chains.pairs[chains.colours[colour].pairs.clone()],
+            pass,
+            compliance: &self.layout.factors().link_compliance,
+            rows: &mut self.rows,
+            target: &mut self.link_target,
+            particles: self.positions.particles(order, masses, linked),
+        });
     }
+}
+
+/// A pass over chains in a substep.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pass {
+    /// Without tension yet: targets are the lengths at rest.
+    First,
+    /// From the targets of the pass before.
+    Again,
+    /// From the targets of the pass before; none are stored, as nothing reads them.
+    Last,
 }
 
 /// The chains of one colour, in pairs.
@@ -98,8 +108,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
         match self.pass {
             Pass::First => self.solve_all::<L, false, true>(token),
             Pass::Again => self.solve_all::<L, true, true>(token),
-            Pass::Diagonals => self.solve_all::<L, false, false>(token),
-            Pass::Last | Pass::Shear => self.solve_all::<L, true, false>(token),
+            Pass::Last => self.solve_all::<L, true, false>(token),
         }
     }
 }

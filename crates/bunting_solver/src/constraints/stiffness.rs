@@ -10,13 +10,9 @@ use crate::step::Scheme;
 const LIMP: f32 = 1000.0;
 
 /// Square of the phase that the fastest bending wave turns by in a substep, 16 h² B/(σ l⁴), above which
-/// bending is solved at the positions that stretch is predicted to lead to. Larger: stiff strips droop too
-/// far. A 33 × 33 flag has 0.02.
+/// bending is solved at the positions that stretch leads to. Larger: stiff strips droop too far. A 33 × 33
+/// flag has 0.02.
 const STIFF_BENDING: f32 = 1.0;
-
-/// Part of the predicted stretch that bending is solved with. With all of it an oscillation of the
-/// prediction would not die out.
-const PREDICTED_PART: f32 = 0.9;
 
 /// Whether a cloth is so stiff that its resistance to twist shows.
 pub(crate) fn resists_twist(fabric: &Fabric, material: &FabricMaterial) -> bool {
@@ -63,14 +59,13 @@ impl Stiffness<'_> {
         self.compliance(self.material.bend_stiffness)
     }
 
-    /// Part of the predicted stretch that bending is solved with; zero where bending is not stiff, and where
-    /// diagonals count as warp or weft.
-    pub fn predicted_part(&self, fabric: &Fabric) -> f32 {
+    /// Whether bending is so stiff that it must be solved at the positions that stretch leads to.
+    pub fn bends_stiffly(&self, fabric: &Fabric) -> bool {
         let spacing = fabric.bend_profiles().iter().map(|profile| profile.inverse_spacing);
         let finest = spacing.fold(0.0, f32::max);
         let FabricMaterial { bend_stiffness, area_density, .. } = *self.material;
         let phase_squared =
             16.0 * self.step * self.step * bend_stiffness / area_density * finest.powi(4);
-        if fabric.has_shear_cells() && phase_squared > STIFF_BENDING { PREDICTED_PART } else { 0.0 }
+        phase_squared > STIFF_BENDING
     }
 }

@@ -44,6 +44,16 @@ impl Collider {
         Self { shape, from: pose, to: pose, margin: 0.0, friction: 1.0 }
     }
 
+    /// Whether poses, margin and friction are finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        let is_pose =
+            |(position, rotation): (Vec3, Quat)| position.is_finite() && rotation.is_finite();
+        is_pose(self.from)
+            && is_pose(self.to)
+            && self.margin.is_finite()
+            && self.friction.is_finite()
+    }
+
     /// The pose after a part of the tick, in the cloth's frame.
     pub(crate) fn pose_at(&self, part: f32) -> Pose {
         let turned = FrameMotion::between(self.from, self.to).rotation_at(part);

@@ -37,6 +37,18 @@ pub enum FabricError {
         /// The vertex.
         vertex: usize,
     },
+    /// A texture coordinate is infinite or not a number.
+    #[error("the texture coordinate of vertex {vertex} is not finite")]
+    UvNotFinite {
+        /// The vertex.
+        vertex: usize,
+    },
+    /// The distance at which vertices are merged is negative, infinite or not a number.
+    #[error("vertices cannot be merged at a distance of {distance} m")]
+    WeldDistance {
+        /// The distance, m.
+        distance: f32,
+    },
     /// There must be one texture coordinate per vertex.
     #[error("{uvs} texture coordinates for {vertices} vertices: give one per vertex, or none")]
     UvCount {

@@ -33,6 +33,12 @@ pub struct FabricMaterial {
     pub surface_friction: f32,
 }
 
+/// Least area density, kg/m²: that of graphene. Smaller: accelerations by air and links overflow.
+const LEAST_DENSITY: f32 = 1e-6;
+
+/// Least stretch stiffness, N/m. Smaller: compliances overflow.
+const LEAST_STIFFNESS: f32 = 1e-6;
+
 /// Presets. Values after Wang, O'Brien and Ramamoorthi 2011, "Data-driven elastic models for cloth": the stretch
 /// stiffness is the slope at the smallest strain measured, and their bending coefficient k corresponds to B ≈ k/4.
 impl FabricMaterial {
@@ -105,12 +111,11 @@ impl FabricMaterial {
     ///
     /// # Errors
     ///
-    /// [`FabricError::Material`] names the first value that cannot: a density that is not positive
-    /// and finite, a stretch stiffness that is not positive, anything else that is negative or not
-    /// a number.
+    /// [`FabricError::Material`] names the first value that cannot: a density below 10⁻⁶ kg/m² or not
+    /// finite, a stretch stiffness below 10⁻⁶ N/m, anything else that is negative or not finite.
     pub fn validate(&self) -> Result<(), FabricError> {
-        let density = |value: f32| value > 0.0 && value.is_finite();
-        let stretch = |value: f32| value > 0.0;
+        let density = |value: f32| value >= LEAST_DENSITY && value.is_finite();
+        let stretch = |value: f32| value >= LEAST_STIFFNESS;
         let other = |value: f32| value >= 0.0 && value.is_finite();
         let checks = [
             ("area_density", self.area_density, density as fn(f32) -> bool),
@@ -173,6 +178,13 @@ mod tests {
     fn bad_values_are_named() {
         let bad = FabricMaterial { area_density: -1.0, ..FabricMaterial::SILK };
         assert!(matches!(bad.validate(), Err(FabricError::Material { name: "area_density", .. })));
+        let bad = FabricMaterial { area_density: 1e-30, ..FabricMaterial::SILK };
+        assert!(matches!(bad.validate(), Err(FabricError::Material { name: "area_density", .. })));
+        let bad = FabricMaterial { weft_stiffness: 1e-30, ..FabricMaterial::SILK };
+        assert!(matches!(
+            bad.validate(),
+            Err(FabricError::Material { name: "weft_stiffness", .. })
+        ));
         let bad = FabricMaterial { bend_stiffness: f32::NAN, ..FabricMaterial::SILK };
         assert!(matches!(
             bad.validate(),

@@ -13,24 +13,61 @@ pub(crate) struct Formula {
     pub extrapolation: [f32; 2],
     /// β: the effective substep is β h.
     pub beta: f32,
+    /// h/(γ₁ h₁ + γ₂ h₂): times the extrapolated part of a steady change it is the whole change. Zero for formulas
+    /// of less than three substeps, as the first change after a restart is not like those that follow.
+    pub inverse_extrapolation: f32,
 }
 
 impl Formula {
-    pub const BACKWARD_EULER: Self = Self { extrapolation: [0.0, 0.0], beta: 1.0 };
-    /// Curtiss and Hirschfelder 1952.
-    pub const BDF2: Self = Self { extrapolation: [1.0 / 3.0, 0.0], beta: 2.0 / 3.0 };
-    /// The mean of BDF2 and BDF3: of order two, with half the error of BDF2, and as stable. With a larger part
-    /// of BDF3 undamped oscillations would grow (BDF2OPT, Vatsa, Carpenter and Lockard 2010, has 0.48 of BDF3
-    /// where this has 0.5).
-    pub const BDF2_OPT: Self = Self { extrapolation: [0.5, -0.1], beta: 0.6 };
+    pub const BACKWARD_EULER: Self =
+        Self { extrapolation: [0.0, 0.0], beta: 1.0, inverse_extrapolation: 0.0 };
+    /// The mean of BDF2 and BDF3 in equal substeps: of order two, with half the error of BDF2, and as stable. With a
+    /// larger part of BDF3 undamped oscillations would grow (BDF2OPT, Vatsa, Carpenter and Lockard 2010, has 0.48 of
+    /// BDF3 where this has 0.5).
+    pub const BDF2_OPT: Self =
+        Self { extrapolation: [0.5, -0.1], beta: 0.6, inverse_extrapolation: 2.5 };
 
-    /// 1/(γ₁ + γ₂): times the extrapolated part of a steady change it is the whole change. Zero for formulas of
-    /// less than three substeps, as the first change after a restart is not like those that follow.
-    pub fn inverse_extrapolation(&self) -> f32 {
-        let [last, before] = self.extrapolation;
-        if before == 0.0 { 0.0 } else { 1.0 / (last + before) }
+    /// BDF2 for a substep of h seconds after one of h₁ (Curtiss and Hirschfelder 1952):
+    /// (1 + a) Δ = (h/h₁) a Δ₁ + h ẋ with a = h/(h + h₁).
+    fn bdf2(step: f32, last: f32) -> Self {
+        let [h, h1] = [step, last].map(f64::from);
+        let a = h / (h + h1);
+        let beta = 1.0 / (1.0 + a);
+        Self {
+            extrapolation: [((h / h1) * a * beta) as f32, 0.0],
+            beta: beta as f32,
+            inverse_extrapolation: 0.0,
+        }
+    }
+
+    /// The mean of BDF2 and BDF3 for a substep of h seconds after two of h₁ and h₂, the latest first.
+    ///
+    /// BDF3 is (1 + a + b) Δ = (h/h₁)(a + b + c) Δ₁ − (h/h₂) c Δ₂ + h ẋ with a = h/(h + h₁), b = h/(h + h₁ + h₂)
+    /// and c = b (h + h₁)/(h₁ + h₂): the derivative of Newton's interpolation (Hairer, Nørsett and Wanner 1993,
+    /// III.5). BDF2 has neither b nor c, and the mean of both has half of each.
+    fn bdf2_opt(step: f32, last: f32, before: f32) -> Self {
+        let [h, h1, h2] = [step, last, before].map(f64::from);
+        let a = h / (h + h1);
+        let b = 0.5 * h / (h + h1 + h2);
+        let c = b * (h + h1) / (h1 + h2);
+        let beta = 1.0 / (1.0 + a + b);
+        let [of_last, of_before] = [(h / h1) * (a + b + c) * beta, -(h / h2) * c * beta];
+        Self {
+            extrapolation: [of_last as f32, of_before as f32],
+            beta: beta as f32,
+            inverse_extrapolation: (h / (of_last * h1 + of_before * h2)) as f32,
+        }
     }
 }
+
+/// The integrator restarts where a substep is this many times as long as the one before. BDF2 is stable up to
+/// 1 + √2 (Grigorieff 1983). Larger: alternating ticks of 1/30 and 1/90 s gain energy. Smaller: hosts whose ticks
+/// vary lose their second order.
+const MOST_GROWTH: f32 = 2.4;
+
+/// How many times as long as the one before a substep may be for BDF3 to have a part in its formula: BDF3 by itself
+/// is stable up to 1.534 (Calvo, Grande and Grigorieff 1990).
+const MOST_GROWTH_OF_BDF3: f32 = 1.5;
 
 /// The integrator restarts where the first or the second difference of velocities, squared and summed over the
 /// particles, is this many times the squared velocities. Where taut links vibrate faster than a substep can
@@ -50,9 +87,9 @@ const NEAR_REST: f32 = 2.0;
 /// History of a cloth's integrator besides its particles' vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct IntegratorHistory {
-    /// Length of the last substep, s; zero where there is none.
-    step: f32,
-    /// Substeps of this length since the integrator restarted.
+    /// Lengths of the last two substeps, s, the latest first; zero where there is none.
+    steps: [f32; 2],
+    /// Substeps since the integrator restarted.
     substeps: u32,
     /// Turn of the cloth about its pole by the last substep's corrections, to be taken back.
     pub pole_turn: PoleTurn,
@@ -61,31 +98,35 @@ pub(crate) struct IntegratorHistory {
 impl IntegratorHistory {
     /// Whether there was a substep.
     pub fn exists(&self) -> bool {
-        self.step > 0.0
+        self.steps[0] > 0.0
     }
 
     /// Begins a substep of `step` seconds, and returns the formula of the highest order that the history allows.
     pub fn begin_substep(&mut self, step: f32, scheme: Scheme) -> Formula {
-        if self.step != step {
-            *self = Self { step, ..Self::default() };
+        let [last, before] = self.steps;
+        if step > MOST_GROWTH * last {
+            *self = Self::default();
         }
+        self.steps = [step, last];
         self.substeps = self.substeps.saturating_add(1);
         match (scheme, self.substeps) {
             (Scheme::GaussSeidel, _) | (Scheme::Yarns, 1) => Formula::BACKWARD_EULER,
-            (Scheme::Yarns, 2) => Formula::BDF2,
-            (Scheme::Yarns, _) => Formula::BDF2_OPT,
+            (Scheme::Yarns, 3..) if step <= MOST_GROWTH_OF_BDF3 * last => {
+                Formula::bdf2_opt(step, last, before)
+            }
+            (Scheme::Yarns, _) => Formula::bdf2(step, last),
         }
     }
 
     /// Whether the cloth hardly moves, and three velocities are known.
     pub fn is_near_rest(&self, sums: MotionSums<f32>, particles: usize) -> bool {
-        let slow = NEAR_REST * GRAVITY * self.step;
+        let slow = NEAR_REST * GRAVITY * self.steps[0];
         self.substeps > 2 && sums.velocity < particles as f32 * slow * slow
     }
 
     /// Restarts the integrator at first order where the motion is rough: backward Euler dissipates it.
     pub fn restart_if_rough(&mut self, sums: MotionSums<f32>, particles: usize) {
-        let slow = SLOW * GRAVITY * self.step;
+        let slow = SLOW * GRAVITY * self.steps[0];
         let smooth = ROUGH * (sums.velocity + particles as f32 * slow * slow);
         // In the first substep no velocity before is known, in the second only one.
         let first = self.substeps > 1 && sums.first_difference > smooth;
@@ -114,6 +155,10 @@ mod tests {
 
     const STEP: f32 = 0.01;
 
+    /// Curtiss and Hirschfelder 1952.
+    const BDF2: Formula =
+        Formula { extrapolation: [1.0 / 3.0, 0.0], beta: 2.0 / 3.0, inverse_extrapolation: 0.0 };
+
     fn after(substeps: u32) -> IntegratorHistory {
         let mut history = IntegratorHistory::default();
         (0..substeps).for_each(|_| {
@@ -131,15 +176,37 @@ mod tests {
 
     #[test]
     fn formulas_have_their_order() {
-        for formula in [Formula::BACKWARD_EULER, Formula::BDF2, Formula::BDF2_OPT] {
+        for formula in [Formula::BACKWARD_EULER, BDF2, Formula::BDF2_OPT] {
             assert!((change(formula, [1.0, 1.0], 1.0) - 1.0).abs() < 1e-6, "{formula:?}, x = t");
         }
-        for formula in [Formula::BDF2, Formula::BDF2_OPT] {
+        for formula in [BDF2, Formula::BDF2_OPT] {
             assert!((change(formula, [-1.0, -3.0], 2.0) - 1.0).abs() < 1e-6, "{formula:?}, x = t²");
         }
         // x = t³: the difference is the error constant.
         let error = |formula| change(formula, [1.0, 7.0], 3.0) - 1.0;
-        assert!((error(Formula::BDF2_OPT) / error(Formula::BDF2) - 0.45).abs() < 1e-5);
+        assert!((error(Formula::BDF2_OPT) / error(BDF2) - 0.45).abs() < 1e-5);
+    }
+
+    #[test]
+    fn substeps_of_different_lengths_have_the_same_order() {
+        for steps in [[1.0, 1.0, 1.0], [0.5, 1.0, 2.0], [1.5, 1.0, 0.7], [1.0, 2.0, 0.3]] {
+            let [h, h1, h2] = steps;
+            // t at the ends of the last three substeps and at the start of the first.
+            let at = [h, 0.0, -h1, -h1 - h2];
+            let second_order = [Formula::bdf2_opt(h, h1, h2), Formula::bdf2(h, h1)];
+            for (formula, power) in second_order.iter().flat_map(|&f| [(f, 1), (f, 2)]) {
+                let x = at.map(|t: f32| t.powi(power));
+                let slope = power as f32 * h.powi(power - 1);
+                let found = change(formula, [x[1] - x[2], x[2] - x[3]], h * slope);
+                assert!((found - (x[0] - x[1])).abs() < 1e-5, "{steps:?} {formula:?} t^{power}");
+            }
+            // v = t changes steadily.
+            let [of_last, of_before] = second_order[0].extrapolation;
+            let extrapolated = of_last * h1 + of_before * h2;
+            assert!((second_order[0].inverse_extrapolation * extrapolated - h).abs() < 1e-5);
+        }
+        assert_eq!(Formula::bdf2_opt(STEP, STEP, STEP), Formula::BDF2_OPT);
+        assert_eq!(Formula::bdf2(STEP, STEP), BDF2);
     }
 
     #[test]
@@ -147,10 +214,16 @@ mod tests {
         let mut history = IntegratorHistory::default();
         let formulas: Vec<Formula> =
             (0..4).map(|_| history.begin_substep(STEP, Scheme::Yarns)).collect();
-        let expected =
-            [Formula::BACKWARD_EULER, Formula::BDF2, Formula::BDF2_OPT, Formula::BDF2_OPT];
+        let expected = [Formula::BACKWARD_EULER, BDF2, Formula::BDF2_OPT, Formula::BDF2_OPT];
         assert_eq!(formulas, expected);
-        assert_eq!(history.begin_substep(2.0 * STEP, Scheme::Yarns), Formula::BACKWARD_EULER);
+        for (growth, formula) in [
+            (1.5, Formula::bdf2_opt(1.5 * STEP, STEP, STEP)),
+            (2.0, Formula::bdf2(2.0 * STEP, STEP)),
+            (2.5, Formula::BACKWARD_EULER),
+        ] {
+            let mut history = history;
+            assert_eq!(history.begin_substep(growth * STEP, Scheme::Yarns), formula, "{growth}");
+        }
         assert_eq!(history.begin_substep(2.0 * STEP, Scheme::GaussSeidel), Formula::BACKWARD_EULER);
     }
 
@@ -181,7 +254,7 @@ mod tests {
             (3, rounding_at_rest, Formula::BDF2_OPT),
             // The differences are not known yet.
             (2, oscillating, Formula::BDF2_OPT),
-            (1, stopped, Formula::BDF2),
+            (1, stopped, BDF2),
         ] {
             let mut history = after(substeps);
             history.restart_if_rough(sums, 1);

@@ -84,8 +84,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             scheme: inputs.scheme,
         };
         self.layout.set_stiffness(cloth, &self.fabric, &stiffness);
-        let predicted_part = stiffness.predicted_part(&self.fabric);
-        self.parameters.set_inputs(Y::lanes(cloth), &self.fabric, inputs, predicted_part);
+        let bends_stiffly = stiffness.bends_stiffly(&self.fabric);
+        self.parameters.set_inputs(Y::lanes(cloth), &self.fabric, inputs, bends_stiffly);
     }
 
     /// Computes a cloth's inverse masses, where what they depend on has changed.

@@ -22,7 +22,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 &mut self.older_displacement,
                 &mut self.older_velocity,
                 &mut self.oldest_velocity,
-                &mut self.predicted_stretch,
             ],
         });
     }
@@ -93,7 +92,7 @@ struct CarryState<'a, P: Pack, C> {
     position: &'a mut [Pack3<P>],
     velocity: &'a mut [Pack3<P>],
     /// Everything else that has a direction.
-    history: [&'a mut [Pack3<P>]; 5],
+    history: [&'a mut [Pack3<P>]; 4],
 }
 
 impl<P: Pack, C: Constant<P>> Kernel<P> for CarryState<'_, P, C> {

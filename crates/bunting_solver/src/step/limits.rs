@@ -10,6 +10,10 @@ use crate::step::{Scheme, StepSettings};
 /// take 2 and 4 substeps of a tick of 1/60 s.
 const FASTEST_VIBRATION: f32 = 0.75;
 
+/// Part of a substep by which ticks may be too long for a whole number of substeps: 1/60 s in 32 bits is longer than
+/// two of 1/120 s. Larger: substeps are longer than they should be.
+const TOO_LONG: f32 = 1e-3;
+
 /// Limits within which the number of substeps is chosen. Within them it depends on the fabric, the tick and
 /// gravity alone, so that it is the same for all cloths of a fabric, however they move.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -19,6 +23,8 @@ pub struct StepLimits {
     /// Fewest and most substeps in a tick. Strong wind needs more than weight does, and is not considered: at
     /// 25 m/s five for 33 × 33 particles a square metre.
     pub substeps: RangeInclusive<u32>,
+    /// Fewest substeps in a second: longer ticks are divided into more. Motion that is faster is damped.
+    pub rate: u32,
     /// Passes in a substep, see [`StepSettings::passes`].
     pub passes: u32,
 }
@@ -30,9 +36,10 @@ impl StepLimits {
     /// cloth of length L that is 4 g L/l², whatever it weighs.
     #[must_use]
     pub fn of_fabric(&self, fabric: &Fabric, tick: f32, gravity: f32) -> StepSettings {
-        let wanted = tick * fabric.tautness() * (gravity / FASTEST_VIBRATION).sqrt();
+        let by_weight = tick * fabric.tautness() * (gravity / FASTEST_VIBRATION).sqrt();
+        let by_rate = tick * self.rate as f32 - TOO_LONG;
         // NaN becomes zero.
-        let wanted = wanted.ceil() as u32;
+        let wanted = by_weight.max(by_rate).ceil() as u32;
         let (fewest, most) = (*self.substeps.start(), *self.substeps.end());
         StepSettings {
             scheme: self.scheme,
@@ -45,15 +52,15 @@ impl StepLimits {
 impl From<StepSettings> for StepLimits {
     /// Limits that leave only these settings.
     fn from(StepSettings { scheme, substeps, passes }: StepSettings) -> Self {
-        Self { scheme, substeps: substeps..=substeps, passes }
+        Self { scheme, substeps: substeps..=substeps, rate: 0, passes }
     }
 }
 
 impl Default for StepLimits {
-    /// Yarns, two to eight substeps of two passes.
+    /// Yarns, one to eight substeps of two passes, 120 a second or more.
     fn default() -> Self {
-        let StepSettings { scheme, substeps, passes } = StepSettings::default();
-        Self { scheme, substeps: substeps..=8, passes }
+        let StepSettings { scheme, passes, .. } = StepSettings::default();
+        Self { scheme, substeps: 1..=8, rate: 120, passes }
     }
 }
 
@@ -72,11 +79,19 @@ mod tests {
 
     #[test]
     fn fine_cloth_and_long_ticks_need_more_substeps() {
-        let all = StepLimits { substeps: 1..=100, ..StepLimits::default() };
+        let all = StepLimits { substeps: 1..=100, rate: 0, ..StepLimits::default() };
         let of_size = [9, 17, 33, 65].map(|n| substeps(&all, n, TICK, 9.81));
         assert_eq!(of_size, [1, 1, 2, 4]);
         assert_eq!(substeps(&all, 65, 0.5 * TICK, 9.81), 2);
         assert_eq!(substeps(&all, 65, TICK, 4.0 * 9.81), 8);
+    }
+
+    #[test]
+    fn long_ticks_are_divided() {
+        for (rate, expected) in [(240, 1), (120, 1), (119, 2), (64, 2), (60, 2), (30, 4), (4, 8)] {
+            let tick = 1.0 / rate as f32;
+            assert_eq!(substeps(&StepLimits::default(), 9, tick, 9.81), expected, "{rate}");
+        }
     }
 
     #[test]

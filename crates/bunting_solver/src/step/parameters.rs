@@ -38,14 +38,14 @@ impl ParameterInputs {
 pub(crate) struct Parameters<P: Pack> {
     /// γ₁ and γ₂ of the [`Formula`].
     pub extrapolation: [P; 2],
-    /// One over their sum, see [`Formula::inverse_extrapolation`].
+    /// See [`Formula::inverse_extrapolation`].
     pub inverse_extrapolation: P,
     /// Effective length β h of the substep, s. Everything below that is "in a substep" is in this one.
     pub step: P,
     /// One over the effective length, 1/s.
     pub inverse_step: P,
-    /// Part of the predicted stretch that bending is solved with; zero in lanes whose bending is not stiff.
-    pub predicted_part: P,
+    /// 1 in lanes whose cloth bends stiffly, else 0.
+    pub bends_stiffly: P,
     /// Gravity times the substep, m/s.
     pub gravity_step: Pack3<P>,
     /// Velocity of the air, m/s.
@@ -88,7 +88,7 @@ impl<P: Pack> Parameters<P> {
             inverse_extrapolation: zero,
             step: zero,
             inverse_step: zero,
-            predicted_part: zero,
+            bends_stiffly: zero,
             gravity_step: zero3,
             wind: zero3,
             pressure: zero,
@@ -113,6 +113,7 @@ impl<P: Pack> Parameters<P> {
         set(&mut self.inverse_step);
         set(&mut self.frame_moves);
         set(&mut self.near_rest);
+        set(&mut self.bends_stiffly);
         set(&mut self.damping_factor);
         self.extrapolation.iter_mut().chain(&mut self.pole_turn).for_each(set);
         fill_lanes3(&mut self.gravity_step, &lanes, Vec3::ZERO);
@@ -126,14 +127,14 @@ impl<P: Pack> Parameters<P> {
         rate.lanes_mut()[lanes].fill(turn.rate);
     }
 
-    /// Sets the integration formula, the air's coefficients and damping. `predicted_part` is that of
-    /// [`Stiffness`](crate::constraints::stiffness::Stiffness::predicted_part).
+    /// Sets the integration formula, the air's coefficients and damping. `bends_stiffly` is that of
+    /// [`Stiffness`](crate::constraints::stiffness::Stiffness::bends_stiffly).
     pub fn set_inputs(
         &mut self,
         lanes: Range<usize>,
         fabric: &Fabric,
         inputs: &ParameterInputs,
-        predicted_part: f32,
+        bends_stiffly: bool,
     ) {
         let ParameterInputs { material, air_density, formula, .. } = inputs;
         let step = inputs.effective_step();
@@ -141,10 +142,10 @@ impl<P: Pack> Parameters<P> {
         for (pack, part) in self.extrapolation.iter_mut().zip(formula.extrapolation) {
             set(pack, part);
         }
-        set(&mut self.inverse_extrapolation, formula.inverse_extrapolation());
+        set(&mut self.inverse_extrapolation, formula.inverse_extrapolation);
         set(&mut self.step, step);
         set(&mut self.inverse_step, 1.0 / step);
-        set(&mut self.predicted_part, predicted_part);
+        set(&mut self.bends_stiffly, if bends_stiffly { 1.0 } else { 0.0 });
         let air = 0.5 * air_density * inputs.step / material.area_density;
         set(&mut self.pressure, air * material.pressure_coefficient);
         set(&mut self.friction, air * material.friction_coefficient);
@@ -195,6 +196,11 @@ impl<P: Pack> Parameters<P> {
     /// Whether any cloth hardly moves.
     pub fn any_near_rest(&self) -> bool {
         self.near_rest.lanes().contains(&1.0)
+    }
+
+    /// Whether any cloth bends stiffly.
+    pub fn any_bends_stiffly(&self) -> bool {
+        self.bends_stiffly.lanes().contains(&1.0)
     }
 
     /// Whether the frame of any lane moves in this substep.

@@ -46,7 +46,7 @@ impl StepSettings {
 
 impl Default for StepSettings {
     /// The scheme of yarns with two substeps of two passes: for cloth of up to 65 × 65 particles at 60 ticks a
-    /// second.
+    /// second. [`StepLimits`](crate::StepLimits) choose substeps for other ticks.
     fn default() -> Self {
         Self { passes: 2, ..Self::yarns(2) }
     }
@@ -70,6 +70,18 @@ impl Drive {
     /// Nothing acts.
     pub const NONE: Self =
         Self { motion: FrameMotion::NONE, gravity: Vec3::ZERO, wind: Vec3::ZERO, air_density: 0.0 };
+
+    /// Names the first field that is not finite or, in the case of the air's density, negative.
+    pub(crate) fn validate(&self) -> Result<(), &'static str> {
+        let motion = &self.motion;
+        let checks = [
+            ("motion", motion.rotation.is_finite() && motion.translation.is_finite()),
+            ("gravity", self.gravity.is_finite()),
+            ("wind", self.wind.is_finite()),
+            ("air_density", self.air_density >= 0.0 && self.air_density.is_finite()),
+        ];
+        checks.iter().find(|(_, is_valid)| !is_valid).map_or(Ok(()), |&(name, _)| Err(name))
+    }
 }
 
 /// Standard density of air at sea level and 15 °C, kg/m³.

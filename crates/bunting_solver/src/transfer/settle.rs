@@ -98,7 +98,6 @@ fn insert(
         batch.restore(0, state)
     } else {
         batch.replace(0, state, material)?;
-        batch.drive(0, Drive::NONE);
-        Ok(())
+        batch.drive(0, Drive::NONE)
     }
 }

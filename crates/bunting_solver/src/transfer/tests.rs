@@ -37,7 +37,9 @@ fn batch_of(fabric: &Arc<Fabric>, state: &ClothSnapshot) -> ClothBatch {
 /// A flag after a second in wind and gravity.
 fn flown(fabric: &Arc<Fabric>) -> ClothSnapshot {
     let mut batch = batch_of(fabric, &ClothSnapshot::at_rest(fabric));
-    batch.drive(0, Drive { wind: Vec3::new(7.0, 0.0, 3.0), ..Drive::default() });
+    batch
+        .drive(0, Drive { wind: Vec3::new(7.0, 0.0, 3.0), ..Drive::default() })
+        .expect("a good drive");
     (0..60).for_each(|_| batch.step(TICK, StepSettings::default()));
     batch.snapshot(0)
 }

@@ -29,7 +29,7 @@ fn batch_of(fabric: &Arc<Fabric>, lanes: LaneCount, drive: Drive) -> (ClothBatch
     let lane = batch.lane_count() - 1;
     let rest = ClothSnapshot::at_rest(fabric);
     batch.replace(lane, &rest, MATERIAL).expect("a good cloth");
-    batch.drive(lane, drive);
+    batch.drive(lane, drive).expect("a good drive");
     (batch, lane)
 }
 

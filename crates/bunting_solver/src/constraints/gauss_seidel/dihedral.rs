@@ -13,12 +13,24 @@ use crate::simd::vec3::{Pack3, V3};
 impl<P: Pack> LaneBatch<P> {
     /// Projects every hinge once. `accumulate` says that multipliers are kept from pass to pass.
     pub fn solve_dihedral(&mut self, accumulate: bool) {
+        self.sweep_hinges(accumulate, false);
+    }
+
+    /// Projects every hinge, and once more in the opposite order: a symmetric Gauss–Seidel sweep.
+    pub fn solve_dihedral_both_ways(&mut self) {
+        self.layout.hinge_multiplier.fill(P::splat(0.0));
+        self.sweep_hinges(true, false);
+        self.sweep_hinges(true, true);
+    }
+
+    fn sweep_hinges(&mut self, accumulate: bool, backwards: bool) {
         P::run(Dihedral {
             fabric: &self.fabric,
             compliance: &self.layout.hinge_compliance,
             multiplier: &mut self.layout.hinge_multiplier,
             position: self.positions.packs_mut(),
             accumulate,
+            backwards,
         });
     }
 }
@@ -29,13 +41,18 @@ struct Dihedral<'a, P: Pack> {
     multiplier: &'a mut [P],
     position: &'a mut [Pack3<P>],
     accumulate: bool,
+    /// Whether the last hinge is projected first.
+    backwards: bool,
 }
 
 impl<P: Pack> Kernel<P> for Dihedral<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let inverse_masses = self.fabric.inverse_areas();
-        for (hinge, multiplier) in self.fabric.hinges().iter().zip(self.multiplier) {
+        let hinges = self.fabric.hinges();
+        for turn in 0..hinges.len() {
+            let index = if self.backwards { hinges.len() - 1 - turn } else { turn };
+            let (hinge, multiplier) = (&hinges[index], &mut self.multiplier[index]);
             let mut at = [V3::<L>::splat(token, 0.0); 4];
             let mut masses = [L::splat(token, 0.0); 4];
             for (corner, &particle) in hinge.particles.iter().enumerate() {

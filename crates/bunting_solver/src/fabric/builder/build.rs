@@ -23,7 +23,7 @@ impl FabricBuilder {
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
+    use glam::{Vec2, Vec3};
 
     use crate::fabric::{FabricBuilder, FabricError, Grid};
 
@@ -44,6 +44,12 @@ mod tests {
         let mut infinite = QUAD;
         infinite[2].y = f32::INFINITY;
         assert_eq!(error(&infinite, &[0, 1, 2]), FabricError::NotFinite { vertex: 2 });
+        let quad = || FabricBuilder::new(QUAD.to_vec(), vec![0, 1, 2, 1, 3, 2]);
+        let uv = vec![Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::new(1.0, f32::NAN)];
+        let bad_uv = quad().uv(uv).build();
+        assert_eq!(bad_uv.expect_err("a bad uv"), FabricError::UvNotFinite { vertex: 3 });
+        let welded = quad().weld_distance(f32::NAN).build();
+        assert!(matches!(welded, Err(FabricError::WeldDistance { .. })));
         assert_eq!(error(&QUAD, &[0, 1, 2, 1, 1, 3]), FabricError::ZeroArea { triangle: 1 });
         assert_eq!(error(&QUAD, &[0, 1, 2]), FabricError::LooseVertex { vertex: 3 });
         let fan = [QUAD[0], QUAD[1], QUAD[2], QUAD[3], Vec3::Z];

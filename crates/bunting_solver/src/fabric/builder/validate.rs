@@ -4,7 +4,8 @@ use super::source::FabricBuilder;
 use crate::fabric::error::FabricError;
 
 impl FabricBuilder {
-    /// Checks that counts and indices fit one another, and that positions are finite.
+    /// Checks that counts and indices fit one another, and that positions, texture coordinates and the
+    /// welding distance are finite.
     pub(super) fn validate(&self) -> Result<(), FabricError> {
         if let Some(grid) = &self.grid {
             grid.validate()?;
@@ -32,6 +33,14 @@ impl FabricBuilder {
         if !self.uv.is_empty() && self.uv.len() != vertices {
             return Err(FabricError::UvCount { uvs: self.uv.len(), vertices });
         }
-        Ok(())
+        if let Some(vertex) = self.uv.iter().position(|uv| !uv.is_finite()) {
+            return Err(FabricError::UvNotFinite { vertex });
+        }
+        match self.weld_distance {
+            Some(distance) if !(distance >= 0.0 && distance.is_finite()) => {
+                Err(FabricError::WeldDistance { distance })
+            }
+            _ => Ok(()),
+        }
     }
 }

@@ -1,0 +1,63 @@
+//! What a sound solver never does: gain energy by itself, oscillate at rest, stay locked, or slow down.
+
+mod free;
+mod hang;
+mod jerk;
+mod rates;
+mod strips;
+
+use bunting_solver::{ClothBatch, FabricMaterial, StepSettings};
+use glam::Vec3;
+
+use super::case::HardCase;
+use crate::product::TICK;
+
+/// Acceleration of gravity, m/s².
+const GRAVITY: f32 = 9.81;
+
+/// Fastest that cloth at rest may move, m/s RMS. It is seen from 10 mm/s on. With eight substeps the rounding of
+/// corrections, 3 × 10⁻⁸ m in each, alone makes 2 to 9 mm/s of free cloth without damping.
+const AT_REST: f64 = 1e-3;
+
+/// All cases.
+pub fn cases(quick: bool) -> Vec<HardCase> {
+    let mut cases = free::cases(quick);
+    cases.extend(strips::cases(quick));
+    cases.extend(jerk::cases(quick));
+    cases.extend(rates::cases());
+    cases.extend(hang::cases(quick));
+    cases
+}
+
+/// The standard scenes' fabric, without damping and air.
+fn standard() -> FabricMaterial {
+    FabricMaterial {
+        area_density: 0.2,
+        warp_stiffness: 1e4,
+        weft_stiffness: 1e4,
+        shear_stiffness: 200.0,
+        damping: 0.0,
+        pressure_coefficient: 0.0,
+        friction_coefficient: 0.0,
+        ..FabricMaterial::FLAG_POLYESTER
+    }
+}
+
+/// Steps a batch for some seconds.
+fn advance(batch: &mut ClothBatch, seconds: f32, settings: StepSettings) {
+    (0..(seconds / TICK).round() as usize).for_each(|_| batch.step(TICK, settings));
+}
+
+/// RMS speed of a lane, m/s; infinite where it is not a number.
+fn speed(batch: &ClothBatch, lane: usize) -> f64 {
+    let mut velocities = Vec::new();
+    batch.copy_velocities(lane, &mut velocities);
+    let sum: f64 = velocities.iter().map(|v: &Vec3| f64::from(v.length_squared())).sum();
+    let speed = (sum / velocities.len() as f64).sqrt();
+    if speed.is_finite() { speed } else { f64::INFINITY }
+}
+
+/// The greatest RMS speed of the lanes, m/s.
+fn fastest(batch: &ClothBatch) -> f64 {
+    batch.occupied().map(|lane| speed(batch, lane)).fold(0.0, f64::max)
+}

@@ -1,0 +1,97 @@
+//! Bending of stiff grids, solved at the positions that stretch leads to in the same substep.
+//!
+//! Bending is solved before stretch, at positions that gravity has moved and stretch is yet to move back. For limp
+//! cloth that does not matter; a stiff strip is bent by the detour: at Γ = 50 the heavy cantilever droops 1.8 % too
+//! far with three substeps. Therefore stiff cloth is bent, and solved along warp and weft, in a trial. The
+//! displacement by warp and weft is added to the predicted positions, bending is solved there, and the displacement
+//! is subtracted again: a block Gauss–Seidel iteration on the multipliers of both.
+//!
+//! Nothing is kept from substep to substep. A displacement remembered from past substeps is a feedback with a delay
+//! of a substep and a gain near one around two projections that do not commute: narrow strips oscillated for ever.
+
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::layout::{Layout, Positions};
+use crate::constraints::chain::Pass;
+use crate::simd::lane::{Kernel, Lane, Pack};
+use crate::simd::vec3::{Pack3, V3};
+use crate::step::parameters::Parameters;
+
+/// Trials in a substep. At Γ = 50 and two substeps a cantilever droops 0.1 % too far; with two trials 0.2 %, and with
+/// one 0.5 %.
+const TRIALS: u32 = 3;
+
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Solves bending and twist of a grid: of stiff cloth at the positions that stretch leads to.
+    pub fn solve_bending_before_stretch(&mut self) {
+        if !self.parameters.any_bends_stiffly() {
+            self.bend();
+            return;
+        }
+        self.predicted_position.clone_from(self.positions.packs_mut());
+        self.bend();
+        for _ in 0..TRIALS {
+            self.stretch_shift.clone_from(self.positions.packs_mut());
+            self.solve_warp_and_weft(Pass::First);
+            P::run(Shift {
+                parameters: &self.parameters,
+                predicted: &self.predicted_position,
+                position: self.positions.packs_mut(),
+                shift: &mut self.stretch_shift,
+            });
+            self.bend();
+            P::run(ShiftBack {
+                parameters: &self.parameters,
+                position: self.positions.packs_mut(),
+                shift: &self.stretch_shift,
+            });
+        }
+    }
+
+    fn bend(&mut self) {
+        self.solve_bending();
+        self.solve_twist();
+    }
+}
+
+/// Puts particles back to their predicted positions, in stiff lanes shifted by the displacement by stretch.
+struct Shift<'a, P: Pack> {
+    parameters: &'a Parameters<P>,
+    predicted: &'a [Pack3<P>],
+    position: &'a mut [Pack3<P>],
+    /// Before: positions before stretch, m. After: the displacement by stretch, m.
+    shift: &'a mut [Pack3<P>],
+}
+
+impl<P: Pack> Kernel<P> for Shift<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let zero = L::splat(token, 0.0);
+        let is_stiff = zero.lt(L::load(token, &self.parameters.bends_stiffly));
+        let positions = self.position.iter_mut().zip(self.predicted);
+        for ((position, predicted), shift) in positions.zip(self.shift) {
+            let x: V3<L> = V3::load(token, predicted);
+            let stretch = V3::load(token, position) - V3::load(token, shift);
+            stretch.store(shift);
+            (x + stretch).or_where_not(is_stiff, x).store(position);
+        }
+    }
+}
+
+/// Takes the shift back in stiff lanes.
+struct ShiftBack<'a, P: Pack> {
+    parameters: &'a Parameters<P>,
+    position: &'a mut [Pack3<P>],
+    shift: &'a [Pack3<P>],
+}
+
+impl<P: Pack> Kernel<P> for ShiftBack<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let zero = L::splat(token, 0.0);
+        let is_stiff = zero.lt(L::load(token, &self.parameters.bends_stiffly));
+        for (position, shift) in self.position.iter_mut().zip(self.shift) {
+            let x: V3<L> = V3::load(token, position);
+            (x - V3::load(token, shift)).or_where_not(is_stiff, x).store(position);
+        }
+    }
+}
