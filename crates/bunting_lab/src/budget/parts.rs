@@ -1,9 +1,9 @@
-//! Häggström's figure B.1 by its own parts: what bending and shear, stretch, air, velocities and normals
-//! take of a flag's tick, and what collision and internal damping add to it, at each level.
+//! Häggström's figure B.1 by its own parts: what bending, shear, stretch, air, velocities and normals take of
+//! a flag's tick, and what collision and internal damping add to it, at each level.
 //!
 //! The solver's phases can be timed from outside. What happens within one is found by a difference: the
-//! same tick with and without the part, or with one pass more. Bending and shear are solved once a
-//! substep whatever the settings, so they are what is left of the constraints together.
+//! same tick with and without the part, or with one pass more. Shear is solved once a substep whatever the
+//! settings: it is what is left of the constraints.
 
 use std::sync::Arc;
 
@@ -23,11 +23,12 @@ use crate::{
 
 /// The parts of every flag's tick, in the order in which they run. The damping of all motion is one
 /// multiplication within the prediction.
-pub const PARTS: [&str; 8] = [
+pub const PARTS: [&str; 9] = [
     "begin of tick",
     "prediction, damping",
     "air",
-    "bending, shear",
+    "bending",
+    "shear",
     "stretch",
     "tethers",
     "velocities",
@@ -94,6 +95,7 @@ fn of_level(n: u32, effort: &Effort) -> Vec<Part> {
         whole.begin,
         whole.integrate - air,
         air,
+        whole.bending,
         whole.constraints - stretch - tethers,
         stretch,
         tethers,

@@ -13,7 +13,8 @@ use crate::{
 };
 
 /// The phases of a tick, in the order in which they run.
-pub const PHASES: [&str; 5] = ["begin", "integrate", "constraints", "velocities", "normals"];
+pub const PHASES: [&str; 6] =
+    ["begin", "integrate", "bending", "constraints", "velocities", "normals"];
 
 /// One phase of one level.
 #[derive(Clone, Debug, Serialize)]
@@ -37,7 +38,9 @@ pub struct PhaseTimes {
     pub begin: f64,
     /// External forces, damping and prediction of all substeps.
     pub integrate: f64,
-    /// Constraints of all substeps.
+    /// Bending of all substeps; of Gauss–Seidel it is among the constraints.
+    pub bending: f64,
+    /// All other constraints of all substeps.
     pub constraints: f64,
     /// Velocities of all substeps.
     pub velocities: f64,
@@ -49,7 +52,7 @@ impl PhaseTimes {
     /// The phases in the order of [`PHASES`].
     #[must_use]
     pub fn to_array(self) -> [f64; PHASES.len()] {
-        [self.begin, self.integrate, self.constraints, self.velocities, self.normals]
+        [self.begin, self.integrate, self.bending, self.constraints, self.velocities, self.normals]
     }
 
     /// The whole tick.
@@ -97,8 +100,9 @@ pub fn time_in_turn<const FLEETS: usize>(
         }
     }
     times.map(|times| {
-        let [begin, integrate, constraints, velocities, normals] = times.map(|it| it.median());
-        PhaseTimes { begin, integrate, constraints, velocities, normals }
+        let [begin, integrate, bending, constraints, velocities, normals] =
+            times.map(|it| it.median());
+        PhaseTimes { begin, integrate, bending, constraints, velocities, normals }
     })
 }
 
@@ -107,15 +111,16 @@ fn tick(fleet: &mut Fleet, times: &mut [Timing; PHASES.len()]) {
     fleet.drive();
     let settings = fleet.settings();
     let batch = &mut fleet.batches_mut()[0];
-    let [begin, integrate, constraints, velocities, normals] = times;
+    let [begin, integrate, bending, constraints, velocities, normals] = times;
     begin.time(|| batch.begin_tick(TICK, settings));
-    let mut substeps: [Timing; 3] = Default::default();
+    let mut substeps: [Timing; 4] = Default::default();
     for _ in 0..settings.substeps {
         substeps[0].time(|| batch.integrate());
-        substeps[1].time(|| batch.solve_constraints());
-        substeps[2].time(|| batch.update_velocities());
+        substeps[1].time(|| batch.solve_all_bending());
+        substeps[2].time(|| batch.solve_all_but_bending());
+        substeps[3].time(|| batch.update_velocities());
     }
-    for (sum, parts) in [integrate, constraints, velocities].into_iter().zip(&substeps) {
+    for (sum, parts) in [integrate, bending, constraints, velocities].into_iter().zip(&substeps) {
         sum.push(parts.total());
     }
     normals.time(|| batch.compute_normals());

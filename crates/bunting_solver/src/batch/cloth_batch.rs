@@ -300,6 +300,19 @@ impl ClothBatch {
         with_batch!(&mut self.0, batch => batch.solve_constraints());
     }
 
+    /// The part of [`solve_constraints`](Self::solve_constraints) that comes first: bending, of the scheme of yarns. For
+    /// measuring its time.
+    #[doc(hidden)]
+    pub fn solve_all_bending(&mut self) {
+        with_batch!(&mut self.0, batch => batch.solve_all_bending());
+    }
+
+    /// The other part of [`solve_constraints`](Self::solve_constraints).
+    #[doc(hidden)]
+    pub fn solve_all_but_bending(&mut self) {
+        with_batch!(&mut self.0, batch => batch.solve_all_but_bending());
+    }
+
     /// The particles of a lane while a substep is under way, for forces and constraints of the caller's: between
     /// [`integrate`](Self::integrate) and [`update_velocities`](Self::update_velocities). None where the lane is
     /// empty, and outside a substep.

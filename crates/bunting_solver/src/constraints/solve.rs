@@ -16,19 +16,30 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// implicit step of a stiffer cloth has. A product of three different projections has complex ones:
     /// circulatory forces, which make a mesh at rest vibrate and spin.
     pub fn solve_constraints(&mut self) {
+        self.solve_all_bending();
+        self.solve_all_but_bending();
+    }
+
+    /// The first part of [`solve_constraints`](Self::solve_constraints) in the scheme of yarns.
+    pub fn solve_all_bending(&mut self) {
+        if self.clock.stands_still() || self.clock.settings.scheme == Scheme::GaussSeidel {
+            return;
+        }
+        if self.fabric.grid().is_some() {
+            self.solve_bending_before_stretch();
+        } else {
+            self.solve_dihedral_both_ways();
+        }
+    }
+
+    /// The rest of [`solve_constraints`](Self::solve_constraints); with Gauss–Seidel, all of it.
+    pub fn solve_all_but_bending(&mut self) {
         if self.clock.stands_still() {
             return;
         }
         match self.clock.settings.scheme {
             Scheme::GaussSeidel => self.solve_gauss_seidel(),
-            Scheme::Yarns => {
-                if self.fabric.grid().is_some() {
-                    self.solve_bending_before_stretch();
-                } else {
-                    self.solve_dihedral_both_ways();
-                }
-                self.solve_stretch_and_contacts();
-            }
+            Scheme::Yarns => self.solve_stretch_and_contacts(),
         }
     }
 }
@@ -36,8 +47,20 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
 impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
     /// Projects the predicted positions onto all constraints. The cloth is a grid, and the scheme that of yarns.
     pub fn solve_constraints(&mut self) {
+        self.solve_all_bending();
+        self.solve_all_but_bending();
+    }
+
+    /// The first part of [`solve_constraints`](Self::solve_constraints).
+    pub fn solve_all_bending(&mut self) {
         if !self.clock.stands_still() {
             self.solve_bending_before_stretch();
+        }
+    }
+
+    /// The rest of [`solve_constraints`](Self::solve_constraints).
+    pub fn solve_all_but_bending(&mut self) {
+        if !self.clock.stands_still() {
             self.solve_stretch_and_contacts();
         }
     }
