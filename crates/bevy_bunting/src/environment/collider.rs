@@ -73,8 +73,24 @@ impl Plugin for ColliderPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<ClothCollider>().register_type::<SharedShapeReflect>().add_systems(
             ClothTick,
-            drive_colliders.in_set(ClothSystems::Drive).after(drive_cloths),
+            (
+                report_bad_colliders.in_set(ClothSystems::Prepare),
+                drive_colliders.in_set(ClothSystems::Drive).after(drive_cloths),
+            ),
         );
+    }
+}
+
+/// Reports new and changed colliders that the solver refuses.
+fn report_bad_colliders(colliders: Query<(Entity, &ClothCollider), Changed<ClothCollider>>) {
+    for (entity, collider) in &colliders {
+        let ClothCollider { margin, friction, .. } = *collider;
+        if !margin.is_finite() || !friction.is_finite() {
+            log::error!(
+                "the ClothCollider of {entity} has a margin of {margin} m and a friction of {friction}: no cloth \
+                 feels it until both are finite"
+            );
+        }
     }
 }
 
