@@ -64,7 +64,7 @@ impl Plugin for SleepPlugin {
 
 /// What has changed since the last tick of all that acts on cloths.
 #[derive(Resource, Debug, Default)]
-struct Changes {
+pub(crate) struct Changes {
     /// Whether the wind, gravity, other settings or the set of colliders changed, which act everywhere.
     everywhere: bool,
     /// Number of ticks since anything changed everywhere.
@@ -136,7 +136,7 @@ type RestingCloth = (
     &'static LodRecord,
 );
 
-fn wake_cloths(mut cloths: Query<RestingCloth>, mut changes: ResMut<Changes>) {
+pub(crate) fn wake_cloths(mut cloths: Query<RestingCloth>, mut changes: ResMut<Changes>) {
     if changes.asleep == 0 {
         return;
     }

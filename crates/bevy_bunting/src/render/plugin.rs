@@ -7,6 +7,7 @@ use bevy_ecs::prelude::*;
 use bevy_mesh::Mesh;
 
 use crate::lod::select::select_levels;
+use crate::lod::sleep::wake_cloths;
 use crate::render::assign_meshes::assign_meshes;
 use crate::render::bounds::bound_cloths;
 use crate::render::camera_lens::{add_viewer, follow_cameras};
@@ -71,7 +72,10 @@ impl Plugin for ClothRenderPlugin {
             )
             .add_systems(
                 ClothTick,
-                hide_cloths.in_set(ClothSystems::SelectLod).before(select_levels),
+                hide_cloths
+                    .in_set(ClothSystems::SelectLod)
+                    .after(wake_cloths)
+                    .before(select_levels),
             )
             .configure_sets(
                 PostUpdate,
