@@ -105,6 +105,7 @@ mod render;
 mod schedule;
 mod settings;
 mod timings;
+mod waves;
 
 use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::intern::Interned;

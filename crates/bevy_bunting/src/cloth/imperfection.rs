@@ -6,6 +6,8 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bunting_solver::{ClothSnapshot, Fabric};
 
+use crate::waves::{Random, mix, sine};
+
 /// Greatest distance of a particle from its place at rest when a cloth is spawned, m. Folds grow from it by
 /// some e in a tenth of a second: with a hundredth of it they are a third of a second late.
 const AMPLITUDE: f32 = 1e-4;
@@ -32,46 +34,27 @@ impl ClothSeed {
     }
 }
 
-/// A bijection that spreads each bit over all (Wellons' lowbias32).
-fn mix(mut bits: u32) -> u32 {
-    bits ^= bits >> 16;
-    bits = bits.wrapping_mul(0x7feb_352d);
-    bits ^= bits >> 15;
-    bits = bits.wrapping_mul(0x846c_a68b);
-    bits ^ (bits >> 16)
-}
-
 /// The fabric at rest as no cloth is quite: off its plane by at most [`AMPLITUDE`], but for its pins.
 pub(crate) fn almost_at_rest(fabric: &Fabric, seed: ClothSeed) -> ClothSnapshot {
     let mut snapshot = ClothSnapshot::at_rest(fabric);
     let rest = fabric.rest_positions();
     let normals = fabric.normals(rest);
     let extent = fabric.area().sqrt();
-    let mut hash = mix(seed.0);
-    let mut random = || {
-        hash = mix(hash.wrapping_add(0x9e37_79b9));
-        (hash >> 8) as f32 / (1 << 24) as f32
-    };
+    let mut random = Random::with_seed(seed.0);
     let waves = WAVES.map(|count| {
-        let direction = Vec3::from([(); 3].map(|()| 2.0 * random() - 1.0)).normalize_or(Vec3::ONE);
-        (direction * (count / extent), random())
+        let direction =
+            Vec3::from([(); 3].map(|()| 2.0 * random.unit() - 1.0)).normalize_or(Vec3::ONE);
+        (direction * (count / extent), random.unit())
     });
     for (particle, position) in snapshot.positions.iter_mut().enumerate() {
         if fabric.is_pinned(particle) {
             continue;
         }
         let at = rest[particle];
-        let sum: f32 = waves.iter().map(|(wave, phase)| hump(wave.dot(at) + phase)).sum();
+        let sum: f32 = waves.iter().map(|(wave, phase)| sine(wave.dot(at) + phase)).sum();
         *position += normals[particle] * (AMPLITUDE / WAVES.len() as f32 * sum);
     }
     snapshot
-}
-
-/// A sine of period 1, of parabolas: the same bits on all machines.
-fn hump(phase: f32) -> f32 {
-    let part = phase - phase.floor();
-    let half = 2.0 * part - 1.0;
-    4.0 * half * (half.abs() - 1.0)
 }
 
 #[cfg(test)]

@@ -2,4 +2,5 @@
 
 pub mod collider;
 pub mod drive;
+pub mod gusts;
 pub mod wind;

@@ -6,8 +6,8 @@ use bevy_math::{DVec3, Vec3};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_time::Time;
-use fastnoise_lite::{FastNoiseLite, NoiseType};
 
+use crate::environment::gusts::Gusts;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// Least length of a gust, m: that of a large flag. Smaller: gusts are shorter than the cloth that feels them
@@ -16,17 +16,17 @@ const LEAST_GUST_LENGTH: f32 = 2.0;
 
 /// Moving air. The velocities of several fields are added up.
 ///
-/// Gusts are simplex noise that the mean wind carries along (Taylor's hypothesis of frozen turbulence): their
-/// length is the distance that the mean wind covers in 1/`gust_frequency`, at least 2 m, and a cloth downwind
-/// feels a gust later. They depend on position, time and seed, and not on the frame rate. A change of the
-/// mean velocity changes how fast gusts travel from then on. A cloth feels the air at its middle.
+/// Gusts are a sum of eight plane waves, free of divergence, that the mean wind carries along (Taylor's hypothesis
+/// of frozen turbulence): their length is the distance that the mean wind covers in 1/`gust_frequency`, at least
+/// 2 m, and a cloth downwind feels a gust later. They depend on position, time and seed, and not on the frame rate.
+/// A change of the mean velocity changes how fast gusts travel from then on. A cloth feels the air at its middle.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(GustTravel)]
 pub struct WindField {
     /// Mean velocity of the air relative to the world, m/s.
     pub velocity: Vec3,
-    /// Greatest difference from the mean velocity along each axis, m/s.
+    /// Greatest difference from the mean velocity along each axis, m/s; its root mean square is a quarter of that.
     pub gust_strength: f32,
     /// Frequency of gusts, 1/s.
     pub gust_frequency: f32,
@@ -54,16 +54,7 @@ impl WindField {
     /// `travel` of their lengths.
     #[must_use]
     pub fn velocity_at(&self, position: Vec3, travel: DVec3) -> Vec3 {
-        if self.gust_strength == 0.0 {
-            return self.velocity;
-        }
-        let mut noise = FastNoiseLite::with_seed(self.seed);
-        noise.set_noise_type(Some(NoiseType::OpenSimplex2));
-        noise.set_frequency(Some(1.0));
-        let at = (position.as_dvec3() / self.gust_length() - travel).as_vec3();
-        // Layers of the noise at great distance are independent: one for each axis.
-        let axis = |layer: f32| noise.get_noise_3d(at.x, at.y + 100.0 * layer, at.z);
-        self.velocity + self.gust_strength * Vec3::new(axis(1.0), axis(2.0), axis(3.0))
+        MovingAir::new(self, travel).at(position)
     }
 
     /// How far gusts travel in a second, in lengths of a gust; zero without gusts.
@@ -75,13 +66,13 @@ impl WindField {
         // In a light wind gusts of the least length would be rarer than asked: they move faster than the air.
         let frequency = f64::from(self.gust_frequency);
         let along = self.velocity.try_normalize().unwrap_or(Vec3::X).as_dvec3();
-        let rate = along * frequency.max(f64::from(self.velocity.length()) / self.gust_length());
+        let rate = along * frequency.max(f64::from(self.velocity.length() / self.gust_length()));
         if rate.is_finite() { rate } else { DVec3::ZERO }
     }
 
     /// Length of a gust, m.
-    fn gust_length(&self) -> f64 {
-        f64::from((self.velocity.length() / self.gust_frequency).max(LEAST_GUST_LENGTH))
+    fn gust_length(&self) -> f32 {
+        (self.velocity.length() / self.gust_frequency).max(LEAST_GUST_LENGTH)
     }
 }
 
@@ -97,17 +88,38 @@ impl Default for WindField {
     }
 }
 
-/// The air in this tick: all [`WindField`]s, and how far their gusts have travelled.
+/// The air of one [`WindField`] in one tick.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+struct MovingAir {
+    /// Mean velocity, m/s.
+    velocity: Vec3,
+    gusts: Option<Gusts>,
+}
+
+impl MovingAir {
+    fn new(field: &WindField, travel: DVec3) -> Self {
+        let WindField { velocity, gust_strength, seed, .. } = *field;
+        let gusts = || Gusts::new(seed, gust_strength, field.gust_length(), travel);
+        Self { velocity, gusts: (gust_strength != 0.0).then(gusts) }
+    }
+
+    /// Velocity (m/s) at a position in the world (m).
+    fn at(&self, position: Vec3) -> Vec3 {
+        self.velocity + self.gusts.map_or(Vec3::ZERO, |gusts| gusts.at(position))
+    }
+}
+
+/// The air in this tick: that of all [`WindField`]s.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
-pub struct TickWind(Vec<(WindField, DVec3)>);
+pub struct TickWind(Vec<MovingAir>);
 
 impl TickWind {
     /// Velocity of the air (m/s) at a position in the world (m): the sum of all fields. A field that is not
     /// finite counts as no wind at all.
     #[must_use]
     pub fn at(&self, position: Vec3) -> Vec3 {
-        let velocities = self.0.iter().map(|(field, travel)| field.velocity_at(position, *travel));
+        let velocities = self.0.iter().map(|air| air.at(position));
         velocities.filter(|velocity| velocity.is_finite()).sum()
     }
 }
@@ -134,7 +146,7 @@ fn collect_winds(
     wind.0.clear();
     wind.0.extend(fields.iter_mut().map(|(field, mut travel)| {
         travel.0 += field.travel_rate() * time.delta_secs_f64();
-        (*field, travel.0)
+        MovingAir::new(field, travel.0)
     }));
 }
 
