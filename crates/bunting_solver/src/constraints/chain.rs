@@ -67,17 +67,26 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Solves the chains of one colour, which share no particle.
     fn solve_colour(&mut self, colour: usize, pass: Pass) {
+        P::run(self.chains_of_colour(colour, pass));
+    }
+
+    /// A pass over the chains of one colour.
+    pub(super) fn chains_of_colour(
+        &mut self,
+        colour: usize,
+        pass: Pass,
+    ) -> SolveChains<'_, P, <Y::Positions as Positions<P>>::Particles<'_>> {
         let chains = self.layout.chains(&self.fabric);
         let order = self.layout.order_of_chains(colour);
         let (masses, linked) = (&self.masses.inverse, self.layout.linked());
-        P::run(SolveChains {
+        SolveChains {
             pairs: &chains.pairs[chains.colours[colour].pairs.clone()],
             pass,
             compliance: &self.layout.factors().link_compliance,
             rows: &mut self.rows,
             target: &mut self.link_target,
             particles: self.positions.particles(order, masses, linked),
-        });
+        }
     }
 }
 
@@ -93,13 +102,13 @@ pub(super) enum Pass {
 }
 
 /// The chains of one colour, in pairs.
-struct SolveChains<'a, P: Pack, S: Particles<P>> {
-    pairs: &'a [ChainPair<S::Constant>],
+pub(super) struct SolveChains<'a, P: Pack, S: Particles<P>> {
+    pub(super) pairs: &'a [ChainPair<S::Constant>],
     pass: Pass,
     compliance: &'a [P],
     rows: &'a mut [TridiagonalRow<P>],
-    target: &'a mut [P],
-    particles: S,
+    pub(super) target: &'a mut [P],
+    pub(super) particles: S,
 }
 
 impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
@@ -124,23 +133,39 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         for pair in self.pairs {
             match pair.count {
                 CHAINS_PER_PAIR => {
-                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE>(token, pair);
+                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE, false>(
+                        token,
+                        pair,
+                        [L::splat(token, 1.0); _],
+                    );
                     self.substitute::<L, CHAINS_PER_PAIR, WARM, STORE>(token, pair);
                 }
                 _ => {
-                    self.eliminate::<L, 1, WARM, STORE>(token, pair);
+                    self.eliminate::<L, 1, WARM, STORE, false>(
+                        token,
+                        pair,
+                        [L::splat(token, 1.0); _],
+                    );
                     self.substitute::<L, 1, WARM, STORE>(token, pair);
                 }
             }
         }
     }
 
-    /// Eliminates the unknowns of `N` chains side by side, from their first links to their last.
+    /// Eliminates the unknowns of `N` chains side by side, from their first links to their last. `MASKED` leaves
+    /// chains without tension where `mask` is zero, and not one.
     #[inline(always)]
-    fn eliminate<L: Lane<Pack = P>, const N: usize, const WARM: bool, const STORE: bool>(
+    pub(super) fn eliminate<
+        L: Lane<Pack = P>,
+        const N: usize,
+        const WARM: bool,
+        const STORE: bool,
+        const MASKED: bool,
+    >(
         &mut self,
         token: L::Token,
         pair: &ChainPair<S::Constant>,
+        mask: [L; N],
     ) {
         let particles = &self.particles;
         let (rows, _) = self.rows.as_chunks_mut::<N>();
@@ -173,8 +198,9 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let coupling = end_mass[at] * last[at].dot(along);
                 let multiplier = coupling * inverse[at];
                 let diagonal = least.plus_product(end_mass[at] + next_mass + compliance, squared);
-                inverse[at] = particles.one_if_linked::<L>(token, class)
-                    / diagonal.minus_product(coupling, multiplier);
+                let one = particles.one_if_linked::<L>(token, class);
+                let one = if MASKED { one * mask[at] } else { one };
+                inverse[at] = one / diagonal.minus_product(coupling, multiplier);
                 unknown[at] = right.plus_product(coupling, unknown[at]) * inverse[at];
                 along.store(&mut rows[at].along);
                 multiplier.store(&mut rows[at].multiplier);
@@ -190,7 +216,12 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
     /// Substitutes from the last links to the first, and moves each particle by the tensions of its two links
     /// at once.
     #[inline(always)]
-    fn substitute<L: Lane<Pack = P>, const N: usize, const WARM: bool, const STORE: bool>(
+    pub(super) fn substitute<
+        L: Lane<Pack = P>,
+        const N: usize,
+        const WARM: bool,
+        const STORE: bool,
+    >(
         &mut self,
         token: L::Token,
         pair: &ChainPair<S::Constant>,
@@ -235,7 +266,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
 
 /// The first columns of a row of particles.
 #[inline(always)]
-fn first_of<const N: usize>(row: &[u32; CHAINS_PER_PAIR]) -> &[u32; N] {
+pub(super) fn first_of<const N: usize>(row: &[u32; CHAINS_PER_PAIR]) -> &[u32; N] {
     row.first_chunk().expect("no more chains than are solved side by side")
 }
 

@@ -12,6 +12,7 @@ mod bending;
 mod chain;
 pub(crate) mod factors;
 mod gauss_seidel;
+mod overlong;
 mod shear;
 mod solve;
 mod stiff_bending;

@@ -68,7 +68,8 @@ impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Solves stretch and contacts after bending, since stretch is the stiffer: chains and tethers. On a grid a sweep
-    /// over warp and weft for every second pass corrects what the chains' frozen directions overshoot.
+    /// over warp and weft for every second pass corrects what the chains' frozen directions overshoot, and chains that
+    /// still have overlong links are solved again.
     fn solve_stretch_and_contacts(&mut self) {
         let passes = self.clock.settings.passes;
         if self.fabric.has_shear_cells() {
@@ -77,6 +78,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             for _ in 0..passes / 2 {
                 self.sweep_links();
             }
+            self.solve_overlong_chains();
         } else {
             self.solve_chains_both_ways(passes);
             self.solve_tethers();
