@@ -167,16 +167,16 @@ pub mod prelude {
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 
-/// All plugins that cloth needs, one a concern.
+/// All plugins that cloth needs, one for each concern.
 ///
-/// Bevy's `TimePlugin` and `TransformPlugin` must be added, too, as they are by `DefaultPlugins`.
+/// Bevy's `TimePlugin` and `TransformPlugin` must be added, too; `DefaultPlugins` contains both.
 #[derive(Debug)]
 pub struct ClothPlugins {
     host: Interned<dyn ScheduleLabel>,
 }
 
 impl ClothPlugins {
-    /// Cloth that ticks in the given schedule.
+    /// Plugins whose [`ClothTick`] runs in the given schedule.
     #[must_use]
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { host: schedule.intern() }
@@ -184,7 +184,7 @@ impl ClothPlugins {
 }
 
 impl Default for ClothPlugins {
-    /// Cloth that ticks in `FixedPostUpdate`.
+    /// Plugins whose [`ClothTick`] runs in `FixedPostUpdate`.
     fn default() -> Self {
         Self::new(FixedPostUpdate)
     }
