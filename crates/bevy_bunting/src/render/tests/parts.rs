@@ -1,4 +1,4 @@
-//! Meshes of cloths of which a part is rigid.
+//! Tests of the meshes of cloths with a rigid part.
 
 use super::*;
 

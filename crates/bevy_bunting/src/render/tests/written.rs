@@ -1,4 +1,4 @@
-//! What is written into meshes, and when.
+//! Tests of the contents of written meshes, and of the frames in which meshes are written.
 
 use bevy_gizmos::config::GizmoConfigStore;
 use bevy_gizmos::{GizmoHandles, GizmoPlugin};
