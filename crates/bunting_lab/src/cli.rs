@@ -51,7 +51,7 @@ enum Command {
 }
 
 impl Arguments {
-    /// Runs the command and presents what it measured.
+    /// Runs the command and presents its results.
     ///
     /// # Errors
     ///

@@ -9,7 +9,7 @@ use crate::output::table::Table;
 
 /// Name of the document, and of the folder of its plots, without their endings.
 const NAME: &str = "measurements";
-/// Rows from which a table is folded away.
+/// Number of rows from which a table is folded.
 const LONG: usize = 20;
 
 /// Writes `measurements.md` into a folder, and its plots into `measurements/`.
@@ -96,7 +96,7 @@ fn lines(table: &Table) -> String {
     lines.join("\n")
 }
 
-/// Text that neither ends a cell nor begins a tag.
+/// Text with escaped ends of cells and beginnings of tags.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('|', "\\|")
 }
