@@ -1,8 +1,7 @@
-//! A force and a constraint of your own: a streamer in a swinging glass tube, through which a vortex
-//! blows.
+//! A user's own force and constraint: a streamer in a swinging glass tube with a vortex of air.
 //!
-//! `cargo run --release --example custom_constraint -- --headless` simulates it as fast as possible
-//! and prints how far the streamer gets from the axis of the tube.
+//! `cargo run --release --example custom_constraint -- --headless` simulates the streamer as fast as possible
+//! and prints its greatest distance from the axis of the tube.
 //!
 //! `cargo run --release --example custom_constraint --features render` opens a window: drag to look
 //! around, scroll to come closer.
@@ -49,7 +48,7 @@ const PIVOT: f32 = 2.6;
 #[derive(Component, Clone, Copy, Debug)]
 struct Tube;
 
-/// The streamer, whose frame is that of the tube.
+/// The streamer, whose frame is the tube's.
 #[derive(Component, Clone, Copy, Debug)]
 struct Streamer;
 

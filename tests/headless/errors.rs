@@ -1,4 +1,4 @@
-//! An error names the entity of bad input; other cloths are unaffected.
+//! Tests that an error names the entity with bad input, and that other cloths are unaffected.
 
 use bevy_app::prelude::*;
 use bevy_bunting::prelude::*;
@@ -10,7 +10,7 @@ fn errors(app: &App) -> Vec<ClothError> {
     app.world().resource::<Seen<ClothFailed>>().0.iter().map(|failed| failed.error).collect()
 }
 
-/// The bits of a flag after a number of updates, beside the entities that `spawn` adds.
+/// The bits of a flag after a number of updates, in a world with the entities that `spawn` adds.
 fn beside(updates: usize, spawn: impl Fn(&mut App)) -> (App, Bits) {
     let mut app = app();
     let flag = spawn_flag(&mut app, Vec3::ZERO);
@@ -136,7 +136,7 @@ fn a_diverged_cloth_is_put_back_to_rest() {
     let mut app = app();
     let cloth = spawn_flag(&mut app, Vec3::ZERO);
     run(&mut app, 5);
-    // The plugin does not check gravity: this one overflows.
+    // The plugin does not limit gravity; this value overflows.
     app.world_mut().resource_mut::<ClothSettings>().gravity = Vec3::splat(f32::MAX);
     run(&mut app, 1);
     assert!(matches!(errors(&app)[..], [ClothError::Diverged { entity }] if entity == cloth));

@@ -1,4 +1,4 @@
-//! Cloth at rest falls asleep, and wakes when something that acts on it changes.
+//! Tests that cloth at rest falls asleep, and wakes when something that acts on it changes.
 
 use bevy_app::prelude::*;
 use bevy_bunting::ClothBatches;

@@ -12,7 +12,7 @@ use crate::output::Outcome;
 #[derive(Debug, Parser)]
 #[command(version)]
 pub struct Arguments {
-    /// What to measure.
+    /// Measurement to run.
     #[command(subcommand)]
     command: Command,
     /// Print one JSON object on standard output and nothing else.

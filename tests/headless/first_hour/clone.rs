@@ -1,4 +1,4 @@
-//! Item 5: a clone of a cloth is a cloth of its own, in the same state.
+//! Item 5: a clone of a cloth is independent and starts in the same state.
 
 use bevy_bunting::prelude::*;
 use bevy_math::Vec3;

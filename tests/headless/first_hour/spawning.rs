@@ -10,10 +10,10 @@ use bevy_tasks::{AsyncComputeTaskPool, TaskPoolBuilder, block_on};
 use bevy_transform::prelude::*;
 use bunting_tests::{FLAG, Seen, app, greatest_speed, run, state};
 
-/// Flags, no two of a size.
+/// Number of flags, all of different sizes.
 const FLAGS: usize = 60;
 
-/// Flags in rows, seen from one end.
+/// Spawns flags in rows, seen from one end.
 fn furnish(app: &mut bevy_app::App) -> Vec<Entity> {
     let world = app.world_mut();
     world.spawn((LodViewer::default(), Transform::from_xyz(0.0, 0.0, 6.0)));
@@ -100,15 +100,15 @@ fn a_cloth_may_have_hung_for_a_while() {
     assert!(first[16].y < -0.3, "as it was cut: {}", first[16]);
     assert!(speed < 5.0, "{speed} m/s");
     run(&mut app, 128 - 20);
-    // What was simulated in advance is what the other went through.
+    // The simulation in advance equals that of the other cloth.
     let apart = state(&app, other).positions()[16].distance(first[16]);
     assert!(apart < 0.2, "{apart} m");
     assert!(app.world().get::<ClothPreroll>(rolled).is_none());
     assert!(app.world().resource::<Seen<ClothFailed>>().0.is_empty());
 }
 
-/// The update in which a cloth that has hung for some time is first seen. Threads in the background are busy for a
-/// while, if asked for.
+/// Number of the update in which a cloth with a preroll is first shown, optionally while background threads
+/// are busy.
 fn tick_of_preroll(seconds: f32, busy: bool) -> usize {
     let mut app = app();
     let pool = AsyncComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());

@@ -3,15 +3,15 @@
 //! The choice is a pure function of errors, importances and costs: it reads no world and no clock.
 //!
 //! 1. Every cloth starts at its coarsest level. A step to the next finer level, up to the wanted one, reduces
-//! error and adds cost. Steps are sorted by reduced error over added cost, in buckets, which is linear in
-//! their number.
+//!    error and adds cost. Steps are sorted by reduced error over added cost, in buckets, which is linear in
+//!    their number.
 //! 2. In that order each step is taken if the sum of costs stays within the budget. Costs are those of
 //!    whole batches: the ninth cloth of a batch of sixteen lanes is free, so a free lane is used by the
 //!    next cloth in the order.
 //! 3. Cloths change towards these levels, at most a fixed number in a tick, and each only some time after its
-//! last change; changes to coarser levels come first, and finer ones only while the budget has room. A change
-//! costs time, too: as long as any is due, the levels leave room for the dearest. Cloths that have not been
-//! simulated yet start at these levels.
+//!    last change; changes to coarser levels come first, and finer ones only while the budget has room. A change
+//!    costs time, too: as long as any is due, the levels leave room for the dearest. Cloths that have not been
+//!    simulated yet start at these levels.
 
 use crate::lod::candidate::{Candidate, LevelTable, Limits};
 use crate::lod::level_counts::LevelCounts;

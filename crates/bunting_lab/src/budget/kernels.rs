@@ -4,10 +4,10 @@
 //! of one phase that differ only in how often the kernel runs:
 //!
 //! - A **constraint** of Gauss–Seidel: the time of `solve_constraints` with four passes minus that with two
-//! is the time of two sweeps over all hinges and links. A hinge costs more than a link; the figure is their
-//! mean.
+//!   is the time of two sweeps over all hinges and links. A hinge costs more than a link; the figure is their
+//!   mean.
 //! - A **constraint** of the yarns: the same difference is the time of two more solutions of the warp and
-//! weft yarns and one more sweep over warp and weft, that is of three visits to every such link.
+//!   weft yarns and one more sweep over warp and weft, that is of three visits to every such link.
 //! - A **triangle**: the time of `integrate` of flags in the wind minus that of flags in a vacuum.
 //!
 //! All figures are per cloth of a full batch of the widest lanes.

@@ -29,7 +29,7 @@ const FRICTION: f64 = 0.02;
 /// The model without one of its parts, or with one more.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// What was left out or added.
+    /// Part that was left out or added.
     part: &'static str,
     /// Microseconds a cloth and tick, of a flag in the wind.
     us_per_cloth_tick: f64,

@@ -24,7 +24,7 @@ pub struct Machine {
 const IDLE: f64 = 0.5;
 
 impl Machine {
-    /// This machine, now.
+    /// Describes this machine at this time.
     #[must_use]
     pub fn here() -> Self {
         let described = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();

@@ -12,7 +12,7 @@ pub struct Section {
     pub command: &'static str,
     /// Command line that repeats the measurement.
     pub command_line: String,
-    /// What it measures, in a sentence.
+    /// Purpose of the command, in a sentence.
     pub measures: &'static str,
     /// Outcome, or the reason why there is none.
     pub outcome: Result<Outcome, String>,
