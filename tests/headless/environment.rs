@@ -119,7 +119,7 @@ fn a_moving_collider_pushes() {
 }
 
 #[test]
-fn a_collider_that_moves_with_the_cloth_is_as_one_at_rest() {
+fn a_collider_that_moves_with_the_cloth_acts_like_one_at_rest() {
     let pushed = |speed: f32| {
         let mut app = app();
         app.world_mut().resource_mut::<ClothSettings>().air_density = 0.0;

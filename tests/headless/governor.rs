@@ -65,7 +65,7 @@ fn levels_follow_the_error_in_pixels() {
 }
 
 #[test]
-fn all_stay_within_the_budget() {
+fn all_cloths_together_stay_within_the_budget() {
     let (mut app, viewer) = windy();
     set_pose(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 6.0));
     let cloths: Vec<Entity> = (0..40)

@@ -77,7 +77,7 @@ fn a_material_may_change_while_running() {
 }
 
 #[test]
-fn letting_go_keeps_the_shape() {
+fn removing_the_attachment_keeps_the_shape() {
     let mut app = app();
     let cloth = spawn_flag(&mut app, Vec3::ZERO);
     run(&mut app, 60);

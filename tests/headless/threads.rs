@@ -44,7 +44,7 @@ fn threads_change_no_bit() {
 
 /// The only thread of the pool is blocked at first; other cloths are simulated meanwhile.
 #[test]
-fn a_large_cloth_is_cut_in_the_background() {
+fn a_large_cloth_is_built_in_the_background() {
     let pool = AsyncComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
     assert_eq!(pool.thread_num(), 1, "another test has created the pool");
     let (release, blocked) = mpsc::channel::<()>();

@@ -169,7 +169,7 @@ fn every_level_keeps_the_border_to_the_rigid_part_and_blends() {
 }
 
 #[test]
-fn bad_weights_are_named_and_the_others_go_on() {
+fn bad_weights_are_reported_and_other_cloths_are_simulated() {
     let alone = {
         let mut app = app();
         let flag = spawn_flag(&mut app, Vec3::ZERO);

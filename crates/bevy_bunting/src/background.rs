@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn work_behind_long_work_is_not_waited_for() {
+    fn queued_work_runs_on_the_thread_that_takes_its_result() {
         AsyncComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
         let (go, long) = mpsc::channel::<u32>();
         let long = Background::begin(move || long.recv());

@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_sine_is_one_to_six_hundredths() {
+    fn the_sine_is_exact_to_six_hundredths() {
         for step in -4000..4000 {
             let phase = step as f32 / 1000.0;
             let exact = (core::f32::consts::TAU * phase).sin();

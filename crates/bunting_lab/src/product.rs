@@ -262,7 +262,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_measured_is_what_users_meet() {
+    fn the_measured_settings_are_the_defaults() {
         assert_eq!(DEFAULT, StepSettings::default());
     }
 }

@@ -43,7 +43,7 @@ fn swing_error(method: Method, substeps: usize, passes: usize) -> f64 {
 }
 
 #[test]
-fn all_fall_freely() {
+fn all_baselines_fall_freely() {
     let scene = Scene { pins: Pins::Free, ..Scene::swing(5) };
     for method in [
         Method::SymplecticEuler,

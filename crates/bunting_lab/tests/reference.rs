@@ -265,7 +265,7 @@ fn large_swing_is_converged_and_xpbd_agrees() {
 }
 
 #[test]
-fn hanging_scene_is_referred_to_at_rest() {
+fn the_reference_of_a_hanging_scene_is_at_rest() {
     let scene = Scene { seconds: 2.0, ..Scene::hang_top(5) };
     let reference = Reference::run(&scene, 400);
     assert!(reference.residual.expect("measured at rest") < REST);

@@ -121,7 +121,7 @@ impl Specimen for Exact {
 }
 
 #[test]
-fn explicit_drag_turns_round() {
+fn explicit_drag_reverses_the_motion() {
     let explicit: &Mount = &|scene, settings| Box::new(ExplicitDrag::new(scene, settings.substeps));
     assert_caught("drag", "drag alone from 20 m/s, ticks not turned round", explicit);
 }

@@ -126,7 +126,7 @@ fn an_unknown_preset() {
 }
 
 #[test]
-fn a_material_that_cannot_be() {
+fn an_invalid_material() {
     expect_error("density: 0.2", "density: -0.2", "-0.2", "materials.sail.area_density", "-0.2");
 }
 

@@ -50,7 +50,7 @@ fn hung() -> (App, Entity) {
 }
 
 #[test]
-fn another_edge_is_taken_up_gently() {
+fn a_newly_attached_edge_moves_gently() {
     let (mut app, flag) = hung();
     edit(&mut app, flag, |held| held.vertices = ClothEdge::Top.into());
     assert_no_whip(&mut app, flag);

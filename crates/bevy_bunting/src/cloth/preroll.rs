@@ -76,7 +76,7 @@ impl Plugin for PrerollPlugin {
 
 /// A cloth that is simulated in advance.
 #[derive(Component, Debug)]
-struct Rolling {
+struct PrerollTask {
     level: usize,
     /// Tick in which the state is taken.
     due: u64,
@@ -144,7 +144,7 @@ type New<'a> =
     (Entity, &'a ClothPreroll, &'a mut ClothInstance, &'a mut ClothState, Option<&'a Attachment>);
 
 fn begin_prerolls(
-    mut cloths: Query<New, Without<Rolling>>,
+    mut cloths: Query<New, Without<PrerollTask>>,
     transforms: TransformHelper,
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
@@ -189,19 +189,19 @@ fn begin_prerolls(
         // The simulation waits until fabrics that are being built are ready.
         let due = queue.add(preroll.steps(), library.ticks_to_cut());
         let state = Some(Background::begin(move || preroll.run()));
-        commands.entity(entity).insert(Rolling { level: instance.level, due, state });
+        commands.entity(entity).insert(PrerollTask { level: instance.level, due, state });
     }
 }
 
 fn end_prerolls(
-    mut cloths: Query<(Entity, &mut Rolling, &mut ClothInstance, &mut ClothState)>,
+    mut cloths: Query<(Entity, &mut PrerollTask, &mut ClothInstance, &mut ClothState)>,
     queue: Res<PrerollQueue>,
     mut commands: Commands,
 ) {
     let due = cloths.iter_mut().filter(|(_, rolling, ..)| rolling.due <= queue.tick);
     for (entity, mut rolling, mut instance, mut state) in due {
         let Some(snapshot) = rolling.state.take().map(Background::take) else { continue };
-        commands.entity(entity).remove::<(Rolling, ClothPreroll)>();
+        commands.entity(entity).remove::<(PrerollTask, ClothPreroll)>();
         // A cloth whose fabric was rebuilt in the meantime starts at rest.
         let Some(levels) = instance.levels.clone() else { continue };
         let fits = levels.fabric(rolling.level).particle_count() == snapshot.positions.len();

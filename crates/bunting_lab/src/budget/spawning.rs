@@ -51,7 +51,7 @@ pub struct Spawning {
 pub fn measure(quick: bool) -> Spawning {
     let mut app = game::app_in_wind(steps_of_levels());
     app.update();
-    furnish(&mut app);
+    spawn_flags(&mut app);
     let ticks = TICK_RATE as usize * if quick { QUICK_SECONDS } else { SECONDS };
     let (mut times, mut ms_first, mut seconds_to_all) = (Timing::default(), 0.0, None);
     for tick in 0..ticks {
@@ -78,7 +78,7 @@ pub fn measure(quick: bool) -> Spawning {
     }
 }
 
-fn furnish(app: &mut App) {
+fn spawn_flags(app: &mut App) {
     let view = Transform::from_xyz(0.0, 3.0, 12.0);
     app.world_mut().spawn((LodViewer::default(), view));
     for flag in 0..FLAGS {

@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn what_newly_fails_passes_or_vanishes_is_a_difference() {
+    fn cases_that_newly_fail_pass_or_vanish_are_differences() {
         let verdicts = [("a", true), ("b", true), ("c", false)];
         assert!(differences("a\nb\n", &verdicts).is_empty());
         for (known, case, how) in [

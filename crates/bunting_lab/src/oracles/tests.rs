@@ -101,7 +101,7 @@ fn falls_through_air() {
 }
 
 #[test]
-fn falls_sum_what_the_integrators_do() {
+fn falls_equal_the_sums_of_the_integrators() {
     let h = 1.0 / 180.0;
     let (mut x, mut v) = (0.0, 0.0);
     for n in 1..=50 {

@@ -257,7 +257,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_front_drops_what_is_beaten() {
+    fn the_front_drops_dominated_points() {
         let points = [(4.0, 1.0), (1.0, 4.0), (3.0, 5.0), (2.0, 2.0), (2.0, 3.0)];
         assert_eq!(pareto_front(&points), [(1.0, 4.0), (2.0, 2.0), (4.0, 1.0)]);
     }

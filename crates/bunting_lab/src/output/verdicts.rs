@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_fails_is_shown_apart_and_what_is_zero_not_at_all() {
+    fn failing_cases_are_a_separate_series_and_zeros_are_left_out() {
         let case = |worst, limit| Verdict { worst, limit, pass: worst <= limit };
         let cases = [case(1e-3, 1e-2), case(1.0, 1e-2), case(0.0, 1.0), case(f64::INFINITY, 1.0)];
         let plot = plot("cases", "Cases", ["limit", "figure"], &cases).expect("two cases");

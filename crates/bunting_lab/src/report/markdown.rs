@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_document_stands_beside_the_plots_that_it_shows() {
+    fn a_document_is_written_beside_its_plots() {
         let folder = std::env::temp_dir().join(format!("bunting-lab-md-{}", std::process::id()));
         write(&folder, &[section(Ok(outcome()))], &Machine::here(), true).expect("a document");
         let text = fs::read_to_string(folder.join("measurements.md")).expect("the document");

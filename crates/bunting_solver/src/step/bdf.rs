@@ -98,7 +98,7 @@ pub(crate) struct IntegratorHistory {
 }
 
 impl IntegratorHistory {
-    /// Whether there was any substep since the restart.
+    /// Whether any substep has been recorded.
     pub fn exists(&self) -> bool {
         self.steps[0] > 0.0
     }

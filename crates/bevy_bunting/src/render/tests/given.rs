@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn a_given_mesh_is_written_in_place_tangents_and_all() {
+fn a_given_mesh_is_written_in_place_with_its_tangents() {
     let mut app = app(TICK);
     let tangents = vec![[1.0, 0.0, 0.0, -1.0]; 45];
     let given = flag_mesh(&mut app).with_inserted_attribute(Mesh::ATTRIBUTE_TANGENT, tangents);
