@@ -167,7 +167,7 @@ fn measure(world: &mut World) -> Vec<Limit> {
 /// Position of the viewer, m.
 const EYE: Vec3 = Vec3::new(0.6, 1.7, 3.4);
 
-/// The point that the viewer looks at, m.
+/// The point at which the viewer looks, m.
 const CENTRE: Vec3 = Vec3::new(0.0, 1.3, 0.0);
 
 /// Draws the tube in glass.

@@ -28,7 +28,7 @@ use clap::Parser;
 /// Position of the viewer, m.
 const EYE: Vec3 = Vec3::new(1.9, 1.6, 3.1);
 
-/// The point that the viewer looks at, m.
+/// The point at which the viewer looks, m.
 const CENTRE: Vec3 = Vec3::new(-0.05, 0.98, -0.2);
 
 /// Time from one gust to the next, s: the first gust begins when all cloths have come to rest.

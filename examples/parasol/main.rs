@@ -26,7 +26,7 @@ use clap::Parser;
 /// Position of the viewer, m.
 const EYE: Vec3 = Vec3::new(1.0, 2.45, 3.9);
 
-/// The point that the viewer looks at, m.
+/// The point at which the viewer looks, m.
 const CENTRE: Vec3 = Vec3::new(-0.15, 1.75, 0.0);
 
 /// Height of the top of the canopy, m.

@@ -69,7 +69,7 @@ fn gusts_do_not_depend_on_the_frame_rate() {
 
 #[test]
 fn cloth_lies_on_colliders() {
-    // The same fall onto a ball on the ground is simulated in frames turned about the vertical.
+    // A fall onto a ball on the ground is simulated in several frames, turned about the vertical.
     let flat = Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2);
     for turn in [0.0, 1.0, 2.0] {
         let rotation = Quat::from_rotation_y(turn) * flat;

@@ -45,9 +45,9 @@
 //! | [`ClothCollider`] | any entity | a shape that cloth does not enter |
 //! | [`LodViewer`] | a camera | a viewer in whose picture errors of levels are measured |
 //!
-//! The resource [`ClothSettings`] holds gravity, the density of air and the numbers of substeps and
-//! passes; [`ClothBudget`] the time that cloths with [`LodSet::automatic`] may take, and [`LodReport`]
-//! what it led to.
+//! The resource [`ClothSettings`] holds gravity, the density of air and the numbers of substeps and passes;
+//! [`ClothBudget`] holds the time that cloths with [`LodSet::automatic`] may take, and [`LodReport`] the
+//! results of the choice of levels within it.
 //!
 //! Cloths that have come to rest sleep, and so do cloths with [`LodSet::automatic`] that no
 //! [`LodViewer`] sees, see [`ClothState::activity`].

@@ -6,7 +6,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bunting_solver::{Drive, LaneCount, StepLimits};
 
-/// Settings for all cloths. They may be changed at any time.
+/// Settings for all cloths. The settings may be changed at any time.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct ClothSettings {

@@ -28,7 +28,7 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Closed forms against what is measured.
+    /// Closed forms compared with measurements.
     Oracles,
     /// Error over time of every method.
     Pareto(pareto::Selection),

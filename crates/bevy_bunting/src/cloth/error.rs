@@ -39,7 +39,7 @@ pub enum ClothError {
     /// automatic choice needs at least one level, the hysteresis must lie within 0 to 1, and the bias must be
     /// positive. The cloth is not simulated until its `LodSet` changes.
     #[error(
-        "the LodSet of cloth {entity} must have finite distances that grow or at least one level, a hysteresis from 0 to 1, and a positive bias"
+        "the LodSet of cloth {entity} must have finite, positive, ascending distances or, if automatic, at least one level; a hysteresis from 0 to 1; and a positive bias"
     )]
     Levels {
         /// The cloth.

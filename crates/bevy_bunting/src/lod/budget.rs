@@ -9,7 +9,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 use crate::lod::cost_table::CostTable;
 
 /// Time that all cloths together may take in a tick, and thresholds of the automatic choice of levels, see
-/// [`LodSet::automatic`](crate::LodSet::automatic). It may be changed at any time.
+/// [`LodSet::automatic`](crate::LodSet::automatic). The budget may be changed at any time.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct ClothBudget {

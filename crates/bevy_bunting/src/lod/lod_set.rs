@@ -37,11 +37,11 @@ pub struct LodSet {
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum LodChoice {
-    /// By the distance to the nearest viewer, regardless of cost. Each level switches to the next coarser one
-    /// at one of the distances (m, ascending); there is one level more than distances.
+    /// The level follows the distance to the nearest viewer, regardless of cost. Each level switches to the
+    /// next coarser one at one of the distances (m, ascending); there is one level more than distances.
     Distances(Vec<f32>),
-    /// By the error in pixels, within the [`ClothBudget`](crate::ClothBudget). Outside the picture of
-    /// every viewer the cloth sleeps.
+    /// The level follows the error in pixels, within the [`ClothBudget`](crate::ClothBudget). Outside the
+    /// picture of every viewer the cloth sleeps.
     Automatic {
         /// Number of levels, at least 1.
         levels: usize,

@@ -40,7 +40,7 @@ pub struct Attachment {
     pub vertices: AttachedVertices,
     /// Pose of the cloth's frame relative to the target; the scale is ignored.
     pub offset: Transform,
-    /// What happens when the target is despawned.
+    /// Fate of the cloth when the target is despawned.
     pub on_lost: TargetLost,
     /// Change of the target's velocity between two frames or ticks, in m/s, above which the target was
     /// teleported: the cloth then moves with it rigidly, without being accelerated. At 60 frames a second, 25

@@ -15,12 +15,12 @@ use super::{
 /// this value looks like soft cloth, and grows stiffer with passes and substeps.
 const BENDING: f32 = 0.01;
 
-/// How the cloth resists bending.
+/// Type of bending constraint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bending {
-    /// By the angle between neighbouring triangles.
+    /// The angle between neighbouring triangles is constrained.
     Dihedral,
-    /// By the distance between every second vertex of a row or column.
+    /// The distance between every second vertex of a row or column is constrained.
     OverOne,
 }
 

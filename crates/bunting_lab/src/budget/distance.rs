@@ -1,5 +1,5 @@
-//! Eight flags at a distance from the viewer, through the plugin: the second reading of Häggström's figure
-//! 6.2, time against level of detail, with the level chosen by what the viewer can see.
+//! Eight flags at a distance from the viewer, through the plugin: time over distance, with levels chosen by
+//! their visible error, in place of time over level in Häggström's figure 6.2.
 
 use std::time::Duration;
 

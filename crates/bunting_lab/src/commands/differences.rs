@@ -1,4 +1,4 @@
-//! Differences between what the gate measures and the committed lists.
+//! Differences between the gate's measurements and the committed lists.
 
 use std::collections::{BTreeMap, BTreeSet};
 

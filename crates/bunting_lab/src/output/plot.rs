@@ -34,7 +34,7 @@ const COLOURS: [RGBColor; 12] = [
     RGBColor(160, 30, 60),
 ];
 
-/// How the points of a series are drawn.
+/// Style in which the points of a series are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     /// Dots.
@@ -56,7 +56,7 @@ pub struct Series {
     /// Points, all positive where the axes are logarithmic. A series without points takes a colour, so that
     /// the others keep theirs in every plot, but is not in the legend.
     pub points: Vec<(f64, f64)>,
-    /// How the points are drawn.
+    /// Style in which the points are drawn.
     pub mark: Mark,
 }
 

@@ -96,7 +96,7 @@ pub enum FabricError {
     Material {
         /// The field's name.
         name: &'static str,
-        /// Its value.
+        /// Value of the field.
         value: f32,
     },
 }

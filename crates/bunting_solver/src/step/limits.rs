@@ -18,7 +18,7 @@ const TOO_LONG: f32 = 1e-3;
 /// so that it is the same for all cloths of a fabric, however they move.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct StepLimits {
-    /// How the constraints are solved.
+    /// Constraint solver and integrator.
     pub scheme: Scheme,
     /// Least and greatest number of substeps in a tick. Strong wind needs more substeps than weight does, and
     /// is not taken into account: at 25 m/s five for 33 × 33 particles a square metre.
