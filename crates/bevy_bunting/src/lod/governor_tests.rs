@@ -120,7 +120,7 @@ fn levels_leave_room_for_changes() {
     let mut cloths: Vec<Candidate> = (0..40).map(|index| cloth(3, 900.0 - index as f32)).collect();
     let mut changes = 0;
     for tick in 0..400 {
-        // The most important cloth changes from tick to tick.
+        // Every 20 ticks another cloth comes nearest.
         cloths[tick / 20].pixels_per_metre = 2000.0;
         let choice = governor.choose(core::slice::from_ref(&table), &cloths, &limits).clone();
         assert!(choice.cost <= limits.budget, "{} in tick {tick}", choice.cost);

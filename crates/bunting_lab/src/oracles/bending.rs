@@ -20,9 +20,9 @@ const SCAN: f64 = 0.25;
 /// the links, in units of a whole row's mass.
 ///
 /// Small tilts θ of the links of a row store ¼ B/l (θₖ − θₖ₋₁)² on each side, twice that at the clamp, whose
-/// hinge covers half a link, and B/l (θ − θ')² by twist where the two sides differ. Each tilt lowers the
-/// masses above by ½ l θ². The critical load is therefore the least eigenvalue of the stored energy relative
-/// to the lowering.
+/// hinge covers half a link, and by twist B/l (θ − θ')² where the tilts θ and θ' of the two sides differ.
+/// Each tilt lowers the masses above by ½ l θ². The critical load is therefore the least eigenvalue of the
+/// stored energy relative to the lowering.
 ///
 /// # Panics
 ///

@@ -41,7 +41,7 @@ pub fn chain_sag(links: usize, span: f64, length: f64) -> f64 {
 #[must_use]
 pub fn sag_of_chain(masses: &[f64], span: f64, length: f64) -> f64 {
     let links = masses.len() + 1;
-    // Each end carries half of the weight; a link carries what the masses above it leave of this half.
+    // Each end carries half of the weight; a link carries this half minus the weight of the masses above it.
     let half = 0.5 * masses.iter().sum::<f64>();
     let mut loads = vec![-half];
     for mass in masses {
