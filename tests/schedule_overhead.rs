@@ -1,5 +1,5 @@
-//! Cost of the plugin's schedule on top of plain calls of the solver: eight flags of 33 × 33
-//! particles, stepped by either in turns.
+//! Cost of the plugin's schedule over plain calls of the solver: eight flags of 33 × 33 particles, stepped
+//! alternately by both.
 //!
 //! `cargo run --release --example schedule_overhead`
 
@@ -20,10 +20,10 @@ use bunting_tests::{TICK, app};
 const FLAGS: usize = 8;
 const GRID: Grid = Grid::new(33, 33, 1.0, 1.0);
 
-/// m/s.
+/// Wind velocity, m/s.
 const WIND: Vec3 = Vec3::new(6.0, 0.0, 2.0);
 
-/// Ticks before the first that is measured: the cloths have taken their lanes then.
+/// Number of ticks before the measurement: by then the cloths have their lanes.
 const WARM_UP: usize = 10;
 
 const TICKS: usize = 1000;
@@ -98,13 +98,13 @@ fn app_with_flags(settings: StepSettings) -> App {
     app
 }
 
-/// Takes the schedule of a tick out of an app, to be run without the rest of a frame.
+/// Removes the tick's schedule from an app, to run it without the rest of a frame.
 fn take_schedule(app: &mut App) -> Schedule {
     let mut schedules = app.world_mut().resource_mut::<Schedules>();
     schedules.remove(ClothTick).expect("the plugin adds it")
 }
 
-/// µs.
+/// Median of durations, µs.
 fn median(mut times: Vec<Duration>) -> f64 {
     times.sort();
     times[times.len() / 2].as_secs_f64() * 1e6

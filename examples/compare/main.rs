@@ -1,8 +1,8 @@
 //! Compares two pictures of the same view.
 //!
-//! `cargo run --release --example compare --features render -- A.png B.png` prints their mean
-//! difference, and that of the worst of many tiles: a small defect hardly changes the mean of a
-//! picture. It fails if either is greater than between two rasterisers.
+//! `cargo run --release --example compare --features render -- A.png B.png` prints the mean difference of the
+//! two pictures, and the mean difference in the worst tile, since a small defect hardly changes the mean of a
+//! picture. It fails if either value exceeds the difference between two rasterisers.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -25,9 +25,9 @@ const BAD_PICTURE: u8 = 2;
 /// Compares two pictures.
 #[derive(Debug, Parser)]
 struct Arguments {
-    /// One picture.
+    /// The first picture.
     one: PathBuf,
-    /// The other, of the same size.
+    /// The second picture, of the same size.
     other: PathBuf,
 }
 

@@ -12,16 +12,16 @@ const HEIGHT: f32 = 5.0;
 /// Speed, m/s.
 const SPEED: f32 = 10.0;
 
-/// Angle between the direction of view and that of flight, inwards, rad.
+/// Angle between the directions of view and of flight, inwards, rad.
 const INWARDS: f32 = 0.4;
 
-/// Slope of the direction of view, downwards.
+/// Downward slope of the direction of view.
 const DOWN: f32 = 0.12;
 
 /// Time of one round, s.
 pub const ROUND: f64 = (std::f32::consts::TAU * RADIUS / SPEED) as f64;
 
-/// The pose of the viewer at a time in s.
+/// The pose of the viewer at a time (s).
 pub fn pose(time: f32) -> Transform {
     let angle = SPEED / RADIUS * time;
     let position = Vec3::new(RADIUS * angle.cos(), HEIGHT, RADIUS * angle.sin());

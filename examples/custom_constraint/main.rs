@@ -1,8 +1,7 @@
-//! A force and a constraint of your own: a streamer in a swinging glass tube, through which a vortex
-//! blows.
+//! A user's own force and constraint: a streamer in a swinging glass tube with a vortex of air.
 //!
-//! `cargo run --release --example custom_constraint -- --headless` simulates it as fast as possible
-//! and prints how far the streamer gets from the axis of the tube.
+//! `cargo run --release --example custom_constraint -- --headless` simulates the streamer as fast as possible
+//! and prints its greatest distance from the axis of the tube.
 //!
 //! `cargo run --release --example custom_constraint --features render` opens a window: drag to look
 //! around, scroll to come closer.
@@ -49,7 +48,7 @@ const PIVOT: f32 = 2.6;
 #[derive(Component, Clone, Copy, Debug)]
 struct Tube;
 
-/// The streamer, whose frame is that of the tube.
+/// The streamer, whose frame is the tube's.
 #[derive(Component, Clone, Copy, Debug)]
 struct Streamer;
 
@@ -168,7 +167,7 @@ fn measure(world: &mut World) -> Vec<Limit> {
 /// Position of the viewer, m.
 const EYE: Vec3 = Vec3::new(0.6, 1.7, 3.4);
 
-/// The point that the viewer looks at, m.
+/// The point at which the viewer looks, m.
 const CENTRE: Vec3 = Vec3::new(0.0, 1.3, 0.0);
 
 /// Draws the tube in glass.

@@ -6,10 +6,10 @@ use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bunting_scenes::Design;
 
-/// Pleats, each from a ring to the next.
+/// Number of pleats, each from one ring to the next.
 const PLEATS: u32 = 12;
 
-/// Vertices across a pleat.
+/// Number of vertices across a pleat.
 const ACROSS: u32 = 6;
 
 /// Rows of vertices.
@@ -45,7 +45,7 @@ pub fn spawn(commands: &mut Commands) {
     ));
 }
 
-/// The vertices of the top that hang on rings: those at the front of the pleats.
+/// The top vertices that hang on rings: those at the front of the pleats.
 fn rings() -> impl Iterator<Item = u32> {
     (0..=PLEATS).map(|pleat| pleat * ACROSS)
 }

@@ -8,7 +8,7 @@ use crate::{curtain, table};
 /// Radius of the rail, m.
 const RAIL: f32 = 0.014;
 
-/// Radius of a ring, m: it lies around the rail, and the cloth hangs at its lowest point.
+/// Radius of a ring, m. The ring lies around the rail, and the cloth hangs at its lowest point.
 const RING: f32 = 0.032;
 
 /// Radius of the wire of a ring, m.
@@ -17,7 +17,7 @@ const WIRE: f32 = 0.004;
 /// Half the length of the rail, m.
 const HALF_RAIL: f32 = 0.98;
 
-/// Draws furniture and prints cloth.
+/// Draws the furniture and prints the cloths.
 pub fn plugin(app: &mut App) {
     app.add_plugins(print::plugin(stage::cloth()))
         .add_systems(PostStartup, (draw_rail, draw_table));
@@ -67,7 +67,7 @@ fn draw_table(
         perceptual_roughness: 0.6,
         ..default()
     });
-    // The drawn box has sharp edges: it is smaller, to lie within the round one of the collider.
+    // The drawn box has sharp edges, and is smaller so that it lies within the collider's rounded box.
     let top = (table::TOP - 0.5 * table::ROUNDING, table::CENTRE);
     for (half, centre) in core::iter::once(top).chain(table::legs()) {
         commands.spawn((

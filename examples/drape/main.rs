@@ -1,7 +1,7 @@
 //! A curtain on a rail and a sheet on a table.
 //!
-//! `cargo run --release --example drape -- --headless` simulates them as fast as possible and prints
-//! what it cost.
+//! `cargo run --release --example drape -- --headless` simulates both as fast as possible and prints the
+//! costs.
 //!
 //! `cargo run --release --example drape --features render` opens a window: drag to look around,
 //! scroll to come closer. The sheet falls into folds at the corners of the table and is kept there by
@@ -28,10 +28,10 @@ use clap::Parser;
 /// Position of the viewer, m.
 const EYE: Vec3 = Vec3::new(1.9, 1.6, 3.1);
 
-/// The point that the viewer looks at, m.
+/// The point at which the viewer looks, m.
 const CENTRE: Vec3 = Vec3::new(-0.05, 0.98, -0.2);
 
-/// Time from one gust to the next, s: the first begins when all cloth has come to rest.
+/// Time from one gust to the next, s: the first gust begins when all cloths have come to rest.
 const PERIOD: f32 = 5.0;
 
 /// Duration of a gust, s.
@@ -40,13 +40,13 @@ const GUST: f32 = 1.6;
 /// Greatest speed of a gust, m/s.
 const GUST_SPEED: f32 = 3.2;
 
-/// Limit of the mean strain of each cloth: more would be seen.
+/// Limit of the mean strain of each cloth: larger strain would be visible.
 const STRAIN_LIMIT: f32 = 0.01;
 
 /// Limit of a particle's depth in the table, m: rounding, and the distance that contacts permit.
 const DEPTH_LIMIT: f32 = 1e-3;
 
-/// A wind in gusts, as through an open door.
+/// A gusty wind, as through an open door.
 #[derive(Component, Clone, Copy, Debug)]
 struct Draught;
 
@@ -102,7 +102,7 @@ fn blow(mut draughts: Query<&mut WindField, With<Draught>>, time: Res<Time>) {
     let rise = (PI * since.max(0.0) / GUST).sin();
     for mut wind in &mut draughts {
         let velocity = GUST_SPEED * rise * rise * Vec3::new(0.15, 0.0, 1.0);
-        // An unchanged wind lets cloth sleep.
+        // Writing an unchanged wind would keep the cloths awake.
         if wind.velocity != velocity {
             wind.velocity = velocity;
         }

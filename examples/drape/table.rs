@@ -13,11 +13,11 @@ pub const TOP: Vec3 = Vec3::new(0.5, 0.03, 0.38);
 /// Position of the middle of the top, m.
 pub const CENTRE: Vec3 = Vec3::new(0.95, 0.74, 0.25);
 
-/// Radius of its edges, m.
+/// Radius of the table's edges, m.
 pub const ROUNDING: f32 = 0.028;
 
-/// Additional distance between particles and the table, m: between particles the sheet is straight,
-/// and would otherwise cut the edges.
+/// Additional distance between particles and the table, m: the sheet is straight between particles and would
+/// cut the edges without it.
 const MARGIN: f32 = 0.008;
 
 /// Half the thickness of a leg, m.

@@ -1,8 +1,8 @@
 //! Eight flags, two of them on driving vehicles, in gusty wind.
 //!
-//! `cargo run --release --example flags -- --headless` simulates 20 seconds as fast as possible and
-//! prints the cost of each phase. Compare the total with its budget of one millisecond a tick, and
-//! see how the levels of detail follow the viewer and how little the cloth stretches.
+//! `cargo run --release --example flags -- --headless` simulates 20 seconds as fast as possible and prints
+//! the cost of each phase. Compare the total with the budget of one millisecond a tick, and see how the
+//! levels of detail follow the viewer and how little the cloth stretches.
 //!
 //! `cargo run --release --example flags --features render` opens a window: drag to look around,
 //! scroll to come closer. No two flags fly alike, and the vehicles' flags stay on their poles. The

@@ -28,7 +28,7 @@ pub struct FlagsRecord {
     pub warp: Strain,
     /// Strain along the weft in all ticks.
     pub weft: Strain,
-    /// Strain along both in the ticks of the current second.
+    /// Strain along warp and weft in the ticks of the current second.
     second: Strain,
     ticks: usize,
     ticks_per_second: usize,
@@ -51,7 +51,7 @@ impl FlagsRecord {
         }
     }
 
-    /// Ends a second, and summarises it in a line.
+    /// Ends a second. Returns a line that summarises it.
     fn end_second(&mut self, world: &World) -> String {
         let mut counts = world.resource::<ClothCounts>().0.clone();
         counts.resize(self.particles.len(), 0);

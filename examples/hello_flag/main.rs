@@ -9,7 +9,7 @@ use bevy_bunting::prelude::*;
 struct Truck;
 
 fn main() {
-    // This repository's assets; those of an app of its own are in `assets`, where Bevy looks.
+    // Folder of this repository's assets; an app usually has its assets in `assets`, Bevy's default.
     let assets = AssetPlugin { file_path: "../assets".to_owned(), ..default() };
     App::new()
         .add_plugins((DefaultPlugins.set(assets), ClothPlugins::default()))

@@ -5,7 +5,7 @@ use std::f32::consts::{PI, TAU};
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 
-/// Ribs, each between two panels.
+/// Number of ribs, each between two panels.
 pub const RIBS: u32 = 8;
 
 /// Length of a rib seen from above, m.
@@ -17,10 +17,10 @@ pub const FALL: f32 = 0.62;
 /// Length of the valance in the middle of a panel, m.
 pub const VALANCE: f32 = 0.24;
 
-/// Length of the valance at the ribs, as a fraction of that: the hem is scalloped.
+/// Length of the valance at the ribs, as a fraction of [`VALANCE`]: the hem is scalloped.
 const SCALLOP: f32 = 0.7;
 
-/// Bulge of a panel at the rim, as a fraction of its width: cloth is never quite taut.
+/// Bulge of a panel at the rim, as a fraction of the panel's width: cloth is never perfectly taut.
 const BULGE: f32 = 0.035;
 
 /// Vertices from one rib to the next.
@@ -32,11 +32,11 @@ const RINGS: u32 = 14;
 /// Rows of vertices of the valance below the rim.
 const ROWS: u32 = 5;
 
-/// Fractions of the radius up to which vertices are rigid, and from which they are simulated; in
-/// between they blend.
+/// Fractions of the radius up to which vertices are rigid, and from which on they are simulated; in between
+/// they blend.
 const INNER: (f32, f32) = (0.45, 0.75);
 
-/// A canopy in the frame of its top. The first column and the last coincide: a seam.
+/// A canopy in the frame of its top. The first and the last column coincide: a seam.
 pub fn mesh() -> ClothMesh {
     let columns = RIBS * PANEL + 1;
     let nodes = || (0..=RINGS + ROWS).flat_map(|ring| (0..columns).map(move |at| (ring, at)));

@@ -18,10 +18,10 @@ const BELOW: f32 = 0.014;
 /// Distance below the top at which the struts meet the pole, m.
 const SLIDER: f32 = 0.85;
 
-/// Fraction of a rib, from the top, at which its strut meets it.
+/// Fraction of a rib's length, from the top, at which the strut meets the rib.
 const STRUT: f32 = 0.55;
 
-/// Draws frames and prints cloth.
+/// Draws frames and prints the cloths.
 pub fn plugin(app: &mut App) {
     app.add_plugins(print::plugin(stage::cloth())).add_systems(PostStartup, draw_frames);
 }
@@ -42,7 +42,7 @@ fn draw_frames(
         perceptual_roughness: 0.9,
         ..default()
     });
-    // Cylinders of unit length, to be scaled.
+    // Cylinders of unit length, which are scaled.
     let [pole, rib] = [POLE, RIB].map(|radius| meshes.add(Cylinder::new(radius, 1.0)));
     let knob = meshes.add(Sphere::new(1.8 * POLE));
     let foot = meshes.add(Cylinder::new(0.26, 0.09));

@@ -1,12 +1,12 @@
-//! Parasols in the wind, of which only what moves is simulated.
+//! Parasols in the wind, of which only the moving parts are simulated.
 //!
-//! `cargo run --release --example parasol -- --headless` simulates them as fast as possible and
-//! prints what it cost.
+//! `cargo run --release --example parasol -- --headless` simulates the parasols as fast as possible and
+//! prints the costs.
 //!
-//! `cargo run --release --example parasol --features render` opens a window: drag to look around,
-//! scroll to come closer. The valance flutters and the panels between the ribs billow; the middle of
-//! the canopy is rigid: its weights are 0, and it costs nothing. There is no visible seam between the
-//! two. The keys are those of the example `flags`.
+//! `cargo run --release --example parasol --features render` opens a window: drag to look around, scroll to
+//! come closer. The valance flutters and the panels between the ribs billow. The middle of the canopy has
+//! weight 0: it is rigid and costs nothing. No seam is visible between the two parts. The keys are those of
+//! the example `flags`.
 
 mod canopy;
 #[cfg(feature = "render")]
@@ -26,7 +26,7 @@ use clap::Parser;
 /// Position of the viewer, m.
 const EYE: Vec3 = Vec3::new(1.0, 2.45, 3.9);
 
-/// The point that the viewer looks at, m.
+/// The point at which the viewer looks, m.
 const CENTRE: Vec3 = Vec3::new(-0.15, 1.75, 0.0);
 
 /// Height of the top of the canopy, m.
@@ -144,7 +144,7 @@ fn measure(world: &mut World) -> Vec<Limit> {
     }
     vec![
         Limit { name: "distance of rigid vertices from rest, m", value: rigid, limit: 0.0 },
-        // A valance that is turned inside out is twice its length from rest.
+        // A valance that is turned inside out is at twice its length from rest.
         Limit {
             name: "distance of simulated vertices from rest, m",
             value: simulated,

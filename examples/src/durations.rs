@@ -1,4 +1,4 @@
-//! How long each of many ticks took.
+//! Durations of many ticks.
 
 use std::time::Duration;
 
@@ -20,7 +20,7 @@ impl Durations {
         Self { milliseconds: self.milliseconds[start..].to_vec() }
     }
 
-    /// The duration that a fraction of all ticks do not exceed, ms.
+    /// The duration that a fraction of all ticks does not exceed, ms.
     pub fn quantile(&self, fraction: f64) -> f64 {
         let mut sorted = self.milliseconds.clone();
         sorted.sort_by(f64::total_cmp);
@@ -28,7 +28,7 @@ impl Durations {
         sorted.get(rank).or(sorted.last()).copied().unwrap_or(f64::NAN)
     }
 
-    /// Median and 95th percentile in words.
+    /// Median and 95th percentile as text.
     pub fn summary(&self) -> String {
         format!("median {:.3} ms, 95 % {:.3} ms", self.quantile(0.5), self.quantile(0.95))
     }

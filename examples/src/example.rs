@@ -1,4 +1,4 @@
-//! What an example provides, and the part of the command line that all examples share.
+//! The interface of an example, and the part of the command line that all examples share.
 
 use std::process::ExitCode;
 
@@ -14,7 +14,7 @@ use crate::render::{
     window,
 };
 
-/// A scene of cloth: what is simulated, what is measured and, with the feature `render`, how it looks.
+/// A scene of cloth: its entities, its measurements and, with the feature `render`, its look.
 pub trait Example {
     /// Title of the window, and the start of the names of pictures.
     const NAME: &'static str;
@@ -22,9 +22,9 @@ pub trait Example {
     /// Simulated time of a headless run unless the command line sets it, s.
     const SECONDS: f64;
 
-    /// Spawns cloths, winds and one `LodViewer`, and adds the systems that move them to `schedule`:
-    /// `FixedUpdate` in a headless run, which is then the same to the bit each time; `Update` in a
-    /// window, where motion is then smooth at any frame rate.
+    /// Spawns cloths, winds and one `LodViewer`, and adds the systems that move them to `schedule`. In a
+    /// headless run this is `FixedUpdate`, which makes the bits reproducible; in a window it is `Update`,
+    /// which makes motion smooth at any frame rate.
     fn build(&self, app: &mut App, schedule: impl ScheduleLabel);
 
     /// An empty record of a headless run with this number of ticks per second.
@@ -34,11 +34,11 @@ pub trait Example {
     #[cfg(feature = "render")]
     fn stage(&self) -> Stage;
 
-    /// Adds the plugins that give meshes and materials to what [`build`](Self::build) spawned.
+    /// Adds the plugins that give meshes and materials to the entities of [`build`](Self::build).
     #[cfg(feature = "render")]
     fn draw(&self, app: &mut App);
 
-    /// Adds what only a window has: a camera that the mouse moves, keys.
+    /// Adds the controls of a window: a camera that the mouse moves, and keys.
     #[cfg(feature = "render")]
     fn control(&self, app: &mut App);
 }
@@ -55,7 +55,7 @@ pub trait Record {
 /// The part of the command line that all examples share.
 #[derive(Clone, Debug, Args)]
 pub struct Options {
-    /// Simulate as fast as possible, without a window, and print what was measured.
+    /// Simulate as fast as possible, without a window, and print measurements.
     #[arg(long)]
     headless: bool,
     /// Simulated time in seconds.
@@ -87,7 +87,7 @@ impl Options {
         }
     }
 
-    /// Runs an example headless: this build has no window.
+    /// Runs an example headless: this build cannot open a window.
     #[cfg(not(feature = "render"))]
     pub fn run(&self, example: &impl Example) -> ExitCode {
         if self.headless {

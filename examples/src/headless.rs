@@ -10,10 +10,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::{Example, Options, Record};
 
-/// One tick a frame, however long the frame takes.
+/// Runs one tick in each frame, however long the frame takes.
 pub const ONE_TICK: TimeUpdateStrategy = TimeUpdateStrategy::FixedTimesteps(1);
 
-/// Simulates an example and prints its measurements. Fails if one exceeds its limit.
+/// Simulates an example and prints its measurements. Fails if a measurement exceeds its limit.
 pub fn run(example: &impl Example, options: &Options) -> ExitCode {
     env_logger::Builder::new().filter_level(log::LevelFilter::Warn).init();
     let mut app = App::new();
@@ -22,7 +22,7 @@ pub fn run(example: &impl Example, options: &Options) -> ExitCode {
     simulate(&mut app, example, options, |_, _| {})
 }
 
-/// The number of compute threads of the command line, and Bevy's own choice for other threads.
+/// The command line's number of compute threads, and Bevy's default for other threads.
 #[must_use]
 pub fn task_pools(options: &Options) -> TaskPoolPlugin {
     let threads = options.threads.into();

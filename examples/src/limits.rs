@@ -1,4 +1,4 @@
-//! A record of values that must stay within limits, and of durations.
+//! A record of durations, and of values that must stay within limits.
 
 use bevy::prelude::*;
 use bevy_bunting::ClothTimings;
@@ -19,7 +19,7 @@ pub struct Limit {
     pub limit: f32,
 }
 
-/// The greatest of values that are not negative: NaN if one of them is, unlike with `f32::max`.
+/// The greatest of non-negative values; NaN if one of them is NaN, unlike with `f32::max`.
 pub fn greatest(values: impl IntoIterator<Item = f32>) -> f32 {
     let greater = |a: f32, b: f32| if b > a || b.is_nan() { b } else { a };
     values.into_iter().fold(0.0, greater)
@@ -34,7 +34,7 @@ pub struct LimitRecord {
     size: Size,
 }
 
-/// Number of cloths, and of their particles and vertices.
+/// Numbers of cloths, particles and vertices.
 #[derive(Clone, Copy, Debug, Default)]
 struct Size {
     cloths: usize,

@@ -12,7 +12,7 @@ pub struct Strain {
 }
 
 impl Strain {
-    /// Adds all links of a cloth of one family: warp, weft or diagonal.
+    /// Adds all links of one family of a cloth: warp, weft or diagonal.
     pub fn add(&mut self, cloth: &ClothState, family: LinkFamily) {
         let Some(fabric) = cloth.fabric() else { return };
         for link in fabric.links().iter().filter(|link| link.family == family) {

@@ -1,4 +1,5 @@
-//! Whatever a user does in whatever order, nothing panics, every position stays finite, and no cloth is torn apart.
+//! Random actions of a user in random order: nothing panics, every position stays finite, and no cloth is
+//! torn apart.
 
 use std::time::Duration;
 
@@ -13,18 +14,18 @@ use bevy_time::TimeUpdateStrategy;
 use bevy_transform::prelude::*;
 use bunting_tests::{app, greatest, state, stretches};
 
-/// Runs of the test, each with a seed of its own, and what is done in each.
+/// Number of runs, each with its own seed, and number of actions in each run.
 const RUNS: u32 = 16;
 const ACTIONS: usize = 300;
 
-/// Cloths and poles at most.
+/// Greatest numbers of cloths and of poles.
 const MOST: usize = 6;
 
-/// Greatest length of a link over its length at rest. What is done here is violent: poles move at up to 20 m/s
+/// Greatest ratio of a link's length to its rest length. The actions are violent: poles move at up to 20 m/s
 /// from one frame to the next.
 const STRETCH: f32 = 2.5;
 
-/// Numbers that look random (Numerical Recipes' congruential generator).
+/// Pseudo-random numbers (Numerical Recipes' linear congruential generator).
 struct Random(u32);
 
 impl Random {
@@ -33,7 +34,7 @@ impl Random {
         (self.0 >> 8) as usize % count
     }
 
-    /// From −1 to 1.
+    /// A number from −1 to 1.
     fn signed(&mut self) -> f32 {
         self.below(2001) as f32 / 1000.0 - 1.0
     }
@@ -53,17 +54,17 @@ impl Random {
     }
 }
 
-/// A world in which things are done.
+/// A world on which the actions are performed.
 struct Playground {
     app: App,
     random: Random,
     cloths: Vec<Entity>,
     poles: Vec<Entity>,
     others: Vec<Entity>,
-    /// Whether cloths may be torn apart: colliders may lie across what is held, and what is shown of cloth with
-    /// weights is a mean of what is simulated and what is not.
+    /// Whether cloths may be torn apart: colliders may cross held vertices, and the surface of cloth with
+    /// weights is a mean of simulated and rigid positions.
     is_rough: bool,
-    /// What was done.
+    /// The actions so far.
     log: Vec<String>,
 }
 
@@ -160,7 +161,7 @@ impl Playground {
             let index = self.random.below(self.poles.len());
             let pole = self.poles.swap_remove(index);
             self.app.world_mut().despawn(pole);
-            // A cloth that is its child goes with it.
+            // A cloth that is a child of the pole is despawned with it.
             let world = self.app.world();
             self.cloths.retain(|&cloth| world.get_entity(cloth).is_ok());
             self.poles.retain(|&pole| world.get_entity(pole).is_ok());
@@ -170,7 +171,7 @@ impl Playground {
         self.poles.push(self.app.world_mut().spawn(place).id());
     }
 
-    /// Changes something of a cloth.
+    /// Changes a component of a cloth. Returns a name of the change.
     fn change(&mut self, cloth: Entity) -> &'static str {
         let action = self.random.below(14);
         let attachment = self.attachment();
@@ -246,7 +247,7 @@ impl Playground {
     fn move_something(&mut self) {
         let all: Vec<Entity> = self.poles.iter().chain(&self.cloths).copied().collect();
         let Some(moved) = self.random.one_of(&all) else { return };
-        // A walk, a jump that is no teleport, and one that is.
+        // The pole walks, jumps by less than a teleport, or teleports.
         let reach = [0.01, 0.2, 10.0][self.random.below(3)];
         let by = self.random.vector(reach);
         let turn = self.random.pose(0.0).rotation;
@@ -259,7 +260,7 @@ impl Playground {
         }
     }
 
-    /// Changes what acts on all cloths.
+    /// Changes something that acts on all cloths.
     fn surround(&mut self) {
         match self.random.below(5) {
             0 if self.others.len() < MOST && self.is_rough => {

@@ -1,4 +1,4 @@
-//! Attached vertices stay on their target, however it is moved.
+//! Tests that attached vertices stay on their target, however the target is moved.
 
 use std::time::Duration;
 
@@ -120,8 +120,8 @@ fn a_steady_ride_is_smooth_in_either_schedule() {
             app.add_systems(FixedUpdate, straight);
         }
         let (_, cloth) = attached(&mut app, false);
-        // Hung from its top, so slow and damped that it neither folds nor flutters: only jerks of its frame can
-        // move it.
+        // The cloth hangs from its top, slow and damped, so that it neither folds nor flutters: only jerks of
+        // its frame can move it.
         let mut held = app.world_mut().get_mut::<Attachment>(cloth).expect("attached");
         held.vertices = ClothEdge::Top.into();
         let damped = FabricMaterial { damping: 5.0, ..FabricMaterial::FLAG_POLYESTER };
@@ -153,7 +153,7 @@ fn a_teleport_carries_the_cloth_along_without_a_velocity() {
 
 #[test]
 fn a_small_jump_is_a_teleport_only_on_request() {
-    // 19 m/s in one tick.
+    // The jump is 19 m/s in one tick.
     let moved = Transform::from_xyz(0.3, 0.0, 0.0);
     let speed = |request: Option<TeleportMode>| {
         let mut app = app();
@@ -228,7 +228,8 @@ fn a_cloth_left_behind_is_pulled_along() {
     assert!(tip.z < -0.3, "{tip}");
 }
 
-/// Moves an entity along z for 30 ticks. Returns how far the tip of the cloth has moved in its frame, m.
+/// Moves an entity along z for 30 ticks. Returns the distance that the tip of the cloth has moved in its
+/// frame, m.
 fn swing(app: &mut App, mover: Entity, vehicle: Entity, cloth: Entity) -> f32 {
     let tip = |app: &App| state(app, cloth).positions()[16];
     let before = tip(app);
@@ -241,10 +242,10 @@ fn swing(app: &mut App, mover: Entity, vehicle: Entity, cloth: Entity) -> f32 {
     tip(app).distance(before)
 }
 
-/// Ticks after which an unmoved target is no longer followed, until it moves.
+/// Number of ticks after which an unmoved target is no longer observed, until it moves.
 const LONG: usize = 60;
 
-/// Least swing of a cloth that has felt the motion of its frame, m.
+/// Least swing that proves that a cloth felt the motion of its frame, m.
 const FELT: f32 = 0.2;
 
 #[test]
@@ -287,7 +288,7 @@ fn a_detached_cloth_does_not_follow() {
     assert_eq!(app.world().get::<Transform>(cloth), Some(&stood));
 }
 
-/// Frames so short that several pass from one tick to the next.
+/// Length of a frame such that several frames pass between two ticks.
 const SHORT: Duration = Duration::from_millis(2);
 
 #[test]

@@ -1,4 +1,4 @@
-//! The same bits, whatever else is simulated and however it is batched.
+//! Tests that the bits of a cloth depend neither on other cloths nor on batches.
 
 use bevy_app::prelude::*;
 use bevy_bunting::bunting_solver::LaneCount;
@@ -9,7 +9,7 @@ use bevy_math::Vec3;
 use bevy_transform::prelude::*;
 use bunting_tests::{Bits, FLAG, app, bits, run, spawn_flag};
 
-/// Spawns wind, a collider, a viewer, and cloths at several levels, on which all of them act.
+/// Spawns wind, a collider, a viewer, and cloths at several levels on which all of these act.
 fn spawn_scene(app: &mut App) -> Vec<Entity> {
     let world = app.world_mut();
     world.spawn(WindField::steady(Vec3::new(4.0, 0.0, 1.0)).with_gusts(3.0, 0.7, 5));
@@ -59,8 +59,8 @@ fn the_width_of_the_lanes_changes_no_bit() {
     }
 }
 
-/// With a system of the user's in the substep, each phase runs on all batches before the next phase;
-/// without, all phases run on each batch before the next batch.
+/// With a user's system in the substep, each phase runs on all batches before the next phase; without it, all
+/// phases run on one batch before the next batch.
 #[test]
 fn a_system_in_the_substep_changes_no_bit() {
     let run_one = |with_system: bool| {
@@ -84,7 +84,7 @@ fn other_cloths_change_no_bit() {
     let one = spawn_flag(&mut lone, Vec3::ZERO);
     let mut many = app();
     let among = spawn_flag(&mut many, Vec3::ZERO);
-    // No tick is simulated in the first update.
+    // The first update simulates no tick.
     run(&mut lone, 1);
     run(&mut many, 1);
     let mut others = Vec::new();

@@ -1,4 +1,4 @@
-//! Wind and colliders.
+//! Tests of wind and colliders.
 
 use std::time::Duration;
 
@@ -69,7 +69,7 @@ fn gusts_do_not_depend_on_the_frame_rate() {
 
 #[test]
 fn cloth_lies_on_colliders() {
-    // The same fall onto a ball on the ground, in frames that are turned about the vertical.
+    // A fall onto a ball on the ground is simulated in several frames, turned about the vertical.
     let flat = Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2);
     for turn in [0.0, 1.0, 2.0] {
         let rotation = Quat::from_rotation_y(turn) * flat;
@@ -119,7 +119,7 @@ fn a_moving_collider_pushes() {
 }
 
 #[test]
-fn a_collider_that_moves_with_the_cloth_is_as_one_at_rest() {
+fn a_collider_that_moves_with_the_cloth_acts_like_one_at_rest() {
     let pushed = |speed: f32| {
         let mut app = app();
         app.world_mut().resource_mut::<ClothSettings>().air_density = 0.0;
@@ -139,7 +139,7 @@ fn a_collider_that_moves_with_the_cloth_is_as_one_at_rest() {
             },
         );
         run(&mut app, 300);
-        // Wrinkles beside the ball may fold to either side; only the bulge in front of it is compared.
+        // Wrinkles beside the ball may fold to either side, so only the bulge in front of it is compared.
         let centre = Vec2::new(0.5, -0.7);
         let in_front = |position: &&Vec3| position.truncate().distance(centre) < 0.15;
         let bulge = state(&app, curtain).positions().iter().filter(in_front);

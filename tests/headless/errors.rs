@@ -1,4 +1,4 @@
-//! An error names the entity of bad input; other cloths are unaffected.
+//! Tests that an error names the entity with bad input, and that other cloths are unaffected.
 
 use bevy_app::prelude::*;
 use bevy_bunting::prelude::*;
@@ -10,7 +10,7 @@ fn errors(app: &App) -> Vec<ClothError> {
     app.world().resource::<Seen<ClothFailed>>().0.iter().map(|failed| failed.error).collect()
 }
 
-/// The bits of a flag after a number of updates, beside the entities that `spawn` adds.
+/// The bits of a flag after a number of updates, in a world with the entities that `spawn` adds.
 fn beside(updates: usize, spawn: impl Fn(&mut App)) -> (App, Bits) {
     let mut app = app();
     let flag = spawn_flag(&mut app, Vec3::ZERO);
@@ -22,7 +22,7 @@ fn beside(updates: usize, spawn: impl Fn(&mut App)) -> (App, Bits) {
 }
 
 #[test]
-fn a_bad_mesh_is_named_and_the_others_go_on() {
+fn a_bad_mesh_is_reported_and_other_cloths_are_simulated() {
     let (_, alone) = beside(30, |_| {});
     let bad: [fn() -> ClothMesh; 4] = [
         || ClothMesh::grid(1, 5, 1.0, 1.0),
@@ -56,7 +56,7 @@ fn a_corrected_mesh_is_simulated() {
 }
 
 #[test]
-fn a_bad_material_is_named_and_the_last_good_one_kept() {
+fn a_bad_material_is_reported_and_the_last_valid_one_kept() {
     let heavy = ClothMaterial(FabricMaterial { area_density: -1.0, ..FabricMaterial::SILK });
     let mut app = app();
     let cloth = spawn_flag(&mut app, Vec3::ZERO);
@@ -77,7 +77,7 @@ fn a_bad_material_is_named_and_the_last_good_one_kept() {
 }
 
 #[test]
-fn bad_levels_and_attachments_are_named() {
+fn bad_levels_and_attachments_are_reported() {
     let mut app = app();
     let missing = app.world_mut().spawn(Transform::default()).id();
     app.world_mut().despawn(missing);
@@ -108,7 +108,7 @@ fn bad_levels_and_attachments_are_named() {
 }
 
 #[test]
-fn a_pose_that_is_not_finite_is_named_once_and_not_followed() {
+fn a_pose_that_is_not_finite_is_reported_once_and_not_followed() {
     let (_, alone) = beside(20, |_| {});
     let mut app = app();
     let flag = spawn_flag(&mut app, Vec3::ZERO);
@@ -132,11 +132,11 @@ fn a_pose_that_is_not_finite_is_named_once_and_not_followed() {
 }
 
 #[test]
-fn a_diverged_cloth_is_put_back_to_rest() {
+fn a_diverged_cloth_is_reset_to_rest() {
     let mut app = app();
     let cloth = spawn_flag(&mut app, Vec3::ZERO);
     run(&mut app, 5);
-    // The plugin does not check gravity: this one overflows.
+    // The plugin does not limit gravity; this value overflows.
     app.world_mut().resource_mut::<ClothSettings>().gravity = Vec3::splat(f32::MAX);
     run(&mut app, 1);
     assert!(matches!(errors(&app)[..], [ClothError::Diverged { entity }] if entity == cloth));

@@ -1,4 +1,4 @@
-//! Levels that are chosen within a budget, and cloth out of view.
+//! Tests of levels chosen within a budget, and of cloth out of view.
 
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ use bevy_math::Vec3;
 use bevy_transform::prelude::*;
 use bunting_tests::{Bits, Seen, app, assert_finite, bits, run, state};
 
-/// Long enough for a cloth to change its level twice, or to fall asleep.
+/// Number of ticks in which a cloth can change its level twice, or fall asleep.
 const A_WHILE: usize = 80;
 
 fn spawn(app: &mut App, lods: LodSet, at: Vec3) -> Entity {
@@ -19,7 +19,7 @@ fn spawn(app: &mut App, lods: LodSet, at: Vec3) -> Entity {
     app.world_mut().spawn((ClothMesh::grid(33, 33, 1.0, 1.0), attachment, lods, place)).id()
 }
 
-/// An app with wind, in which no cloth comes to rest, a viewer that looks along −z, and fixed costs.
+/// An app with fixed costs, a viewer that looks along −z, and wind in which no cloth comes to rest.
 fn windy() -> (App, Entity) {
     let mut app = app();
     let wind = WindField::steady(Vec3::new(4.0, 0.0, 1.0)).with_gusts(2.0, 0.7, 5);
@@ -55,8 +55,8 @@ fn levels_follow_the_error_in_pixels() {
         assert_finite(&app, cloth);
         [cloth, biased, pinned].map(|cloth| state(&app, cloth).level())
     };
-    // The error is a quarter of the distance between particles: 7.8 mm, doubled at each coarser
-    // level. At a distance of 1 m, 1 m is 935 px.
+    // The error is a quarter of the distance between particles: 7.8 mm at the finest level, doubled at each
+    // coarser one. At a distance of 1 m, 1 m is 935 px.
     assert_eq!(away(5.0), [0, 0, 2]);
     assert_eq!(away(40.0), [1, 0, 2]);
     assert_eq!(away(70.0), [2, 0, 2]);
@@ -65,7 +65,7 @@ fn levels_follow_the_error_in_pixels() {
 }
 
 #[test]
-fn all_stay_within_the_budget() {
+fn all_cloths_together_stay_within_the_budget() {
     let (mut app, viewer) = windy();
     set_pose(&mut app, viewer, Transform::from_xyz(0.0, 0.0, 6.0));
     let cloths: Vec<Entity> = (0..40)
@@ -153,7 +153,7 @@ fn cloth_out_of_view_sleeps_and_costs_nothing() {
         assert_eq!(bits(&app, cloth), shape);
         assert_eq!(state(&app, cloth).previous_positions(), state(&app, cloth).positions());
 
-        // In view again, it begins at the coarsest level and is soon as fine as needed.
+        // In view again, the cloth begins at the coarsest level and soon is as fine as needed.
         set_pose(&mut app, viewer, seen);
         run(&mut app, 6);
         let last = app.world().resource::<Seen<ClothLevelChanged>>().0.clone();

@@ -1,4 +1,4 @@
-//! Levels of detail under a moving viewer.
+//! Tests of levels of detail with a moving viewer.
 
 use bevy_app::prelude::*;
 use bevy_bunting::prelude::*;
@@ -44,7 +44,7 @@ fn levels_follow_the_viewer_and_stay_finite() {
         .map(|change| (change.from, change.to))
         .collect();
     assert_eq!(changes, [(0, 1), (1, 2), (2, 3), (3, 0)]);
-    // At the finest level again, it has not kept the strain of a bad transfer.
+    // The cloth is at the finest level again: it must not keep the strain of a bad transfer.
     run(&mut app, 60);
     let stretch = greatest(stretches(&app, cloth));
     assert!(stretch < 1.2, "{stretch}");
@@ -76,7 +76,7 @@ fn a_level_may_change_in_every_tick() {
     assert!(stretch < 1.1, "{stretch}");
 }
 
-/// Looks at the state between the transfer to another level and the step.
+/// Compares the state before and after a transfer, before the step.
 #[test]
 fn particles_of_both_levels_keep_their_positions() {
     #[derive(Resource, Default)]
@@ -91,7 +91,7 @@ fn particles_of_both_levels_keep_their_positions() {
         .before(ClothSystems::Drive),
     );
     let cloth = flag(&mut app);
-    // Before it folds: folds that the coarser level does not have are found elsewhere.
+    // The change comes before the cloth folds, since folds that the coarser level lacks move elsewhere.
     run(&mut app, 8);
     for (from, to) in [(33, 17), (17, 33)] {
         let before = state(&app, cloth).positions().to_vec();
@@ -104,7 +104,7 @@ fn particles_of_both_levels_keep_their_positions() {
             for column in 0..17 {
                 let stride = |count: usize| if count == 33 { 2 } else { 1 };
                 let at = |count: usize| stride(count) * (row * count + column);
-                // The transfer reduces strain, which moves particles a little.
+                // The transfer removes strain, which moves particles a little.
                 let moved = before[at(from)].distance(after[at(to)]);
                 assert!(moved < 0.02, "row {row}, column {column}: {moved} m");
             }
@@ -154,7 +154,7 @@ fn a_curtain_with_a_hole_has_levels() {
         })
         .collect();
     assert!(counts[1] < counts[0] * 2 / 3, "{counts:?}");
-    // Coarser levels keep the whole border: one of five cannot be cut, and the fourth takes its place.
+    // Coarser levels keep the whole border, so the fifth level cannot be built and repeats the fourth.
     assert_eq!(counts[3], counts[4], "{counts:?}");
     let errors = &app.world().resource::<Seen<ClothFailed>>().0;
     assert!(

@@ -1,4 +1,4 @@
-//! Cloths are spawned, changed, paused and despawned while the app runs.
+//! Tests of cloths that are spawned, changed, paused and despawned while the app runs.
 
 use std::time::Duration;
 
@@ -77,7 +77,7 @@ fn a_material_may_change_while_running() {
 }
 
 #[test]
-fn letting_go_keeps_the_shape() {
+fn removing_the_attachment_keeps_the_shape() {
     let mut app = app();
     let cloth = spawn_flag(&mut app, Vec3::ZERO);
     run(&mut app, 60);
@@ -114,7 +114,7 @@ fn a_pause_changes_no_bit() {
 
 #[test]
 fn the_surface_is_interpolated_by_the_overstep() {
-    // Three frames to four ticks.
+    // Three frames pass in the time of four ticks.
     let mut app = app_at(Duration::from_secs_f64(4.0 / 3.0 / 64.0));
     let cloth =
         app.world_mut().spawn((ClothMesh::grid(3, 3, 1.0, 1.0), ClothSurface::default())).id();
@@ -129,8 +129,8 @@ fn the_surface_is_interpolated_by_the_overstep() {
         }
         last = Some(position.y);
     }
-    // The speed of a falling cloth grows from frame to frame; without interpolation it would be
-    // twice as great in each frame that shows two ticks.
+    // The speed of a falling cloth grows steadily from frame to frame; without interpolation it would double
+    // in each frame that shows two ticks.
     let gains: Vec<f32> = speeds.windows(2).map(|pair| pair[1] - pair[0]).collect();
     assert!(gains.len() > 20, "{}", gains.len());
     assert!(gains[3..].iter().all(|gain| (-1e-4..0.006).contains(gain)), "{gains:?}");

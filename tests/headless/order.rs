@@ -1,4 +1,4 @@
-//! The sets run in the documented order.
+//! Tests that the sets run in the documented order.
 
 use bevy_app::prelude::*;
 use bevy_bunting::prelude::{Attachment, ClothEdge, ClothMesh, LodSet, StepSettings};
@@ -16,7 +16,7 @@ const SUBSTEP: [&str; 5] =
 #[derive(Resource, Default)]
 struct Log(Vec<String>);
 
-/// Adds a system that logs the name of its set, and is ordered only by the set.
+/// Adds a system that logs the name of its set and is ordered only by this set.
 fn probe(app: &mut App, schedule: impl ScheduleLabel, set: impl SystemSet + Clone) {
     let name = format!("{set:?}");
     app.add_systems(schedule, (move |mut log: ResMut<Log>| log.0.push(name.clone())).in_set(set));
@@ -55,7 +55,7 @@ fn sets_run_in_order() {
     for sets in substeps.chunks(5) {
         assert_eq!(sets, SUBSTEP);
     }
-    // Substeps lie within Step: between Drive and Normals.
+    // Substeps run within Step: between Drive and Normals.
     let first = log.iter().position(|set| is_substep(set)).expect("substeps");
     let drive = log.iter().position(|set| set == "Drive").expect("a tick");
     let normals = log.iter().position(|set| set == "Normals").expect("a tick");
@@ -92,7 +92,7 @@ fn fine_cloth_and_long_ticks_take_more_substeps() {
     assert_eq!(substeps(&mut app), 8);
 }
 
-/// Substeps per tick since the last call.
+/// Number of substeps in a tick since the last call.
 fn substeps(app: &mut App) -> usize {
     let log = core::mem::take(&mut app.world_mut().resource_mut::<Log>().0);
     let ticks = log.iter().filter(|set| *set == "Step").count();

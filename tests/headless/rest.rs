@@ -1,4 +1,4 @@
-//! Cloth at rest falls asleep, and wakes when something that acts on it changes.
+//! Tests that cloth at rest falls asleep, and wakes when something that acts on it changes.
 
 use bevy_app::prelude::*;
 use bevy_bunting::ClothBatches;
@@ -55,7 +55,7 @@ impl SleepingSheet {
 }
 
 #[test]
-fn it_sleeps_for_long_without_a_change() {
+fn a_sheet_at_rest_sleeps_until_something_changes() {
     let mut scene = sleeping_sheet();
     let shape = bits(&scene.app, scene.sheet);
     run(&mut scene.app, 100);
@@ -78,7 +78,7 @@ fn a_swinging_cloth_does_not_sleep() {
 }
 
 #[test]
-fn wind_wakes_it() {
+fn wind_wakes_a_sheet() {
     let mut scene = sleeping_sheet();
     scene.app.world_mut().spawn(WindField::steady(Vec3::Z));
     assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
@@ -86,14 +86,14 @@ fn wind_wakes_it() {
 }
 
 #[test]
-fn gravity_wakes_it() {
+fn gravity_wakes_a_sheet() {
     let mut scene = sleeping_sheet();
     scene.app.world_mut().resource_mut::<ClothSettings>().gravity *= 0.5;
     assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
 }
 
 #[test]
-fn its_frame_wakes_it() {
+fn a_moved_frame_wakes_a_sheet() {
     let mut scene = sleeping_sheet();
     let pole = scene.pole;
     scene.entity(pole).get_mut::<Transform>().expect("a place").translation.x += 0.1;
@@ -101,7 +101,7 @@ fn its_frame_wakes_it() {
 }
 
 #[test]
-fn a_teleport_wakes_it() {
+fn a_teleport_wakes_a_sheet() {
     for mode in [TeleportMode::Keep, TeleportMode::Reset] {
         let mut scene = sleeping_sheet();
         let (pole, entity) = (scene.pole, scene.sheet);
@@ -112,7 +112,7 @@ fn a_teleport_wakes_it() {
 }
 
 #[test]
-fn its_material_wakes_it() {
+fn a_changed_material_wakes_a_sheet() {
     let mut scene = sleeping_sheet();
     let sheet = scene.sheet;
     scene.entity(sheet).insert(ClothMaterial::SILK);
@@ -120,7 +120,7 @@ fn its_material_wakes_it() {
 }
 
 #[test]
-fn its_attachment_wakes_it() {
+fn a_changed_attachment_wakes_a_sheet() {
     let mut scene = sleeping_sheet();
     let sheet = scene.sheet;
     scene.entity(sheet).remove::<Attachment>();
@@ -128,7 +128,7 @@ fn its_attachment_wakes_it() {
 }
 
 #[test]
-fn only_a_near_collider_wakes_it() {
+fn only_a_near_collider_wakes_a_sheet() {
     let mut scene = sleeping_sheet();
     let ball = scene.ball;
     scene.entity(ball).insert(Transform::from_xyz(8.0, 3.0, 0.0));
@@ -138,7 +138,7 @@ fn only_a_near_collider_wakes_it() {
 }
 
 #[test]
-fn a_collider_that_goes_wakes_it() {
+fn a_despawned_collider_wakes_a_sheet() {
     let mut scene = sleeping_sheet();
     let ball = scene.ball;
     scene.entity(ball).despawn();
@@ -146,7 +146,7 @@ fn a_collider_that_goes_wakes_it() {
 }
 
 #[test]
-fn a_pause_keeps_it_asleep() {
+fn a_pause_keeps_a_sheet_asleep() {
     let mut scene = sleeping_sheet();
     let sheet = scene.sheet;
     scene.entity(sheet).insert(ClothPaused);

@@ -1,4 +1,4 @@
-//! Forces and constraints of the user, between the solver's phases of a substep.
+//! Tests of forces and constraints of the user, between the solver's phases of a substep.
 
 use bevy_app::prelude::*;
 use bevy_bunting::prelude::*;
@@ -9,7 +9,7 @@ use bevy_time::{Fixed, Time};
 use bevy_transform::prelude::*;
 use bunting_tests::{TICK, app, bits, greatest, run, spawn_flag, state};
 
-/// Rounding of a position some metres from the origin in a tick of substeps, m.
+/// Rounding error after a tick of substeps of a position some metres from the origin, m.
 const ROUNDING: f32 = 1e-5;
 
 /// Material that loses no momentum to the frame of the cloth.
@@ -25,8 +25,7 @@ fn empty_space() -> App {
     app
 }
 
-/// The angular momentum about the world's y axis that the vortex should have given and that the cloth
-/// has, kg m²/s.
+/// Angular momenta about the world's y axis, kg m²/s: expected from the vortex, and measured.
 #[derive(Resource, Default)]
 struct AngularMomentum {
     given: f32,
@@ -34,7 +33,7 @@ struct AngularMomentum {
 }
 
 /// A vortex about the world's y axis: an acceleration of 3 /s² times the distance from the axis, along
-/// circles around it.
+/// circles around the axis.
 fn vortex(
     mut particles: ClothParticles,
     cloths: Query<Entity, With<ClothMesh>>,
@@ -86,7 +85,7 @@ fn a_vortex_gives_angular_momentum() {
     );
     app.world_mut().resource_mut::<ClothSettings>().steps =
         vec![StepSettings { substeps: SUBSTEPS, ..StepSettings::default() }.into()];
-    // Turned, so that the frame's axes are not the world's.
+    // The pose is turned, so that the frame's axes differ from the world's.
     let pose = Transform::from_xyz(-0.5, 0.5, 0.0).with_rotation(Quat::from_rotation_x(-0.7));
     app.world_mut().spawn((ClothMesh::grid(9, 9, 1.0, 1.0), UNDAMPED, pose));
     run(&mut app, 30);
@@ -101,12 +100,12 @@ const RADIUS: f32 = 0.4;
 /// Speed of the cylinder along x, m/s.
 const SPEED: f32 = 1.5;
 
-/// Distance of a point from the axis of the cylinder, which is vertical, at a time in s.
+/// Distance of a point from the vertical axis of the cylinder at a time (s), m.
 fn from_axis(point: Vec3, seconds: f32) -> Vec3 {
     (point - SPEED * seconds * Vec3::X).reject_from_normalized(Vec3::Y)
 }
 
-/// Keeps particles inside the cylinder as it stands at the end of the tick.
+/// Keeps particles inside the cylinder at its pose at the end of the tick.
 fn hold_inside(
     mut particles: ClothParticles,
     cloths: Query<Entity, With<ClothMesh>>,
@@ -130,7 +129,7 @@ fn hold_inside(
 fn a_constraint_holds_a_cloth_inside_a_moving_cylinder() {
     let mut app = empty_space();
     app.add_systems(ClothSubstep, hold_inside.in_set(ClothSubstepSystems::UserConstraints));
-    // A vertical sheet through the axis, 10 cm from the wall.
+    // The sheet is vertical and contains the axis; its edges are 10 cm from the wall.
     let pose = Transform::from_xyz(-0.3, 0.3, 0.0);
     let mesh = ClothMesh::grid(13, 13, 0.6, 0.6);
     let cloth = app.world_mut().spawn((mesh, UNDAMPED, pose)).id();
@@ -150,7 +149,7 @@ fn a_constraint_holds_a_cloth_inside_a_moving_cylinder() {
     assert!(moved.x > 128.0 * TICK * SPEED - 2.0 * RADIUS, "the cylinder takes it along: {moved}");
 }
 
-/// Positions in the world of one particle in all substeps, m.
+/// Positions in the world of one particle in successive substeps, m.
 #[derive(Resource, Default)]
 struct Path(Vec<Vec3>);
 
@@ -224,7 +223,7 @@ fn a_cloth_of_fewer_substeps_takes_part_in_some_and_falls_alike() {
     for cloth in cloths {
         let height = state(&app, cloth).positions()[0].y;
         let fallen = -0.5 * 2.0 * seconds * seconds;
-        // Whole substeps fall by half a substep's velocity more or less, by the scheme.
+        // Depending on the scheme, the fall differs by up to half a substep's velocity.
         assert!((height - fallen).abs() < 2.0 * seconds * TICK / 4.0, "{height} {fallen}");
     }
 }

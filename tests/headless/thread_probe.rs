@@ -1,4 +1,4 @@
-//! A collider that records which threads solve the contacts of cloth.
+//! A collider that records the threads that solve contacts.
 
 use std::collections::HashSet;
 use std::sync::{Arc, Condvar, Mutex};
@@ -11,22 +11,22 @@ use parry3d::mass_properties::MassProperties;
 use parry3d::query::{PointProjection, PointQuery, Ray, RayCast, RayIntersection};
 use parry3d::shape::{FeatureId, Shape, ShapeType, SharedShape, TypedShape};
 
-/// Half extents of the bounding box, m: all cloth is a candidate for contacts.
+/// Half extents of the bounding box, m: large enough that all cloth is a candidate for contacts.
 const EXTENT: f32 = 100.0;
 
-/// The nearest point of the shape to any other, m: so far away that nothing touches it.
+/// The nearest point of the shape to any other, m: so far away that no cloth touches it.
 const NEAREST: Vec3 = Vec3::splat(1e6);
 
-/// Time for which the first thread waits for another, so that it cannot do all work before the
-/// others have woken up. Too short: a busy machine fails the test.
+/// Time for which the first thread waits for another, so that it cannot do all the work before the others
+/// have woken up. Too short: the test fails on a busy machine.
 const RENDEZVOUS_TIMEOUT: Duration = Duration::from_secs(30);
 
-/// The threads that have asked the shape for its nearest point.
+/// The threads that have queried the shape.
 #[derive(Clone, Default)]
 pub struct ThreadProbe(Arc<(Mutex<HashSet<ThreadId>>, Condvar)>);
 
 impl ThreadProbe {
-    /// The shape that asks no cloth to move.
+    /// The shape, which moves no cloth.
     pub fn shape(&self) -> SharedShape {
         SharedShape::new(self.clone())
     }

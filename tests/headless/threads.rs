@@ -1,4 +1,4 @@
-//! Work on other threads: batches in parallel, and large cloths cut in the background.
+//! Tests of work on other threads: batches in parallel, and large cloths built in the background.
 
 use std::sync::mpsc;
 
@@ -11,12 +11,12 @@ use bunting_tests::{FLAG, Seen, app, assert_finite, bits, run, state};
 
 use crate::thread_probe::ThreadProbe;
 
-/// Threads of the compute pool where this test creates it.
+/// Number of threads of the compute pool if this test creates it.
 const THREADS: usize = 3;
 
 #[test]
 fn threads_change_no_bit() {
-    // More particles than are stepped on one thread.
+    // The number of particles exceeds that of a single-threaded step.
     const CLOTHS: usize = 66;
     const MESH: ClothMesh = ClothMesh::grid(33, 33, 1.0, 1.0);
     let spawn = |app: &mut bevy_app::App, count: usize| {
@@ -29,7 +29,7 @@ fn threads_change_no_bit() {
     let one = spawn(&mut lone, 1);
     run(&mut lone, 6);
     let pool = ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(THREADS).build());
-    // Schedules of other tests in this process may have created the pool before, with a thread a core.
+    // Another test in this process may have created the pool, with one thread for each core.
     assert!(pool.thread_num() > 1, "the pool has one thread");
     let mut many = app();
     let probe = ThreadProbe::default();
@@ -42,9 +42,9 @@ fn threads_change_no_bit() {
     }
 }
 
-/// The only thread of the pool is blocked at first: other cloths are simulated meanwhile.
+/// The only thread of the pool is blocked at first; other cloths are simulated meanwhile.
 #[test]
-fn a_large_cloth_is_cut_in_the_background() {
+fn a_large_cloth_is_built_in_the_background() {
     let pool = AsyncComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
     assert_eq!(pool.thread_num(), 1, "another test has created the pool");
     let (release, blocked) = mpsc::channel::<()>();
@@ -59,7 +59,7 @@ fn a_large_cloth_is_cut_in_the_background() {
 
     release.send(()).expect("the blocker waits");
     block_on(blocker).expect("it was released");
-    // One thread runs tasks in their order: after this one the cloth is cut.
+    // The thread runs tasks in their order: after this task the cloth is built.
     block_on(pool.spawn(async {}));
     run(&mut app, 2);
     assert_finite(&app, large);

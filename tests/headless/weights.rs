@@ -1,4 +1,4 @@
-//! Vertices of weight 0 are rigid and have no particles; weights between 0 and 1 blend.
+//! Tests that vertices of weight 0 are rigid and have no particles, and that weights between 0 and 1 blend.
 
 use bevy_app::prelude::*;
 use bevy_bunting::prelude::*;
@@ -23,7 +23,7 @@ const TOLERANCE: f32 = 1e-5;
 /// Greatest difference of a position that is computed in two ways, m.
 const ROUNDING: f32 = 1e-6;
 
-/// A square metre, rigid on the left, whose weights grow from 0 to 1 to the right.
+/// A square metre, rigid on the left, with weights that grow from 0 to 1 to the right.
 fn square() -> ClothMesh {
     weighted(|vertex| weight(vertex % EDGE))
 }
@@ -38,7 +38,7 @@ fn weighted(weight: impl Fn(usize) -> f32) -> ClothMesh {
     ClothMesh::grid(edge, edge, 1.0, 1.0).with_weights((0..EDGE * EDGE).map(weight).collect())
 }
 
-/// The same square without blending: each weight is 0 or 1.
+/// The square without blending: each weight is 0 or 1.
 fn unblended() -> ClothMesh {
     weighted(|vertex| weight(vertex % EDGE).ceil())
 }
@@ -101,7 +101,7 @@ fn rigid_vertices_have_no_particles() {
     let cloth = app.world_mut().spawn(square()).id();
     run(&mut app, 3);
     let state = state(&app, cloth);
-    // One rigid column remains: it pins the simulated part.
+    // One rigid column remains, since it pins the simulated part.
     assert_eq!(state.positions().len(), EDGE * (EDGE - RIGID + 1));
     let fabric = state.fabric().expect("a fabric");
     assert_eq!(fabric.triangles().len(), 2 * (EDGE - 1) * (EDGE - RIGID));
@@ -169,7 +169,7 @@ fn every_level_keeps_the_border_to_the_rigid_part_and_blends() {
 }
 
 #[test]
-fn bad_weights_are_named_and_the_others_go_on() {
+fn bad_weights_are_reported_and_other_cloths_are_simulated() {
     let alone = {
         let mut app = app();
         let flag = spawn_flag(&mut app, Vec3::ZERO);

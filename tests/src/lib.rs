@@ -9,22 +9,22 @@ use bevy_math::Vec3;
 use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bevy_transform::prelude::*;
 
-/// Seconds of a fixed step: Bevy's default.
+/// Length of a fixed step, s: Bevy's default.
 pub const TICK: f32 = 1.0 / 64.0;
 
 /// The mesh of the flag that most tests use.
 pub const FLAG: ClothMesh = ClothMesh::grid(17, 9, 1.5, 1.0);
 
-/// All events of a kind, in the order in which they were triggered.
+/// All events of one type, in the order in which they were triggered.
 #[derive(Resource, Debug)]
 pub struct Seen<E>(pub Vec<E>);
 
-/// An app with cloth whose frames are as long as a tick: one tick an update, from the second on.
+/// An app with cloth and frames as long as a tick: one tick in each update, from the second on.
 pub fn app() -> App {
     app_at(Duration::from_micros(15_625))
 }
 
-/// An app with cloth whose frames have this length.
+/// An app with cloth and frames of the given length.
 pub fn app_at(frame: Duration) -> App {
     let mut app = App::new();
     app.add_plugins((TimePlugin, TransformPlugin, ClothPlugins::default()))
@@ -67,7 +67,7 @@ pub fn state(app: &App, cloth: Entity) -> &ClothState {
 pub struct Bits(Vec<[u32; 3]>);
 
 impl core::fmt::Debug for Bits {
-    /// Only the number of particles and the last of them: all would be thousands of lines.
+    /// Prints only the number of particles and the last of them, since all would be thousands of lines.
     fn fmt(&self, formatter: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         let last = self.0.last().map(|bits| bits.map(f32::from_bits));
         write!(formatter, "{} particles, the last at {last:?}", self.0.len())
@@ -78,7 +78,7 @@ impl core::fmt::Debug for Bits {
 ///
 /// # Panics
 ///
-/// If the cloth is not simulated: no positions equal any others without positions.
+/// If the cloth is not simulated: empty lists of positions would be equal.
 #[must_use]
 pub fn bits(app: &App, cloth: Entity) -> Bits {
     let positions = state(app, cloth).positions();
@@ -90,7 +90,7 @@ pub fn bits(app: &App, cloth: Entity) -> Bits {
 ///
 /// # Panics
 ///
-/// If there are no values, or one is not a number: `f32::max` would ignore it.
+/// If there are no values, or a value is not a number, which `f32::max` would ignore.
 #[must_use]
 pub fn greatest(values: impl IntoIterator<Item = f32>) -> f32 {
     let greater = |a: f32, b: f32| {

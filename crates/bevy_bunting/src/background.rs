@@ -1,4 +1,4 @@
-//! Work that another thread does, where there are threads.
+//! Work on another thread, on platforms that have threads.
 
 use core::fmt;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -7,17 +7,18 @@ use bevy_tasks::{AsyncComputeTaskPool, Task, block_on};
 
 type Work<T> = Box<dyn FnOnce() -> T + Send>;
 
-/// Work whose result is taken in a tick that follows from the amount of work, and not when the work happens to be
-/// done: so it is the same tick on every machine.
+/// Work whose result is taken in a tick that follows from the amount of work, not from the machine's speed:
+/// so it is the same tick on every machine.
 pub(crate) struct Background<T> {
-    /// None once it has begun.
+    /// The work; none once a thread has begun it.
     work: Arc<Mutex<Option<Work<T>>>>,
-    /// None in browsers, which have no threads. The result is none where the work was done elsewhere.
+    /// Task that does the work. None in browsers, which have no threads. Its result is none if another thread
+    /// took the work first.
     task: Option<Task<Option<T>>>,
 }
 
 impl<T: Send + 'static> Background<T> {
-    /// Has work done on another thread, after all work before.
+    /// Starts work on another thread, queued behind all earlier work.
     pub fn begin(work: impl FnOnce() -> T + Send + 'static) -> Self {
         let work: Arc<Mutex<Option<Work<T>>>> = Arc::new(Mutex::new(Some(Box::new(work))));
         let pool = AsyncComputeTaskPool::try_get().filter(|_| !cfg!(target_arch = "wasm32"));
@@ -28,7 +29,8 @@ impl<T: Send + 'static> Background<T> {
         Self { work, task }
     }
 
-    /// The result. Work that has not begun is done on this thread: the others may be busy for long.
+    /// Returns the result. If no thread has begun the work, this thread does it: the others may be busy for
+    /// long.
     pub fn take(self) -> T {
         let done = match take(&self.work) {
             Some(work) => Some(work()),
@@ -57,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn work_behind_long_work_is_not_waited_for() {
+    fn queued_work_runs_on_the_thread_that_takes_its_result() {
         AsyncComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
         let (go, long) = mpsc::channel::<u32>();
         let long = Background::begin(move || long.recv());

@@ -1,4 +1,4 @@
-//! Times and numbers of cloths, in Bevy's diagnostics.
+//! Times and counts of cloths, in Bevy's diagnostics.
 
 use std::time::Duration;
 
@@ -10,8 +10,8 @@ use crate::lod::report::{ClothCounts, LodReport};
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::timings::{ClothTimings, MeasureSystems, measure_sets};
 
-/// Measures the sets of [`ClothTick`] for [`ClothTimings`], and adds times, levels and the report of the
-/// choice of levels to Bevy's diagnostics.
+/// Measures the times of the [`ClothSystems`] for [`ClothTimings`], and adds these times, the counts of
+/// cloths by level, and the [`LodReport`] to Bevy's diagnostics.
 #[derive(Debug, Default)]
 pub struct ClothDiagnosticsPlugin;
 
@@ -37,13 +37,13 @@ impl ClothDiagnosticsPlugin {
         DiagnosticPath::const_new("cloth/level_3"),
     ];
 
-    /// Expected time of the tick, ms.
+    /// Time of the tick that the governor expected, ms.
     pub const EXPECTED: DiagnosticPath = DiagnosticPath::const_new("cloth/expected");
 
-    /// Number of cloths that changed their level.
+    /// Number of cloths that changed their level in the tick.
     pub const SWITCHES: DiagnosticPath = DiagnosticPath::const_new("cloth/switches");
 
-    /// Number of cloths that are coarser than their error demands, for lack of time.
+    /// Number of cloths that are coarser than their error demands because the budget is spent.
     pub const HELD_BACK: DiagnosticPath = DiagnosticPath::const_new("cloth/held_back");
 
     /// Number of cloths that sleep.

@@ -45,9 +45,9 @@
 //! | [`ClothCollider`] | any entity | a shape that cloth does not enter |
 //! | [`LodViewer`] | a camera | a viewer in whose picture errors of levels are measured |
 //!
-//! The resource [`ClothSettings`] holds gravity, the density of air and the numbers of substeps and
-//! passes; [`ClothBudget`] the time that cloths with [`LodSet::automatic`] may take, and [`LodReport`]
-//! what it led to.
+//! The resource [`ClothSettings`] holds gravity, the density of air and the numbers of substeps and passes;
+//! [`ClothBudget`] holds the time that cloths with [`LodSet::automatic`] may take, and [`LodReport`] the
+//! results of the choice of levels within it.
 //!
 //! Cloths that have come to rest sleep, and so do cloths with [`LodSet::automatic`] that no
 //! [`LodViewer`] sees, see [`ClothState::activity`].
@@ -167,16 +167,16 @@ pub mod prelude {
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 
-/// All plugins that cloth needs, one a concern.
+/// All plugins that cloth needs, one for each concern.
 ///
-/// Bevy's `TimePlugin` and `TransformPlugin` must be added, too, as they are by `DefaultPlugins`.
+/// Bevy's `TimePlugin` and `TransformPlugin` must be added, too; `DefaultPlugins` contains both.
 #[derive(Debug)]
 pub struct ClothPlugins {
     host: Interned<dyn ScheduleLabel>,
 }
 
 impl ClothPlugins {
-    /// Cloth that ticks in the given schedule.
+    /// Plugins whose [`ClothTick`] runs in the given schedule.
     #[must_use]
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { host: schedule.intern() }
@@ -184,7 +184,7 @@ impl ClothPlugins {
 }
 
 impl Default for ClothPlugins {
-    /// Cloth that ticks in `FixedPostUpdate`.
+    /// Plugins whose [`ClothTick`] runs in `FixedPostUpdate`.
     fn default() -> Self {
         Self::new(FixedPostUpdate)
     }

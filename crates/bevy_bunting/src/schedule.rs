@@ -6,37 +6,37 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor};
 use bevy_time::Time;
 
-/// One tick of all cloths. Runs once a fixed step, in `FixedPostUpdate` or the schedule given to
-/// [`ClothPlugins::new`](crate::ClothPlugins::new).
+/// The schedule of one tick of all cloths. It runs once in each fixed step, in `FixedPostUpdate` or the
+/// schedule given to [`ClothPlugins::new`](crate::ClothPlugins::new).
 ///
-/// Its systems run on one thread and in an order that may not be ambiguous: order yours against
-/// the [`ClothSystems`], or within the set that they are in.
+/// Systems in this schedule run on one thread, and ambiguous orders are errors: order your systems against
+/// the [`ClothSystems`], or against other systems within their set.
 #[derive(ScheduleLabel, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ClothTick;
 
-/// One substep of the cloths that join in it. Runs in [`ClothSystems::Step`], as often as the
-/// finest level needs.
+/// The schedule of one substep. It runs in [`ClothSystems::Step`], as often as the finest level needs;
+/// coarser levels take part in some of the runs.
 ///
-/// As long as no user adds a system, the schedule is not run: the same phases run batch by batch, with the
-/// same result, so that each batch stays in the processor's cache from one phase to the next.
+/// Without a user's system in it the schedule is not run: its phases are called directly, batch by batch and
+/// with the same result, so that each batch stays in the processor's cache.
 #[derive(ScheduleLabel, Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ClothSubstep;
 
 /// The sets of a [`ClothTick`], in this order.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClothSystems {
-    /// New, changed and removed cloths: fabrics are cut, wind is added up.
+    /// Looks up or builds the fabrics of new and changed cloths, frees the lanes of removed ones, and sums up
+    /// the wind.
     Prepare,
-    /// Levels of detail are chosen, states are transferred between them, and every simulated cloth gets a
-    /// lane.
+    /// Chooses levels of detail, transfers states between levels, and gives every simulated cloth a lane.
     SelectLod,
-    /// What acts on each cloth in this tick is set: the motion of its frame, gravity, wind, colliders.
+    /// Sets the frame motion, gravity, wind and colliders that act on each cloth in this tick.
     Drive,
     /// Runs [`ClothSubstep`].
     Step,
-    /// Normals are recomputed, once.
+    /// Computes normals, once a tick.
     Normals,
-    /// [`ClothState`](crate::ClothState) and the transforms of attached cloths are written.
+    /// Writes [`ClothState`](crate::ClothState) and the transforms of attached cloths.
     Publish,
 }
 
@@ -49,16 +49,16 @@ impl ClothSystems {
 /// The sets of a [`ClothSubstep`], in this order.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClothSubstepSystems {
-    /// States are transformed into the moved frame; external forces, damping, predicted positions.
+    /// Transforms states into the moved frame, applies external forces and damping, and predicts positions.
     Integrate,
-    /// For forces of the user, see [`ClothParticles`](crate::ClothParticles).
+    /// Applies forces of the user, see [`ClothParticles`](crate::ClothParticles).
     UserForces,
-    /// Constraints and contacts correct the predicted positions.
+    /// Corrects the predicted positions by constraints and contacts.
     SolveConstraints,
-    /// For constraints of the user, which correct positions after all others, see
+    /// Applies constraints of the user, which correct positions last, see
     /// [`ClothParticles`](crate::ClothParticles).
     UserConstraints,
-    /// Velocities from the corrected positions.
+    /// Computes velocities from the corrected positions.
     UpdateVelocities,
 }
 
@@ -73,14 +73,14 @@ impl ClothSubstepSystems {
     ];
 }
 
-/// Makes the schedules and their sets, and runs [`ClothTick`].
+/// Adds the schedules with their sets, and runs [`ClothTick`].
 #[derive(Debug)]
 pub struct SchedulePlugin {
     host: Interned<dyn ScheduleLabel>,
 }
 
 impl SchedulePlugin {
-    /// Ticks in the given schedule.
+    /// A plugin that runs [`ClothTick`] in the given schedule.
     #[must_use]
     pub fn new(host: impl ScheduleLabel) -> Self {
         Self { host: host.intern() }
@@ -111,8 +111,8 @@ impl Plugin for SchedulePlugin {
     }
 }
 
-/// Sets the executor and the checks of a schedule of this plugin; those of the host's schedules are left
-/// alone.
+/// Sets the executor and the ambiguity check of one of this plugin's schedules. The host's schedules keep
+/// theirs.
 fn own(schedule: &mut Schedule) -> &mut Schedule {
     schedule.set_executor(SingleThreadedExecutor::new()).set_build_settings(ScheduleBuildSettings {
         ambiguity_detection: LogLevel::Error,
@@ -120,8 +120,8 @@ fn own(schedule: &mut Schedule) -> &mut Schedule {
     })
 }
 
-/// Runs [`ClothTick`], unless no time has passed. Public, so that other systems of its schedule can
-/// be ordered against it.
+/// Runs [`ClothTick`] unless no time has passed. This system is public so that other systems of its schedule
+/// can be ordered against it.
 pub fn run_cloth_tick(world: &mut World) {
     if !world.resource::<Time>().delta().is_zero() {
         world.run_schedule(ClothTick);

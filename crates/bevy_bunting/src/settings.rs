@@ -6,7 +6,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bunting_solver::{Drive, LaneCount, StepLimits};
 
-/// Settings for all cloths. They may be changed at any time.
+/// Settings for all cloths. The settings may be changed at any time.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct ClothSettings {
@@ -14,12 +14,13 @@ pub struct ClothSettings {
     pub gravity: Vec3,
     /// Density of the air, kg/m³; 1.225 at sea level.
     pub air_density: f32,
-    /// Limits of substeps and passes at each level of detail, the finest level first; the last one holds
-    /// for all levels after it. Within these limits the number of substeps is chosen for each fabric.
+    /// Limits of substeps and passes at each level of detail, the finest level first; the last entry also
+    /// holds for all coarser levels. Within these limits each fabric's number of substeps follows from
+    /// gravity, its length and its spacing.
     #[reflect(ignore)]
     pub steps: Vec<StepLimits>,
-    /// Number of lanes of the batches; by default it suits the number of cloths and the machine. It does
-    /// not change the bits of the result.
+    /// Number of lanes in each batch. By default it follows from the number of cloths and the instruction
+    /// set. It does not change the bits of the result.
     #[reflect(ignore)]
     pub lanes: Option<LaneCount>,
 }
@@ -33,7 +34,8 @@ impl ClothSettings {
 }
 
 impl Default for ClothSettings {
-    /// Gravity and air at sea level; at least 120 substeps a second at the finest level, at least 60 at others.
+    /// Earth's gravity and air at sea level; at least 120 substeps a second at the finest level, at least 60
+    /// at others.
     fn default() -> Self {
         let finest = StepLimits::default();
         let coarse = StepLimits { rate: finest.rate / 2, ..finest.clone() };

@@ -32,7 +32,7 @@ impl ClothTimings {
 #[derive(Resource)]
 struct SetStart(Instant);
 
-/// The systems that measure the sets; the last of them runs after all sets.
+/// The systems that measure the sets. The last of them runs after all sets.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct MeasureSystems;
 

@@ -1,26 +1,26 @@
 //! Waves and random numbers with the same bits on all machines, for gusts and imperfections.
 
-/// Added to a float and subtracted again, this leaves the nearest integer: 1.5 × 2²³.
+/// Constant 1.5 × 2²³: added to a float and subtracted again, it rounds the float to the nearest integer.
 const TO_INTEGER: f32 = 12_582_912.0;
 
-/// Random numbers: the hashes of a growing counter.
+/// Random numbers from the hashes of a counter.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Random(u32);
 
 impl Random {
-    /// Numbers that differ from those of any other seed.
+    /// A sequence of numbers that depends on the seed.
     pub const fn with_seed(seed: u32) -> Self {
         Self(mix(seed))
     }
 
-    /// A number from 0 to 1, 1 excluded.
+    /// A random number from 0 (included) to 1 (excluded).
     pub const fn unit(&mut self) -> f32 {
         self.0 = mix(self.0.wrapping_add(0x9e37_79b9));
         (self.0 >> 8) as f32 / (1 << 24) as f32
     }
 }
 
-/// A bijection that spreads each bit over all (Wellons' lowbias32).
+/// A bijection of 32-bit integers in which each input bit affects all output bits (Wellons' lowbias32).
 pub(crate) const fn mix(mut bits: u32) -> u32 {
     bits ^= bits >> 16;
     bits = bits.wrapping_mul(0x7feb_352d);
@@ -29,7 +29,7 @@ pub(crate) const fn mix(mut bits: u32) -> u32 {
     bits ^ (bits >> 16)
 }
 
-/// A sine of period 1 and amplitude 1, of parabolas, for phases up to 2²² periods.
+/// A sine of period 1 and amplitude 1, composed of parabolas, for phases up to 2²² periods.
 pub(crate) fn sine(phase: f32) -> f32 {
     let part = phase - ((phase + TO_INTEGER) - TO_INTEGER);
     8.0 * part * (1.0 - 2.0 * part.abs())
@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_sine_is_one_to_six_hundredths() {
+    fn the_sine_is_exact_to_six_hundredths() {
         for step in -4000..4000 {
             let phase = step as f32 / 1000.0;
             let exact = (core::f32::consts::TAU * phase).sin();

@@ -1,4 +1,4 @@
-//! Eight flags of 33 × 33 in one batch and nothing else, to be looked at by a profiler.
+//! Eight flags of 33 × 33 in one batch, without an app: a program for profilers.
 //!
 //! ```sh
 //! cargo run --release -p bunting_lab --example flight -- PASSES TICKS wind|vacuum

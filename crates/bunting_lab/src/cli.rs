@@ -12,7 +12,7 @@ use crate::output::Outcome;
 #[derive(Debug, Parser)]
 #[command(version)]
 pub struct Arguments {
-    /// What to measure.
+    /// Measurement to run.
     #[command(subcommand)]
     command: Command,
     /// Print one JSON object on standard output and nothing else.
@@ -28,7 +28,7 @@ pub struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Closed forms against what is measured.
+    /// Closed forms compared with measurements.
     Oracles,
     /// Error over time of every method.
     Pareto(pareto::Selection),
@@ -51,7 +51,7 @@ enum Command {
 }
 
 impl Arguments {
-    /// Runs the command and presents what it measured.
+    /// Runs the command and presents its results.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! Something that can be run on the scenes, and how its rows name it.
+//! A method that can be run on the scenes, and its name in tables.
 
 use crate::{
     baselines::{Baseline, Method},
@@ -6,10 +6,10 @@ use crate::{
     simulation::Simulation,
 };
 
-/// Largest n for implicit Euler, whose factorisation takes most of a comparison beyond it.
+/// Largest n for implicit Euler: beyond it the factorisation takes most of a comparison's time.
 const LARGEST_IMPLICIT: usize = 33;
 
-/// Starts a method on a scene; none where the scene is beyond it.
+/// Starts a method on a scene; none if the method does not support the scene.
 pub type Start = dyn Fn(&Scene) -> Option<Box<dyn Simulation>>;
 
 /// A method with its settings.
@@ -22,7 +22,7 @@ pub struct Contender {
     pub passes: usize,
     /// Cloths advanced at once, all alike, by one call of `tick`.
     pub lanes: usize,
-    /// Starts it.
+    /// Starts the method.
     pub start: Box<Start>,
 }
 

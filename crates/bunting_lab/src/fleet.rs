@@ -13,10 +13,10 @@ use crate::{
     timing::Timing,
 };
 
-/// Delay of each cloth's gusts against those of the cloth before it, s, so that no two move alike.
+/// Delay of each cloth's gusts relative to the cloth before it, s, so that no two cloths move alike.
 const GUST_LAG: f64 = 0.618;
 
-/// Cloths of one scene, each in gusts of its own, side by side in batches.
+/// Cloths of one scene, each in its own gusts, side by side in batches.
 pub struct Fleet {
     scene: Scene,
     settings: StepSettings,
@@ -29,17 +29,17 @@ impl Fleet {
     ///
     /// # Panics
     ///
-    /// Never: every scene is a good cloth, and every cloth finds its lane.
+    /// Never: every scene is a valid cloth, and every cloth finds a lane.
     #[must_use]
     pub fn new(scene: Scene, cloths: usize, settings: StepSettings) -> Self {
         Self::of(product::fabric(&scene), scene, cloths, settings)
     }
 
-    /// The same of a fabric of the scene's particles that was cut otherwise.
+    /// A fleet with a given fabric of the scene's particles.
     ///
     /// # Panics
     ///
-    /// When the fabric has other particles than the scene.
+    /// When the fabric's particles are not the scene's.
     #[must_use]
     pub fn of(fabric: Arc<Fabric>, scene: Scene, cloths: usize, settings: StepSettings) -> Self {
         let positions: Vec<Vec3> = scene.positions().iter().map(|x| x.as_vec3()).collect();
@@ -64,7 +64,7 @@ impl Fleet {
         self.batches.iter().flat_map(|batch| batch.occupied().map(|lane| batch.snapshot(lane)))
     }
 
-    /// Puts every cloth into the state that it has in another fleet at another level, and goes on in
+    /// Puts every cloth into the state of the same cloth in another fleet at another level, and continues in
     /// the same wind.
     ///
     /// # Panics
@@ -81,11 +81,11 @@ impl Fleet {
         }
     }
 
-    /// The fabric that all are cut from.
+    /// The fabric that all cloths share.
     ///
     /// # Panics
     ///
-    /// On a fleet of no cloths.
+    /// On a fleet without cloths.
     #[must_use]
     pub fn fabric(&self) -> &Arc<Fabric> {
         self.batches[0].fabric()
@@ -112,7 +112,7 @@ impl Fleet {
         }
     }
 
-    /// Advances all by `ticks` ticks.
+    /// Advances all cloths by `ticks` ticks.
     pub fn advance(&mut self, ticks: usize) {
         for _ in 0..ticks {
             self.drive();
@@ -122,9 +122,9 @@ impl Fleet {
         }
     }
 
-    /// Times ticks of all cloths, on this thread alone and on others, in turn so that all see the same
-    /// machine. A tick sets the wind, steps and computes normals. As in the plugin each batch is a task
-    /// of a pool, and this thread runs some of them.
+    /// Times ticks of all cloths, on this thread alone and on several, alternately so that all see the same
+    /// load of the machine. A tick sets the wind, steps and computes normals. As in the plugin, each batch is
+    /// a task of a pool, and this thread runs some of the tasks.
     #[must_use]
     pub fn time_ticks(&mut self, cores: &[usize], effort: &Effort) -> Vec<Timing> {
         self.advance(effort.warm_up);
@@ -143,7 +143,7 @@ impl Fleet {
         timings
     }
 
-    /// Advances all by a tick, batch by batch on this thread and on those of the pool.
+    /// Advances all cloths by a tick: batches are tasks of the pool and of this thread.
     fn tick_in(&mut self, pool: &TaskPool) {
         self.ticks += 1;
         let (scene, settings, tick) = (&self.scene, self.settings, self.ticks);
@@ -161,8 +161,8 @@ impl Fleet {
     }
 }
 
-/// Sets the wind for the cloths of a batch, the first of which is number `cloth`; returns the number
-/// of the next.
+/// Sets the wind for the cloths of a batch, whose first cloth has number `cloth`. Returns the number after
+/// its last cloth.
 fn drive(batch: &mut ClothBatch, scene: &Scene, tick: u32, mut cloth: usize) -> usize {
     let seconds = f64::from(tick) / f64::from(TICK_RATE);
     for lane in 0..batch.lane_count() {

@@ -1,4 +1,4 @@
-//! A Bevy app with nothing but cloth in it, as a game would have it.
+//! A Bevy app that contains only cloth, set up as in a game.
 
 use std::time::Duration;
 
@@ -17,11 +17,11 @@ use crate::{product, scenes::Scene};
 
 /// Strength of the gusts, m/s.
 const GUST: f32 = 1.0;
-/// How often gusts come, 1/s.
+/// Frequency of gusts, 1/s.
 const GUST_RATE: f32 = 0.3;
 
-/// An app on one core whose every update is one tick of the standard flag's wind. Settings are those of
-/// each level, the finest first; the last holds for all levels after it.
+/// An app on one core in the standard flag's wind, with one tick in each update. Settings are those of each
+/// level, the finest first; the last also holds for all coarser levels.
 pub fn app_in_wind(settings: impl IntoIterator<Item = StepSettings>) -> App {
     let mut app = app_in_still_air(settings);
     let wind = Vec3::from_array(Scene::flag(2).air.wind.map(|speed| speed as f32));
@@ -29,9 +29,9 @@ pub fn app_in_wind(settings: impl IntoIterator<Item = StepSettings>) -> App {
     app
 }
 
-/// The same in still air.
+/// The same app in still air.
 pub fn app_in_still_air(settings: impl IntoIterator<Item = StepSettings>) -> App {
-    // The plugin steps batches on the ticking thread where the pool has only one thread.
+    // With one thread in the pool, the plugin steps batches on the ticking thread.
     ComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
     let tick = Duration::from_secs_f32(product::TICK);
     let mut app = App::new();

@@ -1,4 +1,4 @@
-//! Memory on the heap, counted by the allocator itself.
+//! Memory on the heap, counted by the allocator.
 
 use std::alloc::System;
 
@@ -8,8 +8,8 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// What `make` returns, and the bytes that it asked the allocator for and has not given back: what the
-/// value holds on the heap. Other threads must not allocate meanwhile.
+/// Returns the value made by `make`, and the bytes that the value holds on the heap: those allocated and not
+/// freed meanwhile. Other threads must not allocate at that time.
 pub fn held_by<Value>(make: impl FnOnce() -> Value) -> (Value, usize) {
     let region = Region::new(ALLOCATOR);
     let value = make();

@@ -1,8 +1,8 @@
-//! The measuring bench of `bevy_bunting`: what the cloth does, set beside what it should do.
+//! The measuring bench of `bevy_bunting`: it compares the simulated cloth with closed forms and references.
 //!
 //! Nothing in [`scenes`], [`mod@reference`], [`baselines`] or [`oracles`] shares code with the product, so
-//! that agreement between them means something. Lengths are in metres, times in seconds, masses in
-//! kilograms unless said otherwise.
+//! that agreement is evidence. Lengths are in metres, times in seconds, masses in kilograms unless said
+//! otherwise.
 
 pub mod baselines;
 pub mod budget;

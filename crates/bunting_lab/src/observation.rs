@@ -1,4 +1,4 @@
-//! What is kept of a run, the same for the reference and for every method.
+//! Observation of a run, the same for the reference and for every method.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,7 @@ use crate::{
     stats::{self, Strain},
 };
 
-/// Ticks at which positions are kept for comparison: 0.2, 0.4 and 0.6 s.
+/// Ticks at which positions are stored for comparison: 0.2, 0.4 and 0.6 s.
 pub const COMPARED_TICKS: [usize; 3] = [12, 24, 36];
 /// Distance from the origin in metres beyond which a run counts as exploded.
 const ARENA: f64 = 10.0;
@@ -17,20 +17,20 @@ const ARENA: f64 = 10.0;
 /// Figures of one run.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Observation {
-    /// Positions at `COMPARED_TICKS`, m, as far as the run went.
+    /// Positions at `COMPARED_TICKS`, m, up to the end of the run.
     pub compared: Vec<Vec<DVec3>>,
-    /// Strain of warp and weft links: means and percentiles averaged over the window's ticks, the
-    /// maximum taken over them.
+    /// Strain of warp and weft links: means and percentiles are averaged over the window's ticks, the maximum
+    /// is taken over them.
     pub strain: Strain,
     /// Mean position of the last vertex (the free lower right corner) in the window, m.
     pub tip: DVec3,
-    /// Standard deviation of that position, m.
+    /// Standard deviation of the last vertex's position, m.
     pub tip_spread: f64,
     /// Flutter frequency of the tip out of the sheet's plane, Hz.
     pub flutter: Option<f64>,
     /// Root mean square velocity at the end, m/s.
     pub final_speed: f64,
-    /// Whether every position stayed finite and near.
+    /// Whether every position stayed finite and within the arena.
     pub stable: bool,
 }
 
@@ -42,7 +42,7 @@ impl Observation {
     }
 }
 
-/// Watches a run tick by tick.
+/// Observes a run tick by tick.
 #[derive(Debug)]
 pub struct Observer<'a> {
     grid: &'a Grid,
@@ -62,7 +62,7 @@ impl<'a> Observer<'a> {
         Self { grid, window_start, tick: 0, strains: Vec::new(), tips: Vec::new(), observation }
     }
 
-    /// Takes in the state after the next tick, and says whether the run is worth going on with.
+    /// Records the state after the next tick. Returns whether the run is worth continuing.
     pub fn observe(&mut self, positions: &[DVec3], velocities: &[DVec3]) -> bool {
         self.tick += 1;
         self.observation.stable &=

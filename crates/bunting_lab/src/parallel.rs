@@ -1,4 +1,4 @@
-//! Independent work on all cores of the machine.
+//! Independent pieces of work on all cores.
 
 use std::{
     num::NonZero,
@@ -7,8 +7,8 @@ use std::{
     thread,
 };
 
-/// Results of `work` for each item, in the order of the items. Threads, one a core, take the items from
-/// a common queue, so that a long item delays none but its own thread.
+/// Results of `work` for each item, in the order of the items. Threads, one for each core, take items from a
+/// common queue, so that a long item delays only its own thread.
 ///
 /// # Panics
 ///

@@ -1,7 +1,7 @@
 //! The solver under measurement, on the scenes.
 //!
-//! The scenes' vertices lie as the solver's own grid does, so positions pass through unchanged: the
-//! cloth's frame is the world, and how the sheet lies is only how its particles are placed.
+//! The scenes' vertices are ordered like the solver's grid, so positions pass through unchanged. The cloth's
+//! frame is the world; the pose of the sheet is only in the positions of its particles.
 
 use std::{fmt, sync::Arc};
 
@@ -18,12 +18,12 @@ use crate::{
     specimen::Specimen,
 };
 
-/// Density of the air in the scenes, kg/m³: they give only its product with a coefficient.
+/// Density of the air in the scenes, kg/m³: the scenes give only its product with a coefficient.
 const AIR_DENSITY: f32 = 1.225;
 /// Length of a tick, s.
 pub const TICK: f32 = 1.0 / TICK_RATE as f32;
 
-/// Scheme, substeps and passes by default: `StepSettings::default()` as a constant.
+/// Default scheme, substeps and passes: `StepSettings::default()` as a constant.
 pub const DEFAULT: StepSettings = StepSettings { passes: 2, ..StepSettings::yarns(2) };
 
 /// The solver with its settings.
@@ -42,7 +42,7 @@ impl Product {
         Self { settings, lanes: LaneCount::One }
     }
 
-    /// The settings that the tables show, cheapest first within each scheme.
+    /// The settings that the tables show, the cheapest first within each scheme.
     #[must_use]
     pub fn catalogue() -> Vec<Self> {
         let schemes = [
@@ -63,21 +63,21 @@ impl Product {
         products
     }
 
-    /// The scene at its start, a cloth in every lane.
+    /// The scene at its start, with a cloth in every lane.
     ///
     /// # Panics
     ///
-    /// When the scene is not a cloth.
+    /// When the scene is not a valid cloth.
     #[must_use]
     pub fn start(&self, scene: &Scene) -> Cloth {
         self.start_cut(fabric(scene), scene)
     }
 
-    /// The same of a fabric of the scene's that was cut otherwise.
+    /// The scene at its start, with a given fabric of the scene's particles.
     ///
     /// # Panics
     ///
-    /// When the fabric has other particles than the scene.
+    /// When the fabric's particles are not the scene's.
     #[must_use]
     pub fn start_cut(&self, fabric: Arc<Fabric>, scene: &Scene) -> Cloth {
         Cloth::new(fabric, scene, self.settings, self.lanes)
@@ -115,7 +115,7 @@ pub fn fabric(scene: &Scene) -> Arc<Fabric> {
     Arc::new(pattern(scene).build().expect("a scene is a good grid"))
 }
 
-/// What that fabric is cut by.
+/// Builder of that fabric.
 #[must_use]
 pub fn pattern(scene: &Scene) -> FabricBuilder {
     let grid =
@@ -124,7 +124,7 @@ pub fn pattern(scene: &Scene) -> FabricBuilder {
     FabricBuilder::grid(grid).pin(pinned.map(|vertex| vertex as u32))
 }
 
-/// Material of a scene: its fabric and its damping, and the air's hold on it.
+/// Material of a scene, from its fabric, its damping and its air.
 #[must_use]
 pub fn material(scene: &Scene) -> FabricMaterial {
     let scenes::Fabric { density, stretch: [warp, weft], shear, bending } = scene.fabric;
@@ -143,14 +143,14 @@ pub fn material(scene: &Scene) -> FabricMaterial {
     }
 }
 
-/// Cloths of one scene in all lanes of a batch; the first is the one that is looked at.
+/// Cloths of one scene in all lanes of a batch; the first is the one that is measured.
 #[derive(Clone, Debug)]
 pub struct Cloth {
     /// The batch.
     pub batch: ClothBatch,
     /// Scheme, substeps and passes.
     pub settings: StepSettings,
-    /// What acts on every lane, but for the wind.
+    /// Frame motion, gravity and air of every lane; the wind is set in each tick.
     pub drive: Drive,
     /// Whether normals are computed at the end of a tick.
     pub normals: bool,
@@ -211,7 +211,7 @@ impl Cloth {
     ///
     /// # Panics
     ///
-    /// When the new fabric is not a material.
+    /// When the new fabric is not a valid material.
     pub fn change(&mut self, change: impl FnOnce(&mut Scene)) {
         change(&mut self.scene);
         for lane in 0..self.batch.lane_count() {
@@ -219,7 +219,7 @@ impl Cloth {
         }
     }
 
-    /// Sets what every lane may touch.
+    /// Sets the colliders of every lane.
     pub fn touch(&mut self, colliders: &[Collider]) {
         for lane in 0..self.batch.lane_count() {
             self.batch.set_colliders(lane, colliders.iter().cloned()).expect("good shapes");
@@ -262,7 +262,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_measured_is_what_users_meet() {
+    fn the_measured_settings_are_the_defaults() {
         assert_eq!(DEFAULT, StepSettings::default());
     }
 }

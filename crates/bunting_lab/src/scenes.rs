@@ -20,20 +20,20 @@ pub const TICK_RATE: u32 = 60;
 pub fn ticks(seconds: f64) -> usize {
     (seconds * f64::from(TICK_RATE)).round() as usize
 }
-/// Seconds a hanging cloth is given to come to rest.
+/// Time in which a hanging cloth comes to rest, s.
 const HANG_SECONDS: f64 = 6.0;
-/// Seconds at the end of a hanging scene over which strain is averaged.
+/// Time at the end of a hanging scene over which strain is averaged, s.
 const HANG_WINDOW: f64 = 1.0;
-/// Seconds of the swing: cloth is chaotic, positions are not compared later than this.
+/// Length of the swing, s: cloth is chaotic, and later positions are not comparable.
 const SWING_SECONDS: f64 = 0.6;
-/// Seconds a flag flies before its statistics begin.
+/// Time that a flag flies before its statistics begin, s.
 const FLAG_SETTLING: f64 = 5.0;
-/// Seconds of a flag's statistics.
+/// Length of a flag's statistics, s.
 const FLAG_WINDOW: f64 = 20.0;
 /// Height in metres of the ripple that lets a flat vertical cloth leave its plane.
 const RIPPLE: f64 = 1e-3;
 
-/// What a cloth is made of, in units that no grid changes.
+/// The material of a cloth, in units that do not depend on the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Fabric {
     /// Area density σ, kg/m².
@@ -52,7 +52,7 @@ impl Fabric {
         Self { density: 0.2, stretch: [1e4, 1e4], shear: 200.0, bending: 2e-5 };
 }
 
-/// Which vertices are held in place.
+/// Vertices that are held in place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Pins {
     /// None.
@@ -69,13 +69,13 @@ pub enum Pins {
     TopAndBottom,
 }
 
-/// How the sheet lies when it is released.
+/// Pose of the sheet when it is released.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum Pose {
     /// Flat in the plane z = 0.
     Vertical,
-    /// In the plane z = 0 but for a smooth ripple of the given height in metres, without which a flat
-    /// sheet could never fold.
+    /// In the plane z = 0, with a smooth ripple of the given height in metres, without which a flat sheet
+    /// would never fold.
     Rippled(f64),
     /// Flat in the plane y = 0.
     Horizontal,
@@ -114,7 +114,7 @@ impl Air {
     }
 }
 
-/// What a scene is measured for.
+/// Purpose of a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub enum Measure {
     /// Strain once the cloth has come to rest.
@@ -140,26 +140,26 @@ pub struct Scene {
     pub height: f64,
     /// The cloth's material.
     pub fabric: Fabric,
-    /// What holds it.
+    /// Vertices that are held.
     pub pins: Pins,
-    /// How it lies at the start.
+    /// Pose of the sheet at the start.
     pub pose: Pose,
     /// Rate c at which free motion decays, 1/s: v ∝ exp(−c t).
     pub damping: f64,
-    /// The air around it.
+    /// The air around the cloth.
     pub air: Air,
     /// Gravitational acceleration along −y, m/s².
     pub gravity: f64,
     /// Length of the run, s.
     pub seconds: f64,
-    /// Length of the window at its end over which figures are averaged, s.
+    /// Length of the window at the end of the run over which figures are averaged, s.
     pub window: f64,
-    /// What the scene is measured for.
+    /// Purpose of the scene.
     pub measure: Measure,
 }
 
 impl Scene {
-    /// One square metre of the standard fabric, n × n, hung vertically and not damped.
+    /// One square metre of the standard fabric, n × n, hung vertically, undamped.
     fn square(name: &'static str, n: usize, pins: Pins, pose: Pose) -> Self {
         Self {
             name,
@@ -179,19 +179,19 @@ impl Scene {
         }
     }
 
-    /// Hung from its top edge, damping 2/s, at rest after 6 s.
+    /// A sheet that hangs from its top edge, damped by 2/s; at rest after 6 s.
     #[must_use]
     pub fn hang_top(n: usize) -> Self {
         Self { damping: 2.0, ..Self::square("hang_top", n, Pins::Top, Pose::Vertical) }
     }
 
-    /// Hung from its left side, damping 2/s, at rest after 6 s.
+    /// A sheet that hangs from its left side, damped by 2/s; at rest after 6 s.
     #[must_use]
     pub fn hang_side(n: usize) -> Self {
         Self { damping: 2.0, ..Self::square("hang_side", n, Pins::Left, Pose::Rippled(RIPPLE)) }
     }
 
-    /// Hung from its two upper corners, damping 2/s, at rest after 6 s.
+    /// A sheet that hangs from its two upper corners, damped by 2/s; at rest after 6 s.
     #[must_use]
     pub fn hang_corners(n: usize) -> Self {
         Self {
@@ -200,7 +200,7 @@ impl Scene {
         }
     }
 
-    /// Held along one edge and let go flat and horizontal, undamped.
+    /// A sheet held along one edge and released flat and horizontal, undamped.
     #[must_use]
     pub fn swing(n: usize) -> Self {
         Self {
@@ -210,7 +210,7 @@ impl Scene {
         }
     }
 
-    /// Held by its left side in a gusting wind of 6 m/s, damping 0.3/s.
+    /// A flag held by its left side in a gusting wind of 6 m/s, damped by 0.3/s.
     #[must_use]
     pub fn flag(n: usize) -> Self {
         Self {
@@ -284,7 +284,7 @@ impl Scene {
         (0..self.vertices()).map(place).collect()
     }
 
-    /// Whether the vertex of this index is held.
+    /// Whether the vertex with this index is held.
     #[must_use]
     pub fn is_pinned(&self, index: usize) -> bool {
         let (i, j) = (index % self.columns, index / self.columns);

@@ -7,7 +7,7 @@ use crate::product::DEFAULT;
 /// Vertices along each side of a flag, at each level of detail.
 pub const LEVELS: [u32; 4] = [33, 17, 9, 5];
 
-/// How finely each scheme is solved where time is measured: the settings that the solver proposes.
+/// Settings of each scheme with which time is measured: the solver's defaults.
 #[must_use]
 pub fn schemes() -> [StepSettings; 2] {
     [DEFAULT, StepSettings::gauss_seidel(10)]
@@ -22,8 +22,8 @@ pub fn scheme_name(settings: StepSettings) -> &'static str {
     }
 }
 
-/// How finely each level is solved where levels change with the distance, the finest first: what is far
-/// away is solved more coarsely.
+/// Settings of each level where levels change with the distance, the finest first: distant cloth is solved
+/// more coarsely.
 #[must_use]
 pub fn steps_of_levels() -> Vec<StepSettings> {
     let coarse = StepSettings { substeps: 1, ..DEFAULT };

@@ -1,4 +1,4 @@
-//! What every method offers to be measured.
+//! The interface through which every method is measured.
 
 use glam::{DVec3, Vec3};
 
@@ -19,7 +19,7 @@ pub fn run(simulation: &mut (impl Simulation + ?Sized), seconds: f64) {
     (0..ticks(seconds)).for_each(|_| simulation.tick());
 }
 
-/// Vectors in double precision, which closed forms and the reference take.
+/// Vectors in double precision, as closed forms and the reference use them.
 #[must_use]
 pub fn in_double(vectors: &[Vec3]) -> Vec<DVec3> {
     vectors.iter().map(|vector| vector.as_dvec3()).collect()

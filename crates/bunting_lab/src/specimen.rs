@@ -1,13 +1,13 @@
-//! A cloth as the trials handle it.
+//! The interface of a cloth under trial.
 
 use bunting_solver::StepSettings;
 use glam::DVec3;
 
 use crate::{scenes::Scene, simulation::Simulation};
 
-/// A cloth that can be laid out and loaded.
+/// A cloth whose positions and load can be set.
 pub trait Specimen: Simulation {
-    /// Overwrites positions in metres and velocities in metres a second, of pinned vertices too.
+    /// Overwrites positions (m) and velocities (m/s), including those of pinned vertices.
     fn place(&mut self, positions: &[DVec3], velocities: &[DVec3]);
     /// Sets the gravitational acceleration along −y, m/s².
     fn load(&mut self, gravity: f64);

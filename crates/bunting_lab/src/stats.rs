@@ -1,9 +1,9 @@
-//! Figures drawn from positions, velocities and signals.
+//! Statistics of positions, velocities and signals.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-/// Size of the strains of many links, each as |length/rest − 1|.
+/// Statistics of the strain magnitudes |length/rest − 1| of many links.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Strain {
     /// Mean.
@@ -19,7 +19,7 @@ pub struct Strain {
 }
 
 impl Strain {
-    /// Sizes of a set of signed strains.
+    /// Statistics of the magnitudes of signed strains.
     #[must_use]
     pub fn of(strains: impl Iterator<Item = f64>) -> Self {
         let mut sizes: Vec<f64> = strains.map(f64::abs).collect();

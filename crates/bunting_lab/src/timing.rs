@@ -40,14 +40,14 @@ impl Timing {
         self.samples.iter().sum()
     }
 
-    /// Largest mean of so many durations in a row, µs; of all, if there are fewer.
+    /// Largest mean of `window` consecutive durations, µs; of all durations if there are fewer.
     #[must_use]
     pub fn worst_mean(&self, window: usize) -> f64 {
         let window = window.min(self.samples.len()).max(1);
         self.samples.windows(window).map(crate::stats::mean).fold(f64::NAN, f64::max)
     }
 
-    /// Largest percentile `p` of so many durations in a row, µs; of all, if there are fewer.
+    /// Largest percentile `p` of `window` consecutive durations, µs; of all durations if there are fewer.
     #[must_use]
     pub fn worst_percentile(&self, window: usize, p: f64) -> f64 {
         let window = window.min(self.samples.len()).max(1);

@@ -1,4 +1,4 @@
-//! The baselines against closed forms and against the reference.
+//! Tests of the baselines against closed forms and against the reference.
 
 use bunting_lab::{
     baselines::{Baseline, Method},
@@ -19,11 +19,11 @@ const SINGLE: f64 = 1e-3;
 const STRETCH: f64 = 2e-3;
 /// Error of XPBD on the swing at 27 substeps, m RMS.
 const XPBD_ERROR: f64 = 2e-3;
-/// Error of symplectic Euler on the swing where it resolves the springs, m RMS.
+/// Error of symplectic Euler on the swing with steps that resolve the springs, m RMS.
 const SYMPLECTIC_ERROR: f64 = 1e-3;
 /// Distance from the origin beyond which a cloth has exploded, m.
 const ARENA: f64 = 10.0;
-/// Part of a hanging cloth's mean strain that is left with coarser cloths solved first.
+/// Greatest ratio of a hanging cloth's mean strain with coarser cloths solved first to that without them.
 const HIERARCHY: f64 = 0.5;
 /// Ticks in 0.4 s.
 const TICKS: usize = 24;
@@ -43,7 +43,7 @@ fn swing_error(method: Method, substeps: usize, passes: usize) -> f64 {
 }
 
 #[test]
-fn all_fall_freely() {
+fn all_baselines_fall_freely() {
     let scene = Scene { pins: Pins::Free, ..Scene::swing(5) };
     for method in [
         Method::SymplecticEuler,
@@ -54,7 +54,7 @@ fn all_fall_freely() {
         Method::Hpbd,
         Method::Xpbd,
     ] {
-        // As many substeps as keep the springs of the explicit method still.
+        // The explicit method needs this many substeps to keep its springs still.
         let baseline = Baseline { method, substeps: 100, passes: 1 };
         let height = run(&scene, baseline, 6).iter().map(|x| x.y).sum::<f64>() / 25.0;
         let expected = symplectic_euler(GRAVITY, 1.0 / (f64::from(TICK_RATE) * 100.0), 600);
@@ -92,7 +92,7 @@ fn symplectic_euler_explodes_past_its_stability_limit() {
 
 #[test]
 fn xpbd_converges_with_its_substeps() {
-    // Beyond these, single precision rounds gravity away: g h² nears the last place of a metre.
+    // With more substeps single precision rounds gravity away: g h² nears the last place of a metre.
     let errors = [3, 9, 27].map(|substeps| swing_error(Method::Xpbd, substeps, 1));
     assert!(errors[0] > 2.0 * errors[1] && errors[1] > 2.0 * errors[2], "{errors:?} m");
     assert!(errors[2] < XPBD_ERROR, "{errors:?} m");

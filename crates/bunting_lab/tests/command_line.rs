@@ -1,4 +1,4 @@
-//! The binary's exit codes, its JSON and its files.
+//! Tests of the binary's exit codes, JSON and files.
 
 use std::process::{Command, Output};
 
@@ -138,7 +138,7 @@ fn stability_prints_its_cases() {
         assert!(case["limit"].is_number() && case["pass"].is_boolean(), "{case}");
         assert!(case["worst"].is_number() || case["worst"].is_null(), "{case}");
         let built = case["status"] == "built";
-        // What is not a number has no worst figure and does not pass.
+        // A value that is not a number has no worst figure and does not pass.
         let holds =
             case["worst"].as_f64().is_some_and(|worst| Some(worst) <= case["limit"].as_f64());
         assert_eq!(case["pass"], built && holds, "{case}");

@@ -1,4 +1,4 @@
-//! The JSON of what measures costs and levels.
+//! Tests of the JSON of commands that measure costs and levels.
 
 use bunting_lab::{
     budget::{
@@ -13,13 +13,13 @@ use serde_json::Value;
 
 /// Factor by which two times of the same work may differ where other programs use the machine.
 const BUSY: f64 = 5.0;
-/// Part of the droop and of the swing's period by which levels may differ.
+/// Relative difference of the droop and of the swing's period between levels.
 const LEVELS_AGREE: f64 = 0.05;
 /// Change of the momentum in a change of level, over the momentum: rounding is 2e-7.
 const MOMENTUM: f64 = 1e-5;
-/// Energy that a change of level may add, over the kinetic energy: rounding. It takes away what it likes.
+/// Energy that a change of level may add, over the kinetic energy: rounding. It may remove any amount.
 const ENERGY: f64 = 0.01;
-/// Mean kinetic energy that a change of level may take, over the kinetic energy. Measured: up to 0.12.
+/// Mean kinetic energy that a change of level may remove, over the kinetic energy. Measured: up to 0.12.
 const KINETIC_LOSS: f64 = 0.2;
 
 #[track_caller]
@@ -48,7 +48,7 @@ fn budget_has_its_schema() {
         assert_positive(phase, &["n", "us", "fraction"]);
         assert!(PHASES.contains(&phase["phase"].as_str().expect("a name")));
     }
-    // The phases of the finest level make up a tick of a full batch, which was timed apart from them.
+    // The phases of the finest level add up to a tick of a full batch, which was timed separately.
     let us = |phase: &Value| phase["us"].as_f64().expect("a time");
     let phases_us: f64 = phases[..PHASES.len()].iter().map(us).sum();
     let lanes = LaneCount::holding(usize::MAX).get();
@@ -59,7 +59,7 @@ fn budget_has_its_schema() {
     let parts = rows(&json, "parts");
     assert_eq!(parts.len(), LEVELS.len() * (PARTS.len() + EXTRAS.len()));
     for level in parts.chunks(PARTS.len() + EXTRAS.len()) {
-        // Differences cancel: what one part takes too much another takes too little.
+        // Errors of differences cancel in the sum: one part takes too much, another too little.
         let whole: f64 = level[..PARTS.len()].iter().filter_map(|it| it["fraction"].as_f64()).sum();
         assert!((whole - 1.0).abs() < 1e-9, "{whole}");
         for name in ["prediction, damping", "velocities", "normals"] {

@@ -1,4 +1,4 @@
-//! The reference against closed forms, against itself at half the step, and against XPBD.
+//! Tests of the reference against closed forms, against itself at half the step, and against XPBD.
 
 use std::f64::consts::PI;
 
@@ -24,27 +24,27 @@ use glam::{DVec3, dvec3};
 
 /// Largest force left on a vertex at rest, N.
 const REST: f64 = 1e-8;
-/// Most steps to rest.
+/// Greatest number of steps to rest.
 const STEPS: usize = 400_000;
 /// Difference of the swing at 0.4 s between a step and its half, m RMS.
 const STEP_DIFFERENCE: f64 = 1e-6;
 /// Difference of the swing at 0.4 s between Verlet and XPBD at 200 × 4, m RMS.
 const METHOD_DIFFERENCE: f64 = 3e-4;
-/// Relative error of the stretch of a hung strip: the second order of its strain.
+/// Relative error of the stretch of a hanging strip: the second order of its strain.
 const STRETCH: f64 = 1e-3;
 /// Error of the sag over the length: the strain of the stiff sheet, 1e-4.
 const SAG: f64 = 5e-4;
 /// Relative error of the cantilever's aspect at N = 16; 13 % where the clamp is half as stiff.
 const ASPECT: f64 = 1e-2;
-/// Distance of an observed order of convergence from the expected.
+/// Tolerance of an observed order of convergence.
 const ORDER: f64 = 0.3;
 /// Relative error of a period read from zero crossings.
 const PERIOD: f64 = 1e-3;
-/// Relative error of the first mode, higher ones being mixed in.
+/// Relative error of the first mode, with higher modes mixed in.
 const MODE: f64 = 1e-2;
 /// Relative error of the fall through air.
 const FALL: f64 = 1e-5;
-/// Change of the energy of an undamped swing over the energy it has turned over.
+/// Change of the energy of an undamped swing, over the energy that it converts.
 const ENERGY: f64 = 1e-6;
 
 /// A strip of two columns, `segments` long cells over one metre.
@@ -95,7 +95,7 @@ fn hung_strip_stretches_the_same_at_every_resolution() {
 
 #[test]
 fn uniaxial_modulus_is_the_fabrics_in_spite_of_the_diagonals() {
-    // A jersey: shear as stiff as stretch, where uncorrected diagonals add 70 %.
+    // A jersey resists shear as much as stretch; diagonals without correction would add 70 %.
     let fabric = Fabric { stretch: [60.0, 40.0], shear: 20.0, ..Fabric::STANDARD };
     let scene = Scene { gravity: 0.0, pins: Pins::Free, fabric, ..Scene::hang_top(5) };
     let grid = Grid::new(&scene);
@@ -143,7 +143,7 @@ fn slack_sheet_hangs_as_its_chain() {
         *x = dvec3(x.x, half_drop * (from_middle - 1.0), span * x.z);
     }
     settle(&mut cloth, &scene);
-    // The two columns have their heavier vertices in alternate rows: the chain is their mean.
+    // The two columns have their heavier vertices in alternate rows: the expected chain is their mean.
     let sag = -cloth.positions[segments..segments + 2].iter().map(|x| 0.5 * x.y).sum::<f64>();
     assert!((sag - chain_sag(segments, span, 1.0)).abs() < SAG, "sag {sag}");
 }
@@ -202,7 +202,8 @@ fn limp_sheet_swings_in_its_first_mode() {
     // Shear couples the two columns, whose lumped masses differ from row to row.
     let fabric = Fabric { bending: 0.0, ..Fabric::STANDARD };
     let scene = strip(8, Pins::Top, Pose::Vertical, fabric);
-    // Close to the first mode J₀(2.405 √(1 − s)), so that the fundamental rules the crossings.
+    // The start is close to the first mode J₀(2.405 √(1 − s)), so that the fundamental determines the
+    // crossings.
     let frequency = swing_frequency(&scene, |depth| 0.003 * depth * (0.6 + 0.4 * depth));
     assert_relative(frequency, chain_modes(8, 0.5)[0] * GRAVITY.sqrt() / (2.0 * PI), MODE);
 }
@@ -212,7 +213,7 @@ fn sheet_falls_through_air() {
     let fabric = Fabric { density: 0.1, ..Fabric::STANDARD };
     let air = Air { pressure: 1.2 * 1.225, ..Air::VACUUM };
     let scene = Scene { fabric, air, pins: Pins::Free, ..Scene::swing(3) };
-    // Equal drag on unequal masses would bend it: a rigid one falls flat.
+    // Equal drag on unequal masses would bend the sheet: a rigid one falls flat.
     let rigid = Scene { fabric: Fabric { bending: 1.0, ..fabric }, ..scene };
     let mut cloth = start(&rigid);
     (0..30).for_each(|_| cloth.tick());
@@ -264,7 +265,7 @@ fn large_swing_is_converged_and_xpbd_agrees() {
 }
 
 #[test]
-fn hanging_scene_is_referred_to_at_rest() {
+fn the_reference_of_a_hanging_scene_is_at_rest() {
     let scene = Scene { seconds: 2.0, ..Scene::hang_top(5) };
     let reference = Reference::run(&scene, 400);
     assert!(reference.residual.expect("measured at rest") < REST);

@@ -1,4 +1,4 @@
-//! The trials catch what they are meant to catch.
+//! Tests that the trials catch the errors that they are designed for.
 
 use bunting_lab::{
     oracles::{Case, trials},
@@ -14,7 +14,7 @@ use bunting_lab::{
 use bunting_solver::StepSettings;
 use glam::{DVec3, Vec3};
 
-/// The product on a scene that was changed behind the trial's back.
+/// Starts the product on a modified scene, unknown to the trial.
 fn sabotaged(change: impl Fn(&mut Scene)) -> impl Fn(&Scene, StepSettings) -> Box<dyn Specimen> {
     move |scene, settings| {
         let mut changed = scene.clone();
@@ -121,12 +121,12 @@ impl Specimen for Exact {
 }
 
 #[test]
-fn explicit_drag_turns_round() {
+fn explicit_drag_reverses_the_motion() {
     let explicit: &Mount = &|scene, settings| Box::new(ExplicitDrag::new(scene, settings.substeps));
     assert_caught("drag", "drag alone from 20 m/s, ticks not turned round", explicit);
 }
 
-/// Particles for themselves, broadside under explicit drag ½ρC_d|v|v/σ.
+/// Independent particles, broadside under explicit drag ½ρC_d|v|v/σ.
 struct ExplicitDrag {
     positions: Vec<Vec3>,
     velocities: Vec<Vec3>,

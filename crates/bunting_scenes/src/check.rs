@@ -1,4 +1,4 @@
-//! Checks the values of a scene whose keys and types are right.
+//! Checks the values of a scene whose keys and types are valid.
 
 use bevy_math::Vec3;
 use bunting_solver::{FabricError, FabricMaterial};

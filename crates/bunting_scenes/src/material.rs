@@ -12,13 +12,13 @@ pub const PRESETS: [(&str, FabricMaterial); 5] = [
     ("denim", FabricMaterial::DENIM),
 ];
 
-/// A preset of this name.
+/// The preset with this name.
 #[must_use]
 pub fn preset(name: &str) -> Option<FabricMaterial> {
     PRESETS.into_iter().find_map(|(known, material)| (known == name).then_some(material))
 }
 
-/// A material in a scene file: a preset, and the values that differ from it. Units are those of
+/// A material in a scene file: a preset, and the values that differ from it, in the units of
 /// [`FabricMaterial`].
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -40,7 +40,7 @@ pub struct MaterialRecipe {
 }
 
 impl MaterialRecipe {
-    /// The material, if the preset exists. Its values are not checked.
+    /// The material, if the preset exists. The values are not checked.
     #[must_use]
     pub fn material(&self) -> Option<FabricMaterial> {
         let like = preset(&self.like)?;

@@ -14,7 +14,7 @@ use crate::material::{MaterialRecipe, preset};
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
-    /// The wind; several add up.
+    /// The winds, whose velocities are added up.
     pub winds: Vec<Wind>,
     /// The viewer in whose picture errors of levels are measured.
     pub viewer: Viewer,
@@ -103,11 +103,11 @@ pub struct Levels {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Vehicle {
-    /// Its glTF file, relative to `assets/`. Forward is −z, the ground is y = 0.
+    /// The glTF file, relative to `assets/`. Forward is −z, the ground is y = 0.
     pub model: String,
     /// The path along which it drives.
     pub track: Route,
-    /// Foot of its flag pole in the vehicle's frame, m.
+    /// Foot of the vehicle's flag pole in the vehicle's frame, m.
     pub socket: Vec3,
 }
 
@@ -115,7 +115,7 @@ pub struct Vehicle {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Flag {
-    /// The base of its pole.
+    /// The base of the flag's pole.
     pub on: Footing,
     /// Height of the pole, m.
     pub pole: f32,

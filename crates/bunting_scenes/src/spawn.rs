@@ -32,8 +32,8 @@ const HEADWIND: Vec3 = Vec3::Z;
 #[derive(Component, Clone, Debug, PartialEq, Eq)]
 pub struct Model(pub String);
 
-/// Spawns the wind, viewer, vehicles and flags of a scene. Cloths need [`ClothPlugins`] to move, vehicles
-/// and the viewer [`follow_tracks`](crate::follow_tracks).
+/// Spawns the wind, viewer, vehicles and flags of a scene. [`ClothPlugins`] move the cloths, and
+/// [`follow_tracks`](crate::follow_tracks) moves the vehicles and the viewer.
 pub fn spawn(commands: &mut Commands, scene: &Scene) {
     for wind in &scene.winds {
         let field = WindField::steady(wind.velocity);
@@ -69,7 +69,7 @@ pub fn spawn(commands: &mut Commands, scene: &Scene) {
     }
 }
 
-/// The frame of a pole, so turned that its flag flies with the wind.
+/// The frame of a pole, turned so that the flag flies with the wind.
 fn foot(position: Vec3, wind: Vec3) -> Transform {
     Transform::from_translation(position).looking_to(Vec3::Y.cross(wind), Vec3::Y)
 }

@@ -9,11 +9,11 @@ use bevy_transform::components::Transform;
 
 use crate::scene::Route;
 
-/// Chords between two waypoints whose lengths approximate the length of the curve. With fewer, the
-/// speed is not constant in bends.
+/// Number of chords between two waypoints whose lengths approximate the length of the curve. Fewer: the speed
+/// is not constant in bends.
 const CHORDS: usize = 256;
 
-/// A closed path along which an entity moves, −z ahead: its pose is a function of time only.
+/// A closed path of an entity, which faces ahead along −z: its pose is a function of time only.
 #[derive(Component, Clone, Debug)]
 pub struct Track {
     curve: CubicCurve<Vec3>,
@@ -21,7 +21,7 @@ pub struct Track {
     parameter: UnevenSampleAutoCurve<f32>,
     /// Length of the path, m.
     length: f64,
-    /// m/s.
+    /// Speed along the path, m/s.
     speed: f64,
     /// Length along the path at time 0, m.
     start: f64,
@@ -32,8 +32,8 @@ impl Track {
     ///
     /// # Panics
     ///
-    /// If there are fewer than two waypoints, or some that are not finite: errors of
-    /// [`load`](crate::load).
+    /// If there are fewer than two waypoints, or a waypoint is not finite. [`load`](crate::load) reports both
+    /// as errors.
     #[must_use]
     pub fn new(route: &Route) -> Self {
         let spline = CubicCardinalSpline::new_catmull_rom(route.waypoints.iter().copied());
@@ -60,13 +60,13 @@ impl Track {
         self.length
     }
 
-    /// The pose at a time in s.
+    /// The pose at a time (s).
     #[must_use]
     pub fn pose(&self, time: f64) -> Transform {
         self.pose_at(self.start + self.speed * time)
     }
 
-    /// The pose at a length along the path in m.
+    /// The pose at a length along the path (m).
     #[must_use]
     pub fn pose_at(&self, length: f64) -> Transform {
         let parameter = self.parameter.sample_clamped(length.rem_euclid(self.length) as f32);
@@ -79,8 +79,8 @@ impl Track {
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct LooksAt(pub Vec3);
 
-/// Moves the entities with a [`Track`] to their pose at the current time: of the fixed clock in
-/// `FixedUpdate`, for runs that are the same to the bit; of the virtual clock in `Update`, for smooth
+/// Moves the entities with a [`Track`] to their pose at the current time. In `FixedUpdate` this is the time
+/// of the fixed clock, for runs with reproducible bits; in `Update` that of the virtual clock, for smooth
 /// motion on screen.
 pub fn follow_tracks(
     time: Res<Time>,

@@ -1,4 +1,4 @@
-//! A valid scene loads; the error of any other names the line, the column and the key.
+//! Tests that a valid scene loads, and that the error of any other names the line, the column and the key.
 
 use std::path::Path;
 
@@ -28,8 +28,8 @@ fn read(source: &str) -> Result<Scene, SceneError> {
     parse(source, Path::new("scene.ron"))
 }
 
-/// Replaces `part` of the valid scene by `bad`, and expects an error at the line and column of `at` in
-/// `bad`, with this key and reason.
+/// Replaces `part` of the valid scene by `bad`, and expects an error at the line and column of `at` in `bad`,
+/// with the given key and reason.
 #[track_caller]
 fn expect_error(part: &str, bad: &str, at: &str, expected_key: &str, expected_reason: &str) {
     let source = GOOD.replacen(part, bad, 1);
@@ -126,7 +126,7 @@ fn an_unknown_preset() {
 }
 
 #[test]
-fn a_material_that_cannot_be() {
+fn an_invalid_material() {
     expect_error("density: 0.2", "density: -0.2", "-0.2", "materials.sail.area_density", "-0.2");
 }
 

@@ -1,4 +1,4 @@
-//! The flags of a scene stay attached to poles and moving vehicles.
+//! Tests that the flags of a scene stay attached to poles and moving vehicles.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! A track has a constant speed, faces forward, and is closed.
+//! Tests that a track has a constant speed, faces forward, and is closed.
 
 use bevy_math::Vec3;
 use bunting_scenes::{Route, Track};

@@ -1,14 +1,14 @@
-//! Tolerances that several files of the step share, each with its unit and what breaks when it is changed.
+//! Tolerances that several files of the solver share, each with its unit and what breaks when it is changed.
 
-/// Standard gravity, m/s²: the default of a cloth, and the gravity of static bounds, whatever acts on it.
+/// Standard gravity, m/s²: the default of a cloth, and the gravity assumed in static bounds.
 pub(crate) const GRAVITY: f32 = 9.81;
 
 /// Lengths below this count as zero, m. Smaller: a collapsed link divides by zero. Larger: the shortest links of
 /// fine meshes resist nothing.
 pub(crate) const LEAST_LENGTH: f32 = 1e-9;
 
-/// Squares of doubled areas below this count as collapsed triangles, m⁴. Smaller: its square, which the air
-/// divides by, underflows. Larger: fine meshes feel no wind.
+/// Squares of doubled areas below this count as collapsed triangles, m⁴. Smaller: the square of this value,
+/// by which the air divides, underflows. Larger: fine meshes feel no wind.
 pub(crate) const LEAST_AREA_SQUARED: f32 = 1e-18;
 
 /// Part of the trace of a cloth's inertia tensor that is added to its diagonal, so that the tensor of a line or a

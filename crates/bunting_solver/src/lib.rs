@@ -30,7 +30,7 @@
 //! # One tick
 //!
 //! The loop is that of Häggström's thesis (5.1), with small steps (Macklin 2019) and compliances from the
-//! material (XPBD, Macklin 2016). [`ClothBatch::step`] runs all of it:
+//! material (XPBD, Macklin 2016). [`ClothBatch::step`] runs the whole loop:
 //!
 //! 1. [`ClothBatch::begin_tick`] sets the length of the substeps and finds contact candidates.
 //! 2. In each substep
@@ -41,7 +41,8 @@
 //!    3. [`ClothBatch::update_velocities`] computes velocities from the corrected positions.
 //! 3. [`ClothBatch::compute_normals`] computes normals, once.
 //!
-//! Forces and constraints of a user's come between the phases of a substep: see [`ClothBatch::particles_mut`].
+//! Forces and constraints of the user come between the phases of a substep: see
+//! [`ClothBatch::particles_mut`].
 //!
 //! # Schemes
 //!

@@ -1,4 +1,4 @@
-//! Contacts with parry shapes.
+//! Tests of contacts with parry shapes.
 
 use std::sync::Arc;
 
@@ -12,7 +12,7 @@ use parry3d::shape::SharedShape;
 const TICK: f32 = 1.0 / 60.0;
 const THICKNESS: f32 = 0.002;
 
-/// The default settings, and Gauss–Seidel in so many substeps.
+/// The default settings, and Gauss–Seidel with the given number of substeps.
 fn schemes(substeps: u32) -> [StepSettings; 2] {
     [StepSettings::default(), StepSettings::gauss_seidel(substeps)]
 }
@@ -26,7 +26,7 @@ fn horizontal(n: u32, pinned: bool) -> Arc<Fabric> {
     )
 }
 
-/// The cloth lies in its xy plane, so "down" is −z here.
+/// Gravity along −z: the cloth lies in its xy plane, so −z is down.
 fn fall() -> Drive {
     Drive { gravity: Vec3::new(0.0, 0.0, -9.81), ..Drive::default() }
 }
@@ -59,12 +59,12 @@ fn deepest(batch: &ClothBatch, shape: &SharedShape, position: Vec3) -> f32 {
 /// hangs lower than half a diagonal of the sheet below the top; without contacts the sheet falls 2.8 m.
 #[test]
 fn cloth_comes_to_lie_on_every_shape() {
-    /// How much a corner may hang lower than half a diagonal at rest: diagonals shear.
+    /// Factor by which a corner may hang lower than half a diagonal at rest, since diagonals shear.
     const SHEAR: f32 = 1.05;
     /// Height of the centre above the shape beyond the thickness, m: the distance kept for rounding.
     const CLEARANCE: f32 = 1e-4;
     let centre = Vec3::new(0.5, -0.5, -0.4);
-    // With their heights above their centres.
+    // Each shape is given with its height above its centre, m.
     let shapes = [
         (SharedShape::ball(0.3), 0.3),
         (SharedShape::capsule_x(0.3, 0.15), 0.15),
@@ -121,8 +121,8 @@ fn a_fast_ball_does_not_tunnel() {
     }
 }
 
-/// Particles that are far from a fast shape when a tick begins are pulled into it, within the same tick, by those that
-/// the shape has caught.
+/// Particles that are far from a fast shape at the beginning of a tick are pulled into it in the same tick by
+/// particles that the shape has hit.
 #[test]
 fn nothing_stays_inside_a_fast_shape() {
     let turned = Quat::from_rotation_x(core::f32::consts::FRAC_PI_4);
@@ -158,7 +158,7 @@ fn nothing_stays_inside_a_fast_shape() {
                 let depth = if nearest.is_inside { nearest.point.distance(local) } else { 0.0 };
                 assert!(depth < 1e-3, "{depth} m inside {:?} in tick {tick}", shape.shape_type());
             }
-            // The shape crosses the cloth's plane, z = 0, in tick 1, and takes cloth along.
+            // The shape crosses the cloth's plane, z = 0, in tick 1, and drags cloth along.
             let front = batch.snapshot(0).positions.iter().map(|at| at.z).fold(0.0, f32::max);
             let reached = tick == 0 || front > at(tick + 1).z;
             assert!(reached, "{:?} in tick {tick}: {front} m", shape.shape_type());
@@ -180,7 +180,7 @@ fn friction_holds_a_cloth_on_a_slope_and_its_absence_does_not() {
             batch
                 .drive(0, Drive { gravity, air_density: 0.0, ..Drive::default() })
                 .expect("a good drive");
-            // The coefficient of a contact is the root of the product of the cloth's and the collider's.
+            // The coefficient of a contact is the geometric mean of the cloth's and the collider's.
             batch.set_colliders(0, [Collider { friction, ..ground.clone() }]).expect("good shapes");
             for _ in 0..60 {
                 batch.step(TICK, settings);
@@ -218,8 +218,8 @@ fn a_cloth_that_starts_inside_is_pushed_out_slowly() {
     }
 }
 
-/// The solver removes the angular momentum about a pole that constraints cause by their errors, but not the angular
-/// momentum that a contact causes.
+/// The solver removes the angular momentum about a pole that errors of the constraints cause, but not the
+/// angular momentum that a contact causes.
 #[test]
 fn a_pushed_flag_turns_about_its_pole() {
     let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0));
@@ -246,8 +246,8 @@ fn a_pushed_flag_turns_about_its_pole() {
     assert!((1.0..2.0).contains(&rate), "{rate} rad/s");
 }
 
-/// A sheet that falls on a floor at 2.4 m/s does not bounce. With the impact in the history from which the integrator
-/// extrapolates, it came up again at nine tenths of its speed.
+/// A sheet that falls on a floor at 2.4 m/s does not bounce. If the history from which the integrator
+/// extrapolates contained the impact, the sheet would rise again at nine tenths of its speed.
 #[test]
 fn a_sheet_that_falls_on_a_floor_stays_there() {
     for (substeps, passes) in [(1, 4), (2, 2), (4, 2)] {

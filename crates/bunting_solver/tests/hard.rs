@@ -1,4 +1,4 @@
-//! Hard cases: starts, ticks and pins that must not break the solver.
+//! Tests of hard cases: starts, ticks and pins that must not break the solver.
 
 use std::sync::Arc;
 
@@ -69,8 +69,9 @@ fn odd_ticks_stay_finite_and_ticks_without_length_move_nothing() {
     }
 }
 
-/// Strips without load that are displaced in their plane swing back, and no farther. With the stretch of their plane
-/// predicted as that of bending is, strips of cells 2 : 1 went three hundred times as far, of cells 1 : 4 twice.
+/// Strips without load that are displaced in their plane swing back, and no farther. With a predicted stretch
+/// in their plane, like that of bending, strips of cells 2 : 1 went three hundred times as far, of cells 1 :
+/// 4 twice.
 #[test]
 fn stiff_strips_displaced_in_their_plane_do_not_swing_farther() {
     const NUDGE: f32 = 1e-4;
@@ -109,11 +110,11 @@ fn stiff_strips_displaced_in_their_plane_do_not_swing_farther() {
     }
 }
 
-/// Upper and lower edge a tenth too far apart, and then not. Without under-relaxation the cloth oscillated at 4.7 m/s
-/// for ever.
+/// The upper and lower edge are held a tenth too far apart, and then at rest length. Without under-relaxation
+/// the cloth oscillated at 4.7 m/s for ever.
 #[test]
 fn pins_too_far_apart_hold_the_cloth_still() {
-    /// RMS speed, m/s.
+    /// Greatest RMS speed of cloth at rest, m/s.
     const AT_REST: f32 = 1e-3;
     let n = 17;
     let grid = FabricBuilder::grid(Grid::new(n, n, 1.0, 1.0));
@@ -167,8 +168,8 @@ fn a_shaken_flag_stays_within_its_reach_of_both_ends_of_the_pole() {
         batch.copy_positions(0, &mut positions);
         reach = positions.iter().map(|at| at.distance(positions[0])).fold(reach, f32::max);
     }
-    // The diagonal with the slack of its tether, and twice the shear that its weight may cause. With tethers to the
-    // nearest pins alone it was 1.8 m.
+    // The bound is the diagonal with the slack of its tether, and twice the shear that its weight may cause.
+    // With tethers to the nearest pins alone the distance was 1.8 m.
     let most = core::f32::consts::SQRT_2 * (1.05 + 2.0 * 0.02);
     assert!((1.3..1.01 * most).contains(&reach), "{reach} {most}");
 }

@@ -1,5 +1,5 @@
-//! The bits of a lane depend only on the lane's own history: not on the other lanes, the batch's width or the
-//! instruction set.
+//! Tests that the bits of a lane depend only on the lane's own history: not on the other lanes, the batch's
+//! width or the instruction set.
 
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -26,11 +26,11 @@ fn flag() -> Arc<Fabric> {
     Arc::new(builder.build().expect("a good fabric"))
 }
 
-/// Materials that differ in everything that may differ within a batch.
+/// Materials that differ in every property that may differ within a batch.
 fn material(seed: usize) -> FabricMaterial {
     match seed % 3 {
         0 => FabricMaterial { friction_coefficient: 0.0, ..FabricMaterial::SILK },
-        // So stiff that bending is solved where stretch leads to.
+        // This cloth is so stiff that bending is solved at positions with the displacement by stretch.
         1 => FabricMaterial { bend_stiffness: 10.0, ..FabricMaterial::DENIM },
         _ => FabricMaterial { internal_damping: 1.0, ..FabricMaterial::COTTON },
     }
@@ -54,7 +54,7 @@ fn colliders(seed: usize) -> Vec<Collider> {
     if seed % 4 == 2 { vec![ball] } else { Vec::new() }
 }
 
-/// The states of cloths with these seeds after a second in a batch of this width.
+/// States of cloths with these seeds after a second in a batch of the given width.
 fn fly(
     fabric: &Arc<Fabric>,
     lanes: LaneCount,
@@ -188,8 +188,8 @@ fn a_lane_that_was_not_finite_can_be_used_again() {
     assert!(batch.is_finite(lane));
 }
 
-/// An exchange of several lanes gives the same states as one replacement after the other, and lanes that become empty
-/// come to a standstill.
+/// An exchange of several lanes gives the same states as single replacements one after the other, and lanes
+/// that become empty come to rest.
 #[test]
 fn an_exchange_of_many_lanes_equals_single_replacements() {
     let fabric = flag();
@@ -251,7 +251,7 @@ fn a_lane_keeps_nothing_of_the_cloth_before() {
         used.exchange(&left, &[]).expect("two cloths leave");
         used.step(TICK, settings);
         for lane in 1..4 {
-            // Stiff cloth replaces stiff cloth: only its bending depends on the stretch of earlier substeps.
+            // Stiff cloth replaces stiff cloth, since only stiff bending depends on stretch.
             let seed = lane + 3;
             let state = flown[seed].clone().without_history();
             for batch in [&mut used, &mut unused] {
@@ -301,8 +301,8 @@ fn surfaces_are_copies_of_the_lanes() {
     }
 }
 
-/// A cloth hung by two corners in still air oscillates with one substep, and is under-relaxed: by the same bits alone,
-/// beside cloths that fly, and after a move to another batch.
+/// A cloth hung by two corners in still air oscillates with one substep, and is under-relaxed: with the same
+/// bits alone, beside cloths that fly, and after a move to another batch.
 #[test]
 fn under_relaxation_at_rest_gives_the_same_bits() {
     const SETTINGS: StepSettings = StepSettings { passes: 4, ..StepSettings::yarns(1) };

@@ -1,4 +1,4 @@
-//! State moved from level to level.
+//! Tests of states moved from level to level.
 
 use std::sync::Arc;
 

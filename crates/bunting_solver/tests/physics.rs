@@ -1,4 +1,4 @@
-//! Laws of motion that hold in every scheme: in the default one, and in Gauss–Seidel where that differs.
+//! Tests of laws of motion that hold in every scheme: in the default one, and in Gauss–Seidel if it differs.
 
 use std::sync::Arc;
 
@@ -11,13 +11,14 @@ use glam::{Quat, Vec3};
 const TICK: f32 = 1.0 / 60.0;
 const GRAVITY: f32 = 9.81;
 
-/// Change of a cloth's momentum in a second by rounding, as a part of it: corrections are rounded to a unit in the last
-/// place of a position, 6e-8 m at 1 m, in each of 240 substeps. A smaller limit fails by rounding; a larger one passes
-/// where a constraint pushes one particle more than another.
+/// Relative change of a cloth's momentum in a second by rounding: corrections are rounded to a unit in the
+/// last place of a position, 6e-8 m at 1 m, in each of 240 substeps. Smaller: the test fails by rounding.
+/// Larger: it passes although a constraint pushes one particle more than another.
 const MOMENTUM_ROUNDING: f32 = 1e-3;
 
-/// Change of the angular momentum about the centre in a second, as a part of it, of a crumpled sheet: directions of links
-/// are those before a solve and not those after it. Measured: 0.10 by default, 0.05 with Gauss–Seidel.
+/// Relative change of the angular momentum about the centre in a second, of a crumpled sheet: the directions
+/// of links are those before a solve and not those after it. Measured: 0.10 by default, 0.05 with
+/// Gauss–Seidel.
 const SPIN_ERROR: f32 = 0.12;
 
 /// The standard scenes' material: σ = 0.2, Y = 1e4, G = 200, B = 2e-5, without damping, air or contact.
@@ -35,7 +36,7 @@ const STANDARD: FabricMaterial = FabricMaterial {
     surface_friction: 0.0,
 };
 
-/// The default settings, and Gauss–Seidel in so many substeps.
+/// The default settings, and Gauss–Seidel with the given number of substeps.
 fn schemes(substeps: u32) -> [StepSettings; 2] {
     [StepSettings::default(), StepSettings::gauss_seidel(substeps)]
 }
@@ -100,8 +101,8 @@ fn a_hanging_sheet_stretches_as_its_material_says() {
         damping: 3.0,
         ..STANDARD
     };
-    // Gauss–Seidel leaves a hidden compliance of h²/(k m) behind, which 30 substeps bring below 2 %. Chains are solved
-    // exactly.
+    // Gauss–Seidel leaves a numerical compliance of h²/(k m), which 30 substeps bring below 2 %. Chains are
+    // solved exactly.
     for (settings, tolerance) in
         [(StepSettings::default(), 2e-3), (StepSettings::gauss_seidel(30), 0.02)]
     {
@@ -126,8 +127,8 @@ fn broadside_fall_reaches_terminal_speed() {
     // The sheet lies in the xy plane and falls along z, to v_t² = 2σg/(ρ C).
     let drive = Drive { gravity: Vec3::new(0.0, 0.0, -GRAVITY), ..Drive::default() };
     let expected = (2.0 * 0.1 * GRAVITY / (1.225_f32 * 1.2)).sqrt();
-    // Each step of backward Euler slows v by av/(1 + a²) with a = gh v/v_t², and adds gh: v is v_t but for a²/2, which
-    // is 2.5e-5 with 20 substeps.
+    // Each step of backward Euler slows v by av/(1 + a²) with a = gh v/v_t², and adds gh: v equals v_t except
+    // for a²/2, which is 2.5e-5 with 20 substeps.
     for settings in schemes(20) {
         let mut batch = lone(&fabric, material, drive);
         for _ in 0..60 {
@@ -158,7 +159,7 @@ fn drag_alone_slows_by_its_closed_form() {
 }
 
 /// A sheet that hangs in a steady wind stands at the slope θ at which ½ρCW² cos²θ = σg sin θ, whatever the
-/// step: drag made implicit as if nothing held the cloth would lose a seventh.
+/// step. Drag made implicit as if nothing held the cloth would lose a seventh of the force.
 #[test]
 fn a_pinned_sheet_feels_all_of_the_wind() {
     let fabric = square(3, |at| at.y == 0.0);
@@ -199,7 +200,7 @@ fn strong_wind_never_overshoots() {
                 assert!(low >= slowest && high <= WIND, "{n}, {settings:?}: {low}..{high} m/s");
                 slowest = low;
             }
-            // v = W − W/(1 + k W t), after a third of a second.
+            // The closed form is v = W − W/(1 + k W t), after a third of a second.
             let lag = 1.0 + 0.5 * 1.225 * 1.2 / 0.02 * WIND * 20.0 * TICK;
             let expected = WIND - WIND / lag;
             assert!((slowest / expected - 1.0).abs() < 1e-3, "{slowest} {expected}");

@@ -1,4 +1,5 @@
-//! A batch of one cloth, whose own yarns fill the lanes, computes the same bits as a batch of several cloths.
+//! Tests that a batch of one cloth, whose own yarns fill the lanes, computes the same bits as a batch of
+//! several cloths.
 
 use std::sync::Arc;
 
@@ -43,7 +44,7 @@ fn fly(
     let mut normals = Vec::new();
     for tick in 0..200 {
         batch.drive(lane, drive(tick)).expect("a good drive");
-        // A cloth that is taken out and put back goes on with the same bits.
+        // A cloth that is removed and put back continues with the same bits.
         if tick == 100 {
             let moving = batch.snapshot(lane);
             batch.restore(lane, &moving).expect("its own state");
@@ -85,7 +86,7 @@ fn pins_anywhere_agree() {
         agrees(grid(), material, yarns(2, 2));
         agrees(grid().pin([0, 12]), material, yarns(2, 2));
         agrees(grid().pin_where(|_, uv| uv.y == 0.0), material, yarns(2, 2));
-        // A hole in the middle of rows, columns and diagonals.
+        // The pins are a hole in the middle of rows, columns and diagonals.
         agrees(grid().pin([57, 58, 59, 70, 71, 72, 84, 86]), material, yarns(2, 2));
     }
 }
@@ -149,7 +150,7 @@ fn pins_too_far_apart_agree() {
     wide.positions.iter_mut().for_each(|position| *position *= 1.05);
     let [alone, shared] = [LaneCount::One, LaneCount::Eight].map(|lanes| {
         let mut batch = ClothBatch::new(fabric.clone(), lanes);
-        // A second cloth in the batch, at rest.
+        // The batch holds a second cloth, at rest.
         if lanes != LaneCount::One {
             let rest = ClothSnapshot::at_rest(&fabric);
             batch.insert(&rest, FabricMaterial::DENIM).expect("a free lane");

@@ -1,4 +1,4 @@
-//! The default scheme, yarns, against closed forms, and at rest.
+//! Tests of the default scheme, yarns, against closed forms, and at rest.
 
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -59,11 +59,11 @@ fn free_fall_is_of_second_order() {
     }
     let fallen = batch.snapshot(0).positions[12].y + 0.5;
     assert!((f64::from(fallen) / x[0] - 1.0).abs() < 1e-5, "{fallen} {}", x[0]);
-    // The only error is that of the first step, g h²/2, and what its velocity makes of it.
+    // The only error is that of the first step, g h²/2, and the effect of its velocity.
     assert!((x[0] + 0.5 * 9.81 * 0.25).abs() < 9.81 * h * h, "{}", x[0]);
 }
 
-/// δ/L of a grid that has hung from its top for six seconds, and σgL/2Y.
+/// Strain δ/L of a grid that has hung from its top for six seconds, and its closed form σgL/2Y.
 fn hanging_strain(grid: Grid, material: FabricMaterial, settings: StepSettings) -> [f32; 2] {
     let fabric = FabricBuilder::grid(grid).pin_where(|_, uv| uv.y == 0.0).build();
     let fabric = Arc::new(fabric.expect("a good fabric"));
@@ -80,8 +80,8 @@ fn hanging_strain(grid: Grid, material: FabricMaterial, settings: StepSettings) 
     [stretch, load / (2.0 * material.weft_stiffness)]
 }
 
-/// Warp and weft carry all of the load. Diagonals of a fixed length carried a part of it, but not at the edges of the
-/// sheet, so that it stretched by 1 % too much with one substep and by 0.6 % with two.
+/// Warp and weft carry all of the load. Diagonals of a fixed length carried a part of it, except at the edges
+/// of the sheet, so that the sheet stretched by 1 % too much with one substep and by 0.6 % with two.
 #[test]
 fn a_hanging_sheet_has_its_materials_strain_at_every_size() {
     let material = FabricMaterial { damping: 2.0, ..STANDARD };
@@ -95,8 +95,9 @@ fn a_hanging_sheet_has_its_materials_strain_at_every_size() {
     }
 }
 
-/// A narrow strip is all edge. The last two of these fabrics, measured by Wang et al. 2011, resist shear nearly as much
-/// as stretch. The closed form is of first order in the strain, hence the tolerance of the strain itself.
+/// A narrow strip consists of edges only. The last two of these fabrics, measured by Wang et al. 2011, resist
+/// shear nearly as much as stretch. The closed form is of first order in the strain, so the tolerance is the
+/// strain itself.
 #[test]
 fn a_strip_has_its_materials_strain() {
     for (area_density, [warp, weft], shear_stiffness) in [
@@ -126,14 +127,14 @@ fn a_strip_has_its_materials_strain() {
     }
 }
 
-/// Romero et al. 2021: a heavy strip clamped horizontally, Γ = σ g L³/B.
+/// A heavy strip clamped horizontally, Γ = σ g L³/B (Romero et al. 2021).
 #[test]
 fn a_heavy_cantilever_droops_as_its_closed_form() {
     for (gamma, expected) in [(0.1, 0.012_50), (1.0, 0.124_56), (10.0, 1.066_80), (50.0, 3.705_56)]
     {
         let cells = 32;
         let spacing = 1.0 / cells as f32;
-        // One cell lies in the clamp.
+        // One more cell lies in the clamp.
         let grid = Grid::new(cells + 2, 5, 1.0 + spacing, 4.0 * spacing);
         let builder = FabricBuilder::grid(grid).pin_where(|at, _| at.x < 1.5 * spacing);
         let fabric = Arc::new(builder.build().expect("a good fabric"));
@@ -158,8 +159,8 @@ fn a_heavy_cantilever_droops_as_its_closed_form() {
     }
 }
 
-/// A strip too stiff to bend swings as a rod, let go from level: 2π √(2/3g (1 + 1/2N²)) × 1.180341. Without resistance
-/// to twist its two lines of vertices swing apart, with an error of 4 % of the period.
+/// A strip too stiff to bend swings like a rod when released from level: 2π √(2/3g (1 + 1/2N²)) × 1.180341.
+/// Without resistance to twist its two lines of vertices swing apart, with an error of 4 % of the period.
 #[test]
 fn a_stiff_strip_swings_as_a_rod() {
     let links = 8;
@@ -217,8 +218,8 @@ fn a_limp_flag_does_not_turn_about_its_pole() {
     assert!(rms < 1e-3, "{rms} m/s");
 }
 
-/// A limp flag hangs from the upper end of its pole by a few light particles, which oscillated at 0.2 m/s before they
-/// were given added mass.
+/// A limp flag hangs from the upper end of its pole by a few light particles, which oscillated at 0.2 m/s
+/// without added mass.
 #[test]
 fn a_limp_flag_comes_to_rest() {
     for settings in [StepSettings::yarns(2), StepSettings::default()] {
@@ -228,8 +229,8 @@ fn a_limp_flag_comes_to_rest() {
     }
 }
 
-/// Where taut links vibrate faster than the substeps resolve, the integrator can feed that vibration: a flag then stays
-/// in a state of 15 % strain and three times the speed.
+/// If taut links vibrate faster than the substeps resolve, the integrator can amplify the vibration: a flag
+/// then stays in a state of 15 % strain and three times the speed.
 #[test]
 fn a_flag_in_the_wind_does_not_feed_its_vibration() {
     let grid = FabricBuilder::grid(Grid::new(33, 33, 1.0, 1.0));
@@ -257,8 +258,8 @@ fn a_flag_in_the_wind_does_not_feed_its_vibration() {
     assert!(fastest < 2.5, "{fastest} m/s RMS");
 }
 
-/// Taut links whose directions are frozen during a solve push particles to and fro across them for ever: at 2 mm/s RMS,
-/// all of it in a few particles, without the under-relaxation of these.
+/// Taut links with frozen directions push particles back and forth across them for ever: at 2 mm/s RMS, all
+/// of it in a few particles, without their under-relaxation.
 #[test]
 fn a_cloth_that_hangs_by_two_corners_comes_to_rest() {
     let fabric = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)).pin([0, 16]).build();

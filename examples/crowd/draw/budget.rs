@@ -1,4 +1,4 @@
-//! Keys that change the budget of all cloth.
+//! Keys that change the budget of all cloths.
 
 use std::time::Duration;
 

@@ -6,11 +6,11 @@ use bunting_examples::render::title::Title;
 use bunting_examples::render::{print, stage};
 use bunting_scenes::Design;
 
-/// Whether cloth is coloured by level.
+/// Whether cloths are coloured by level.
 #[derive(Resource, Clone, Copy, Debug, PartialEq, Eq)]
 struct ByLevel(bool);
 
-/// Size of each print, m: that of a flag.
+/// Size of each print, m; the size of a flag.
 const PRINT_SIZE: Vec2 = Vec2::new(1.2, 0.8);
 
 /// Colours of the levels, the finest first.
@@ -24,7 +24,7 @@ const LEVEL_COLOURS: [Srgba; 4] = [
 /// Colour of cloth that is asleep.
 const ASLEEP_COLOUR: Srgba = Srgba::rgb(0.45, 0.45, 0.50);
 
-/// The materials of all cloths: few, so that many cloths are drawn together.
+/// The materials of all cloths; a small number, so that many cloths are drawn together.
 #[derive(Resource, Debug)]
 struct Materials {
     prints: Vec<Handle<StandardMaterial>>,
@@ -74,7 +74,7 @@ fn create_materials(
     });
 }
 
-/// Designs of no country.
+/// Designs that are no country's flag.
 fn designs() -> [Design; 6] {
     let [orange, cream, slate, plum, gold, teal, lilac] = [
         [225, 95, 45],

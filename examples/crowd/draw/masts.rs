@@ -5,7 +5,7 @@ use bunting_examples::render::stage;
 
 use crate::plaza::Mast;
 
-/// Gives each [`Mast`] a shaft: one mesh for all, scaled.
+/// Gives each [`Mast`] a shaft: one shared mesh, scaled.
 pub fn plugin(app: &mut App) {
     app.add_systems(PostStartup, draw_masts);
 }

@@ -20,7 +20,7 @@ pub const STAGE: Stage = Stage {
     shadows: [20.0, 80.0],
 };
 
-/// Draws masts and cloth, coloured by level at the start or not.
+/// Draws masts and cloths, coloured by level at the start or not.
 pub fn plugin(by_level: bool) -> impl Plugin {
     move |app: &mut App| {
         app.add_plugins((masts::plugin, colours::plugin(by_level)));

@@ -35,7 +35,7 @@ pub fn plugin(app: &mut App) {
     ));
 }
 
-/// Takes the viewer off its track, so that the mouse can move it, and adds keys.
+/// Removes the viewer from its track, so that the mouse can move it, and adds keys.
 pub fn control(app: &mut App, centre: Vec3) {
     let viewer = render::viewer(app);
     app.world_mut().entity_mut(viewer).remove::<Track>();

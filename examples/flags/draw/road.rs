@@ -8,7 +8,7 @@ use bunting_scenes::{Model, Track};
 /// Half the width of a road, m.
 const HALF_WIDTH: f32 = 2.4;
 
-/// Height above the ground, m: less, and the two flicker from afar, equal in the depth buffer.
+/// Height above the ground, m. Smaller: road and ground have equal depths from afar and flicker.
 const HEIGHT: f32 = 0.03;
 
 /// Length of a segment of road, m.

@@ -1,11 +1,11 @@
-//! Keys that stop time and show what is otherwise invisible.
+//! Keys that pause the time and show gizmos.
 
 use bevy::prelude::*;
 use bevy_bunting::{ClothDebugPlugin, ClothGizmos};
 
 use crate::render::title::Title;
 
-/// P stops time and starts it again.
+/// P pauses and resumes time.
 pub fn pause(app: &mut App) {
     app.add_systems(Update, |keys: Res<ButtonInput<KeyCode>>, mut time: ResMut<Time<Virtual>>| {
         if keys.just_pressed(KeyCode::KeyP) {

@@ -1,4 +1,4 @@
-//! Shows examples in windows and pictures.
+//! Windows and pictures of examples.
 
 pub mod keys;
 pub mod orbit;
@@ -17,7 +17,7 @@ use bevy_bunting::prelude::*;
 ///
 /// # Panics
 ///
-/// Unless there is one [`LodViewer`].
+/// If there is not exactly one [`LodViewer`].
 pub fn viewer(app: &mut App) -> Entity {
     let world = app.world_mut();
     world.flush();

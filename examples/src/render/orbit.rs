@@ -14,18 +14,18 @@ const ZOOM: f32 = 0.1;
 /// Least and greatest distance, m.
 const DISTANCES: (f32, f32) = (2.0, 200.0);
 
-/// Least and greatest pitch, rad above the horizon: above the ground, and not past the zenith.
+/// Least and greatest pitch, rad above the horizon: above the ground, and below the zenith.
 const PITCHES: (f32, f32) = (-0.05, FRAC_PI_2 - 0.01);
 
 /// The orbit of a camera.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct Orbit {
     centre: Vec3,
-    /// m.
+    /// Distance from the centre, m.
     distance: f32,
-    /// Around the vertical from +z, rad.
+    /// Angle around the vertical from +z, rad.
     yaw: f32,
-    /// Above the horizon, rad.
+    /// Angle above the horizon, rad.
     pitch: f32,
 }
 

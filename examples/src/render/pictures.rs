@@ -25,10 +25,10 @@ use crate::headless::{self, ONE_TICK};
 use crate::render::viewer;
 use crate::{ASSETS, Example, Options};
 
-/// Frames after which a model or a picture that is not ready is given up.
+/// Number of frames after which waiting for a model or a picture ends.
 const MAX_FRAMES: u32 = 10_000;
 
-/// Which pictures to write, and where.
+/// Selection of the pictures, and their folder.
 #[derive(Clone, Debug, Args)]
 pub struct PictureOptions {
     /// Write pictures as PNG into this directory.
@@ -43,14 +43,14 @@ pub struct PictureOptions {
         requires = "pictures"
     )]
     at: Vec<f64>,
-    /// Their width in pixels; the height is 9/16 of it.
+    /// Width in pixels; the height is 9/16 of it.
     #[arg(long, default_value_t = 1280, value_parser = clap::value_parser!(u32).range(16..=8192), requires = "pictures")]
     width: u32,
 }
 
 impl PictureOptions {
-    /// Prepares pictures whose names begin with `name`. None if none are wanted, or if none can be
-    /// written: the reason is printed.
+    /// Prepares pictures whose names begin with `name`. None if no pictures are wanted, or if none can be
+    /// written; the reason is then printed.
     #[must_use]
     pub fn open(&self, name: &str) -> Option<Pictures> {
         let directory = self.pictures.clone()?;
@@ -87,7 +87,7 @@ pub fn run(example: &impl Example, options: &Options, mut pictures: Pictures) ->
     headless::simulate(&mut app, example, options, |app, now| pictures.take_due(app, now))
 }
 
-/// Whether any Vulkan driver is installed; one in software counts.
+/// Whether any Vulkan driver is installed, including software drivers.
 fn any_driver() -> bool {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
     !block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN)).is_empty()
@@ -105,7 +105,8 @@ fn windowless() -> PluginGroupBuilder {
         })
         .set(RenderPlugin {
             render_creation: settings.into(),
-            // Otherwise the first frames lack meshes whose pipelines are not compiled yet.
+            // With asynchronous compilation the first frames would lack meshes whose pipelines are not
+            // compiled yet.
             synchronous_pipeline_compilation: true,
             ..default()
         })
@@ -130,7 +131,7 @@ pub struct Pictures {
     name: String,
     /// Simulated times, s, descending.
     times: Vec<f64>,
-    /// Pixels.
+    /// Size, pixels.
     size: UVec2,
 }
 

@@ -9,11 +9,11 @@ use bunting_scenes::Design;
 /// Resolution of a print, pixels/m.
 const RESOLUTION: f32 = 128.0;
 
-/// Size of a print on a cloth of triangles, m: stripes across any such cloth are sharp enough.
+/// Size of a print on a cloth of triangles, m: large enough for sharp stripes.
 const TRIANGLES_SIZE: Vec2 = Vec2::new(8.0, 0.1);
 
-/// Gives each cloth with a [`Design`] this material, printed with the design. The plugin of the
-/// cloth gives it a mesh.
+/// Gives each cloth with a [`Design`] this material, printed with the design. The mesh comes from the cloth's
+/// plugin.
 pub fn plugin(material: StandardMaterial) -> impl Plugin {
     move |app: &mut App| {
         let material = material.clone();
@@ -54,7 +54,7 @@ pub fn image(design: &Design, size: Vec2) -> Image {
     )
 }
 
-/// The colour at a point in m from the top of the pole.
+/// Colour at a point (m) measured from the top of the pole.
 fn colour(design: &Design, point: Vec2, size: Vec2) -> [u8; 3] {
     let stripe = |colours: &[[u8; 3]], fraction: f32| {
         colours[(fraction * colours.len() as f32) as usize % colours.len()]

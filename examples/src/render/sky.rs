@@ -9,7 +9,7 @@ pub const HORIZON: Color = Color::srgb(0.74, 0.82, 0.89);
 /// Colour at the zenith.
 const ZENITH: Color = Color::srgb(0.22, 0.44, 0.74);
 
-/// Radius of the dome, m: beyond the haze, and before the camera's far plane.
+/// Radius of the dome, m: beyond the haze, and nearer than the camera's far plane.
 const RADIUS: f32 = 900.0;
 
 /// Adds the dome.
@@ -34,7 +34,7 @@ fn spawn_dome(
     commands.spawn((Mesh3d(meshes.add(dome)), MeshMaterial3d(materials.add(air)), NotShadowCaster));
 }
 
-/// The colour at a sine of the angle above the horizon.
+/// Colour at the given sine of the angle above the horizon.
 fn colour(sine: f32) -> LinearRgba {
     let [horizon, zenith] = [HORIZON, ZENITH].map(LinearRgba::from);
     horizon.mix(&zenith, sine.max(0.0).sqrt())

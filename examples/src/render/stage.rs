@@ -21,7 +21,7 @@ pub struct Stage {
     pub ground: Color,
     /// Width of the ground, m.
     pub extent: f32,
-    /// Distances at which haze begins and is opaque, m: it hides the edge of the ground.
+    /// Distances at which haze begins and becomes opaque, m: it hides the edge of the ground.
     pub haze: [f32; 2],
     /// Vertical field of view, rad.
     pub field_of_view: f32,
@@ -34,7 +34,7 @@ pub struct Stage {
 }
 
 impl Stage {
-    /// The stage of a scene of a few metres.
+    /// The stage of a scene that measures a few metres.
     pub const SMALL: Self = Self {
         ground: Color::srgb(0.60, 0.56, 0.49),
         extent: 1000.0,
@@ -45,7 +45,7 @@ impl Stage {
         shadows: [8.0, 30.0],
     };
 
-    /// A camera with this field of view and haze.
+    /// A camera with this stage's field of view and haze.
     #[must_use]
     pub fn camera(&self) -> impl Bundle + use<> {
         let lens = PerspectiveProjection { fov: self.field_of_view, ..default() };

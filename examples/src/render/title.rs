@@ -11,7 +11,7 @@ use bevy_bunting::{ClothCounts, ClothDiagnosticsPlugin};
 /// Time between two updates of the title.
 const PERIOD: Duration = Duration::from_millis(500);
 
-/// The parts of the title that are not measured here.
+/// The parts of the title other than timings.
 #[derive(Resource, Debug)]
 pub struct Title {
     name: &'static str,
@@ -21,7 +21,7 @@ pub struct Title {
 }
 
 impl Title {
-    /// Adds a description of keys to the title, which needs [`plugin`].
+    /// Adds a description of keys to the title; needs [`plugin`].
     pub fn add_keys(app: &mut App, keys: &'static str) {
         app.world_mut().resource_mut::<Self>().keys.push(keys);
     }

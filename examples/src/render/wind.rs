@@ -18,7 +18,7 @@ struct WindFactor {
     off: bool,
 }
 
-/// A wind as it is in the scene.
+/// A wind before any key changed it.
 #[derive(Component, Clone, Copy, Debug)]
 struct SceneWind(WindField);
 

@@ -33,7 +33,7 @@ pub fn run<E: Example>(example: &E) -> ExitCode {
     if app.run().is_success() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Whether a window can be opened: winit panics where none can.
+/// Whether a window can be opened: winit would panic otherwise.
 fn any_display() -> bool {
     !cfg!(target_os = "linux") || x11rb::connect(None).is_ok()
 }

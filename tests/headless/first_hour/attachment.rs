@@ -1,4 +1,5 @@
-//! Item 7: a change of attachment is never a whip. Item 11: targets that come later, and new ones.
+//! Item 7: a change of attachment does not whip the cloth. Item 11: targets that are spawned later or
+//! replaced.
 
 use bevy_app::App;
 use bevy_bunting::prelude::*;
@@ -12,11 +13,11 @@ use super::strain;
 /// Greatest strain that a change of attachment may cause.
 const STRAIN: f32 = 0.1;
 
-/// Greatest speed in the cloth's frame that a change of attachment may cause, m/s: free cloth falls by
-/// half of that in half a second.
+/// Greatest speed in the cloth's frame that a change of attachment may cause, m/s: free cloth reaches half of
+/// it in half a second.
 const SPEED: f32 = 12.0;
 
-/// Greatest strain and speed (m/s) in two seconds, from the tick of a change on.
+/// Greatest strain and speed (m/s) in the two seconds after a change.
 fn worst(app: &mut App, flag: Entity) -> (f32, f32) {
     let each = (0..128).map(|_| {
         app.update();
@@ -49,7 +50,7 @@ fn hung() -> (App, Entity) {
 }
 
 #[test]
-fn another_edge_is_taken_up_gently() {
+fn a_newly_attached_edge_moves_gently() {
     let (mut app, flag) = hung();
     edit(&mut app, flag, |held| held.vertices = ClothEdge::Top.into());
     assert_no_whip(&mut app, flag);

@@ -1,11 +1,11 @@
-//! Item 5: a clone of a cloth is a cloth of its own, in the same state.
+//! Item 5: a clone of a cloth is independent and starts in the same state.
 
 use bevy_bunting::prelude::*;
 use bevy_math::Vec3;
 use bunting_tests::{app, assert_finite, bits, run, spawn_flag};
 
 #[test]
-fn a_clone_goes_on_by_itself() {
+fn a_clone_is_simulated_independently() {
     let mut app = app();
     app.world_mut().spawn(WindField::steady(Vec3::new(5.0, 0.0, 2.0)));
     let original = spawn_flag(&mut app, Vec3::ZERO);
@@ -24,7 +24,7 @@ fn a_clone_goes_on_by_itself() {
 }
 
 #[test]
-fn a_clone_of_what_sleeps_or_is_paused_is_a_cloth_of_its_own() {
+fn a_clone_of_a_sleeping_or_paused_cloth_is_independent() {
     let mut app = app();
     let original = spawn_flag(&mut app, Vec3::ZERO);
     run(&mut app, 20);

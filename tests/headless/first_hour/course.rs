@@ -1,4 +1,4 @@
-//! Item 11: colliders that move in `Update` act where they are seen.
+//! Item 11: colliders that move in `Update` act at their displayed positions.
 
 use std::time::Duration;
 
@@ -15,8 +15,8 @@ const SPEED: f32 = 20.0;
 
 const RADIUS: f32 = 0.3;
 
-/// A curtain of 4 m × 4 m in the plane z = 0; a ball comes from behind. How far it stands out of the cloth
-/// that it pushes, at most, m.
+/// Greatest distance by which a ball stands out of the cloth that it pushes, m. The cloth is a curtain of 4 m
+/// × 4 m in the plane z = 0; the ball comes from behind.
 fn lateness(rate: f64) -> f32 {
     let mut app = app_at(Duration::from_secs_f64(1.0 / rate));
     app.world_mut().resource_mut::<ClothSettings>().gravity = Vec3::ZERO;
@@ -43,7 +43,7 @@ fn lateness(rate: f64) -> f32 {
 fn colliders_act_where_they_are_seen() {
     for rate in [30.0, 47.0, 60.0, 144.0] {
         let late = lateness(rate);
-        // Up to a tick may pass between the last tick and the frame.
+        // Up to one tick may pass between the last tick and the frame.
         assert!(late < SPEED / 64.0 + 0.02, "{late} m late at {rate} Hz");
     }
 }

@@ -1,4 +1,4 @@
-//! Item 4: equal flags in a row move differently, and alike in every run.
+//! Item 4: equal flags in a row move differently from one another, but identically in every run.
 
 use bevy_bunting::TickWind;
 use bevy_bunting::prelude::*;
@@ -10,7 +10,7 @@ use bunting_tests::{Bits, FLAG, app, bits, run, state};
 /// Distance between two flags of the row, m.
 const SPACING: f32 = 3.0;
 
-/// Nine flags in a row along the wind, spawned in the given order; in the order of the row.
+/// Nine flags in a row along the wind, spawned in the given order. Returns them in the order of the row.
 fn row(order: [usize; 9], wind: WindField, ticks: usize) -> (bevy_app::App, Vec<Entity>) {
     let mut app = app();
     app.world_mut().spawn(wind);
@@ -70,7 +70,7 @@ fn a_gust_is_carried_along_by_the_mean_wind() {
     assert!(differences.fold(0.0, f32::max) > 1.0, "it blows alike everywhere");
 }
 
-/// Greatest change of the gusts in a tick (m/s), in a wind whose speed (m/s) in each tick is given.
+/// Greatest change of the gusts in a tick (m/s), in a wind with the given speed (m/s) in each tick.
 fn greatest_change(speed: impl Fn(i32) -> f32) -> f32 {
     let mut app = app();
     let field = app.world_mut().spawn(GUSTY).id();

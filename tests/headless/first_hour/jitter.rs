@@ -1,4 +1,4 @@
-//! Item 2: frames of uneven length do not shake a target that moves evenly.
+//! Item 2: frames of uneven length do not shake the cloth of an evenly moving target.
 
 use std::time::Duration;
 
@@ -15,13 +15,13 @@ use super::strain;
 /// Speed of the pole, m/s.
 const SPEED: f32 = 20.0;
 
-/// Frames, of 1/60 s each in the mean.
+/// Number of frames, with a mean length of 1/60 s.
 const FRAMES: usize = 1800;
 
-/// Flags, which differ by their seeds.
+/// Number of flags, which differ by their seeds.
 const FLAGS: u32 = 16;
 
-/// How a ride at constant speed looks.
+/// Measurements of a ride at constant speed.
 #[derive(Debug)]
 struct Ride {
     /// Mean over time of the mean strain.
@@ -30,15 +30,15 @@ struct Ride {
     speed: f32,
 }
 
-/// Rides along x, with frames that are shorter and longer by at most this part.
+/// Rides along x, with frames whose lengths vary by at most the fraction `jitter`.
 fn ride(jitter: f32) -> Ride {
     #[derive(Component)]
     struct Pole;
     let mut app = app();
-    // So that it flutters out of its plane.
+    // The wind makes the flag flutter out of its plane.
     app.world_mut().spawn(WindField::steady(Vec3::new(0.0, 0.0, 2.0)));
     let pole = app.world_mut().spawn((Pole, Transform::default())).id();
-    // A flag's means over half a minute of flutter differ by some percent from another's.
+    // The means of one flag over half a minute of flutter differ by some percent from another's.
     let flags: Vec<Entity> = (0..FLAGS)
         .map(|seed| {
             let held = Attachment::new(pole, ClothEdge::Left);

@@ -1,4 +1,4 @@
-//! What a newcomer ran into in a game's first hour, each once, so that it stays mended.
+//! Regression tests of the defects that newcomers met in their first hour.
 
 mod attachment;
 mod clone;

@@ -10,13 +10,13 @@ use bunting_tests::{FLAG, app, run, spawn_flag, state};
 
 use super::strain;
 
-/// As far as a fold stands out of the cloth's plane at least, m.
+/// Least distance of a fold from the cloth's plane, m.
 const FOLD: f32 = 0.02;
 
-/// As far as cloth is out of its plane when it is spawned at most, m.
+/// Greatest distance of a newly spawned cloth from its plane, m.
 const IMPERCEPTIBLE: f32 = 2e-4;
 
-/// How far a cloth reaches out of its plane, m.
+/// Distance that a cloth reaches out of its plane, m.
 fn depth(app: &App, cloth: Entity) -> f32 {
     state(app, cloth).positions().iter().map(|position| position.z.abs()).fold(0.0, f32::max)
 }

@@ -16,7 +16,7 @@ fn for_each_source(folder: &Path, check: &mut impl FnMut(&Path, &str)) {
 }
 
 #[test]
-fn only_the_platforms_clock_is_asked() {
+fn only_bevys_clock_is_used() {
     let mut files = 0;
     for name in ["bevy_bunting", "bunting_solver"] {
         let sources =

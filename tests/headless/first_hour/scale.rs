@@ -1,4 +1,4 @@
-//! Item 8: the scale of targets and parents moves the offset only.
+//! Item 8: the scale of targets and parents scales the offset only.
 
 use bevy_bunting::prelude::*;
 use bevy_ecs::hierarchy::ChildOf;
@@ -9,8 +9,8 @@ use bunting_tests::{FLAG, app, run, state};
 
 const SCALE: Vec3 = Vec3::new(2.0, 1.0, 0.5);
 
-/// How far held vertices are drawn from where the target holds them, and how far the cloth's axes are from
-/// being of length one and at right angles.
+/// Greatest distance of held vertices from their places on the target, m, and greatest error of the cloth's
+/// axes compared with orthogonal unit vectors.
 fn errors(app: &bevy_app::App, target: Entity, cloth: Entity, offset: Transform) -> (f32, f32) {
     let global = |entity: Entity| *app.world().get::<GlobalTransform>(entity).expect("placed");
     let (target, drawn) = (global(target), global(cloth));

@@ -1,4 +1,4 @@
-//! Item 9: all components of a cloth reflect fully, and make the round trip through a scene file.
+//! Item 9: all components of a cloth reflect fully, and survive a round trip through a scene file.
 
 use bevy_bunting::bunting_solver::FabricMaterial;
 use bevy_bunting::parry3d::shape::SharedShape;
@@ -18,7 +18,7 @@ use bunting_tests::{FLAG, Seen, app, run, state};
 use serde::de::DeserializeSeed;
 use serde::{Deserialize, Deserializer, Serializer};
 
-/// Entities as numbers, as scenes have them.
+/// Serialises entities as numbers, as scenes do.
 struct Entities;
 
 impl ReflectSerializerProcessor for Entities {
@@ -50,7 +50,7 @@ impl ReflectDeserializerProcessor for Entities {
     }
 }
 
-/// All components of an entity that a scene would hold, as RON.
+/// Serialises as RON all components of an entity that a scene would hold.
 fn save(world: &World, entity: Entity) -> Vec<String> {
     let types = world.resource::<AppTypeRegistry>().read();
     let entity = world.entity(entity);
@@ -66,7 +66,7 @@ fn save(world: &World, entity: Entity) -> Vec<String> {
         .collect()
 }
 
-/// Loads the components of a saved entity as scenes do, which know no other entity than the saved ones.
+/// Loads the components of saved entities as scenes do: only saved entities can be referenced.
 fn load(world: &mut World, saved: &[(Entity, Vec<String>)]) -> Vec<Entity> {
     let types = world.resource::<AppTypeRegistry>().clone();
     let types = types.read();
@@ -143,7 +143,7 @@ fn a_flag_is_loaded_with_its_pole() {
     run(&mut first, 2);
     let saved = [pole, flag].map(|entity| (entity, save(first.world(), entity)));
     let mut second = app();
-    // So that the entities have other numbers than before.
+    // Other entities are spawned first, so that the loaded entities have different numbers than before.
     second.world_mut().spawn_batch([Transform::default(); 7]);
     let [pole, flag] = load(second.world_mut(), &saved)[..] else { panic!("two entities") };
     run(&mut second, 2);

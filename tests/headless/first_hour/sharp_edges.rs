@@ -1,4 +1,4 @@
-//! Item 13: the drawn surface keeps clear of what its particles keep clear of.
+//! Item 13: the drawn surface keeps out of shapes, as its particles do.
 
 use bevy_app::App;
 use bevy_bunting::prelude::*;
@@ -12,10 +12,10 @@ const BOX: Vec3 = Vec3::new(0.3, 0.2, 0.25);
 
 const MARGIN: f32 = 0.008;
 
-/// Points along each side of a triangle at which it is probed.
+/// Number of points along each side of a triangle at which the surface is tested.
 const PROBES: u32 = 12;
 
-/// A sheet of 33 × 33 particles, 3 cm apart, above a sharp box of world axes at the origin.
+/// A sheet of 33 × 33 particles, 3 cm apart, above a sharp axis-aligned box at the origin.
 fn draped(app: &mut App, turn: f32) -> Entity {
     let flat = Quat::from_rotation_y(turn) * Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2);
     let middle = flat * Vec3::new(0.5, -0.5, 0.0);
@@ -26,7 +26,7 @@ fn draped(app: &mut App, turn: f32) -> Entity {
     app.world_mut().spawn(sheet).id()
 }
 
-/// How deep a surface with given positions cuts into the box, m; negative where it stays clear.
+/// Depth by which a surface with the given positions cuts into the box, m; negative if it stays clear.
 fn depth(app: &App, sheet: Entity, positions: &[Vec3]) -> f32 {
     let placed = *app.world().get::<GlobalTransform>(sheet).expect("placed");
     let fabric = state(app, sheet).fabric().expect("a fabric");

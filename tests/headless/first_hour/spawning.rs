@@ -10,11 +10,11 @@ use bevy_tasks::{AsyncComputeTaskPool, TaskPoolBuilder, block_on};
 use bevy_transform::prelude::*;
 use bunting_tests::{FLAG, Seen, app, greatest_speed, run, state};
 
-/// Flags, no two of a size.
+/// Number of flags, all of different sizes.
 const FLAGS: usize = 60;
 
-/// Flags in rows, seen from one end.
-fn furnish(app: &mut bevy_app::App) -> Vec<Entity> {
+/// Spawns flags in rows, seen from one end.
+fn spawn_flags(app: &mut bevy_app::App) -> Vec<Entity> {
     let world = app.world_mut();
     world.spawn((LodViewer::default(), Transform::from_xyz(0.0, 0.0, 6.0)));
     world.resource_mut::<ClothBudget>().costs = LodCosts::Fixed(CostTable::default());
@@ -32,9 +32,9 @@ fn furnish(app: &mut bevy_app::App) -> Vec<Entity> {
 }
 
 #[test]
-fn different_flags_are_cut_in_slices() {
+fn different_flags_are_built_over_several_ticks() {
     let mut app = app();
-    let flags = furnish(&mut app);
+    let flags = spawn_flags(&mut app);
     let mut cut = 0;
     for _ in 0..2 * FLAGS {
         app.update();
@@ -48,7 +48,7 @@ fn different_flags_are_cut_in_slices() {
 #[test]
 fn cloths_begin_within_the_budget() {
     let mut app = app();
-    let flags = furnish(&mut app);
+    let flags = spawn_flags(&mut app);
     let budget = app.world().resource::<ClothBudget>().tick;
     for tick in 0..2 * FLAGS {
         app.update();
@@ -75,7 +75,7 @@ fn cloths_begin_at_their_levels() {
 }
 
 #[test]
-fn a_cloth_may_have_hung_for_a_while() {
+fn a_cloth_can_be_simulated_in_advance() {
     let mut app = app();
     app.world_mut().spawn(WindField::steady(Vec3::new(1.0, 0.0, 1.0)));
     let turned =
@@ -100,15 +100,15 @@ fn a_cloth_may_have_hung_for_a_while() {
     assert!(first[16].y < -0.3, "as it was cut: {}", first[16]);
     assert!(speed < 5.0, "{speed} m/s");
     run(&mut app, 128 - 20);
-    // What was simulated in advance is what the other went through.
+    // The simulation in advance equals that of the other cloth.
     let apart = state(&app, other).positions()[16].distance(first[16]);
     assert!(apart < 0.2, "{apart} m");
     assert!(app.world().get::<ClothPreroll>(rolled).is_none());
     assert!(app.world().resource::<Seen<ClothFailed>>().0.is_empty());
 }
 
-/// The update in which a cloth that has hung for some time is first seen. Threads in the background are busy for a
-/// while, if asked for.
+/// Number of the update in which a cloth with a preroll is first shown, optionally while background threads
+/// are busy.
 fn tick_of_preroll(seconds: f32, busy: bool) -> usize {
     let mut app = app();
     let pool = AsyncComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
@@ -126,7 +126,7 @@ fn tick_of_preroll(seconds: f32, busy: bool) -> usize {
 }
 
 #[test]
-fn cloths_that_have_hung_are_seen_in_the_same_tick_on_every_machine() {
+fn cloths_simulated_in_advance_are_shown_in_the_same_tick_on_every_machine() {
     let tick = tick_of_preroll(60.0, false);
     assert!(tick > tick_of_preroll(0.0, false), "a minute takes longer than a tick");
     assert_eq!(tick, tick_of_preroll(60.0, true));

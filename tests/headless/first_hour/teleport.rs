@@ -1,4 +1,4 @@
-//! Item 6: no teleport is missed. Item 7: what a teleport is follows from speed and time.
+//! Item 6: no teleport is missed. Item 7: a teleport is detected by speed.
 
 use std::time::Duration;
 
@@ -11,10 +11,10 @@ use bunting_tests::{FLAG, app_at, greatest_speed};
 
 use super::strain;
 
-/// Frames from the first on, in each of which the pole is moved in turn.
+/// Frames, from the first on, in one of which the pole is moved.
 const FRAMES: usize = 8;
 
-/// Spawns a pole and its flag, moves the pole in one frame, and tells the greatest strain and speed (m/s).
+/// Spawns a pole and its flag, and moves the pole in one frame. Returns the greatest strain and speed (m/s).
 fn jump(frame: usize, rate: f64, moved: Vec3) -> (f32, f32) {
     #[derive(Resource)]
     struct Frame(usize);

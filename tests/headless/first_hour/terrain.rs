@@ -1,5 +1,4 @@
-//! Item 1: a shape costs nothing where nothing is near it. Item 11: cloth leaves the terrain that it was
-//! spawned across.
+//! Item 1: a distant shape costs nothing. Item 11: cloth that is spawned across terrain leaves it.
 
 use std::time::Duration;
 
@@ -14,16 +13,17 @@ use bevy_transform::prelude::*;
 use bunting_tests::{app, run, spawn_flag, state};
 use parry3d::shape::TriMesh;
 
-/// What a shape far away may add to a tick, s. A query of each triangle of the smallest bowl takes 370 ms
-/// and a query of each particle 1 ms in an optimised build.
+/// Time that a distant shape may add to a tick, s. In an optimised build a query of each triangle of the
+/// smallest bowl takes 370 ms, and a query of each particle 1 ms.
 const FAR_COST: Duration = Duration::from_micros(50);
 
-/// Height of a bowl of a metre's depth each 20 m squared, at a distance from its middle, m.
+/// Height of a bowl at a distance from its middle, m: it rises by the square of the distance, one metre at 20
+/// m.
 fn bowl(x: f32, z: f32) -> f32 {
     (x * x + z * z) / 400.0
 }
 
-/// A bowl of 200 m, as so many cells a side.
+/// A bowl of 200 m with the given number of cells a side.
 fn field(cells: usize) -> HeightField {
     let at = |index: usize| 200.0 * (index as f32 / cells as f32 - 0.5);
     let mut heights = Array2::zeros(cells + 1, cells + 1);
@@ -50,7 +50,7 @@ fn ring() -> SharedShape {
     SharedShape::compound(boxes.collect())
 }
 
-/// The shortest of many ticks of a flag 5 m above the origin.
+/// Shortest of many ticks of a flag 5 m above the origin.
 fn shortest_tick(shape: Option<SharedShape>) -> Duration {
     let mut app = app();
     app.world_mut().spawn(WindField::steady(Vec3::new(5.0, 0.0, 1.0)));
@@ -82,7 +82,7 @@ fn a_shape_costs_nothing_where_nothing_is_near_it() {
     }
 }
 
-/// A sheet 2 m wide, flat or upright, that a bowl's bottom cuts in half.
+/// A sheet 2 m wide, flat or upright, half below the bottom of a bowl.
 fn spawned_across(app: &mut App, flat: bool) -> bevy_ecs::entity::Entity {
     let turn = if flat { Quat::from_rotation_x(-1.3) } else { Quat::IDENTITY };
     let place = turn * Vec3::new(-1.0, 1.0, 0.0);

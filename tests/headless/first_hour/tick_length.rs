@@ -7,7 +7,7 @@ use bunting_tests::{app_at, run};
 
 use super::strain;
 
-/// Mean strain of a flag in wind, with ticks of so many seconds.
+/// Mean strain of a flag in wind, with ticks of the given length (s).
 fn mean_strain(tick: f64) -> f32 {
     let mut app = app_at(std::time::Duration::from_secs_f64(tick));
     app.insert_resource(Time::<Fixed>::from_seconds(tick));

@@ -1,4 +1,4 @@
-//! Assigns lanes: each simulated cloth gets one, paused and sleeping cloths leave theirs.
+//! Assigns lanes: each simulated cloth gets a lane, paused and sleeping cloths leave theirs.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
@@ -39,9 +39,9 @@ fn mark_resumed(resumed: On<Remove, ClothPaused>, mut cloths: Query<&mut ClothIn
     }
 }
 
-/// Moves snapshots of simulated cloths into lanes, and the states of paused and sleeping cloths out of
-/// them. When the settings or the length of a tick change, all cloths are assigned again, as their
-/// numbers of substeps may differ.
+/// Moves snapshots of simulated cloths into lanes, and states of paused and sleeping cloths out of lanes.
+/// When the settings or the length of a tick change, all cloths are assigned again, as their numbers of
+/// substeps may differ.
 pub(crate) fn assign_lanes(
     mut cloths: Query<(Entity, &mut ClothInstance, Has<ClothPaused>)>,
     settings: Res<ClothSettings>,
@@ -74,7 +74,7 @@ pub(crate) fn assign_lanes(
     }
     batches.assign_lanes(settings.lanes, |entity, lane| {
         if let Ok((_, mut instance, _)) = cloths.get_mut(entity) {
-            // Another lane is no change of the cloth: what depends on changes must not depend on other cloths.
+            // A new lane must not mark the cloth as changed, since it depends on other cloths.
             let instance = instance.bypass_change_detection();
             instance.storage = StateStorage::Lane(lane);
             instance.unmoved = false;

@@ -14,8 +14,8 @@ use crate::batch::group::Group;
 use crate::batch::lane_handle::LaneHandle;
 use crate::batch::occupancy::{LaneMut, OccupiedBatch, PendingCloth};
 
-/// Number of particles, counted in all lanes, from which a phase of a substep is spread over threads:
-/// it then outweighs the 30 µs that it takes to wake them. Fewer: small crowds are slowed down.
+/// Number of particles in all lanes from which a phase of a substep is spread over threads: its time then
+/// outweighs the 30 µs of waking them. Fewer: small crowds are slowed down.
 const PARALLEL_PARTICLES: usize = 64 * 1024;
 
 /// The batches that hold the state of all simulated cloths.
@@ -45,7 +45,7 @@ impl ClothBatches {
         self.groups.iter().map(|group| group.batches.len()).sum()
     }
 
-    /// Number of substeps in a tick of the batches that have most.
+    /// Number of substeps in a tick of the batches with the most substeps.
     pub(crate) fn substeps(&self) -> u32 {
         let groups = self.groups.iter().filter(|group| !group.batches.is_empty());
         groups.map(|group| group.settings.substeps).max().unwrap_or(0)
@@ -76,14 +76,14 @@ impl ClothBatches {
         self.groups[index].pending.push(cloth);
     }
 
-    /// The state in a lane, if the cloth in it is another one than this.
+    /// State in a lane, if the lane holds another cloth than `cloth`.
     pub(crate) fn state_of_other(&self, lane: LaneHandle, cloth: Entity) -> Option<ClothSnapshot> {
         let batch = self.groups.get(lane.group)?.batches.get(lane.batch)?;
         let occupant = batch.occupants.get(lane.lane)?.as_ref()?;
         (occupant.entity != cloth).then(|| batch.batch.snapshot(lane.lane))
     }
 
-    /// The colliders that the cloth in a lane could touch in the last tick.
+    /// Colliders that the cloth in a lane could touch in the last tick.
     pub(crate) fn near_colliders(&self, lane: LaneHandle) -> impl Iterator<Item = &Collider> {
         self.groups[lane.group].batches[lane.batch].batch.near_colliders(lane.lane)
     }
@@ -93,7 +93,7 @@ impl ClothBatches {
         self.free(lane).snapshot(lane.lane)
     }
 
-    /// Removes a cloth from its lane, without the integrator's history: it belongs to this level.
+    /// Removes a cloth from its lane, without the integrator's history, which is valid for this level only.
     pub(crate) fn remove_without_history(&mut self, lane: LaneHandle) -> ClothSnapshot {
         self.free(lane).snapshot_without_history(lane.lane)
     }
@@ -116,8 +116,8 @@ impl ClothBatches {
         &batch.batch
     }
 
-    /// Gives every pending cloth a lane and closes gaps. Calls `assigned` with each cloth whose lane is
-    /// another, and that lane.
+    /// Gives every pending cloth a lane and closes gaps. Calls `assigned` with each cloth whose lane changes,
+    /// and its new lane.
     pub(crate) fn assign_lanes(
         &mut self,
         width: Option<LaneCount>,
@@ -141,7 +141,7 @@ impl ClothBatches {
         })
     }
 
-    /// Copies the surfaces of all lanes out of the batches.
+    /// Copies the surfaces of all lanes from the batches.
     pub(crate) fn copy_surfaces(&mut self) {
         self.spread(|_| true, |batch| batch.batch.copy_surfaces(&mut batch.surfaces));
     }
@@ -157,15 +157,15 @@ impl ClothBatches {
         LaneMut { occupied: &mut self.groups[lane.group].batches[lane.batch], lane: lane.lane }
     }
 
-    /// The particles of a cloth in the current substep, and the fraction of the tick at its end. None if
-    /// the cloth does not take part in the substep.
+    /// Particles of a cloth in the current substep, and the fraction of the tick that has passed at the
+    /// substep's end. None if the cloth does not take part in the substep.
     pub(crate) fn particles_mut(&mut self, lane: LaneHandle) -> Option<(ParticlesMut<'_>, f32)> {
         let batch = &mut self.groups[lane.group].batches[lane.batch];
         let covered = batch.covered;
         Some((batch.batch.particles_mut(lane.lane)?, covered))
     }
 
-    /// The time that each batch took in the last tick, if it was measured.
+    /// Time that each batch took in the last tick, if it was measured.
     pub(crate) fn timings(&self) -> impl Iterator<Item = BatchTiming> + '_ {
         self.groups.iter().flat_map(|group| {
             group.batches.iter().map(|batch| BatchTiming {
@@ -189,7 +189,7 @@ impl ClothBatches {
         }
     }
 
-    /// Begins substep `index` of `count`. A batch of fewer substeps takes part in as many of them as it
+    /// Begins substep `index` of `count`. A batch with fewer substeps takes part in as many of them as it
     /// has, evenly spread.
     pub(crate) fn begin_substep(&mut self, index: u32, count: u32) {
         for group in &mut self.groups {
@@ -222,7 +222,7 @@ impl ClothBatches {
         self.for_each_where(|_| true, all);
     }
 
-    /// Runs a phase on some batches, and adds its time to theirs where that is measured.
+    /// Runs a phase on some batches, and adds its time to theirs if times are measured.
     fn for_each_where(
         &mut self,
         takes_part: impl Fn(&OccupiedBatch) -> bool,
@@ -240,8 +240,8 @@ impl ClothBatches {
         });
     }
 
-    /// Runs work on some batches, on all threads if there are enough particles. Batches share nothing
-    /// that is written, so the order does not matter.
+    /// Runs work on some batches, on all threads if there are enough particles. The order does not matter,
+    /// since batches share no mutable state.
     fn spread(
         &mut self,
         takes_part: impl Fn(&OccupiedBatch) -> bool,

@@ -1,4 +1,4 @@
-//! Groups of cloths that are stepped alike, and how their lanes are assigned.
+//! Groups of cloths that are stepped alike, and the assignment of their lanes.
 
 use std::sync::Arc;
 
@@ -7,11 +7,11 @@ use bunting_solver::{Fabric, LaneCount, StepSettings};
 
 use crate::batch::occupancy::{OccupiedBatch, PendingCloth};
 
-/// Number of empty batches of one width that are kept for later: making one takes longer than a tick.
-/// As many as there are cloths in batches of one lane.
+/// Number of empty batches of each width that are kept as spares, since making a batch takes longer than a
+/// tick. It equals the greatest number of cloths in batches of one lane.
 const MOST_SPARE: usize = 3;
 
-/// Cloths of one fabric with the same settings, which are stepped alike.
+/// Cloths of one fabric with equal settings, which are stepped alike.
 #[derive(Debug)]
 pub(crate) struct Group {
     pub fabric: Arc<Fabric>,
@@ -21,7 +21,7 @@ pub(crate) struct Group {
     spare: Vec<OccupiedBatch>,
     /// Cloths that wait for a lane.
     pub pending: Vec<PendingCloth>,
-    /// Whether cloths have entered or left since lanes were last assigned.
+    /// Whether cloths have entered or left since the last assignment of lanes.
     pub changed: bool,
 }
 
@@ -38,7 +38,7 @@ impl Group {
         }
     }
 
-    /// Whether cloths of a fabric and with settings belong to the group.
+    /// Whether cloths with this fabric and these settings belong to the group.
     pub fn is_of(&self, fabric: &Arc<Fabric>, settings: StepSettings) -> bool {
         Arc::ptr_eq(&self.fabric, fabric) && self.settings == settings
     }
@@ -48,10 +48,10 @@ impl Group {
         self.batches.is_empty() && self.pending.is_empty()
     }
 
-    /// Assigns a lane to every cloth, in batches of a given width or of the widths that suit the number
-    /// of cloths. Calls `assigned` with each cloth whose lane is another, its batch and its lane.
+    /// Assigns a lane to every cloth, in batches of a given width or of widths that suit the number of
+    /// cloths. Calls `assigned` with each cloth whose lane changes, its batch and its lane.
     ///
-    /// Batches of the wanted widths are kept, the fullest first; the others are dissolved.
+    /// Batches of the wanted widths are kept, the fullest first; all others are dissolved.
     pub fn assign_lanes(
         &mut self,
         width: Option<LaneCount>,
@@ -77,7 +77,7 @@ impl Group {
         self.changed = false;
     }
 
-    /// Widths of the batches that hold a number of cloths.
+    /// Widths of the batches that hold the given number of cloths.
     fn widths(&self, mut cloths: usize, width: Option<LaneCount>) -> Vec<LaneCount> {
         let mut widths = Vec::new();
         while cloths > 0 {
@@ -89,8 +89,8 @@ impl Group {
         widths
     }
 
-    /// Indices of the batches whose widths are not wanted, ascending. The widths of the other batches
-    /// are taken off the list of wanted ones.
+    /// Indices of the batches whose widths are not wanted, ascending. The widths of the batches that are kept
+    /// are removed from `wanted`.
     fn superfluous(&self, wanted: &mut Vec<LaneCount>) -> Vec<usize> {
         let mut fullest_first: Vec<usize> = (0..self.batches.len()).collect();
         fullest_first
@@ -104,8 +104,8 @@ impl Group {
         superfluous
     }
 
-    /// Dissolves batches, given by ascending indices, and keeps some of them as spares. A batch that
-    /// takes the index of a dissolved one is reported with all of its cloths.
+    /// Dissolves batches, given by ascending indices, and keeps some as spares. A batch that takes the index
+    /// of a dissolved one is reported with all of its cloths.
     fn dissolve(&mut self, batches: Vec<usize>, assigned: &mut impl FnMut(Entity, usize, usize)) {
         for index in batches.into_iter().rev() {
             let mut dissolved = self.batches.swap_remove(index);

@@ -1,6 +1,6 @@
 //! The address of a cloth's lane.
 
-/// Which lane of which batch holds the state of a cloth.
+/// Address of the lane that holds the state of a cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct LaneHandle {
     /// Index of the group of cloths that are stepped alike.

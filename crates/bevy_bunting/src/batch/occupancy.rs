@@ -1,4 +1,4 @@
-//! The occupancy of a batch: which cloth each of its lanes holds.
+//! The occupancy of a batch: the cloth in each of its lanes.
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -27,18 +27,18 @@ pub(crate) struct Occupant {
 #[derive(Debug)]
 pub(crate) struct OccupiedBatch {
     pub batch: ClothBatch,
-    /// One a lane; none for a free lane.
+    /// The occupant of each lane; none for a free lane.
     pub occupants: Vec<Option<Occupant>>,
-    /// Surfaces of the lanes, on their way from the batch to the cloths' states.
+    /// Buffers in which surfaces are copied from the lanes to the cloths' states.
     pub surfaces: Vec<LaneSurface>,
     pub width: LaneCount,
     /// Number of substeps in this tick.
     pub substeps: u32,
     /// Whether the batch takes part in the current substep.
     pub joins: bool,
-    /// Fraction of the tick that the batch has covered at the end of its current substep.
+    /// Fraction of the tick that has passed for the batch at the end of its current substep.
     pub covered: f32,
-    /// Time that the batch has taken in this tick, where that is measured.
+    /// Time that the batch has taken in this tick, if it is measured.
     pub time: Duration,
 }
 
@@ -73,8 +73,8 @@ impl OccupiedBatch {
         self.occupants.iter().flatten().count()
     }
 
-    /// Fills free lanes with pending cloths as long as there are any of both, calls `assigned` with each
-    /// cloth and its lane, and clears lanes whose cloths were removed.
+    /// Fills free lanes with pending cloths, calls `assigned` with each cloth and its lane, and clears lanes
+    /// whose cloths were removed.
     pub fn fill(
         &mut self,
         pending: &mut impl Iterator<Item = PendingCloth>,
@@ -96,7 +96,7 @@ impl OccupiedBatch {
         }
     }
 
-    /// Frees all lanes; their cloths wait for other ones.
+    /// Frees all lanes and adds their cloths to the pending ones.
     pub fn dissolve(&mut self, pending: &mut Vec<PendingCloth>) {
         for (lane, occupant) in self.occupants.iter_mut().enumerate() {
             if let Some(Occupant { entity, material }) = occupant.take() {
@@ -118,8 +118,8 @@ pub(crate) struct LaneMut<'a> {
 }
 
 impl LaneMut<'_> {
-    /// Sets what acts on the cloth in the next tick. Nothing acts where a number is not finite: poses, gravity and
-    /// wind are, but a motion between poses may overflow.
+    /// Sets frame motion, gravity and wind of the next tick. If a number is not finite, as when the motion
+    /// between two finite poses overflows, nothing acts on the cloth.
     pub fn drive(&mut self, drive: Drive) {
         let batch = &mut self.occupied.batch;
         if batch.drive(self.lane, drive).is_err() {
@@ -127,8 +127,8 @@ impl LaneMut<'_> {
         }
     }
 
-    /// Sets the shapes that the cloth may touch in the next tick. It does not feel shapes whose numbers are not
-    /// finite.
+    /// Sets the shapes that the cloth may touch in the next tick. Shapes with numbers that are not finite are
+    /// ignored.
     pub fn set_colliders(&mut self, colliders: impl IntoIterator<Item = Collider>) {
         let _ = self.occupied.batch.set_colliders(self.lane, colliders);
     }

@@ -1,4 +1,4 @@
-//! Access to the particles of a cloth within a substep, for forces and constraints of the user.
+//! Access to a cloth's particles within a substep, for forces and constraints of the user.
 
 use core::ops::{Deref, DerefMut};
 
@@ -43,8 +43,8 @@ use crate::motion::pose::PoseHistory;
 ///
 /// Several such systems access the same particles, and must be ordered against one another.
 ///
-/// As long as the schedule has no system with this parameter, cloths are solved batch by batch, each in the
-/// processor's cache; with one, each phase of a substep passes over all batches.
+/// Without a system with this parameter, cloths are solved batch by batch, each in the processor's cache;
+/// with one, each phase of a substep passes over all batches.
 #[derive(SystemParam)]
 pub struct ClothParticles<'w, 's> {
     batches: ResMut<'w, ClothBatches>,
@@ -54,11 +54,10 @@ pub struct ClothParticles<'w, 's> {
 impl ClothParticles<'_, '_> {
     /// The particles of a cloth in the current substep.
     ///
-    /// None if the cloth does not take part in this substep: cloths at coarse levels have fewer substeps in
-    /// a tick than those at fine ones, and take part in only some of them. None, too, of a cloth that is
-    /// paused, asleep or invalid, and outside of the time from
-    /// [`Integrate`](crate::ClothSubstepSystems::Integrate) to
-    /// [`UpdateVelocities`](crate::ClothSubstepSystems::UpdateVelocities).
+    /// None if the cloth does not take part in this substep: cloths at coarse levels have fewer substeps in a
+    /// tick than cloths at fine levels, and take part in only some of them. Also none if the cloth is paused,
+    /// asleep or invalid, and outside of the sets from [`Integrate`](crate::ClothSubstepSystems::Integrate)
+    /// to [`UpdateVelocities`](crate::ClothSubstepSystems::UpdateVelocities).
     pub fn get_mut(&mut self, cloth: Entity) -> Option<SubstepParticles<'_>> {
         let (instance, history, rest_timer) = self.cloths.get_mut(cloth).ok()?;
         let (particles, fraction) = self.batches.particles_mut(instance.lane()?)?;
@@ -67,7 +66,7 @@ impl ClothParticles<'_, '_> {
     }
 }
 
-/// The frame of a cloth at a fraction of the tick: as in the solver it turns at a constant rate about a fixed
+/// Frame of a cloth at a fraction of the tick: as in the solver, it turns at a constant rate about a fixed
 /// axis while its origin moves along a straight line.
 fn frame_at(history: &PoseHistory, fraction: f32) -> Isometry3d {
     let (start, end) = (history.start(), history.end());
@@ -78,10 +77,10 @@ fn frame_at(history: &PoseHistory, fraction: f32) -> Isometry3d {
     Isometry3d::new(translation, start.rotation.slerp(end.rotation, fraction).normalize())
 }
 
-/// The particles of one cloth in a substep, with the methods of [`ParticlesMut`]: positions (m), velocities
-/// (m/s) and inverse masses (1/kg) of particles to read, accelerations (m/s²), impulses and corrections of
-/// positions to write. Coordinates are those of the cloth's frame in this substep; velocities are relative to
-/// the world, along the axes of the frame.
+/// The particles of one cloth in a substep, with the methods of [`ParticlesMut`]. They read positions (m),
+/// velocities (m/s) and inverse masses (1/kg), and write accelerations (m/s²), impulses and corrections of
+/// positions. Coordinates are those of the cloth's frame in this substep; velocities are relative to the
+/// world, along the axes of the frame.
 ///
 /// Particles are numbered as in [`ClothState::fabric`](crate::ClothState::fabric). A cloth does not fall asleep
 /// in a tick in which its particles are written.
@@ -93,31 +92,31 @@ pub struct SubstepParticles<'a> {
 }
 
 impl SubstepParticles<'_> {
-    /// Pose in the world (m) of the cloth's frame at the end of this substep.
+    /// Pose of the cloth's frame in the world (m) at the end of this substep.
     #[must_use]
     pub fn frame(&self) -> Isometry3d {
         self.frame
     }
 
-    /// The point in the world (m) of a point in the cloth's frame.
+    /// Transforms a point (m) from the cloth's frame to the world.
     #[must_use]
     pub fn to_world(&self, point: Vec3) -> Vec3 {
         self.frame * point
     }
 
-    /// The point in the cloth's frame (m) of a point in the world.
+    /// Transforms a point (m) from the world to the cloth's frame.
     #[must_use]
     pub fn to_local(&self, point: Vec3) -> Vec3 {
         self.frame.rotation.inverse() * (point - Vec3::from(self.frame.translation))
     }
 
-    /// The direction in the world of a direction in the cloth's frame, as of a velocity.
+    /// Rotates a direction, such as a velocity, from the cloth's frame to the world.
     #[must_use]
     pub fn direction_to_world(&self, direction: Vec3) -> Vec3 {
         self.frame.rotation * direction
     }
 
-    /// The direction in the cloth's frame of a direction in the world, as of an acceleration.
+    /// Rotates a direction, such as an acceleration, from the world to the cloth's frame.
     #[must_use]
     pub fn direction_to_local(&self, direction: Vec3) -> Vec3 {
         self.frame.rotation.inverse() * direction

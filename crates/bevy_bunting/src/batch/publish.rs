@@ -28,8 +28,8 @@ impl Plugin for PublishPlugin {
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Diverged(Vec<Entity>);
 
-/// Publishes the activity of cloths, and gives those that are no longer simulated a previous surface
-/// equal to the current one, so that nothing is interpolated.
+/// Publishes the activity of cloths. A cloth that is no longer simulated gets a previous surface equal to the
+/// current one, so that its display stands still.
 fn stop_states(mut cloths: Query<(&ClothInstance, &mut ClothState), Changed<ClothInstance>>) {
     for (instance, mut state) in &mut cloths {
         state.activity = instance.activity;
@@ -42,8 +42,8 @@ fn stop_states(mut cloths: Query<(&ClothInstance, &mut ClothState), Changed<Clot
     }
 }
 
-/// Copies surfaces batch by batch, as the lanes of a batch lie side by side in memory. Each is written
-/// into the memory of the surface before the last tick, so that nothing is allocated.
+/// Copies surfaces batch by batch, as the lanes of a batch lie side by side in memory. Each surface
+/// overwrites the one before the last tick, so that nothing is allocated.
 fn publish_states(
     mut cloths: Query<&mut ClothState>,
     mut batches: ResMut<ClothBatches>,
@@ -72,7 +72,7 @@ fn publish_states(
     }
 }
 
-/// Puts cloths that are not finite back to their rest shape, and reports them.
+/// Resets cloths with positions that are not finite to their rest shape, and reports them.
 pub(crate) fn reset_diverged(
     mut cloths: Query<(&mut ClothInstance, &mut ClothState)>,
     mut batches: ResMut<ClothBatches>,

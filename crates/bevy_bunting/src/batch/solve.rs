@@ -1,4 +1,4 @@
-//! The solver's phases, each a system.
+//! The systems that run the solver's phases.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
@@ -20,7 +20,8 @@ impl Plugin for SolverPlugin {
         app.add_systems(
             ClothTick,
             (
-                // Exclusive only to run a schedule, whose systems no other system can conflict with.
+                // The system is exclusive because it runs a schedule, whose systems conflict with no other
+                // system.
                 run_substeps.in_set(ClothSystems::Step).ambiguous_with_all(),
                 compute_normals.in_set(ClothSystems::Normals),
             ),
@@ -43,7 +44,8 @@ fn run_substeps(world: &mut World) {
     let count = batches.substeps();
     world.schedule_scope(ClothSubstep, |world, schedule| {
         if schedule.systems_len() == OWN_SYSTEMS {
-            // Without systems of the user, batch by batch: each stays in the cache.
+            // Without systems of the user, all substeps run batch by batch, so that each batch stays in the
+            // cache.
             world.resource_mut::<ClothBatches>().for_each_substep(|batch| {
                 batch.integrate();
                 batch.solve_constraints();

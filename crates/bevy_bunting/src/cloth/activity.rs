@@ -4,9 +4,9 @@ use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
-/// Stops a cloth for as long as the entity has this component: the cloth keeps its shape, moves
-/// rigidly with its frame, and costs no simulation time. When it is removed the cloth continues with
-/// the positions and velocities that it had.
+/// Stops the simulation of a cloth for as long as the entity has this component: the cloth keeps its shape,
+/// moves rigidly with its frame, and costs no simulation time. When the component is removed, the cloth
+/// continues with the positions and velocities that it had.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothPaused;
@@ -19,15 +19,14 @@ pub enum ClothActivity {
     /// The cloth is simulated.
     #[default]
     Ticking,
-    /// The cloth is outside the picture of every viewer. It is simulated again, first at its coarsest
-    /// level, when it comes near one.
+    /// The cloth is outside the picture of every viewer. When it comes near a picture it is simulated again,
+    /// first at its coarsest level.
     OffScreen,
     /// The cloth is out of every viewer's range.
     OutOfRange,
-    /// The cloth is hidden by its `Visibility` or that of an entity that it is a child of; with the feature
-    /// `render`.
+    /// The cloth, or the entity that it inherits its `Visibility` from, is hidden; with the feature `render`.
     Hidden,
-    /// The cloth has come to rest. It is simulated again when anything changes that acts on it: its
-    /// frame, its material, the wind, gravity, a collider near it; or when a finer level is wanted.
+    /// The cloth has come to rest. It is simulated again when its frame, its material, the wind, gravity or a
+    /// collider near it changes, or when a finer level is wanted.
     AtRest,
 }

@@ -1,21 +1,21 @@
-//! Why a cloth cannot be simulated or shown as asked.
+//! Reasons why a cloth cannot be simulated or shown as asked.
 
 use bevy_ecs::prelude::*;
 use bunting_solver::FabricError;
 
 use crate::cloth::weights::WeightsError;
 
-/// Why a cloth is not simulated or shown as asked; its message says what to do. Other cloths are not
+/// Reason why a cloth is not simulated or shown as asked; the message says what to do. Other cloths are not
 /// affected.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ClothError {
-    /// No fabric can be cut from the mesh. The cloth is not simulated until its `ClothMesh` changes.
+    /// No fabric can be built from the mesh. The cloth is not simulated until its `ClothMesh` changes.
     #[error("the mesh of cloth {entity} cannot be simulated: {source}")]
     Mesh {
         /// The cloth.
         entity: Entity,
-        /// What is wrong with the mesh, and at which vertex, edge or triangle.
+        /// Defect of the mesh, with the vertex, edge or triangle that has it.
         source: FabricError,
     },
     /// The weights of the mesh cannot be used. The cloth is not simulated until its `ClothMesh` changes.
@@ -23,33 +23,33 @@ pub enum ClothError {
     Weights {
         /// The cloth.
         entity: Entity,
-        /// What is wrong with the weights.
+        /// Defect of the weights.
         source: WeightsError,
     },
-    /// The material cannot be simulated. The cloth keeps the last valid one; without one it is not
-    /// simulated until its material changes.
+    /// The material cannot be simulated. The cloth keeps its last valid material; a cloth that never had one
+    /// is not simulated until its material changes.
     #[error("the material of cloth {entity} cannot be simulated: {source}")]
     Material {
         /// The cloth.
         entity: Entity,
-        /// What is wrong with the material.
+        /// Defect of the material.
         source: FabricError,
     },
-    /// The [`LodSet`](crate::LodSet) is invalid: its distances (m) must be finite, positive and grow
-    /// from level to level, an automatic choice needs a level, the hysteresis lies within 0 to 1, the
-    /// bias is positive. The cloth is not simulated until it changes.
+    /// The [`LodSet`](crate::LodSet) is invalid: its distances (m) must be finite, positive and ascending, an
+    /// automatic choice needs at least one level, the hysteresis must lie within 0 to 1, and the bias must be
+    /// positive. The cloth is not simulated until its `LodSet` changes.
     #[error(
-        "the LodSet of cloth {entity} must have finite distances that grow or at least one level, a hysteresis from 0 to 1, and a positive bias"
+        "the LodSet of cloth {entity} must have finite, positive, ascending distances or, if automatic, at least one level; a hysteresis from 0 to 1; and a positive bias"
     )]
     Levels {
         /// The cloth.
         entity: Entity,
     },
-    /// The mesh has fewer levels than its `LodSet` asks for: its border and attached vertices stay at
-    /// every level, so that the number of triangles can fall only so far. The cloth is simulated with
-    /// the levels that it has.
+    /// The mesh has fewer levels than its `LodSet` asks for: the border and the attached vertices stay at
+    /// every level, which limits how far the number of triangles can fall. The cloth is simulated with the
+    /// levels that it has.
     #[error(
-        "cloth {entity} has {built} levels, not {asked}: hardly a triangle more can go; give its LodSet fewer"
+        "cloth {entity} has {built} levels, not {asked}: its mesh has hardly any triangle left to remove; give its LodSet fewer levels"
     )]
     TooFewLevels {
         /// The cloth.
@@ -71,7 +71,7 @@ pub enum ClothError {
         columns: u32,
         /// Particles in a column.
         rows: u32,
-        /// Levels besides the finest.
+        /// Number of levels beyond the finest.
         halvings: usize,
     },
     /// The level that the `LodSet` is pinned to does not exist. The cloth is not simulated until its
@@ -87,8 +87,8 @@ pub enum ClothError {
         /// Number of levels.
         levels: usize,
     },
-    /// The attachment holds no vertex. If that is so at the finest level, the cloth is not simulated;
-    /// if at a coarser one, the cloth is simulated with the levels at which vertices are held.
+    /// The attachment holds no vertex. If the finest level holds none, the cloth is not simulated; if a
+    /// coarser level holds none, the cloth is simulated with the finer levels only.
     #[error(
         "the attachment of cloth {entity} holds no vertex at level {level}: choose vertices that the level has; an edge or a corner of a mesh without uv has none"
     )]
@@ -98,7 +98,7 @@ pub enum ClothError {
         /// The finest level without held vertices.
         level: usize,
     },
-    /// The target of the attachment is no entity with a `Transform`. The cloth is not simulated until
+    /// The target of the attachment does not exist or has no `Transform`. The cloth is not simulated until
     /// its `Attachment` changes.
     #[error(
         "cloth {entity} is attached to {target}, which does not exist or has no Transform: spawn it first"
@@ -106,11 +106,13 @@ pub enum ClothError {
     MissingTarget {
         /// The cloth.
         entity: Entity,
-        /// Its target.
+        /// The target of its attachment.
         target: Entity,
     },
     /// The pose that the cloth should follow is not finite. The cloth keeps its last finite pose.
-    #[error("the transform that cloth {entity} follows is not finite: check what moves it")]
+    #[error(
+        "the transform that cloth {entity} follows is not finite: check the systems that write it"
+    )]
     Pose {
         /// The cloth.
         entity: Entity,
@@ -139,9 +141,9 @@ pub enum ClothError {
         /// Vertices of the `ClothMesh`.
         expected: usize,
     },
-    /// A position became infinite or not a number. The cloth was put back to its rest shape.
+    /// A position became infinite or not a number. The cloth was reset to its rest shape.
     #[error(
-        "cloth {entity} became infinite and was put back to rest: give it more substeps, or a softer material"
+        "cloth {entity} diverged and was reset to its rest shape: give it more substeps, or a softer material"
     )]
     Diverged {
         /// The cloth.

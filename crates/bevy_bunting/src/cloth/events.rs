@@ -5,7 +5,7 @@ use bevy_ecs::prelude::*;
 use crate::cloth::error::ClothError;
 use crate::motion::attachment::TargetLost;
 
-/// A cloth cannot be simulated or shown as asked. Triggered once when that is found, and logged.
+/// A cloth cannot be simulated or shown as asked. Triggered and logged once, when the error is found.
 #[derive(EntityEvent, Clone, Copy, Debug)]
 pub struct ClothFailed {
     /// The cloth.
@@ -33,13 +33,13 @@ pub struct ClothLevelChanged {
     pub to: usize,
 }
 
-/// The target of a cloth's [`Attachment`](crate::Attachment) was despawned.
+/// The target of a cloth's [`Attachment`](crate::Attachment) was despawned. Triggered once.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClothTargetLost {
     /// The cloth.
     pub entity: Entity,
     /// The target that no longer exists.
     pub target: Entity,
-    /// What happens to the cloth.
+    /// Whether the cloth was frozen or released.
     pub outcome: TargetLost,
 }

@@ -1,4 +1,5 @@
-//! What tells a cloth from all others that are cut alike: a perfect plane, loaded along itself, never buckles.
+//! The imperfection of a cloth: a small departure from its shape at rest, since a perfect plane that is
+//! loaded along itself never buckles.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
@@ -8,33 +9,35 @@ use bunting_solver::{ClothSnapshot, Fabric};
 
 use crate::waves::{Random, mix, sine};
 
-/// Greatest distance of a particle from its place at rest when a cloth is spawned, m. Folds grow from it by
-/// some e in a tenth of a second: with a hundredth of it they are a third of a second late.
+/// Greatest distance of a particle from its position at rest when a cloth is spawned, m. Folds grow from it
+/// by a factor of about e in a tenth of a second. Smaller: folds are late, with a hundredth of it by a third
+/// of a second.
 const AMPLITUDE: f32 = 1e-4;
 
-/// Places of two cloths that differ by less are one for their seeds, m.
+/// Distance between the first positions of two cloths below which both get the same seed, m.
 const SAME_PLACE: f32 = 1e-3;
 
-/// Waves that add up to the imperfection, as many to the extent of the cloth.
+/// Wave numbers of the waves whose sum is the imperfection, in periods along the extent of the cloth.
 const WAVES: [f32; 4] = [1.3, 2.1, 3.4, 5.5];
 
-/// Chooses the imperfection of a cloth, a tenth of a millimetre of its shape when it is spawned, from which
-/// its folds grow. Optional: without it, it follows from where the cloth first stands in the world.
+/// Seed of a cloth's imperfection: a departure of up to a tenth of a millimetre from the shape at rest, from
+/// which folds grow. Optional: by default the seed follows from the position in the world at which the cloth
+/// is first simulated.
 ///
-/// Read when the cloth is first simulated.
+/// Read when the cloth is first simulated; later changes have no effect.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothSeed(pub u32);
 
 impl ClothSeed {
-    /// The seed of a cloth that is first seen in a pose: the same in every run and any order of spawning.
+    /// Seed of a cloth that is first simulated in this pose: the same in every run and any order of spawning.
     pub(crate) fn of_frame(pose: &Isometry3d) -> Self {
         let place = (Vec3::from(pose.translation) / SAME_PLACE).round().as_ivec3();
         Self(place.to_array().into_iter().fold(1, |hash, part| mix(hash ^ part as u32)))
     }
 }
 
-/// The fabric at rest as no cloth is quite: off its plane by at most [`AMPLITUDE`], but for its pins.
+/// State of a fabric at rest with an imperfection: free particles leave their plane by at most [`AMPLITUDE`].
 pub(crate) fn almost_at_rest(fabric: &Fabric, seed: ClothSeed) -> ClothSnapshot {
     let mut snapshot = ClothSnapshot::at_rest(fabric);
     let rest = fabric.rest_positions();

@@ -1,4 +1,4 @@
-//! The simulated side of a cloth: its fabrics, its level, and where its state is stored.
+//! The simulated side of a cloth: its fabrics, its level, and the storage of its state.
 
 use std::sync::Arc;
 
@@ -16,15 +16,15 @@ use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
 use crate::motion::take_up::TakingUp;
 
-/// Where the state of a cloth is stored.
+/// Storage of a cloth's state.
 #[derive(Clone, Debug, Default)]
 pub(crate) enum StateStorage {
-    /// There is no state: the cloth cannot be simulated.
+    /// No state: the cloth cannot be simulated.
     #[default]
     None,
-    /// Outside of any batch: the cloth waits for a lane, is paused or asleep.
+    /// A snapshot outside of any batch: the cloth waits for a lane, is paused or asleep.
     Snapshot(ClothSnapshot),
-    /// In a lane of a batch.
+    /// A lane of a batch.
     Lane(LaneHandle),
 }
 
@@ -35,33 +35,33 @@ pub(crate) struct ClothInstance {
     pub levels: Option<Arc<ClothLevels>>,
     pub level: usize,
     pub storage: StateStorage,
-    /// Seed of its imperfection.
+    /// Seed of the cloth's imperfection.
     pub seed: ClothSeed,
-    /// Whether it is almost at rest, as it was cut, and was in no lane since.
+    /// Whether the state is still the initial one, at rest with the imperfection, and has been in no lane.
     pub unmoved: bool,
-    /// What the fabrics depend on that are being cut on another thread, see `FabricLibrary`.
+    /// Content key of the fabrics that another thread is building for this cloth, see `FabricLibrary`.
     pub cutting: Option<Vec<u32>>,
     pub activity: ClothActivity,
     /// The last valid material.
     pub material: FabricMaterial,
     /// Gravity in the last tick, along the axes of the cloth's frame, m/s².
     pub gravity: Vec3,
-    /// The attachment's target that the levels were cut for; the cloth itself stands for its own
-    /// transform, none for no attachment.
+    /// Target that the levels were built for: the attachment's, or the cloth itself if it is attached to its
+    /// own transform; none without an attachment.
     pub target: Option<Entity>,
-    /// Whether the target was despawned, and that was handled.
+    /// Whether the loss of the target has been handled.
     pub target_lost: bool,
-    /// Whether the cloth was paused for that.
+    /// Whether the loss of the target paused the cloth.
     pub frozen: bool,
-    /// A target without a transform, which was reported, and is looked for in each tick.
+    /// Target without a transform, which was reported; the cloth looks for the transform in each tick.
     pub missing_target: Option<Entity>,
-    /// The way of attached vertices that are not in their places yet.
+    /// Motion of attached vertices that have not reached their places yet.
     pub taking_up: Option<TakingUp>,
-    /// Whether the pose to follow is not finite, and that was reported.
+    /// Whether a pose that is not finite was reported.
     pub pose_reported: bool,
 }
 
-/// Gives a clone of a cloth a state of its own: a copy of the state in the lane of the original.
+/// Gives a clone of a cloth its own copy of the original's state.
 fn copy_state(mut world: DeferredWorld, context: HookContext) {
     let instance = world.get::<ClothInstance>(context.entity);
     let Some(lane) = instance.and_then(ClothInstance::lane) else { return };
@@ -103,7 +103,7 @@ impl ClothInstance {
         self.levels.as_ref().map(|levels| levels.fabric(self.level))
     }
 
-    /// Wakes a cloth that sleeps at rest: what acts on it has changed.
+    /// Wakes a cloth that sleeps at rest, after a change of anything that acts on it.
     pub fn wake(&mut self) {
         if self.activity == ClothActivity::AtRest {
             self.activity = ClothActivity::Ticking;
@@ -117,7 +117,7 @@ impl ClothInstance {
         }
     }
 
-    /// Moves the state to another level, with momentum and energy kept as far as the levels can.
+    /// Moves the state to another level and keeps momentum and energy as far as the levels allow.
     pub fn change_level(&mut self, to: usize, batches: &mut ClothBatches) {
         if let StateStorage::Lane(lane) = self.storage {
             self.storage = StateStorage::Snapshot(batches.remove_without_history(lane));
@@ -134,8 +134,8 @@ impl ClothInstance {
         self.level = to;
     }
 
-    /// Moves the state of a cloth in no viewer's picture to a coarser level: the shared particles keep
-    /// their positions and velocities, whatever momentum and energy the others had.
+    /// Moves the state of a cloth outside every viewer's picture to a coarser level: the shared particles
+    /// keep their positions and velocities; momentum and energy are not kept.
     pub fn change_level_unseen(&mut self, to: usize, batches: &mut ClothBatches) {
         if self.unmoved {
             self.level = to;
@@ -153,8 +153,8 @@ impl ClothInstance {
         self.level = to;
     }
 
-    /// Replaces the fabrics. The state is kept if it fits them, as when only the pins change, and the pins then
-    /// stay where they are; else the cloth starts at rest. Returns whether the state was kept.
+    /// Replaces the fabrics. A state that fits them, as when only the pins change, is kept, and the pins stay
+    /// where they are; otherwise the cloth starts at rest. Returns whether the state was kept.
     pub fn replace_levels(&mut self, levels: Arc<ClothLevels>, batches: &mut ClothBatches) -> bool {
         self.wake();
         self.leave_lane(batches);
@@ -173,7 +173,7 @@ impl ClothInstance {
         keeps
     }
 
-    /// Puts the cloth back to its shape at rest, without velocity, and shows it so.
+    /// Resets the cloth to its shape at rest, without velocity, and shows that shape.
     pub fn reset(&mut self, state: &mut ClothState, batches: &mut ClothBatches) {
         self.wake();
         self.taking_up = None;
@@ -186,7 +186,7 @@ impl ClothInstance {
         }
     }
 
-    /// Lets the cloth wait for a lane, almost at rest.
+    /// Stores a snapshot at rest, with the imperfection; the cloth then waits for a lane.
     fn start_at_rest(&mut self) {
         self.taking_up = None;
         if let Some(fabric) = self.fabric() {

@@ -10,9 +10,9 @@ use crate::cloth::reflect::FabricMaterialReflect;
 /// The material of a cloth: area density (kg/m²), stiffnesses, damping, friction, thickness. Flag
 /// polyester by default.
 ///
-/// It may be changed at any time, and differ between cloths that share a fabric. A material that
-/// cannot be simulated is reported in a [`ClothFailed`](crate::ClothFailed) event, and the cloth keeps
-/// the one before.
+/// The material may be changed at any time, and may differ between cloths that share a fabric. A material
+/// that cannot be simulated is reported in a [`ClothFailed`](crate::ClothFailed) event, and the cloth keeps
+/// its last valid one.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothMaterial(

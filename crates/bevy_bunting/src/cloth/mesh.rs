@@ -13,12 +13,12 @@ use crate::lod::lod_set::LodSet;
 use crate::lod::record::{LodRecord, RestTimer};
 use crate::motion::pose::PoseHistory;
 
-/// The shape of a cloth at rest. This component alone makes an entity a cloth: the others that a
-/// cloth needs are required components and come with it.
+/// The shape of a cloth at rest. This component makes an entity a cloth: the other components that a cloth
+/// needs are required by it and inserted with it.
 ///
 /// Positions are in the cloth's frame: the entity's own [`Transform`] or, with an
-/// [`Attachment`](crate::Attachment), the pose of its target times its offset. A frame has no scale:
-/// bake it into the mesh.
+/// [`Attachment`](crate::Attachment), the pose of the target times the offset. A frame has no scale: bake a
+/// scale into the mesh.
 ///
 /// A mesh that cannot be simulated is reported in a [`ClothFailed`](crate::ClothFailed) event.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
@@ -34,7 +34,7 @@ use crate::motion::pose::PoseHistory;
     PoseHistory
 )]
 pub enum ClothMesh {
-    /// A rectangle of particles. The origin is its top left corner, the front faces +z; u grows
+    /// A rectangular grid of particles. The origin is the top left corner and the front faces +z; u grows
     /// along +x, v along −y.
     Grid {
         /// Particles in a row, at least 2.
@@ -52,10 +52,10 @@ pub enum ClothMesh {
         positions: Vec<Vec3>,
         /// Three vertices a triangle, counter-clockwise seen from the front.
         indices: Vec<u32>,
-        /// Texture coordinates, one a vertex or none at all: the warp runs along u.
+        /// Texture coordinates, one for each vertex or none at all: the warp runs along u.
         uv: Vec<Vec2>,
-        /// Weights from 0 (rigid) to 1 (simulated), one a vertex or none at all: then all vertices
-        /// are simulated. See [`with_weights`](ClothMesh::with_weights).
+        /// Weights from 0 (rigid) to 1 (simulated), one for each vertex. An empty list simulates all
+        /// vertices. See [`with_weights`](ClothMesh::with_weights).
         weights: Vec<f32>,
     },
 }
@@ -67,14 +67,14 @@ impl ClothMesh {
         Self::Grid { columns, rows, width, height }
     }
 
-    /// A mesh of triangles: positions in metres, three indices a triangle, and texture coordinates,
-    /// one a vertex or none at all.
+    /// A mesh of triangles: positions in metres, three indices for each triangle, and texture coordinates,
+    /// one for each vertex or none at all.
     #[must_use]
     pub const fn triangles(positions: Vec<Vec3>, indices: Vec<u32>, uv: Vec<Vec2>) -> Self {
         Self::Triangles { positions, indices, uv, weights: Vec::new() }
     }
 
-    /// Simulates only a part of the mesh: a weight for each vertex, from 0 to 1.
+    /// Simulates only a part of the mesh, by a weight from 0 to 1 for each vertex.
     ///
     /// | Weight w | Vertex |
     /// | --- | --- |
@@ -82,17 +82,17 @@ impl ClothMesh {
     /// | between | simulated, and shown at (1 − w) × its position at rest + w × its simulated position |
     /// | 0 | rigid: stays where the mesh has it in the cloth's frame, exactly |
     ///
-    /// Triangles of which all vertices have weight 0 are rigid: they have no particles and cost no
-    /// time in a tick. A vertex of weight 0 on any other triangle is pinned, so that the simulated part
-    /// is attached to the rigid one.
+    /// Triangles whose vertices all have weight 0 are rigid: they have no particles and cost no time in a
+    /// tick. A vertex of weight 0 on any other triangle is pinned, which attaches the simulated part to the
+    /// rigid one.
     ///
-    /// A grid becomes triangles, whose bending is less exact than a grid's. Weights that cannot be used
-    /// are reported in a [`ClothFailed`](crate::ClothFailed) event.
+    /// The method turns a grid into triangles, whose bending is less exact than a grid's. Invalid weights are
+    /// reported in a [`ClothFailed`](crate::ClothFailed) event.
     #[must_use]
     pub fn with_weights(self, weights: Vec<f32>) -> Self {
         let builder = self.builder();
         if builder.positions().is_empty() {
-            // An invalid grid stays one, to be reported as such when it is cut.
+            // An invalid grid stays a grid: the error is reported when its fabric is built.
             return self;
         }
         Self::Triangles {
@@ -111,7 +111,7 @@ impl ClothMesh {
         }
     }
 
-    /// The grid; none of triangles.
+    /// The grid; none for triangles.
     pub(crate) fn as_grid(&self) -> Option<Grid> {
         match *self {
             Self::Grid { columns, rows, width, height } => {

@@ -1,4 +1,4 @@
-//! Cloth that is first seen as it hangs, not as it was cut.
+//! Simulation in advance: a cloth is first shown as it hangs, not in its rest shape.
 
 use std::sync::Arc;
 
@@ -27,13 +27,14 @@ use crate::settings::ClothSettings;
 /// Longest time that is simulated in advance, s: 0.2 s of computing for a flag of 33 × 33.
 const LONGEST: f32 = 60.0;
 
-/// Steps of one particle through one substep that are expected to be done in a tick: half of what one thread does.
-/// Larger: ticks wait for other threads. Smaller: cloths appear late without need.
+/// Expected throughput of a background thread in a tick, in substeps of one particle: half of what one thread
+/// does. Larger: ticks wait for other threads. Smaller: cloths appear late without need.
 const STEPS_PER_TICK: u64 = 1 << 18;
 
-/// Simulates a cloth for so many seconds before it is first seen: in the wind that blows where it is spawned, on a
-/// frame at rest, without colliders. That is done beside the main thread where there are threads; the cloth has no
-/// [`ClothState`] until a tick that follows from the amount of work, and then loses this component.
+/// Simulates a cloth for some seconds before it is first shown: in the wind at the place where it is spawned,
+/// on a frame at rest, without colliders. The simulation runs on another thread where there are threads.
+/// Until it is done the cloth has no [`ClothState`]; this component is then removed. The tick in which this
+/// happens follows from the amount of work, not from the machine's speed.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothPreroll {
@@ -42,7 +43,7 @@ pub struct ClothPreroll {
 }
 
 impl ClothPreroll {
-    /// So many seconds.
+    /// Simulates the given number of seconds in advance.
     #[must_use]
     pub const fn seconds(seconds: f32) -> Self {
         Self { seconds }
@@ -50,13 +51,13 @@ impl ClothPreroll {
 }
 
 impl Default for ClothPreroll {
-    /// Three seconds: a flag has then unfolded.
+    /// Three seconds: by then a flag has unfolded.
     fn default() -> Self {
         Self::seconds(3.0)
     }
 }
 
-/// Simulates cloths before they are seen.
+/// Simulates cloths in advance, see [`ClothPreroll`].
 #[derive(Debug, Default)]
 pub struct PrerollPlugin;
 
@@ -75,53 +76,56 @@ impl Plugin for PrerollPlugin {
 
 /// A cloth that is simulated in advance.
 #[derive(Component, Debug)]
-struct Rolling {
+struct PrerollTask {
     level: usize,
-    /// The tick in which the state is taken.
+    /// Tick in which the state is taken.
     due: u64,
-    /// The state at the end. None once it is taken.
+    /// State at the end of the simulation; none once it is taken.
     state: Option<Background<ClothSnapshot>>,
 }
 
-/// When states are due, which are computed one after the other.
+/// Queue of simulations in advance, which run one after the other, and the tick in which each is expected to
+/// end.
 #[derive(Resource, Debug, Default)]
 struct PrerollQueue {
     /// Number of ticks so far.
     tick: u64,
-    /// Number of steps before the end of the queue, counted as if they had been done since the first tick.
+    /// Substeps of one particle until the end of the queue, counted from the first tick on as if the thread
+    /// were never idle.
     end: u64,
 }
 
 impl PrerollQueue {
-    /// Adds steps, which begin at least so many ticks from now. Returns the tick in which they are expected to be
-    /// done, which is a later one.
+    /// Appends a simulation of `steps` substeps of one particle, which begins at least `begin_after` ticks
+    /// from now. Returns the tick in which it is expected to end, later than the present one.
     fn add(&mut self, steps: u64, begin_after: u64) -> u64 {
         self.end = self.end.max((self.tick + begin_after) * STEPS_PER_TICK) + steps.max(1);
         self.end.div_ceil(STEPS_PER_TICK)
     }
 }
 
-/// What is simulated in advance.
+/// Inputs of a simulation in advance.
 struct Preroll {
     fabric: Arc<Fabric>,
     state: ClothSnapshot,
     material: FabricMaterial,
     drive: Drive,
     settings: StepSettings,
-    /// s.
+    /// Length of a tick, s.
     tick: f32,
     ticks: u32,
 }
 
 impl Preroll {
-    /// Number of steps of one particle through one substep.
+    /// Work of the simulation, in substeps of one particle.
     fn steps(&self) -> u64 {
         self.fabric.particle_count() as u64
             * u64::from(self.settings.substeps)
             * u64::from(self.ticks)
     }
 
-    /// The state at the end; that at the start where it does not stay finite.
+    /// Runs the simulation. Returns the state at its end, or the one at its start if a position is not
+    /// finite.
     fn run(self) -> ClothSnapshot {
         let mut batch = ClothBatch::new(self.fabric, LaneCount::One);
         let Ok(lane) = batch.insert(&self.state, self.material) else { return self.state };
@@ -140,7 +144,7 @@ type New<'a> =
     (Entity, &'a ClothPreroll, &'a mut ClothInstance, &'a mut ClothState, Option<&'a Attachment>);
 
 fn begin_prerolls(
-    mut cloths: Query<New, Without<Rolling>>,
+    mut cloths: Query<New, Without<PrerollTask>>,
     transforms: TransformHelper,
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
@@ -151,7 +155,7 @@ fn begin_prerolls(
     queue.tick += 1;
     let tick = time.delta_secs();
     for (entity, preroll, mut instance, mut state, attachment) in &mut cloths {
-        // What has been simulated already is too late.
+        // A cloth that has been simulated is not simulated in advance.
         if !instance.unmoved {
             if instance.lane().is_some() {
                 commands.entity(entity).remove::<ClothPreroll>();
@@ -182,23 +186,23 @@ fn begin_prerolls(
             tick,
             ticks: (seconds.clamp(0.0, LONGEST) / tick) as u32,
         };
-        // Fabrics that are being cut come first.
+        // The simulation waits until fabrics that are being built are ready.
         let due = queue.add(preroll.steps(), library.ticks_to_cut());
         let state = Some(Background::begin(move || preroll.run()));
-        commands.entity(entity).insert(Rolling { level: instance.level, due, state });
+        commands.entity(entity).insert(PrerollTask { level: instance.level, due, state });
     }
 }
 
 fn end_prerolls(
-    mut cloths: Query<(Entity, &mut Rolling, &mut ClothInstance, &mut ClothState)>,
+    mut cloths: Query<(Entity, &mut PrerollTask, &mut ClothInstance, &mut ClothState)>,
     queue: Res<PrerollQueue>,
     mut commands: Commands,
 ) {
     let due = cloths.iter_mut().filter(|(_, rolling, ..)| rolling.due <= queue.tick);
     for (entity, mut rolling, mut instance, mut state) in due {
         let Some(snapshot) = rolling.state.take().map(Background::take) else { continue };
-        commands.entity(entity).remove::<(Rolling, ClothPreroll)>();
-        // A cloth that was cut anew in the meantime begins as any other.
+        commands.entity(entity).remove::<(PrerollTask, ClothPreroll)>();
+        // A cloth whose fabric was rebuilt in the meantime starts at rest.
         let Some(levels) = instance.levels.clone() else { continue };
         let fits = levels.fabric(rolling.level).particle_count() == snapshot.positions.len();
         if !fits || !matches!(instance.storage, StateStorage::None) {

@@ -1,11 +1,11 @@
-//! Types of other crates as components show them: to inspectors, and in scene files.
+//! Reflected forms of other crates' types that components contain, for inspectors and scene files.
 
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize, reflect_remote};
 use bunting_solver::FabricMaterial;
 use parry3d::shape::SharedShape;
 use serde::{Deserialize, Serialize};
 
-/// [`FabricMaterial`], field by field.
+/// Reflected form of [`FabricMaterial`], field by field.
 #[reflect_remote(FabricMaterial)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[reflect(Debug, PartialEq, Clone)]
@@ -23,7 +23,7 @@ pub struct FabricMaterialReflect {
     pub surface_friction: f32,
 }
 
-/// [`SharedShape`], which parry saves as a whole.
+/// Reflected form of [`SharedShape`]: an opaque value, which parry serialises.
 #[reflect_remote(SharedShape)]
 #[derive(Clone, Serialize, Deserialize)]
 #[reflect(opaque)]

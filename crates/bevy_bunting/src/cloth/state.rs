@@ -1,4 +1,4 @@
-//! The simulated surface of a cloth, to be read.
+//! The simulated surface of a cloth, for reading.
 
 use std::sync::Arc;
 
@@ -11,15 +11,15 @@ use crate::fabric::levels::ClothLevels;
 
 /// The simulated surface of a cloth after the last tick; read only.
 ///
-/// Positions and normals are in the cloth's frame, whose pose in the world is the entity's
-/// `GlobalTransform`: the pose of the attachment's target times its offset or, without an
-/// [`Attachment`](crate::Attachment), the entity's own. After [`ClothSystems::Publish`] and after
-/// each frame the `GlobalTransform` is that of the target's current pose.
+/// Positions and normals are in the cloth's frame, whose pose in the world is the entity's `GlobalTransform`:
+/// the pose of the attachment's target times its offset or, without an [`Attachment`](crate::Attachment), the
+/// entity's own. After [`ClothSystems::Publish`] and after each frame, the `GlobalTransform` follows the
+/// target's current pose.
 ///
-/// A grid has one particle for each vertex. In a mesh of triangles, vertices at the same position are
-/// one particle, and rigid ones have none, see [`particle_of_vertex`](Self::particle_of_vertex).
-/// Particles of a weight below 1 are blended with their position at rest, see
-/// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights): what is read here is the blended surface.
+/// A grid has one particle for each vertex. In a mesh of triangles, vertices at the same position share one
+/// particle, and rigid vertices have none, see [`particle_of_vertex`](Self::particle_of_vertex). Particles
+/// with a weight below 1 are blended with their position at rest, see
+/// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights): this component holds the blended surface.
 ///
 /// [`ClothSystems::Publish`]: crate::ClothSystems::Publish
 #[derive(Component, Clone, Debug, Default)]
@@ -56,13 +56,13 @@ impl ClothState {
         &self.positions
     }
 
-    /// Positions of the same particles before the last tick, in the cloth's frame of that time, m.
+    /// Positions of the same particles before the last tick, in the cloth's frame at that time, m.
     #[must_use]
     pub fn previous_positions(&self) -> &[Vec3] {
         &self.previous_positions
     }
 
-    /// Unit normals of the particles after the last tick, to the front.
+    /// Unit normals of the particles after the last tick, on the front side.
     #[must_use]
     pub fn normals(&self) -> &[Vec3] {
         &self.normals
@@ -93,16 +93,16 @@ impl ClothState {
         self.levels.as_ref().map(|levels| levels.fabric(self.level))
     }
 
-    /// The particle of a vertex of the [`ClothMesh`](crate::ClothMesh) at the cloth's level: an index
-    /// into [`positions`](Self::positions). None where the level leaves the vertex out, and where the
-    /// vertex is rigid: it then stays where the mesh has it.
+    /// The particle of a vertex of the [`ClothMesh`](crate::ClothMesh) at the cloth's level: an index into
+    /// [`positions`](Self::positions). None if the level leaves the vertex out, or if the vertex is rigid and
+    /// so stays where the mesh has it.
     #[must_use]
     pub fn particle_of_vertex(&self, vertex: u32) -> Option<usize> {
         self.levels.as_ref()?.particle(self.level, vertex)
     }
 
-    /// Sets the surface, from simulated positions (m) of a level's particles, without easing: nothing of
-    /// what was shown before is continued.
+    /// Sets the surface from simulated positions (m) of a level's particles, without easing from the surface
+    /// shown before.
     pub(crate) fn restart(&mut self, level: usize, levels: &Arc<ClothLevels>, positions: &[Vec3]) {
         self.change_level(level, levels, positions);
         self.replaced = None;
@@ -120,8 +120,8 @@ impl ClothState {
         self.replace_surface(level, levels, positions, normals);
     }
 
-    /// Changes the level of a cloth that is simulated in this tick: until the tick ends, the normals
-    /// are those that were shown, interpolated to the new level's particles.
+    /// Changes the level of a cloth that is simulated in this tick: until the tick ends, its normals are the
+    /// shown ones, interpolated to the new level's particles.
     pub(crate) fn change_level_in_motion(
         &mut self,
         level: usize,
@@ -145,7 +145,7 @@ impl ClothState {
             previous_positions: core::mem::take(&mut self.previous_positions),
             normals: core::mem::replace(&mut self.normals, normals),
         };
-        // Of several changes before a tick ends, the surface before the first is the one that was shown.
+        // Several changes may precede the end of a tick; only the surface before the first of them was shown.
         self.replaced.get_or_insert(replaced);
         self.level = level;
         self.levels = Some(Arc::clone(levels));
@@ -154,7 +154,7 @@ impl ClothState {
         self.previous_normals.clone_from(&self.normals);
     }
 
-    /// Blends simulated positions and normals with those at rest, for particles of a weight below 1.
+    /// Blends simulated positions and normals with those at rest, for particles with a weight below 1.
     pub(crate) fn blend(&mut self) {
         if let Some(levels) = &self.levels {
             levels.blend(self.level, &mut self.positions, &mut self.normals);

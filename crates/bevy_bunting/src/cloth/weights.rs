@@ -4,7 +4,7 @@
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum WeightsError {
-    /// The mesh must have one weight a vertex, or none at all.
+    /// The number of weights differs from the number of vertices and is not zero.
     #[error("{weights} weights for {vertices} vertices: give one a vertex, or none")]
     Count {
         /// Number of weights given.
@@ -17,15 +17,17 @@ pub enum WeightsError {
     OutOfRange {
         /// Index of the vertex in the mesh.
         vertex: usize,
-        /// Its weight.
+        /// The invalid weight.
         weight: f32,
     },
     /// All weights are 0, so that nothing would be simulated.
-    #[error("all weights are 0: give what should move a greater one, or leave out the ClothMesh")]
+    #[error(
+        "all weights are 0: give the vertices that should move a weight above 0, or leave out the ClothMesh"
+    )]
     AllRigid,
 }
 
-/// Checks the weights of a mesh with so many vertices; an empty list is good.
+/// Checks the weights of a mesh with the given number of vertices; an empty list is valid.
 ///
 /// # Errors
 ///

@@ -2,12 +2,12 @@
 
 use bevy_math::{Vec3, ops};
 
-/// Rate of the decay, 1/s: 3 % of the value is left after 0.25 s. Larger: the surface jerks. Smaller: a
+/// Rate ω of the decay, 1/s: 3 % of the value is left after 0.25 s. Larger: the surface jerks. Smaller: a
 /// surface whose level changes again and again lags behind.
 const RATE: f32 = 28.0;
 
-/// A value x that decays to zero by x‴ = −3ω x″ − 3ω² x′ − ω³ x with ω = 28/s: critically damped, and
-/// of third order, so that it stays smooth when its rate is changed.
+/// A value x that decays to zero by x‴ = −3ω x″ − 3ω² x′ − ω³ x with ω = 28/s: critically damped, and of
+/// third order, so that x stays smooth when its rate is changed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Decay {
     pub value: Vec3,
@@ -18,7 +18,7 @@ pub(super) struct Decay {
 }
 
 impl Decay {
-    /// Advances by a time (s), with the exact solution x = (a + b t + c t²) exp(−ω t).
+    /// Advances the value by `time` (s), with the exact solution x = (a + b t + c t²) exp(−ω t).
     pub fn advance(&mut self, time: f32) {
         let (a, w) = (self.value, RATE);
         let b = self.rate + a * w;

@@ -1,4 +1,4 @@
-//! The displayed surface across changes of level.
+//! Tests of the displayed surface across changes of level.
 
 use std::time::Duration;
 
@@ -19,7 +19,7 @@ use crate::{ClothPlugins, WindField};
 
 const TICK: f32 = 1.0 / 64.0;
 
-/// A pixel of 1080 lines over 60° at 10 m, m.
+/// Size of a pixel at 10 m, for 1080 lines over 60°, m.
 const PIXEL: f32 = 0.0107;
 
 fn app() -> App {
@@ -52,7 +52,7 @@ fn seen(app: &App, flag: Entity) -> Vec<Vec3> {
     levels(app, flag).interpolate(surface.positions.clone(), surface.level(), 0)
 }
 
-/// How far the vertex that strays most is from where it would be had it gone on as it moved, m.
+/// Greatest distance of a vertex from its linear extrapolation from the two frames before, m.
 fn strayed(frames: [&[Vec3]; 3]) -> f32 {
     let [before, now, after] = frames;
     let strays = (0..now.len()).map(|at| (now[at] + (now[at] - before[at])).distance(after[at]));
@@ -65,7 +65,7 @@ fn a_change_of_level_does_not_pop() {
         let mut app = app();
         let flag = flag(&mut app, from);
         (0..100).for_each(|_| app.update());
-        // With frames as long as ticks, what is seen is the tick before.
+        // Frames are as long as ticks, so the displayed surface is that of the tick before.
         let mut frames = Vec::new();
         for frame in 0..30 {
             if frame == 26 {
@@ -79,7 +79,7 @@ fn a_change_of_level_does_not_pop() {
             frames.windows(3).map(|frames| strayed([&frames[0], &frames[1], &frames[2]])).collect();
         let (flight, change) = strays.split_at(25);
         assert!(change[0] < PIXEL, "{from} to {to}: {}", change[0]);
-        // And then nothing that the flag's own flapping does not do.
+        // Later frames depart no more than the flag's own flapping does.
         let own = flight.iter().copied().fold(0.0, f32::max);
         assert!(change[1..].iter().all(|&stray| stray < 2.0 * own), "{change:?} {own}");
     }

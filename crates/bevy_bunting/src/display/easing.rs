@@ -9,23 +9,23 @@ use crate::cloth::state::{ClothState, ReplacedSurface};
 use crate::display::decay::Decay;
 use crate::fabric::levels::ClothLevels;
 
-/// Time after which the new level's own surface is shown, s. Shorter: changes of level are seen as jerks.
+/// Time after which the new level's own surface is shown, s. Shorter: changes of level are visible as jerks.
 /// Longer: they cost more, and the shown surface lags behind the simulated one.
 pub(super) const DURATION: f32 = 0.25;
 
-/// Power of the time by which the offsets are faded out in addition to their decay: high enough that the
-/// first frames do not change, low enough that the last ones do not jerk.
+/// Power of the relative age by which the offsets are faded out in addition to their decay: large enough to
+/// leave the first frames unchanged, small enough not to jerk the last ones.
 const FADE: f32 = 4.0;
 
-/// The surface of a cloth while its level changes: that of the new level, plus offsets that decay to zero
-/// ("inertialization", Bollo 2018).
+/// The surface of a cloth while its level changes: the surface of the new level, plus offsets that decay to
+/// zero ("inertialization", Bollo 2018).
 ///
-/// At the change, the offsets are the differences between the surface that was shown and that of the new
-/// level, and decay at first at the rate at which the two move apart: so neither positions nor velocities
-/// of what is shown jump. The surface has the vertices of the finest level that takes part.
+/// At the change, the offsets are the differences between the shown surface and that of the new level, and
+/// their rates are the differences of the velocities, so that neither positions nor velocities of the shown
+/// surface jump. The surface has the vertices of the finest level that takes part.
 #[derive(Component, Debug, Default)]
 pub(crate) struct ClothEasing {
-    /// The levels of the cloth while a change is eased; none at other times.
+    /// The levels of the cloth while a change is eased; none otherwise.
     levels: Option<Arc<ClothLevels>>,
     /// The level whose vertices the surface has.
     level: usize,
@@ -36,7 +36,7 @@ pub(crate) struct ClothEasing {
     normal_offsets: Vec<Decay>,
     /// Positions after the last tick, m.
     pub positions: Vec<Vec3>,
-    /// Positions before it, m.
+    /// Positions before the last tick, m.
     pub previous_positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
     pub previous_normals: Vec<Vec3>,
@@ -52,13 +52,13 @@ impl ClothEasing {
         self.levels.is_some()
     }
 
-    /// Ends the easing unless it is of these levels.
+    /// Ends the easing if the cloth has other levels by now.
     pub(super) fn keep_only_for(&mut self, levels: Option<&Arc<ClothLevels>>) {
         let is_same = |eased: &Arc<ClothLevels>| levels.is_some_and(|it| Arc::ptr_eq(eased, it));
         self.levels = self.levels.take().filter(is_same);
     }
 
-    /// Begins to ease a change of level, after which a tick of `tick` seconds was simulated.
+    /// Begins to ease a change of level, after a tick of `tick` seconds at the new level.
     pub(super) fn begin(
         &mut self,
         replaced: ReplacedSurface,
@@ -74,7 +74,7 @@ impl ClothEasing {
             self.offsets.clear();
             self.normal_offsets.clear();
         }
-        // From here on at the finer of the two levels.
+        // The surface has the vertices of the finer of the two levels from here on.
         let finer = self.level.min(state.level);
         let refine =
             |values: &[Vec3], from: usize| levels.interpolate(values.to_vec(), from, finer);

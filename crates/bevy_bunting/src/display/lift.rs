@@ -12,15 +12,15 @@ use crate::display::ease::ease_surfaces;
 use crate::display::easing::ClothEasing;
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// Displacements of the particles of a displayed surface that lift its triangles out of colliders: their indices,
-/// and m.
+/// Displacements (m) that lift the triangles of a displayed surface out of colliders, with the indices of the
+/// displaced particles.
 #[derive(Component, Debug, Default)]
 pub(crate) struct ClothLift {
     /// The level whose particles are displaced.
     level: usize,
-    /// Before the last tick.
+    /// Displacements before the last tick.
     previous: Vec<(u32, Vec3)>,
-    /// After the last tick.
+    /// Displacements after the last tick.
     current: Vec<(u32, Vec3)>,
 }
 

@@ -1,4 +1,4 @@
-//! The surface that is shown: interpolated between two ticks, and eased across changes of level.
+//! The displayed surface: interpolated between two ticks, and eased across changes of level.
 
 pub mod decay;
 pub mod ease;

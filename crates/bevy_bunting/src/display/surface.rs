@@ -1,4 +1,4 @@
-//! The surface for display between two ticks.
+//! The displayed surface of a cloth between two ticks.
 
 use bevy_app::{App, Plugin, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::prelude::*;
@@ -12,19 +12,19 @@ use crate::display::easing::ClothEasing;
 use crate::display::lift::ClothLift;
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// The surface of a cloth for display, in the cloth's frame: [`ClothState`] interpolated between its last
-/// two ticks, at the time of the frame minus one tick.
+/// The displayed surface of a cloth, in the cloth's frame: [`ClothState`] interpolated between its last two
+/// ticks, one tick before the time of the frame.
 ///
 /// Rigid vertices, of weight 0, have no particles: they stay where the
 /// [`ClothMesh`](crate::ClothMesh) has them, see [`ClothState::particle_of_vertex`].
 ///
-/// After a change of level the surface continues the motion that was shown, with the vertices of the
-/// finer level, and approaches that of the new level within 0.25 s.
+/// After a change of level the surface continues its motion with the vertices of the finer level, and
+/// approaches the surface of the new level within 0.25 s.
 ///
-/// Where a triangle between particles would cut a [`ClothCollider`](crate::ClothCollider) that has an inside, the
-/// surface is lifted out of it.
+/// Where a triangle between particles would cut a solid [`ClothCollider`](crate::ClothCollider), the surface
+/// is lifted out of the collider.
 ///
-/// Optional: only cloths with this component are interpolated. Written each frame in
+/// Optional: only cloths with this component are interpolated. It is written in each frame, in
 /// `RunFixedMainLoopSystems::AfterFixedMainLoop`.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]

@@ -16,8 +16,8 @@ use crate::environment::drive::{drive_cloths, pose_parts};
 use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// A shape that no cloth enters. It moves with its entity, pushes cloth and is not pushed back. A heightfield
-/// is solid below its surface.
+/// A shape that no cloth enters. It moves with its entity and pushes cloth; cloth does not push it. A
+/// heightfield is solid below its surface.
 #[derive(Component, Clone, Reflect)]
 #[reflect(Component, Clone)]
 #[require(Transform, PoseHistory)]
@@ -25,34 +25,33 @@ pub struct ClothCollider {
     /// The shape in the entity's frame, m; the entity's scale is ignored.
     #[reflect(remote = SharedShapeReflect)]
     pub shape: SharedShape,
-    /// Distance that cloth keeps from the shape in addition to its thickness, m. It rounds edges: a box
-    /// with a margin is a round box, and cheaper than parry's round cuboid, whose projections are
-    /// iterative.
+    /// Distance that cloth keeps from the shape in addition to its thickness, m. A margin rounds edges: a box
+    /// with a margin is a round box, and cheaper than parry's round cuboid, whose projections are iterative.
     pub margin: f32,
-    /// Coulomb friction coefficient. In a contact the geometric mean of this and the material's counts.
+    /// Coulomb friction coefficient. A contact uses the geometric mean of this value and the material's.
     pub friction: f32,
 }
 
 impl ClothCollider {
-    /// Any parry shape, without a margin, with a friction coefficient of 1.
+    /// A collider of any parry shape, without a margin, with a friction coefficient of 1.
     #[must_use]
     pub const fn new(shape: SharedShape) -> Self {
         Self { shape, margin: 0.0, friction: 1.0 }
     }
 
-    /// A ball of a radius (m).
+    /// A ball of the given radius (m).
     #[must_use]
     pub fn ball(radius: f32) -> Self {
         Self::new(SharedShape::ball(radius))
     }
 
-    /// A capsule along y: half the length of its axis (m), and its radius (m).
+    /// A capsule along y with the given half length of its axis (m) and radius (m).
     #[must_use]
     pub fn capsule(half_height: f32, radius: f32) -> Self {
         Self::new(SharedShape::capsule_y(half_height, radius))
     }
 
-    /// A box of half extents (m).
+    /// A box of the given half extents (m).
     #[must_use]
     pub fn cuboid(half_extents: Vec3) -> Self {
         Self::new(SharedShape::cuboid(half_extents.x, half_extents.y, half_extents.z))
@@ -81,7 +80,7 @@ impl Plugin for ColliderPlugin {
     }
 }
 
-/// Reports new and changed colliders that the solver refuses.
+/// Reports new and changed colliders with numbers that the solver refuses.
 fn report_bad_colliders(colliders: Query<(Entity, &ClothCollider), Changed<ClothCollider>>) {
     for (entity, collider) in &colliders {
         let ClothCollider { margin, friction, .. } = *collider;
@@ -94,10 +93,10 @@ fn report_bad_colliders(colliders: Query<(Entity, &ClothCollider), Changed<Cloth
     }
 }
 
-/// Sets the colliders of each cloth in the cloth's frame: their poses at the start of the tick in the
-/// frame at that time, and their poses at the end of the tick in the frame at that time. Poses of what is
-/// moved in frames are extrapolated to the time of the tick, of cloths and colliders alike, so that a collider
-/// that moves with a cloth rests in its frame.
+/// Sets the colliders of each cloth, relative to the cloth's frame: their poses at the start of the tick
+/// relative to the frame at that time, and their poses at its end likewise. Poses of entities that move in
+/// frames are extrapolated to the time of the tick, of cloths and colliders alike, so that a collider that
+/// moves with a cloth rests in its frame.
 fn drive_colliders(
     colliders: Query<(&ClothCollider, &PoseHistory)>,
     cloths: Query<(&ClothInstance, &PoseHistory)>,

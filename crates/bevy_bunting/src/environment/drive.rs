@@ -1,4 +1,4 @@
-//! Sets what acts on each cloth in a tick: its frame's motion, gravity and air.
+//! Sets the frame motion, gravity and air of each cloth in a tick.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
@@ -12,7 +12,7 @@ use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
 
-/// Sets what acts on each cloth in a tick.
+/// Sets the frame motion, gravity and air of each cloth in a tick.
 #[derive(Debug, Default)]
 pub struct DrivePlugin;
 
@@ -22,8 +22,8 @@ impl Plugin for DrivePlugin {
     }
 }
 
-/// Sets frame motion, gravity and wind. Gravity and wind are given in the world, and rotated to the axes
-/// of the cloth's frame at the end of the tick.
+/// Sets frame motion, gravity and wind. Gravity and wind are rotated from the world's axes to those of the
+/// cloth's frame at the end of the tick.
 pub(crate) fn drive_cloths(
     mut cloths: Query<(&mut ClothInstance, &PoseHistory)>,
     settings: Res<ClothSettings>,
@@ -36,7 +36,7 @@ pub(crate) fn drive_cloths(
         let (start, end) = (frame.start(), frame.end());
         let inverse = end.rotation.inverse();
         let gravity = inverse * gravity;
-        // Written in every tick: it must not mark the cloth as changed.
+        // Gravity is written in every tick, which must not mark the cloth as changed.
         instance.bypass_change_detection().gravity = gravity;
         let middle = end * instance.rest_middle();
         batches.lane(lane).drive(Drive {
@@ -48,15 +48,15 @@ pub(crate) fn drive_cloths(
     }
 }
 
-/// Gravity, m/s², and the density of the air, kg/m³. One that is not finite, or a negative density, counts as zero;
-/// that is logged whenever settings change.
+/// Gravity (m/s²) and the density of the air (kg/m³). A value that is not finite, or a negative density,
+/// counts as zero and is logged whenever the settings change.
 fn gravity_and_air(settings: &Res<ClothSettings>) -> (Vec3, f32) {
     let (gravity, air_density) = (settings.gravity, settings.air_density);
     let is_gravity = gravity.is_finite();
     let is_density = air_density >= 0.0 && air_density.is_finite();
     if settings.is_changed() && !(is_gravity && is_density) {
         log::error!(
-            "ClothSettings: gravity {gravity} and air density {air_density} must be finite, and the density not negative; what is not counts as zero"
+            "ClothSettings: gravity {gravity} and air density {air_density} must be finite, and the density not negative; an invalid value counts as zero"
         );
     }
     (if is_gravity { gravity } else { Vec3::ZERO }, if is_density { air_density } else { 0.0 })

@@ -5,11 +5,13 @@ use bevy_reflect::Reflect;
 
 use crate::waves::{Random, sine};
 
-/// Number of waves: as many as two SSE registers hold. Fewer: gusts repeat. More: each cloth pays for them.
+/// Number of waves: they fill two SSE registers. Fewer: gusts repeat. More: the wind at each cloth costs
+/// more.
 const WAVES: usize = 8;
 
-/// Numbers of waves to the length of a gust, by equal ratios, and relative amplitudes: Kolmogorov's spectrum, in
-/// which the energy of waves so spaced falls with the power −2/3 of the wave number.
+/// Wave numbers, in waves to the length of a gust and spaced by equal ratios, and relative amplitudes, after
+/// Kolmogorov's spectrum: with this spacing the energy of a wave falls with the power −2/3 of the wave
+/// number.
 const SPECTRUM: [(f32, f32); WAVES] = [
     (0.50, 1.26),
     (0.61, 1.18),
@@ -21,8 +23,9 @@ const SPECTRUM: [(f32, f32); WAVES] = [
     (2.00, 0.79),
 ];
 
-/// Velocities of the air about the mean: plane waves of random directions, each at right angles to its own
-/// amplitude, so that the divergence of the sum is zero (kinematic simulation of turbulence, Fung et al. 1992).
+/// Deviation of the air's velocity from its mean: plane waves in random directions, each perpendicular to its
+/// own amplitude, so that the divergence of the sum is zero (kinematic simulation of turbulence, Fung et al.
+/// 1992).
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 pub(crate) struct Gusts {
     /// Wave vectors, 1/m: x, y and z of each wave.
@@ -34,8 +37,8 @@ pub(crate) struct Gusts {
 }
 
 impl Gusts {
-    /// Gusts of a strength (the greatest velocity along each axis, m/s) and a length (m), carried by `travel` of
-    /// their lengths.
+    /// Gusts with a strength (the greatest velocity along each axis, m/s) and a length (m), carried by
+    /// `travel` lengths of a gust.
     pub fn new(seed: i32, strength: f32, length: f32, travel: DVec3) -> Self {
         let mut random = Random::with_seed(seed.cast_unsigned());
         let mut gusts = Self {
@@ -73,8 +76,8 @@ impl Gusts {
         Vec3::new(sum(x), sum(y), sum(z))
     }
 
-    /// Scales the amplitudes so that the crests of all waves together reach a velocity along the axis where they
-    /// reach most.
+    /// Scales the amplitudes so that the sum of all waves' crests reaches `strength` (m/s) along the axis
+    /// where this sum is greatest.
     fn scale_to(&mut self, strength: f32) {
         let crests = self.amplitudes.map(|axis| axis.iter().map(|it| it.abs()).sum::<f32>());
         let scale = strength / crests.into_iter().fold(0.0, f32::max);

@@ -1,4 +1,4 @@
-//! What acts on a cloth: wind, gravity, colliders.
+//! Wind, gravity and colliders: everything that acts on a cloth besides its attachment.
 
 pub mod collider;
 pub mod drive;

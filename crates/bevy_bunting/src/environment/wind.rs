@@ -10,38 +10,40 @@ use bevy_time::Time;
 use crate::environment::gusts::Gusts;
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// Least length of a gust, m: that of a large flag. Smaller: gusts are shorter than the cloth that feels them
-/// at its middle.
+/// Least length of a gust, m: the size of a large flag. Smaller: gusts are shorter than the cloth, which
+/// feels them at its middle only.
 const LEAST_GUST_LENGTH: f32 = 2.0;
 
-/// Moving air. The velocities of several fields are added up.
+/// Moving air. The velocities of all fields are added up.
 ///
-/// Gusts are a sum of eight plane waves, free of divergence, that the mean wind carries along (Taylor's hypothesis
-/// of frozen turbulence): their length is the distance that the mean wind covers in 1/`gust_frequency`, at least
-/// 2 m, and a cloth downwind feels a gust later. They depend on position, time and seed, and not on the frame rate.
-/// A change of the mean velocity changes how fast gusts travel from then on. A cloth feels the air at its middle.
+/// Gusts are a sum of eight plane waves, free of divergence, that the mean wind carries along (Taylor's
+/// hypothesis of frozen turbulence). Their length is the distance that the mean wind covers in
+/// 1/`gust_frequency`, at least 2 m, and a cloth downwind feels a gust later. Gusts depend on position, time
+/// and seed, and not on the frame rate. After a change of the mean velocity, gusts travel at the new
+/// velocity. A cloth feels the air at its middle.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(GustTravel)]
 pub struct WindField {
     /// Mean velocity of the air relative to the world, m/s.
     pub velocity: Vec3,
-    /// Greatest difference from the mean velocity along each axis, m/s; its root mean square is a quarter of that.
+    /// Greatest difference from the mean velocity along each axis, m/s; the root mean square of the
+    /// difference is a quarter of this.
     pub gust_strength: f32,
     /// Frequency of gusts, 1/s.
     pub gust_frequency: f32,
-    /// Seed of the noise: fields with different seeds have independent gusts.
+    /// Seed of the gusts: fields with different seeds have independent gusts.
     pub seed: i32,
 }
 
 impl WindField {
-    /// Wind of a velocity (m/s) without gusts.
+    /// A steady wind of the given velocity (m/s), without gusts.
     #[must_use]
     pub const fn steady(velocity: Vec3) -> Self {
         Self { velocity, gust_strength: 0.0, gust_frequency: 0.5, seed: 0 }
     }
 
-    /// The same, with gusts of a strength (m/s), a frequency (1/s) and a seed.
+    /// The wind with gusts of a strength (m/s), a frequency (1/s) and a seed.
     #[must_use]
     pub const fn with_gusts(mut self, strength: f32, frequency: f32, seed: i32) -> Self {
         self.gust_strength = strength;
@@ -57,13 +59,14 @@ impl WindField {
         MovingAir::new(self, travel).at(position)
     }
 
-    /// How far gusts travel in a second, in lengths of a gust; zero without gusts.
+    /// Distance that gusts travel in a second, in lengths of a gust; zero without gusts.
     #[must_use]
     pub fn travel_rate(&self) -> DVec3 {
         if self.gust_strength == 0.0 || !self.velocity.is_finite() {
             return DVec3::ZERO;
         }
-        // In a light wind gusts of the least length would be rarer than asked: they move faster than the air.
+        // In a light wind, gusts of the least length would be rarer than asked: such gusts move faster than
+        // the air.
         let frequency = f64::from(self.gust_frequency);
         let along = self.velocity.try_normalize().unwrap_or(Vec3::X).as_dvec3();
         let rate = along * frequency.max(f64::from(self.velocity.length() / self.gust_length()));
@@ -76,8 +79,8 @@ impl WindField {
     }
 }
 
-/// How far the mean wind has carried the gusts of a [`WindField`], in lengths of a gust. It is added up tick by
-/// tick, so that gusts stay continuous where the field's velocity changes.
+/// Distance that the mean wind has carried the gusts of a [`WindField`], in lengths of a gust. The distance
+/// is summed tick by tick, so that gusts stay continuous when the field's velocity changes.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct GustTravel(pub DVec3);
@@ -109,14 +112,14 @@ impl MovingAir {
     }
 }
 
-/// The air in this tick: that of all [`WindField`]s.
+/// Air in this tick: the sum of all [`WindField`]s.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct TickWind(Vec<MovingAir>);
 
 impl TickWind {
     /// Velocity of the air (m/s) at a position in the world (m): the sum of all fields. A field that is not
-    /// finite counts as no wind at all.
+    /// finite is left out.
     #[must_use]
     pub fn at(&self, position: Vec3) -> Vec3 {
         let velocities = self.0.iter().map(|air| air.at(position));

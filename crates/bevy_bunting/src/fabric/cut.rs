@@ -1,4 +1,4 @@
-//! Cuts the fabrics of a cloth's levels from its mesh.
+//! Builds the fabrics of a cloth's levels from its mesh.
 
 use std::sync::Arc;
 
@@ -8,11 +8,11 @@ use crate::cloth::mesh::ClothMesh;
 use crate::fabric::levels::{ClothLevels, Level, Shortage};
 use crate::fabric::simulated::SimulatedPart;
 
-/// Cuts as many levels from a mesh as are asked for, or as can be cut, with attached vertices pinned.
+/// Builds the levels that are asked for, or as many as the mesh allows, with attached vertices pinned.
 ///
 /// # Errors
 ///
-/// The finest fabric cannot be cut.
+/// The finest fabric cannot be built.
 pub(super) fn cut_levels(
     mesh: &ClothMesh,
     attached: &[u32],
@@ -44,8 +44,8 @@ pub(super) fn cut_levels(
     Ok(cut)
 }
 
-/// The next coarser level of a builder and its fabric: builder, fabric, and the transfer between the
-/// two. None if there is no coarser level.
+/// Builds the next coarser level: builder, fabric, and the transfer between the two levels. None if there is
+/// no coarser level.
 fn coarsen(
     builder: &FabricBuilder,
     fabric: &Arc<Fabric>,

@@ -18,7 +18,7 @@ pub(crate) struct LevelTopology {
 
 impl LevelTopology {
     /// The mesh of a level that simulates some vertices of the [`ClothMesh`](crate::ClothMesh), with
-    /// triangles as indices into these, beside the rigid part.
+    /// triangles as indices into these vertices, together with the rigid part.
     pub fn new(simulated: &[u32], indices: &[u32], part: &RigidPart) -> Self {
         let rigid = || part.vertices.iter().map(|rest| rest.vertex);
         let mut vertices: Vec<u32> = simulated.iter().copied().chain(rigid()).collect();
@@ -26,7 +26,8 @@ impl LevelTopology {
         let index = |vertex: u32| vertices.binary_search(&vertex).ok().map(|index| index as u32);
         let moving = indices.as_chunks::<3>().0.iter();
         let moving = moving.map(|corners| corners.map(|corner| simulated[corner as usize]));
-        // A level keeps all pinned vertices, and so the corners that rigid triangles share with others.
+        // A level keeps all pinned vertices, and so all corners that rigid triangles share with simulated
+        // ones.
         let triangles = moving.chain(part.triangles.iter().copied()).filter_map(|corners| {
             let [a, b, c] = corners.map(index);
             Some([a?, b?, c?])

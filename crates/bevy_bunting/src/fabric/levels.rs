@@ -1,4 +1,4 @@
-//! The levels of detail of a cloth: a fabric each, the finest first.
+//! The levels of detail of a cloth: one fabric for each, the finest first.
 
 use std::sync::Arc;
 
@@ -15,22 +15,22 @@ use crate::fabric::rigid::{Blend, RigidPart};
 #[derive(Debug)]
 pub(crate) struct ClothLevels {
     pub(super) levels: Vec<Level>,
-    /// One less than levels: between each level and the next coarser one.
+    /// Transfer between each level and the next coarser one: one fewer than levels.
     pub(super) transfers: Vec<LevelTransfer>,
     pub(super) rigid: RigidPart,
     /// Number of levels that the [`LodSet`](crate::LodSet) asks for.
     pub(super) asked: usize,
-    /// Why there are fewer levels; none if there are not.
+    /// Reason why there are fewer levels than asked for; none if there are not.
     pub(super) shortage: Option<Shortage>,
 }
 
-/// One level.
+/// One level of detail.
 #[derive(Debug)]
 pub(super) struct Level {
     pub fabric: Arc<Fabric>,
     /// The simulated vertices as indices in the [`ClothMesh`](crate::ClothMesh), ascending.
     pub vertices: Vec<u32>,
-    /// Particles of a weight below 1.
+    /// Particles with a weight below 1.
     blends: Vec<Blend>,
     #[cfg(feature = "render")]
     topology: LevelTopology,
@@ -55,17 +55,17 @@ impl Level {
     }
 }
 
-/// Why a level cannot be cut.
+/// Reason why a level cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shortage {
-    /// The grid cannot be halved, or the mesh has no vertex that could be left out.
+    /// The grid cannot be halved, or no vertex of the mesh can be left out.
     Particles,
     /// No pinned vertex would be left.
     Pins,
 }
 
 impl ClothLevels {
-    /// The fabric of a level. Levels that could not be cut have that of the coarsest that could.
+    /// Fabric of a level. A level that could not be built has the fabric of the coarsest level.
     pub fn fabric(&self, level: usize) -> &Arc<Fabric> {
         &self.level(level).fabric
     }
@@ -87,7 +87,7 @@ impl ClothLevels {
         &self.rigid
     }
 
-    /// The particle at a level of a vertex of the [`ClothMesh`](crate::ClothMesh), if it has one.
+    /// Particle at a level of a vertex of the [`ClothMesh`](crate::ClothMesh), if there is one.
     pub fn particle(&self, level: usize, vertex: u32) -> Option<usize> {
         let level = self.level(level);
         let index = level.vertices.binary_search(&vertex).ok()?;
@@ -105,7 +105,7 @@ impl ClothLevels {
         &self.levels[level.min(self.levels.len() - 1)]
     }
 
-    /// The error to report of a cloth with fewer levels than asked for; `grid` if its mesh is one.
+    /// Error of a cloth with fewer levels than asked for; `grid` is its mesh if that is a grid.
     pub fn shortage(&self, entity: Entity, grid: Option<Grid>) -> Option<ClothError> {
         let (built, asked) = (self.levels.len(), self.asked);
         Some(match (self.shortage?, grid) {

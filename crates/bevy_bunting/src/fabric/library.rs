@@ -1,4 +1,4 @@
-//! The fabrics in use, so that cloths of equal content share them.
+//! The fabrics in use, shared by cloths of equal content.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Weak};
@@ -15,49 +15,51 @@ use crate::fabric::levels::ClothLevels;
 use crate::lod::lod_set::LodSet;
 use crate::motion::attachment::Attachment;
 
-/// Number of vertices from which levels are cut on another thread, where there are threads: it takes
+/// Number of vertices from which levels are built on another thread, where there are threads: building takes
 /// longer than a tick then. Fewer: cloths appear some ticks late without need.
 const ASYNC_VERTICES: usize = 8192;
 
-/// Number of vertices of different cloths whose fabrics are expected in a tick: a flag of 33 × 33 with its levels
-/// takes some milliseconds to be cut. Larger: ticks wait for other threads. Smaller: many new cloths appear late
-/// without need.
+/// Number of vertices, over all different cloths, whose fabrics are expected to be built in a tick: a flag of
+/// 33 × 33 with its levels takes some milliseconds. Larger: ticks wait for other threads. Smaller: many new
+/// cloths appear late without need.
 const VERTICES_PER_TICK: usize = 1024;
 
 /// The levels of all cloths in use, by content.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct FabricLibrary {
     cut: HashMap<ContentKey, Weak<ClothLevels>>,
-    /// Levels that are expected in a later tick.
+    /// Levels that are being built and are expected in a later tick.
     cutting: HashMap<ContentKey, Cutting>,
     /// Number of ticks so far.
     tick: u64,
-    /// Number of vertices that are expected in this tick and later ones.
+    /// Number of vertices whose levels are expected in this tick or later.
     expected: usize,
-    /// Whether a cloth waits for its levels, or for others than it has.
+    /// Whether a cloth waits for its levels, or for levels that replace its present ones.
     pub awaited: bool,
 }
 
-/// Levels that are being cut in the background. They are taken in a tick that follows from the numbers of vertices.
+/// Levels that are being built in the background. The tick in which they are taken follows from the numbers
+/// of vertices.
 #[derive(Debug)]
 struct Cutting {
-    /// The tick in which they are taken.
+    /// Tick in which the levels are taken.
     due: u64,
     levels: Background<Result<ClothLevels, FabricError>>,
 }
 
-/// Everything that the levels of a cloth depend on, bit for bit; each list after its length.
+/// Content key: all inputs of a cloth's levels, bit for bit; each list follows its length.
 type ContentKey = Vec<u32>;
 
-/// The levels of a cloth.
+/// Result of a request for a cloth's levels.
 pub(crate) enum Found {
     Levels(Arc<ClothLevels>),
-    /// They are being cut; what they depend on.
+    /// The levels are being built; the key identifies them in later requests.
     Awaited(ContentKey),
 }
 
 impl FabricLibrary {
-    /// Begins a tick, in which no cloth waits yet. What no cloth waited for in the last one is not cut further.
+    /// Begins a tick, in which no cloth waits yet. If none waited in the last tick, all levels that are being
+    /// built are abandoned.
     pub fn begin_tick(&mut self) {
         if !self.awaited {
             self.cutting.clear();
@@ -73,14 +75,14 @@ impl FabricLibrary {
         self.cutting.get(key).is_some_and(|cutting| self.tick < cutting.due)
     }
 
-    /// Number of ticks after which nothing is being cut any more.
+    /// Number of ticks until all levels that are being built are ready.
     pub fn ticks_to_cut(&self) -> u64 {
         let left = |cutting: &Cutting| cutting.due.saturating_sub(self.tick);
         self.cutting.values().map(left).max().unwrap_or(0)
     }
 
-    /// The levels of a cloth, cut now or before. While they are being cut on another thread, what they depend on:
-    /// ask again in a later tick.
+    /// Returns the levels of a cloth, built now or before. While another thread builds them it returns their
+    /// key: ask again in a later tick.
     ///
     /// # Errors
     ///
@@ -114,7 +116,7 @@ impl FabricLibrary {
         Ok(Found::Levels(levels))
     }
 
-    /// Cuts levels, now or in the tick in which they are due; none before.
+    /// Builds levels now, or takes them in the tick in which they are due; none before.
     fn cut_or_wait(
         &mut self,
         key: &ContentKey,
@@ -130,7 +132,7 @@ impl FabricLibrary {
         }
         let vertices = mesh.vertex_count();
         let fits = self.expected == 0 || self.expected + vertices <= VERTICES_PER_TICK;
-        // Small cloths do not wait for large ones.
+        // Small cloths are built at once and do not wait for large ones.
         let is_large = vertices >= ASYNC_VERTICES;
         let expected = if is_large { vertices } else { self.expected + vertices };
         if !is_large {
@@ -235,7 +237,7 @@ mod tests {
         assert_eq!(levels.interpolate(state.positions, 3, 0).len(), 45);
     }
 
-    /// The flag as plain triangles.
+    /// The flag as a mesh of triangles.
     fn triangles() -> ClothMesh {
         let flag = FLAG.builder().build().expect("a flag");
         let indices = flag.triangles().as_flattened().to_vec();

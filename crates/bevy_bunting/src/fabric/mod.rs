@@ -1,4 +1,4 @@
-//! Fabrics: cut from meshes, one for each level of detail, and shared by cloths of equal content.
+//! Fabrics: built from meshes, one for each level of detail, and shared by cloths of equal content.
 
 pub mod cut;
 #[cfg(feature = "render")]

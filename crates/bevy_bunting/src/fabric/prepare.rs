@@ -1,4 +1,4 @@
-//! Prepares cloths that are new or changed: cuts or looks up their fabrics, changes their materials.
+//! Prepares cloths that are new or changed: builds or looks up their fabrics, and changes their materials.
 
 use std::sync::Arc;
 
@@ -61,8 +61,8 @@ fn clear_removed(
     }
 }
 
-/// Has a cloth cut again whose [`Attachment`] is removed. Messages of removals would be lost after two
-/// frames, and the next tick may come later.
+/// Rebuilds a cloth whose [`Attachment`] is removed. An observer does this, since removal messages are
+/// dropped after two frames and the next tick may come later.
 fn mark_released(_: On<Remove, Attachment>, mut library: ResMut<FabricLibrary>) {
     library.awaited = true;
 }
@@ -70,7 +70,7 @@ fn mark_released(_: On<Remove, Attachment>, mut library: ResMut<FabricLibrary>) 
 type AnyChanged =
     Or<(Changed<ClothMesh>, Changed<ClothMaterial>, Changed<LodSet>, Changed<Attachment>)>;
 
-/// Whether any cloth may have to be cut: in most ticks none has.
+/// Whether the fabrics of any cloth may be out of date: in most ticks none are.
 fn any_may_be_stale(
     changed: Query<(), (With<ClothMesh>, AnyChanged)>,
     library: Res<FabricLibrary>,
@@ -93,7 +93,7 @@ struct CutCloth {
     history: &'static mut PoseHistory,
 }
 
-/// Cuts the fabrics of cloths whose mesh, levels or attachment changed. An invalid cloth is reported and
+/// Builds the fabrics of cloths whose mesh, levels or attachment changed. An invalid cloth is reported and
 /// not simulated until it changes again.
 fn cut_cloths(
     mut cloths: Query<CutCloth>,
@@ -148,14 +148,14 @@ impl CutClothItem<'_, '_> {
         Some(attachment.target_other_than(self.entity).unwrap_or(self.entity))
     }
 
-    /// Whether the user has changed what the fabrics depend on.
+    /// Whether the user has changed an input of the fabrics.
     fn is_edited(&self) -> bool {
         self.mesh.is_changed()
             || self.lods.is_changed()
             || self.attachment.as_ref().is_some_and(|attachment| attachment.is_changed())
     }
 
-    /// Whether the fabrics must be looked up or cut again.
+    /// Whether the fabrics must be looked up or built again.
     fn is_stale(&self, target: Option<Entity>) -> bool {
         self.instance.cutting.is_some()
             || self.instance.missing_target.is_some()
@@ -164,7 +164,7 @@ impl CutClothItem<'_, '_> {
             || (self.material.is_changed() && self.instance.levels.is_none())
     }
 
-    /// The levels of the cloth.
+    /// Looks up or builds the levels of the cloth.
     fn find_levels(
         &self,
         target: Option<Entity>,
@@ -183,7 +183,7 @@ impl CutClothItem<'_, '_> {
         library.levels(entity, &self.mesh, self.attachment.as_deref(), &self.lods)
     }
 
-    /// Simulates the cloth with levels from now on.
+    /// Simulates the cloth with new levels from now on.
     fn set_levels(
         &mut self,
         levels: Arc<ClothLevels>,
@@ -221,7 +221,8 @@ impl CutClothItem<'_, '_> {
 }
 
 impl CutClothItem<'_, '_> {
-    /// Notes the target. Returns the transformation from the frame of the target before to its frame.
+    /// Stores the target. Returns the transformation from the frame on the old target to the frame on the new
+    /// one.
     fn set_target(
         &mut self,
         target: Option<Entity>,
@@ -244,7 +245,7 @@ impl CutClothItem<'_, '_> {
     }
 }
 
-/// Changes materials from this tick on. An invalid one is reported, and the last valid one kept.
+/// Changes materials from this tick on. An invalid material is reported, and the last valid one is kept.
 fn change_materials(
     mut cloths: Query<(Entity, &ClothMaterial, &mut ClothInstance), Changed<ClothMaterial>>,
     mut batches: ResMut<ClothBatches>,

@@ -10,20 +10,20 @@ pub(crate) struct RestVertex {
     pub vertex: u32,
     /// Position in the cloth's frame, m.
     pub position: Vec3,
-    /// Unit normal of the whole mesh.
+    /// Unit normal in the whole mesh.
     pub normal: Vec3,
 }
 
-/// The vertices of a mesh that are not, or not fully, simulated.
+/// The vertices of a mesh that are not simulated, or are blended.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct RigidPart {
     /// The vertices without particles.
     pub vertices: Vec<RestVertex>,
     /// The triangles without simulated corners, as vertices of the mesh.
     pub triangles: Vec<[u32; 3]>,
-    /// Simulated vertices of a weight below 1, with their weights.
+    /// Simulated vertices with a weight below 1, and their weights.
     pub blended: Vec<(RestVertex, f32)>,
-    /// Least and greatest coordinates of all these vertices, m; none without such vertices.
+    /// Least and greatest coordinates of all these vertices, m; none if there are no such vertices.
     pub bounds: Option<[Vec3; 2]>,
 }
 
@@ -39,14 +39,14 @@ impl RigidPart {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Blend {
     particle: usize,
-    /// 0 at rest, 1 simulated.
+    /// Weight: 0 at rest, 1 simulated.
     weight: f32,
     rest: RestVertex,
 }
 
 impl Blend {
-    /// The blended particles of a level with the given vertices of the mesh, ascending. Of vertices that
-    /// were merged into one particle the first one's weight counts.
+    /// The blended particles of a level with the given vertices of the mesh, ascending. If vertices were
+    /// merged into one particle, the first vertex's weight is used.
     pub fn all(rigid: &RigidPart, vertices: &[u32], fabric: &Fabric) -> Vec<Self> {
         let mut blends: Vec<Self> = rigid
             .blended

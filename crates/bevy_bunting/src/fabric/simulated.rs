@@ -1,11 +1,11 @@
-//! The simulated part of a mesh, cut from it by the weights of its vertices (thesis, 6.1).
+//! The simulated part of a mesh, separated from the rigid part by the weights of the vertices (thesis, 6.1).
 
 use bunting_solver::{FabricBuilder, FabricError};
 
 use crate::cloth::mesh::ClothMesh;
 use crate::fabric::rigid::{RestVertex, RigidPart};
 
-/// The simulated part of a mesh, and the rigid rest of it.
+/// The simulated part of a mesh, and the rigid part.
 #[derive(Clone, Debug)]
 pub(crate) struct SimulatedPart {
     /// Builder of the part's fabric, with its pins.
@@ -14,14 +14,13 @@ pub(crate) struct SimulatedPart {
     pub vertices: Vec<u32>,
     /// The part's triangles as indices in the mesh; empty where the part is the whole mesh.
     triangles: Vec<usize>,
-    /// The rest of the mesh.
+    /// The rigid part of the mesh.
     pub rigid: RigidPart,
 }
 
 impl SimulatedPart {
-    /// Cuts the simulated part out of a mesh with valid weights, and pins attached vertices. Triangles
-    /// whose corners all have weight 0 are left out; vertices of weight 0 on the other triangles are
-    /// pinned.
+    /// Separates the simulated part from a mesh with valid weights, and pins attached vertices. Triangles
+    /// whose corners all have weight 0 are left out; vertices of weight 0 on the other triangles are pinned.
     ///
     /// # Errors
     ///
@@ -65,7 +64,7 @@ impl SimulatedPart {
         Ok(Self { builder, vertices, triangles, rigid })
     }
 
-    /// An error of the part's fabric, with the indices of the mesh instead of the part's.
+    /// Converts an error of the part's fabric: the part's indices become the mesh's.
     pub fn renumber(&self, error: FabricError) -> FabricError {
         let vertex = |of_part: usize| self.vertices.get(of_part).map_or(of_part, |&v| v as usize);
         match error {
@@ -84,8 +83,8 @@ impl SimulatedPart {
     }
 }
 
-/// The builder of some vertices and triangles of a mesh, both ascending. Attached vertices and those of
-/// weight 0 are pinned.
+/// Builder of some vertices and triangles of a mesh, both ascending. Attached vertices and vertices of weight
+/// 0 are pinned.
 fn part_builder(
     mesh: &ClothMesh,
     whole: &FabricBuilder,
@@ -136,7 +135,7 @@ mod tests {
         assert_eq!(rigid, [0, 1, 5, 6]);
         let fabric = part.builder.build().expect("a fabric");
         assert_eq!((fabric.particle_count(), fabric.triangles().len()), (6, 4));
-        // The border to the rigid part, and what is attached.
+        // The border to the rigid part and the attached vertices are pinned.
         let pinned: Vec<usize> = (0..6).filter(|&particle| fabric.is_pinned(particle)).collect();
         assert_eq!(pinned, [0, 2, 3]);
         assert_eq!(fabric.uvs()[1].x, 0.75);

@@ -6,8 +6,8 @@ use bunting_solver::{ClothSnapshot, FabricMaterial, LevelTransfer};
 use crate::fabric::levels::ClothLevels;
 
 impl ClothLevels {
-    /// Transfers a state from one level to another, for a cloth of a material under a gravity along
-    /// the axes of its frame, m/s².
+    /// Transfers a state from one level to another, for a cloth with a material and gravity along the axes of
+    /// its frame, m/s².
     pub fn transfer(
         &self,
         mut snapshot: ClothSnapshot,
@@ -15,7 +15,7 @@ impl ClothLevels {
         material: &FabricMaterial,
         gravity: Vec3,
     ) -> ClothSnapshot {
-        // Cloths that were never on a screen are still at rest, and most cloths of a crowd are such.
+        // Cloths that were never on a screen are still at rest, as are most cloths of a crowd.
         if snapshot.is_at_rest(self.fabric(from)) {
             return ClothSnapshot::at_rest(self.fabric(to));
         }
@@ -40,8 +40,8 @@ impl ClothLevels {
         particles
     }
 
-    /// Settles a state of a level with positions and velocities of a finer level's shared particles:
-    /// takes off the strain that leaving out the other particles brings.
+    /// Settles a state of a level whose positions and velocities were copied from a finer level: removes the
+    /// strain that leaving out the other particles brings.
     pub fn settle(
         &self,
         snapshot: ClothSnapshot,
@@ -65,8 +65,8 @@ impl ClothLevels {
         values
     }
 
-    /// Unit vectors at the particles of a level, transferred to the particles of another: picked from
-    /// shared particles, or interpolated and normalised.
+    /// Transfers unit vectors at the particles of one level to those of another: copied from shared
+    /// particles, or interpolated and normalised.
     pub fn transfer_directions(&self, vectors: &[Vec3], from: usize, to: usize) -> Vec<Vec3> {
         let mut vectors = vectors.to_vec();
         for transfer in self.between(from, to) {

@@ -1,21 +1,20 @@
 //! Costs of the batches of one level.
 
-/// Costs of batches of one level in a tick by width, µs. A batch whose lanes are occupied in part costs as
-/// much as a full one.
+/// Costs in a tick of batches of one level, by width, µs. A partly filled batch costs as much as a full one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BatchCosts {
-    /// A batch of one lane.
+    /// Cost of a batch of one lane, µs.
     pub one: f32,
-    /// A batch of eight lanes.
+    /// Cost of a batch of eight lanes, µs.
     pub eight: f32,
-    /// A batch of sixteen lanes; none where batches are at most eight wide.
+    /// Cost of a batch of sixteen lanes, µs; none where batches are at most eight wide.
     pub sixteen: Option<f32>,
-    /// Greatest number of cloths in batches of one lane beside full batches; beside one of eight lanes
-    /// that is not full, one less.
+    /// Greatest number of cloths in batches of one lane beside full batches; one fewer beside a batch of
+    /// eight lanes that is not full.
     pub most_single: u32,
-    /// Cost of each cloth besides its batch.
+    /// Cost of each cloth besides its batch, µs.
     pub per_cloth: f32,
-    /// Cost of one change between this level and a coarser one on a screen.
+    /// Cost of one change between this level and a coarser one on a screen, µs.
     pub change: f32,
 }
 
@@ -23,7 +22,7 @@ impl BatchCosts {
     /// Cost of a number of cloths in a tick, µs.
     pub fn of(&self, cloths: u32) -> f32 {
         let (bits, widest) = self.widest();
-        // Shifts instead of a division: the governor asks for it in its innermost loop.
+        // Shifts replace a division, since the governor calls this in its innermost loop.
         let full = cloths >> bits;
         let rest = match cloths - (full << bits) {
             rest if rest <= self.most_single => rest as f32 * self.one,
@@ -34,13 +33,13 @@ impl BatchCosts {
         full as f32 * widest + rest + cloths as f32 * self.per_cloth
     }
 
-    /// Cost of a cloth among many in a tick, µs.
+    /// Cost in a tick of one more cloth among many, µs.
     pub fn of_one_among_many(&self) -> f32 {
         let (bits, cost) = self.widest();
         cost / (1 << bits) as f32 + self.per_cloth
     }
 
-    /// The widest batch: the binary logarithm of its number of lanes, and its cost, µs.
+    /// Binary logarithm of the widest batch's number of lanes, and its cost, µs.
     fn widest(&self) -> (u32, f32) {
         self.sixteen.map_or((3, self.eight), |sixteen| (4, sixteen))
     }

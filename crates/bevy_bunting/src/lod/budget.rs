@@ -8,14 +8,14 @@ use bevy_reflect::std_traits::ReflectDefault;
 
 use crate::lod::cost_table::CostTable;
 
-/// The time that all cloths together may take, and thresholds of the automatic choice of levels, see
-/// [`LodSet::automatic`](crate::LodSet::automatic). It may be changed at any time.
+/// Time that all cloths together may take in a tick, and thresholds of the automatic choice of levels, see
+/// [`LodSet::automatic`](crate::LodSet::automatic). The budget may be changed at any time.
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct ClothBudget {
     /// Time that a tick of all cloths may take on one core.
     pub tick: Duration,
-    /// Where the costs of cloths are taken from.
+    /// Source of the costs by which levels are chosen.
     pub costs: LodCosts,
     /// Error of a cloth from which a finer level is wanted, px.
     pub refine_above: f32,
@@ -23,8 +23,8 @@ pub struct ClothBudget {
     pub coarsen_below: f32,
     /// Least number of ticks between two changes of a cloth's level, unless the budget is exceeded.
     pub dwell: u32,
-    /// Greatest number of cloths on a screen that change their level in a tick, and of those that are on
-    /// none.
+    /// Greatest number of cloths on a screen that change their level in a tick. The same number of cloths off
+    /// the screen may change in addition.
     pub switches: usize,
     /// Angle beside the screen within which cloth is simulated, so that it has settled when it comes into
     /// view, rad.
@@ -45,15 +45,15 @@ impl Default for ClothBudget {
     }
 }
 
-/// Where the costs of cloths are taken from.
+/// Source of the costs by which levels are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum LodCosts {
-    /// Costs are measured while the app runs, so that the budget holds on this machine. The levels that
-    /// are chosen depend on the machine and on its other load.
+    /// Costs are measured while the app runs, so that the budget holds on this machine. The chosen levels
+    /// then depend on the machine and on its other load.
     #[default]
     Measured,
-    /// Costs are those of a table, on every machine. The levels that are chosen, and so the bits of the
-    /// simulation, are the same on every machine.
+    /// Costs are those of a table. The chosen levels, and so the bits of the simulation, are the same on
+    /// every machine.
     Fixed(CostTable),
 }

@@ -14,19 +14,19 @@ pub(crate) struct LevelTable {
 /// A simulated cloth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
-    /// Index of its level table.
+    /// Index of the cloth's level table.
     pub table: u32,
-    /// Its level.
+    /// Present level of the cloth.
     pub level: u32,
-    /// Size of a metre at the cloth in the picture, px/m.
+    /// Pixels in the picture for each metre at the cloth, px/m.
     pub pixels_per_metre: f32,
     /// Importance of one pixel of error of this cloth, compared with other cloths.
     pub importance: f32,
-    /// Whether the last change of level is long enough ago for another.
+    /// Whether the least time since the last change of level has passed.
     pub ready: bool,
-    /// Whether the cloth has not been simulated yet: it starts at the chosen level, which is no change.
+    /// Whether the cloth has not been simulated yet: it then starts at the chosen level, which is no change.
     pub fresh: bool,
-    /// Whether the governor may not change the level: the cloth only adds to the costs.
+    /// Whether the level is fixed: the cloth then only adds to the costs.
     pub fixed: bool,
     /// Whether the cloth is on a screen.
     pub on_screen: bool,
@@ -39,23 +39,23 @@ pub(crate) struct Limits {
     pub budget: f32,
     /// Error above which a finer level is wanted, px.
     pub refine_above: f32,
-    /// Error of a coarser level below which it is wanted, px.
+    /// Error of a coarser level below which that level is wanted, px.
     pub coarsen_below: f32,
-    /// Greatest number of changes in a tick of cloths on a screen, and of those on none, whose changes
-    /// cost little.
+    /// Greatest number of changes in a tick of cloths on a screen, and also of cloths on no screen, whose
+    /// changes cost little.
     pub switches: usize,
 }
 
 impl Candidate {
-    /// Cost of one change to another level, µs; nothing for a cloth that is on no screen, whose change
-    /// needs no care.
+    /// Cost of one change to another level, µs; zero for a cloth on no screen, whose change needs neither
+    /// easing nor conserved momentum.
     pub fn cost_of_change(&self, tables: &[LevelTable], to: u32) -> f32 {
         let finer = &tables[self.table as usize].costs[self.level.min(to) as usize];
         if self.on_screen && !self.fresh && self.level != to { finer.change } else { 0.0 }
     }
 
-    /// The level that the errors of its levels (m) demand: the present one as long as its error is not
-    /// too large, and that of the next coarser level not small enough.
+    /// The level that the errors of all levels (m) demand: the present one as long as its error is not too
+    /// large, and the error of the next coarser one not small enough.
     pub fn wanted_level(&self, errors: &[f32], limits: &Limits) -> u32 {
         let pixels = |level: u32| self.pixels_per_metre * errors[level as usize];
         let mut level = self.level;

@@ -1,4 +1,4 @@
-//! The model of costs: a table, and by how much this machine differs from it.
+//! The cost model: a table of costs, and factors by which this machine differs from it.
 
 use bunting_solver::{LaneCount, StepSettings};
 
@@ -6,16 +6,16 @@ use crate::batch::batches::BatchTiming;
 use crate::lod::batch_costs::BatchCosts;
 use crate::lod::cost_table::CostTable;
 
-/// Fractions by which the model approaches a dearer measurement, and a cheaper one. They differ so that
-/// the model expects a cost that most ticks do not exceed, rather than the mean.
+/// Rates at which the model approaches a measurement above, and one below, its expectation. They differ so
+/// that most ticks cost no more than expected; equal rates would give the mean.
 const RATES: [f32; 2] = [0.2, 0.05];
 
 /// Fraction of the sums of earlier changes of level that is kept when one more is measured: about twenty
 /// changes count.
 const KEPT: f32 = 0.95;
 
-/// Greatest ratio of a measurement to the expectation that counts: a tick in which the machine was busy
-/// with something else says nothing about cloth.
+/// Greatest ratio of a measurement to the expectation that is used: longer ticks were disturbed by other work
+/// of the machine.
 const GREATEST_RATIO: f32 = 1.5;
 
 /// Measured over tabulated cost of batches of one size, settings and width.
@@ -24,9 +24,9 @@ struct BatchFactor {
     particles: usize,
     settings: StepSettings,
     lanes: LaneCount,
-    /// None until the end of the first tick in which there are such batches.
+    /// Factor; none until the end of the first tick with such batches.
     factor: Option<f32>,
-    /// Costs of all such batches in the tick that is learnt from, µs: tabulated and measured.
+    /// Costs of all such batches in the measured tick, µs: tabulated and measured.
     sums: [f32; 2],
 }
 
@@ -36,15 +36,15 @@ impl BatchFactor {
     }
 }
 
-/// Expects of every batch the cost in the table, times what was measured of such batches.
+/// Expected costs of batches: the cost in the table times a measured factor for each kind of batch.
 #[derive(Clone, Debug)]
 pub(crate) struct CostModel {
     factors: Vec<BatchFactor>,
-    /// Measured over tabulated cost of all batches: the factor of batches that were not measured yet.
+    /// Ratio of measured to tabulated cost of all batches, used for batches that were never measured.
     general_factor: f32,
-    /// Measured over tabulated cost of the overhead: everything besides batches and changes of level.
+    /// Ratio of measured to tabulated overhead: everything besides batches and changes of level.
     overhead_factor: f32,
-    /// Sums over changes of level, µs: tabulated and measured. Later changes count more.
+    /// Sums over changes of level, µs: tabulated and measured. Later changes weigh more.
     changes: [f32; 2],
 }
 
@@ -55,8 +55,8 @@ impl Default for CostModel {
 }
 
 impl CostModel {
-    /// Learns from the measured batches of a tick. Those of one size, settings and width count as one: of many, some
-    /// always take long.
+    /// Learns from the measured batches of a tick. All batches of one size, settings and width are averaged,
+    /// since among many batches some always take long.
     pub fn learn_batches(&mut self, table: &CostTable, batches: impl Iterator<Item = BatchTiming>) {
         for BatchTiming { particles, settings, lanes, time } in batches {
             let by_table = table.batch(particles, settings, lanes);
@@ -107,7 +107,7 @@ impl CostModel {
         }
     }
 
-    /// Measured over tabulated cost of changes of level.
+    /// Ratio of measured to tabulated cost of changes of level.
     fn change_factor(&self) -> f32 {
         self.changes[1] / self.changes[0]
     }
@@ -117,8 +117,8 @@ impl CostModel {
         self.overhead_factor * table.tick
     }
 
-    /// Expected costs of batches with so many particles in a lane, on a machine whose batches are at most
-    /// `widest`, with at most `most_single` cloths in batches of one lane.
+    /// Expected costs of batches with a number of particles in each lane, on a machine with batches of at
+    /// most `widest`, and with at most `most_single` cloths in batches of one lane.
     pub fn costs(
         &self,
         table: &CostTable,
@@ -150,7 +150,7 @@ impl CostModel {
         }
     }
 
-    /// Tabulated overhead of a tick, µs; number of particles of each cloth.
+    /// Tabulated overhead of a tick, µs; `cloths` are the numbers of particles of each cloth.
     pub fn tabulated_overhead(table: &CostTable, cloths: impl Iterator<Item = usize>) -> f32 {
         table.tick + cloths.map(|particles| table.per_cloth(particles)).sum::<f32>()
     }

@@ -1,11 +1,11 @@
-//! The table of costs, by which levels are chosen before anything is measured.
+//! The table of costs by which levels are chosen before anything is measured.
 
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bunting_solver::{LaneCount, StepSettings};
 
-/// Costs of cloth, by width of its batch where that matters: one, eight or sixteen lanes. A batch whose
-/// lanes are occupied in part costs as much as a full one.
+/// Costs of cloth; where the width of the batch matters, for one, eight and sixteen lanes. A partly filled
+/// batch costs as much as a full one.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub struct CostTable {
@@ -38,7 +38,7 @@ impl Default for CostTable {
 }
 
 impl CostTable {
-    /// Cost of a batch in a tick, µs; `particles` of one lane.
+    /// Cost of a batch in a tick, µs; `particles` are those of one lane.
     #[must_use]
     pub fn batch(&self, particles: usize, settings: StepSettings, lanes: LaneCount) -> f32 {
         let width = width(lanes);
@@ -47,7 +47,7 @@ impl CostTable {
         1e-3 * particles as f32 * settings.substeps as f32 * substep
     }
 
-    /// Cost of a change between two levels on a screen, µs; `particles` of the finer.
+    /// Cost of a change between two levels on a screen, µs; `particles` are those of the finer level.
     pub(crate) fn change(&self, particles: usize) -> f32 {
         1e-3 * self.change * particles as f32
     }

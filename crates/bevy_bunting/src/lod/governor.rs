@@ -1,36 +1,35 @@
-//! Chooses the level of each cloth, so that all together stay within the budget.
+//! Chooses the level of each cloth so that the total cost stays within the budget.
 //!
-//! The choice is a pure function of errors, importances and costs: no world, no clock, and no float
-//! that depends on the machine.
+//! The choice is a pure function of errors, importances and costs: it reads no world and no clock.
 //!
-//! 1. Every cloth starts at its coarsest level. A step to the next finer level, up to the wanted one,
-//!    takes off error and adds cost. Steps are sorted by the error that they take off over the cost that
-//!    they add, in buckets, which is linear in their number.
+//! 1. Every cloth starts at its coarsest level. A step to the next finer level, up to the wanted one, reduces
+//!    error and adds cost. Steps are sorted by reduced error over added cost, in buckets, which is linear in
+//!    their number.
 //! 2. In that order each step is taken if the sum of costs stays within the budget. Costs are those of
 //!    whole batches: the ninth cloth of a batch of sixteen lanes is free, so a free lane is used by the
 //!    next cloth in the order.
-//! 3. Cloths change towards these levels, at most so many in a tick and each only some time after its
-//!    last change; those that become coarser first, and finer ones only while there is room in the
-//!    budget. A change costs time, too: as long as any is due, the levels leave room for the dearest.
-//!    Cloths that have not been simulated yet start at these levels.
+//! 3. Cloths change towards these levels, at most a fixed number in a tick, and each only some time after its
+//!    last change; changes to coarser levels come first, and finer ones only while the budget has room. A change
+//!    costs time, too: as long as any is due, the levels leave room for the dearest. Cloths that have not been
+//!    simulated yet start at these levels.
 
 use crate::lod::candidate::{Candidate, LevelTable, Limits};
 use crate::lod::level_counts::LevelCounts;
 
-/// Factor on the value of steps up to the present level of a cloth, so that two cloths of equal value
-/// do not change in turns. The value grows with the fifth power of the inverse distance: this is half of
+/// Factor on the value of steps up to the present level of a cloth, so that two cloths of equal value do not
+/// alternate. The value grows with the fifth power of the inverse distance: the factor corresponds to half
 /// the distance. Smaller: levels oscillate as viewers move. Larger: the nearest cloths stay coarse.
 const PRESENT_LEVEL_FACTOR: f32 = 8.0;
 
-/// Fraction of the budget that steps beyond a cloth's present level may fill, so that fluctuating costs
-/// do not open and close a batch in turns.
+/// Fraction of the budget that steps beyond a cloth's present level may fill, so that fluctuating costs do
+/// not alternately open and close a batch.
 const FINER_FRACTION: f32 = 0.95;
 
-/// Greatest fraction of the budget that is left free for changes of level: dearer ones exceed the budget.
+/// Greatest fraction of the budget that is reserved for changes of level: dearer changes exceed the budget.
 const MOST_RESERVED: f32 = 0.25;
 
-/// Number of low bits of a value that are dropped to make its bucket: the exponent and four bits are
-/// left, a resolution of 1/16.
+/// Number of low bits of a value that are dropped to make its bucket: the exponent and four bits of the
+/// mantissa remain, a resolution of 1/16.
 const BUCKET_SHIFT: u32 = 19;
 
 /// Number of buckets for all positive floats.
@@ -43,7 +42,7 @@ pub(crate) struct Choice {
     pub switches: Vec<(usize, usize)>,
     /// Sum of costs in this tick, µs.
     pub cost: f32,
-    /// Number of cloths that are coarser than their error demands, for lack of time.
+    /// Number of cloths that are coarser than their error demands because the budget is spent.
     pub held_back: usize,
 }
 
@@ -57,18 +56,18 @@ struct Step {
     bucket: u32,
 }
 
-/// Chooses levels. Its memory is kept from tick to tick, so that nothing is allocated.
+/// The governor. Its buffers are kept from tick to tick, so that nothing is allocated.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Governor {
     steps: Vec<Step>,
     sorted: Vec<Step>,
     bucket_ends: Vec<u32>,
-    /// The level that each cloth's error demands.
+    /// Level that each cloth's error demands.
     wanted: Vec<u32>,
-    /// The level that each cloth should have within the budget.
+    /// Level that each cloth should have within the budget.
     chosen: Vec<u32>,
     counts: LevelCounts,
-    /// Error taken off by the step to each level of each table over its cost, m/µs.
+    /// Reduced error over added cost of the step to each level of each table, m/µs.
     step_values: Vec<f32>,
     /// Index in `step_values` of each table's finest level.
     first_values: Vec<usize>,
@@ -76,7 +75,7 @@ pub(crate) struct Governor {
 }
 
 impl Governor {
-    /// Chooses a level for every cloth, and the cloths that change towards theirs in this tick.
+    /// Chooses a level for every cloth, and the cloths that change in this tick.
     pub fn choose(
         &mut self,
         tables: &[LevelTable],
@@ -95,8 +94,8 @@ impl Governor {
         &self.choice
     }
 
-    /// Computes the value of the step to each level. A step is never worth more than the one before it,
-    /// so that the order of steps is that of levels.
+    /// Computes the value of the step to each level. A step is never worth more than the step before it, so
+    /// that the order of steps is the order of levels.
     fn value_steps(&mut self, tables: &[LevelTable]) {
         self.step_values.clear();
         self.first_values.clear();
@@ -160,7 +159,7 @@ impl Governor {
         }
     }
 
-    /// Takes steps in their order, from every cloth's coarsest level, within a budget (µs).
+    /// Takes steps in their order, starting from every cloth's coarsest level, within a budget (µs).
     fn take_steps(&mut self, tables: &[LevelTable], cloths: &[Candidate], budget: f32) {
         let coarsest = |cloth: &Candidate| tables[cloth.table as usize].errors.len() as u32 - 1;
         let first = |cloth: &Candidate| if cloth.fixed { cloth.level } else { coarsest(cloth) };
@@ -191,8 +190,8 @@ impl Governor {
         pairs.map(|(cloth, &to)| cloth.cost_of_change(tables, to)).fold(0.0, f32::max)
     }
 
-    /// Starts cloths that have not been simulated yet: at the coarsest level, or at the chosen one as long as the
-    /// budget has room for it, since others become coarser only by and by. Returns the cost, µs.
+    /// Starts cloths that have not been simulated yet: at the chosen level while the budget has room for it,
+    /// otherwise at the coarsest, since other cloths become coarser only gradually. Returns the cost, µs.
     fn start_fresh(
         &mut self,
         tables: &[LevelTable],
@@ -227,15 +226,15 @@ impl Governor {
         cost
     }
 
-    /// Chooses the changes of this tick: to coarser levels in the order of the cloths, then to finer ones
-    /// in the order of the steps, as long as their costs stay within the budget.
+    /// Chooses the changes of this tick: to coarser levels in the order of the cloths, then to finer levels
+    /// in the order of the steps, as long as the costs stay within the budget.
     fn switch(&mut self, tables: &[LevelTable], cloths: &[Candidate], limits: &Limits) {
         self.choice.switches.clear();
-        // Changes that are left to cloths on no screen, and on one.
+        // Numbers of changes that are left for cloths on no screen, and for cloths on one.
         let mut left = [limits.switches; 2];
         let mut changes = 0.0;
         let mut cost = self.counts.count(tables, cloths, cloths.iter().map(|cloth| cloth.level));
-        // More may come in the next tick than others become coarser for.
+        // The next tick may bring more new cloths than others have become coarser for.
         let has_fresh = cloths.iter().any(|cloth| cloth.fresh);
         let budget = if has_fresh { (1.0 - MOST_RESERVED) * limits.budget } else { limits.budget };
         cost = self.start_fresh(tables, cloths, budget, cost);
@@ -257,7 +256,8 @@ impl Governor {
         for step in &self.sorted {
             let (cloth, to) = (&cloths[step.cloth as usize], self.chosen[step.cloth as usize]);
             let left = &mut left[usize::from(cloth.on_screen)];
-            // Each cloth once, at the step from its present level; it may change by several levels.
+            // Each cloth is considered once, at the step from its present level, and may change by several
+            // levels.
             let may = cloth.ready && !cloth.fresh;
             if step.to + 1 != cloth.level || to >= cloth.level || !may || *left == 0 {
                 continue;

@@ -1,4 +1,4 @@
-//! The choice of levels of invented cloths.
+//! Tests of the choice of levels with made-up cloths.
 
 use super::*;
 use crate::lod::batch_costs::BatchCosts;
@@ -6,7 +6,7 @@ use crate::lod::batch_costs::BatchCosts;
 const LIMITS: Limits =
     Limits { budget: 1000.0, refine_above: 1.0, coarsen_below: 0.5, switches: usize::MAX };
 
-/// Four levels, each four times the cost and half the error of the next coarser one.
+/// Four levels, each with four times the cost and half the error of the next coarser one.
 fn table() -> LevelTable {
     let costs = [400.0, 100.0, 25.0, 6.25].map(|sixteen: f32| BatchCosts {
         one: 0.4 * sixteen,
@@ -32,7 +32,7 @@ fn cloth(level: u32, pixels_per_metre: f32) -> Candidate {
     }
 }
 
-/// Chooses again and again, as the cloths follow; the levels in the end.
+/// Repeats the choice until the cloths have followed it. Returns the last choice.
 fn settle(cloths: &mut [Candidate], limits: &Limits) -> Choice {
     let mut governor = Governor::default();
     let mut last = Choice::default();
@@ -81,9 +81,9 @@ fn the_sum_of_costs_stays_within_the_budget_and_the_nearest_gain() {
         assert!(choice.cost <= budget, "{} of {budget}", choice.cost);
         assert_eq!(choice.held_back > 0, budget < 9000.0, "{budget}");
         let now = levels(&cloths);
-        // Nearer first in the list, and never coarser than those behind.
+        // The list is sorted by distance; no cloth is coarser than one behind it.
         assert!(now.is_sorted(), "{budget}: {now:?}");
-        // More time makes none coarser.
+        // A larger budget makes no cloth coarser.
         assert!(before.is_none_or(|before| now.iter().zip(before).all(|(now, then)| *now <= then)));
         before = Some(now);
     }
@@ -91,7 +91,7 @@ fn the_sum_of_costs_stays_within_the_budget_and_the_nearest_gain() {
 
 #[test]
 fn free_lanes_are_used_by_the_next_cloths() {
-    // Room for one batch of the finest, and all want it.
+    // The budget has room for one batch at the finest level, which all cloths want.
     let mut cloths: Vec<Candidate> = (0..40).map(|index| cloth(3, 2000.0 - index as f32)).collect();
     let limits = Limits { budget: 720.0, ..LIMITS };
     settle(&mut cloths, &limits);
@@ -120,7 +120,7 @@ fn levels_leave_room_for_changes() {
     let mut cloths: Vec<Candidate> = (0..40).map(|index| cloth(3, 900.0 - index as f32)).collect();
     let mut changes = 0;
     for tick in 0..400 {
-        // The one that counts most is another all the time.
+        // Every 20 ticks another cloth comes nearest.
         cloths[tick / 20].pixels_per_metre = 2000.0;
         let choice = governor.choose(core::slice::from_ref(&table), &cloths, &limits).clone();
         assert!(choice.cost <= limits.budget, "{} in tick {tick}", choice.cost);

@@ -1,4 +1,4 @@
-//! Numbers of cloths by level table and level, and what they cost.
+//! Numbers of cloths by level table and level, and their costs.
 
 use crate::lod::candidate::{Candidate, LevelTable};
 
@@ -6,12 +6,12 @@ use crate::lod::candidate::{Candidate, LevelTable};
 #[derive(Clone, Debug, Default)]
 pub(super) struct LevelCounts {
     counts: Vec<u32>,
-    /// Number of levels in the table that has most.
+    /// Number of levels in the table with the most levels.
     stride: usize,
 }
 
 impl LevelCounts {
-    /// Counts cloths at levels, one a cloth, and sums up what they cost in a tick, µs.
+    /// Counts cloths at levels, one level for each cloth, and returns the sum of their costs in a tick, µs.
     pub fn count(
         &mut self,
         tables: &[LevelTable],
@@ -30,7 +30,7 @@ impl LevelCounts {
         levels.map(|(cost, &count)| cost.of(count)).sum()
     }
 
-    /// Additional cost when one cloth changes from a level to another, µs.
+    /// Additional cost if one cloth changes from one level to another, µs.
     pub fn difference(&mut self, tables: &[LevelTable], table: u32, from: u32, to: u32) -> f32 {
         let costs = &tables[table as usize].costs;
         let (leaves, enters) = (&costs[from as usize], &costs[to as usize]);
@@ -38,7 +38,7 @@ impl LevelCounts {
         leaves.of(old - 1) - leaves.of(old) + enters.of(new + 1) - enters.of(new)
     }
 
-    /// Counts one cloth at another level.
+    /// Moves one cloth from one level to another.
     pub fn shift(&mut self, table: u32, from: u32, to: u32) {
         *self.at(table, from) -= 1;
         *self.at(table, to) += 1;

@@ -12,11 +12,11 @@ use crate::lod::cost_table::CostTable;
 use crate::lod::error::level_error;
 use crate::settings::ClothSettings;
 
-/// Factor on the greatest distance at rest from the middle particle: cloth stretches little. Smaller: a
-/// stretched cloth is taken for off-screen while its border is still seen.
+/// Factor on the greatest distance at rest from the middle particle that allows for stretch. Smaller: a
+/// stretched cloth counts as off the screen while its border is still visible.
 const STRETCH: f32 = 1.1;
 
-/// What the costs of a level depend on, besides the machine.
+/// Inputs of a level's costs, besides the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Work {
     particles: usize,
@@ -27,9 +27,9 @@ struct Work {
 /// One table for each [`ClothLevels`] in use.
 #[derive(Debug, Default)]
 pub(crate) struct LevelTables {
-    /// Work of each level; empty where it is not known yet.
+    /// Work of each level; empty while it is unknown.
     work: Vec<Vec<Work>>,
-    /// Length of the ticks that it is known for, s.
+    /// Length of the ticks for which the work is known, s.
     tick: f32,
     /// Costs of each kind of work in this tick.
     costs: Vec<(Work, BatchCosts)>,
@@ -43,7 +43,7 @@ pub(crate) struct LevelTables {
 }
 
 impl LevelTables {
-    /// Index of the table of a cloth with these levels; found or made.
+    /// Index of the table of a cloth with these levels. A missing table is added.
     pub fn index_of(&mut self, levels: &Arc<ClothLevels>) -> usize {
         let is_same =
             |known: &Weak<ClothLevels>| core::ptr::eq(known.as_ptr(), Arc::as_ptr(levels));
@@ -63,7 +63,7 @@ impl LevelTables {
         self.levels[index] = Arc::downgrade(levels);
         self.work[index].clear();
         self.particles[index] = fabrics().map(|fabric| fabric.particle_count()).collect();
-        // The middle particle may be another one at each level.
+        // The middle particle may differ from level to level.
         let radius = fabrics().map(|fabric| rest_radius(fabric)).fold(0.0, f32::max);
         self.radii[index] = STRETCH * radius;
         self.tables[index] = LevelTable {
@@ -83,8 +83,8 @@ impl LevelTables {
         self.particles[table][level]
     }
 
-    /// Updates all costs. `fixed` costs are those of sixteen lanes whatever the machine's width. Cloths of different
-    /// fabrics are mostly of few sizes, so that few costs are computed.
+    /// Updates all costs. With `fixed` costs sixteen lanes are assumed, whatever the machine's width. Cloths
+    /// of different fabrics have few different sizes, so that few costs are computed.
     pub fn update_costs(
         &mut self,
         table: &CostTable,
@@ -112,8 +112,7 @@ impl LevelTables {
         }
     }
 
-    /// Updates the work of all levels, for ticks of `tick` seconds, if these or the settings are others, and of new
-    /// tables.
+    /// Updates the work of new tables, and of all tables if the length of a tick (s) or the settings changed.
     pub fn update_work(&mut self, settings: &ClothSettings, changed: bool, tick: f32) {
         if changed || self.tick != tick {
             self.tick = tick;

@@ -1,4 +1,4 @@
-//! A cloth as the choice of levels sees it: where it is, how it changes its level and falls asleep.
+//! A cloth as the choice of levels sees it: its position, its changes of level, and its sleep.
 
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
@@ -14,11 +14,11 @@ use crate::lod::record::LodRecord;
 use crate::lod::view::{Sight, Sighting, View};
 use crate::motion::pose::PoseHistory;
 
-/// Ticks from one in which a cloth is examined to the next. Cloths take turns.
+/// Number of ticks between two examinations of a cloth. Cloths take turns.
 pub(super) const EXAMINED_EVERY: u32 = 4;
 
-/// Ticks after which a cloth on no screen falls asleep: two examinations. Fewer: cloth at the border of
-/// the screen falls asleep and wakes in turns.
+/// Number of ticks after which a cloth on no screen falls asleep: two examinations. Fewer: cloth at the
+/// border of the screen alternately falls asleep and wakes.
 const ASLEEP_AFTER: u32 = 2 * EXAMINED_EVERY;
 
 /// The components of a cloth that the choice of levels reads and writes.
@@ -35,8 +35,8 @@ pub(crate) struct LodCloth {
 }
 
 impl LodClothItem<'_, '_> {
-    /// Changes the level in tick `now`. A cloth on no screen becomes coarser without regard to momentum
-    /// and energy, which is faster.
+    /// Changes the level in tick `now`. A cloth on no screen becomes coarser without conserving momentum and
+    /// energy, which is faster.
     pub fn change_level(
         &mut self,
         to: usize,
@@ -69,15 +69,15 @@ impl LodClothItem<'_, '_> {
         commands.trigger(ClothLevelChanged { entity: self.entity, from, to });
     }
 
-    /// Position in the world of the middle particle, m, which is near the middle of a grid; noted in the
-    /// record.
+    /// Returns the position in the world of the middle particle, m, which is near the middle of a grid, and
+    /// stores it in the record.
     pub fn update_middle(&mut self) -> Vec3 {
         let positions = self.state.positions();
         self.record.middle = positions.get(positions.len() / 2).copied().unwrap_or_default();
         self.frame.end() * self.record.middle
     }
 
-    /// Whether the cloth sleeps off the screen and is still there, so that it need not be examined.
+    /// Whether the cloth sleeps off the screen and still is off the screen, so that it need not be examined.
     pub fn stays_off_screen(&self, views: &[View]) -> bool {
         self.record.activity == ClothActivity::OffScreen && {
             let middle = self.frame.end() * self.record.middle;
@@ -85,8 +85,8 @@ impl LodClothItem<'_, '_> {
         }
     }
 
-    /// Lets a cloth fall asleep that no viewer has seen for some time, and wakes one that a viewer sees,
-    /// or that rests and wants a finer level. Returns whether it wakes from off the screen.
+    /// Sends a cloth to sleep that no viewer has seen for some time. Wakes a cloth that a viewer sees, or
+    /// that rests and wants a finer level. Returns whether it wakes from off the screen.
     pub fn update_activity(&mut self, sight: Sight, wants_finer: bool, now: u32) -> bool {
         let unseen = match sight {
             Sight::OnScreen | Sight::NearScreen => None,

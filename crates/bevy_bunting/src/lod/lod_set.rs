@@ -1,4 +1,4 @@
-//! The levels of detail of a cloth, and the rule by which one of them is chosen.
+//! The levels of detail of a cloth, and the rule by which its level is chosen.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;
@@ -6,42 +6,42 @@ use bevy_reflect::std_traits::ReflectDefault;
 
 use crate::cloth::error::ClothError;
 
-/// Default of [`LodSet::hysteresis`]. Smaller: a viewer that sways at a switch distance changes levels
-/// again and again.
+/// Default of [`LodSet::hysteresis`]. Smaller: a viewer that sways at a switch distance causes repeated
+/// changes of level.
 const HYSTERESIS: f32 = 0.1;
 
-/// The levels of detail of a cloth, and how one of them is chosen. Level 0 is the mesh itself. Each
-/// further level has some of the vertices of the one before: of a grid every second column and row, of
-/// any other mesh those that [`FabricBuilder::coarser`](bunting_solver::FabricBuilder::coarser) leaves.
-/// A grid of 33 × 33 particles with four levels has 33, 17, 9 and 5 particles in a row. By default there
-/// is one level.
+/// The levels of detail of a cloth, and how its level is chosen. Level 0 is the mesh itself. Each further
+/// level keeps some of the vertices of the one before: every second column and row of a grid; of any other
+/// mesh those that [`FabricBuilder::coarser`](bunting_solver::FabricBuilder::coarser) keeps. A grid of 33 ×
+/// 33 particles with four levels has 33, 17, 9 and 5 particles in a row. By default there is one level.
 ///
-/// The level is chosen before each tick by what the [`LodViewer`](crate::LodViewer)s see. Without a
-/// viewer every cloth counts as being at distance 0 and on the screen.
+/// The level is chosen before each tick from the positions and lenses of the
+/// [`LodViewer`](crate::LodViewer)s. Without a viewer every cloth counts as being at distance 0 and on the
+/// screen.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct LodSet {
-    /// Number of levels, and how one is chosen.
+    /// Number of levels, and the rule by which one is chosen.
     pub choice: LodChoice,
-    /// Fraction of a switch distance by which the distance must pass it before the level changes, from 0
-    /// to 1. Not used by an automatic choice.
+    /// Fraction of a switch distance by which the distance must pass it before the level changes, from 0 to
+    /// 1. An automatic choice ignores it.
     pub hysteresis: f32,
-    /// Keeps the cloth at this level, whatever the viewers see.
+    /// Level at which the cloth is kept, whatever the viewers see.
     pub pinned: Option<usize>,
-    /// Factor on the size of the cloth on the screen in an automatic choice: above 1 for cloth that the
-    /// player looks at, below 1 for cloth in the background. Positive.
+    /// Factor on the size of the cloth on the screen in an automatic choice: above 1 for cloth that matters
+    /// to the player, below 1 for cloth in the background. Positive.
     pub bias: f32,
 }
 
-/// How the level of a cloth is chosen.
+/// Rule by which the level of a cloth is chosen.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum LodChoice {
-    /// By the distance to the nearest viewer, whatever it costs. The distances (m, growing) are those at
-    /// which each level switches to the next coarser one; there is one level more than distances.
+    /// The level follows the distance to the nearest viewer, regardless of cost. Each level switches to the
+    /// next coarser one at one of the distances (m, ascending); there is one level more than distances.
     Distances(Vec<f32>),
-    /// By the error in pixels, within the [`ClothBudget`](crate::ClothBudget). Outside the picture of
-    /// every viewer the cloth sleeps.
+    /// The level follows the error in pixels, within the [`ClothBudget`](crate::ClothBudget). Outside the
+    /// picture of every viewer the cloth sleeps.
     Automatic {
         /// Number of levels, at least 1.
         levels: usize,
@@ -49,14 +49,14 @@ pub enum LodChoice {
 }
 
 impl LodSet {
-    /// Levels that switch at these distances, m.
+    /// Levels that switch at the given distances, m.
     #[must_use]
     pub fn new(distances: impl Into<Vec<f32>>) -> Self {
         Self::chosen(LodChoice::Distances(distances.into()))
     }
 
-    /// A number of levels, chosen by the error in pixels that each has in the viewers' pictures, within
-    /// the [`ClothBudget`](crate::ClothBudget).
+    /// The given number of levels, chosen by their errors in pixels in the viewers' pictures, within the
+    /// [`ClothBudget`](crate::ClothBudget).
     #[must_use]
     pub fn automatic(levels: usize) -> Self {
         Self::chosen(LodChoice::Automatic { levels })
@@ -66,14 +66,14 @@ impl LodSet {
         Self { choice, hysteresis: HYSTERESIS, pinned: None, bias: 1.0 }
     }
 
-    /// The same, kept at a level.
+    /// The levels, with the cloth kept at one of them.
     #[must_use]
     pub fn pinned_to(mut self, level: usize) -> Self {
         self.pinned = Some(level);
         self
     }
 
-    /// The same with a [`bias`](Self::bias).
+    /// The levels with a [`bias`](Self::bias).
     #[must_use]
     pub fn with_bias(mut self, bias: f32) -> Self {
         self.bias = bias;
@@ -89,8 +89,8 @@ impl LodSet {
         }
     }
 
-    /// The level at a distance (m) from the nearest viewer, for a cloth that is at level `now`. If the
-    /// choice is automatic, `now`.
+    /// The level at a distance (m) from the nearest viewer, for a cloth that is at level `now`. With an
+    /// automatic choice, `now`.
     #[must_use]
     pub fn level_at(&self, distance: f32, now: usize) -> usize {
         if let Some(level) = self.pinned {
@@ -107,7 +107,7 @@ impl LodSet {
         level
     }
 
-    /// Checks distances, number of levels, hysteresis, bias and pinned level, for the cloth `entity`.
+    /// Checks distances, number of levels, hysteresis, bias and pinned level of the cloth `entity`.
     pub(crate) fn validate(&self, entity: Entity) -> Result<(), ClothError> {
         let good = match &self.choice {
             LodChoice::Distances(distances) => {

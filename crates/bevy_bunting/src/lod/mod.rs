@@ -1,4 +1,4 @@
-//! Levels of detail: the level at which each cloth is simulated, and whether it sleeps.
+//! Levels of detail: the level of each cloth, and whether it sleeps.
 
 pub mod batch_costs;
 pub mod budget;

@@ -1,4 +1,4 @@
-//! What the choice of levels and the sleep of resting cloths keep of a cloth from tick to tick.
+//! State that the choice of levels and the sleep at rest keep for each cloth from tick to tick.
 
 use std::sync::Arc;
 
@@ -9,12 +9,12 @@ use crate::cloth::activity::ClothActivity;
 use crate::fabric::levels::ClothLevels;
 use crate::lod::candidate::Candidate;
 
-/// What the choice of levels keeps of a cloth.
+/// State that the choice of levels keeps for a cloth.
 #[derive(Component, Clone, Debug, Default)]
 pub(crate) struct LodRecord {
-    /// Address of the levels that the record is about, for comparison only.
+    /// Address of the cloth's levels, for comparison only.
     levels: usize,
-    /// The cloth as the governor last saw it; none of a cloth that is not simulated.
+    /// The cloth as the governor last saw it; none for a cloth that is not simulated.
     pub candidate: Option<Candidate>,
     /// The activity when the cloth was last examined.
     pub activity: ClothActivity,
@@ -31,19 +31,19 @@ pub(crate) struct LodRecord {
 }
 
 impl LodRecord {
-    /// The record of a cloth with levels that are new.
+    /// The record of a cloth with new levels.
     pub fn new(levels: &Arc<ClothLevels>, radius: f32, phase: u32, now: u32) -> Self {
         let levels = Arc::as_ptr(levels).addr();
         Self { levels, radius, phase, changed: now, seen: now, ..Self::default() }
     }
 
-    /// Whether the record is about a cloth with these levels.
+    /// Whether the record belongs to a cloth with these levels.
     pub fn is_of(&self, levels: &Arc<ClothLevels>) -> bool {
         self.levels == Arc::as_ptr(levels).addr()
     }
 }
 
-/// What the sleep of resting cloths keeps of a cloth.
+/// State that the sleep at rest keeps for a cloth.
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub(crate) struct RestTimer {
     /// Number of ticks for which the cloth has been at rest.

@@ -1,4 +1,4 @@
-//! What the choice of levels led to.
+//! Results of the choice of levels.
 
 use core::time::Duration;
 
@@ -8,17 +8,17 @@ use bevy_reflect::std_traits::ReflectDefault;
 
 use crate::cloth::activity::ClothActivity;
 
-/// What the [`ClothBudget`](crate::ClothBudget) led to in the last tick.
+/// Results of the choice of levels within the [`ClothBudget`](crate::ClothBudget) in the last tick.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct LodReport {
-    /// Expected time of the tick.
+    /// Time of the tick that the governor expected.
     pub expected: Duration,
-    /// Time that the choice of levels took, without the changes of level that followed.
+    /// Time that the choice of levels took, without the changes of level themselves.
     pub choice: Duration,
     /// Number of cloths that changed their level.
     pub switches: usize,
-    /// Number of cloths that are coarser than their error demands, for lack of time.
+    /// Number of cloths that are coarser than their error demands because the budget is spent.
     pub held_back: usize,
     /// Number of cloths that sleep because they are outside of every viewer's picture.
     pub off_screen: usize,
@@ -48,8 +48,8 @@ impl LodReport {
     }
 }
 
-/// Number of cloths at each level of detail in the last tick, the finest first. Simulated and paused
-/// cloths count; sleeping ones are counted in the [`LodReport`].
+/// Number of cloths at each level of detail in the last tick, the finest first. Simulated and paused cloths
+/// are counted here; sleeping ones in the [`LodReport`].
 #[derive(Resource, Clone, Debug, Default, PartialEq, Eq)]
 pub struct ClothCounts(pub Vec<usize>);
 

@@ -29,7 +29,7 @@ use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
 use crate::timings::ClothTimings;
 
-/// Ticks from one in which costs are measured to the next, as reading clocks takes time, too.
+/// Number of ticks between two measurements of costs, since reading clocks takes time, too.
 const MEASURED_EVERY: u32 = 8;
 
 /// Factor on the importance of a cloth that is not on a screen but near one.
@@ -56,29 +56,28 @@ impl Plugin for LodPlugin {
     }
 }
 
-/// What the choice of levels keeps from tick to tick.
+/// State of the choice of levels that is kept from tick to tick.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct LevelSelector {
     governor: Governor,
     model: CostModel,
     tables: LevelTables,
     candidates: Vec<Candidate>,
-    /// The candidates' entities.
+    /// Entities of the candidates.
     entities: Vec<Entity>,
-    /// Number of the tick.
+    /// Number of the present tick.
     tick: u32,
-    /// Number of cloths so far, which gives each its phase of examination.
+    /// Number of cloths so far; it staggers the examinations of cloths over ticks.
     cloths: u32,
     /// Tabulated overhead of the last tick: its cost besides batches and changes of level, µs.
     overhead: f32,
-    /// Number of particles of the finer levels of the last tick's changes on a screen.
+    /// Number of particles of the finer level, summed over the last tick's changes on a screen.
     changed_particles: usize,
-    /// Time that the last tick's changes took of cloths on no screen, and on one, without the assignment
-    /// of lanes.
+    /// Times of the last tick's changes for cloths on no screen and on one, without the assignment of lanes.
     change_times: [Duration; 2],
 }
 
-/// The viewers, and what the choice depends on besides cloths.
+/// The viewers, and the other inputs of the choice besides cloths.
 #[derive(SystemParam)]
 pub(crate) struct Conditions<'w, 's> {
     viewers: Query<'w, 's, (Entity, &'static LodViewer)>,
@@ -89,7 +88,7 @@ pub(crate) struct Conditions<'w, 's> {
     timings: Option<Res<'w, ClothTimings>>,
 }
 
-/// What the examination of a cloth depends on besides the cloth.
+/// Inputs of the examination of a cloth, besides the cloth.
 struct Examination<'a> {
     views: Vec<View>,
     limits: Limits,
@@ -158,8 +157,8 @@ impl Conditions<'_, '_> {
 }
 
 impl LevelSelector {
-    /// Learns from the last tick as far as it was measured, decides whether this one is, and gives the
-    /// table of costs.
+    /// Learns from the last tick's measurements, decides whether this tick is measured, and returns the table
+    /// of costs.
     fn learn(&mut self, conditions: &Conditions, batches: &mut ClothBatches) -> CostTable {
         match conditions.budget.costs {
             LodCosts::Fixed(table) => {
@@ -206,7 +205,7 @@ impl LevelSelector {
         self.change_times = [Duration::ZERO; 2];
     }
 
-    /// Whether a cloth is to be examined: if it changed, or in its turn unless it still is off screen.
+    /// Whether a cloth is to be examined: if it changed, or in its turn unless it stays off the screen.
     fn is_due(&self, cloth: &LodClothItem, views: &[View]) -> bool {
         let is_its_turn = cloth.record.phase.wrapping_add(self.tick).is_multiple_of(EXAMINED_EVERY);
         cloth.instance.is_changed()
@@ -214,8 +213,8 @@ impl LevelSelector {
             || (is_its_turn && !cloth.stays_off_screen(views))
     }
 
-    /// Examines a cloth: switches its level by distance, lets it sleep or wakes it, and makes a candidate
-    /// of it if it is simulated.
+    /// Examines a cloth: switches its level by distance, sends it to sleep or wakes it, and adds it to the
+    /// candidates if it is simulated.
     fn examine(
         &mut self,
         cloth: &mut LodClothItem,
@@ -228,7 +227,7 @@ impl LevelSelector {
         let table = self.tables.index_of(levels);
         if !cloth.record.is_of(levels) {
             let radius = self.tables.radius(table);
-            // The first change need not wait.
+            // The record starts so that the first change need not wait.
             let changed = self.tick.wrapping_sub(examination.budget.dwell);
             *cloth.record = LodRecord::new(levels, radius, self.cloths, changed);
             self.cloths = self.cloths.wrapping_add(1);
@@ -244,7 +243,8 @@ impl LevelSelector {
             cloth.lods.level_at(nearest.unwrap_or(0.0), cloth.instance.level)
         };
         let on_screen = sighting.is_none_or(|it| it.sight == Sight::OnScreen);
-        // While vertices are led to their places, another level would hold others.
+        // A cloth keeps its level while newly attached vertices move to their places, since another level
+        // would hold other vertices.
         let is_taking_up = cloth.instance.taking_up.is_some();
         let to = if is_taking_up { cloth.instance.level } else { to };
         self.change(cloth, to, on_screen, batches, commands);
@@ -267,8 +267,8 @@ impl LevelSelector {
         cloth.record.candidate = is_simulated.then_some(candidate);
     }
 
-    /// Lets a cloth fall asleep or wakes it. Off the screen it changes to its coarsest level: it takes the
-    /// least memory there, and this is the level at which it is seen first when it comes back.
+    /// Sends a cloth to sleep or wakes it. Off the screen it changes to its coarsest level, which takes the
+    /// least memory and at which the cloth is shown first when it comes back.
     fn update_activity(
         &mut self,
         cloth: &mut LodClothItem,
@@ -287,13 +287,13 @@ impl LevelSelector {
             self.change(cloth, coarsest, candidate.on_screen, batches, commands);
         }
         if wakes {
-            // Once it is seen it need not wait for a finer level.
+            // A cloth that comes into view need not wait for a finer level.
             cloth.record.changed = self.tick.wrapping_sub(examination.budget.dwell);
             candidate.level = coarsest as u32;
         }
     }
 
-    /// Changes the level of a cloth, if it is another, and notes what that cost.
+    /// Changes the level of a cloth if it differs, and records the time.
     fn change(
         &mut self,
         cloth: &mut LodClothItem,
@@ -314,7 +314,7 @@ impl LevelSelector {
         }
     }
 
-    /// Adds a simulated cloth to the candidates, and counts it, a paused or a sleeping one.
+    /// Adds a simulated cloth to the candidates. Counts every cloth as simulated, paused or asleep.
     fn collect(
         &mut self,
         cloth: &LodClothItem,
@@ -350,8 +350,8 @@ impl LevelSelector {
     }
 }
 
-/// Importance of a pixel of error of a cloth with a radius (m): the square of the number of pixels that
-/// the cloth fills, as large cloths draw attention.
+/// Importance of a pixel of error of a cloth with a radius (m): the square of the number of pixels that the
+/// cloth fills, as large cloths draw attention.
 fn importance(sighting: &Sighting, radius: f32) -> f32 {
     let pixels = (sighting.pixels_per_metre * radius).powi(2);
     let factor = if sighting.sight == Sight::OnScreen { 1.0 } else { NEAR_SCREEN_IMPORTANCE };

@@ -1,4 +1,4 @@
-//! The state of a cloth before and after a change of level.
+//! Tests of a cloth's state before and after a change of level.
 
 use std::time::Duration;
 

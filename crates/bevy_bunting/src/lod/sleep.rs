@@ -1,4 +1,4 @@
-//! Cloths that have come to rest fall asleep, and wake when anything changes that acts on them.
+//! Sleep at rest: cloths at rest fall asleep, and wake when anything that acts on them changes.
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::entity::EntityHashMap;
@@ -20,20 +20,20 @@ use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
 
 /// Root mean square speed of the particles below which a cloth rests, m/s: a millimetre in a second is
-/// not seen. Larger: cloth visibly stops.
+/// invisible. Larger: cloth visibly stops.
 const REST_SPEED: f32 = 1e-3;
 
-/// Time for which a cloth must rest before it falls asleep, s: longer than a pendulum is as slow at its
+/// Time for which a cloth must rest before it falls asleep, s: longer than a pendulum is this slow at its
 /// turning points. Shorter: swinging cloth falls asleep there.
 const REST_TIME: f32 = 0.5;
 
-/// Distance between a cloth and a moving collider from which on the collider does not wake the cloth, m.
-/// Smaller: fast colliders enter sleeping cloth.
+/// Distance from a cloth beyond which a moving collider does not wake it, m. Smaller: fast colliders enter
+/// sleeping cloth.
 const CLEARANCE: f32 = 0.5;
 
-/// Wakes a cloth that sleeps at rest: trigger it when something begins to act on the cloth that the plugin
-/// does not know of, as a force or a constraint of the user. A cloth that sleeps because no viewer sees it is
-/// not woken.
+/// Wakes a cloth that sleeps at rest. Trigger this event when something unknown to the plugin begins to act
+/// on the cloth, such as a force or a constraint of the user. A cloth that sleeps because no viewer sees it
+/// is not woken.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WakeCloth {
     /// The cloth.
@@ -62,23 +62,24 @@ impl Plugin for SleepPlugin {
     }
 }
 
-/// What has changed since the last tick of all that acts on cloths.
+/// Changes since the last tick in anything that acts on cloths.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct Changes {
-    /// Whether the wind, gravity, other settings or the set of colliders changed, which act everywhere.
+    /// Whether the wind, the settings (such as gravity) or the set of colliders changed, which affects all
+    /// cloths.
     everywhere: bool,
-    /// Number of ticks since anything changed everywhere.
+    /// Number of ticks since the last change that affects all cloths.
     unchanged_ticks: u32,
-    /// Balls around colliders that move, centres and radii, m.
+    /// Bounding balls of moving colliders: centres and radii, m.
     moving_colliders: Vec<(Vec3, f32)>,
-    /// Number of cloths asleep at rest; some of them may have been woken since.
+    /// Number of cloths asleep at rest; some may have been woken since.
     asleep: usize,
     wind: TickWind,
     collider_poses: EntityHashMap<Isometry3d>,
 }
 
 impl Changes {
-    /// Whether anything changed that acts on a cloth with a radius (m): its frame, or a collider near it.
+    /// Whether a change affects a cloth with a radius (m): of its frame, or of a collider near it.
     fn act_on(
         &self,
         state: &ClothState,
@@ -154,7 +155,7 @@ pub(crate) fn wake_cloths(mut cloths: Query<RestingCloth>, mut changes: ResMut<C
 }
 
 fn send_to_sleep(mut cloths: Query<RestingCloth>, mut changes: ResMut<Changes>, time: Res<Time>) {
-    // In gusts, which change in every tick, no cloth comes to rest.
+    // Gusts change in every tick, so no cloth comes to rest in them.
     if changes.everywhere {
         return;
     }

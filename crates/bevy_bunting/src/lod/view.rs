@@ -1,15 +1,15 @@
-//! Where a cloth lies in the pictures of all viewers, and how large it is there.
+//! The position and size of a cloth in the pictures of all viewers.
 
 use bevy_math::{Isometry3d, Vec3};
 use bevy_transform::components::GlobalTransform;
 
 use crate::lod::viewer::{Lens, LodViewer};
 
-/// Least distance of a cloth from a viewer, m: nearer ones count as being there, so that sizes stay
-/// finite.
+/// Least distance of a cloth from a viewer, m: nearer cloths count as being at this distance, so that sizes
+/// stay finite.
 const LEAST_DISTANCE: f32 = 0.1;
 
-/// Where a cloth lies in the pictures of all viewers; the least of several counts.
+/// Visibility of a cloth; of several viewers' values the least one counts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Sight {
     /// On the screen.
@@ -23,11 +23,11 @@ pub(crate) enum Sight {
     OutOfRange,
 }
 
-/// What all viewers together see of a cloth.
+/// The cloth as seen by all viewers together.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Sighting {
     pub sight: Sight,
-    /// Size of a metre at the cloth, px/m; 0 where the cloth is neither on nor near a screen.
+    /// Pixels for each metre at the cloth, px/m; 0 if the cloth is neither on nor near a screen.
     pub pixels_per_metre: f32,
 }
 
@@ -35,11 +35,11 @@ pub(crate) struct Sighting {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct View {
     to_view: Isometry3d,
-    /// Size of a metre, px/m; with perspective, at a distance of one metre.
+    /// Pixels for each metre, px/m; with perspective, at a distance of one metre.
     focal: f32,
     has_perspective: bool,
-    /// The right and the upper side of the picture. With perspective, the side's outward unit normal
-    /// as [across, along the line of sight]; without, 1 and half the picture's extent in m.
+    /// The right and the upper side of the picture. With perspective, the side's outward unit normal as
+    /// [across, along the line of sight]; without, 1 and half the picture's extent in m.
     sides: [[f32; 2]; 2],
     range: f32,
     margin: f32,
@@ -71,7 +71,7 @@ impl View {
         (self.to_view * point).length()
     }
 
-    /// What the viewer sees of a ball around a centre with a radius, m.
+    /// The view of a ball with a centre and a radius, m.
     pub fn sighting(&self, centre: Vec3, radius: f32) -> Sighting {
         let place = self.to_view * centre;
         let distance = (place.length() - radius).max(LEAST_DISTANCE);
@@ -102,11 +102,11 @@ impl View {
 }
 
 impl Sighting {
-    /// What all viewers together see of a ball around a centre with a radius, m. Without a viewer the
-    /// ball is on the screen, and larger than any screen.
+    /// The view of a ball with a centre and a radius, m, by all viewers together. Without a viewer the ball
+    /// is on the screen, and larger than any screen.
     pub fn of(views: &[View], centre: Vec3, radius: f32) -> Self {
         if views.is_empty() {
-            // Fourth powers of it are still finite: see `importance` in `select.rs`.
+            // The fourth power of this size is still finite: see `importance` in `select.rs`.
             let pixels_per_metre = f32::MAX.sqrt().sqrt();
             return Self { sight: Sight::OnScreen, pixels_per_metre };
         }
@@ -169,7 +169,7 @@ mod tests {
             sighting(-32.0).pixels_per_metre,
             views[1].sighting(Vec3::new(0.0, 0.0, -32.0), 0.5).pixels_per_metre
         );
-        // Behind one, before the other.
+        // The ball is behind one viewer and in front of the other.
         assert_eq!(sighting(-20.0), views[0].sighting(Vec3::new(0.0, 0.0, -20.0), 0.5));
         assert_eq!(sighting(20.0).sight, Sight::OffScreen);
         assert_eq!(Sighting::of(&[], Vec3::ZERO, 0.5).sight, Sight::OnScreen);

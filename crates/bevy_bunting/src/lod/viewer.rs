@@ -5,7 +5,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
 
-/// A viewer for which levels of detail are chosen; put it on the camera. Of several viewers the one in
+/// A viewer for which levels of detail are chosen, usually on the camera. Of several viewers, the one in
 /// whose picture a cloth is largest counts.
 ///
 /// A viewer looks along −z of its [`Transform`]. With the feature `render`, cameras get a viewer, whose
@@ -40,7 +40,7 @@ impl Default for LodViewer {
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum Lens {
-    /// Sizes in the picture are inverse to the distance.
+    /// Sizes in the picture are inversely proportional to the distance.
     Perspective {
         /// Vertical field of view, rad.
         field_of_view: f32,

@@ -9,47 +9,47 @@ use bevy_transform::components::Transform;
 
 use crate::cloth::mesh::ClothMesh;
 
-/// Default of [`Attachment::teleport_speed`], m/s: no vehicle brakes or starts by as much between two frames.
-/// Smaller: hard manoeuvres count as teleports, and swing no cloth. Larger: jumps whip it.
+/// Default of [`Attachment::teleport_speed`], m/s: no vehicle changes its velocity by as much between two
+/// frames. Smaller: hard manoeuvres count as teleports and do not swing the cloth. Larger: jumps whip it.
 pub(crate) const TELEPORT_SPEED: f32 = 25.0;
 
-/// Greatest difference from the extreme texture coordinate of vertices on an edge. Smaller: rounding
-/// excludes vertices. Larger: an edge has several rows of fine meshes.
+/// Greatest distance in texture coordinates of a vertex on an edge from the extreme coordinate. Smaller:
+/// rounding excludes vertices. Larger: an edge holds several rows of fine meshes.
 const EDGE_TOLERANCE: f32 = 1e-4;
 
 /// Holds chosen vertices of a cloth on a target that may move.
 ///
-/// The cloth's frame is the target's pose times [`offset`](Self::offset). The held vertices stay in
-/// that frame where the [`ClothMesh`](crate::ClothMesh) has them. The cloth's own [`Transform`] is
+/// The cloth's frame is the target's pose times [`offset`](Self::offset). The held vertices keep their
+/// positions in the [`ClothMesh`](crate::ClothMesh), seen from that frame. The cloth's own [`Transform`] is
 /// overwritten with the frame, whether the cloth is a child of its target or not.
 ///
-/// A change of target, offset or held vertices never whips the cloth: it moves with its frame rigidly, and newly
-/// held vertices move to their places within a second. From more than 2 m away the cloth is first put in place,
-/// as by a teleport.
+/// A change of target, offset or held vertices does not whip the cloth: the cloth moves rigidly with its
+/// frame, and newly held vertices move to their places within a second. A cloth more than 2 m away is first
+/// put in place, as by a teleport.
 ///
-/// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. Its scale scales
+/// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. The target's scale scales
 /// the offset's translation and is otherwise ignored.
 #[derive(Component, Clone, Debug, Reflect)]
 #[component(map_entities = map_target)]
 #[reflect(Component, Debug, Clone)]
 pub struct Attachment {
-    /// The entity that the vertices stay on. [`Entity::PLACEHOLDER`], or the cloth itself, holds
-    /// them on the cloth's own [`Transform`].
+    /// Entity that the vertices stay on. [`Entity::PLACEHOLDER`] and the cloth itself hold the vertices on
+    /// the cloth's own [`Transform`].
     pub target: Entity,
     /// The vertices that are held.
     pub vertices: AttachedVertices,
-    /// Pose of the cloth's frame seen from the target; the scale is ignored.
+    /// Pose of the cloth's frame relative to the target; the scale is ignored.
     pub offset: Transform,
-    /// What happens when the target is despawned.
+    /// Fate of the cloth when the target is despawned.
     pub on_lost: TargetLost,
-    /// A target whose velocity changes by more than this between two frames or ticks, in m/s, was teleported: the
-    /// cloth moves with it rigidly, without being accelerated. At 60 frames a second, 25 m/s is to depart from the
-    /// extrapolated motion by 0.4 m. The same holds for a turn that moves as fast what is a metre away, and for
-    /// any of more than 90°.
+    /// Change of the target's velocity between two frames or ticks, in m/s, above which the target was
+    /// teleported: the cloth then moves with it rigidly, without being accelerated. At 60 frames a second, 25
+    /// m/s is a departure of 0.4 m from the extrapolated motion. A turn counts by the change of velocity of a
+    /// point 1 m away, and any turn of more than 90° is a teleport.
     pub teleport_speed: f32,
 }
 
-/// Maps the target when a scene is loaded. The placeholder is no entity of any scene.
+/// Maps the target when a scene is loaded. The placeholder is no entity of a scene and stays.
 fn map_target<M: EntityMapper>(attachment: &mut Attachment, mapper: &mut M) {
     if attachment.target != Entity::PLACEHOLDER {
         attachment.target = mapper.get_mapped(attachment.target);
@@ -75,7 +75,7 @@ impl Attachment {
         Self::new(Entity::PLACEHOLDER, vertices)
     }
 
-    /// The same, with the cloth's frame at `offset` from the target.
+    /// The attachment with another [`offset`](Self::offset).
     #[must_use]
     pub fn with_offset(mut self, offset: Transform) -> Self {
         self.offset = offset;
@@ -88,7 +88,7 @@ impl Attachment {
     }
 }
 
-/// What happens to a cloth whose target is despawned.
+/// Fate of a cloth whose target is despawned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum TargetLost {
@@ -128,20 +128,20 @@ pub enum ClothCorner {
     BottomRight,
 }
 
-/// Which vertices an [`Attachment`] holds.
+/// The vertices that an [`Attachment`] holds.
 ///
-/// A coarser level of detail holds those of them that it has.
+/// A coarser level of detail holds those of the vertices that it has.
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum AttachedVertices {
     /// All vertices on an edge.
     Edge(ClothEdge),
-    /// The vertices nearest to these corners.
+    /// For each of these corners, the vertex nearest to it.
     Corners(Vec<ClothCorner>),
     /// Vertices of the [`ClothMesh`](crate::ClothMesh) by index; of a grid, by `row * columns +
     /// column`.
     List(Vec<u32>),
-    /// All vertices whose texture coordinate lies in a rectangle or on its border. For any other choice, see
+    /// All vertices whose texture coordinate lies in a rectangle or on its border. For other shapes, see
     /// [`AttachedVertices::list_where`].
     Within {
         /// Least u and v.
@@ -149,21 +149,20 @@ pub enum AttachedVertices {
         /// Greatest u and v.
         high: Vec2,
     },
-    /// No vertices besides the rigid ones of weight 0, see
-    /// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
+    /// Only the rigid vertices, of weight 0, see [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
     Rigid,
 }
 
 impl AttachedVertices {
-    /// The [`List`](Self::List) of a mesh's vertices for whose texture coordinate a predicate holds; none of a mesh
-    /// without texture coordinates.
+    /// [`List`](Self::List) of the vertices of a mesh whose texture coordinates satisfy a predicate; empty
+    /// for a mesh without texture coordinates.
     #[must_use]
     pub fn list_where(mesh: &ClothMesh, holds: impl Fn(Vec2) -> bool) -> Self {
         let chosen = (0..).zip(mesh.uvs()).filter(|&(_, uv)| holds(uv));
         Self::List(chosen.map(|(vertex, _)| vertex).collect())
     }
 
-    /// The indices of the vertices, given the texture coordinates of all.
+    /// Indices of the held vertices, given the texture coordinates of all vertices.
     pub(crate) fn choose(&self, uv: &[Vec2]) -> Vec<u32> {
         let low = uv.iter().copied().reduce(Vec2::min).unwrap_or_default();
         let high = uv.iter().copied().reduce(Vec2::max).unwrap_or_default();

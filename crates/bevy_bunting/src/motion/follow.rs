@@ -1,5 +1,5 @@
-//! Which entities have moved with another one, by hierarchy or by attachment: entities that rest cost
-//! nothing, as only moved ones are looked at.
+//! Finds the entities that have moved with another one, by hierarchy or by attachment. Only moved entities
+//! are visited, so that entities at rest cost nothing.
 
 use bevy_ecs::entity::EntityHashSet;
 use bevy_ecs::hierarchy::{ChildOf, Children};
@@ -37,7 +37,7 @@ pub(crate) fn follow_targets(
     }
 }
 
-/// Removes [`Follows`] with the attachment.
+/// Removes [`Follows`] when the attachment is removed.
 pub(crate) fn stop_following(removed: On<Remove, Attachment>, mut commands: Commands) {
     commands.entity(removed.entity).try_remove::<Follows>();
 }
@@ -56,8 +56,8 @@ pub(crate) struct MovedEntities<'w, 's> {
 }
 
 impl MovedEntities<'_, '_> {
-    /// Entities whose transform, parent or attachment changed, the given other ones, and all their
-    /// descendants and followers.
+    /// Returns the entities whose transform, parent or attachment changed, the entities in `others`, and the
+    /// descendants and followers of both.
     pub fn find(&mut self, others: impl IntoIterator<Item = Entity>) -> &EntityHashSet {
         self.moved.clear();
         self.stack.extend(others);

@@ -1,4 +1,4 @@
-//! The frame of a cloth: the pose of its attachment's target times the offset, or its own.
+//! The frame of a cloth: the pose of its attachment's target times the offset, or the cloth's own pose.
 
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
@@ -7,7 +7,7 @@ use bevy_transform::helper::TransformHelper;
 
 use crate::motion::attachment::Attachment;
 
-/// The current frame of a cloth, or pose of a collider. None if the target is despawned.
+/// The current frame of a cloth, or the current pose of a collider. None if the target is despawned.
 pub(crate) fn frame_of(
     entity: Entity,
     attachment: Option<&Attachment>,
@@ -29,7 +29,7 @@ pub(crate) fn frame_on(target: &GlobalTransform, offset: &Transform) -> Isometry
     Isometry3d::new(target.transform_point(offset.translation), rotation)
 }
 
-/// Whether a frame has no infinite component and none that is not a number.
+/// Whether all components of a frame are finite.
 pub(crate) fn is_finite(frame: &Isometry3d) -> bool {
     Vec3::from(frame.translation).is_finite() && frame.rotation.is_finite()
 }

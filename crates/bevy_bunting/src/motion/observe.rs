@@ -1,4 +1,4 @@
-//! Observes the frames of cloths and the poses of colliders, in each frame and each tick.
+//! Observes the frames of cloths and the poses of colliders in each frame and each tick.
 
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemParam;
@@ -13,9 +13,9 @@ use crate::motion::follow::MovedEntities;
 use crate::motion::frame::{frame_of, is_finite};
 use crate::motion::pose::{ObservationTimes, PoseHistory};
 
-/// The same where the attachment itself is changed in this tick, m/s: an offset that is set to another value is no
-/// motion. Smaller: an offset that is moved along does not swing the cloth. Larger: a change of the offset by some
-/// centimetres whips the cloth.
+/// Change of velocity above which a change of pose is a teleport if the attachment itself was changed in this
+/// tick, m/s: setting another offset is no motion. Smaller: an offset that is moved continuously does not
+/// swing the cloth. Larger: a change of the offset by some centimetres whips the cloth.
 const EDIT_SPEED: f32 = 3.0;
 
 type ChangedHistories<'w, 's> = Query<'w, 's, Entity, Changed<PoseHistory>>;
@@ -23,19 +23,19 @@ type ChangedHistories<'w, 's> = Query<'w, 's, Entity, Changed<PoseHistory>>;
 type Histories<'w, 's> =
     Query<'w, 's, (&'static mut PoseHistory, Option<Ref<'static, Attachment>>)>;
 
-/// The entities with a [`PoseHistory`] that are to be observed: those that may have moved, and those
-/// that do not rest yet.
+/// Entities with a [`PoseHistory`] that must be observed: those that may have moved, and those whose history
+/// is not at rest yet.
 #[derive(SystemParam)]
 pub(super) struct Observer<'w, 's> {
     moved: MovedEntities<'w, 's>,
-    /// Histories that are new, were reset, or expect a teleport; and all.
+    /// Histories that are new, were reset, or expect a teleport; and all histories.
     histories: ParamSet<'w, 's, (ChangedHistories<'static, 'static>, Histories<'static, 'static>)>,
-    /// Entities that did not rest when the system last ran.
+    /// Entities that were not at rest when the system last ran.
     restless: Local<'s, Vec<Entity>>,
 }
 
 impl Observer<'_, '_> {
-    /// Calls `observe` with each of these entities.
+    /// Calls `observe` with each entity to be observed.
     fn for_each(
         &mut self,
         mut observe: impl FnMut(Entity, &mut PoseHistory, Option<Ref<Attachment>>),
@@ -49,8 +49,8 @@ impl Observer<'_, '_> {
             observe(entity, history.bypass_change_detection(), attachment);
             if !history.rests() {
                 self.restless.push(entity);
-                // Only the end of a rest is marked as a change: the other systems that observe must learn
-                // of it, whereas each of them sees a motion by itself.
+                // The end of a rest is marked as a change, since the other observing systems must learn of
+                // it. They detect all further motions by themselves.
                 if rested {
                     history.set_changed();
                 }
@@ -59,7 +59,7 @@ impl Observer<'_, '_> {
     }
 }
 
-/// Observes all frames in a frame of the app; `EARLY`, before its ticks.
+/// Observes all frames in a frame of the app; if `EARLY`, before the ticks of that frame.
 pub(super) fn observe_frames<const EARLY: bool>(
     mut observer: Observer,
     transforms: TransformHelper,
@@ -81,7 +81,7 @@ pub(super) fn observe_frames<const EARLY: bool>(
     }
 }
 
-/// Observes all frames in a tick, and so their motion in it. Reports frames that are not finite.
+/// Observes all frames in a tick, from which their motion in it follows. Reports frames that are not finite.
 pub(super) fn observe_ticks(
     mut observer: Observer,
     mut instances: Query<&mut ClothInstance>,
@@ -117,7 +117,7 @@ pub(super) fn observe_ticks(
     *times = now;
 }
 
-/// The change of velocity from which on a change of pose is a teleport, m/s.
+/// Change of velocity above which a change of pose is a teleport, m/s.
 fn teleport_speed(attachment: Option<Ref<Attachment>>) -> f32 {
     match attachment {
         Some(it) if it.is_changed() => it.teleport_speed.min(EDIT_SPEED),

@@ -17,8 +17,8 @@ type Transforms<'w, 's> = Query<'w, 's, (&'static mut Transform, &'static mut Gl
 /// A cloth's transforms: the local one only of attached cloths.
 type Placement = (Entity, Option<Transform>, GlobalTransform);
 
-/// Writes the transforms of cloths that may have moved: their frame from the target's current pose,
-/// whichever pose the last tick saw.
+/// Writes the transforms of cloths that may have moved. A cloth's frame follows from the current pose of its
+/// target, which may be newer than the pose in the last tick.
 pub(super) fn place_cloths(
     cloths: Query<PlacedCloth, With<ClothMesh>>,
     new: Query<Entity, Added<ClothMesh>>,
@@ -65,7 +65,7 @@ fn placement_on(
     let frame = frame_on(&target_pose, offset);
     let global = GlobalTransform::from_isometry(frame);
     let local = match parent {
-        // Exactly the offset, without the rounding of the target's pose.
+        // The offset itself has no rounding error of the target's pose.
         Some(parent) if parent == target => {
             Transform { scale: target_pose.scale().recip(), ..*offset }
         }

@@ -1,4 +1,4 @@
-//! Follows the targets of attachments: observes their poses and places cloths on them.
+//! The plugin that observes the poses of attachments' targets and places cloths on them.
 
 use bevy_app::prelude::*;
 use bevy_app::{AnimationSystems, RunFixedMainLoop, RunFixedMainLoopSystems};
@@ -16,7 +16,7 @@ use crate::motion::pose::ObservationTimes;
 use crate::motion::scale::remove_scales;
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// Follows the targets of attachments, and places cloths on them.
+/// Observes the targets of attachments, and places cloths on them.
 #[derive(Debug, Default)]
 pub struct AttachmentPlugin;
 

@@ -1,4 +1,4 @@
-//! The pose of a cloth's frame or a collider at the time of each tick, whether it is moved in fixed
+//! The pose of a cloth's frame or of a collider at the time of each tick, for entities that move in fixed
 //! steps or in frames.
 
 use bevy_ecs::prelude::*;
@@ -6,26 +6,27 @@ use bevy_math::{Isometry3d, Quat};
 
 use crate::motion::track::Track;
 
-/// Greatest rate of change of the delay, s/s: the motion seems faster or slower by this fraction.
-/// Smaller: the delay lags behind the frame rate. Larger: changes of the frame rate shake the cloth.
+/// Greatest rate of change of the delay, s/s; it makes the motion faster or slower by this fraction. Smaller:
+/// the delay lags behind the frame rate. Larger: changes of the frame rate shake the cloth.
 const DELAY_RATE: f64 = 0.02;
 
-/// Times in which the mean length of frames and that of the longest ones follow the frames, s. Smaller: uneven
+/// Time constants with which the mean and the longest length of frames are averaged, s. Smaller: uneven
 /// frames change the delay, and so shake the cloth.
 const MEAN_TIME: f64 = 0.5;
 const LONGEST_TIME: f64 = 2.0;
 
-/// A frame longer than the mean by this factor is a hitch, which does not change the delay.
+/// Ratio of a frame's length to the mean above which the frame is a hitch, which does not change the delay.
 const HITCH: f64 = 1.5;
 
-/// Number of ticks without a change in them, after which a change in a frame means that the entity is
-/// moved in frames. Fewer: a target that pauses for a tick is taken for one that is moved in frames.
+/// Number of ticks without a change of pose in them after which a change of pose in a frame means that the
+/// entity is moved in frames. Fewer: a target that pauses for a tick is taken for one that is moved in
+/// frames.
 const QUIET_TICKS: u32 = 4;
 
 /// The schedule in which an entity is moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum MovedIn {
-    /// A fixed one: once a tick.
+    /// A fixed schedule, once a tick.
     #[default]
     Ticks,
     /// `Update` or later: once a frame.
@@ -34,16 +35,17 @@ enum MovedIn {
 
 /// A short history of poses, resampled at the time of each tick.
 ///
-/// An entity that is moved in a fixed schedule has one pose a tick: that one is taken. An entity that is
-/// moved in `Update` shows none or two changes between ticks: its poses, known at the times of frames,
-/// are resampled with a delay of one frame, so that a steady motion stays steady. The delay is the length of
-/// the longest frames: one that followed the length of each frame would shake an entity that moves evenly.
+/// An entity that is moved in a fixed schedule has one pose in each tick, and that pose is used. An entity
+/// that is moved in `Update` changes its pose never or several times between two ticks: its poses at the
+/// times of frames are resampled with a delay of one frame, so that a steady motion stays steady. The delay
+/// is the length of the longest frames: a delay that followed the length of each frame would shake an entity
+/// that moves evenly.
 #[derive(Component, Clone, Debug, Default)]
 pub(crate) struct PoseHistory {
     ticks: Track,
     frames: Track,
     moved_in: MovedIn,
-    /// Number of ticks until a change in a frame counts again.
+    /// Number of ticks until a change in a frame again means that the entity is moved in frames.
     ticks_to_quiet: u32,
     /// Time by which the resampled pose lies in the past, s.
     delay: f64,
@@ -51,13 +53,13 @@ pub(crate) struct PoseHistory {
     last: Option<Isometry3d>,
     /// Poses at the start and the end of the tick.
     span: Option<(Isometry3d, Isometry3d)>,
-    /// The same without a delay, extrapolated from the last frame.
+    /// Poses at the start and the end of the tick without a delay, extrapolated from the last frame.
     extrapolated: Option<(Isometry3d, Isometry3d)>,
-    /// Set while all samples have one pose: the entity is then not observed until it is moved.
+    /// Set while all samples have one pose: the entity is then not observed until it moves.
     rest: Option<Rest>,
 }
 
-/// Times of the last observations of all entities that do not rest. An entity at rest would have been
+/// Times of the last observation of any entity that was not at rest. An entity at rest would have been
 /// observed at the same times.
 #[derive(Resource, Clone, Copy, Debug, Default)]
 pub(crate) struct ObservationTimes {
@@ -65,7 +67,7 @@ pub(crate) struct ObservationTimes {
     pub frame: f64,
     /// Mean length of frames, s.
     pub mean_frame: f64,
-    /// Length of the longest frames but for hitches, s.
+    /// Length of the longest frames other than hitches, s.
     pub longest_frame: f64,
     /// End of the last tick, s.
     pub tick: f64,
@@ -77,7 +79,7 @@ pub(crate) struct ObservationTimes {
 #[derive(Clone, Copy, Debug)]
 struct Rest {
     pose: Isometry3d,
-    /// End of the tick since which the entity rests, s.
+    /// End of the tick in which the rest began, s.
     tick: f64,
     /// Number of that tick.
     ticks: u32,
@@ -121,7 +123,7 @@ impl PoseHistory {
         self.extrapolated.unwrap_or_default()
     }
 
-    /// Whether the entity rests, and need not be observed until it is moved.
+    /// Whether the entity rests, so that it need not be observed until it moves.
     pub fn rests(&self) -> bool {
         self.rest.is_some()
     }
@@ -133,8 +135,9 @@ impl PoseHistory {
         self.frames.teleports_next = true;
     }
 
-    /// Notes the pose in a frame at a time (s); a change of velocity of more than `limit` m/s is a teleport. A
-    /// pose observed `early`, before the frame's ticks, counts only if it changed since the last frame.
+    /// Records the pose in a frame at a time (s); a change of velocity of more than `limit` m/s is a
+    /// teleport. A pose observed `early`, before the frame's ticks, is ignored unless it has changed since
+    /// the last frame.
     pub fn observe_frame(
         &mut self,
         last: &ObservationTimes,
@@ -154,8 +157,8 @@ impl PoseHistory {
         let teleport = self.frames.push(time, pose, limit);
         if changed && self.moved_in == MovedIn::Ticks && self.ticks_to_quiet == 0 {
             self.moved_in = MovedIn::Frames;
-            // The entity has not moved for some ticks: any delay gives the same pose, and the right one
-            // can be taken at once.
+            // The entity has not moved for some ticks, so any delay gives the same pose: the final delay can
+            // be set at once.
             self.delay = f64::INFINITY;
         }
         if self.moved_in == MovedIn::Frames {
@@ -164,7 +167,7 @@ impl PoseHistory {
         self.last = Some(pose);
     }
 
-    /// Notes the pose in a tick of `tick` seconds whose times are `now`; a change of velocity of more than
+    /// Records the pose in a tick of `tick` seconds whose times are `now`; a change of velocity of more than
     /// `limit` m/s is a teleport.
     pub fn observe_tick(
         &mut self,
@@ -180,7 +183,7 @@ impl PoseHistory {
         self.end_rest(last);
         let time = now.tick;
         if self.frames.is_empty() {
-            // The entity had this pose in the last frame: a motion later in this one starts from it.
+            // The entity had this pose in the last frame; a motion later in this frame starts from it.
             self.frames.push(now.frame, pose, limit);
         }
         let teleport = self.ticks.push(time, pose, limit);
@@ -214,14 +217,14 @@ impl PoseHistory {
         }
     }
 
-    /// Keeps the last pose for a tick in which there is none to be observed.
+    /// Keeps the last pose for a tick in which no pose can be observed.
     pub fn hold(&mut self) {
         self.span = self.span.map(|(_, end)| (end, end));
         self.extrapolated = self.extrapolated.map(|(_, end)| (end, end));
     }
 
-    /// Changes the delay for `tick` seconds towards zero for an entity that is moved in ticks, or the
-    /// length of a `frame` (s) for one that is moved in frames.
+    /// Moves the delay during `tick` seconds towards zero for an entity that is moved in ticks, or towards
+    /// the length of a `frame` (s) for one that is moved in frames.
     fn change_delay(&mut self, tick: f64, frame: f64) {
         let delay = match self.moved_in {
             MovedIn::Ticks => 0.0,
@@ -234,7 +237,7 @@ impl PoseHistory {
         };
     }
 
-    /// Ends a rest, with the state that observations of the resting entity would have led to.
+    /// Ends a rest, with the state that observing the resting entity would have led to.
     fn end_rest(&mut self, last: &ObservationTimes) {
         if let Some(rest) = self.rest.take() {
             self.frames.extend(last.frame);
@@ -249,7 +252,7 @@ impl PoseHistory {
         self.span.map_or(other, |(_, end)| end)
     }
 
-    /// Applies a teleport to the pose at the end of the last tick, where the next one starts.
+    /// Applies a teleport to the pose at the end of the last tick, which is the start of the next tick.
     fn teleport_end(&mut self, teleport: Option<Isometry3d>) {
         let Some(teleport) = teleport else { return };
         for (_, end) in [&mut self.span, &mut self.extrapolated].into_iter().flatten() {

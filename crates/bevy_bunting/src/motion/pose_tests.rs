@@ -4,13 +4,13 @@ use bevy_math::{Isometry3d, Quat, Vec3};
 
 use super::{ObservationTimes, PoseHistory};
 
-/// Seconds of a tick: Bevy's default.
+/// Length of a tick, s: Bevy's default.
 const TICK: f64 = 1.0 / 64.0;
 
-/// Change of velocity from which on a change of pose is a teleport, m/s.
+/// Change of velocity above which a change of pose is a teleport, m/s.
 const LIMIT: f32 = 25.0;
 
-/// Rounding of a position some tens of metres from the origin, m.
+/// Rounding error of a position some tens of metres from the origin, m.
 const ROUNDING: f32 = 1e-5;
 
 fn at(x: f32) -> Isometry3d {
@@ -35,7 +35,7 @@ impl Clocks {
         }
     }
 
-    /// One frame; gives the motion of each tick in it.
+    /// Runs one frame and returns the motion of each tick in it.
     fn frame(
         &mut self,
         seconds: f64,
@@ -80,7 +80,7 @@ fn a_steady_motion_in_update_is_steady_at_any_frame_rate() {
         for _ in 0..(2.0 * rate) as u32 {
             motions.extend(clocks.frame(1.0 / rate, drives, rests));
         }
-        // Until there are two frames nothing can be extrapolated.
+        // Extrapolation needs two frames: the first motions are left out.
         let settled = &motions[motions.len() / 4..];
         for motion in settled {
             assert!(
@@ -157,7 +157,7 @@ fn a_teleport_keeps_the_motion() {
             Some(if time < 1.0 {
                 at(along)
             } else {
-                // Turned about, and on along its own x axis.
+                // A turn, followed by motion along the turned x axis.
                 Isometry3d::new(
                     Vec3::new(0.0, 0.0, -along),
                     Quat::from_rotation_y(core::f32::consts::FRAC_PI_2),

@@ -10,8 +10,8 @@ use crate::cloth::mesh::ClothMesh;
 use crate::motion::attachment::Attachment;
 use crate::motion::frame::{frame_of, is_finite};
 
-/// Greatest difference of the products of the axes of a frame from those of orthogonal unit vectors. Smaller:
-/// rounding counts as a scale. Larger: a scale is shown.
+/// Greatest error of the dot products of a frame's axes compared with those of orthogonal unit vectors.
+/// Smaller: rounding counts as a scale. Larger: a scale is shown.
 const ORTHONORMAL_TOLERANCE: f32 = 1e-4;
 
 type Propagated<'w, 's> = Query<
@@ -24,8 +24,9 @@ type Propagated<'w, 's> = Query<
 type Hierarchy<'w, 's> =
     Query<'w, 's, (&'static Transform, Option<&'static Children>, &'static mut GlobalTransform)>;
 
-/// Takes the scales of parents, targets and cloths out of the propagated transforms of cloths: a frame has none,
-/// and a local transform cannot undo a scale along rotated axes. Children of these cloths move with them.
+/// Removes the scales of parents, targets and cloths from the propagated transforms of cloths: a frame has no
+/// scale, and a local transform cannot undo a scale along rotated axes. The children of these cloths are
+/// corrected with them.
 pub(super) fn remove_scales(
     mut transforms: ParamSet<((TransformHelper, Propagated), Hierarchy)>,
     mut changed: Local<Vec<(Entity, GlobalTransform)>>,

@@ -1,28 +1,28 @@
-//! Vertices that are attached while they are elsewhere: they are led to their places.
+//! Newly attached vertices that are not in their places yet: they are moved there within a second.
 
 use bevy_math::{Isometry3d, Vec3};
 use bunting_solver::{ClothSnapshot, Fabric};
 
-/// Time in which vertices go to where they are attached, s. In half of it they go twice as fast, and cloth
-/// at a distance of [`REACH`] is stretched by a tenth.
+/// Time in which newly attached vertices move to their places, s. In half of it they would move twice as
+/// fast, and cloth at a distance of [`REACH`] would be stretched by a tenth.
 const TIME: f32 = 1.0;
 
-/// Greatest distance from which they are led there, m: from farther away the whole cloth is first put in
-/// place, as by a teleport.
+/// Greatest distance over which the vertices are moved, m: a cloth farther away is first put in place as a
+/// whole, as by a teleport.
 const REACH: f32 = 2.0;
 
 /// Attached vertices on the way to their places.
 #[derive(Clone, Debug)]
 pub(crate) struct TakingUp {
-    /// The pinned particles, and where they began, m.
+    /// Indices of the pinned particles, and their positions when the motion began, m.
     from: Vec<(usize, Vec3)>,
-    /// s.
+    /// Time since the motion began, s.
     passed: f32,
 }
 
 impl TakingUp {
-    /// Of a state that was kept, given in a frame that `change` takes to the new one. The state is carried there;
-    /// its pins are left where they are.
+    /// Transforms a kept state into the new frame by `change`, with its pins left where they are, and begins
+    /// their motion. None if all pins are in their places.
     pub fn begin(
         snapshot: &mut ClothSnapshot,
         fabric: &Fabric,
@@ -48,7 +48,7 @@ impl TakingUp {
         from.iter().any(|&(pin, at)| at != rest[pin]).then_some(Self { from, passed: 0.0 })
     }
 
-    /// Goes on for so many seconds; whether all are in their places.
+    /// Moves the pins for `tick` seconds. Returns whether all are in their places.
     pub fn go_on(&mut self, tick: f32, fabric: &Fabric, positions: &mut [Vec3]) -> bool {
         self.passed += tick;
         let part = (self.passed / TIME).min(1.0);

@@ -10,12 +10,12 @@ use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
 use crate::motion::pose::{ObservationTimes, PoseHistory};
 
-/// Makes the next change of a cloth's frame a teleport: the cloth moves with it rigidly, without being
-/// accelerated. Trigger it in the frame or tick in which the target is moved, before or after the
+/// Makes the next change of a cloth's frame a teleport: the cloth moves with its frame rigidly, without being
+/// accelerated. Trigger this event in the frame or tick in which the target is moved, before or after the
 /// motion, but before the next tick of the cloth.
 ///
-/// A change that would take more than [`Attachment::teleport_speed`](crate::Attachment::teleport_speed) is a
-/// teleport without a request.
+/// A change of velocity above [`Attachment::teleport_speed`](crate::Attachment::teleport_speed) is a teleport
+/// without this event.
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TeleportCloth {
     /// The cloth.
@@ -31,11 +31,11 @@ pub enum TeleportMode {
     /// The cloth keeps its shape and its velocities relative to its frame.
     #[default]
     Keep,
-    /// The cloth is put back to its shape at rest, without velocity.
+    /// The cloth is reset to its shape at rest, without velocity.
     Reset,
 }
 
-/// Teleports cloths on request.
+/// Handles [`TeleportCloth`].
 #[derive(Debug, Default)]
 pub struct TeleportPlugin;
 

@@ -4,19 +4,20 @@ use std::collections::VecDeque;
 
 use bevy_math::Isometry3d;
 
-/// Number of poses that are kept: at 250 frames a second, the longest delay that Bevy's clock allows.
+/// Greatest number of stored poses: it covers the longest delay that Bevy's clock allows at 250 frames a
+/// second.
 const MOST_SAMPLES: usize = 64;
 
-/// Lever arm with which a change of angular velocity counts as one of velocity, m: the size of a flag. Larger:
-/// fast spins count as teleports. Smaller: turns at once swing the cloth about.
+/// Lever arm that turns a change of angular velocity into one of velocity, m: the size of a flag. Larger:
+/// fast spins count as teleports. Smaller: sudden turns swing the cloth about.
 const LEVER: f32 = 1.0;
 
-/// A turn between two observations of more than this is a teleport at any rate, rad: half a turn has no
+/// Angle between two observations above which a turn is a teleport at any rate, rad: half a turn has no
 /// direction.
 const TELEPORT_ANGLE: f32 = core::f32::consts::FRAC_PI_2;
 
-/// Least time in which a change between two observations came about, s. Smaller: an entity that is moved at the
-/// rate of ticks by a loop of the user's, and seen in shorter frames, is teleported with each step.
+/// Least time that a change between two observations is assumed to take, s. Smaller: an entity that the user
+/// moves at the rate of ticks, observed in shorter frames, is teleported with each step.
 const LEAST_INTERVAL: f64 = 1.0 / 64.0;
 
 /// Time past the last observed pose up to which the motion is extrapolated, s: Bevy's clock allows no
@@ -28,21 +29,21 @@ const LONGEST_EXTRAPOLATION: f64 = 0.25;
 pub(super) struct Track {
     /// Times (s, ascending) and poses.
     samples: VecDeque<(f64, Isometry3d)>,
-    /// Whether the next change is a teleport, however small.
+    /// Whether the next change is a teleport, of any size.
     pub teleports_next: bool,
 }
 
 impl Track {
-    /// Adds a pose. If it departs from the extrapolated motion by a change of velocity of more than `limit` m/s,
-    /// it is a teleport: all earlier samples are moved along, as if the entity had come from there, and the
-    /// transformation is returned.
+    /// Adds a pose. If it departs from the extrapolated motion by a change of velocity of more than `limit`
+    /// m/s, the change is a teleport: all earlier samples are moved along, as if the entity had come from
+    /// there, and the transformation is returned.
     pub fn push(&mut self, time: f64, pose: Isometry3d, limit: f32) -> Option<Isometry3d> {
         let mut replaced = None;
         while self.samples.back().is_some_and(|&(newest, _)| newest >= time) {
             replaced = self.samples.pop_back();
         }
         if let (true, Some((_, earlier))) = (self.samples.is_empty(), replaced) {
-            // It is all that is known of the motion.
+            // The replaced pose is the only knowledge of the earlier motion.
             self.samples.push_back((time - LEAST_INTERVAL, earlier));
         }
         let teleport = self.teleport(time, pose, limit);
@@ -90,25 +91,25 @@ impl Track {
         Some(interpolate(a, b, fraction as f32))
     }
 
-    /// Extends the time of the last sample. The same as [`push`](Self::push) of the pose that all
-    /// samples have.
+    /// Extends the time of the last sample: the same as [`push`](Self::push) of the pose that all samples
+    /// have.
     pub fn extend(&mut self, time: f64) {
         if let Some((newest, _)) = self.samples.back_mut() {
             *newest = newest.max(time);
         }
     }
 
-    /// Whether all samples have a pose, and no teleport was requested.
+    /// Whether all samples have the given pose and no teleport was requested.
     pub fn rests_at(&self, pose: Isometry3d) -> bool {
         !self.teleports_next && self.samples.iter().all(|&(_, sample)| sample == pose)
     }
 
-    /// Whether nothing was observed yet.
+    /// Whether nothing has been observed yet.
     pub fn is_empty(&self) -> bool {
         self.samples.is_empty()
     }
 
-    /// Drops samples that are not needed for any time from this one (s) on.
+    /// Drops samples that are not needed for any time from `time` (s) on.
     pub fn drop_before(&mut self, time: f64) {
         while self.samples.len() > 2 && self.samples[1].0 <= time {
             self.samples.pop_front();
@@ -116,8 +117,8 @@ impl Track {
     }
 }
 
-/// Interpolates two poses. The result is exact where a component does not change, so that an entity at
-/// rest has no motion at all.
+/// Interpolates two poses. A component that does not change is exact in the result, so that an entity at rest
+/// has no motion.
 fn interpolate(a: Isometry3d, b: Isometry3d, fraction: f32) -> Isometry3d {
     if a == b || fraction == 1.0 {
         return b;

@@ -1,4 +1,4 @@
-//! Assigns meshes to cloths: one for each level, made or given by the user.
+//! Assigns meshes to cloths: one for each level, made by the plugin or given by the user.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -25,10 +25,10 @@ type ShownCloth = (
     Option<&'static LevelMeshes>,
 );
 
-/// The first cloth with each given mesh: any further one gets a copy.
+/// The first cloth that uses each given mesh; any further cloth gets a copy of the mesh.
 type Owners = HashMap<AssetId<Mesh>, Entity>;
 
-/// Assigns meshes to cloths that are new, were cut again, or have another `Mesh3d`.
+/// Assigns meshes to cloths that are new, have rebuilt levels, or have another `Mesh3d`.
 pub fn assign_meshes(
     cloths: Query<ShownCloth>,
     mut meshes: ResMut<Assets<Mesh>>,
@@ -52,7 +52,7 @@ pub fn assign_meshes(
                 owners.retain(|_, owner| cloths.contains(*owner));
                 let accepted =
                     accept_given(entity, given, levels, &mut meshes, &mut owners, &mut commands);
-                // A mesh that is not loaded yet is looked at again in the next frame.
+                // A mesh that is not loaded yet is tried again in the next frame.
                 let Some(accepted) = accepted else { continue };
                 accepted
             }
@@ -77,8 +77,8 @@ pub fn assign_meshes(
     }
 }
 
-/// Accepts a given mesh as the finest one, or a copy of it if another cloth has it; writes the rigid
-/// vertices. A mesh that cannot be written is reported and refused. None if the mesh is not loaded yet.
+/// Accepts a given mesh as the finest one, or a copy of the mesh if another cloth uses it, and writes the
+/// rigid vertices. A mesh that cannot be written is reported and refused. None if the mesh is not loaded yet.
 fn accept_given(
     entity: Entity,
     given: &Handle<Mesh>,
@@ -103,7 +103,7 @@ fn accept_given(
     Some((finest, MeshOrigin::Given))
 }
 
-/// Adds the meshes of all levels but the finest to a list that has the finest.
+/// Appends the meshes of all coarser levels to a list that holds the finest mesh.
 fn add_coarser(all: &mut Vec<Handle<Mesh>>, levels: &ClothLevels, meshes: &mut Assets<Mesh>) {
     for level in 1..levels.count() {
         let finest = meshes.get(&all[0]).expect("it was found or made before");

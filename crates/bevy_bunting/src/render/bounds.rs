@@ -1,4 +1,4 @@
-//! The bounding boxes of cloths, so that they are not culled while they could be seen.
+//! The bounding boxes of cloths, by which Bevy culls them.
 
 use bevy_camera::primitives::Aabb;
 use bevy_camera::visibility::NoAutoAabb;
@@ -17,8 +17,8 @@ type BoundedCloth = (
 );
 type IsStale = Or<(Changed<ClothState>, Changed<ClothEasing>, Changed<LevelMeshes>)>;
 
-/// Bounds the surfaces before and after the last tick, between which the shown one lies, and the rigid
-/// part; of visible cloths and of those that may come into view.
+/// Bounds the rigid part and the surfaces before and after the last tick, between which the shown surface
+/// lies. Cloths that are not visible are bounded, too, as they may come into view.
 pub fn bound_cloths(mut cloths: Query<BoundedCloth, (With<NoAutoAabb>, IsStale)>) {
     for (state, easing, level_meshes, mut bounds) in &mut cloths {
         let [from, to] = match easing {

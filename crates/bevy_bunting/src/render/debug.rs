@@ -22,34 +22,34 @@ use crate::environment::wind::TickWind;
 /// Half the size of the cross on an attached particle, m.
 const CROSS: f32 = 0.02;
 
-/// Absolute strain from which on links are drawn in full colour.
+/// Strain (either sign) from which on links are drawn in full colour.
 const FULL_STRAIN: f32 = 0.01;
 
-/// Time in which the air moves by the length of its arrow, s.
+/// Time that the air takes to move by the length of its arrow, s.
 const ARROW_TIME: f32 = 0.1;
 
 /// Colours of the levels of detail, the finest first; the last holds for all coarser ones.
 const LEVEL_COLOURS: [Srgba; 4] = [LIME, YELLOW, ORANGE, RED];
 
-/// The gizmos to draw: as a group in Bevy's `GizmoConfigStore`, of all cloths; as a component, of one
-/// cloth, whatever the group says. By default no gizmos are drawn.
+/// Choice of the gizmos that are drawn. As a group in Bevy's `GizmoConfigStore` it holds for all cloths; as a
+/// component it holds for one cloth and overrides the group. By default no gizmos are drawn.
 #[derive(Component, GizmoConfigGroup, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothGizmos {
     /// Crosses on the particles that are attached.
     pub attachments: bool,
-    /// Distance constraints by strain: blue where shorter by 1 % or more, white at rest length, red
-    /// where longer by 1 % or more.
+    /// Distance constraints, coloured by strain: blue from 1 % compression on, white at rest length, red from
+    /// 1 % stretch on.
     pub strain: bool,
-    /// An arrow from the middle of the cloth, as long as the air moves in 0.1 s.
+    /// An arrow from the middle of the cloth, as long as the way of the air in 0.1 s.
     pub wind: bool,
-    /// Warp and weft in the colour of the level of detail: green is the finest, then yellow, orange
-    /// and red.
+    /// Warp and weft links in the colour of the level of detail: green is the finest, then yellow, orange and
+    /// red.
     pub levels: bool,
 }
 
 impl ClothGizmos {
-    /// All gizmos.
+    /// All gizmos are drawn.
     pub const ALL: Self = Self { attachments: true, strain: true, wind: true, levels: true };
 }
 

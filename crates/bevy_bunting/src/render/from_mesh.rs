@@ -1,12 +1,12 @@
-//! Cloth from a mesh that is loaded or made.
+//! Conversion of a Bevy mesh to a cloth's mesh.
 
 use bevy_math::{Vec2, Vec3};
 use bevy_mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues};
 
 use crate::cloth::mesh::ClothMesh;
 
-/// The triangles of a mesh with its texture coordinates, in its own units. A mesh that is no list of triangles, or
-/// that the main world does not keep, gives a cloth without triangles, which is reported in a
+/// Converts the triangles and texture coordinates of a mesh, in the mesh's units. A mesh that is no list of
+/// triangles, or that is not kept in the main world, gives a cloth without triangles, which is reported in a
 /// [`ClothFailed`](crate::ClothFailed) event.
 impl From<&Mesh> for ClothMesh {
     fn from(mesh: &Mesh) -> Self {

@@ -1,4 +1,4 @@
-//! Cloth that is hidden is not simulated.
+//! Hidden cloths are not simulated.
 
 use bevy_camera::visibility::Visibility;
 use bevy_ecs::hierarchy::ChildOf;
@@ -9,8 +9,9 @@ use crate::cloth::instance::ClothInstance;
 
 type Looks = (&'static Visibility, Option<&'static ChildOf>);
 
-/// Sends hidden cloths to sleep, and wakes those that are hidden no more. What Bevy inherits is computed after the
-/// ticks of a frame, and not at all in an app without cameras: so it is asked for here.
+/// Sends hidden cloths to sleep, and wakes cloths that are shown again. Visibility is looked up along the
+/// hierarchy, since Bevy's `InheritedVisibility` is computed after the ticks of a frame, and not at all in an
+/// app without cameras.
 pub fn hide_cloths(
     mut cloths: Query<(Entity, &mut ClothInstance), With<Visibility>>,
     all: Query<Looks>,
@@ -25,7 +26,8 @@ pub fn hide_cloths(
     }
 }
 
-/// Whether an entity, or the first of its parents that does not inherit its visibility, is hidden.
+/// Whether an entity is hidden: by its own visibility, or by the nearest parent that does not inherit its
+/// own.
 fn is_hidden(mut entity: Entity, all: &Query<Looks>) -> bool {
     while let Ok((visibility, parent)) = all.get(entity) {
         match (visibility, parent) {

@@ -7,7 +7,7 @@ use bevy_mesh::{Indices, Mesh, PrimitiveTopology, VertexAttributeValues};
 use crate::cloth::mesh::ClothMesh;
 use crate::fabric::levels::ClothLevels;
 
-/// The mesh of the finest level, with the vertices of the [`ClothMesh`], at rest.
+/// Makes the mesh of the finest level at rest, with the vertices of the [`ClothMesh`].
 pub fn finest(shape: &ClothMesh, levels: &ClothLevels) -> Mesh {
     let mut mesh = at_rest(levels, 0);
     let uvs = shape.uvs();
@@ -18,8 +18,8 @@ pub fn finest(shape: &ClothMesh, levels: &ClothLevels) -> Mesh {
     mesh
 }
 
-/// The mesh of a coarser level at rest. Attributes besides positions and normals are those of the same
-/// vertices of the finest mesh.
+/// Makes the mesh of a coarser level at rest. Attributes besides positions and normals are copied from the
+/// same vertices of the finest mesh.
 pub fn coarser(finest: &Mesh, levels: &ClothLevels, level: usize) -> Mesh {
     let mut mesh = at_rest(levels, level);
     for (attribute, values) in finest.try_attributes().into_iter().flatten() {
@@ -32,8 +32,8 @@ pub fn coarser(finest: &Mesh, levels: &ClothLevels, level: usize) -> Mesh {
     mesh
 }
 
-/// The mesh of a level at rest, with positions, normals and triangles. Normals of simulated vertices are
-/// written with the first surface.
+/// Makes the mesh of a level at rest, with positions, normals and triangles. Normals of simulated vertices
+/// are written with the first surface.
 fn at_rest(levels: &ClothLevels, level: usize) -> Mesh {
     let (fabric, topology) = (levels.fabric(level), levels.topology(level));
     let mut positions = vec![[0.0; 3]; topology.vertex_count()];
@@ -63,7 +63,7 @@ pub fn write_rigid(mesh: &mut Mesh, levels: &ClothLevels, level: usize) {
     }
 }
 
-/// The values of some vertices; none for formats that Bevy's own attributes do not have.
+/// Picks the values of some vertices; none for formats that Bevy's own attributes do not have.
 fn pick(values: &VertexAttributeValues, vertices: &[u32]) -> Option<VertexAttributeValues> {
     use VertexAttributeValues::{Float32x2, Float32x3, Float32x4};
 

@@ -13,17 +13,17 @@ use crate::fabric::levels::ClothLevels;
 /// The meshes that show a cloth.
 #[derive(Component, Clone, Debug)]
 pub struct LevelMeshes {
-    /// The cloth that the meshes were made for: a clone of it needs its own.
+    /// The cloth that the meshes were made for: a clone of the cloth needs its own meshes.
     pub cloth: Entity,
     /// The levels that the meshes were made for.
     pub levels: Arc<ClothLevels>,
-    /// One mesh a level, the finest first; the finest one only if it is refused.
+    /// One mesh for each level, the finest first; if the finest one is refused, only this one.
     pub meshes: Vec<Handle<Mesh>>,
-    /// Where the finest mesh comes from.
+    /// Origin of the finest mesh.
     pub origin: MeshOrigin,
 }
 
-/// Where the finest mesh of a cloth comes from.
+/// Origin of the finest mesh of a cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MeshOrigin {
     /// This plugin made it.
@@ -35,7 +35,7 @@ pub enum MeshOrigin {
 }
 
 impl LevelMeshes {
-    /// Whether a mesh is one of these.
+    /// Whether a mesh is one of these meshes.
     pub fn contains(&self, mesh: AssetId<Mesh>) -> bool {
         self.meshes.iter().any(|own| own.id() == mesh)
     }

@@ -16,15 +16,14 @@ use crate::render::level_meshes::show_level;
 use crate::render::write::{write_newly_visible, write_visible};
 use crate::schedule::{ClothSystems, ClothTick};
 
-/// The sets in `PostUpdate` that show cloth. To change what is shown, change
-/// [`ClothSurface`](crate::ClothSurface)s before them.
+/// The sets in `PostUpdate` that show cloth. Systems that change [`ClothSurface`](crate::ClothSurface)s, and
+/// so the shown shape, must run before them.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClothRenderSystems {
-    /// Meshes are assigned to new cloths, each cloth is shown with the mesh of its level, bounds are
-    /// computed, and the meshes of cloths that were visible in the last frame are written. Before
-    /// `AssetEventSystems`.
+    /// Assigns meshes to new cloths, shows each cloth with the mesh of its level, computes bounds, and writes
+    /// the meshes of cloths that were visible in the last frame. Runs before `AssetEventSystems`.
     UpdateMeshes,
-    /// The meshes of cloths that come into view in this frame are written. After `VisibilitySystems`.
+    /// Writes the meshes of cloths that come into view in this frame. Runs after `VisibilitySystems`.
     WriteNewlyVisible,
 }
 
@@ -32,19 +31,18 @@ pub enum ClothRenderSystems {
 ///
 /// # Meshes
 ///
-/// A cloth without a `Mesh3d` gets one with positions, normals and, if its
-/// [`ClothMesh`](crate::ClothMesh) has them, texture coordinates. A `Mesh3d` that the user gives must
-/// have the vertices of the [`ClothMesh`](crate::ClothMesh), in its order. Its positions, normals and,
-/// if it has any, tangents are written in place. If several cloths have one mesh, all but the first get
-/// a copy. The meshes of coarser levels have the other attributes of the finest one. A mesh that cannot be
-/// written is reported in a [`ClothFailed`](crate::ClothFailed) event and left alone until the `Mesh3d`
-/// is replaced.
+/// A cloth without a `Mesh3d` gets a mesh with positions, normals and, if its [`ClothMesh`](crate::ClothMesh)
+/// has them, texture coordinates. A `Mesh3d` that the user gives must have the vertices of the
+/// [`ClothMesh`](crate::ClothMesh), in the same order. Its positions, normals and, if present, tangents are
+/// overwritten in place. If several cloths use one mesh, all but the first get a copy. The meshes of coarser
+/// levels take all other attributes from the finest mesh. A mesh that cannot be written is reported in a
+/// [`ClothFailed`](crate::ClothFailed) event and left alone until the `Mesh3d` is replaced.
 ///
 /// Rigid vertices, of weight 0, are written only when a cloth gets its meshes.
 ///
-/// Meshes are made when a cloth is new. After that no frame allocates, except for cloths that change
-/// their level, which are eased with the mesh of the finer level. Meshes are written only of cloths that
-/// move and are visible to a camera or a light. The `Aabb` is updated whether the cloth is visible or not.
+/// Meshes are made when a cloth is new. Later frames allocate nothing, except for cloths that change their
+/// level, which are eased with the mesh of the finer level. Only meshes of cloths that move and are visible
+/// to a camera or a light are written. The `Aabb` is updated whether the cloth is visible or not.
 ///
 /// # Materials
 ///
@@ -53,8 +51,8 @@ pub enum ClothRenderSystems {
 /// so that it is drawn at all and casts a shadow; Bevy asks for both. `diffuse_transmission` lets
 /// light through thin cloth.
 ///
-/// Bevy 0.19 turns normals to the back only where neither the mesh has tangents nor the material a
-/// normal map, or both do: have both or neither.
+/// Bevy 0.19 flips normals on the back only if the mesh has tangents and the material a normal map, or if
+/// neither does: provide both or neither.
 ///
 /// # Levels of detail
 ///

@@ -1,17 +1,17 @@
-//! Tangents of meshes, along which u grows, for normal maps.
+//! Tangents of meshes, along growing u, for normal maps.
 
 use bevy_math::{Vec2, Vec3, Vec4};
 use bevy_mesh::{Mesh, VertexAttributeValues};
 
-/// Sums of tangents, one a vertex; the memory is kept from frame to frame.
+/// Sums of tangents, one for each vertex; the memory is reused from frame to frame.
 #[derive(Debug, Default)]
 pub struct TangentSums {
     sums: Vec<Vec3>,
 }
 
 impl TangentSums {
-    /// Computes the tangents of a mesh that has any, from its positions, normals and texture coordinates.
-    /// The sign of the bitangent does not depend on the shape and stays as it is.
+    /// Computes the tangents of a mesh that has tangents, from its positions, normals and texture
+    /// coordinates. The sign of the bitangent does not depend on the shape and is kept.
     pub fn write_tangents(&mut self, mesh: &mut Mesh) {
         if mesh.contains_attribute(Mesh::ATTRIBUTE_TANGENT) && self.add_up(mesh).is_some() {
             self.write_sums(mesh);

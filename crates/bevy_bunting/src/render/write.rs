@@ -25,8 +25,8 @@ type WrittenCloth = (
     &'static mut Mesh3d,
 );
 
-/// Writes the meshes of cloths that were visible in the last frame, early enough that Bevy finds them
-/// changed in this one.
+/// Writes the meshes of cloths that were visible in the last frame, before Bevy looks for changed assets in
+/// this frame.
 pub fn write_visible(
     mut cloths: Query<WrittenCloth>,
     mut meshes: ResMut<Assets<Mesh>>,
@@ -47,8 +47,8 @@ pub fn write_visible(
     }
 }
 
-/// Writes the meshes of cloths that come into view in this frame. Bevy has looked for changed assets by
-/// then, so that the change is sent as an event.
+/// Writes the meshes of cloths that come into view in this frame. By then Bevy has looked for changed assets,
+/// so this system sends the change as an event itself.
 pub fn write_newly_visible(
     mut cloths: Query<WrittenCloth, Changed<ViewVisibility>>,
     mut meshes: ResMut<Assets<Mesh>>,
@@ -71,7 +71,7 @@ pub fn write_newly_visible(
     }
 }
 
-/// The levels of a cloth that is visible and has a surface and a mesh that fit them.
+/// Returns the levels of a cloth that is visible and has a surface and a mesh that fit these levels.
 fn levels_to_write(
     state: &ClothState,
     surface: &ClothSurface,
@@ -121,7 +121,7 @@ fn write(
     Ok(changed)
 }
 
-/// Copies values of particles to vertices, given as pairs of indices. Returns whether any has changed.
+/// Copies values of particles to vertices, given as pairs of indices. Returns whether any value has changed.
 fn copy_to_vertices<'a>(
     source: &[Vec3],
     vertices: impl Iterator<Item = (&'a u32, &'a u32)>,

@@ -6,7 +6,8 @@
 
 use glam::Vec3;
 
-/// Sine of the angle below which the gradient of the arc cosine is left alone: the cloth is flat.
+/// Sine of the angle below which a hinge counts as flat, since the gradient of the arc cosine is singular
+/// there.
 const FLAT: f32 = 1e-3;
 
 /// Two triangles that share the edge between the first two vertices.

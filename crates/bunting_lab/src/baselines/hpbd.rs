@@ -1,15 +1,14 @@
-//! Hierarchical position-based dynamics (Müller 2008): coarser cloths are solved before the cloth
-//! itself, so that what pulls at one end is felt at the other after a few sweeps.
+//! Hierarchical position-based dynamics (Müller 2008): coarser cloths are solved before the cloth itself, so
+//! that a pull at one end reaches the other after a few sweeps.
 //!
-//! From the paper: each level keeps some vertices of the finer one, with their masses; the levels are
-//! solved once in a substep, the coarsest first; links of coarse levels resist stretch only, for
-//! compressed they would take the wrinkles out of the cloth; and a vertex that a level lacks is moved
-//! by what its parents there have moved since the prediction, weighted by one over their distances at
-//! rest.
+//! From the paper: each level keeps some vertices of the finer one, with their masses; the levels are solved
+//! once in a substep, the coarsest first; links of coarse levels resist stretch only, since links under
+//! compression would remove wrinkles; and a vertex that a level lacks moves by the mean displacement of its
+//! parents in that level since the prediction, weighted by one over their distances at rest.
 //!
-//! Not from the paper: which vertices and links a level has. There any mesh is thinned greedily and its
-//! edges collapse onto what is left; here a grid keeps every second row and column and is linked as the
-//! finest is, so a vertex has two or four parents, all as far away.
+//! Not from the paper: the choice of a level's vertices and links. The paper thins any mesh greedily and
+//! collapses its edges onto the remaining vertices; here a level keeps every second row and column of a grid
+//! and is linked like the finest level, so a vertex has two or four parents, all at the same distance.
 
 use glam::Vec3;
 
@@ -35,7 +34,7 @@ pub struct Hpbd {
     predicted: Vec<Vec3>,
 }
 
-/// A cloth of some of the vertices.
+/// A cloth with some of the vertices.
 #[derive(Clone, Debug)]
 struct Level {
     links: Vec<Link>,
@@ -43,11 +42,11 @@ struct Level {
     children: Vec<(usize, Parents)>,
 }
 
-/// Four vertices whose displacements are averaged. A vertex between two parents has each of them twice.
+/// Four vertices whose displacements are averaged. A vertex between two parents lists each of them twice.
 type Parents = [usize; 4];
 
 impl Hpbd {
-    /// The method, ready for this sheet of the scene.
+    /// The method, initialised for a sheet of the scene.
     #[must_use]
     pub fn new(sheet: &Sheet, scene: &Scene, passes: usize) -> Self {
         let [columns, rows] = [scene.columns, scene.rows];
@@ -84,7 +83,7 @@ impl Stepper for Hpbd {
 }
 
 impl Level {
-    /// Every `stride`-th row and column of the scene's grid.
+    /// Level of every `stride`-th row and column of the scene's grid.
     fn new(scene: &Scene, stride: usize) -> Self {
         let [dx, dy] = scene.spacing().map(|d| (d * stride as f64) as f32);
         let at = |i: usize, j: usize| j * scene.columns + i;
@@ -129,7 +128,7 @@ impl Level {
         }
     }
 
-    /// Moves the children by what their parents have moved since the prediction.
+    /// Moves the children by the mean displacement of their parents since the prediction.
     fn prolong(&self, sheet: &mut Sheet, predicted: &[Vec3]) {
         for (child, parents) in &self.children {
             if sheet.inverse_masses[*child] > 0.0 {
@@ -167,7 +166,7 @@ mod tests {
     fn children_follow_their_parents_evenly() {
         let (mut sheet, level) = flat();
         let predicted = sheet.positions.clone();
-        // A shear of what the level has, of the held row nothing.
+        // The level's vertices are sheared; its held row is not displaced.
         let shear = |x: Vec3| Vec3::Y * (x.x * x.z);
         for j in (0..5).step_by(2) {
             for i in (0..5).step_by(2) {

@@ -18,7 +18,7 @@ use super::{sheet::Sheet, stepper::Stepper};
 /// A mass-spring cloth under implicit Euler.
 #[derive(Debug)]
 pub struct ImplicitEuler {
-    /// Index among the free vertices of each vertex; none where pinned.
+    /// Index of each vertex among the free vertices; none where pinned.
     free: Vec<Option<usize>>,
     pattern: SymbolicSparseColMat<usize>,
     order: Argsort<usize>,
@@ -29,7 +29,7 @@ pub struct ImplicitEuler {
 }
 
 impl ImplicitEuler {
-    /// The method, ready for this sheet.
+    /// The method, initialised for a sheet.
     #[must_use]
     pub fn new(sheet: &Sheet) -> Self {
         let mut count = 0;
@@ -80,7 +80,7 @@ impl Stepper for ImplicitEuler {
         let Ok(factored) =
             Llt::try_new_with_symbolic(self.factors.clone(), matrix.as_ref(), Side::Lower)
         else {
-            // Positions that are not finite: leave them so, and let the observer see it.
+            // Positions that are not finite are kept, so that the observer reports them.
             return;
         };
         factored.solve_in_place(&mut self.right_side);
@@ -95,7 +95,7 @@ impl Stepper for ImplicitEuler {
 }
 
 impl ImplicitEuler {
-    /// Right side h (f − h K v): the elastic force where the present velocities lead.
+    /// Right side h (f − h K v): the elastic force extrapolated by the present velocities, times h.
     fn gather_impulses(&mut self, sheet: &Sheet, h: f32) {
         self.forces.fill(Vec3::ZERO);
         sheet.add_elastic_forces(&mut self.forces);
@@ -128,7 +128,8 @@ impl ImplicitEuler {
     }
 }
 
-/// Stiffness block of a link, its transverse part dropped when compressed so that it stays definite.
+/// Stiffness block of a link. The transverse part of a compressed link is left out, so that the matrix stays
+/// definite.
 fn link_stiffness(sheet: &Sheet, a: usize, b: usize, rest: f32, stiffness: f32) -> Mat3 {
     let d = sheet.positions[b] - sheet.positions[a];
     let length = d.length_squared().sqrt();

@@ -13,7 +13,7 @@ pub struct Jakobsen {
 }
 
 impl Jakobsen {
-    /// The method, ready for this sheet.
+    /// The method, initialised for a sheet.
     #[must_use]
     pub fn new(sheet: &Sheet, passes: usize) -> Self {
         Self { previous: sheet.positions.clone(), passes }

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::{sheet::Sheet, stepper::Stepper};
 
-/// Whether positions move with the velocities from before or after the forces acted.
+/// Velocities by which positions move: those before or after the forces have acted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Order {
     /// Explicit Euler: the old velocities.
@@ -21,7 +21,7 @@ pub struct MassSpring {
 }
 
 impl MassSpring {
-    /// The method, ready for this sheet.
+    /// The method, initialised for a sheet.
     #[must_use]
     pub fn new(sheet: &Sheet, order: Order) -> Self {
         Self { order, forces: vec![Vec3::ZERO; sheet.positions.len()] }

@@ -1,7 +1,7 @@
 //! The methods that the thesis discusses, as plain scalar single-precision code.
 //!
-//! They are what the product is compared with, so they are written as one would write them: flat
-//! arrays, no vector instructions, nothing computed twice.
+//! The product is compared with these methods. They are straightforward but not wasteful code: flat arrays,
+//! no vector instructions, nothing computed twice.
 
 pub mod dihedral;
 pub mod hpbd;
@@ -46,7 +46,7 @@ pub enum Method {
     PbdDihedral,
     /// Position-based dynamics with bending by distances over one vertex.
     PbdOverOne,
-    /// The same, coarser cloths first.
+    /// Position-based dynamics with bending over one vertex, solved on coarser cloths first.
     Hpbd,
     /// Extended position-based dynamics.
     Xpbd,
@@ -59,12 +59,12 @@ pub struct Baseline {
     pub method: Method,
     /// Substeps a tick.
     pub substeps: usize,
-    /// Passes over the constraints a substep; one where the method has none.
+    /// Passes over the constraints a substep; one if the method has no passes.
     pub passes: usize,
 }
 
 impl Baseline {
-    /// The settings that the tables show, cheapest first within each method.
+    /// The settings that the tables show, the cheapest first within each method.
     #[must_use]
     pub fn catalogue() -> Vec<Self> {
         let settings: [(Method, &[(usize, usize)]); 8] = [

@@ -11,16 +11,16 @@ use super::{
     stepper::Stepper,
 };
 
-/// Part of a bending error that one projection removes. The method has no physical bending stiffness:
-/// this is a soft cloth's by eye, which grows stiffer with passes and substeps.
+/// Fraction of a bending error that one projection removes. The method has no physical bending stiffness:
+/// this value looks like soft cloth, and grows stiffer with passes and substeps.
 const BENDING: f32 = 0.01;
 
-/// How the cloth resists bending.
+/// Type of bending constraint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Bending {
-    /// By the angle between neighbouring triangles.
+    /// The angle between neighbouring triangles is constrained.
     Dihedral,
-    /// By the distance between every second vertex of a row or column.
+    /// The distance between every second vertex of a row or column is constrained.
     OverOne,
 }
 
@@ -34,7 +34,7 @@ pub struct Pbd {
 }
 
 impl Pbd {
-    /// The method, ready for this sheet.
+    /// The method, initialised for a sheet.
     #[must_use]
     pub fn new(sheet: &Sheet, bending: Bending, passes: usize) -> Self {
         let (hinges, over_one) = match bending {
@@ -46,7 +46,7 @@ impl Pbd {
 }
 
 impl Pbd {
-    /// Sweeps over bending and links, as many times as there are passes.
+    /// Sweeps over bending and links, once for each pass.
     pub(super) fn relax(&self, sheet: &mut Sheet) {
         for _ in 0..self.passes {
             for hinge in &self.hinges {

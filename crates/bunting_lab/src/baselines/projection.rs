@@ -1,4 +1,4 @@
-//! Moving two vertices to their distance (thesis, equations 4.17 and 4.18).
+//! The projection of two vertices to their distance at rest (thesis, equations 4.17 and 4.18).
 
 use glam::Vec3;
 

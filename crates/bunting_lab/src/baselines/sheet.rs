@@ -23,9 +23,9 @@ pub struct Link {
 /// A linear bending element: energy ½ stiffness |Σ weight · x|².
 #[derive(Clone, Copy, Debug)]
 pub struct Stencil<const N: usize> {
-    /// Its vertices.
+    /// Vertices of the element.
     pub vertices: [usize; N],
-    /// Their weights.
+    /// Weights of the vertices.
     pub weights: [f32; N],
     /// Stiffness, N/m.
     pub stiffness: f32,
@@ -121,8 +121,8 @@ impl Sheet {
         self.time += f64::from(h);
     }
 
-    /// Moves every vertex by its velocity after the outer forces acted, as position-based methods
-    /// begin a substep, and keeps where it was.
+    /// Applies the outer forces, moves every vertex by its velocity, and stores the positions before: the
+    /// start of a substep of position-based methods.
     pub fn predict(&mut self, previous: &mut [Vec3], h: f32) {
         self.apply_outer_forces(h);
         for ((x, before), v) in self.positions.iter_mut().zip(previous).zip(&self.velocities) {
@@ -131,7 +131,7 @@ impl Sheet {
         }
     }
 
-    /// Velocities that led from the previous positions to these in `h` seconds.
+    /// Sets the velocities to the changes from the previous positions over `h` seconds.
     pub fn take_velocities_from(&mut self, previous: &[Vec3], h: f32) {
         for ((x, before), v) in self.positions.iter().zip(previous).zip(&mut self.velocities) {
             *v = (*x - *before) / h;
@@ -180,7 +180,7 @@ impl Sheet {
 }
 
 impl<const N: usize> Stencil<N> {
-    /// The weighted sum of its vertices, m.
+    /// Weighted sum of the element's vertices, m.
     #[must_use]
     pub fn value(&self, positions: &[Vec3]) -> Vec3 {
         let mut sum = Vec3::ZERO;

@@ -1,4 +1,4 @@
-//! What a method does to the state.
+//! The interface of a method: one substep of a sheet.
 
 use super::sheet::Sheet;
 

@@ -19,7 +19,7 @@ pub struct Xpbd {
 }
 
 impl Xpbd {
-    /// The method, ready for this sheet.
+    /// The method, initialised for a sheet.
     #[must_use]
     pub fn new(sheet: &Sheet, passes: usize) -> Self {
         Self {

@@ -1,5 +1,5 @@
-//! Eight flags at a distance from the viewer, through the plugin: the second reading of Häggström's figure
-//! 6.2, time against level of detail, with the level chosen by what the viewer can see.
+//! Eight flags at a distance from the viewer, through the plugin: time over distance, with levels chosen by
+//! their visible error, in place of time over level in Häggström's figure 6.2.
 
 use std::time::Duration;
 
@@ -17,14 +17,14 @@ use crate::{
 
 /// Distances of the flags from the viewer, m.
 const DISTANCES: [f32; 8] = [2.5, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0];
-/// Ticks until every cloth has found its level: from the coarsest to the finest they are three changes
-/// a cloth, each half a second after the one before.
+/// Ticks until every cloth has found its level: three changes from the coarsest to the finest, each half a
+/// second after the one before.
 const WARM_UP: usize = 240;
 /// Ticks that are timed.
 const TICKS: usize = 240;
-/// The same where it is to be quick.
+/// Ticks that are timed in a quick run.
 const QUICK_TICKS: usize = 30;
-/// So much time a tick that no level is kept coarse for want of it.
+/// Budget that keeps no level coarse, a tick.
 const BUDGET: Duration = Duration::from_secs(1);
 
 /// Eight flags at one distance.
@@ -38,7 +38,7 @@ pub struct AtDistance {
     pub ms_per_tick: f64,
 }
 
-/// Every distance.
+/// Measures every distance.
 #[must_use]
 pub fn measure(quick: bool) -> Vec<AtDistance> {
     DISTANCES.map(|distance| at(distance, if quick { QUICK_TICKS } else { TICKS })).into()
@@ -48,7 +48,7 @@ fn at(distance: f32, ticks: usize) -> AtDistance {
     let mut app = game::app_in_wind(steps_of_levels());
     app.insert_resource(ClothBudget { tick: BUDGET, ..ClothBudget::default() });
     let levels = LEVELS.len();
-    // Two rows of four, a metre and a half apart, in the middle of the picture.
+    // The flags stand in two rows of four, 1.5 m apart, in the middle of the picture.
     for flag in 0..FLAGS {
         let [column, row] = [flag % 4, flag / 4].map(|k| k as f32);
         let at = Vec3::new(1.5 * (column - 2.0), 1.5 * row, 0.0);

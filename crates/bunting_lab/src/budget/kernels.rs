@@ -1,15 +1,16 @@
 //! Time of one constraint and of one triangle in the wind, by differences.
 //!
-//! The solver's phases can be timed, its kernels cannot. So each figure is the difference of two runs
+//! The solver's phases can be timed, its kernels cannot. Each figure is therefore the difference of two runs
 //! of one phase that differ only in how often the kernel runs:
 //!
-//! - A **constraint** of Gauss–Seidel: `solve_constraints` with four passes less that with two
-//!   is two sweeps over all hinges and links. A hinge costs more than a link: this is their mean.
-//! - A **constraint** of the yarns: the same difference is two more solutions of the warp and weft yarns
-//!   and one more sweep over warp and weft, which is every such link three times.
-//! - A **triangle**: `integrate` of flags in the wind less that of flags in a vacuum.
+//! - A **constraint** of Gauss–Seidel: the time of `solve_constraints` with four passes minus that with two
+//!   is the time of two sweeps over all hinges and links. A hinge costs more than a link; the figure is their
+//!   mean.
+//! - A **constraint** of the yarns: the same difference is the time of two more solutions of the warp and
+//!   weft yarns and one more sweep over warp and weft, that is of three visits to every such link.
+//! - A **triangle**: the time of `integrate` of flags in the wind minus that of flags in a vacuum.
 //!
-//! All are of a full batch of the widest lanes, per cloth.
+//! All figures are per cloth of a full batch of the widest lanes.
 
 use bunting_solver::{Link, LinkFamily, Scheme, StepSettings};
 use serde::Serialize;
@@ -25,7 +26,7 @@ use crate::{
 
 /// Vertices along each side of the flags.
 const SIZE: usize = 33;
-/// Passes that are compared. Both keep multipliers, which a single pass does not.
+/// Numbers of passes that are compared. Both store multipliers; a single pass would not.
 const PASSES: [u32; 2] = [2, 4];
 
 /// Times of kernels, ns per cloth.
@@ -39,7 +40,7 @@ pub struct Kernels {
     pub ns_per_wind_triangle: f64,
 }
 
-/// Measures all.
+/// Measures all kernels.
 #[must_use]
 pub fn measure(effort: &Effort) -> Kernels {
     let yarns = StepSettings::yarns(2);
@@ -68,7 +69,7 @@ fn ns_per_constraint(settings: StepSettings, effort: &Effort) -> f64 {
         }
     };
     let mut times: [Timing; PASSES.len()] = Default::default();
-    // In turn, so that both see the same machine.
+    // The two runs alternate, so that both see the same load of the machine.
     for _ in 0..effort.ticks(1e3) {
         for (passes, time) in PASSES.into_iter().zip(&mut times) {
             fleet.drive();
@@ -91,7 +92,7 @@ fn ns_per_wind_triangle(settings: StepSettings, effort: &Effort) -> f64 {
     let mut fleets = scenes.map(|scene| flags(scene, settings, effort));
     let triangles = fleets[0].fabric().triangles().len();
     let mut times: [Timing; 2] = Default::default();
-    // In turn, so that both see the same machine.
+    // The two runs alternate, so that both see the same load of the machine.
     for _ in 0..effort.ticks(1e3) {
         for (fleet, time) in fleets.iter_mut().zip(&mut times) {
             fleet.drive();

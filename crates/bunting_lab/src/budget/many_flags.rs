@@ -15,7 +15,7 @@ use crate::{
 /// Numbers of flags.
 const CLOTHS: [usize; 6] = [1, 8, 16, 64, 256, 1000];
 
-/// Flags of one level, all ticked once.
+/// Flags of one level, each stepped by one tick.
 #[derive(Clone, Debug, Serialize)]
 pub struct ManyFlags {
     /// Vertices along each side.
@@ -32,11 +32,11 @@ pub struct ManyFlags {
     pub ms_per_tick: f64,
     /// Shortest time of a tick, ms.
     pub ms_min: f64,
-    /// Shortest time on one core over the shortest on these.
+    /// Shortest time on one core divided by the shortest time on `cores` cores.
     pub over_one_core: f64,
 }
 
-/// Every number of flags at every level with every scheme, on one core and on all.
+/// Measures every number of flags at every level with every scheme, on one core and on all.
 pub fn measure(effort: &Effort, mut done: impl FnMut()) -> Vec<ManyFlags> {
     let mut many_flags = Vec::new();
     for settings in schemes() {
@@ -50,20 +50,20 @@ pub fn measure(effort: &Effort, mut done: impl FnMut()) -> Vec<ManyFlags> {
     many_flags
 }
 
-/// How often `measure` says that it is done with a part.
+/// Number of times that `measure` calls `done`.
 #[must_use]
 pub fn count(effort: &Effort) -> usize {
     let sizes = CLOTHS.into_iter().filter(|&cloths| cloths <= effort.most_cloths).count();
     schemes().len() * LEVELS.len() * sizes
 }
 
-/// One core, and all if there are more.
+/// Numbers of cores that are measured: one, and all if there are more.
 fn core_counts() -> Vec<usize> {
     let all = thread::available_parallelism().map_or(1, usize::from);
     if all > 1 { vec![1, all] } else { vec![1] }
 }
 
-/// The same flags on one core and on all.
+/// Measures the same flags on one core and on all.
 fn on_all_cores(n: u32, cloths: usize, settings: StepSettings, effort: &Effort) -> Vec<ManyFlags> {
     let cores = core_counts();
     let times = Fleet::new(Scene::flag(n as usize), cloths, settings).time_ticks(&cores, effort);

@@ -1,5 +1,5 @@
-//! What cloth costs: many flags at once, the phases of a tick, single kernels, and a field of a
-//! thousand flags under levels of detail.
+//! The costs of cloth: many flags at once, the phases of a tick, single kernels, and a field of a thousand
+//! flags with levels of detail.
 
 pub mod distance;
 pub mod kernels;

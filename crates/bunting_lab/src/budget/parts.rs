@@ -1,9 +1,9 @@
-//! Häggström's figure B.1 by its own parts: what bending, shear, stretch, air, velocities and normals take of
-//! a flag's tick, and what collision and internal damping add to it, at each level.
+//! The parts of Häggström's figure B.1: the times of bending, shear, stretch, air, velocities and normals in
+//! a flag's tick, and the times that collision and internal damping add, at each level.
 //!
-//! The solver's phases can be timed from outside. What happens within one is found by a difference: the
-//! same tick with and without the part, or with one pass more. Shear is solved once a substep whatever the
-//! settings: it is what is left of the constraints.
+//! The solver's phases can be timed from outside. The time of a part within a phase is a difference: the same
+//! tick with and without the part, or with one pass more. Shear is solved once a substep whatever the
+//! settings: its time is the rest of the constraints' time.
 
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ use crate::{
     settings::LEVELS,
 };
 
-/// The parts of every flag's tick, in the order in which they run. The damping of all motion is one
+/// The parts of every flag's tick, in the order in which they run. Damping of all motion is one
 /// multiplication within the prediction.
 pub const PARTS: [&str; 9] = [
     "begin of tick",
@@ -35,7 +35,7 @@ pub const PARTS: [&str; 9] = [
     "normals",
 ];
 
-/// What a ball behind the flag adds to a tick, and internal damping to that of a free sheet.
+/// Additional parts: a ball behind the flag, and internal damping of a free sheet.
 pub const EXTRAS: [&str; 2] = ["collision", "internal damping"];
 
 /// Rate of the internal damping that is timed, 1/s.
@@ -50,11 +50,11 @@ pub struct Part {
     pub part: &'static str,
     /// Time in a tick of a full batch, µs. A difference of times within their noise may be below zero.
     pub us: f64,
-    /// That over the tick without any of [`EXTRAS`].
+    /// Time of the part divided by that of the tick without any of [`EXTRAS`].
     pub fraction: f64,
 }
 
-/// All parts at all levels, by default settings.
+/// Measures all parts at all levels, with default settings.
 #[must_use]
 pub fn measure(effort: &Effort) -> Vec<Part> {
     LEVELS.into_iter().flat_map(|n| of_level(n, effort)).collect()
@@ -84,7 +84,7 @@ fn of_level(n: u32, effort: &Effort) -> Vec<Part> {
     damp_internally(&mut fleets[7], &free);
     let [whole, still, untethered, one_more, two_more, on_a_ball, free, damped] =
         phases::time_in_turn(&mut fleets, effort);
-    // Each pass solves warp and weft, and every second one ends with a Gauss–Seidel sweep over them.
+    // Each pass solves warp and weft, and every second pass ends with a Gauss–Seidel sweep over them.
     let pass = one_more.constraints - whole.constraints;
     let sweep = two_more.constraints - one_more.constraints - pass;
     let passes = f64::from(DEFAULT.passes);

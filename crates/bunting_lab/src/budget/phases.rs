@@ -38,7 +38,7 @@ pub struct PhaseTimes {
     pub begin: f64,
     /// External forces, damping and prediction of all substeps.
     pub integrate: f64,
-    /// Bending of all substeps; of Gauss–Seidel it is among the constraints.
+    /// Bending of all substeps; with Gauss–Seidel it is counted among the constraints.
     pub bending: f64,
     /// All other constraints of all substeps.
     pub constraints: f64,
@@ -55,7 +55,7 @@ impl PhaseTimes {
         [self.begin, self.integrate, self.bending, self.constraints, self.velocities, self.normals]
     }
 
-    /// The whole tick.
+    /// Sum over all phases, µs.
     #[must_use]
     pub fn total(self) -> f64 {
         self.to_array().iter().sum()
@@ -68,7 +68,7 @@ pub fn full_batch() -> usize {
     LaneCount::holding(usize::MAX).get()
 }
 
-/// All phases at all levels.
+/// Measures all phases at all levels.
 #[must_use]
 pub fn measure(effort: &Effort) -> Vec<Phase> {
     schemes()
@@ -86,7 +86,8 @@ fn of_level(n: u32, settings: StepSettings, effort: &Effort) -> Vec<Phase> {
     PHASES.into_iter().zip(times.to_array()).map(phase).collect()
 }
 
-/// Phases of the first batch of each fleet. Their ticks take turns, so that all see the same machine.
+/// Phases of the first batch of each fleet. The fleets' ticks alternate, so that all see the same load of the
+/// machine.
 pub fn time_in_turn<const FLEETS: usize>(
     fleets: &mut [Fleet; FLEETS],
     effort: &Effort,
@@ -106,7 +107,7 @@ pub fn time_in_turn<const FLEETS: usize>(
     })
 }
 
-/// A tick of the fleet's first batch with a clock round each phase; those of the substeps are added up.
+/// Runs a tick of the fleet's first batch and times each phase; the times of all substeps are added up.
 fn tick(fleet: &mut Fleet, times: &mut [Timing; PHASES.len()]) {
     fleet.drive();
     let settings = fleet.settings();

@@ -1,4 +1,4 @@
-//! The budget's figures as plots, drawn as the thesis draws its own.
+//! Plots of the budget's figures, drawn like the thesis's own.
 
 use super::{
     distance::AtDistance,
@@ -11,7 +11,7 @@ use crate::{
     settings::LEVELS,
 };
 
-/// Figure 6.2: one line a level and number of cores.
+/// Figure 6.2: one line for each level and number of cores.
 #[must_use]
 pub fn many_flags_plot(many_flags: &[ManyFlags], scheme: &str) -> Plot {
     let mut series: Vec<Series> = Vec::new();
@@ -39,7 +39,7 @@ pub fn many_flags_plot(many_flags: &[ManyFlags], scheme: &str) -> Plot {
     }
 }
 
-/// Figure 6.2 over the distance, one line, between the thesis's times of its finest and coarsest level.
+/// Figure 6.2 over the distance: one line, between the thesis's times of its finest and coarsest level.
 #[must_use]
 pub fn distance_plot(distances: &[AtDistance]) -> Plot {
     let points: Vec<(f64, f64)> =
@@ -62,7 +62,7 @@ pub fn distance_plot(distances: &[AtDistance]) -> Plot {
     }
 }
 
-/// Figure B.1: a stacked bar a level. Parts below the noise count as nothing.
+/// Figure B.1: a stacked bar for each level. Parts below the noise count as zero.
 #[must_use]
 pub fn part_plot(parts: &[Part]) -> Plot {
     let of_level = |n: u32| parts.iter().filter(move |it| it.n == n && PARTS.contains(&it.part));

@@ -1,4 +1,5 @@
-//! Two hundred flags, no two of a size, spawned at once in front of a camera: each is a fabric of its own.
+//! Two hundred flags of different sizes, spawned at once in front of a camera: each needs a fabric of its
+//! own.
 
 use std::{
     thread,
@@ -14,7 +15,7 @@ use serde::Serialize;
 
 use crate::{game, product::TICK, scenes::TICK_RATE, settings::steps_of_levels, timing::Timing};
 
-/// Flags.
+/// Number of flags.
 const FLAGS: usize = 200;
 /// Particles a side at the finest level, and number of levels.
 const SIDE: u32 = 33;
@@ -23,21 +24,21 @@ const LEVELS: usize = 4;
 const ROW: usize = 20;
 /// Difference in width from one flag to the next, m.
 const DIFFERENCE: f32 = 1e-3;
-/// Time that is watched, s.
+/// Length of the measurement, s.
 const SECONDS: usize = 6;
-/// The same where it is to be quick.
+/// Length of a quick measurement, s.
 const QUICK_SECONDS: usize = 1;
 
-/// What spawning costs.
+/// Costs of spawning.
 #[derive(Clone, Debug, Serialize)]
 pub struct Spawning {
     /// The budget of a tick, ms.
     pub ms_budget: f64,
     /// The first tick, ms.
     pub ms_first: f64,
-    /// The tick of the plugin, after the first: 95th percentile, ms.
+    /// 95th percentile of the plugin's ticks after the first, ms.
     pub ms_p95: f64,
-    /// The same in the second in which that is greatest, ms.
+    /// 95th percentile in the second in which it is greatest, ms.
     pub ms_p95_worst_second: f64,
     /// The slowest tick after the first, ms.
     pub ms_worst: f64,
@@ -45,12 +46,12 @@ pub struct Spawning {
     pub seconds_to_all: Option<f64>,
 }
 
-/// Spawns the flags and watches, at the pace of the clock, as fabrics are cut on another thread.
+/// Spawns the flags and measures in real time, since fabrics are built on another thread.
 #[must_use]
 pub fn measure(quick: bool) -> Spawning {
     let mut app = game::app_in_wind(steps_of_levels());
     app.update();
-    furnish(&mut app);
+    spawn_flags(&mut app);
     let ticks = TICK_RATE as usize * if quick { QUICK_SECONDS } else { SECONDS };
     let (mut times, mut ms_first, mut seconds_to_all) = (Timing::default(), 0.0, None);
     for tick in 0..ticks {
@@ -77,7 +78,7 @@ pub fn measure(quick: bool) -> Spawning {
     }
 }
 
-fn furnish(app: &mut App) {
+fn spawn_flags(app: &mut App) {
     let view = Transform::from_xyz(0.0, 3.0, 12.0);
     app.world_mut().spawn((LodViewer::default(), view));
     for flag in 0..FLAGS {

@@ -18,7 +18,7 @@ use crate::{
     settings::LEVELS,
 };
 
-/// Every number of flags at every level.
+/// Table of every number of flags at every level.
 #[must_use]
 pub fn many_flags_table(many_flags: &[ManyFlags]) -> Table {
     let cells = |it: &ManyFlags| {
@@ -50,7 +50,7 @@ pub fn many_flags_table(many_flags: &[ManyFlags]) -> Table {
     }
 }
 
-/// The phases of every level.
+/// Table of the phases of every level.
 #[must_use]
 pub fn phase_table(phases: &[Phase]) -> Table {
     let cells = |phase: &Phase| {
@@ -70,7 +70,7 @@ pub fn phase_table(phases: &[Phase]) -> Table {
     }
 }
 
-/// Times of single kernels.
+/// Table of the times of single kernels.
 #[must_use]
 pub fn kernel_table(kernels: &Kernels) -> Table {
     Table {
@@ -88,7 +88,7 @@ pub fn kernel_table(kernels: &Kernels) -> Table {
     }
 }
 
-/// What spawning costs.
+/// Table of the costs of spawning.
 #[must_use]
 pub fn spawning_table(spawning: &Spawning) -> Table {
     let all = spawning.seconds_to_all.map_or("never".into(), figure);
@@ -108,7 +108,7 @@ pub fn spawning_table(spawning: &Spawning) -> Table {
     }
 }
 
-/// What a thousand flags cost.
+/// Table of the costs of a thousand flags.
 #[must_use]
 pub fn thousand_table(thousand: &Thousand) -> Table {
     let list = |values: &[f64]| {
@@ -147,8 +147,8 @@ pub fn thousand_table(thousand: &Thousand) -> Table {
     }
 }
 
-/// The eight flags of the thesis's figure 6.2 at its finest and coarsest level, beside ours by default
-/// settings, on one core.
+/// Table of the eight flags of the thesis's figure 6.2 at its finest and coarsest level, beside this
+/// project's with default settings, on one core.
 #[must_use]
 pub fn eight_flags_table(many_flags: &[ManyFlags]) -> Table {
     let ours = |n: u32| {
@@ -177,7 +177,7 @@ pub fn eight_flags_table(many_flags: &[ManyFlags]) -> Table {
     }
 }
 
-/// Eight flags at every distance.
+/// Table of eight flags at every distance.
 #[must_use]
 pub fn distance_table(distances: &[AtDistance]) -> Table {
     let cells = |it: &AtDistance| {
@@ -195,7 +195,7 @@ pub fn distance_table(distances: &[AtDistance]) -> Table {
     }
 }
 
-/// The parts of every level.
+/// Table of the parts of every level.
 #[must_use]
 pub fn part_table(parts: &[Part]) -> Table {
     let cells = |it: &Part| {

@@ -20,11 +20,12 @@ use crate::{
 
 /// Flags in the field.
 const FLAGS: usize = 1000;
-/// Flags stand on Fermat's spiral, the k-th at this times √k from its middle, m: one flag on 10 m².
+/// Spacing of the flags on Fermat's spiral, m: the k-th flag stands at this times √k from the middle, one
+/// flag on 10 m².
 const SPACING: f32 = 1.8;
-/// Turn from one flag to the next, of a full turn: the golden angle.
+/// Turn from one flag to the next, as a fraction of a full turn: the golden angle.
 const GOLDEN: f32 = 0.381_966;
-/// Radius of the camera's path, m: of the field's 57.
+/// Radius of the camera's path, m; that of the field is 57 m.
 const PATH: f32 = 40.0;
 /// Height of the camera above the poles' tops, m.
 const HEIGHT: f32 = 1.0;
@@ -32,16 +33,16 @@ const HEIGHT: f32 = 1.0;
 const SPEED: f32 = 10.0;
 /// Angle between the camera's view and its direction of flight, inwards, rad.
 const INWARDS: f32 = 0.4;
-/// Half the picture's width and half its height over their distance: 60°, 16:9.
+/// Ratios of half the picture's width and half its height to their distance: 60°, 16:9.
 const SLOPES: [f32; 2] = [1.026_4, 0.577_35];
-/// Time before anything is measured, s: flags fly, and levels are found.
+/// Time before anything is measured, s: until then flags start to fly and levels settle.
 const WARM_UP: usize = 3;
 /// Length of the flight, s: once round the path.
 const SECONDS: usize = 25;
-/// The same where it is to be quick.
+/// Length of the flight in a quick run, s.
 const QUICK_SECONDS: usize = 2;
 
-/// What was measured in each tick.
+/// Figures measured in each tick.
 #[derive(Default)]
 struct Log {
     update: Timing,
@@ -56,40 +57,40 @@ struct Log {
     expected: Vec<f64>,
 }
 
-/// What a thousand flags cost, and how they were simulated.
+/// Times of a thousand flags, and the levels at which they were simulated.
 #[derive(Clone, Debug, Serialize)]
 pub struct Thousand {
     /// Substeps and passes of each level, the finest first.
     pub steps: Vec<(u32, u32)>,
     /// An update of the whole app, ms: median.
     pub ms_median: f64,
-    /// 95th percentile, ms.
+    /// 95th percentile of an update, ms.
     pub ms_p95: f64,
     /// Mean over the slowest second, ms.
     pub ms_worst_second: f64,
-    /// 95th percentile in the second in which that is greatest, ms.
+    /// 95th percentile in the second in which it is greatest, ms.
     pub ms_p95_worst_second: f64,
     /// A tick of the plugin alone, ms: median.
     pub ms_tick_median: f64,
-    /// 95th percentile, ms.
+    /// 95th percentile of a tick, ms.
     pub ms_tick_p95: f64,
     /// The governor alone, part of the tick, ms: median.
     pub ms_choice_median: f64,
-    /// 95th percentile, ms.
+    /// 95th percentile of the governor, ms.
     pub ms_choice_p95: f64,
-    /// Mean of what the governor expected of a tick, ms.
+    /// Mean time of a tick that the governor expected, ms.
     pub ms_expected: f64,
     /// Median time of each of the plugin's sets, in their order, ms.
     pub ms_per_set: Vec<f64>,
     /// Mean number of flags that are simulated at each level, the finest first.
     pub per_level: Vec<f64>,
-    /// The least number in any tick.
+    /// Least number of flags at each level in any tick.
     pub per_level_least: Vec<f64>,
     /// Least number of flags in view; all of them are simulated.
     pub in_view_least: f64,
     /// Mean number of flags that are asleep.
     pub asleep: f64,
-    /// Mean number of flags that are coarser than they should be for want of time.
+    /// Mean number of flags that are coarser than their error demands because the budget is spent.
     pub held_back: f64,
     /// Changes of level a tick.
     pub changes_per_tick: f64,
@@ -127,7 +128,7 @@ fn place(flag: usize) -> Vec3 {
     Vec3::new(radius * angle.cos(), 0.0, radius * angle.sin())
 }
 
-/// On a circle, looking ahead and inwards.
+/// Pose of the camera: on a circle, looking ahead and inwards.
 fn camera_pose(tick: usize) -> Transform {
     let angle = SPEED / PATH * tick as f32 / TICK_RATE as f32;
     let at = Vec3::new(PATH * angle.cos(), HEIGHT, PATH * angle.sin());

@@ -1,4 +1,4 @@
-//! What each part of the model costs and buys.
+//! Cost and benefit of each part of the model.
 
 use std::sync::Arc;
 
@@ -19,9 +19,9 @@ use crate::{
 
 /// Cloths advanced at once.
 const LANES: LaneCount = LaneCount::Eight;
-/// Entry of `COMPARED_TICKS` that the error is taken at: 0.4 s.
+/// Entry of `COMPARED_TICKS` at which the error is taken: 0.4 s.
 const COMPARED: usize = 1;
-/// A stiffness as good as none, N/m.
+/// A stiffness that has no visible effect, N/m.
 const NEXT_TO_NONE: f64 = 1e-3;
 /// Skin friction of the air, ρ C_t, kg/m³.
 const FRICTION: f64 = 0.02;
@@ -29,22 +29,22 @@ const FRICTION: f64 = 0.02;
 /// The model without one of its parts, or with one more.
 #[derive(Clone, Debug, Serialize)]
 pub struct Row {
-    /// What was left out or added.
+    /// Part that was left out or added.
     part: &'static str,
     /// Microseconds a cloth and tick, of a flag in the wind.
     us_per_cloth_tick: f64,
-    /// That over the whole model's.
+    /// Time divided by the whole model's.
     us_ratio: f64,
     /// Distance of the swing in air at 0.4 s from the reference of the whole model, m RMS.
     rms_error_m: Option<f64>,
-    /// Distance of the mean strain of the cloth hung by its corners from that of the whole model's
+    /// Distance of the mean strain of the cloth hung by its corners from the mean strain of the whole model's
     /// reference.
     strain_error: f64,
-    /// Strain that a thousandth of the flag's warp and weft exceeds.
+    /// 99.9th percentile of the strain of the flag's warp and weft.
     flag_strain_p999: f64,
 }
 
-/// A change of the scene, of what is cut for it, of the settings, and of the cloth.
+/// A change of the scene, of its fabric, of the settings, and of the cloth.
 struct Variant {
     part: &'static str,
     scene: fn(&mut Scene),
@@ -53,7 +53,7 @@ struct Variant {
     cloth: fn(&mut Cloth),
 }
 
-/// Nothing left out.
+/// The whole model.
 const WHOLE: Variant = Variant {
     part: "whole model",
     scene: |_| (),
@@ -74,13 +74,13 @@ const VARIANTS: [Variant; 9] = [
     Variant { part: "a ball nearby", cloth: near_a_ball, ..WHOLE },
 ];
 
-/// A ball beside the cloth that few of its particles may touch.
+/// Puts a ball beside the cloth that few of its particles may touch.
 fn near_a_ball(cloth: &mut Cloth) {
     let ball = Collider::fixed(SharedShape::ball(0.1), Vec3::new(0.5, 0.2, 0.5), Quat::IDENTITY);
     cloth.touch(&[ball]);
 }
 
-/// The swing and the flag, n × n, in air that also rubs: every part of the model acts.
+/// The swing and the flag, n × n, in air with skin friction: every part of the model acts.
 fn scenes(n: usize) -> [Scene; 2] {
     let air = Air { pressure: 0.6, ..Air::VACUUM };
     let swing = Scene { air, ..Scene::swing(n) };
@@ -115,7 +115,7 @@ pub fn rows(n: usize) -> Vec<Row> {
     rows
 }
 
-/// What is seen of a scene under a variant, and the time of its ticks, of all lanes.
+/// Observation of a scene under a variant, and the time of its ticks, of all lanes.
 fn run(scene: &Scene, variant: &Variant) -> (Observation, Timing) {
     let mut changed = scene.clone();
     (variant.scene)(&mut changed);
@@ -133,7 +133,7 @@ fn run(scene: &Scene, variant: &Variant) -> (Observation, Timing) {
     (observer.finish(), time)
 }
 
-/// The rows for reading.
+/// The rows as a table.
 #[must_use]
 pub fn table(n: usize, rows: &[Row]) -> Table {
     let StepSettings { substeps, passes, .. } = DEFAULT;

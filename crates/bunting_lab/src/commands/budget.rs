@@ -1,4 +1,4 @@
-//! How much cloth fits in a budget of time.
+//! The amount of cloth that fits in a budget of time.
 
 use bunting_solver::instruction_set;
 use serde_json::json;

@@ -1,10 +1,10 @@
-//! Differences between what the gate measures and the committed lists.
+//! Differences between the gate's measurements and the committed lists.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::golden::{self, GoldenHash};
 
-/// A case as the gate sees it.
+/// A case with its verdict.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct GateCase {
     /// Command, name and size: no two cases have the same.
@@ -13,7 +13,7 @@ pub struct GateCase {
     pub fails: bool,
 }
 
-/// What differs from the committed lists: the case or hash, and how it differs.
+/// Differences from the committed lists: the case or hash, and how it differs.
 #[derive(Debug, Default)]
 pub struct Differences(pub Vec<[String; 2]>);
 
@@ -22,7 +22,7 @@ impl Differences {
         self.0.push([what.into(), how.into()]);
     }
 
-    /// Compares cases with the list of those that are known to fail, one identity a line.
+    /// Compares cases with the list of known failures, one identity a line.
     pub fn compare_cases(&mut self, known_failures: &str, cases: &[GateCase]) {
         let mut counts = BTreeMap::new();
         for case in cases {
@@ -43,7 +43,7 @@ impl Differences {
         }
     }
 
-    /// Compares hashes with those that are expected.
+    /// Compares hashes with the expected ones.
     pub fn compare_hashes(&mut self, expected: &str, hashes: &[GoldenHash]) {
         let measured = golden::list(hashes);
         for line in measured.lines().filter(|line| !expected.lines().any(|it| it == *line)) {
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn what_newly_fails_passes_or_vanishes_is_a_difference() {
+    fn cases_that_newly_fail_pass_or_vanish_are_differences() {
         let verdicts = [("a", true), ("b", true), ("c", false)];
         assert!(differences("a\nb\n", &verdicts).is_empty());
         for (known, case, how) in [

@@ -1,4 +1,4 @@
-//! Families of cases: each is independent of the others, so they run on all cores.
+//! Families of cases: they are independent of one another, so they run on all cores.
 
 use std::time::Instant;
 
@@ -13,15 +13,15 @@ use crate::{
 /// The cases of one family.
 #[derive(Debug)]
 pub struct Family<Case> {
-    /// Its name.
+    /// Name of the family.
     pub name: &'static str,
-    /// Its cases, in their order.
+    /// Cases of the family, in their order.
     pub cases: Vec<Case>,
-    /// Wall-clock time that its thread took, s.
+    /// Wall-clock time of the family, s.
     pub seconds: f64,
 }
 
-/// Runs every family; `run` is given what stands beside the family's name.
+/// Runs every family; `run` receives the entry beside the family's name.
 pub fn run<Entry: Copy + Sync, Case: Send>(
     all: &[(&'static str, Entry)],
     run: impl Fn(Entry) -> Vec<Case> + Sync,
@@ -37,7 +37,7 @@ pub fn run<Entry: Copy + Sync, Case: Send>(
     families
 }
 
-/// The time of each family, the longest first.
+/// Table of the families' times, the longest first.
 #[must_use]
 pub fn times<Case>(command: &str, families: &[Family<Case>]) -> Table {
     let mut longest_first: Vec<_> = families.iter().collect();
@@ -54,7 +54,7 @@ pub fn times<Case>(command: &str, families: &[Family<Case>]) -> Table {
     }
 }
 
-/// Name, number of cases and time of each family.
+/// Name, number of cases and time of each family, as JSON.
 #[must_use]
 pub fn json<Case>(families: &[Family<Case>]) -> Value {
     let family = |it: &Family<Case>| json!({ "name": it.name, "cases": it.cases.len(), "seconds": it.seconds });

@@ -1,4 +1,4 @@
-//! What must hold of every change: golden hashes, closed forms and hard cases, against committed lists.
+//! The gate: golden hashes, closed forms and hard cases, compared with committed lists.
 
 use std::{fs, path::Path, time::Instant};
 
@@ -16,7 +16,7 @@ use crate::{
     stability::Status,
 };
 
-/// How the gate is run.
+/// Options of the gate.
 #[derive(Clone, Copy, Debug, Args)]
 pub struct Options {
     /// Write the lists as they are measured, instead of comparing with them.
@@ -29,15 +29,14 @@ pub struct Options {
 
 /// The committed list of cases that are known to fail, one identity a line.
 const KNOWN_FAILURES: &str = include_str!("../../expected/known_failures.txt");
-/// Where the committed lists are.
+/// Folder of the committed lists.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/expected");
 
-/// Runs everything and compares it with the committed lists.
+/// Runs all cases and hashes and compares them with the committed lists.
 ///
 /// # Errors
 ///
-/// When anything differs from the lists, after the differences have been presented; or when lists are to
-/// be written and cannot be.
+/// A result differs from the lists, and the differences have been presented; or the lists cannot be written.
 pub fn run(options: Options, present: impl FnOnce(&Outcome) -> Result<()>) -> Result<()> {
     let mut times = Vec::new();
     let cases = (!options.hashes).then(|| measure_cases(&mut times));
@@ -63,8 +62,8 @@ pub fn run(options: Options, present: impl FnOnce(&Outcome) -> Result<()>) -> Re
     Ok(())
 }
 
-/// Every case of the oracles and of the quick hard cases that this machine can run, and tables of the
-/// time that they took.
+/// Runs every case of the oracles and of the quick hard cases that this machine can run, and tabulates the
+/// times that they took.
 fn measure_cases(times: &mut Vec<Table>) -> Vec<GateCase> {
     let oracles = oracles::families();
     let stability = stability::families(true);

@@ -16,11 +16,11 @@ use crate::{
 
 /// Vertices along each side of the levels that are compared, the finest first.
 const SIZES: [usize; 3] = [33, 17, 9];
-/// The same where it is to be quick.
+/// Vertices along each side of the levels in a quick run.
 const QUICK_SIZES: [usize; 3] = [17, 9, 5];
-/// Moments at which each pair of levels is changed.
+/// Number of moments at which each pair of levels is changed.
 const MOMENTS: usize = 20;
-/// The same where it is to be quick.
+/// Number of moments in a quick run.
 const QUICK_MOMENTS: usize = 3;
 
 /// Compares the levels, and changes between neighbours both ways.
@@ -66,7 +66,7 @@ pub fn run(quick: bool) -> Outcome {
     }
 }
 
-/// Each figure of the levels over that of the finest.
+/// Plot of each figure of the levels, divided by that of the finest.
 fn plot(levels: &[Agreement], scheme: &str) -> Plot {
     let of_scheme: Vec<&Agreement> = levels.iter().filter(|it| it.scheme == scheme).collect();
     let line = |name: &str, value: fn(&Agreement) -> f64| Series {

@@ -81,7 +81,7 @@ fn batch_memory(n: u32, fabric: &Arc<Fabric>, lanes: LaneCount) -> BatchMemory {
         for _ in 0..lanes.get() {
             batch.insert(&start, material).expect("a free lane");
         }
-        // Buffers of the step are made when they are first needed.
+        // The batch allocates the buffers of a step when they are first needed.
         batch.step(TICK, DEFAULT);
         batch
     });

@@ -1,4 +1,4 @@
-//! What the command line runs.
+//! The commands of the command line.
 
 pub mod ablation;
 pub mod budget;
@@ -17,7 +17,7 @@ pub mod stability;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar on standard error over `length` pieces of work; nothing where that is not a terminal.
+/// Progress bar on standard error for `length` pieces of work; nothing if standard error is not a terminal.
 #[must_use]
 pub fn progress(length: usize) -> ProgressBar {
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {elapsed} {msg}")

@@ -1,4 +1,4 @@
-//! Closed forms against what the solver does.
+//! Closed forms compared with the solver.
 
 use serde_json::json;
 
@@ -46,7 +46,7 @@ fn plot(cases: &[Case]) -> Option<Plot> {
     verdicts::plot("oracles", "Closed forms and what the cloth does", labels, &verdicts)
 }
 
-/// The drop of a heavy cantilever over its reach against Γ, as Romero et al. 2021 draw it.
+/// Drop of a heavy cantilever over its reach against Γ, as drawn by Romero et al. 2021.
 fn cantilevers(cases: &[Case]) -> Option<Plot> {
     let drawn = cases.iter().filter_map(|case| Some((trials::gamma_of(case)?, case)));
     let (expected, measured): (Vec<_>, Vec<_>) =

@@ -28,12 +28,12 @@ use crate::{
 
 /// Time after which a method that would take longer on a scene is left out, s.
 const TIME_LIMIT: f64 = 15.0;
-/// Largest n of the flag, whose reference takes minutes beyond it.
+/// Largest n of the flag: its reference takes minutes beyond this size.
 const LARGEST_FLAG: usize = 33;
-/// Vertices along each side of the cloth whose parts are left out one by one; the second where quick.
+/// Vertices along each side of the cloth whose parts are left out one by one: of a full and of a quick run.
 const ABLATED: [usize; 2] = [33, 9];
 
-/// What to compare.
+/// Scenes and sizes to compare.
 #[derive(Clone, Debug, Args)]
 pub struct Selection {
     /// Scenes, of hang_top, hang_side, hang_corners, swing and flag.
@@ -56,7 +56,7 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// These scenes at these sizes.
+    /// Selection of these scenes at these sizes.
     #[must_use]
     pub fn new(scenes: &[&str], sizes: Vec<usize>, time_limit: f64) -> Self {
         let scenes = scenes.iter().map(|&name| name.to_owned()).collect();
@@ -82,7 +82,7 @@ fn parse_size(text: &str) -> Result<usize, String> {
 ///
 /// # Errors
 ///
-/// When the figure asked for cannot be drawn or written.
+/// The requested figure cannot be drawn or written.
 pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
     let contenders = contenders(quick);
     let scenes = selected(selection, quick);
@@ -90,7 +90,7 @@ pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
     let mut outcome = Outcome { json: json!(null), tables: Vec::new(), plots: Vec::new() };
     let (mut all, mut left_out, mut references) = (Vec::new(), Vec::new(), Vec::new());
     bar.set_message("references");
-    // All of them before any time is taken.
+    // All references are computed before any time is taken.
     let converged = parallel::map(&scenes, Reference::of);
     for (scene, reference) in scenes.iter().zip(&converged) {
         let mut rows = Vec::new();

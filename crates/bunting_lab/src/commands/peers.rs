@@ -1,4 +1,4 @@
-//! This project beside other engines, in the same run on the same scenes.
+//! This project and other engines, in one run on the same scenes.
 
 use bunting_solver::instruction_set;
 use serde_json::json;
@@ -19,10 +19,10 @@ use crate::{
 
 /// Vertices along each side.
 const SIZE: usize = 33;
-/// The same where it is to be quick.
+/// Vertices along each side in a quick run.
 const QUICK_SIZE: usize = 9;
 
-/// Hangs a cloth by its top, its side and its corners in every engine, and shocks it.
+/// Hangs a cloth by its top, its side and its corners in every engine, and disturbs it.
 #[must_use]
 pub fn run(quick: bool) -> Outcome {
     let n = if quick { QUICK_SIZE } else { SIZE };

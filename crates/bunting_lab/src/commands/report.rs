@@ -1,4 +1,4 @@
-//! Everything that the lab measures: a page of HTML, and a committed document of Markdown with its plots.
+//! The report of all measurements: an HTML page, and a committed Markdown document with its plots.
 
 use std::{
     fs,
@@ -17,36 +17,36 @@ use crate::{
     report::{machine::Machine, markdown, page, section::Section},
 };
 
-/// Where the report is written.
+/// Destination of the report.
 #[derive(Clone, Debug, Args)]
 pub struct Options {
-    /// Folder of `measurements.md` and of its plots: the repository's `docs`, but none where quick.
+    /// Folder of `measurements.md` and of its plots: the repository's `docs`, but none in a quick run.
     #[arg(long, value_name = "DIR")]
     docs: Option<PathBuf>,
 }
 
-/// Folder of the page where none is given.
+/// Default folder of the page.
 const FOLDER: &str = "out/report";
 /// The repository's documents.
 const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs");
-/// Vertices along each side for which methods are compared: more would take hours.
+/// Vertices along each side for which methods are compared: more sizes would take hours.
 const SIZES: [usize; 1] = [33];
 /// Scenes on which methods are compared.
 const SCENES: [&str; 5] = ["swing", "hang_top", "hang_side", "hang_corners", "flag"];
-/// The same where it is to be quick.
+/// Scenes on which methods are compared in a quick run.
 const QUICK_SCENES: [&str; 2] = ["swing", "hang_corners"];
 /// Time after which a method that would take longer on a scene is left out, s.
 const TIME_LIMIT: f64 = 2.0;
 
-/// How the lab is run with what it is now built with.
+/// Command that runs the lab with the features that it is built with.
 const PROGRAM: &str = if cfg!(feature = "peers") {
     "cargo run --release -p bunting_lab --features peers --"
 } else {
     "cargo run --release -p bunting_lab --"
 };
 
-/// Runs every command, and writes `index.html` and `measurements.md`. A command that fails or panics is
-/// named in both, and the others go on.
+/// Runs every command, and writes `index.html` and `measurements.md`. A command that fails or panics is named
+/// in both, and the others still run.
 ///
 /// # Errors
 ///
@@ -118,7 +118,7 @@ fn peers(_quick: bool) -> Option<Section> {
     None
 }
 
-/// Runs a command, and keeps why it could not.
+/// Runs a command, and stores its error if it fails.
 fn section(
     command: &'static str,
     options: &str,

@@ -27,7 +27,7 @@ const FLAGS: usize = 8;
 const WARM_UP: usize = 30;
 /// Ticks that are timed.
 const TICKS: usize = 600;
-/// The same where it is to be quick.
+/// Ticks that are timed in a quick run.
 const QUICK_TICKS: usize = 60;
 
 /// One level with one scheme.
@@ -39,7 +39,7 @@ struct Row {
     cloths: usize,
     /// Median time of an update of the app, µs.
     us_app: f64,
-    /// Median time of its cloth tick, by the plugin's own clock, µs.
+    /// Median time of the app's cloth tick, by the plugin's own clock, µs.
     us_cloth_tick: f64,
     /// Median time of the same tick by plain calls, µs.
     us_plain: f64,
@@ -47,7 +47,7 @@ struct Row {
     ratio: f64,
 }
 
-/// Ticks the same flags in an app and by plain calls in turn.
+/// Steps the same flags alternately in an app and by plain calls.
 #[must_use]
 pub fn run(quick: bool) -> Outcome {
     let bar = progress(schemes().len() * LEVELS.len());

@@ -14,8 +14,8 @@ use crate::{
 /// Ticks before time is taken.
 const WARM_UP: usize = 3;
 
-/// The methods of the thesis, other engines where they are built in, then every option of the product;
-/// of those, one pass where quick.
+/// The methods of the thesis, other engines if they are built in, and every option of the product; in a quick
+/// run, only options with one pass.
 #[must_use]
 pub fn contenders(quick: bool) -> Vec<Contender> {
     let mut contenders: Vec<_> = Baseline::catalogue().into_iter().map(Contender::from).collect();
@@ -26,7 +26,8 @@ pub fn contenders(quick: bool) -> Vec<Contender> {
     contenders
 }
 
-/// Runs a contender through the scene; none where the scene is beyond it or it would take too long.
+/// Runs a contender through the scene; none if the contender does not support the scene or would take too
+/// long.
 #[must_use]
 pub fn measure(
     scene: &Scene,
@@ -38,7 +39,7 @@ pub fn measure(
     let mut simulation = (contender.start)(scene)?;
     let (mut warm_up, mut time) = (Timing::default(), Timing::default());
     for tick in 0..scene.ticks() {
-        // Judged by the shortest tick: longer ones may have waited for the processor.
+        // The shortest tick decides: longer ones may have waited for the processor.
         if tick == WARM_UP && warm_up.min() * scene.ticks() as f64 > time_limit * 1e6 {
             return None;
         }

@@ -10,9 +10,9 @@ use crate::{
     timing::Timing,
 };
 
-/// Entry of `COMPARED_TICKS` that a row's position error is taken at: 0.4 s.
+/// Entry of `COMPARED_TICKS` at which a row's position error is taken: 0.4 s.
 pub const COMPARED: usize = 1;
-/// Part of a position error that the reference's own may be; beyond it no error is reported.
+/// Greatest ratio of the reference's own error to a position error at which the latter is reported.
 const KNOWN: f64 = 0.1;
 
 /// One method on one scene.
@@ -34,11 +34,11 @@ pub struct Row {
     pub us_per_cloth_tick: f64,
     /// Shortest time of a tick of one cloth, µs.
     pub us_min: f64,
-    /// Distance from the reference at 0.4 s, m RMS; none where the reference itself is not known so well.
+    /// Distance from the reference at 0.4 s, m RMS; none if the reference's own error is too large.
     pub rms_error_m: Option<f64>,
     /// Mean of |ε| over warp and weft, in the scene's window.
     pub mean_stretch: f64,
-    /// Its maximum.
+    /// Maximum of |ε| over warp and weft.
     pub max_stretch: f64,
     /// Distance of the mean strain from the reference's.
     pub strain_error: f64,
@@ -49,7 +49,7 @@ pub struct Row {
 }
 
 impl Row {
-    /// The row of a contender's run, given what was seen of it and the times of its ticks.
+    /// Row of a contender's run, from its observation and the times of its ticks.
     #[must_use]
     pub fn new(
         scene: &Scene,
@@ -79,7 +79,7 @@ impl Row {
         }
     }
 
-    /// The error that the scene is measured for, and what it is called.
+    /// The error for which the scene is measured, and its name.
     #[must_use]
     pub fn error(&self, measure: Measure) -> Option<f64> {
         match measure {
@@ -90,7 +90,7 @@ impl Row {
     }
 }
 
-/// A method that would have taken too long on a scene, or is not made for it.
+/// A method that would take too long on a scene, or does not support it.
 #[derive(Clone, Debug, Serialize)]
 pub struct LeftOut {
     /// Scene.

@@ -8,8 +8,8 @@ use crate::{
     scenes::{Measure, Scene, TICK_RATE},
 };
 
-/// Methods of the figure that compares position-based methods: the beginning of a method's name, the
-/// number of cloths at once, none for any, and what the legend says.
+/// Methods of the figure that compares position-based methods: the beginning of a method's name, the number
+/// of cloths at once (none for any), and the text of the legend.
 const FIGURE: [(&str, Option<usize>, &str); 8] = [
     ("bunting yarns", Some(16), "this project, of 16 at once"),
     ("bunting yarns", Some(1), "this project, alone"),
@@ -21,9 +21,9 @@ const FIGURE: [(&str, Option<usize>, &str); 8] = [
     ("rapier", None, "rapier 0.36"),
 ];
 
-/// Error over time of every method on a scene, one colour a method, of one cloth alone and of as many
-/// as can be had at once, and the front of what no other setting beats. A contender has its colour on
-/// every scene. None where no method has an error.
+/// Plot of error over time of every method on a scene, one colour for each method, for one cloth alone and
+/// for the largest number at once, with the Pareto front. A contender has the same colour on every scene.
+/// None if no method has an error.
 #[must_use]
 pub fn plot(scene: &Scene, rows: &[Row], contenders: &[Contender]) -> Option<Plot> {
     let widest = contenders.iter().map(|it| it.lanes).max()?;
@@ -47,7 +47,7 @@ pub fn plot(scene: &Scene, rows: &[Row], contenders: &[Contender]) -> Option<Plo
     has_points.then(|| with_front(scene, title, series))
 }
 
-/// Error over time of the position-based methods on a scene.
+/// Plot of error over time of the position-based methods on a scene.
 #[must_use]
 pub fn figure(scene: &Scene, rows: &[Row]) -> Plot {
     let series = FIGURE.iter().filter_map(|&(method, lanes, name)| {

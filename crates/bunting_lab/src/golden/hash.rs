@@ -1,4 +1,4 @@
-//! A hash of states, bit for bit.
+//! A hash over the bits of states.
 
 use glam::Vec3;
 
@@ -7,7 +7,7 @@ use glam::Vec3;
 pub struct StateHash(u64);
 
 impl StateHash {
-    /// The hash of nothing.
+    /// The hash of an empty sequence.
     #[must_use]
     pub const fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)
@@ -22,7 +22,7 @@ impl StateHash {
         }
     }
 
-    /// The hash of what was added.
+    /// The hash of all added vectors.
     #[must_use]
     pub const fn value(self) -> u64 {
         self.0

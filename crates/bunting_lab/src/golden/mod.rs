@@ -1,4 +1,4 @@
-//! Hashes of six scenes, to the bit: what must not change when code is moved or renamed.
+//! Golden hashes of six scenes, bit for bit: they must not change when code is moved or renamed.
 //!
 //! Each scene runs for 60 and for 600 ticks. A hash covers positions, velocities and normals every 60
 //! ticks. It holds for every batch width and every instruction set.
@@ -19,12 +19,12 @@ pub struct GoldenHash {
     pub scene: &'static str,
     /// Hash of its states up to each of [`TICKS`].
     pub hashes: [u64; 2],
-    /// Batch widths and instruction sets that hash otherwise; empty where all agree.
+    /// Batch widths and instruction sets with other hashes; empty if all agree.
     pub deviations: Vec<String>,
 }
 
-/// Lengths of a run, ticks. Instruction sets without fused multiply-add emulate it in software, fifty
-/// times slower, and take the shorter run alone.
+/// Lengths of a run, ticks. Instruction sets without fused multiply-add emulate it in software, fifty times
+/// slower, and do the shorter run only.
 pub const TICKS: [u32; 2] = [60, 600];
 
 /// Batch widths that must hash alike.
@@ -37,7 +37,7 @@ const FUSED: [&str; 3] = ["AVX-512", "AVX2", "NEON"];
 ///
 /// # Panics
 ///
-/// When a scene does.
+/// When a scene panics.
 #[must_use]
 pub fn measure() -> Vec<GoldenHash> {
     let scenes_and_widths: Vec<_> =
@@ -58,7 +58,7 @@ struct Run {
     hash: u64,
 }
 
-/// Every run of a scene at one batch width, the best instruction set first.
+/// All runs of a scene at one batch width, the best instruction set first.
 fn run_at_width(run: scenes::Run, lanes: LaneCount) -> Vec<Run> {
     let runs = with_every_instruction_set(|| {
         let set = instruction_set();
@@ -71,7 +71,7 @@ fn run_at_width(run: scenes::Run, lanes: LaneCount) -> Vec<Run> {
     runs.concat()
 }
 
-/// The hashes of a scene's first run of each length, and the runs that hash otherwise.
+/// The hashes of a scene's first run of each length, and the runs with other hashes.
 fn golden_hash(scene: &'static str, runs: Vec<Run>) -> GoldenHash {
     let hashes =
         [0, 1].map(|length| runs.iter().find(|run| run.length == length).map_or(0, |run| run.hash));
@@ -81,10 +81,10 @@ fn golden_hash(scene: &'static str, runs: Vec<Run>) -> GoldenHash {
     GoldenHash { scene, hashes, deviations: deviations.collect() }
 }
 
-/// The committed list, a line a scene: its name and its hashes, separated by tabs.
+/// The committed list, one line for each scene: its name and its hashes, separated by tabs.
 pub const EXPECTED: &str = include_str!("../../expected/golden_hashes.tsv");
 
-/// The list as it would be committed.
+/// The list in the format of the committed one.
 #[must_use]
 pub fn list(hashes: &[GoldenHash]) -> String {
     let line = |it: &GoldenHash| {

@@ -1,4 +1,4 @@
-//! The six scenes: each runs other parts of the solver.
+//! The six scenes; each runs different parts of the solver.
 
 use std::{sync::Arc, time::Duration};
 
@@ -16,7 +16,7 @@ use parry3d::shape::SharedShape;
 use super::hash::StateHash;
 use crate::product::TICK;
 
-/// Ticks from one state that is hashed to the next.
+/// Number of ticks between two states that are hashed.
 const INTERVAL: u32 = 60;
 
 /// Runs a scene for some ticks in a batch of this width and hashes its states.
@@ -32,7 +32,8 @@ pub const ALL: [(&str, Run); 6] = [
     ("eight flags through the plugin", plugin),
 ];
 
-/// The hashed cloth in the last lane of a batch, and another in the first lane with another material and wind.
+/// The hashed cloth in the last lane of a batch, and a cloth with another material and wind in the first
+/// lane.
 struct Pair {
     batch: ClothBatch,
     lane: usize,
@@ -72,7 +73,7 @@ impl Pair {
         self.hash.add(&vectors);
     }
 
-    /// Ticks of the scene, driven as given.
+    /// Runs the scene for `ticks` ticks, driven by `drive`.
     fn run(mut self, ticks: u32, drive: impl Fn(u32) -> Drive) -> u64 {
         for tick in 0..ticks {
             self.tick(drive(tick));

@@ -1,4 +1,4 @@
-//! The same cloth at each level, hung, swung and flown.
+//! The same cloth at each level: hung, swung and flown.
 
 use std::f64::consts::PI;
 
@@ -16,7 +16,7 @@ use crate::{
     stats,
 };
 
-/// Tilt of the hung sheet from which it swings: small, so that its period is that of its modes.
+/// Tilt from which the hung sheet swings, rad: small, so that its period is that of its modes.
 const TILT: f32 = PI as f32 / 36.0;
 /// Length of the swing, s.
 const SWING_SECONDS: f64 = 10.0;
@@ -34,14 +34,14 @@ pub struct Agreement {
     pub swing_period_s: f64,
     /// Mean position of a flag's lower free corner, m.
     pub tip_m: DVec3,
-    /// Its standard deviation, m.
+    /// Standard deviation of the corner's position, m.
     pub tip_spread_m: f64,
-    /// Frequency at which it flutters across the wind, Hz.
+    /// Frequency at which the corner flutters across the wind, Hz.
     pub flutter_hz: f64,
 }
 
 impl Agreement {
-    /// Measures a level. Flags fly for a fourth of their time where it is to be quick.
+    /// Measures a level. In a quick run, flags fly for a quarter of the time.
     #[must_use]
     pub fn of(n: usize, settings: StepSettings, quick: bool) -> Self {
         let (tip_m, tip_spread_m, flutter_hz) = fly(n, settings, quick);

@@ -1,13 +1,13 @@
-//! How alike the levels of detail are, and what changing between them does.
+//! Agreement of the levels of detail, and the effects of changes between them.
 
 pub mod agreement;
 pub mod pops;
 pub mod resolution;
 pub mod switches;
 
-/// Flags flown at once, each in other gusts.
+/// Flags flown at once, each in different gusts.
 const FLAGS: usize = 8;
-/// Time that flags fly before the first look, s.
+/// Time that flags fly before the first observation, s.
 const SETTLING: f64 = 3.0;
-/// Time between looks, s; no part of a gust's period.
+/// Time between observations, s; no fraction of a gust's period.
 const INTERVAL: f64 = 0.37;

@@ -1,8 +1,8 @@
-//! What is seen of a change of level: flags in an app, their displayed surface from frame to frame.
+//! Visible effects of a change of level: flags in an app, and their displayed surface from frame to frame.
 //!
-//! In the frame of the change each vertex is compared with where it would be had it gone on as it
-//! moved (the last two frames, continued), and with where it is on a twin that does not change. A
-//! flapping flag strays from the first by itself: `own` says how far.
+//! In the frame of the change each vertex is compared with its linear extrapolation from the last two frames,
+//! and with its position on a twin that does not change. A flapping flag departs from the extrapolation
+//! without a change, too: `own` says how far.
 
 use bevy_app::App;
 use bevy_bunting::{Attachment, ClothEdge, ClothMaterial, ClothMesh, ClothSurface, LodSet};
@@ -20,26 +20,26 @@ use crate::{
     stats::{self, worse},
 };
 
-/// Pixels that a metre takes at a distance of one metre: 1080 lines over a field of view of 60°.
+/// Pixels of a metre at a distance of one metre: 1080 lines over a field of view of 60°.
 pub const PIXELS: f64 = 935.3;
-/// Flags, and as many twins.
+/// Number of flags, and of their twins.
 const FLAGS: usize = 4;
-/// Frames before a change, the first of which are for the flag to take off.
+/// Frames before a change; in the first of them the flag starts to fly.
 const FRAMES: usize = 180;
-/// Frames before a change in which the flag's own flapping is watched.
+/// Frames before a change in which the flag's own flapping is measured.
 const WATCHED: usize = 20;
-/// By how many frames the changes are spread over the gusts.
+/// Frames between the changes of successive moments, which spreads the changes over the gusts.
 const STAGGER: usize = 7;
 
-/// Distance in metres at which a flag's change between a level and the next coarser one is looked
-/// at: 10 m from 33 × 33 vertices, farther for coarser levels as their cells are larger.
+/// Distance in metres at which a flag's change from a level to the next coarser one is observed: 10 m for 33
+/// × 33 vertices, and farther for coarser levels as their cells are larger.
 #[must_use]
 pub fn distance(finer: usize) -> f64 {
     320.0 / (finer - 1) as f64
 }
 
-/// What is seen of one change of level, over many flags. Pixels are those of the vertex that strays
-/// most.
+/// Visible effect of one change of level, over many flags. Pixels are those of the vertex with the greatest
+/// departure.
 #[derive(Clone, Debug, Serialize)]
 pub struct Pop {
     /// Scheme.
@@ -50,19 +50,19 @@ pub struct Pop {
     pub to: usize,
     /// Distance, m.
     pub distance_m: f64,
-    /// From its predicted motion in the frame of the change, pixels: mean over the flags.
+    /// Departure from the extrapolated motion in the frame of the change, pixels: mean over the flags.
     pub mean_px: f64,
-    /// The same for the flag that strays most.
+    /// Departure of the flag with the greatest one, pixels.
     pub worst_px: f64,
-    /// The most in any of the frames that follow, pixels: mean over the flags.
+    /// Greatest departure in the frames that follow, pixels: mean over the flags.
     pub after_px: f64,
-    /// The same in the frames before, by the flag's own flapping.
+    /// Greatest departure in the frames before, by the flag's own flapping, pixels.
     pub own_px: f64,
-    /// From a twin that does not change, in the frame of the change, pixels: mean over the flags.
+    /// Distance from a twin that does not change, in the frame of the change, pixels: mean over the flags.
     pub twin_px: f64,
 }
 
-/// One change of one flag, m.
+/// Departures of one flag at one change, m.
 struct Stray {
     change: f64,
     after: f64,
@@ -71,11 +71,11 @@ struct Stray {
 }
 
 impl Pop {
-    /// Flags of `from` vertices a side change to `to`, the next level, at `moments` moments.
+    /// Changes flags from `from` to `to` vertices a side, the next level, at `moments` moments.
     ///
     /// # Panics
     ///
-    /// When the two are not neighbours.
+    /// When the two levels are not neighbours.
     #[must_use]
     pub fn of(from: usize, to: usize, settings: StepSettings, moments: usize) -> Self {
         let strays: Vec<Stray> =
@@ -116,7 +116,7 @@ fn change(from: usize, to: usize, settings: StepSettings, moment: usize) -> Vec<
     let (flags, twins) = (spawn(&mut app), spawn(&mut app));
     (0..FRAMES + STAGGER * moment).for_each(|_| app.update());
     let mut frames: Vec<Vec<Vec<Vec3>>> = vec![Vec::new(); FLAGS];
-    // A frame shows the tick before: what changes in one is seen in the next.
+    // A frame shows the tick before: a change in one frame is visible in the next.
     let mut twin = Vec::new();
     for frame in 0..2 * WATCHED {
         if frame + 1 == WATCHED {
@@ -148,9 +148,9 @@ fn change(from: usize, to: usize, settings: StepSettings, moment: usize) -> Vec<
         .collect()
 }
 
-/// The most pixels by which the displayed surface of a swing of n × n vertices strays from its
-/// predicted motion, while it changes its level in every tick for so many seconds. Without any change
-/// a swing of 17 × 17 strays by 5.6 pixels, as its lower edge whips.
+/// Greatest departure, in pixels, of the displayed surface of a swing of n × n vertices from its extrapolated
+/// motion, while the swing changes its level in every tick for `seconds` s. Without any change a swing of 17
+/// × 17 departs by 5.6 pixels, as its lower edge whips.
 ///
 /// # Panics
 ///
@@ -187,7 +187,7 @@ pub fn thrash(n: usize, settings: StepSettings, seconds: f64) -> f64 {
     most * PIXELS / distance(n)
 }
 
-/// Looks at surfaces with the vertices of the finer of two levels.
+/// Reads surfaces with the vertices of the finer of two levels.
 struct View {
     transfer: LevelTransfer,
 }
@@ -208,7 +208,7 @@ impl View {
     }
 }
 
-/// How far the vertex that strays most is in the last of three frames from where the first two lead.
+/// Greatest distance of a vertex in the last of three frames from its extrapolation from the first two.
 fn stray(frames: &[Vec<Vec3>]) -> f64 {
     let pairs = frames[0].iter().zip(&frames[1]);
     let predicted: Vec<Vec3> = pairs.map(|(before, now)| *now + (*now - *before)).collect();

@@ -1,6 +1,6 @@
 //! The resolution of a level: distance between the surface of a flag and the same surface sampled at a
-//! coarser level's vertices, with the triangles between them. The plugin's estimate of a level's error
-//! comes from this table.
+//! coarser level's vertices, with triangles between them. The plugin's estimate of a level's error follows
+//! from this table.
 
 use bunting_solver::{LevelTransfer, StepSettings};
 use serde::Serialize;
@@ -19,24 +19,24 @@ use crate::{
 pub struct Resolution {
     /// Scheme.
     pub scheme: &'static str,
-    /// Vertices along each side of the flag that flies.
+    /// Vertices along each side of the flag.
     pub fine: usize,
-    /// Vertices along each side of the level that shows it.
+    /// Vertices along each side of the coarser level.
     pub coarse: usize,
-    /// Root mean square, m.
+    /// Root mean square distance, m.
     pub rms_m: f64,
-    /// 95th percentile, m.
+    /// 95th percentile of the distance, m.
     pub p95_m: f64,
-    /// The same over the distance between the coarser level's vertices.
+    /// 95th percentile over the distance between the coarser level's vertices.
     pub p95_of_cell: f64,
 }
 
 impl Resolution {
-    /// A flag of `fine` vertices a side, shown by every level below, at many moments of its flight.
+    /// Distances of a flag of `fine` vertices a side from every coarser level, at many moments of its flight.
     ///
     /// # Panics
     ///
-    /// Never: levels are halves of one another.
+    /// Never: each level is half of the one before.
     #[must_use]
     pub fn of(fine: usize, settings: StepSettings, moments: usize) -> Vec<Self> {
         let sizes: Vec<usize> =

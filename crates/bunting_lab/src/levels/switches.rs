@@ -1,8 +1,8 @@
-//! What a change of level does to a flag in the wind.
+//! Effects of a change of level on a flag in the wind.
 //!
-//! Flags fly on at one level while copies of them change to the next, tick after tick. Momentum and
-//! energy are compared before and after the transfer alone; the pop is what could be seen if nothing
-//! were eased: the distance between the two surfaces one tick later, at the finer level's vertices.
+//! Flags fly on at one level while copies of them change to the next, tick after tick. Momentum and energy
+//! are compared before and after the transfer alone. The pop is the visible jump without easing: the distance
+//! between the two surfaces one tick later, at the finer level's vertices.
 
 use bunting_solver::{ClothSnapshot, LevelTransfer, StepSettings};
 use glam::{DVec3, Vec3};
@@ -32,17 +32,17 @@ pub struct Switch {
     pub pop_rms_m: f64,
     /// Largest pop of a vertex, m, averaged over the moments.
     pub pop_max_m: f64,
-    /// Distance in metres from which the largest pop is less than a pixel.
+    /// Distance in metres from which on the largest pop is less than a pixel.
     pub invisible_from_m: f64,
-    /// Change of the momentum over the sum of all its sizes: mean.
+    /// Mean change of the momentum, over the sum of the magnitudes of all particles' momenta.
     pub momentum_jump: f64,
-    /// The greatest change of the momentum over the momentum.
+    /// Greatest change of the momentum, over the momentum.
     pub momentum_worst: f64,
-    /// Change of kinetic energy, over the kinetic energy: mean, signed.
+    /// Mean change of kinetic energy, over the kinetic energy; signed.
     pub kinetic_jump: f64,
-    /// Change of kinetic, elastic and potential energy over the kinetic energy: mean, signed.
+    /// Mean change of kinetic, elastic and potential energy, over the kinetic energy; signed.
     pub energy_jump: f64,
-    /// The greatest growth of the same.
+    /// Greatest growth of kinetic, elastic and potential energy, over the kinetic energy.
     pub energy_worst: f64,
 }
 
@@ -57,13 +57,14 @@ struct Jump {
 }
 
 impl Jump {
-    /// The jump of a cloth whose vertices are so far, m, from where they would be without it.
+    /// Jump of a cloth, from the distances (m) of its vertices from their positions without a change, and its
+    /// motion before and after.
     fn new(moved: &[f64], [old, new]: [Motion; 2]) -> Self {
         let momentum = (new.momentum - old.momentum).length();
         Self {
             pop_rms: stats::mean(&moved.iter().map(|d| d * d).collect::<Vec<_>>()).sqrt(),
             pop_max: moved.iter().copied().fold(0.0, worse),
-            momentum: momentum / old.momentum_sizes,
+            momentum: momentum / old.momentum_magnitudes,
             momentum_of_sum: momentum / old.momentum.length(),
             kinetic: (new.kinetic - old.kinetic) / old.kinetic,
             energy: (new.total - old.total) / old.kinetic,
@@ -72,11 +73,11 @@ impl Jump {
 }
 
 impl Switch {
-    /// Flags of `from` vertices a side change to `to`, the next level, at `moments` moments.
+    /// Changes flags from `from` to `to` vertices a side, the next level, at `moments` moments.
     ///
     /// # Panics
     ///
-    /// When the two are not neighbours.
+    /// When the two levels are not neighbours.
     #[must_use]
     pub fn of(from: usize, to: usize, settings: StepSettings, moments: usize) -> Self {
         let mut flying = Fleet::new(Scene::flag(from), FLAGS, settings);
@@ -92,7 +93,7 @@ impl Switch {
                 transfer.prolong(state, &material, gravity)
             }
         };
-        // Both surfaces at the finer level's vertices.
+        // Both surfaces are compared at the finer level's vertices.
         let refined = |state: ClothSnapshot| -> Vec<Vec3> {
             let is_coarse = state.positions.len() == coarse.particle_count();
             if is_coarse { transfer.spread(&state.positions).collect() } else { state.positions }
@@ -139,12 +140,12 @@ fn distances(a: &[Vec3], b: &[Vec3]) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| f64::from(a.distance(*b))).collect()
 }
 
-/// Momentum and energy of a cloth, as the reference reckons them.
+/// Momentum and energy of a cloth, as computed by the reference.
 struct Motion {
     /// Momentum, kg·m/s.
     momentum: DVec3,
-    /// Sum of the sizes of all particles' momenta, kg·m/s.
-    momentum_sizes: f64,
+    /// Sum of the magnitudes of all particles' momenta, kg·m/s.
+    momentum_magnitudes: f64,
     /// Kinetic energy, J.
     kinetic: f64,
     /// Kinetic, elastic and potential energy, J.
@@ -160,7 +161,7 @@ impl Motion {
         let height = grid.gravity_energy(GRAVITY, &positions);
         Self {
             momentum: momenta().sum(),
-            momentum_sizes: momenta().map(DVec3::length).sum(),
+            momentum_magnitudes: momenta().map(DVec3::length).sum(),
             kinetic,
             total: kinetic + grid.elastic_energy(&positions) + height,
         }

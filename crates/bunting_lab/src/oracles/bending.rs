@@ -15,13 +15,14 @@ const STEPS: usize = 4000;
 /// Step of the logarithm of the tip's angle in the search for the first equilibrium.
 const SCAN: f64 = 0.25;
 
-/// Critical w L³/B of a column of square cells, clamped in the middle of one below the first, whose two
-/// sides are rigid links joined by springs B/2l each and bear these masses at their upper ends, in units of
-/// a whole row's.
+/// Critical w L³/B of a column of square cells, clamped in the middle of one more cell below the first. The
+/// column's two sides are rigid links joined by springs of B/2l each, and carry `masses` at the upper ends of
+/// the links, in units of a whole row's mass.
 ///
-/// Small tilts of the links of a row store ¼ B/l (θₖ − θₖ₋₁)² on each side, twice that at the clamp, whose
-/// hinge covers half a link, and B/l (θ − θ')² where they differ, by twist; each lowers what it bears by
-/// ½ l θ²: the load is the least eigenvalue of one against the other.
+/// Small tilts θ of the links of a row store ¼ B/l (θₖ − θₖ₋₁)² on each side, twice that at the clamp, whose
+/// hinge covers half a link, and by twist B/l (θ − θ')² where the tilts θ and θ' of the two sides differ.
+/// Each tilt lowers the masses above by ½ l θ². The critical load is therefore the least eigenvalue of the
+/// stored energy relative to the lowering.
 ///
 /// # Panics
 ///
@@ -59,8 +60,8 @@ impl Cantilever {
     /// The equilibrium reached by loading quasi-statically from flat, with Γ = σ g L³/B.
     ///
     /// θ'' = −Γ(1−s) cos θ, θ(0) = θ'(1) = 0 (Romero et al. 2021, "Physical validation of simulators in
-    /// computer graphics"), shot backwards from the tip in φ = π/2 − θ, whose logarithm is searched:
-    /// φ(1) is as small as exp(−2/3 √Γ).
+    /// computer graphics"), solved by shooting from the tip in φ = π/2 − θ. The search is over the logarithm
+    /// of φ at the tip, since φ(1) is as small as exp(−2/3 √Γ).
     #[must_use]
     pub fn new(gamma: f64) -> Self {
         let overshoots = |logarithm: f64| shoot(gamma, logarithm.exp()).angle > FRAC_PI_2;
@@ -72,14 +73,14 @@ impl Cantilever {
         Self { reach: shot.reach, drop: shot.drop }
     }
 
-    /// The ratio that Romero et al. tabulate, H/W.
+    /// The ratio H/W, which Romero et al. tabulate.
     #[must_use]
     pub fn aspect(&self) -> f64 {
         self.drop / self.reach
     }
 }
 
-/// State of a shot on its way from the tip to the clamp.
+/// State of the integration on its way from the tip to the clamp.
 #[derive(Clone, Copy)]
 struct Shot {
     angle: f64,

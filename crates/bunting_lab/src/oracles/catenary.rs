@@ -14,10 +14,10 @@ pub struct Catenary {
 }
 
 impl Catenary {
-    /// The sheet of this length between edges this far apart, m: 2a sinh(S/2a) = L.
+    /// The sheet of length L between edges at a distance S: 2a sinh(S/2a) = L.
     #[must_use]
     pub fn new(span: f64, length: f64) -> Self {
-        // In x = S/2a the condition sinh(x)/x = L/S rises from 1.
+        // With x = S/2a the condition is sinh(x)/x = L/S, whose left side grows from 1.
         let x = bisect(1e-9, 100.0, |x| x.sinh() / x > length / span);
         let parameter = span / (2.0 * x);
         Self { parameter, sag: parameter * (x.cosh() - 1.0), end_angle: x.sinh().atan() }
@@ -30,18 +30,18 @@ impl Catenary {
     }
 }
 
-/// Sag in metres of a chain of `links` equal links with equal masses, exact: tan θₖ = (k − (N+1)/2)/H
+/// Sag in metres of a chain of N = `links` equal links with equal masses, exact: tan θₖ = (k − (N+1)/2)/H
 /// with Σ cos θₖ = N S/L.
 #[must_use]
 pub fn chain_sag(links: usize, span: f64, length: f64) -> f64 {
     sag_of_chain(&vec![1.0; links - 1], span, length)
 }
 
-/// Sag in metres of a chain of equal links between which hang these masses, alike from both ends.
+/// Sag in metres of a chain of equal links with these masses between them, symmetric about the middle.
 #[must_use]
 pub fn sag_of_chain(masses: &[f64], span: f64, length: f64) -> f64 {
     let links = masses.len() + 1;
-    // Each end bears half the weight; what a link bears is what is left of it.
+    // Each end carries half of the weight; a link carries this half minus the weight of the masses above it.
     let half = 0.5 * masses.iter().sum::<f64>();
     let mut loads = vec![-half];
     for mass in masses {

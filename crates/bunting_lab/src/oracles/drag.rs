@@ -1,4 +1,4 @@
-//! A sheet that falls broadside on through still air with quadratic drag ½ρC_d v².
+//! A sheet that falls broadside through still air with quadratic drag ½ρC_d v².
 
 /// A falling sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,20 +12,20 @@ pub struct BroadsideFall {
 }
 
 impl BroadsideFall {
-    /// Speed that it tends to, m/s: √(2σg/(ρC_d)).
+    /// Terminal speed, m/s: √(2σg/(ρC_d)).
     #[must_use]
     pub fn terminal_speed(&self) -> f64 {
         (2.0 * self.density * self.gravity / self.drag).sqrt()
     }
 
-    /// Speed `t` seconds after it was let go, m/s.
+    /// Speed `t` seconds after the release, m/s.
     #[must_use]
     pub fn speed(&self, t: f64) -> f64 {
         let terminal = self.terminal_speed();
         terminal * (self.gravity * t / terminal).tanh()
     }
 
-    /// Depth `t` seconds after it was let go, m.
+    /// Depth `t` seconds after the release, m.
     #[must_use]
     pub fn depth(&self, t: f64) -> f64 {
         let terminal = self.terminal_speed();

@@ -1,9 +1,9 @@
-//! A rigid dumbbell in free rotation as each integrator turns it.
+//! A rigid dumbbell in free rotation, as integrated by each formula.
 
 use glam::DVec2;
 
 /// Coefficients of a backward differentiation formula: x changes by γ₁ Δ + γ₂ Δ₋₁ + β h v, with Δ and Δ₋₁ its
-/// last two changes, and v alike.
+/// last two changes; v changes likewise with its derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BdfFormula {
     gamma: [f64; 2],
@@ -15,13 +15,13 @@ impl BdfFormula {
     pub const BACKWARD_EULER: Self = Self { gamma: [0.0, 0.0], beta: 1.0 };
     /// Second-order backward differentiation.
     pub const BDF2: Self = Self { gamma: [1.0 / 3.0, 0.0], beta: 2.0 / 3.0 };
-    /// The mean of that and third-order backward differentiation.
+    /// The mean of BDF2 and third-order backward differentiation.
     pub const BDF2_OPT: Self = Self { gamma: [0.5, -0.1], beta: 0.6 };
 }
 
-/// Fraction of its angular momentum that a dumbbell keeps in `steps` steps of `h` seconds from `rate`
-/// rad/s, the first step by backward Euler, the second by BDF2. Each step predicts the position and projects
-/// it to the dumbbell's length.
+/// Fraction of the angular momentum that a dumbbell keeps in `steps` steps of `h` seconds from `rate` rad/s.
+/// The first step is backward Euler, the second BDF2. Each step predicts the position and projects it to the
+/// dumbbell's length.
 #[must_use]
 pub fn spin_left(formula: BdfFormula, rate: f64, h: f64, steps: u32) -> f64 {
     let (mut x, mut v) = (DVec2::X, DVec2::Y * rate);

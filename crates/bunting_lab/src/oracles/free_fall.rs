@@ -1,4 +1,4 @@
-//! Free fall from rest as each integrator sums it.
+//! Free fall from rest, as summed by each integrator.
 
 /// Height after `n` steps of `h` seconds of symplectic Euler under gravity `g`: −g h² n(n+1)/2, m.
 #[must_use]
@@ -7,13 +7,12 @@ pub fn symplectic_euler(g: f64, h: f64, n: u32) -> f64 {
     -g * h * h * n * (n + 1.0) / 2.0
 }
 
-/// Height after `n` steps of `h` seconds of the mean of BDF2 and BDF3 under gravity `g`, the first step
-/// by backward Euler and the second by BDF2, m.
+/// Height in metres after `n` steps of `h` seconds of the mean of BDF2 and BDF3 under gravity `g`; the first
+/// step is backward Euler, the second BDF2.
 ///
-/// Velocities are exact, vₙ = −g h n. With xₙ − xₙ₋₁ = −g h² (n − ½ + eₙ) what is left of
-/// Δₙ = ½ Δₙ₋₁ − ⅒ Δₙ₋₂ + ⅗ h vₙ is eₙ = ½ eₙ₋₁ − ⅒ eₙ₋₂, with e₁ = ½ and e₂ = ⅙ (so e₀ = ⅚): a decaying
-/// oscillation of roots √⅒ exp(±iθ), cos θ = ¼ √10. All of it sums to 25/36, and what comes after n to
-/// (⅖ eₙ − ⅒ eₙ₋₁)/⅗.
+/// Velocities are exact, vₙ = −g h n. With xₙ − xₙ₋₁ = −g h² (n − ½ + eₙ), the formula Δₙ = ½ Δₙ₋₁ − ⅒ Δₙ₋₂ +
+/// ⅗ h vₙ reduces to eₙ = ½ eₙ₋₁ − ⅒ eₙ₋₂, with e₁ = ½ and e₂ = ⅙ (so e₀ = ⅚): a decaying oscillation with
+/// the roots √⅒ exp(±iθ), cos θ = ¼ √10. All eₙ sum to 25/36, and those after n to (⅖ eₙ − ⅒ eₙ₋₁)/⅗.
 #[must_use]
 pub fn bdf2_opt(g: f64, h: f64, n: u32) -> f64 {
     let cosine = 0.25 * 10_f64.sqrt();

@@ -1,6 +1,6 @@
-//! What the cloth should do where mathematics knows it: closed forms, or small problems solved to far
-//! below any tolerance, and in [`trials`] what a cloth does instead. Nothing expected comes from a
-//! cloth simulation.
+//! Expected results where mathematics gives them: closed forms, or small problems solved far more exactly
+//! than any tolerance. [`trials`] compares them with a cloth. No expected value comes from a cloth
+//! simulation.
 
 pub mod bending;
 pub mod catenary;
@@ -15,16 +15,16 @@ pub mod trials;
 
 use serde::Serialize;
 
-/// A closed form beside a measurement of it.
+/// A closed form and a measurement of it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Case {
-    /// Name, with the parameters that tell it from its siblings.
+    /// Name, with the parameters that distinguish the case from others of its trial.
     pub name: String,
-    /// What mathematics says, SI units.
+    /// Expected value by the closed form, SI units.
     pub expected: f64,
-    /// What the cloth did, SI units.
+    /// Measured value of the cloth, SI units.
     pub measured: f64,
-    /// Distance of the two over the size of the expected.
+    /// Difference of the two over the magnitude of the expected value.
     pub relative_error: f64,
     /// Largest relative error that passes.
     pub tolerance: f64,

@@ -13,7 +13,7 @@ pub fn hanging_modes(gravity: f64, length: f64) -> [f64; 3] {
     BESSEL_ZEROS.map(|zero| 0.5 * zero * (gravity / length).sqrt())
 }
 
-/// A small swing of a hung chain.
+/// A mode of small swings of a hanging chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mode {
     /// Angular frequency over √(g/L).
@@ -22,7 +22,7 @@ pub struct Mode {
     pub shape: Vec<f64>,
 }
 
-/// Modes of a chain of equal segments hung with these masses, the slowest first.
+/// Modes of a hanging chain of equal segments with these masses, the slowest first.
 ///
 /// # Panics
 ///
@@ -30,7 +30,7 @@ pub struct Mode {
 #[must_use]
 pub fn modes_of_chain(masses: &[f64]) -> Vec<Mode> {
     let count = masses.len();
-    // Segment k hangs above mass k. Stiffness is tension over a segment's length, L/count.
+    // Segment k hangs above mass k. Its stiffness is its tension over its length, L/count.
     let tension = |segment: usize| masses[segment..].iter().sum::<f64>();
     let stiffness = |row: usize, column: usize| match row.abs_diff(column) {
         0 => tension(row) + tension(row + 1),
@@ -47,8 +47,8 @@ pub fn modes_of_chain(masses: &[f64]) -> Vec<Mode> {
     (0..count).map(|mode| Mode { rate: modes.S()[mode].sqrt(), shape: shape(mode) }).collect()
 }
 
-/// Angular frequencies over √(g/L) of a hung chain of `segments` segments whose last mass is
-/// `tip` of the others, ascending.
+/// Angular frequencies over √(g/L) of a hanging chain of `segments` segments, ascending. The last mass is
+/// `tip` times each of the others.
 #[must_use]
 pub fn chain_modes(segments: usize, tip: f64) -> Vec<f64> {
     let masses: Vec<f64> =
@@ -64,7 +64,7 @@ pub fn stiff_period(gravity: f64, length: f64, segments: Option<usize>) -> f64 {
     2.0 * PI * (length * (2.0 / 3.0 + lumping) / gravity).sqrt()
 }
 
-/// Factor of the period at an amplitude in radians: (2/π) K(sin(θ/2)) = 1/agm(1, cos(θ/2)).
+/// Factor on the period at an amplitude θ (rad): (2/π) K(sin(θ/2)) = 1/agm(1, cos(θ/2)).
 #[must_use]
 pub fn amplitude_factor(amplitude: f64) -> f64 {
     let (mut a, mut b) = (1.0, (0.5 * amplitude).cos());

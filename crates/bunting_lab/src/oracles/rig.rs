@@ -1,4 +1,4 @@
-//! Strips, their readings, and labels that the trials share.
+//! Strips, measurements and labels that the trials share.
 
 use bunting_solver::{Scheme, StepSettings};
 use glam::DVec3;
@@ -11,17 +11,17 @@ use crate::{
     specimen::Specimen,
 };
 
-/// The scheme under trial, by default settings.
+/// The scheme under trial, with default settings.
 pub const YARNS: StepSettings = DEFAULT;
-/// The thesis's scheme, with enough substeps to be compared.
+/// The thesis's scheme, with enough substeps for a comparison.
 pub const GAUSS_SEIDEL: StepSettings = StepSettings::gauss_seidel(20);
-/// A scheme at any number of substeps.
+/// Settings of a scheme by number of substeps.
 pub type Substeps = fn(u32) -> StepSettings;
 
-/// Distance of an observed order of convergence from the expected.
+/// Tolerance of an observed order of convergence.
 const ORDER: f64 = 0.3;
 
-/// A fabric whose columns hang each for itself: no shear, no bending, next to no warp.
+/// A fabric whose columns hang independently: without shear and bending, and with negligible warp stiffness.
 #[must_use]
 pub const fn chains(stiffness: f64) -> Fabric {
     Fabric { stretch: [1e-2, stiffness], shear: 0.0, bending: 0.0, ..Fabric::STANDARD }
@@ -49,8 +49,8 @@ pub fn row(scene: &Scene, specimen: &dyn Specimen, j: usize) -> DVec3 {
     row.iter().map(|x| x.as_dvec3()).sum::<DVec3>() / scene.columns as f64
 }
 
-/// Masses of the first column of a strip from row 1 on, kg. Thirds of alternating triangles make them
-/// alternate, so that each column is a chain of its own.
+/// Masses of the first column of a strip from row 1 on, kg. They alternate, since triangles contribute thirds
+/// of their mass and alternate in direction; each column is therefore a chain of its own.
 #[must_use]
 pub fn column_masses(scene: &Scene) -> Vec<f64> {
     Grid::new(scene).masses.into_iter().step_by(scene.columns).skip(1).collect()
@@ -62,7 +62,7 @@ pub fn substep(settings: StepSettings) -> f64 {
     1.0 / (f64::from(TICK_RATE) * f64::from(settings.substeps))
 }
 
-/// Scheme and substeps, for names of cases.
+/// Scheme and substeps, for the names of cases.
 #[must_use]
 pub fn label(settings: StepSettings) -> String {
     let scheme = match settings.scheme {
@@ -75,7 +75,7 @@ pub fn label(settings: StepSettings) -> String {
     }
 }
 
-/// The order of convergence that errors show of which each is at half the size of the one before.
+/// Case for the order of convergence that `errors` show, each at half the size of the one before.
 #[must_use]
 pub fn order(name: impl Into<String>, expected: f64, errors: &[f64]) -> Case {
     let halvings = errors.len() - 1;

@@ -1,13 +1,13 @@
 //! Strips that stretch under their own weight or their own spin.
 
-/// Strain δ/L of a strip hung from its top edge: σ g L/(2Y), at every resolution if the tip row has half
-/// mass. Density kg/m², gravity m/s², length m, stiffness N/m.
+/// Strain δ/L of a strip that hangs from its top edge: σ g L/(2Y), at every resolution if the tip row has
+/// half the mass of the others. Density in kg/m², gravity in m/s², length in m, stiffness in N/m.
 #[must_use]
 pub fn hung_strip(density: f64, gravity: f64, length: f64, stiffness: f64) -> f64 {
     density * gravity * length / (2.0 * stiffness)
 }
 
-/// Factor by which a whole mass in the tip row of `segments` segments wrongly raises that strain.
+/// Factor on this strain if the tip row of `segments` segments wrongly has the full mass.
 #[must_use]
 pub fn full_tip_mass_factor(segments: usize) -> f64 {
     (segments + 1) as f64 / segments as f64

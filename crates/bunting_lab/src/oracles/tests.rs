@@ -1,4 +1,4 @@
-//! The closed forms against published values.
+//! Tests of the closed forms against published values.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use super::{
     free_fall, pendulum, stretch,
 };
 
-/// Half a unit in the sixth decimal, the last that the tables give.
+/// Slightly more than half a unit in the sixth decimal, the last one in the tables.
 const SIXTH_DECIMAL: f64 = 0.6e-6;
 /// Standard gravity of the tables, m/s².
 const G: f64 = 9.81;
@@ -101,7 +101,7 @@ fn falls_through_air() {
 }
 
 #[test]
-fn falls_sum_what_the_integrators_do() {
+fn falls_equal_the_sums_of_the_integrators() {
     let h = 1.0 / 180.0;
     let (mut x, mut v) = (0.0, 0.0);
     for n in 1..=50 {
@@ -109,8 +109,8 @@ fn falls_sum_what_the_integrators_do() {
         x += v * h;
         assert_near(free_fall::symplectic_euler(G, h, n), x, 1e-12);
     }
-    // After a step of backward Euler and one of BDF2, from their definition by values:
-    // (5/3) yₙ − (5/2) yₙ₋₁ + yₙ₋₂ − ⅙ yₙ₋₃ = h ẏₙ.
+    // The first step is backward Euler, the second BDF2; then, by the formula's definition in values: (5/3)
+    // yₙ − (5/2) yₙ₋₁ + yₙ₋₂ − ⅙ yₙ₋₃ = h ẏₙ.
     let mut falls = [0.0, -G * h * h, -G * h * h * 8.0 / 3.0];
     assert_near(free_fall::bdf2_opt(G, h, 1), falls[1], 1e-12);
     assert_near(free_fall::bdf2_opt(G, h, 2), falls[2], 1e-12);
@@ -125,7 +125,7 @@ fn falls_sum_what_the_integrators_do() {
 
 #[test]
 fn dumbbells_lose_their_spin() {
-    // At 20 rad/s and 180 Hz, in a revolution.
+    // The dumbbell turns at 20 rad/s with 180 steps a second, for one revolution.
     for (formula, lost) in [
         (BdfFormula::BACKWARD_EULER, 0.35),
         (BdfFormula::BDF2, 0.0184),
@@ -150,7 +150,7 @@ fn case_passes_within_its_tolerance() {
     assert!(!Case::new("lost", 2.0, f64::NAN, 0.01).pass);
 }
 
-/// y of y'' + c sᵖ y = 0, y(0) = 1, y'(0) = 0, at s = 1, by its power series.
+/// Value at s = 1 of the solution of y'' + c sᵖ y = 0, y(0) = 1, y'(0) = 0, by its power series.
 fn tilt_at_clamp(c: f64, power: i32) -> f64 {
     let (mut sum, mut term) = (1.0, 1.0);
     for k in 1..40 {
@@ -163,10 +163,10 @@ fn tilt_at_clamp(c: f64, power: i32) -> f64 {
 
 #[test]
 fn strips_buckle() {
-    // From the free end: θ'' + w s θ = 0 of the column, β'' + (q s²/2)²/(EI·C) β = 0 of the strip.
+    // Measured from the free end: θ'' + w s θ = 0 for the column, β'' + (q s²/2)²/(EI·C) β = 0 for the strip.
     assert_near(tilt_at_clamp(SELF_WEIGHT_COLUMN, 1), 0.0, SIXTH_DECIMAL);
     assert_near(tilt_at_clamp((0.5 * LATERAL_BUCKLING).powi(2), 4), 0.0, SIXTH_DECIMAL);
-    // A rigid link on one spring 2B/l that bears half a link: w l² (l/2) = 2B/l · l/l.
+    // A rigid link on one spring 2B/l carries half a link's mass: w l² (l/2) = 2B/l · l/l.
     assert_near(column_of_links(&[[0.25, 0.25]]), 4.0, SIXTH_DECIMAL);
     let mut masses = vec![[0.5, 0.5]; 64];
     masses[63] = [0.25, 0.25];

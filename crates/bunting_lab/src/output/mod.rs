@@ -1,4 +1,4 @@
-//! What a command has to say, and how it is printed and written.
+//! The output of a command: printed, and written to files.
 
 pub mod plot;
 pub mod table;

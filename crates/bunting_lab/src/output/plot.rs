@@ -7,18 +7,18 @@ use plotters::{coord::Shift, prelude::*};
 
 /// Width and height of a plot in pixels.
 const SIZE: (u32, u32) = (1000, 600);
-/// Width of the legend, which stands beside the chart so that it hides nothing.
+/// Width of the legend, which stands beside the chart, pixels.
 const LEGEND: u32 = 250;
 /// Height of a line of the legend.
 const LINE: i32 = 26;
-/// Sizes of letters of titles and labels.
+/// Sizes of the letters of titles and of labels, pixels.
 const LETTERS: (u32, u32) = (24, 17);
-/// Free space round the outermost points, as a factor on logarithmic axes.
+/// Free space around the outermost points, as a factor on logarithmic axes.
 const MARGIN: f64 = 1.6;
-/// Width of a bar on the horizontal axis, whose bars stand at whole numbers.
+/// Width of a bar, in units of the horizontal axis; bars stand at whole numbers.
 const BAR: f64 = 0.7;
-/// Colours of series in their order, told apart by colour-blind people too (Okabe and Ito 2008), and
-/// some more.
+/// Colours of series in their order: those of Okabe and Ito 2008, which colour-blind people can distinguish,
+/// and some more.
 const COLOURS: [RGBColor; 12] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -34,7 +34,7 @@ const COLOURS: [RGBColor; 12] = [
     RGBColor(160, 30, 60),
 ];
 
-/// How the points of a series are drawn.
+/// Style in which the points of a series are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mark {
     /// Dots.
@@ -48,7 +48,7 @@ pub enum Mark {
     Bars,
 }
 
-/// Points of one kind.
+/// Points that are drawn alike.
 #[derive(Clone, Debug)]
 pub struct Series {
     /// Name in the legend.
@@ -56,11 +56,11 @@ pub struct Series {
     /// Points, all positive where the axes are logarithmic. A series without points takes a colour, so that
     /// the others keep theirs in every plot, but is not in the legend.
     pub points: Vec<(f64, f64)>,
-    /// How they are drawn.
+    /// Style in which the points are drawn.
     pub mark: Mark,
 }
 
-/// What the axes measure.
+/// Scales of the axes.
 #[derive(Clone, Debug)]
 pub enum Axes {
     /// Both logarithmic.
@@ -78,9 +78,9 @@ pub struct Plot {
     pub title: String,
     /// Names of the horizontal and vertical axis, with units.
     pub labels: [String; 2],
-    /// What the axes measure.
+    /// Scales of the axes.
     pub axes: Axes,
-    /// What is plotted.
+    /// The plotted series.
     pub series: Vec<Series>,
 }
 
@@ -89,7 +89,7 @@ impl Plot {
     ///
     /// # Errors
     ///
-    /// When nothing is there to plot or the file cannot be written.
+    /// There is nothing to plot, or the file cannot be written.
     pub fn write_svg(&self, folder: &Path) -> Result<()> {
         let path = folder.join(format!("{}.svg", self.name));
         fs::write(&path, self.svg()?).with_context(|| format!("cannot write {}", path.display()))
@@ -99,7 +99,7 @@ impl Plot {
     ///
     /// # Errors
     ///
-    /// When nothing is there to plot.
+    /// There is nothing to plot.
     pub fn svg(&self) -> Result<String> {
         let mut svg = String::new();
         self.draw(&SVGBackend::with_string(&mut svg, SIZE).into_drawing_area())
@@ -154,7 +154,7 @@ impl Plot {
         Ok(area.present()?)
     }
 
-    /// Every series with its colour; guides have none of their own.
+    /// Every series with its colour; a guide has no colour of its own.
     fn coloured(&self) -> impl Iterator<Item = (&Series, RGBColor)> {
         let mut colours = COLOURS.iter().cycle();
         self.series.iter().map(move |series| match series.mark {
@@ -231,14 +231,14 @@ impl Plot {
     }
 }
 
-/// A label of a logarithmic axis, one digit times a power of ten: plain where that is short.
+/// Label of a logarithmic axis: one digit times a power of ten, or a plain number if that is short.
 fn power(value: &f64) -> String {
     let text = format!("{value:.0e}");
     let plain = text.parse().ok().filter(|digit: &f64| (1e-3..1e5).contains(digit));
     plain.map_or(text, |digit| digit.to_string())
 }
 
-/// The points that no other point beats on both axes, from left to right.
+/// The points that no other point dominates on both axes, from left to right.
 #[must_use]
 pub fn pareto_front(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let mut sorted = points.to_vec();
@@ -257,7 +257,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_front_drops_what_is_beaten() {
+    fn the_front_drops_dominated_points() {
         let points = [(4.0, 1.0), (1.0, 4.0), (3.0, 5.0), (2.0, 2.0), (2.0, 3.0)];
         assert_eq!(pareto_front(&points), [(1.0, 4.0), (2.0, 2.0), (4.0, 1.0)]);
     }

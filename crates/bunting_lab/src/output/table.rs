@@ -44,7 +44,7 @@ impl Table {
     }
 }
 
-/// A number in four significant digits, in scientific notation where that is shorter; a dash for NaN.
+/// A number with four significant digits, in scientific notation if that is shorter; a dash for NaN.
 #[must_use]
 pub fn figure(value: f64) -> String {
     if value.is_nan() {
@@ -62,7 +62,7 @@ pub fn figure(value: f64) -> String {
     }
 }
 
-/// A number as by [`figure`], or a dash.
+/// A number formatted by [`figure`], or a dash.
 #[must_use]
 pub fn figure_or_dash(value: Option<f64>) -> String {
     value.map_or_else(|| "–".into(), figure)

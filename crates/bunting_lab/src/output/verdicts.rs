@@ -1,20 +1,20 @@
-//! Cases against their limits, as a plot.
+//! A plot of cases and their limits.
 
 use super::plot::{Axes, Mark, Plot, Series};
 
-/// A figure and the largest that passes.
+/// A measured value and its limit.
 #[derive(Clone, Copy, Debug)]
 pub struct Verdict {
-    /// What was measured.
+    /// Measured value.
     pub worst: f64,
-    /// The largest that passes.
+    /// Largest value that passes.
     pub limit: f64,
     /// Whether it passed.
     pub pass: bool,
 }
 
-/// Every case as a dot, below the line where it passes. Logarithmic axes leave out figures and limits
-/// of zero. None where nothing is left.
+/// Plots every case as a dot, below the line if it passes. Logarithmic axes leave out values and limits of
+/// zero. None if nothing is left.
 #[must_use]
 pub fn plot(name: &str, title: &str, labels: [&str; 2], cases: &[Verdict]) -> Option<Plot> {
     let shown = cases.iter().filter(|case| case.worst > 0.0 && case.limit > 0.0);
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_fails_is_shown_apart_and_what_is_zero_not_at_all() {
+    fn failing_cases_are_a_separate_series_and_zeros_are_left_out() {
         let case = |worst, limit| Verdict { worst, limit, pass: worst <= limit };
         let cases = [case(1e-3, 1e-2), case(1.0, 1e-2), case(0.0, 1.0), case(f64::INFINITY, 1.0)];
         let plot = plot("cases", "Cases", ["limit", "figure"], &cases).expect("two cases");

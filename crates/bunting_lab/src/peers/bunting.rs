@@ -1,4 +1,4 @@
-//! This project's solver as one of the peers.
+//! This project's solver as a peer.
 
 use bunting_solver::FrameMotion;
 use glam::{Quat, Vec3};
@@ -7,7 +7,7 @@ use super::peer::Peer;
 use crate::{product::Cloth, simulation::Simulation};
 
 impl Peer for Cloth {
-    /// The frame moves within one tick; its pinned particles go with it.
+    /// The frame moves within one tick; pinned particles move with it.
     fn teleport(&mut self, metres: f32) {
         let translation = Vec3::X * metres;
         self.drive.motion = FrameMotion { rotation: Quat::IDENTITY, translation };

@@ -24,16 +24,16 @@ pub struct Engine {
     pub substeps: u32,
     /// Cloths advanced at once.
     pub lanes: usize,
-    /// What its constraints are.
+    /// Description of the engine's constraints.
     pub constraints: &'static str,
-    /// Starts it on a scene.
+    /// Starts the engine on a scene.
     pub start: Box<Start>,
 }
 
-/// Rapier's substeps beside the methods of the thesis.
+/// Numbers of rapier's substeps in the comparison with the methods of the thesis.
 const RAPIER_CONTENDS: [usize; 4] = [4, 10, 20, 40];
 
-/// Other engines beside the methods of the thesis, on scenes without air.
+/// Other engines in the comparison with the methods of the thesis, on scenes without air.
 #[must_use]
 pub fn contenders() -> Vec<Contender> {
     let rapier = |substeps| Contender {
@@ -49,13 +49,13 @@ pub fn contenders() -> Vec<Contender> {
     RAPIER_CONTENDS.map(rapier).into()
 }
 
-/// Rapier's substeps by default.
+/// Rapier's default number of substeps.
 const RAPIER_SUBSTEPS: usize = 4;
-/// Substeps that bring rapier's stretch near what its solver can do.
+/// Number of substeps at which rapier's stretch hardly improves further.
 const RAPIER_MANY_SUBSTEPS: usize = 20;
 
 impl Engine {
-    /// Everything that is compared.
+    /// All compared engines.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let rapier = |name, elasticity: Elasticity, substeps: usize| Self {

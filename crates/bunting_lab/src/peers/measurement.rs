@@ -1,4 +1,4 @@
-//! What is measured of each engine.
+//! Measurements of each engine.
 
 use serde::Serialize;
 
@@ -13,13 +13,13 @@ use crate::{
 
 /// Ticks before time is taken.
 const WARM_UP: usize = 3;
-/// Sideways jump of what holds the cloth, m.
+/// Sideways jump of the cloth's supports, m.
 const TELEPORT: f32 = 10.0;
-/// Length of a tick that took too long, s.
+/// Length of the hitch, a single long tick, s.
 const HITCH: f32 = 0.5;
-/// Longest time to recover, s.
+/// Longest time for recovery, s.
 const RECOVERY_TIME: f64 = 5.0;
-/// A cloth has recovered when no link is longer by more than this than before the shock.
+/// Greatest excess of a link's strain over its value before the disturbance at which a cloth has recovered.
 const RECOVERED: f64 = 0.02;
 
 /// One engine on one scene.
@@ -27,7 +27,7 @@ const RECOVERED: f64 = 0.02;
 pub struct Row {
     /// Engine.
     pub engine: &'static str,
-    /// What its constraints are.
+    /// Description of the engine's constraints.
     pub constraints: &'static str,
     /// Scene.
     pub scene: &'static str,
@@ -43,28 +43,28 @@ pub struct Row {
     pub ms_min: f64,
     /// Mean of |ε| over warp and weft at rest.
     pub mean_stretch: Option<f64>,
-    /// Its maximum.
+    /// Maximum of |ε| over warp and weft at rest.
     pub max_stretch: Option<f64>,
     /// Root mean square velocity at the end, m/s.
     pub final_speed: Option<f64>,
 }
 
-/// What a shock does to one engine.
+/// Effect of a disturbance on one engine.
 #[derive(Clone, Debug, Serialize)]
 pub struct Shock {
     /// Engine.
     pub engine: &'static str,
     /// Substeps a tick.
     pub substeps: u32,
-    /// Name of the shock.
+    /// Name of the disturbance.
     pub shock: &'static str,
     /// Whether all positions stayed finite.
     pub finite: bool,
-    /// Time of the tick in which it happens, ms, of all lanes.
+    /// Time of the tick with the disturbance, ms, of all lanes.
     pub ms: f64,
-    /// Largest |ε| over warp and weft from then on.
+    /// Largest |ε| over warp and weft from that tick on.
     pub worst_stretch: Option<f64>,
-    /// Time until no link is much longer than before, s; none within 5 s.
+    /// Time until no link is much longer than before the disturbance, s; none if that takes more than 5 s.
     pub recovery_s: Option<f64>,
 }
 
@@ -102,7 +102,7 @@ pub fn hang(engine: &Engine, scene: &Scene) -> Row {
     }
 }
 
-/// Teleports the cloth at rest, and another time lets one tick take half a second.
+/// Disturbs the cloth at rest in two separate runs: by a teleport, and by one tick of half a second.
 #[must_use]
 pub fn shocks(engine: &Engine, scene: &Scene) -> Vec<Shock> {
     let teleport = |cloth: &mut dyn Peer| cloth.teleport(TELEPORT);
@@ -129,7 +129,7 @@ fn shock(
     let mut recovery = None;
     for tick in 0..ticks(RECOVERY_TIME) {
         let strain = strain(&grid, cloth.as_ref()).max;
-        // A maximum would pass over what is not a number.
+        // `f64::max` would ignore a value that is not a number.
         worst = if strain.is_finite() { worst.max(strain) } else { f64::INFINITY };
         if strain > recovered || !strain.is_finite() {
             recovery = None;

@@ -1,5 +1,5 @@
-//! Other engines on the same scenes, with the same particles and as nearly the same constraints as
-//! their interfaces allow.
+//! Other engines on the same scenes, with the same particles and with constraints as similar as their
+//! interfaces allow.
 
 mod bunting;
 pub mod engine;

@@ -1,9 +1,9 @@
 //! Rapier's soft bodies.
 //!
-//! Particles, masses and links are this project's. A link's spring is given by a natural frequency, and
-//! √(k (w₁ + w₂))/2π makes its stiffness the material's; its damping ratio is rapier's own default, 1.
-//! Bending is rapier's dihedral angle of its default softness, 10 Hz, which at 33 × 33 is near the
-//! 2·10⁻⁵ N·m of the scenes. There is no wind.
+//! Particles, masses and links are this project's. A link's spring is given by its natural frequency: √(k (w₁
+//! + w₂))/2π gives it the material's stiffness k. Its damping ratio is rapier's default, 1. Bending is
+//! rapier's dihedral constraint with its default softness, 10 Hz, which at 33 × 33 is near the 2·10⁻⁵ N·m of
+//! the scenes. There is no wind.
 
 use std::f32::consts::TAU;
 
@@ -16,7 +16,7 @@ use crate::{product, scenes::Scene, simulation::Simulation};
 /// Damping ratio of rapier's default material.
 const DAMPING_RATIO: f32 = 1.0;
 
-/// Which of its solvers rapier uses.
+/// Choice of rapier's solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Elasticity {
     /// Constraints, projected in substeps.
@@ -26,7 +26,7 @@ pub enum Elasticity {
 }
 
 impl Elasticity {
-    /// What the constraints are, for a table.
+    /// Description of the constraints, for a table.
     #[must_use]
     pub const fn description(self) -> &'static str {
         match self {
@@ -36,7 +36,7 @@ impl Elasticity {
     }
 }
 
-/// A scene in a world of its own.
+/// A scene in its own rapier world.
 pub struct Rapier {
     world: PhysicsWorld,
     cloth: SoftBodyHandle,
@@ -97,7 +97,7 @@ impl Rapier {
     }
 }
 
-/// Rapier has another version of glam.
+/// Conversion to rapier's version of glam.
 fn vector(v: Vec3) -> Vector {
     Vector::new(v.x, v.y, v.z)
 }

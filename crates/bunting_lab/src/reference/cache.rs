@@ -1,4 +1,4 @@
-//! Results kept on disk, keyed by everything they depend on.
+//! Results kept on disk, keyed by everything that they depend on.
 
 use std::{
     env, fs,
@@ -8,12 +8,12 @@ use std::{
 
 use serde::{Serialize, de::DeserializeOwned};
 
-/// Changed whenever the reference's model or the layout of its results changes.
+/// Version of the reference's model and of the layout of its results: change it whenever one of them changes.
 const EDITION: u32 = 2;
 
-/// The result of `compute`, from the cache if it was computed before from an equal key.
+/// Result of `compute`, from the cache if `compute` has run before with an equal key.
 ///
-/// A cache that cannot be read or written costs time, never a failure.
+/// A cache that cannot be read or written costs time, but causes no failure.
 pub fn cached<T: Serialize + DeserializeOwned>(
     key: &impl Serialize,
     compute: impl FnOnce() -> T,

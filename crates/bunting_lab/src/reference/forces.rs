@@ -32,8 +32,9 @@ impl Grid {
         }
     }
 
-    /// Adds the forces of the air on every triangle, N: pressure ½ρC_n A|u·n|(u·n)n (thesis, equations
-    /// 5.1 and 5.2) and skin friction ½ρC_t A|u|(u − (u·n)n), u being the wind as the triangle feels it.
+    /// Adds the forces of the air on every triangle, N: pressure ½ρC_n A|u·n|(u·n)n (thesis, equations 5.1
+    /// and 5.2) and skin friction ½ρC_t A|u|(u − (u·n)n), with u the velocity of the air relative to the
+    /// triangle.
     pub fn add_air_forces(
         &self,
         air: &Air,

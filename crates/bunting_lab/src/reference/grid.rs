@@ -11,7 +11,7 @@ use glam::{DVec3, UVec3, uvec3};
 
 use crate::scenes::{Fabric, Scene};
 
-/// Which way a link runs.
+/// Direction of a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// Along a row.
@@ -33,7 +33,7 @@ pub struct Link {
     pub rest: f64,
     /// Stiffness, N/m.
     pub stiffness: f64,
-    /// Which way it runs.
+    /// Direction of the link.
     pub direction: Direction,
 }
 

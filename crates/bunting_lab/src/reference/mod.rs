@@ -1,7 +1,7 @@
 //! The converged reference: the same continuum scene in double precision.
 //!
-//! [`grid`] states the discrete model, [`verlet`] integrates it at a step that resolves its stiffest
-//! spring, [`relaxation`] finds its rest, and [`xpbd`] checks both by a method that shares neither the
+//! [`grid`] states the discrete model, [`verlet`] integrates it at a step that resolves its stiffest spring,
+//! [`relaxation`] finds its rest state, and [`xpbd`] checks both by a method that shares neither the
 //! integrator nor the forces.
 
 pub mod cache;
@@ -21,9 +21,9 @@ use crate::{
 use grid::Grid;
 use verlet::{Verlet, resolving_steps};
 
-/// Force in newtons below which a cloth of the standard scenes (2 N in all) is at rest.
+/// Force in newtons below which a cloth of the standard scenes (2 N of weight) is at rest.
 pub const REST_FORCE: f64 = 1e-9;
-/// Most steps spent on coming to rest.
+/// Greatest number of steps for coming to rest.
 const REST_STEPS: usize = 2_000_000;
 
 /// A reference run.
@@ -31,28 +31,28 @@ const REST_STEPS: usize = 2_000_000;
 pub struct Reference {
     /// Steps a tick; twice as many for the compared positions.
     pub steps: usize,
-    /// What was observed. Of a scene measured at rest, strain and tip are those of static equilibrium.
+    /// Observation of the run. For a scene measured at rest, strain and tip are those of static equilibrium.
     pub observation: Observation,
-    /// How far the positions at `COMPARED_TICKS` are from those at half as many steps, m RMS. Large where
-    /// a flat cloth has buckled: its motion is chaotic from then on.
+    /// Distance of the positions at `COMPARED_TICKS` from those at half as many steps, m RMS. Large after a
+    /// flat cloth has buckled, since its motion is chaotic from then on.
     pub step_errors: Vec<f64>,
-    /// Largest force left on a vertex, N, where the scene is measured at rest.
+    /// Largest residual force on a vertex, N, if the scene is measured at rest.
     pub residual: Option<f64>,
 }
 
 impl Reference {
-    /// The reference of a scene, from the cache where it is there.
+    /// The reference of a scene, from the cache if it is there.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let steps = match scene.measure {
             Measure::Positions => resolving_steps(&Grid::new(scene)),
-            // Rest does not depend on the step, and statistics hide its error.
+            // The rest state does not depend on the step, and statistics hide the step's error.
             Measure::Rest | Measure::Statistics => resolving_steps(&Grid::new(scene)) / 2,
         };
         cache::cached(&(scene, steps), || Self::run(scene, steps))
     }
 
-    /// Runs the scene at `steps` steps a tick, and as far as positions are compared at twice as many.
+    /// Runs the scene at `steps` steps a tick; up to the last compared positions also at twice as many.
     #[must_use]
     pub fn run(scene: &Scene, steps: usize) -> Self {
         let mut cloth = Verlet::new(scene, steps);
@@ -73,7 +73,7 @@ impl Reference {
     }
 }
 
-/// Advances a cloth by some ticks of its scene under observation.
+/// Advances a cloth by some ticks of its scene and observes it.
 fn observe(cloth: &mut Verlet, ticks: usize, scene: &Scene) -> Observation {
     let grid = cloth.grid().clone();
     let mut observer = Observer::new(scene, &grid);

@@ -1,15 +1,15 @@
 //! Rest by kinetic damping.
 //!
-//! Cundall 1976; Barnes 1999, "Form finding and analysis of tension structures by dynamic relaxation":
-//! the undamped cloth is let go, and stopped whenever its kinetic energy passes a peak.
+//! Cundall 1976; Barnes 1999, "Form finding and analysis of tension structures by dynamic relaxation": the
+//! undamped cloth moves freely, and is stopped whenever its kinetic energy passes a peak.
 
 use glam::DVec3;
 
 use super::verlet::Verlet;
 
 impl Verlet {
-    /// Relaxes until no vertex feels more than `tolerance` newtons, or `limit` steps are spent, and
-    /// returns the residual, N.
+    /// Relaxes until no vertex has a residual force of more than `tolerance` newtons, or for `limit` steps.
+    /// Returns the residual, N.
     pub fn relax(&mut self, h: f64, tolerance: f64, limit: usize) -> f64 {
         let mut before = 0.0;
         for _ in 0..limit {

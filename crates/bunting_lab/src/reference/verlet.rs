@@ -1,9 +1,9 @@
 //! Position Verlet at a step that resolves every spring.
 //!
-//! Explicit, symplectic and of second order (drift, kick, drift; Hairer, Lubich and Wanner,
-//! "Geometric Numerical Integration", section I.1.4). It solves no system and projects no constraint,
-//! so it shares nothing with the methods that it judges; it only needs steps short against the
-//! stiffest spring. Drag takes its velocity from the middle of the kick.
+//! Explicit, symplectic and of second order (drift, kick, drift; Hairer, Lubich and Wanner, "Geometric
+//! Numerical Integration", section I.1.4). It solves no system and projects no constraint, so it shares
+//! nothing with the methods that it is compared with; its steps must be short compared with the period of the
+//! stiffest spring. Drag uses the velocity in the middle of the kick.
 
 use glam::{DVec3, dvec3};
 
@@ -15,7 +15,7 @@ use crate::{
 
 /// Longest step as a fraction of the stability limit 2/ω.
 pub const STEP_FRACTION: f64 = 0.25;
-/// Fewest steps a tick, however soft the cloth.
+/// Least number of steps a tick, for soft cloths.
 pub const FEWEST_STEPS: usize = 400;
 
 /// A cloth in motion.
@@ -35,7 +35,7 @@ pub struct Verlet {
 }
 
 impl Verlet {
-    /// The scene at its start, advanced by `steps` steps a tick.
+    /// The scene at its start, to be advanced by `steps` steps a tick.
     #[must_use]
     pub fn new(scene: &Scene, steps: usize) -> Self {
         let positions = scene.positions();
@@ -70,7 +70,7 @@ impl Verlet {
         self.ticks += 1;
     }
 
-    /// Largest force that gravity and the fabric leave on a free vertex, N.
+    /// Largest sum of gravity and elastic forces on a free vertex, N.
     #[must_use]
     pub fn residual(&mut self) -> f64 {
         self.gather_steady_forces();

@@ -1,4 +1,4 @@
-//! An independent second opinion on the reference: extended position-based dynamics.
+//! An independent check of the reference: extended position-based dynamics.
 //!
 //! Macklin, Müller and Chentanez 2016, "XPBD", algorithm 1, in double precision, Gauss–Seidel over
 //! every link, bend and twist. Bends and twists are linear in the positions, so their constraint is

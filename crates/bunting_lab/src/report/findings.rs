@@ -1,22 +1,22 @@
-//! What the figures say, drawn from each command's JSON.
+//! Findings: sentences about the figures in each command's JSON.
 
 use serde_json::Value;
 
 use crate::{output::table::figure, product::DEFAULT, stats::worse};
 
-/// Time that cloth may take of a frame, ms.
+/// Budget of cloth in a frame, ms.
 const BUDGET: f64 = 1.0;
-/// Part of a length or a frequency by which levels may differ before it is visible.
+/// Relative difference of a length or a frequency between levels from which on it is visible.
 const LEVELS_AGREE: f64 = 0.05;
-/// Largest pop that is not seen, pixels.
+/// Largest invisible pop, pixels.
 const POP: f64 = 1.0;
-/// Part of the kinetic energy that a change of level may add.
+/// Fraction of the kinetic energy that a change of level may add.
 const ENERGY: f64 = 0.01;
 /// Factor by which the largest strain may differ from the reference's, up or down.
 const STRAIN: f64 = 1.5;
-/// Part by which the schedule may exceed plain calls.
+/// Fraction by which the schedule may exceed plain calls.
 const SCHEDULE: f64 = 0.1;
-/// Failing cases that are named.
+/// Number of failing cases that are named.
 const NAMED: usize = 3;
 
 /// One sentence, good or bad news.
@@ -36,7 +36,7 @@ impl Finding {
     }
 }
 
-/// What a command's figures say.
+/// Findings about a command's figures.
 #[must_use]
 pub fn of(command: &str, json: &Value) -> Vec<Finding> {
     match command {
@@ -71,7 +71,7 @@ fn stability_gap(case: &Value) -> f64 {
     number(case, "worst") / number(case, "limit")
 }
 
-/// How many cases pass, and the worst that do not, by how many times they miss.
+/// Number of cases that pass, and the worst failing cases with the factors by which they miss their limits.
 fn cases(json: &Value, what: &str, gap: fn(&Value) -> f64) -> Vec<Finding> {
     let built = rows(json, "cases").iter().filter(|case| text(case, "status") != "not_built");
     let (passed, mut failed): (Vec<&Value>, Vec<&Value>) =
@@ -95,8 +95,8 @@ fn cases(json: &Value, what: &str, gap: fn(&Value) -> f64) -> Vec<Finding> {
     findings
 }
 
-/// How much faster this project is than every other method that errs no more, by scene, and whether its
-/// largest strain is the reference's.
+/// Speed of this project relative to every other method with no greater error, by scene, and the ratio of its
+/// largest strain to the reference's.
 fn pareto(json: &Value) -> Vec<Finding> {
     let mut scenes: Vec<(&str, u64)> = Vec::new();
     for row in rows(json, "rows") {
@@ -119,7 +119,7 @@ fn fastest(json: &Value, scene: &str, n: u64) -> Option<Finding> {
     let (ours, others): (Vec<&Value>, Vec<&Value>) = on(json, scene, n)
         .filter(|row| row["stable"].as_bool() == Some(true) && error(row).is_finite())
         .partition(|row| text(row, "method").starts_with("bunting"));
-    // Every number of lanes has the same error: of the most exact settings the fastest.
+    // The error does not depend on the number of lanes: of the most exact settings the fastest is chosen.
     let order = |a: &Value, b: &Value| {
         error(a).total_cmp(&error(b)).then_with(|| time(a).total_cmp(&time(b)))
     };
@@ -145,7 +145,7 @@ fn fastest(json: &Value, scene: &str, n: u64) -> Option<Finding> {
     })
 }
 
-/// By default settings, of a cloth that hangs or flies.
+/// Largest strain of a cloth that hangs or flies, with default settings.
 fn largest_strain(json: &Value, scene: &str, n: u64) -> Option<Finding> {
     let reference = rows(json, "references")
         .iter()
@@ -231,8 +231,8 @@ fn schedule(json: &Value) -> Vec<Finding> {
     vec![Finding::new(worst <= 1.0 + SCHEDULE, sentence)]
 }
 
-/// The fastest of this project's settings for a single cloth against what stretches least of the other
-/// engines.
+/// Time of the fastest of this project's settings for a single cloth, compared with the least stretched of
+/// the other engines.
 fn peers(json: &Value) -> Vec<Finding> {
     let is_ours = |row: &&Value| text(row, "engine").starts_with("bunting");
     let on = |scene: &'static str| {

@@ -1,6 +1,6 @@
-//! What the project cannot do, said where its figures are.
+//! Limitations of the project, listed beside its figures.
 
-/// What a reader of the figures might expect and will not find.
+/// Limitations that a reader of the figures should know.
 pub const LIMITS: [&str; 14] = [
     "Self-collision: a cloth passes through itself.",
     "Collision of cloths with one another.",

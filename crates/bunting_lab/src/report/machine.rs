@@ -1,4 +1,4 @@
-//! What the figures were measured on.
+//! The machine on which the figures were measured.
 
 use std::{fmt, fs, thread, time::SystemTime};
 
@@ -11,20 +11,20 @@ pub struct Machine {
     pub processor: String,
     /// Threads that it offers.
     pub threads: usize,
-    /// Instruction set that wide kernels ran with.
+    /// Instruction set of the wide kernels.
     pub instruction_set: &'static str,
-    /// When it was measured, UTC.
+    /// Date of the measurement, UTC.
     pub date: String,
-    /// Mean number of threads that were running or ready in the minute before; none where the system
-    /// does not say.
+    /// Mean number of threads that were running or ready in the minute before the measurement; none if the
+    /// system does not provide it.
     pub load: Option<f64>,
 }
 
-/// Load of a machine that does nothing else.
+/// Load of an idle machine.
 const IDLE: f64 = 0.5;
 
 impl Machine {
-    /// This machine, now.
+    /// Describes this machine at this time.
     #[must_use]
     pub fn here() -> Self {
         let described = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
@@ -37,7 +37,7 @@ impl Machine {
         }
     }
 
-    /// The load, where other programs disturbed the measurement.
+    /// The load, if other programs disturbed the measurement.
     #[must_use]
     pub fn foreign_load(&self) -> Option<f64> {
         self.load.filter(|load| *load > IDLE)
@@ -51,12 +51,12 @@ impl fmt::Display for Machine {
     }
 }
 
-/// The mean of the last minute, of the three that Linux gives.
+/// Mean load of the last minute, the first of the three that Linux gives.
 fn load(described: &str) -> Option<f64> {
     described.split_whitespace().next()?.parse().ok()
 }
 
-/// The first model name that Linux gives.
+/// First model name that Linux gives.
 fn model(described: &str) -> Option<&str> {
     let line = described.lines().find(|line| line.starts_with("model name"))?;
     Some(line.split_once(':')?.1.trim())

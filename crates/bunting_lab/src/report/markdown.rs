@@ -9,7 +9,7 @@ use crate::output::table::Table;
 
 /// Name of the document, and of the folder of its plots, without their endings.
 const NAME: &str = "measurements";
-/// Rows from which a table is folded away.
+/// Number of rows from which a table is folded.
 const LONG: usize = 20;
 
 /// Writes `measurements.md` into a folder, and its plots into `measurements/`.
@@ -96,7 +96,7 @@ fn lines(table: &Table) -> String {
     lines.join("\n")
 }
 
-/// Text that neither ends a cell nor begins a tag.
+/// Text with escaped ends of cells and beginnings of tags.
 fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('|', "\\|")
 }
@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn a_document_stands_beside_the_plots_that_it_shows() {
+    fn a_document_is_written_beside_its_plots() {
         let folder = std::env::temp_dir().join(format!("bunting-lab-md-{}", std::process::id()));
         write(&folder, &[section(Ok(outcome()))], &Machine::here(), true).expect("a document");
         let text = fs::read_to_string(folder.join("measurements.md")).expect("the document");

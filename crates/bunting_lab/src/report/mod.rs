@@ -1,5 +1,5 @@
-//! What was measured, on what, what is good and what is not: a page of HTML, and a document of Markdown
-//! beside its plots.
+//! The report: figures, the machine, findings and limitations, as an HTML page and as a Markdown document
+//! with its plots.
 
 pub mod findings;
 pub mod limits;

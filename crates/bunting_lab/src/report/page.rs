@@ -6,9 +6,9 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use super::{findings::Finding, machine::Machine, section::Section};
 use crate::output::table::Table;
 
-/// Rows from which a table is folded away.
+/// Number of rows from which a table is folded.
 const LONG: usize = 12;
-/// How the page looks.
+/// Style sheet of the page.
 const STYLE: &str = "
 body { font: 16px/1.5 system-ui, sans-serif; max-width: 60rem; margin: 2rem auto; padding: 0 1rem; }
 table { border-collapse: collapse; font-size: 0.85rem; margin: 0.5rem 0; }

@@ -1,27 +1,27 @@
-//! A part of the report.
+//! A section of the report.
 
 use std::time::Duration;
 
 use super::findings::{self, Finding};
 use crate::output::Outcome;
 
-/// What one command measured.
+/// Results of one command.
 #[derive(Debug)]
 pub struct Section {
     /// Name of the command.
     pub command: &'static str,
-    /// How the command is run to measure the same by itself.
+    /// Command line that repeats the measurement.
     pub command_line: String,
-    /// What it measures, in a sentence.
+    /// Purpose of the command, in a sentence.
     pub measures: &'static str,
-    /// What came out, or why nothing did.
+    /// Outcome, or the reason why there is none.
     pub outcome: Result<Outcome, String>,
-    /// How long it took.
+    /// Wall-clock time of the command.
     pub took: Duration,
 }
 
 impl Section {
-    /// What its figures say.
+    /// Findings about the command's figures.
     #[must_use]
     pub fn findings(&self) -> Vec<Finding> {
         match &self.outcome {

@@ -1,33 +1,33 @@
-//! A hard case: one figure and the limit that it must not pass.
+//! A hard case: one measured value and the limit that it must not exceed.
 
 use serde::Serialize;
 
-/// Whether a case could be run.
+/// Whether a case was run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Status {
-    /// It was run.
+    /// The case was run.
     Built,
-    /// The product or this machine lacks what it is about.
+    /// The product or this machine lacks a feature that the case needs.
     NotBuilt,
 }
 
-/// A hard case and how it went.
+/// A hard case and its result.
 #[derive(Clone, Debug, Serialize)]
 pub struct HardCase {
     /// Name.
     pub name: String,
-    /// Vertices along each side; zero where the case has no one size.
+    /// Vertices along each side; zero if the case has no single size.
     pub n: usize,
-    /// What the figure is, with its unit.
+    /// Description of the value, with its unit.
     pub figure: &'static str,
-    /// The worst that was measured; none where nothing was, or it was not a number.
+    /// Worst measured value; none if nothing was measured, or if it was not a number.
     pub worst: Option<f64>,
-    /// The worst that passes.
+    /// Worst value that passes.
     pub limit: f64,
     /// Whether it passed.
     pub pass: bool,
-    /// Whether it was run.
+    /// Whether the case was run.
     pub status: Status,
 }
 
@@ -52,7 +52,7 @@ impl HardCase {
         }
     }
 
-    /// A case that the product or this machine lacks something for.
+    /// A case that was not run because the product or this machine lacks a feature.
     #[must_use]
     pub fn not_built(name: impl Into<String>, figure: &'static str, limit: f64) -> Self {
         Self {

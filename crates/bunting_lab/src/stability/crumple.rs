@@ -22,7 +22,7 @@ const SECONDS: f64 = 6.0;
 pub fn cases(quick: bool) -> Vec<HardCase> {
     let n = if quick { 9 } else { 17 };
     let mut cases = Vec::new();
-    // Within a centimetre of the middle of the pinned edge, by a sequence without pattern.
+    // Positions lie within a centimetre of the middle of the pinned edge, by a sequence without pattern.
     let crushed = |vertex: usize, _: DVec3| {
         let scatter = |k: f64| ((vertex as f64 * k).sin() * 1e4).fract() * 0.01;
         dvec3(0.5, 0.0, 0.0) + dvec3(scatter(12.9898), scatter(78.233), scatter(37.719))
@@ -40,7 +40,7 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     cases
 }
 
-/// A cloth held by its top edge, from other initial positions.
+/// Cases of a cloth held by its top edge that recovers from other initial positions.
 fn recovers(name: &str, n: usize, start_at: impl Fn(usize, DVec3) -> DVec3) -> [HardCase; 2] {
     let scene = Scene::hang_top(n);
     let mut cloth = start(&scene);
@@ -65,7 +65,7 @@ fn recovers(name: &str, n: usize, start_at: impl Fn(usize, DVec3) -> DVec3) -> [
     ]
 }
 
-/// A degenerate start of a free cloth in wind must stay finite and near.
+/// Case of a degenerate start of a free cloth in wind, which must stay finite and near.
 fn finite(name: &str, n: usize, place: impl Fn(DVec3) -> DVec3) -> HardCase {
     let scene = Scene { air: Scene::flag(n).air, ..Scene::hang_top(n) };
     let mut cloth = start(&scene);
@@ -80,7 +80,7 @@ fn finite(name: &str, n: usize, place: impl Fn(DVec3) -> DVec3) -> HardCase {
     HardCase::new(format!("degenerate: {name}"), n, "reach, m", reach(&cloth), REACH)
 }
 
-/// A flat cloth along the wind feels no pressure, and no division by nothing.
+/// Case of a flat cloth along the wind, which must feel no pressure and divide by no zero.
 fn in_the_wind_plane(n: usize) -> HardCase {
     let mut air = Scene::flag(n).air;
     air.gust = [0.0; 3];

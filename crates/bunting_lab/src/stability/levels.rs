@@ -36,7 +36,7 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     cases
 }
 
-/// A swing that changes its level every tick.
+/// Cases of a swing that changes its level in every tick.
 fn thrash(n: usize, seconds: f64) -> [HardCase; 2] {
     let scenes = [Scene::swing(n), Scene::swing(n / 2 + 1)];
     let grids = scenes.each_ref().map(Grid::new);
@@ -73,8 +73,8 @@ fn thrash(n: usize, seconds: f64) -> [HardCase; 2] {
     ]
 }
 
-/// What is seen of a flag's change to the next coarser level and back, where such changes are looked
-/// at.
+/// Cases of the visible effect of a flag's change to the next coarser level and back, at the distances where
+/// such changes are observed.
 fn changes(moments: usize) -> impl Iterator<Item = HardCase> {
     LEVELS.windows(2).map(move |sizes| {
         let [fine, coarse] = [sizes[0] as usize, sizes[1] as usize];
@@ -87,7 +87,8 @@ fn changes(moments: usize) -> impl Iterator<Item = HardCase> {
     })
 }
 
-/// A flag alone, among eight and among sixteen, on this thread and on others, to the bit.
+/// Case of a flag alone, among eight and among sixteen, on this thread and on others: all must have the same
+/// bits.
 fn determinism(n: usize, ticks: usize) -> HardCase {
     let runs: Vec<ClothSnapshot> = thread::scope(|scope| {
         let lanes = [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen, LaneCount::One];
@@ -103,7 +104,7 @@ fn determinism(n: usize, ticks: usize) -> HardCase {
     )
 }
 
-/// A flag with each instruction set that the machine has, to the bit.
+/// Case of a flag with each instruction set of the machine: all must have the same bits.
 fn instruction_sets(n: usize, ticks: usize) -> HardCase {
     let name = "determinism: instruction sets";
     let runs = with_every_instruction_set(|| fly(n, LaneCount::Eight, ticks));
@@ -113,14 +114,14 @@ fn instruction_sets(n: usize, ticks: usize) -> HardCase {
     HardCase::new(name, n, "vertices that differ", differing(&runs), 0.0)
 }
 
-/// A flag after so many ticks.
+/// State of a flag after `ticks` ticks.
 fn fly(n: usize, lanes: LaneCount, ticks: usize) -> ClothSnapshot {
     let mut cloth = Product { settings: DEFAULT, lanes }.start(&Scene::flag(n));
     (0..ticks).for_each(|_| cloth.tick());
     cloth.batch.snapshot(0)
 }
 
-/// Most vertices by which any of the states differs from the first.
+/// Greatest number of vertices by which a state differs from the first.
 fn differing(states: &[ClothSnapshot]) -> f64 {
     let bits = |x: &Vec3| x.to_array().map(f32::to_bits);
     let counts = states.iter().map(|state| {
@@ -130,7 +131,7 @@ fn differing(states: &[ClothSnapshot]) -> f64 {
     counts.max().unwrap_or_default() as f64
 }
 
-/// Everything that must be refused with a typed error.
+/// Case of bad input, all of which must be refused with a typed error.
 fn bad_input() -> HardCase {
     let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
     let mut infinite = corners.clone();
@@ -158,7 +159,7 @@ fn bad_input() -> HardCase {
     HardCase::new("bad input", 0, "bad inputs accepted", worst, 0.0)
 }
 
-/// A cloth that is refused leaves the others in the batch as they were.
+/// Case of a refused cloth, which must leave the others in the batch unchanged.
 fn bad_neighbour() -> HardCase {
     let scene = Scene::swing(5);
     let fabric = fabric(&scene);

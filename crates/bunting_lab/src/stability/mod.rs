@@ -1,7 +1,7 @@
-//! The hard cases: what breaks cloth in games, and how badly.
+//! The hard cases: situations in games that break cloth, and how badly they do.
 //!
-//! Every case runs the product by default settings and reduces to one figure, its worst, that must not
-//! exceed a limit.
+//! Every case runs the product with default settings and yields one value, the worst, that must not exceed a
+//! limit.
 
 mod case;
 mod crumple;

@@ -1,4 +1,4 @@
-//! Frames that move, pins that are too far apart, and ticks of odd lengths.
+//! Moving frames, pins too far apart, and ticks of unusual lengths.
 
 use std::f32::consts::{PI, TAU};
 
@@ -32,14 +32,14 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     cases
 }
 
-/// Advances a cloth while its frame goes from pose to pose, gravity staying the world's.
+/// Advances a cloth while its frame moves from pose to pose. Gravity stays that of the world.
 fn carry(cloth: &mut Cloth, from: (Vec3, Quat), to: (Vec3, Quat)) {
     cloth.drive.motion = FrameMotion::between(from, to);
     cloth.drive.gravity = to.1.inverse() * Vec3::new(0.0, -9.81, 0.0);
     cloth.tick();
 }
 
-/// The same swaying ride near the origin and far away, where poses are rounded.
+/// Case of the same swaying ride near the origin and far away, where poses are rounded.
 fn far(n: usize, offset: f32) -> HardCase {
     let scene = Scene::hang_top(n);
     let pose = |offset: f32, tick: usize| {
@@ -54,12 +54,12 @@ fn far(n: usize, offset: f32) -> HardCase {
     }
     let apart =
         rms_distance(&in_double(cloths[0].1.positions()), &in_double(cloths[1].1.positions()));
-    // A pose that is rounded to a unit in the last place of the offset shakes the pins by as much.
+    // A pose that is rounded to a unit in the last place of the offset shakes the pins by the same amount.
     let limit = f64::from(offset * f32::EPSILON) + 1e-4;
     HardCase::new(format!("{offset:e} m from the origin"), n, "RMS distance, m", apart, limit)
 }
 
-/// A cloth put down elsewhere with its state kept must go on as if nothing had happened.
+/// Case of a teleported cloth with its state kept, which must continue unchanged.
 fn teleport_kept(n: usize) -> HardCase {
     let scene = Scene::swing(n);
     let mut stays = start(&scene);
@@ -74,7 +74,7 @@ fn teleport_kept(n: usize) -> HardCase {
     HardCase::new("teleport, state kept", n, "speed over that of none", worst, 1.05)
 }
 
-/// A cloth reset elsewhere, turned by 180°, starts from rest.
+/// Case of a cloth reset elsewhere, turned by 180°, which must start from rest.
 fn teleport_reset(n: usize) -> HardCase {
     let scene = Scene::swing(n);
     let mut cloth = start(&scene);
@@ -92,7 +92,7 @@ fn teleport_reset(n: usize) -> HardCase {
     )
 }
 
-/// Two seconds of violence, then two of rest.
+/// Cases of a frame that is shaken for two seconds and then rests for two.
 fn shaken(name: &str, n: usize, path: impl Fn(f32) -> (Vec3, Quat)) -> [HardCase; 2] {
     let scene = Scene::hang_side(n);
     let mut cloth = start(&scene);
@@ -117,7 +117,7 @@ fn shaken(name: &str, n: usize, path: impl Fn(f32) -> (Vec3, Quat)) -> [HardCase
     ]
 }
 
-/// One tick of an odd length amid a swing.
+/// Case of one tick of an unusual length during a swing.
 fn hitch(n: usize, tick: f32) -> HardCase {
     let mut cloth = start(&Scene::swing(n));
     run(&mut cloth, 0.2);
@@ -130,7 +130,7 @@ fn hitch(n: usize, tick: f32) -> HardCase {
     HardCase::new(format!("hitch of {tick} s, not capped"), n, "reach, m", worst, REACH)
 }
 
-/// Two opposite edges held 10 % too far apart.
+/// Case of two opposite edges held 10 % too far apart.
 fn overstretched(n: usize) -> HardCase {
     let swing = Scene::swing(n);
     let scene = Scene { pins: Pins::TopAndBottom, pose: Pose::Vertical, damping: 2.0, ..swing };

@@ -1,4 +1,4 @@
-//! What the hard cases have in common.
+//! Settings and measurements that the hard cases share.
 
 use crate::{
     product::{Cloth, DEFAULT, Product},
@@ -8,7 +8,7 @@ use crate::{
     stats::{Strain, rms_length},
 };
 
-/// Farthest that a vertex of a metre of cloth held by an edge may be from a pin at the origin, m: its
+/// Greatest distance of a vertex of a metre of cloth held by an edge from a pin at the origin, m: its
 /// diagonal and some strain.
 pub const REACH: f64 = 1.6;
 /// Largest 95th percentile of strain of a cloth that has recovered, %.
@@ -29,7 +29,7 @@ pub fn speed(cloth: &Cloth) -> f64 {
     rms_length(&in_double(cloth.velocities()))
 }
 
-/// Distance of the farthest vertex from the origin, m; infinite where one is not a number.
+/// Distance of the farthest vertex from the origin, m; infinite if a position is not a number.
 pub fn reach(cloth: &Cloth) -> f64 {
     let longest = |far: f64, x: &glam::Vec3| {
         if x.is_finite() { far.max(x.length().into()) } else { f64::INFINITY }
@@ -37,7 +37,7 @@ pub fn reach(cloth: &Cloth) -> f64 {
     cloth.positions().iter().fold(0.0, longest)
 }
 
-/// Kinetic, gravitational and elastic energy over what the sheet would lose by falling its own
+/// Kinetic, gravitational and elastic energy, over the energy that the sheet would lose by falling its own
 /// height.
 pub fn energy(scene: &Scene, grid: &Grid, cloth: &Cloth) -> f64 {
     let [positions, velocities] = [cloth.positions(), cloth.velocities()].map(in_double);

@@ -20,12 +20,12 @@ use crate::{
 const SIZE: usize = 17;
 /// Longest time that a sheet damped by 2/s takes to fall asleep, s.
 const SLEEPY: f64 = 10.0;
-/// Time that it then hangs, s.
+/// Time that the sheet hangs after that, s.
 const TEN_MINUTES: f64 = 600.0;
-/// Largest drift, of the sheet's metre.
+/// Largest drift, m; the sheet measures one metre.
 const DRIFT: f64 = 1e-4;
 
-/// A sheet hung by two corners: how soon it sleeps, and how far it then drifts.
+/// Cases of a sheet hung by two corners: the time until it sleeps, and its drift afterwards.
 pub fn cases(_quick: bool) -> Vec<HardCase> {
     let scene = Scene::hang_corners(SIZE);
     let mut app = game::app_in_still_air([StepSettings::default()]);

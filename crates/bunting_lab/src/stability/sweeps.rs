@@ -1,4 +1,4 @@
-//! The same cloth at other sizes, passes, rates and step lengths.
+//! Sweeps over sizes, passes, rates and step lengths.
 
 use bunting_solver::StepSettings;
 
@@ -18,13 +18,13 @@ use crate::{
 
 /// Largest difference of mean strains, percentage points.
 const STRAIN: f64 = 0.2;
-/// Largest difference of periods, of one.
+/// Largest relative difference of periods.
 const PERIOD: f64 = 0.01;
-/// Largest rise of the energy over its start, of the sheet's fall.
+/// Largest rise of the energy above its start, over the energy of the sheet's fall.
 const ENERGY: f64 = 0.01;
 /// Time in which a cloth damped by 2/s comes to rest, s: its motion has decayed to e⁻¹².
 const SETTLING: f64 = 12.0;
-/// Fastest that a cloth at rest may move, m/s RMS.
+/// Greatest speed of cloth at rest, m/s RMS.
 const REST_SPEED: f64 = 1e-3;
 /// Largest 95th percentile of strain at rest, %.
 const REST_STRAIN: f64 = 1.0;
@@ -75,7 +75,7 @@ fn tick_lengths(rate: u32) -> impl Iterator<Item = f32> {
     })
 }
 
-/// Every setting of the sweep: passes at 60 Hz, then rates by default settings.
+/// Settings of the sweep: numbers of passes at 60 Hz, then rates with default settings.
 fn sweep() -> impl Iterator<Item = (StepSettings, u32)> {
     let passes = [1, 2, 4, 8].map(|passes| (StepSettings { passes, ..DEFAULT }, 60));
     let rates = [30, 144, 240, 0].map(|rate| (DEFAULT, rate));
@@ -112,7 +112,7 @@ fn passes_and_rates_period() -> HardCase {
     HardCase::new("passes 1–8, 30–240 Hz, jitter: period", 8, "difference, of one", worst, PERIOD)
 }
 
-/// Period in seconds of a pendulum, from its tip resampled evenly.
+/// Period in seconds of a pendulum, from its tip, resampled at equal intervals.
 fn period(cloth: &mut Cloth, rate: u32) -> f64 {
     const SAMPLE: f64 = 1.0 / 240.0;
     let (mut samples, mut last) = (Vec::new(), None);
@@ -129,7 +129,7 @@ fn period(cloth: &mut Cloth, rate: u32) -> f64 {
     crossing_frequency(&samples, 1.0 / SAMPLE).map_or(f64::NAN, f64::recip)
 }
 
-/// Runs for some seconds at a rate, showing the cloth with the time after each tick.
+/// Runs for `seconds` s at a rate, and calls `see` with the cloth and the time after each tick.
 fn follow(cloth: &mut Cloth, rate: u32, seconds: f64, mut see: impl FnMut(&Cloth, f64)) {
     let mut time = 0.0;
     for tick in tick_lengths(rate) {
@@ -208,8 +208,8 @@ fn stiff_bending() -> HardCase {
     HardCase::new("stiff bending, Γ = 0.01", 32, "error of H/W = Γ/8, of one", aspect, 0.02)
 }
 
-/// A stiff clamped strip without load, displaced in its plane, must oscillate about its rest. Its cells are
-/// `aspect` times as wide as long.
+/// Case of a stiff clamped strip without load, displaced in its plane, which must oscillate about its rest
+/// shape. Its cells are `aspect` times as wide as long.
 fn nudged_strip(aspect: f64) -> HardCase {
     const SEGMENTS: usize = 32;
     const NUDGE: f64 = 1e-4;
@@ -231,7 +231,7 @@ fn nudged_strip(aspect: f64) -> HardCase {
     HardCase::new(name, SEGMENTS, "farthest, over the nudge", worst, 1.5)
 }
 
-/// Distance between the largest and the smallest.
+/// Difference between the largest and the smallest value.
 fn spread(values: &[f64]) -> f64 {
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -14,16 +14,16 @@ use crate::{
 
 /// Speed of the collider along z, m/s.
 const SPEED: f32 = 20.0;
-/// Radius of its swept cross-section, m.
+/// Radius of the collider's swept cross-section, m.
 const RADIUS: f32 = 0.05;
-/// Where it starts, m from the cloth.
+/// Start of the collider, m from the cloth along z.
 const START: f32 = -0.5;
-/// Ticks of its flight.
+/// Ticks of the collider's flight.
 const TICKS: usize = 4;
-/// Deepest that a vertex may be inside, m.
+/// Greatest depth of a vertex in the collider, m.
 const DEPTH: f64 = 1e-3;
 
-/// A ball, a capsule and a box's edge through a loose cloth.
+/// Cases of a ball, a capsule and a box's edge that pass through a loose cloth.
 pub fn cases(quick: bool) -> Vec<HardCase> {
     let n = if quick { 17 } else { 65 };
     let ball = SharedShape::ball(RADIUS);
@@ -41,7 +41,7 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     .collect()
 }
 
-/// A level sheet falls on a floor. Cloth does not bounce.
+/// Case of a level sheet that falls on a floor and must not bounce.
 fn dropped(n: usize) -> HardCase {
     const HEIGHT: f32 = 0.3;
     let scene = Scene { pose: Pose::Vertical, pins: Pins::Free, ..Scene::hang_top(n) };
@@ -60,8 +60,8 @@ fn dropped(n: usize) -> HardCase {
     HardCase::new("drop on a floor", n, "speed of rebound over that of impact", rebound, 0.05)
 }
 
-/// The shape flies through the middle of a free sheet; vertices in its way must be pushed ahead of it. (A
-/// sheet held by its top could not follow farther than its length: it would have to slip off.)
+/// Cases of a shape that flies through the middle of a free sheet, and must push the vertices in its way
+/// ahead. (A sheet held by its top could not follow farther than its length: it would have to slip off.)
 fn shot(name: &str, n: usize, shape: &SharedShape, turn: Quat) -> [HardCase; 2] {
     let scene = Scene { pose: Pose::Vertical, pins: Pins::Free, ..Scene::hang_top(n) };
     let mut cloth = start(&scene);

@@ -50,7 +50,7 @@ pub fn cases(quick: bool) -> Vec<HardCase> {
     cases
 }
 
-/// Farthest reach of a flag that lies still when the wind sets in.
+/// Greatest reach of a flag that lies still when the wind sets in.
 fn flag(n: usize, density: f64, wind: f64, seconds: f64) -> f64 {
     let flag = Scene::flag(n);
     let scene = Scene {
@@ -65,7 +65,7 @@ fn flag(n: usize, density: f64, wind: f64, seconds: f64) -> f64 {
     })
 }
 
-/// Cloths of 2 g/m² and 2 kg/m² side by side in one batch.
+/// Case of cloths of 2 g/m² and 2 kg/m² side by side in one batch.
 fn mass_ratio(n: usize) -> HardCase {
     let scene = Scene::flag(n);
     let product = Product { settings: DEFAULT, lanes: bunting_solver::LaneCount::Eight };
@@ -84,7 +84,7 @@ fn mass_ratio(n: usize) -> HardCase {
     HardCase::new("mass ratio 1 : 1000 in one batch", n, "reach of the light one, m", worst, REACH)
 }
 
-/// A free sheet in a wind that sets in at 40 m/s may not overtake it.
+/// Case of a free sheet in a wind that sets in at 40 m/s, which the sheet must not overtake.
 fn overtaken() -> HardCase {
     const WIND: f64 = 40.0;
     let scene = Scene {
@@ -104,7 +104,7 @@ fn overtaken() -> HardCase {
     HardCase::new("wind never overtaken", 5, "speed over the wind's", worst, 1.0)
 }
 
-/// A cloth at rest becomes a hundred times as stiff.
+/// Case of a cloth at rest that becomes a hundred times as stiff.
 fn stiffened(n: usize) -> HardCase {
     let hang = Scene::hang_corners(n);
     let scene =

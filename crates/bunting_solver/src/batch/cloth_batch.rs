@@ -1,4 +1,4 @@
-//! The public face of a batch, whatever its width and layout.
+//! The public interface of a batch, for every width and layout.
 
 use std::sync::Arc;
 
@@ -21,8 +21,9 @@ use crate::step::{Drive, Scheme, StepSettings};
 
 /// The state of up to [`LaneCount`] cloths of one [`Fabric`], stepped together.
 ///
-/// Each cloth has a lane, numbered from 0. The bits of its state depend on its own history only. Methods that
-/// change a lane return [`BatchError::NoLane`] where there is none of that number, and those that read one panic.
+/// Each cloth has a lane, numbered from 0. The bits of its state depend on its own history only. If there is
+/// no lane with a given number, methods that change a lane return [`BatchError::NoLane`], and methods that
+/// read one panic.
 #[derive(Clone, Debug)]
 pub struct ClothBatch(Lanes);
 
@@ -35,7 +36,7 @@ enum Lanes {
     Sixteen(Box<LaneBatch<Pack16>>),
 }
 
-/// Evaluates the same expression with the batch of any width and layout.
+/// Evaluates an expression with the batch of any width and layout.
 macro_rules! with_batch {
     ($lanes:expr, $batch:ident => $body:expr) => {
         match $lanes {
@@ -61,7 +62,7 @@ impl ClothBatch {
         })
     }
 
-    /// The fabric that all cloths of the batch are cut from.
+    /// The fabric that all cloths of the batch share.
     #[must_use]
     pub fn fabric(&self) -> &Arc<Fabric> {
         with_batch!(&self.0, batch => &batch.fabric)
@@ -107,8 +108,8 @@ impl ClothBatch {
 
     /// Puts a cloth into the first free lane and returns the lane.
     ///
-    /// # Errors
-    ///
+    /// No lane is free, the material is invalid, or the state is not finite or of another fabric. The batch
+    /// is then unchanged.
     /// No lane is free, the material is bad, or the state is not finite or of another fabric. The
     /// batch is then as it was.
     pub fn insert(
@@ -127,8 +128,8 @@ impl ClothBatch {
     ///
     /// # Errors
     ///
-    /// The material is bad, the state is not finite or of another fabric, or there is no such lane. The batch is
-    /// then as it was.
+    /// The material is invalid, the state is not finite or of another fabric, or there is no such lane. The
+    /// batch is then unchanged.
     pub fn replace(
         &mut self,
         lane: usize,
@@ -138,13 +139,13 @@ impl ClothBatch {
         self.exchange(&[], &[(lane, snapshot, material)])
     }
 
-    /// Takes cloths out of lanes, and puts others into lanes, in place of any cloths that these hold. Several
-    /// take hardly longer than one.
+    /// Removes cloths from lanes, and inserts others in place of any cloths that their lanes hold. Exchanging
+    /// several cloths takes hardly longer than exchanging one.
     ///
     /// # Errors
     ///
-    /// A material is bad, a state is not finite or of another fabric, or there is no such lane. The batch is then
-    /// as it was.
+    /// A material is invalid, a state is not finite or of another fabric, or there is no such lane. The batch
+    /// is then unchanged.
     pub fn exchange(
         &mut self,
         leave: &[usize],
@@ -162,7 +163,7 @@ impl ClothBatch {
         Ok(())
     }
 
-    /// Takes the cloth out of a lane.
+    /// Removes the cloth from a lane.
     ///
     /// # Errors
     ///
@@ -171,12 +172,12 @@ impl ClothBatch {
         self.exchange(&[lane], &[])
     }
 
-    /// Overwrites the state of a lane. A state without the integrator's history is continued by a substep of
-    /// first order.
+    /// Overwrites the state of a lane. If the state has no integrator's history, the next substep is of first
+    /// order.
     ///
     /// # Errors
     ///
-    /// The state is not finite or of another fabric, or there is no such lane. The lane is then as it was.
+    /// The state is not finite or of another fabric, or there is no such lane. The lane is then unchanged.
     pub fn restore(&mut self, lane: usize, snapshot: &ClothSnapshot) -> Result<(), BatchError> {
         self.check_lane(lane)?;
         self.check(snapshot)?;
@@ -189,7 +190,7 @@ impl ClothBatch {
         if lane < lanes { Ok(()) } else { Err(BatchError::NoLane { lane, lanes }) }
     }
 
-    /// Panics where there is no such lane: a single cloth would answer for every lane.
+    /// Panics if there is no such lane: a single cloth would otherwise answer for every lane.
     #[track_caller]
     fn expect_lane(&self, lane: usize) {
         let lanes = self.lane_count();
@@ -226,13 +227,13 @@ impl ClothBatch {
         Ok(())
     }
 
-    /// Sets what acts on a lane from the next tick on. The frame's motion is repeated every tick until it is
-    /// set again. An empty lane stays empty.
+    /// Sets the frame motion, gravity and air that act on a lane from the next tick on. The frame's motion is
+    /// repeated in every tick until it is set again. An empty lane stays empty.
     ///
     /// # Errors
     ///
-    /// A number is not finite, the air's density is negative, or there is no such lane. The lane is then driven
-    /// as before.
+    /// A number is not finite, the air's density is negative, or there is no such lane. The lane then keeps
+    /// its former drive.
     pub fn drive(&mut self, lane: usize, drive: Drive) -> Result<(), BatchError> {
         self.check_lane(lane)?;
         drive.validate().map_err(|name| BatchError::Drive { name })?;
@@ -248,7 +249,7 @@ impl ClothBatch {
     ///
     /// # Errors
     ///
-    /// There is no such lane, or a number of a collider is not finite. The cloth then does not feel that collider.
+    /// There is no such lane, or a number of a collider is not finite. Such a collider is left out.
     pub fn set_colliders(
         &mut self,
         lane: usize,
@@ -278,8 +279,8 @@ impl ClothBatch {
         near.filter(|(_, candidates)| !candidates.is_empty()).map(|(collider, _)| collider)
     }
 
-    /// Begins a tick of `tick` seconds: sets the length of its substeps, and finds the particles that may touch
-    /// each collider. In a tick without length nothing moves.
+    /// Begins a tick of `tick` seconds: sets the length of its substeps, and finds the particles that may
+    /// touch each collider. In a tick of zero length nothing moves.
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
         if let Lanes::Single(single) = &self.0
             && settings.scheme != Scheme::Yarns
@@ -300,21 +301,21 @@ impl ClothBatch {
         with_batch!(&mut self.0, batch => batch.solve_constraints());
     }
 
-    /// The part of [`solve_constraints`](Self::solve_constraints) that comes first: bending, of the scheme of yarns. For
-    /// measuring its time.
+    /// The first part of [`solve_constraints`](Self::solve_constraints) in the scheme of yarns: bending. It
+    /// is public for measurements of its time.
     #[doc(hidden)]
     pub fn solve_all_bending(&mut self) {
         with_batch!(&mut self.0, batch => batch.solve_all_bending());
     }
 
-    /// The other part of [`solve_constraints`](Self::solve_constraints).
+    /// The second part of [`solve_constraints`](Self::solve_constraints): all other constraints.
     #[doc(hidden)]
     pub fn solve_all_but_bending(&mut self) {
         with_batch!(&mut self.0, batch => batch.solve_all_but_bending());
     }
 
-    /// The particles of a lane while a substep is under way, for forces and constraints of the caller's: between
-    /// [`integrate`](Self::integrate) and [`update_velocities`](Self::update_velocities). None where the lane is
+    /// The particles of a lane during a substep, for forces and constraints of the caller: between
+    /// [`integrate`](Self::integrate) and [`update_velocities`](Self::update_velocities). None if the lane is
     /// empty, and outside a substep.
     pub fn particles_mut(&mut self, lane: usize) -> Option<ParticlesMut<'_>> {
         with_batch!(&mut self.0, batch => ParticlesMut::new(&mut **batch, lane))
@@ -330,9 +331,9 @@ impl ClothBatch {
         with_batch!(&mut self.0, batch => batch.compute_normals());
     }
 
-    /// Runs one whole tick of `tick` seconds: all substeps, then the normals. Their number is chosen within the limits
-    /// for this fabric under standard gravity; settings are limits that leave no choice. Where gravity is stronger, see
-    /// [`StepLimits::of_fabric`].
+    /// Runs a whole tick of `tick` seconds: all substeps, then the normals. The number of substeps is chosen
+    /// within the limits for this fabric under standard gravity; [`StepSettings`] leave no choice. For
+    /// stronger gravity, see [`StepLimits::of_fabric`].
     pub fn step(&mut self, tick: f32, limits: impl Into<StepLimits>) {
         let settings = limits.into().of_fabric(self.fabric(), tick, GRAVITY);
         self.begin_tick(tick, settings);
@@ -363,12 +364,12 @@ impl ClothBatch {
         with_batch!(&self.0, batch => batch.copy_normals(lane, into));
     }
 
-    /// Positions and normals of all cloths at once, each into the element of its lane: much faster than lane
-    /// by lane. The elements of empty lanes are left as they are.
+    /// Positions and normals of all cloths at once, each cloth's into the element of its lane: much faster
+    /// than lane by lane. The elements of empty lanes keep their values.
     ///
     /// # Panics
     ///
-    /// When `into` has fewer elements than the batch has lanes.
+    /// If `into` has fewer elements than the batch has lanes.
     pub fn copy_surfaces(&self, into: &mut [LaneSurface]) {
         with_batch!(&self.0, batch => batch.copy_surfaces(into));
     }
@@ -387,8 +388,8 @@ impl ClothBatch {
         with_batch!(&self.0, batch => batch.snapshot_without_history(lane))
     }
 
-    /// Positions and velocities of some of a lane's particles, in the order given: the state of a coarser
-    /// fabric that has these particles.
+    /// Positions and velocities of some of a lane's particles, in the given order: the state of a coarser
+    /// fabric with these particles.
     #[must_use]
     pub fn snapshot_of(&self, lane: usize, particles: &[u32]) -> ClothSnapshot {
         self.expect_lane(lane);

@@ -1,8 +1,8 @@
-//! Why a cloth cannot be put into a batch, or changed in it.
+//! Errors of batches.
 
 use crate::fabric::FabricError;
 
-/// Why a cloth cannot be put into a batch, or changed in it.
+/// Reason why a cloth cannot be put into a batch, or changed in it.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum BatchError {
@@ -40,7 +40,7 @@ pub enum BatchError {
     /// A number of a collider is infinite or not a number.
     #[error("the pose, margin or friction of collider {index} is not finite")]
     Collider {
-        /// Its index among those given.
+        /// Index of the collider in the given list.
         index: usize,
     },
     /// The material cannot be simulated.

@@ -1,4 +1,4 @@
-//! Cloths that come into a batch, leave it, or are given another state.
+//! Insertion and removal of cloths, and changes of their states.
 
 use std::sync::Arc;
 
@@ -16,14 +16,14 @@ use crate::simd::vec3::set_lane3;
 use crate::stability::pin_strain::PinStrain;
 use crate::step::bdf::IntegratorHistory;
 
-/// One of the vectors of each particle, if the state has it.
+/// One kind of vector of each particle, if the state has it.
 type VectorsOf = fn(&ClothSnapshot) -> Option<&[Vec3]>;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Takes cloths out of lanes, and puts others in.
+    /// Removes cloths from lanes, and inserts others.
     pub fn exchange(&mut self, leave: &[usize], come: &[(usize, &ClothSnapshot, FabricMaterial)]) {
-        // The state of an empty lane matters to no other and is left, unless it is not finite, which would
-        // stay so and be slow.
+        // An empty lane affects no other lane, so its state is kept. A state that is not finite is replaced,
+        // as it would stay so and slow down the processor.
         let rest = ClothSnapshot::at_rest(&self.fabric);
         let mut states = Vec::new();
         for &lane in leave {
@@ -39,8 +39,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.restore(&states);
     }
 
-    /// Overwrites the states of lanes, all in one pass over each array. Cloths without a history continue
-    /// with a substep of first order.
+    /// Overwrites the states of lanes, in one pass over each array. A cloth without a history continues with
+    /// a substep of first order.
     pub fn restore(&mut self, states: &[(usize, &ClothSnapshot)]) {
         let positions: Vec<Vec<Vec3>> = states
             .iter()
@@ -48,8 +48,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             .collect();
         let of_cloths: Vec<OfCloth> =
             states.iter().zip(&positions).map(|(&(lane, _), at)| (lane, Some(&at[..]))).collect();
-        // Formulas of first order multiply the history by zero, so that without one what a lane holds does
-        // not matter as long as it is finite.
+        // Formulas of first order multiply the history by zero, so that a lane without one may hold any
+        // finite values.
         let counts = |&(lane, state): &(usize, &ClothSnapshot)| {
             state.history.is_some() || !self.is_finite(lane)
         };
@@ -90,11 +90,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
-    /// Restores what a lane has besides its vectors.
+    /// Restores the state of a lane besides its vectors.
     fn restore_lane(&mut self, lane: usize, state: &ClothSnapshot, positions: &[Vec3]) {
         let history = state.history.as_ref();
         self.set_relaxation(lane, history.map_or(&[], |history| &history.relaxation));
-        // At the start of a tick they are computed anew.
+        // At the start of a tick the diagonals' targets are computed again in any case.
         if (1..self.clock.settings.substeps).contains(&self.clock.begun) {
             self.set_diagonals_at_rest(Y::lanes(lane));
         }
@@ -124,7 +124,7 @@ impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
         Some(Self::new(Arc::clone(fabric), layout))
     }
 
-    /// The same cloth in a batch of one lane, for a scheme without chains.
+    /// The batch of one lane for the same cloth, for a scheme without chains.
     pub fn to_one_lane(&self) -> LaneBatch<Pack1> {
         let mut batch = LaneBatch::side_by_side(Arc::clone(&self.fabric));
         if let Some(cloth) = &self.lanes[0] {

@@ -1,4 +1,4 @@
-//! The state of a batch, at one width and in one layout.
+//! The state of a batch with a given width and layout.
 
 use std::sync::Arc;
 
@@ -16,21 +16,22 @@ use crate::stability::pole::Pole;
 use crate::step::clock::Clock;
 use crate::step::parameters::Parameters;
 
-/// Cloths of one fabric in the lanes of packs of `P`, in the layout `Y`.
+/// Cloths of one fabric in the lanes of packs of type `P`, in the layout `Y`.
 ///
-/// Arrays of packs have one for each particle, or for several of one cloth: see [`Layout::locate`].
+/// Arrays of packs have one pack for each particle, or for several particles of one cloth: see
+/// [`Layout::locate`].
 #[derive(Clone, Debug)]
 pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub fabric: Arc<Fabric>,
-    /// For each lane that can hold a cloth, the cloth that it holds.
+    /// The cloth in each lane that can hold a cloth.
     pub lanes: Vec<Option<LaneState>>,
     pub layout: Y,
 
     /// Positions in the cloth's frame, m.
     pub positions: Y::Positions,
-    /// Array for whatever is needed for a while only, as fewer arrays leave more room in the cache. Before
-    /// the prediction: for each particle the sum over its triangles of corner area times the change of
-    /// their velocity by air, m³/s. Until the end of the substep: the positions at its start, m. From
+    /// Scratch array with successive uses, since fewer arrays leave more room in the cache. Before the
+    /// prediction: for each particle the sum over its triangles of corner area times the change of their
+    /// velocity by air, m³/s. Until the end of the substep: the positions at its start, m. From
     /// `compute_normals` to the next substep: unit normals.
     pub scratch: Vec<Pack3<P>>,
     /// Velocities relative to the world along the frame's axes, m/s.
@@ -41,25 +42,25 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub older_displacement: Vec<Pack3<P>>,
     /// Velocities one substep earlier, m/s, plus all changes by air since.
     pub older_velocity: Vec<Pack3<P>>,
-    /// The same two substeps earlier, m/s.
+    /// Velocities two substeps earlier, m/s, plus all changes by air since.
     pub oldest_velocity: Vec<Pack3<P>>,
-    /// Under-relaxation factor of each particle: the part of a change of its velocity that it makes.
+    /// Under-relaxation factor of each particle: the fraction of a change of velocity that is applied.
     pub relaxation: Vec<P>,
 
     /// Length that each link has under the tension found so far in the substep, l − α̃ λ, m, in the order in
     /// which the scheme solves links.
     pub link_target: Vec<P>,
-    /// Room for predicted positions, m, where a lane bends stiffly.
+    /// Scratch array of predicted positions, m, for lanes that bend stiffly.
     pub predicted_position: Vec<Pack3<P>>,
-    /// Room for the displacement by stretch, m, where a lane bends stiffly.
+    /// Scratch array of displacements by stretch, m, for lanes that bend stiffly.
     pub stretch_shift: Vec<Pack3<P>>,
-    /// Room for the tridiagonal systems of a pair of chains.
+    /// Scratch array of the tridiagonal systems of a pair of chains.
     pub rows: Vec<TridiagonalRow<P>>,
-    /// Room for the bending moments of a line, and the twisting moments of a ribbon.
+    /// Scratch array of the bending moments of a line, or the twisting moments of a ribbon.
     pub moments: Vec<Pack3<P>>,
 
     pub masses: Masses<P, Y::Constant>,
-    /// For each pack, to which partial sum it adds in sums over all particles.
+    /// Index of the partial sum to which each pack adds, in sums over all particles.
     pub partial_sums: Vec<u8>,
     /// The line about which the cloth is free to turn.
     pub pole: Option<Pole>,
@@ -118,7 +119,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 }
 
-/// The position with each −0 replaced by 0. Adding zero to −0 makes it 0, and whether zero is added to a
+/// Returns the position with each −0 replaced by 0. Adding zero to −0 gives 0, and whether zero is added to a
 /// pin's coordinate depends on the layout.
 pub(super) fn without_minus_zero(position: Vec3) -> Vec3 {
     position + Vec3::ZERO

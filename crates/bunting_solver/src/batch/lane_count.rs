@@ -4,11 +4,11 @@ use crate::fabric::Fabric;
 use crate::simd::level::instruction_set;
 use crate::step::Scheme;
 
-/// How many cloths a batch holds.
+/// Number of cloths that a batch can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum LaneCount {
-    /// One cloth. If it is cut from a grid, it is spread across the lanes of a vector; other meshes are solved
-    /// in scalar code.
+    /// One cloth. A cloth on a grid is spread across the lanes of a vector; other meshes are solved in scalar
+    /// code.
     One,
     /// Eight cloths: full speed with AVX2.
     #[default]
@@ -39,9 +39,9 @@ impl LaneCount {
         }
     }
 
-    /// The width of the first batch, where `cloths` cloths of a fabric are to be divided among batches such
-    /// that they take the least time: full batches of the widest width that pays on this machine, and for
-    /// the rest narrower ones.
+    /// Width of the first batch if `cloths` cloths of a fabric are divided among batches such that they take
+    /// the least time: full batches of the widest width that pays on this machine, and narrower ones for the
+    /// rest.
     #[must_use]
     pub fn first_of(cloths: usize, fabric: &Fabric, scheme: Scheme) -> Self {
         let alone = Self::most_alone(fabric, scheme);
@@ -52,12 +52,12 @@ impl LaneCount {
         }
     }
 
-    /// Most cloths of a fabric that take less time in batches of one than side by side in eight lanes. What
-    /// remains after eight takes less time so if it is fewer by one.
+    /// Greatest number of cloths of a fabric that take less time in batches of one lane than side by side in
+    /// eight lanes. Beside a batch of eight, the number is one less.
     ///
-    /// A 33 × 33 flag takes 55 µs a tick by itself, eight side by side take 220 and sixteen 400; at 17 × 17
-    /// the times are 8.7, 29 and 48, at 9 × 9 3.5, 7.8 and 12, at 5 × 5 1.7, 2.6 and 3.7: short rows leave most
-    /// lanes empty.
+    /// A 33 × 33 flag takes 55 µs a tick by itself, eight side by side take 220 µs and sixteen 400 µs; at 17
+    /// × 17 the times are 8.7, 29 and 48 µs, at 9 × 9 3.5, 7.8 and 12 µs, at 5 × 5 1.7, 2.6 and 3.7 µs: short
+    /// rows leave most lanes empty.
     #[must_use]
     pub fn most_alone(fabric: &Fabric, scheme: Scheme) -> usize {
         const WIDE: u32 = 16;

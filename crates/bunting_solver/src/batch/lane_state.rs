@@ -1,4 +1,4 @@
-//! What a batch keeps of each cloth besides its particles.
+//! The state of a cloth in a batch besides its particles.
 
 use crate::contact::collider::Collider;
 use crate::fabric::FabricMaterial;
@@ -8,27 +8,27 @@ use crate::step::Drive;
 use crate::step::bdf::IntegratorHistory;
 use crate::step::parameters::ParameterInputs;
 
-/// What a batch keeps of one cloth besides its particles.
+/// The state of one cloth in a batch besides its particles.
 #[derive(Clone, Debug)]
 pub(crate) struct LaneState {
     pub material: FabricMaterial,
     pub drive: Drive,
     pub colliders: Vec<Collider>,
-    /// For each collider, the particles that may touch it in this tick.
+    /// Particles that may touch each collider in this tick.
     pub contacts: Vec<Vec<u32>>,
     /// Moment about the pole of this substep's corrections from outside the cloth, by contacts and by users, in
     /// units of the density, m⁴.
     pub external_moment: f32,
     pub history: IntegratorHistory,
     pub pin_strain: PinStrain,
-    /// What the lane's parameters were computed from; none if they are yet to be.
+    /// Inputs of the lane's parameters; none if the parameters must be computed.
     pub inputs: Option<ParameterInputs>,
-    /// What the lane's inverse masses were computed from; none if they are yet to be.
+    /// Inputs of the lane's inverse masses besides the substep; none if the masses must be computed.
     pub added_mass: Option<AddedMass>,
 }
 
 impl LaneState {
-    /// A cloth that nothing acts on but standard gravity and still air.
+    /// A cloth under standard gravity in still air, without colliders.
     pub fn new(material: FabricMaterial) -> Self {
         Self {
             material,

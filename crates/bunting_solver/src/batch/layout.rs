@@ -1,12 +1,12 @@
-//! The layouts of a batch: which pack and lane each particle is in, and in which order constraints are solved.
+//! The layouts of a batch: the pack and lane of each particle, and the order in which constraints are solved.
 //!
-//! There are two. [`SideBySide`](crate::batch::side_by_side::SideBySide) holds up to as many cloths of one
-//! fabric as there are lanes: a pack holds the same particle of each cloth, and numbers of the fabric are
-//! the same in all lanes. [`SingleCloth`](crate::batch::single_cloth::SingleCloth) spreads one cloth across
-//! the lanes: a pack holds consecutive particles of a row of its grid, constraints that share no particle
-//! are solved in one pack, and numbers of the fabric are each lane's own.
+//! There are two layouts. [`SideBySide`](crate::batch::side_by_side::SideBySide) holds up to as many cloths
+//! of one fabric as there are lanes: a pack holds the same particle of each cloth, and numbers of the fabric
+//! are the same in all lanes. [`SingleCloth`](crate::batch::single_cloth::SingleCloth) spreads one cloth
+//! across the lanes: a pack holds consecutive particles of a row of its grid, constraints that share no
+//! particle are solved in one pack, and numbers of the fabric differ from lane to lane.
 //!
-//! Kernels are written once for both, over [`Constant`] and [`Particles`].
+//! Kernels are written once for both layouts, over [`Constant`] and [`Particles`].
 
 use core::fmt::Debug;
 use core::ops::Range;
@@ -21,31 +21,31 @@ use crate::simd::constant::Constant;
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
-/// Vectors of a cloth to be written into its lanes, one a particle, and the index of the cloth; zero where
+/// Index of a cloth, and vectors to be written into its lanes, one for each particle; zero is written if
 /// there are none.
 pub(crate) type OfCloth<'a> = (usize, Option<&'a [Vec3]>);
 
-/// Which particles of a single cloth are consecutive in memory.
+/// Order of a single cloth's particles in memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Order {
-    /// Those of a row of the grid.
+    /// Particles of a row of the grid are consecutive.
     RowMajor,
-    /// Those of a column of the grid.
+    /// Particles of a column of the grid are consecutive.
     ColumnMajor,
 }
 
-/// A layout, with the constraints of the fabric as it has them.
+/// A layout, with the fabric's constraints arranged for it.
 pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
-    /// Number of the fabric that goes with a pack.
+    /// Number of the fabric for a pack.
     type Constant: Constant<P>;
-    /// Where positions are stored.
+    /// Storage of positions.
     type Positions: Positions<P, Constant = Self::Constant>;
     /// A tether, or one in each lane.
     type Tether: PackedTether<P>;
     /// Sums over the triangles at each particle.
     type Triangles<'a>: CornerSums<P, Field = <Self::Positions as Positions<P>>::Field>;
 
-    /// Most cloths in a batch.
+    /// Greatest number of cloths in a batch.
     const CLOTHS: usize;
 
     /// The lanes of a cloth.
@@ -60,14 +60,14 @@ pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
     /// Reads the vectors of a cloth, particle by particle.
     fn read(&self, packs: &[Pack3<P>], cloth: usize, into: &mut Vec<Vec3>);
 
-    /// Writes the vectors of cloths, and zero into lanes of a cloth that hold no particle.
+    /// Writes the vectors of cloths, and zero into lanes of a cloth without a particle.
     fn write(&self, packs: &mut [Pack3<P>], cloths: &[OfCloth]);
 
-    /// The number of each pack, given one of each particle; zero in lanes that hold no particle.
+    /// Converts one number for each particle to one for each pack; zero in lanes without a particle.
     fn constants(&self, of_particles: &[f32]) -> Vec<Self::Constant>;
 
-    /// For each pack, to which partial sum it adds. That is a matter of its particles' columns, so that
-    /// sums have the same bits in both layouts.
+    /// Index of the partial sum to which each pack adds. It depends on the columns of the pack's particles
+    /// only, so that sums have the same bits in both layouts.
     fn partial_sums(&self) -> Vec<u8>;
 
     /// Writes a number of each particle of a cloth.
@@ -78,43 +78,44 @@ pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
         }
     }
 
-    /// Positions of all particles, given those of the packs, m.
+    /// Creates the storage of positions from those of the packs, m.
     fn positions(&self, packs: Vec<Pack3<P>>) -> Self::Positions;
 
     /// Chains of links, colour by colour, and the cells whose diagonals are links.
     fn chains<'a>(&'a self, fabric: &'a Fabric) -> &'a Chains<Self::Constant>;
 
-    /// The order in which the chains of a colour want the particles.
+    /// The order of particles in memory that the chains of a colour need.
     fn order_of_chains(&self, colour: usize) -> Order;
 
-    /// For each class of links one in lanes that have a link, zero in others; none where every lane has one.
+    /// For each class of links, one in lanes with a link and zero in others; empty if every lane has a link.
     fn linked(&self) -> &[P];
 
-    /// Lines along which a grid bends, and the order in which they want the particles.
+    /// Lines along which a grid bends, and the order of particles in memory that they need.
     fn bend_lines<'a>(
         &'a self,
         fabric: &'a Fabric,
     ) -> impl Iterator<Item = (Order, &'a [BendLine])>;
 
-    /// Ribbons along which a grid twists, and the order in which they want the particles.
+    /// Ribbons along which a grid twists, and the order of particles in memory that they need.
     fn ribbons<'a>(&'a self, fabric: &'a Fabric) -> (Order, &'a [Ribbon]);
 
-    /// Tethers to the farthest pins, and to the nearest.
+    /// Tethers to the farthest pins, and to the nearest pins.
     fn tethers<'a>(&'a self, fabric: &'a Fabric) -> [&'a [Self::Tether]; 2];
 
-    /// Compliances and factorised systems of these constraints.
+    /// Compliances and factorised systems of chains, bend lines and ribbons.
     fn factors(&self) -> &Factors<P, Self::Constant>;
 
     /// Computes the factors of a cloth.
     fn set_stiffness(&mut self, cloth: usize, fabric: &Fabric, stiffness: &Stiffness);
 
-    /// Takes over where a cloth's pins are, given the positions of all its particles, m.
+    /// Updates the positions of a cloth's pins, given the positions of all its particles, m.
     fn set_pins(&mut self, positions: &[Vec3]);
 
-    /// The triangles, for sums of what positions alone tell.
+    /// The triangles, for sums that depend on positions only.
     fn triangles<'a>(&'a mut self, fabric: &'a Fabric) -> Self::Triangles<'a>;
 
-    /// The triangles, and velocities as their sums read them.
+    /// The triangles, for sums that depend on velocities too, and the velocities in the form that these sums
+    /// read.
     fn moving_triangles<'a>(
         &'a mut self,
         fabric: &'a Fabric,
@@ -122,22 +123,23 @@ pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
     ) -> (Self::Triangles<'a>, &'a <Self::Positions as Positions<P>>::Field);
 }
 
-/// The positions of all particles: in packs, and wherever else constraints want them.
+/// The positions of all particles: in packs, and in further arrays that constraints need.
 pub(crate) trait Positions<P: Pack>: Clone + Debug + Send + Sync + 'static {
-    /// Number of the fabric that goes with a pack.
+    /// Number of the fabric for a pack.
     type Constant: Constant<P>;
-    /// Particles as constraints reach them.
+    /// Particles in the form in which constraints access them.
     type Particles<'a>: Particles<P, Constant = Self::Constant>;
-    /// Vectors of all particles as sums over triangles read them.
+    /// Vectors of all particles in the form that sums over triangles read.
     type Field: ?Sized;
 
-    /// The positions in packs, m. Only between the phases of a substep, when no constraint has them.
+    /// The positions in packs, m. Valid only between the phases of a substep, when constraints do not hold
+    /// the positions.
     fn packs(&self) -> &[Pack3<P>];
 
-    /// The positions in packs, m, taken back from the constraints.
+    /// The positions in packs, m, copied back from the constraints' arrays.
     fn packs_mut(&mut self) -> &mut Vec<Pack3<P>>;
 
-    /// The particles in an order, for the constraints. `inverse_masses` are those of the packs, 1/m².
+    /// The particles in an order, for the constraints. `inverse_masses` are given for each pack, 1/m².
     fn particles<'a>(
         &'a mut self,
         order: Order,
@@ -145,19 +147,19 @@ pub(crate) trait Positions<P: Pack>: Clone + Debug + Send + Sync + 'static {
         linked: &'a [P],
     ) -> Self::Particles<'a>;
 
-    /// The positions as sums over triangles read them.
+    /// The positions in the form that sums over triangles read.
     fn field(&mut self) -> &Self::Field;
 
-    /// Takes over the inverse mass of each particle of a cloth, 1/m².
+    /// Sets the inverse mass of each particle of a cloth, 1/m².
     fn set_inverse_masses(&mut self, of_particles: &[f32]);
 
-    /// Forgets what constraints had, before a new state is written.
+    /// Discards the constraints' arrays, before a new state is written.
     fn clear(&mut self);
 }
 
-/// The particles that constraints move: one of each cloth, or several of one cloth, in each pack.
+/// The particles that constraints move: in each pack one of each cloth, or several of one cloth.
 pub(crate) trait Particles<P: Pack> {
-    /// Number of the fabric that goes with a pack.
+    /// Number of the fabric for a pack.
     type Constant: Constant<P>;
 
     /// Position, m.
@@ -166,17 +168,17 @@ pub(crate) trait Particles<P: Pack> {
     /// Overwrites the position, m.
     fn set_position<L: Lane<Pack = P>>(&mut self, at: u32, position: V3<L>);
 
-    /// Inverse mass per unit of area density, 1/m²; zero where the particle is pinned.
+    /// Inverse mass per unit area density, 1/m²; zero if the particle is pinned.
     fn inverse_mass<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> L;
 
-    /// One, but zero in lanes that have no link where others have one of this class: divided by the
-    /// diagonal of a link's row in place of one, it leaves that lane without tension.
+    /// One; zero in lanes without a link of this class while other lanes have one. Divided by the diagonal of
+    /// a link's row in place of one, it leaves such a lane without tension.
     fn one_if_linked<L: Lane<Pack = P>>(&self, token: L::Token, class: u32) -> L;
 }
 
-/// A tether of each cloth, or of several particles of one cloth.
+/// A tether of each cloth, or tethers of several particles of one cloth.
 pub(crate) trait PackedTether<P: Pack> {
-    /// Where the tethered particle is, or the first of them.
+    /// Index of the tethered particle, or of the first one.
     fn particle(&self) -> u32;
 
     /// Position of the pin, m.

@@ -6,25 +6,25 @@ use crate::simd::lane::Pack;
 use crate::stability::added_mass::InverseMasses;
 
 /// Areas and inverse masses of all particles. Masses are in units of the area density, so that a particle
-/// without added mass has the mass of its area, m².
+/// without added mass has the mass of its area, in m².
 #[derive(Clone, Debug)]
 pub(crate) struct Masses<P: Pack, C> {
-    /// Area, m².
+    /// Area of each particle, m².
     pub areas: Vec<C>,
-    /// One over the area, 1/m²; zero where pinned.
+    /// One over the area, 1/m²; zero if pinned.
     pub inverse_areas: Vec<C>,
-    /// Inverse mass of each cloth's particles with the mass added to them, 1/m²; zero where pinned.
+    /// Inverse mass of each cloth's particles, with added mass, 1/m²; zero if pinned.
     pub inverse: Vec<P>,
-    /// One over the inverse mass, m²; zero where pinned.
+    /// One over the inverse mass, m²; zero if pinned.
     pub inertia: Vec<P>,
-    /// Inverse masses for a substep, from which those of each cloth are computed.
+    /// Inverse masses for a length of substep, from which each cloth's inverse masses are computed.
     pub of_substep: InverseMasses,
-    /// Effective length of the substep that `of_substep` is for, s; zero for those without added mass.
+    /// Effective length of the substep for which `of_substep` was computed, s; zero without added mass.
     pub substep: f32,
 }
 
 impl<P: Pack, C> Masses<P, C> {
-    /// Masses without added mass; those of the lanes are zero until a substep begins.
+    /// Masses without added mass. The inverse masses in lanes are zero until a substep begins.
     pub fn new<Y: Layout<P, Constant = C>>(layout: &Y, fabric: &Fabric) -> Self {
         let zero = vec![P::splat(0.0); layout.pack_count()];
         Self {

@@ -8,8 +8,8 @@ use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, lane3, set_lane3};
 
 /// The particles of one cloth between [`integrate`](crate::ClothBatch::integrate) and
-/// [`update_velocities`](crate::ClothBatch::update_velocities): positions are predictions, which constraints
-/// correct, and `update_velocities` turns corrections into velocity.
+/// [`update_velocities`](crate::ClothBatch::update_velocities). Positions are predictions, which constraints
+/// correct; `update_velocities` turns corrections into velocity.
 ///
 /// - A **constraint** moves predicted positions by [`set_position`](Self::set_position), before or after
 ///   `solve_constraints`; after it, nothing but the constraint itself decides where the particle ends.
@@ -17,16 +17,16 @@ use crate::simd::vec3::{Pack3, lane3, set_lane3};
 ///   [`add_acceleration`](Self::add_acceleration).
 /// - An **impulse** is given once, by [`add_velocity`](Self::add_velocity).
 ///
-/// Vectors are along the axes of the cloth's frame as it is in this substep. Particles are numbered as in the
-/// [`Fabric`](crate::Fabric); methods panic where there is no particle of that number. Pinned particles cannot be
-/// moved: what is written to them is ignored.
+/// Vectors are along the axes of the cloth's frame in this substep. Particles are numbered as in the
+/// [`Fabric`](crate::Fabric); methods panic if there is no particle with the given number. Pinned particles
+/// cannot be moved: values written to them are ignored.
 pub struct ParticlesMut<'a> {
     batch: &'a mut dyn ParticleAccess,
     lane: usize,
 }
 
 impl<'a> ParticlesMut<'a> {
-    /// The cloth of a lane; none if it is empty, or if no substep is under way.
+    /// The cloth of a lane; none if the lane is empty, or outside a substep.
     pub(crate) fn new<P: Pack, Y: Layout<P>>(
         batch: &'a mut LaneBatch<P, Y>,
         lane: usize,
@@ -41,15 +41,15 @@ impl<'a> ParticlesMut<'a> {
         self.batch.count()
     }
 
-    /// Effective length of the substep, s: a correction of a position by Δx changes the velocity by Δx over this.
-    /// With formulas of second order it is shorter than the substep.
+    /// Effective length of the substep, s: a correction of a position by Δx changes the velocity by Δx over
+    /// this length. With formulas of second order it is shorter than the substep.
     #[must_use]
     pub fn effective_step(&self) -> f32 {
         self.batch.effective_step(self.lane)
     }
 
-    /// Inverse mass of a particle, 1/kg; zero where it is pinned. It includes the mass that the solver adds where
-    /// few particles carry a large load.
+    /// Inverse mass of a particle, 1/kg; zero if it is pinned. It includes the mass that the solver adds
+    /// where few particles carry a large load.
     #[must_use]
     pub fn inverse_mass(&self, particle: usize) -> f32 {
         self.batch.inverse_mass(particle, self.lane)
@@ -61,8 +61,8 @@ impl<'a> ParticlesMut<'a> {
         self.batch.position(particle, self.lane)
     }
 
-    /// Velocity of a particle relative to the world, as predicted, m/s. Corrections of the position are not in
-    /// it yet.
+    /// Predicted velocity of a particle relative to the world, m/s. It does not contain corrections of the
+    /// position yet.
     #[must_use]
     pub fn velocity(&self, particle: usize) -> Vec3 {
         self.batch.velocity(particle, self.lane)
@@ -74,23 +74,23 @@ impl<'a> ParticlesMut<'a> {
         self.batch.set_position(particle, self.lane, position);
     }
 
-    /// Accelerates a particle over this substep, m/s², as gravity does: velocity and predicted position change
-    /// as if the acceleration had been part of the prediction. To be called right after `integrate`.
+    /// Accelerates a particle over this substep, m/s², as gravity does: velocity and predicted position
+    /// change as if the acceleration had been part of the prediction. Call it right after `integrate`.
     ///
-    /// Contacts, tethers and the number of substeps are prepared for gravity and wind, and not for this
+    /// Contacts, tethers and the number of substeps take gravity and wind into account, but not this
     /// acceleration.
     pub fn add_acceleration(&mut self, particle: usize, acceleration: Vec3) {
         self.batch.add_acceleration(particle, self.lane, acceleration);
     }
 
-    /// Changes the velocity of a particle by an impulse, m/s: velocity and predicted position change as if the
-    /// particle had entered this substep, and those before, with the changed velocity, so that the change is
-    /// not extrapolated. To be called right after `integrate`.
+    /// Changes the velocity of a particle by an impulse, m/s: velocity and predicted position change as if
+    /// the particle had had the changed velocity in this substep and in those before, so that the change is
+    /// not extrapolated. Call it right after `integrate`.
     pub fn add_velocity(&mut self, particle: usize, change: Vec3) {
         self.batch.add_velocity(particle, self.lane, change);
     }
 
-    /// Gives a particle this velocity relative to the world, m/s, by an impulse: see
+    /// Sets the velocity of a particle relative to the world, m/s, by an impulse: see
     /// [`add_velocity`](Self::add_velocity).
     pub fn set_velocity(&mut self, particle: usize, velocity: Vec3) {
         self.add_velocity(particle, velocity - self.velocity(particle));
@@ -104,7 +104,7 @@ impl core::fmt::Debug for ParticlesMut<'_> {
     }
 }
 
-/// Access to a particle of a cloth, at any width and in any layout.
+/// Access to a cloth's particles, at any width and in any layout.
 trait ParticleAccess {
     fn count(&self) -> usize;
     fn effective_step(&self, cloth: usize) -> f32;
@@ -149,7 +149,7 @@ impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
         let stored = &mut self.positions.packs_mut()[pack];
         let before = lane3(stored, lane);
         set_lane3(stored, lane, position);
-        // A correction from outside may turn the cloth about its pole.
+        // A correction by the user may turn the cloth about its pole.
         if let (Some(pole), Some(state)) = (self.pole, &mut self.lanes[cloth]) {
             let predicted =
                 lane3(&self.scratch[pack], lane) + lane3(&self.displacement[pack], lane);
@@ -162,7 +162,7 @@ impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
     fn add_acceleration(&mut self, particle: usize, cloth: usize, acceleration: Vec3) {
         let (pack, lane) = self.layout.locate(particle, cloth);
         let step = self.effective_step(cloth);
-        // As gravity, on the true mass, whatever inertia is added to it; zero for pins.
+        // Like gravity, the acceleration acts on the true mass, without added inertia; it is zero for pins.
         let true_part =
             self.masses.inverse[pack].lanes()[lane] * self.fabric.particle_areas()[particle];
         let change = acceleration * (true_part * step);
@@ -178,7 +178,8 @@ impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
         for velocity in [&mut self.velocity, &mut self.older_velocity, &mut self.oldest_velocity] {
             add(&mut velocity[pack], lane, change);
         }
-        // β h Δv by the new velocity and (γ₁ + γ₂) h Δv by the extrapolated displacements.
+        // The position moves by β h Δv through the new velocity, and by (γ₁ + γ₂) h Δv through the
+        // extrapolated displacements.
         let moved = change * self.clock.step;
         self.shift_prediction(pack, lane, moved);
         add(&mut self.older_displacement[pack], lane, moved);
@@ -186,9 +187,9 @@ impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Shifts the predicted position of a particle, m, without a correction. The position is the sum of that at
-    /// the start and the displacement, as `update_velocities` computes it: a rounding error between them would
-    /// count as a correction, and become a velocity.
+    /// Shifts the predicted position of a particle, m, without a correction. The position is computed as
+    /// `update_velocities` does, as start plus displacement: a rounding error between the two would count as
+    /// a correction and become a velocity.
     fn shift_prediction(&mut self, pack: usize, lane: usize, change: Vec3) {
         let start = lane3(&self.scratch[pack], lane);
         let before = lane3(&self.displacement[pack], lane);
@@ -199,7 +200,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 }
 
-/// Adds to the vector of one lane.
+/// Adds a vector to one lane.
 fn add<P: Pack>(pack: &mut Pack3<P>, lane: usize, change: Vec3) {
     set_lane3(pack, lane, lane3(pack, lane) + change);
 }

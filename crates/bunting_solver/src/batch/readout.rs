@@ -1,4 +1,4 @@
-//! Reading the state of a batch, cloth by cloth.
+//! Reading of a batch's state, cloth by cloth.
 
 use glam::Vec3;
 

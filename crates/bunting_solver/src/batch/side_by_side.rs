@@ -1,4 +1,4 @@
-//! The layout of cloths side by side: a pack holds the same particle of each cloth, one cloth a lane.
+//! The side-by-side layout: a pack holds the same particle of each cloth, with one cloth in each lane.
 
 use core::ops::Range;
 
@@ -26,7 +26,7 @@ pub(crate) struct SideBySide<P: Pack> {
     pub hinge_compliance: Vec<P>,
     /// XPBD multiplier of each hinge, kept from pass to pass of a substep.
     pub hinge_multiplier: Vec<P>,
-    /// What the cells of a row of a grid contribute to the particles below it.
+    /// Contributions of the cells of a grid's row to the particles below the row.
     below: Vec<Pack3<P>>,
 }
 
@@ -74,7 +74,7 @@ impl<P: Pack> Layout<P> for SideBySide<P> {
     }
 
     fn read(&self, packs: &[Pack3<P>], cloth: usize, into: &mut Vec<Vec3>) {
-        // Checked once, and not for every number.
+        // The check is made once and not for every number.
         assert!(cloth < P::WIDTH, "lanes of the batch");
         into.resize(packs.len(), Vec3::ZERO);
         for (value, pack) in into.iter_mut().zip(packs) {
@@ -169,7 +169,7 @@ impl<P: Pack> Layout<P> for SideBySide<P> {
     }
 }
 
-/// Positions in packs alone, m: constraints move them where they are.
+/// Positions in packs only, m: constraints move them in place.
 #[derive(Clone, Debug)]
 pub(crate) struct Packs<P: Pack>(Vec<Pack3<P>>);
 
@@ -204,7 +204,7 @@ impl<P: Pack> Positions<P> for Packs<P> {
     fn clear(&mut self) {}
 }
 
-/// Particles in packs, each the same of all cloths.
+/// Particles in packs: each pack holds the same particle of all cloths.
 pub(crate) struct PackParticles<'a, P: Pack> {
     inverse_masses: &'a [P],
     position: &'a mut [Pack3<P>],

@@ -1,4 +1,4 @@
-//! The state of one cloth, apart from any batch.
+//! The state of one cloth outside a batch.
 
 use glam::Vec3;
 
@@ -7,8 +7,8 @@ use crate::step::bdf::IntegratorHistory;
 
 /// Positions and velocities of a cloth's particles, in its frame.
 ///
-/// A snapshot taken from a batch also holds the integrator's history, so that a cloth that is moved to
-/// another batch continues bit for bit.
+/// A snapshot taken from a batch also holds the integrator's history, so that a cloth that moves to another
+/// batch continues with the same bits.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClothSnapshot {
     /// Positions in the cloth's frame, m.
@@ -50,15 +50,15 @@ impl ClothSnapshot {
             && self.velocities.iter().all(|&velocity| velocity == Vec3::ZERO)
     }
 
-    /// Positions and velocities of some of the particles, in the order given: the state of a coarser fabric
-    /// that has these particles.
+    /// Positions and velocities of some of the particles, in the given order: the state of a coarser fabric
+    /// with these particles.
     #[must_use]
     pub fn of(&self, particles: &[u32]) -> Self {
         let pick = |all: &[Vec3]| particles.iter().map(|&at| all[at as usize]).collect();
         Self::new(pick(&self.positions), pick(&self.velocities))
     }
 
-    /// The same positions and velocities, without the integrator's history.
+    /// The state without the integrator's history.
     #[must_use]
     pub fn without_history(self) -> Self {
         Self { history: None, ..self }

@@ -1,7 +1,7 @@
-//! Copies of what all lanes of a batch show: positions and normals, cloth by cloth.
+//! Copies of the surfaces in all lanes of a batch: positions and normals, cloth by cloth.
 //!
 //! The vector of a cloth's particle is spread over three packs. Four lanes at once are transposed in
-//! registers: that takes a third of the time of reading each vector by itself.
+//! registers, which takes a third of the time of reading each vector by itself.
 
 use fearless_simd::{Simd, SimdBase, f32x4};
 use glam::Vec3;
@@ -12,7 +12,7 @@ use crate::simd::lane::Pack;
 use crate::simd::level::dispatch;
 use crate::simd::vec3::Pack3;
 
-/// What a lane shows.
+/// The surface of the cloth in a lane.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LaneSurface {
     /// Positions of the particles in the cloth's frame, m.
@@ -20,14 +20,15 @@ pub struct LaneSurface {
     /// Unit normals of the particles, as of the last
     /// [`compute_normals`](crate::ClothBatch::compute_normals).
     pub normals: Vec<Vec3>,
-    /// Whether all positions are finite, and their sum.
+    /// Whether all positions and their sum are finite.
     pub is_finite: bool,
 }
 
-/// Particles whose positions and normals in all lanes fit into the nearest cache, at 384 bytes each.
+/// Number of particles whose positions and normals in all lanes fit into the nearest cache, at 384 bytes
+/// each.
 const BLOCK: usize = 32;
 
-/// Lanes that are transposed at once.
+/// Number of lanes that are transposed at once.
 const QUAD: usize = 4;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
@@ -55,7 +56,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Copies particles block by block, so that each pack is fetched once for all lanes.
     #[inline(always)]
     fn copy_by_quads<S: Simd>(&self, token: S, into: &mut [LaneSurface]) {
-        // Where empty lanes of a quad are written.
+        // Empty lanes of a quad are written here.
         let mut discarded = [[Vec3::ZERO; BLOCK]; QUAD];
         let blocks = self.positions.packs().chunks(BLOCK).zip(self.scratch.chunks(BLOCK));
         for (index, (positions, normals)) in blocks.enumerate() {
@@ -78,7 +79,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 let mut to_normals: [&mut [Vec3]; QUAD] = [a, b, c, d];
                 for (lane, surface) in surfaces.iter_mut().enumerate() {
                     if lanes[lane].is_some() {
-                        // One coordinate that is not finite makes the sum not finite.
+                        // A coordinate that is not finite makes the sum not finite.
                         surface.is_finite &= sums[lane].is_finite();
                         to_normals[lane] = &mut surface.normals[block.clone()];
                     }
@@ -104,7 +105,7 @@ fn transpose<S: Simd, P: Pack>(
         let y = f32x4::from_slice(token, &y.lanes()[first..first + QUAD]);
         let z = f32x4::from_slice(token, &z.lanes()[first..first + QUAD]);
         sum = sum + x + y + z;
-        // The fourth number of each transposed vector is not used.
+        // The fourth number of each transposed vector is unused.
         let (xz_low, xz_high) = (x.zip_low(z), x.zip_high(z));
         let (yy_low, yy_high) = (y.zip_low(y), y.zip_high(y));
         *a = Vec3::from_slice(xz_low.zip_low(yy_low).as_slice());

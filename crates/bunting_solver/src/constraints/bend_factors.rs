@@ -11,9 +11,10 @@ use crate::simd::lane::Pack;
 /// The factors of the lines of a profile.
 #[derive(Clone, Debug)]
 pub(crate) struct BendFactors<P: Pack, C> {
-    /// One for each particle of a line but its ends.
+    /// One row for each particle of a line other than its ends.
     pub rows: Vec<BendRow<P>>,
-    /// How far a unit moment moves each particle of a line: its inverse mass over the spacing squared, 1/m⁴.
+    /// Displacement of each particle of a line by a unit moment: its inverse mass over the spacing squared,
+    /// 1/m⁴.
     pub mobilities: Vec<C>,
 }
 
@@ -24,12 +25,13 @@ pub(crate) struct BendRow<T> {
     pub first_lower: T,
     /// Element of L two left of the diagonal.
     pub second_lower: T,
-    /// One over the element of D; zero in lanes without a line, which then finds no moment.
+    /// One over the element of D; zero in lanes without a line, which makes their moments zero.
     pub inverse_diagonal: T,
 }
 
 impl<P: Pack, C: Constant<P>> BendFactors<P, C> {
-    /// Factors yet to be computed, given the profile of each lane of a cloth; all have the same length.
+    /// Factors that are computed later, given the profile of each lane of a cloth; all profiles have the same
+    /// length.
     pub fn new(profiles: &[Option<&BendProfile>]) -> Self {
         let zero = P::splat(0.0);
         let row = BendRow { first_lower: zero, second_lower: zero, inverse_diagonal: zero };
@@ -59,8 +61,8 @@ impl<P: Pack, C: Constant<P>> BendFactors<P, C> {
     }
 }
 
-/// Factorises the system of a profile, given the compliance of a row of unit weight, 1/m⁴. In double
-/// precision, as it is done once for many substeps.
+/// Factorises the system of a profile, given the compliance of a row of unit weight, 1/m⁴. Double precision
+/// is affordable, since this is done once for many substeps.
 pub(crate) fn factorise(profile: &BendProfile, compliance: f32) -> Vec<BendRow<f32>> {
     let per_spacing = f64::from(profile.inverse_spacing);
     let mobilities: Vec<f64> = profile
@@ -68,7 +70,7 @@ pub(crate) fn factorise(profile: &BendProfile, compliance: f32) -> Vec<BendRow<f
         .iter()
         .map(|&inverse_area| f64::from(inverse_area) * per_spacing * per_spacing)
         .collect();
-    // Of the last two rows: one over the diagonal, and the element of L one left of it.
+    // Values of the last two rows: one over the diagonal, and the element of L one left of it.
     let (mut last, mut before_last) = ((0.0, 0.0), (0.0, 0.0));
     let row = |(row, &weight): (usize, &f32)| {
         let softness = f64::from(compliance) / f64::from(weight);

@@ -47,7 +47,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Bending<'_, P, S> {
 }
 
 impl<P: Pack, S: Particles<P>> Bending<'_, P, S> {
-    /// Solves L y = −l C along a line. A factor of one over the spacing is left to `mobilities`.
+    /// Solves L y = −l C along a line. A factor of one over the spacing is contained in `mobilities`.
     #[inline(always)]
     fn eliminate<L: Lane<Pack = P>>(
         &mut self,
@@ -72,7 +72,7 @@ impl<P: Pack, S: Particles<P>> Bending<'_, P, S> {
     }
 
     /// Solves D Lᵀ λ = y back along a line, and moves each particle by W Dᵀ λ: by the moments of its own
-    /// stencil and of its neighbours'.
+    /// stencil and of those of its neighbours.
     #[inline(always)]
     fn substitute<L: Lane<Pack = P>>(
         &mut self,

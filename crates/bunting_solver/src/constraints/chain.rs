@@ -1,14 +1,15 @@
 //! Chains: the distance constraints along one yarn solved at once, exactly.
 //!
-//! The XPBD system of a chain, (J M⁻¹ Jᵀ + α̃) Δλ = −C − α̃ λ, is tridiagonal. In place of λ a link's target is
-//! stored, the length that it has under the tension found so far, l − α̃ λ. With the links' directions n frozen
-//! the diagonal is wᵢ + wᵢ₊₁ + α̃ᵢ, and the off-diagonal −wᵢ₊₁ nᵢ·nᵢ₊₁. Each row is multiplied by its |d|, and the
-//! unknowns are λ/|d|, so that d = n |d| stands for n, and a link takes a single division. One elimination along
-//! the chain and one substitution back (Thomas's algorithm) take about the time of a Gauss–Seidel sweep.
+//! The XPBD system of a chain, (J M⁻¹ Jᵀ + α̃) Δλ = −C − α̃ λ, is tridiagonal. In place of λ each link's
+//! target is stored: the length that the link has under the tension found so far, l − α̃ λ. With the links'
+//! directions n frozen, the diagonal is wᵢ + wᵢ₊₁ + α̃ᵢ and the off-diagonal −wᵢ₊₁ nᵢ·nᵢ₊₁. Each row is
+//! multiplied by its |d|, and the unknowns are λ/|d|, so that d = n |d| replaces n, and each link needs a
+//! single division. One elimination along the chain and one substitution back (Thomas's algorithm) take about
+//! the time of a Gauss–Seidel sweep.
 //!
-//! A sweep leaves behind a numerical compliance of h²/(k m), which grows with the mesh. Chains have none: a
-//! hanging cloth has its material's own strain. Goldenthal 2007 constrains warp and weft, and Deul 2018 solves
-//! rods in this way.
+//! A sweep leaves a numerical compliance of h²/(k m), which grows with the resolution of the mesh. Chains
+//! have none: a hanging cloth has its material's own strain. Goldenthal 2007 constrains warp and weft, and
+//! Deul 2018 solves rods in this way.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
@@ -22,25 +23,25 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Solves warp, weft and diagonals, then warp and weft again in each pass: the chains of a grid whose diagonals
     /// carry shear alone. The diagonals' targets follow from the first solution of warp and weft.
     ///
-    /// Diagonals must not come last: they move particles far, measured by the strain of warp and weft.
+    /// Diagonals must not come last, since they move particles far compared with the strain of warp and weft.
     pub fn solve_chains(&mut self, passes: u32) {
         self.solve_warp_and_weft(Pass::First);
         if self.clock.begun == 1 {
             self.find_diagonal_targets();
         }
         self.solve_diagonals();
-        // After the last pass only the sweep reads targets, and there is none with a single pass.
+        // Only the sweep reads targets after the last pass, and with a single pass there is no sweep.
         let pass = if passes > 1 { Pass::Again } else { Pass::Last };
         for _ in 0..passes {
             self.solve_warp_and_weft(pass);
         }
     }
 
-    /// Solves the chains of all colours, diagonals with them, forwards and then backwards in each pass.
+    /// Solves the chains of all colours, diagonals included, forwards and then backwards in each pass.
     pub fn solve_chains_both_ways(&mut self, passes: u32) {
         let colours = self.layout.chains(&self.fabric).colours.len();
         for pass in 0..passes {
-            // The first colour of a pass is the last of the pass before.
+            // A pass begins with the colour that ended the pass before, which is not solved again.
             let (first, forwards) = if pass == 0 { (0, Pass::First) } else { (1, Pass::Again) };
             (first..colours).for_each(|colour| self.solve_colour(colour, forwards));
             let backwards = (0..colours.saturating_sub(1)).rev();
@@ -90,14 +91,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 }
 
-/// A pass over chains in a substep.
+/// Position of a pass over chains in a substep, which decides which targets it reads and stores.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pass {
-    /// Without tension yet: targets are the lengths at rest.
+    /// The first pass: there is no tension yet, and the targets are the lengths at rest.
     First,
-    /// From the targets of the pass before.
+    /// A further pass, which starts from the stored targets.
     Again,
-    /// From the targets of the pass before; none are stored, as nothing reads them.
+    /// The last pass, which starts from the stored targets and stores none, as nothing reads them.
     Last,
 }
 
@@ -123,7 +124,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
 }
 
 impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
-    /// Solves all pairs: `WARM` starts from stored targets, and not from lengths at rest; `STORE` stores the new
+    /// Solves all pairs. `WARM` starts from stored targets instead of lengths at rest; `STORE` stores the new
     /// targets.
     #[inline(always)]
     fn solve_all<L: Lane<Pack = P>, const WARM: bool, const STORE: bool>(
@@ -171,7 +172,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         let (rows, _) = self.rows.as_chunks_mut::<N>();
         let (targets, _) = self.target[pair.targets.clone()].as_chunks::<N>();
         let (zero, zero3) = (L::splat(token, 0.0), V3::<L>::splat(token, 0.0));
-        // A link without length has no direction: its row is 0 = 0, and its unknown zero.
+        // A link of zero length has no direction: its row becomes 0 = 0, and its unknown zero.
         let least = L::splat(token, f32::MIN_POSITIVE);
 
         let (mut end, mut end_mass) = ([zero3; N], [zero; N]);
@@ -193,7 +194,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let along = next - end[at];
                 let squared = along.dot(along);
                 let length = squared.sqrt();
-                // −C |d|, C being the length less the target.
+                // The right side is −C |d|, with C the length minus the target.
                 let right = (-squared).plus_product(target, length);
                 let coupling = end_mass[at] * last[at].dot(along);
                 let multiplier = coupling * inverse[at];
@@ -277,8 +278,8 @@ mod tests {
     use crate::constraints::bench::{cloth_at, positions};
     use crate::fabric::{FabricBuilder, FabricMaterial, Grid};
 
-    /// In an evenly stretched strip the links' directions do not change, so that the system is linear, and one
-    /// solve is exact.
+    /// In a uniformly stretched strip the links' directions do not change, so that the system is linear and
+    /// one solve is exact.
     #[test]
     fn a_straight_chain_is_solved_at_once() {
         let fabric = FabricBuilder::grid(Grid::new(33, 2, 1.0, 0.03))
@@ -295,7 +296,7 @@ mod tests {
         let mut batch = cloth_at(&fabric, material, &stretched);
         batch.solve_chains(1);
         for (end, rest) in positions(&batch).iter().zip(fabric.rest_positions()) {
-            // Up to the compliance that even the stiffest link has.
+            // The tolerance is the least compliance of a link.
             assert!((end.x - rest.x).abs() < 2e-4, "{end} {rest}");
         }
     }
@@ -324,7 +325,8 @@ mod tests {
             .sum();
         let moved: f32 =
             end.iter().zip(&crumpled).zip(areas).map(|((e, s), &a)| e.distance(*s) * a).sum();
-        // Only nearly, as each chain finds particles that others have moved.
+        // Angular momentum is kept only nearly, since each chain finds particles that other chains have
+        // moved.
         assert!(turn.length() < 0.02 * moved, "{turn} {moved}");
     }
 

@@ -9,11 +9,11 @@ use crate::simd::lane::Pack;
 /// Compliances and factorised systems in lanes, as kernels read them.
 #[derive(Clone, Debug)]
 pub(crate) struct Factors<P: Pack, C> {
-    /// Of each class of links, σ/(k h²), 1/m².
+    /// Compliance of each class of links, σ/(k h²), 1/m².
     pub link_compliance: Vec<P>,
-    /// Of each profile of bend lines.
+    /// Factors of each profile of bend lines.
     pub bending: Vec<BendFactors<P, C>>,
-    /// Of each profile of ribbons.
+    /// Factors of each profile of ribbons.
     pub twist: Vec<TwistFactors<P, C>>,
 }
 
@@ -25,7 +25,7 @@ impl<P: Pack, C> Factors<P, C> {
     }
 }
 
-/// The same of one cloth, for each class and profile of its fabric.
+/// Compliances and factorised systems of one cloth, for each class and profile of its fabric.
 pub(crate) struct ClothFactors {
     pub link_compliance: Vec<f32>,
     pub bending: Vec<Vec<BendRow<f32>>>,

@@ -1,15 +1,15 @@
 //! Shear of a grid: its diagonals carry shear alone.
 //!
-//! Diagonals with targets of their lengths at rest take a part of the tension of warp and weft. But at the edges
-//! of a sheet they end, and release it: within √(G/σ) h of each edge, 16 cm of a standard sheet with two
-//! substeps, and everywhere in a narrow strip. The stretch of a cloth would depend on its width and on the
-//! substep. Therefore warp and weft carry all tension along them, and the diagonals of a cell are at rest when
-//! they are equally long, as those of a rectangle are, whatever its sides: half the sum of their squares is the
-//! square of each.
+//! Diagonals with their lengths at rest as targets would carry a part of the tension of warp and weft. But
+//! they end at the edges of a sheet and release it there: within √(G/σ) h of each edge (16 cm for a standard
+//! sheet with two substeps), and everywhere in a narrow strip. The stretch of a cloth would depend on its
+//! width and on the substep. Therefore warp and weft carry all tension along them, and the diagonals of a
+//! cell are at rest when they are equally long, as in a rectangle of any sides: the target's square is half
+//! the sum of their squares.
 //!
-//! This length is computed once a tick, since a cloth's own strain changes slowly. It is bounded by the strain
-//! that the loads may cause: a flag that snaps like a whip is stretched further, and there the diagonals hold it
-//! as well.
+//! The target is computed once a tick, since a cloth's own strain changes slowly. It is bounded by the strain
+//! that the loads may cause: a flag that snaps like a whip is stretched beyond this bound, and the diagonals
+//! then help to hold it.
 
 use core::ops::Range;
 
@@ -25,7 +25,7 @@ fn length_at_rest(grid: &Grid) -> f32 {
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Computes the target of each diagonal from positions at which warp and weft are solved.
+    /// Computes the target of each diagonal from positions at which warp and weft are satisfied.
     pub fn find_diagonal_targets(&mut self) {
         let Some(length) = self.fabric.grid().map(length_at_rest) else { return };
         let (masses, linked) = (&self.masses.inverse, self.layout.linked());
@@ -49,7 +49,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
 struct DiagonalTargets<'a, P: Pack, S: Particles<P>> {
     cells: &'a [Cell],
-    /// At rest, m.
+    /// Length at rest, m.
     length: f32,
     /// Greatest length, in units of that at rest.
     stretch: &'a P,
@@ -72,7 +72,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for DiagonalTargets<'_, P, S> {
                 particles.position(token, bottom_right) - particles.position(token, top_left);
             let rising: V3<L> =
                 particles.position(token, bottom_left) - particles.position(token, top_right);
-            // √((|d₁|² + |d₂|²)/2), linearised about the length at rest.
+            // The target √((|d₁|² + |d₂|²)/2), linearised about the length at rest.
             let squares = falling.dot(falling) + rising.dot(rising);
             let target = half.plus_product(squares, quarter_inverse);
             let target = shortest.max(longest.or_where_not(longest.lt(target), target));

@@ -10,17 +10,18 @@ use crate::step::Scheme;
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// Projects the predicted positions onto all constraints.
     ///
-    /// The hinges of a mesh are solved forwards and backwards, and so are its chains. Each solve of a colour is a
-    /// projection, self-adjoint in the metric of the masses, with eigenvalues from 0 to 1. So is a sequence of
-    /// solves that reads the same backwards, and a product of two such still has real eigenvalues from 0 to 1, as an
-    /// implicit step of a stiffer cloth has. A product of three different projections has complex ones:
-    /// circulatory forces, which make a mesh at rest vibrate and spin.
+    /// The hinges of a mesh are solved forwards and backwards, and so are its chains. Each solve of a colour
+    /// is a projection, self-adjoint in the metric of the masses, with eigenvalues from 0 to 1. A sequence of
+    /// solves that reads the same backwards is self-adjoint, too, and a product of two such sequences still
+    /// has real eigenvalues from 0 to 1, like an implicit step of a stiffer cloth. A product of three
+    /// different projections has complex eigenvalues: circulatory forces, which make a mesh at rest vibrate
+    /// and spin.
     pub fn solve_constraints(&mut self) {
         self.solve_all_bending();
         self.solve_all_but_bending();
     }
 
-    /// The first part of [`solve_constraints`](Self::solve_constraints) in the scheme of yarns.
+    /// The first part of [`solve_constraints`](Self::solve_constraints) in the scheme of yarns: bending.
     pub fn solve_all_bending(&mut self) {
         if self.clock.stands_still() || self.clock.settings.scheme == Scheme::GaussSeidel {
             return;
@@ -32,7 +33,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         }
     }
 
-    /// The rest of [`solve_constraints`](Self::solve_constraints); with Gauss–Seidel, all of it.
+    /// The second part of [`solve_constraints`](Self::solve_constraints); with Gauss–Seidel, all of it.
     pub fn solve_all_but_bending(&mut self) {
         if self.clock.stands_still() {
             return;
@@ -45,20 +46,20 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
 }
 
 impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
-    /// Projects the predicted positions onto all constraints. The cloth is a grid, and the scheme that of yarns.
+    /// Projects the predicted positions of a grid onto all constraints, in the scheme of yarns.
     pub fn solve_constraints(&mut self) {
         self.solve_all_bending();
         self.solve_all_but_bending();
     }
 
-    /// The first part of [`solve_constraints`](Self::solve_constraints).
+    /// The first part of [`solve_constraints`](Self::solve_constraints): bending.
     pub fn solve_all_bending(&mut self) {
         if !self.clock.stands_still() {
             self.solve_bending_before_stretch();
         }
     }
 
-    /// The rest of [`solve_constraints`](Self::solve_constraints).
+    /// The second part of [`solve_constraints`](Self::solve_constraints): all other constraints.
     pub fn solve_all_but_bending(&mut self) {
         if !self.clock.stands_still() {
             self.solve_stretch_and_contacts();
@@ -67,9 +68,9 @@ impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves stretch and contacts after bending, since stretch is the stiffer: chains and tethers. On a grid a sweep
-    /// over warp and weft for every second pass corrects what the chains' frozen directions overshoot, and chains that
-    /// still have overlong links are solved again.
+    /// Solves chains, tethers and contacts after bending, since stretch is stiffer. On a grid, for every
+    /// second pass a sweep over warp and weft corrects the overshoot of the chains' frozen directions, and chains
+    /// that still have overlong links are solved again.
     fn solve_stretch_and_contacts(&mut self) {
         let passes = self.clock.settings.passes;
         if self.fabric.has_shear_cells() {
@@ -83,7 +84,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.solve_chains_both_ways(passes);
             self.solve_tethers();
         }
-        // Takes the positions back from the constraints.
+        // This call copies the positions back from the constraints' arrays.
         self.positions.packs_mut();
         self.solve_contacts();
     }
@@ -122,8 +123,8 @@ mod tests {
         FabricBuilder::new(corners, indices).build().expect("a good fabric")
     }
 
-    /// |⟨P u, v⟩ − ⟨u, P v⟩|/(|u| |v|) in the metric of the masses, P being what `solve` does to small
-    /// displacements u and v of a ball at rest.
+    /// Returns |⟨P u, v⟩ − ⟨u, P v⟩|/(|u| |v|) in the metric of the masses, where P is the effect of `solve`
+    /// on small displacements u and v of a ball at rest.
     fn asymmetry(solve: impl Fn(&mut LaneBatch<Pack1>)) -> f32 {
         const SIZE: f32 = 1e-4;
         let fabric = icosahedron();

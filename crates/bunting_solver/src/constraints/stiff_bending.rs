@@ -1,13 +1,15 @@
-//! Bending of stiff grids, solved at the positions that stretch leads to in the same substep.
+//! Bending of stiff grids, solved at positions that already contain the displacement by stretch.
 //!
-//! Bending is solved before stretch, at positions that gravity has moved and stretch is yet to move back. For limp
-//! cloth that does not matter; a stiff strip is bent by the detour: at Γ = 50 the heavy cantilever droops 1.8 % too
-//! far with three substeps. Therefore stiff cloth is bent, and solved along warp and weft, in a trial. The
-//! displacement by warp and weft is added to the predicted positions, bending is solved there, and the displacement
-//! is subtracted again: a block Gauss–Seidel iteration on the multipliers of both.
+//! Bending is solved before stretch, at positions that gravity has moved and stretch has not corrected yet.
+//! Limp cloth is not affected, but a stiff strip is bent by this displacement: at Γ = 50 the heavy cantilever
+//! droops 1.8 % too far with three substeps. Therefore stiff cloth goes through trials: bending and then warp
+//! and weft are solved, the displacement by warp and weft is added to the predicted positions, bending is
+//! solved there, and the displacement is subtracted again. This is a block Gauss–Seidel iteration on the
+//! multipliers of both.
 //!
-//! Nothing is kept from substep to substep. A displacement remembered from past substeps is a feedback with a delay
-//! of a substep and a gain near one around two projections that do not commute: narrow strips oscillated for ever.
+//! Nothing is kept from substep to substep. A displacement from past substeps would be a feedback with a
+//! delay of one substep and a gain near one around two projections that do not commute: with it narrow strips
+//! oscillated for ever.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
@@ -16,12 +18,13 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 use crate::step::parameters::Parameters;
 
-/// Trials in a substep. At Γ = 50 and two substeps a cantilever droops 0.1 % too far; with two trials 0.2 %, and with
-/// one 0.5 %.
+/// Number of trials in a substep. At Γ = 50 and two substeps a cantilever droops 0.1 % too far; with two
+/// trials 0.2 %, with one 0.5 %. More trials: stiff cloth costs more.
 const TRIALS: u32 = 3;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves bending and twist of a grid: of stiff cloth at the positions that stretch leads to.
+    /// Solves bending and twist of a grid; for stiff cloth at positions that contain the displacement by
+    /// stretch.
     pub fn solve_bending_before_stretch(&mut self) {
         if !self.parameters.any_bends_stiffly() {
             self.bend();
@@ -53,7 +56,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 }
 
-/// Puts particles back to their predicted positions, in stiff lanes shifted by the displacement by stretch.
+/// Resets particles to their predicted positions, shifted in stiff lanes by the displacement by stretch.
 struct Shift<'a, P: Pack> {
     parameters: &'a Parameters<P>,
     predicted: &'a [Pack3<P>],
@@ -77,7 +80,7 @@ impl<P: Pack> Kernel<P> for Shift<'_, P> {
     }
 }
 
-/// Takes the shift back in stiff lanes.
+/// Undoes the shift in stiff lanes.
 struct ShiftBack<'a, P: Pack> {
     parameters: &'a Parameters<P>,
     position: &'a mut [Pack3<P>],

@@ -1,4 +1,4 @@
-//! Compliances of one cloth's constraints in its substep, and what follows from how stiff it is.
+//! Compliances of one cloth's constraints in a substep, and the thresholds of stiff bending and of twist.
 
 use crate::constants::{GRAVITY, GREATEST_COMPLIANCE, LEAST_LINK_COMPLIANCE};
 use crate::fabric::{Fabric, FabricMaterial};
@@ -9,19 +9,19 @@ use crate::step::Scheme;
 /// solved for cloth in which it cannot be seen. A flag of a metre has 100,000.
 const LIMP: f32 = 1000.0;
 
-/// Square of the phase that the fastest bending wave turns by in a substep, 16 h² B/(σ l⁴), above which
-/// bending is solved at the positions that stretch leads to. Larger: stiff strips droop too far. A 33 × 33
-/// flag has 0.02.
+/// Square of the phase angle of the fastest bending wave in a substep, 16 h² B/(σ l⁴), above which bending is
+/// solved at positions that contain the displacement by stretch. Larger: stiff strips droop too far. A 33 ×
+/// 33 flag has 0.02.
 const STIFF_BENDING: f32 = 1.0;
 
-/// Whether a cloth is so stiff that its resistance to twist shows.
+/// Whether a cloth is stiff enough for its resistance to twist to be visible.
 pub(crate) fn resists_twist(fabric: &Fabric, material: &FabricMaterial) -> bool {
     let Some(grid) = fabric.grid() else { return false };
     let length = grid.width.max(grid.height);
     material.area_density * GRAVITY * length.powi(3) < LIMP * material.bend_stiffness
 }
 
-/// How stiff one cloth is in a substep.
+/// Stiffnesses of one cloth in a substep.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stiffness<'a> {
     pub material: &'a FabricMaterial,
@@ -31,7 +31,7 @@ pub(crate) struct Stiffness<'a> {
 }
 
 impl Stiffness<'_> {
-    /// σ/(k h²): XPBD's compliance in units of the density, 1/m² for k in N/m.
+    /// XPBD compliance σ/(k h²) in units of the density, 1/m² for k in N/m.
     fn compliance(&self, stiffness: f32) -> f32 {
         let density = self.material.area_density;
         (density / (stiffness * self.step * self.step)).min(GREATEST_COMPLIANCE)
@@ -54,12 +54,12 @@ impl Stiffness<'_> {
         classes.map(|class| self.compliance(class.stiffness(self.material))).collect()
     }
 
-    /// σ/(B h²), 1/m⁴: compliance against bending and twist of a line of unit weight.
+    /// Compliance σ/(B h²) of bending and twist for a line of unit weight, 1/m⁴.
     pub fn of_bending(&self) -> f32 {
         self.compliance(self.material.bend_stiffness)
     }
 
-    /// Whether bending is so stiff that it must be solved at the positions that stretch leads to.
+    /// Whether bending must be solved at positions that contain the displacement by stretch.
     pub fn bends_stiffly(&self, fabric: &Fabric) -> bool {
         let spacing = fabric.bend_profiles().iter().map(|profile| profile.inverse_spacing);
         let finest = spacing.fold(0.0, f32::max);

@@ -1,7 +1,7 @@
 //! A Gauss–Seidel sweep over the links of warp and weft after the chains.
 //!
 //! Where a flag snaps like a whip, a chain overshoots at its free end, as its directions are frozen. A sweep,
-//! link by link, corrects the lengths of single links. Constraint and targets are those of the chains.
+//! link by link, corrects single lengths. It has the constraint and the targets of the chains.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
@@ -52,7 +52,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Sweep<'_, P, S> {
             let length = squared.sqrt();
             let target = L::load(token, stored);
             let right = (-squared).plus_product(target, length);
-            // The inverse is multiplied by, so that the division need not wait for the root.
+            // Multiplying by the inverse lets the division start before the root is known.
             let one = self.particles.one_if_linked::<L>(token, link.class);
             let inverse = one / least.plus_product(mass_a + mass_b + compliance, squared);
             let unknown = right * inverse;

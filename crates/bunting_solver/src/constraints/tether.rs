@@ -52,13 +52,13 @@ impl<P: Pack, T: PackedTether<P>, S: Particles<P>> Kernel<P> for Tethers<'_, P, 
     }
 }
 
-/// Positions within a distance of pins, if any is farther away.
+/// Moves positions to within a distance of pins. None if no lane is farther away.
 #[inline(always)]
 fn drawn_back<L: Lane>(token: L::Token, position: V3<L>, pin: V3<L>, length: L) -> Option<V3<L>> {
     let away = position - pin;
     let squared = away.dot(away);
     let too_far = (length * length).lt(squared);
-    // Seldom true of any lane, so that the root and the division are seldom computed.
+    // A tether is seldom taut in any lane, so the root and the division are seldom computed.
     if !too_far.any() {
         return None;
     }

@@ -3,14 +3,15 @@
 use crate::simd::lane::Pack;
 use crate::simd::vec3::Pack3;
 
-/// What the elimination of a chain's system (Thomas's algorithm) stores for the substitution, of one link.
+/// A row of a chain's tridiagonal system, for one link: values that the elimination (Thomas's algorithm)
+/// stores for the substitution.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TridiagonalRow<P: Pack> {
     /// Vector d from the link's first particle to its second, m.
     pub along: Pack3<P>,
-    /// Thomas coefficient: the part of this row's unknown in that of the row before.
+    /// Thomas coefficient: the factor of this row's unknown in the unknown of the row before.
     pub multiplier: P,
-    /// This row's unknown, λ/|d|, less its part in the next.
+    /// Unknown of this row, λ/|d|, without its term in the next unknown.
     pub unknown: P,
     /// Change of the link's target for a unit change of the unknown, α̃ |d|, m.
     pub target_change: P,

@@ -1,8 +1,9 @@
 //! Twist along the ribbons of a grid, each ribbon solved exactly: C = x₀₀ − x₁₀ − x₀₁ + x₁₁ in every cell, of
 //! stiffness 2 B/(Δx Δy).
 //!
-//! The XPBD system of a ribbon is tridiagonal, constant, and the same for x, y and z (see `twist_factors.rs`).
-//! Solved cell by cell, a strip would need as many sweeps as it has cells to be held on edge.
+//! The XPBD system of a ribbon is tridiagonal, constant, and the same for x, y and z (see
+//! `twist_factors.rs`). Gauss–Seidel, cell by cell, would need as many sweeps as a strip has cells to hold
+//! the strip on edge.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
@@ -56,7 +57,7 @@ impl<P: Pack, S: Particles<P>> Twist<'_, P, S> {
     ) {
         let zero = V3::<L>::splat(token, 0.0);
 
-        // Along the ribbon: L y = −C.
+        // Forwards along the ribbon: L y = −C.
         let mut across: V3<L> = self.across(token, pairs[0]);
         let mut last = zero;
         for (cell, (row, &pair)) in factors.rows.iter().zip(&pairs[1..]).enumerate() {
@@ -66,7 +67,7 @@ impl<P: Pack, S: Particles<P>> Twist<'_, P, S> {
             across = next;
         }
 
-        // And back: D Lᵀ λ = y. Each pair is moved by the moments of the cells on either side, W Jᵀ λ.
+        // Backwards: D Lᵀ λ = y. Each pair is moved by the moments of the cells on either side, W Jᵀ λ.
         let mut next = zero;
         let mut upper = L::splat(token, 0.0);
         for (cell, row) in factors.rows.iter().enumerate().rev() {

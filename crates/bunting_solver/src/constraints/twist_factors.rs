@@ -11,7 +11,7 @@ use crate::simd::lane::Pack;
 /// The factors of the ribbons of a profile.
 #[derive(Clone, Debug)]
 pub(crate) struct TwistFactors<P: Pack, C> {
-    /// One for each cell of a ribbon.
+    /// One row for each cell of a ribbon.
     pub rows: Vec<TwistRow<P>>,
     /// Inverse masses of the particles of each pair across a ribbon, 1/m².
     pub inverse_masses: Vec<[C; 2]>,
@@ -27,7 +27,8 @@ pub(crate) struct TwistRow<T> {
 }
 
 impl<P: Pack, C: Constant<P>> TwistFactors<P, C> {
-    /// Factors yet to be computed, given the profile of each lane of a cloth; all have the same length.
+    /// Factors that are computed later, given the profile of each lane of a cloth; all profiles have the same
+    /// length.
     pub fn new(profiles: &[Option<&RibbonProfile>]) -> Self {
         let zero = P::splat(0.0);
         let first = profiles.iter().flatten().next();
@@ -51,8 +52,8 @@ impl<P: Pack, C: Constant<P>> TwistFactors<P, C> {
     }
 }
 
-/// Factorises the system of a profile, given the compliance of a cell of unit weight, 1/m⁴. In double
-/// precision, as it is done once for many substeps.
+/// Factorises the system of a profile, given the compliance of a cell of unit weight, 1/m⁴. Double precision
+/// is affordable, since this is done once for many substeps.
 pub(crate) fn factorise(profile: &RibbonProfile, compliance: f32) -> Vec<TwistRow<f32>> {
     let pairs: Vec<f64> =
         profile.inverse_areas.iter().map(|[a, b]| f64::from(*a) + f64::from(*b)).collect();
@@ -66,7 +67,7 @@ pub(crate) fn factorise(profile: &RibbonProfile, compliance: f32) -> Vec<TwistRo
     pairs.windows(2).map(row).collect()
 }
 
-/// The rows of a profile that finds no moment.
+/// The rows of a profile whose moments are zero.
 pub(crate) fn without_twist(profile: &RibbonProfile) -> Vec<TwistRow<f32>> {
     let cells = profile.inverse_areas.len().saturating_sub(1);
     vec![TwistRow { lower: 0.0, inverse_diagonal: 0.0 }; cells]

@@ -10,8 +10,9 @@ use crate::simd::lane::Pack;
 use crate::simd::vec3::lane3;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Gathers, for a tick of `tick` seconds, the particles that may touch each collider: those within reach of
-    /// the box that the collider sweeps. The reach of a particle is how far it may move relative to the box.
+    /// Gathers, for a tick of `tick` seconds, the particles that may touch each collider: those within reach
+    /// of the box that the collider sweeps. The reach of a particle is its greatest motion relative to the
+    /// box.
     pub fn gather_contacts(&mut self, tick: f32) {
         let positions = self.positions.packs();
         for (cloth, state) in self.lanes.iter_mut().enumerate() {
@@ -19,13 +20,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 continue;
             };
             contacts.resize_with(colliders.len(), Vec::new);
-            // Velocities are relative to the world. The frame's motion is added, and the speed that gravity
-            // and wind may give to a particle within the tick.
+            // Velocities are relative to the world. The frame's motion is added, and the greatest speed that
+            // gravity and wind can give to a particle within the tick.
             let by_frame = drive.motion.translation.length();
             let by_forces = drive.gravity.length() * tick * tick + drive.wind.length() * tick;
             for (collider, candidates) in colliders.iter().zip(contacts) {
                 candidates.clear();
-                // Particles that the collider catches draw others along.
+                // Particles that the collider hits pull others along.
                 let by_neighbours = collider.from.0.distance(collider.to.0);
                 let clearance = material.thickness + collider.margin;
                 let common = clearance + by_frame + by_forces + by_neighbours;

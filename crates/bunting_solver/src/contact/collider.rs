@@ -6,20 +6,20 @@ use parry3d::shape::SharedShape;
 
 use crate::step::frame::FrameMotion;
 
-/// A shape that a cloth cannot enter. Over the tick it moves along a straight line and turns at a constant rate.
-/// It moves cloth and is not moved by cloth.
+/// A shape that a cloth cannot enter. During a tick it moves along a straight line and turns at a constant
+/// rate. Cloth does not push it.
 #[derive(Clone)]
 pub struct Collider {
     /// Any parry shape: ball, capsule, cuboid, half-space, mesh, compound …
     pub shape: SharedShape,
-    /// Position (m) and orientation at the start of the tick, in the cloth's frame as it stood then.
+    /// Position (m) and orientation at the start of the tick, in the cloth's frame at that time.
     pub from: (Vec3, Quat),
-    /// Position (m) and orientation at the end of the tick, in the cloth's frame as it stands then.
+    /// Position (m) and orientation at the end of the tick, in the cloth's frame at that time.
     pub to: (Vec3, Quat),
     /// Distance between shape and cloth in addition to the cloth's thickness, m.
     pub margin: f32,
-    /// Coulomb friction coefficient of the shape. That of a contact is the geometric mean of this and the
-    /// cloth's.
+    /// Coulomb friction coefficient of the shape. A contact uses the geometric mean of this and the cloth's
+    /// coefficient.
     pub friction: f32,
 }
 
@@ -37,7 +37,7 @@ impl core::fmt::Debug for Collider {
 }
 
 impl Collider {
-    /// A shape that stays where it is in the cloth's frame.
+    /// A collider that rests in the cloth's frame.
     #[must_use]
     pub fn fixed(shape: SharedShape, position: Vec3, rotation: Quat) -> Self {
         let pose = (position, rotation);
@@ -54,7 +54,7 @@ impl Collider {
             && self.friction.is_finite()
     }
 
-    /// The pose after a part of the tick, in the cloth's frame.
+    /// Pose after a fraction of the tick, in the cloth's frame.
     pub(crate) fn pose_at(&self, part: f32) -> Pose {
         let turned = FrameMotion::between(self.from, self.to).rotation_at(part);
         Pose::from_parts(self.from.0.lerp(self.to.0, part), self.from.1 * turned)

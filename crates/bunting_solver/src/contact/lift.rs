@@ -11,45 +11,45 @@ use crate::contact::collider::Collider;
 use crate::contact::ground;
 use crate::fabric::Fabric;
 
-/// Part of the clearance of particles that triangles keep. Smaller: what the search misses shows through.
-/// Larger: triangles that lie close to an edge are lifted without need.
+/// Fraction of the particles' clearance that triangles keep. Smaller: cuts that the search misses are
+/// visible. Larger: triangles close to an edge are lifted without need.
 const KEPT: f32 = 0.5;
 
-/// Number of sweeps over the triangles. Fewer: a triangle that is cut in two places stays cut in one.
+/// Number of sweeps over the triangles. Fewer: a triangle that is cut in two places remains cut in one.
 const SWEEPS: usize = 3;
 
-/// Number of steps of the search for the deepest point of a triangle; the length of the first step, as a part of
-/// the triangle's longest side; and the factor from each step to the next. Fewer or shorter steps miss the corners
-/// of boxes.
+/// Search for the deepest point of a triangle: number of steps; length of the first step, as a fraction of
+/// the triangle's longest side; and ratio of each step to the one before. Fewer or shorter steps miss the
+/// corners of boxes.
 const STEPS: usize = 10;
 const FIRST_STEP: f32 = 0.5;
 const STEP_FACTOR: f32 = 0.7;
 
-/// Least sum of squared weights of the corners that a cut may move. Smaller: a cut beside a pin throws the other
-/// corners far away.
+/// Least sum of squared weights of the corners that a cut may move. Smaller: a cut beside a pin moves the
+/// other corners far away.
 const LEAST_WEIGHT: f32 = 0.1;
 
-/// Distance above ground from which a triangle is looked at, m. Smaller: ridges between particles are missed.
+/// Distance above ground below which a triangle is examined, m. Smaller: ridges between particles are missed.
 /// Larger: each query visits more cells.
 const GROUND_REACH: f32 = 0.1;
 
-/// Displacements of a displayed cloth's particles that lift its triangles out of the shapes that its particles keep
-/// clear of. Works in memory that it keeps from one cloth to the next.
+/// Computes displacements of a displayed cloth's particles that lift its triangles out of colliders. Its
+/// buffers are kept from one cloth to the next.
 ///
-/// Meshes of triangles have no inside and are left out.
+/// Meshes of triangles have no inside and are skipped.
 #[derive(Clone, Debug, Default)]
 pub struct SurfaceLift {
     /// Positions in the frame of the present collider, m.
     positions: Vec<Vec3>,
-    /// The plane of the present collider that is nearest to each particle, where it is known.
+    /// Plane of the present collider nearest to each particle, if it has been computed.
     planes: Vec<Option<Plane>>,
     /// Displacements so far, in the cloth's frame, m.
     lifts: Vec<Vec3>,
 }
 
 impl SurfaceLift {
-    /// Writes the particles to be displaced, and their displacements (m), into `into`. `positions` are those of
-    /// a fabric's particles in the cloth's frame, m; colliders count as they are at the end of the tick.
+    /// Writes the particles to be displaced, and their displacements (m), into `into`. `positions` are those
+    /// of a fabric's particles in the cloth's frame, m. Colliders have their poses at the end of the tick.
     pub fn compute<'a>(
         &mut self,
         fabric: &Fabric,
@@ -84,7 +84,7 @@ impl SurfaceLift {
         into.extend(displaced.map(|(particle, lift)| (particle, *lift)));
     }
 
-    /// Lifts every triangle that an obstacle cuts. Returns whether there was any.
+    /// Lifts every triangle that an obstacle cuts. Returns whether any was cut.
     fn sweep(&mut self, fabric: &Fabric, obstacle: &Obstacle, rotation: Quat) -> bool {
         let mut any = false;
         for triangle in fabric.triangles() {
@@ -115,7 +115,7 @@ impl SurfaceLift {
         any
     }
 
-    /// Whether the plane nearest to one of a triangle's corners has the whole triangle above it.
+    /// Whether the whole triangle lies above the plane nearest to one of its corners.
     fn is_above(
         &mut self,
         particles: [usize; 3],
@@ -135,7 +135,7 @@ impl SurfaceLift {
     }
 }
 
-/// Whether a triangle whose corners are outside a shape can cut it, and the shape has an inside to be cut.
+/// Whether a shape is solid, and can cut a triangle whose corners are outside.
 fn can_cut(shape: &dyn Shape) -> bool {
     shape.as_halfspace().is_none() && shape.as_trimesh().is_none() && shape.as_polyline().is_none()
 }
@@ -152,14 +152,14 @@ struct Plane {
 }
 
 impl Plane {
-    /// Whether all corners are above the plane by at least a distance (m): a plane of a convex shape separates
-    /// the shape from their triangle.
+    /// Whether all corners are above the plane by at least `distance` (m): such a plane of a convex shape
+    /// separates the shape from the triangle.
     fn is_below(&self, corners: &[Vec3; 3], distance: f32) -> bool {
         corners.iter().all(|corner| self.normal.dot(*corner) - self.offset >= distance)
     }
 }
 
-/// Where a shape cuts a triangle most deeply.
+/// The deepest cut of a shape into a triangle.
 struct Cut {
     /// Barycentric coordinates in the triangle.
     weights: [f32; 3],
@@ -174,7 +174,7 @@ struct Obstacle<'a> {
     shape: &'a dyn Shape,
     /// The shape as ground, if it is a heightfield.
     ground: Option<&'a HeightField>,
-    /// The box of all that is nearer than [`kept`](Self::kept), in the shape's frame.
+    /// Box of all points nearer than [`kept`](Self::kept) to the shape, in the shape's frame.
     bounds: Aabb,
     /// Distance that triangles keep, m.
     kept: f32,
@@ -188,14 +188,14 @@ impl<'a> Obstacle<'a> {
         Self { shape, ground, bounds: shape.compute_local_aabb().loosened(kept), kept }
     }
 
-    /// Whether a triangle is beside or above all of the shape.
+    /// Whether a triangle is beside or above the whole shape.
     fn is_beside(&self, corners: &[Vec3; 3]) -> bool {
         let [a, b, c] = *corners;
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
         low.cmpgt(self.bounds.maxs).any() || high.cmplt(self.bounds.mins).any()
     }
 
-    /// The plane of the surface that is nearest to a point; none on the surface itself, and far above ground.
+    /// The plane of the surface nearest to a point; none on the surface itself, and far above ground.
     fn nearest_plane(&self, at: Vec3) -> Option<Plane> {
         let nearest = match self.ground {
             Some(field) => ground::project(field, at, GROUND_REACH)?,
@@ -208,8 +208,8 @@ impl<'a> Obstacle<'a> {
         Some(Plane { normal, offset: normal.dot(nearest.point), distance })
     }
 
-    /// The deepest point of a triangle that is nearer than it should be: found by steps along the triangle against
-    /// the normal of the nearest plane, which is the gradient of the distance.
+    /// The deepest point of a triangle that is nearer than permitted, found by steps along the triangle
+    /// against the normal of the nearest plane, which is the gradient of the distance.
     fn deepest_cut(&self, corners: &[Vec3; 3]) -> Option<Cut> {
         let [a, b, c] = *corners;
         let triangle = Triangle::new(a, b, c);

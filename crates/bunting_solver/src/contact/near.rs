@@ -1,5 +1,5 @@
-//! Which part of a shape is near a cloth in a tick: shapes that consist of many parts are asked for those
-//! alone, so that a terrain costs what lies under the cloth.
+//! The part of a shape near a cloth in a tick: of shapes that consist of many parts only the near parts are
+//! queried, so that a terrain costs only the area under the cloth.
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::partitioning::Bvh;
@@ -7,11 +7,11 @@ use parry3d::shape::{HeightField, Shape};
 
 use crate::contact::collider::Collider;
 
-/// Parts of the tick at which the box around a moving collider is taken.
+/// Fractions of the tick at which the box around a moving collider is computed.
 const SAMPLES: [f32; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
-/// The box around all of a collider that comes near `cloth` in the tick, in the cloth's frame; none where
-/// nothing does. `cloth` is the box around all that the particles reach in the tick.
+/// Box around all parts of a collider that come near `cloth` in the tick, in the cloth's frame; none if no
+/// part does. `cloth` is the box around all positions that the particles can reach in the tick.
 pub(crate) fn swept_box(collider: &Collider, cloth: impl FnOnce() -> Option<Aabb>) -> Option<Aabb> {
     let shape = &*collider.shape.0;
     let poses = SAMPLES.map(|part| collider.pose_at(part));
@@ -29,14 +29,14 @@ pub(crate) fn swept_box(collider: &Collider, cloth: impl FnOnce() -> Option<Aabb
     near_parts(shape, &seen).and_then(swept)
 }
 
-/// Whether a shape consists of parts that are found by where they are.
+/// Whether a shape consists of parts with a spatial index.
 fn has_parts(shape: &dyn Shape) -> bool {
     shape.as_heightfield().is_some()
         || shape.as_voxels().is_some()
         || shape.as_composite_shape().is_some()
 }
 
-/// The box around all parts of a shape that a box meets, both in the shape's frame.
+/// Box around all parts of a shape that intersect a box, both in the shape's frame.
 fn near_parts(shape: &dyn Shape, seen: &Aabb) -> Option<Aabb> {
     if let Some(field) = shape.as_heightfield() {
         return near_ground(field, seen);
@@ -55,10 +55,10 @@ fn near_leaves(tree: &Bvh, seen: &Aabb) -> Option<Aabb> {
     leaves.map(|leaf| leaf.aabb()).reduce(|one, other| one.merged(&other))
 }
 
-/// A heightfield is ground: what it is above reaches down without end.
+/// Box of a heightfield near a box: it extends downwards without end, since a heightfield is ground.
 fn near_ground(field: &HeightField, seen: &Aabb) -> Option<Aabb> {
     let mut down = *seen;
-    // All cells beside or above the box.
+    // All cells beside or above the box are included.
     down.maxs.y = down.maxs.y.max(field.root_aabb().maxs.y);
     let mut near: Option<Aabb> = None;
     field.map_elements_in_local_aabb(&down, &mut |_, triangle| {

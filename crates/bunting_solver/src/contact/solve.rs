@@ -19,7 +19,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Projects every contact candidate once.
     pub fn solve_contacts(&mut self) {
         for cloth in 0..self.lanes.len() {
-            // Taken out, so that the particles of the batch can be written.
+            // The lane's state is taken out, so that the particles of the batch can be written.
             let touches = |state: &mut LaneState| !state.colliders.is_empty();
             if let Some(mut state) = self.lanes[cloth].take_if(touches) {
                 for (collider, candidates) in state.colliders.iter().zip(&state.contacts) {
@@ -34,7 +34,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
-    /// Projects one particle, and returns the moment of the correction about the pole, m⁴.
+    /// Projects one particle. Returns the moment of the correction about the pole, m⁴.
     fn solve_contact(&mut self, cloth: usize, particle: usize, contact: &Contact) -> f32 {
         let (pack, lane) = self.layout.locate(particle, cloth);
         let effective_step = self.parameters.step.lanes()[lane];
@@ -46,8 +46,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let normal = contact.pose.rotation * normal;
         set_lane3(position, lane, after);
 
-        // A surface moves a particle along, but does not throw it off: the part of its velocity by which it
-        // would leave the surface, and which the contact gave to it, is taken from it.
+        // A surface pushes a particle but does not throw it off: the velocity away from the surface that the
+        // contact gave to it is removed.
         let of_surface = (after - contact.surface_point_before(to)) / self.clock.step;
         let predicted = start + lane3(&self.displacement[pack], lane);
         let velocity = lane3(&self.velocity[pack], lane);
@@ -56,8 +56,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let thrown = leaving.dot(normal).min(given.dot(normal)).max(0.0) * normal;
         set_lane3(&mut self.velocity[pack], lane, velocity - thrown);
 
-        // An impact must not be extrapolated, so the velocities of the last substeps are changed alike. A
-        // steady pressure is extrapolated, since it continues.
+        // An impact must not be extrapolated, so the velocities of the last substeps change by the same
+        // amount. A steady pressure is extrapolated, since it continues.
         let arrived = lane3(&self.older_velocity[pack], lane);
         let approach = (of_surface - arrived).dot(normal);
         let impact = approach.min((given - thrown).dot(normal)).max(0.0) * normal;
@@ -104,16 +104,16 @@ impl<'a> Contact<'a> {
         }
     }
 
-    /// Projects a particle that moves from one point to another in the cloth's frame, m. Both ends of its path
-    /// are taken in the collider's frame, so that the path is relative to the surface, and the first as it was
-    /// before the cloth's frame moved.
+    /// Projects a particle that moves between two points in the cloth's frame, m. Both ends of its path are
+    /// transformed to the collider's frame, so that the path is relative to the surface; the first end is
+    /// taken before the cloth's frame moved.
     fn project(&self, start: Vec3, end: Vec3) -> Option<Projection> {
         let from = self.old_pose.inverse_transform_point(self.frame.to_old(start));
         let to = self.pose.inverse_transform_point(end);
         self.surface.project(from, to)
     }
 
-    /// Where a point of the collider was at the beginning of the substep, in the cloth's present frame, m.
+    /// Position of a point of the collider at the beginning of the substep, in the cloth's present frame, m.
     fn surface_point_before(&self, point: Vec3) -> Vec3 {
         self.frame.to_new(self.old_pose.transform_point(point))
     }

@@ -37,8 +37,7 @@ pub(super) struct Projection {
 }
 
 impl Surface<'_> {
-    /// Projects a particle that moves from one point to another, m; none if it does not come closer than the
-    /// clearance.
+    /// Projects a particle that moves from one point to another, m; none if it stays outside the clearance.
     pub fn project(&self, from: Vec3, to: Vec3) -> Option<Projection> {
         match self.cross(from, to) {
             Some(projection) => Some(projection),
@@ -47,7 +46,7 @@ impl Surface<'_> {
     }
 
     /// Projects a particle whose path enters the shape from outside. A particle that a fast shape overtakes
-    /// moves with the shape and does not slide: a slide as long as the path would take it round the shape
+    /// moves with the shape and does not slide: a slide as long as the path would carry it around the shape
     /// within the substep.
     fn cross(&self, from: Vec3, to: Vec3) -> Option<Projection> {
         if self.contains(from) {
@@ -61,7 +60,7 @@ impl Surface<'_> {
             return None;
         }
         let at = from - hit.normal * above(from);
-        // Beside an edge this may lie within another face; and normals of rays against round shapes are
+        // Beside an edge this point may lie within another face, and normals of rays against round shapes are
         // estimates.
         let overlap = self.overlap(from, at);
         let to = overlap.map_or(at, |Overlap { normal, depth }| at + normal * depth);
@@ -78,7 +77,7 @@ impl Surface<'_> {
         Some(Projection { to: to + normal * depth - slide * held, normal })
     }
 
-    /// The nearest plane of the surface to `to`, if that is closer than the clearance.
+    /// The plane of the surface nearest to `to`, if it is closer than the clearance.
     fn overlap(&self, from: Vec3, to: Vec3) -> Option<Overlap> {
         let nearest = match self.ground {
             Some(field) => ground::project(field, to, self.clearance)?,
@@ -90,7 +89,7 @@ impl Surface<'_> {
         if signed >= self.clearance {
             return None;
         }
-        // On the surface itself, and at the centre of a ball, the path tells the side.
+        // On the surface itself, and at the centre of a ball, the path determines the side.
         let normal =
             if distance > LEAST_LENGTH { away / distance } else { (from - to).try_normalize()? };
         let depth = self.clearance - signed;
@@ -98,7 +97,7 @@ impl Surface<'_> {
         Some(Overlap { normal, depth: if rises { depth.min(self.rise) } else { depth } })
     }
 
-    /// Whether a point is inside of the shape, or in the ground.
+    /// Whether a point is inside the shape, or in the ground.
     fn contains(&self, at: Vec3) -> bool {
         match self.ground {
             Some(field) => ground::depth(field, at).is_some_and(|depth| depth > 0.0),

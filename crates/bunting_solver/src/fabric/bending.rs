@@ -11,25 +11,25 @@ use super::grid::Grid;
 /// A row or a column of a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BendLine {
-    /// The particles along it.
+    /// Particles along the line.
     pub particles: Vec<u32>,
     /// Index into [`Bending::profiles`].
     pub profile: u32,
 }
 
-/// The values that lines of one kind have in common.
+/// Values that lines of one kind share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BendProfile {
     /// One over the distance between neighbours at rest, 1/m.
     pub inverse_spacing: f32,
-    /// One over the area of each particle, 1/m²; zero where it is pinned.
+    /// One over the area of each particle, 1/m²; zero if it is pinned.
     pub inverse_areas: Vec<f32>,
     /// For each particle but the first and the last: stiffness against a unit change of direction there, in units
     /// of the material's bending stiffness.
     pub coefficients: Vec<f32>,
 }
 
-/// The lines along which a grid bends; none of other meshes.
+/// The lines along which a grid bends; none for other meshes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Bending {
     /// Rows, then columns.
@@ -39,10 +39,10 @@ pub(crate) struct Bending {
 }
 
 impl Bending {
-    /// Rows and columns of three or more particles.
+    /// Rows and columns of three and more particles.
     pub fn of(grid: &Grid, inverse_areas: &[f32]) -> Self {
         let [dx, dy] = grid.spacing();
-        // The first and the last line stand for half a cell.
+        // The first and the last line represent half a cell.
         let cells =
             |index: u32, count: u32| if index == 0 || index == count - 1 { 0.5 } else { 1.0 };
         let rows = (0..grid.rows).map(|row| {
@@ -69,7 +69,7 @@ impl Bending {
 }
 
 impl BendProfile {
-    /// A line of particles `spacing` metres apart that stands for a strip of cloth `width` metres wide.
+    /// A line of particles `spacing` metres apart that represents a strip of cloth `width` metres wide.
     fn new(particles: &[u32], spacing: f32, width: f32, inverse_areas: &[f32]) -> Self {
         let inverse_areas: Vec<f32> =
             particles.iter().map(|&particle| inverse_areas[particle as usize]).collect();
@@ -83,7 +83,7 @@ impl BendProfile {
         Self { inverse_spacing: 1.0 / spacing, inverse_areas, coefficients }
     }
 
-    /// Equal for profiles that are alike but for rounding.
+    /// Key that is equal for profiles that differ by rounding only.
     fn key(&self) -> Vec<u32> {
         let areas_and_coefficients = self.inverse_areas.iter().chain(&self.coefficients);
         let values = core::iter::once(&self.inverse_spacing).chain(areas_and_coefficients);

@@ -1,12 +1,12 @@
-//! Chains: yarns arranged in the order in which they are solved, two at a time.
+//! Chains: yarns in the order in which they are solved, two at a time.
 //!
-//! Solving a yarn is one long sequence of divisions, each of which waits for the one before. Yarns of one colour do
-//! not depend on one another, so that two of them, solved in step and stored interleaved, take hardly longer than
-//! one. The shorter chain of a pair is filled up with links from its last particle to itself, which have no
-//! direction and exert no force.
+//! Solving a yarn is a long sequence of divisions, each of which waits for the one before. Yarns of one
+//! colour are independent, so that two of them, solved in step and stored interleaved, take hardly longer
+//! than one. The shorter chain of a pair is filled up with links from its last particle to itself, which have
+//! no direction and exert no force.
 //!
-//! The constant `C` of a link is an `f32`, the same for all cloths of a batch; where one cloth fills the lanes it
-//! is a pack, and a chain is as many yarns side by side as there are lanes.
+//! The constant `C` of a link is an `f32`, the same for all cloths of a batch. In the single-cloth layout it
+//! is a pack, and a chain stands for as many neighbouring yarns as there are lanes.
 
 use core::ops::Range;
 use std::collections::HashMap;
@@ -16,18 +16,18 @@ use super::grid::Grid;
 use super::links::{Link, LinkFamily};
 use super::yarns::Yarn;
 
-/// Number of chains that are solved in step. With three or four the state of the elimination no longer fits into
-/// the registers, which was slower at every width but one.
+/// Number of chains that are solved in step. With three or four, the state of the elimination no longer fits
+/// into the registers, which was slower at every width but one.
 pub(crate) const CHAINS_PER_PAIR: usize = 2;
 
-/// A yarn as it is solved.
+/// A yarn in the form in which it is solved.
 #[derive(Clone, Debug)]
 pub(crate) struct Chain<C = f32> {
-    /// Particles along it, one more than there are links.
+    /// Particles along the chain, one more than links.
     pub particles: Vec<u32>,
-    /// Links along it.
+    /// Links along the chain.
     pub links: Vec<ChainLink<C>>,
-    /// The order in which a Gauss–Seidel sweep visits the links: every second link and then the others, each with
+    /// Order in which a Gauss–Seidel sweep visits the links: every second link, then the others, each with
     /// its class.
     pub sweep_order: Vec<(usize, u32)>,
 }
@@ -41,28 +41,28 @@ pub(crate) struct ChainLink<C = f32> {
     pub rest_length: C,
 }
 
-/// Two chains of one colour, interleaved: row i holds the i-th particles, or links, of both. The last pair of a
-/// colour may be a single chain.
+/// Two chains of one colour, interleaved: row i holds the i-th particles, or links, of both. The last pair of
+/// a colour may be a single chain.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ChainPair<C = f32> {
-    /// Number of chains, one or two. Columns from here on repeat the last chain and are not solved.
+    /// Number of chains, one or two. Columns from this number on repeat the last chain and are not solved.
     pub count: usize,
-    /// Rows of particles, one more than there are rows of links.
+    /// Rows of particles, one more than rows of links.
     pub particles: Vec<[u32; CHAINS_PER_PAIR]>,
     /// Rows of links.
     pub links: Vec<[ChainLink<C>; CHAINS_PER_PAIR]>,
-    /// Indices of its links' target lengths: row by row, `count` in each.
+    /// Indices of the links' target lengths: row by row, `count` in each.
     pub targets: Range<usize>,
 }
 
 /// The chains of one colour.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ChainColour {
-    /// The direction of their links.
+    /// Direction of the chains' links.
     pub family: LinkFamily,
-    /// Their pairs, in [`Chains::pairs`].
+    /// Indices of the colour's pairs in [`Chains::pairs`].
     pub pairs: Range<usize>,
-    /// Their links, in [`Chains::sweep_links`].
+    /// Indices of the colour's links in [`Chains::sweep_links`].
     pub sweep_links: Range<usize>,
 }
 
@@ -73,7 +73,7 @@ pub(crate) struct SweepLink {
     pub particles: [u32; 2],
     /// Index into the fabric's link classes.
     pub class: u32,
-    /// Index of its target length.
+    /// Index of the link's target length.
     pub target: u32,
 }
 
@@ -82,25 +82,25 @@ pub(crate) struct SweepLink {
 pub(crate) struct Cell {
     /// Top left, top right, bottom left and bottom right.
     pub corners: [u32; 4],
-    /// Indices of its diagonals' target lengths; twice the same where there is only one diagonal.
+    /// Indices of the diagonals' target lengths; twice the same if there is only one diagonal.
     pub targets: [u32; 2],
 }
 
 /// All chains of a fabric.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Chains<C = f32> {
-    /// Colour by colour.
+    /// Pairs of chains, colour by colour.
     pub pairs: Vec<ChainPair<C>>,
-    /// In the order in which they are solved: warp, weft, diagonals.
+    /// Colours in the order in which they are solved: warp, weft, diagonals.
     pub colours: Vec<ChainColour>,
     /// Links of warp and weft, chain after chain; neighbours in the list share no particle.
     pub sweep_links: Vec<SweepLink>,
-    /// The cells of a grid whose diagonals are links; none of other meshes.
+    /// The cells of a grid whose diagonals are links; none for other meshes.
     pub cells: Vec<Cell>,
 }
 
 impl Chains {
-    /// One chain per yarn, and the cells of a grid.
+    /// Chains of all yarns, and the cells of a grid.
     pub(super) fn of(
         yarns: &[Yarn],
         colours: &Colours,
@@ -128,7 +128,7 @@ impl Chains {
         chains
     }
 
-    /// The cells of a grid, with the targets of those of their diagonals that are links.
+    /// The cells of a grid, with the targets of the diagonals that are links.
     fn cells_of(&self, grid: &Grid) -> Vec<Cell> {
         let targets: HashMap<[u32; 2], u32> =
             self.diagonals().map(|([a, b], target)| ([a.min(b), a.max(b)], target)).collect();
@@ -144,7 +144,7 @@ impl Chains {
 }
 
 impl<C: Copy> Chains<C> {
-    /// Arranges chains, given colour by colour, in pairs. No cells.
+    /// Arranges chains, given colour by colour, in pairs. There are no cells.
     pub fn of_colours(colours: impl Iterator<Item = (LinkFamily, Vec<Chain<C>>)>) -> Self {
         let mut chains = Self {
             pairs: Vec::new(),
@@ -181,8 +181,8 @@ impl<C: Copy> Chains<C> {
         }
     }
 
-    /// The diagonal links: both ends, and the index of the target length. Links that fill up a shorter chain are
-    /// among them.
+    /// The diagonal links, including those that fill up a shorter chain: both ends, and the index of the
+    /// target length.
     pub fn diagonals(&self) -> impl Iterator<Item = ([u32; 2], u32)> {
         let diagonal = self.colours.iter().filter(|colour| colour.family == LinkFamily::Diagonal);
         diagonal.flat_map(|colour| &self.pairs[colour.pairs.clone()]).flat_map(|pair| {
@@ -201,7 +201,7 @@ impl<C: Copy> Chains<C> {
         self.pairs.last().map_or(0, |pair| pair.targets.end)
     }
 
-    /// Most rows of links of a pair.
+    /// Greatest number of rows of links in a pair.
     pub fn longest(&self) -> usize {
         self.pairs.iter().map(|pair| pair.links.len()).max().unwrap_or(0)
     }
@@ -214,7 +214,7 @@ impl ChainLink {
 }
 
 impl<C: Copy> ChainPair<C> {
-    /// One or two chains, whose targets begin at an index.
+    /// One or two chains, with targets from an index on.
     fn of(chains: &[Chain<C>], first_target: usize) -> Self {
         let rows = chains.iter().map(|chain| chain.links.len()).max().unwrap_or(0);
         let chain = |column: usize| &chains[column.min(chains.len() - 1)];

@@ -1,4 +1,4 @@
-//! Classes: tables of the distinct values of constraints that are alike but for rounding.
+//! Classes: tables of the distinct values of constraints. Values that differ by rounding only are one class.
 
 use core::hash::Hash;
 use std::collections::HashMap;
@@ -8,11 +8,12 @@ pub(super) struct Classes<K> {
     indices: HashMap<K, u32>,
 }
 
-/// Low bits of an f32 that a key ignores: values within about 2⁻¹² of one another are one class. Fewer: the
-/// rounding of positions splits classes, and tables grow as long as the lists. More: stiffnesses are off.
+/// Number of low bits of an f32 that a key ignores: values within about 2⁻¹² of one another are one class.
+/// Fewer: the rounding of positions splits classes, and tables grow as long as the lists. More: stiffnesses
+/// are off.
 const IGNORED_BITS: u32 = 12;
 
-/// The bits of a value, equal for values of one class.
+/// Key of a value, equal for all values of one class.
 pub(super) fn rounded_bits(value: f32) -> u32 {
     (value.to_bits() + (1 << (IGNORED_BITS - 1))) >> IGNORED_BITS
 }
@@ -22,7 +23,7 @@ impl<K: Eq + Hash> Classes<K> {
         Self { indices: HashMap::new() }
     }
 
-    /// The class of a key, and whether it is new: then its value belongs at the end of the table.
+    /// Returns the class of a key, and whether it is new: its value must then be appended to the table.
     pub fn class_of(&mut self, key: K) -> (u32, bool) {
         let next = self.indices.len() as u32;
         let class = *self.indices.entry(key).or_insert(next);

@@ -1,11 +1,11 @@
 //! Graph colouring: constraints of one colour share no particle.
 //!
-//! Gauss–Seidel in row order feeds energy along the rows, and each constraint waits for the result of the one
-//! before. In colour order neighbours in the list are independent.
+//! Gauss–Seidel in row order feeds energy along the rows, and each constraint waits for the one before. In
+//! colour order neighbours in the list are independent.
 
 use core::ops::Range;
 
-/// Where each colour begins and ends in a list of constraints.
+/// Range of each colour in a list of constraints.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Colours(Vec<Range<usize>>);
 
@@ -16,8 +16,8 @@ impl Colours {
     }
 }
 
-/// Gives each constraint the smallest colour that no earlier constraint of its particles has (greedy colouring),
-/// and sorts the constraints by rank, then colour, then their order before.
+/// Gives each constraint the smallest colour that no earlier constraint of its particles has (greedy
+/// colouring), and sorts the constraints by rank, then by colour, and otherwise in their former order.
 pub(super) fn colour<C>(
     particle_count: usize,
     constraints: Vec<C>,

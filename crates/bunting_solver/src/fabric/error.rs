@@ -1,6 +1,6 @@
 //! Errors of meshes, grids and materials.
 
-/// The reason why a fabric cannot be built, and where.
+/// Reason why a fabric cannot be built, with the location of the defect.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FabricError {
@@ -96,7 +96,7 @@ pub enum FabricError {
     Material {
         /// The field's name.
         name: &'static str,
-        /// Its value.
+        /// Value of the field.
         value: f32,
     },
 }

@@ -1,4 +1,4 @@
-//! The fabric: a mesh at rest with everything that can be computed from it before a cloth moves.
+//! The fabric: a mesh at rest, and everything computed from it before a cloth moves.
 
 use glam::{Vec2, Vec3};
 
@@ -16,10 +16,11 @@ use super::tethers::{self, Pin, Tether, Tethers};
 use super::twist::{Ribbon, RibbonProfile, Twist};
 use super::yarns::{Yarn, Yarns};
 
-/// A piece of cloth at rest, with its pins. Immutable; all cloths cut from it share it in an `Arc`.
+/// A piece of cloth at rest, with its pins. It is immutable; all cloths made of it share it in an `Arc`.
 ///
-/// Built by a [`FabricBuilder`](crate::FabricBuilder). Vertices of the source mesh that lie at one place are one
-/// particle, see [`particle_of_vertex`](Self::particle_of_vertex); everything else is indexed by particle.
+/// A [`FabricBuilder`](crate::FabricBuilder) builds it. Vertices of the source mesh at the same position are
+/// one particle, see [`particle_of_vertex`](Self::particle_of_vertex); everything else is indexed by
+/// particle.
 #[derive(Clone, Debug)]
 pub struct Fabric {
     grid: Option<Grid>,
@@ -99,8 +100,8 @@ impl Fabric {
         self.mesh.positions.len()
     }
 
-    /// Area of each particle, m²: a third of each triangle that it borders (thesis, 5.1.3). Times the material's
-    /// area density it is the particle's mass, pinned or not.
+    /// Area of each particle, m²: a third of each triangle that it borders (thesis, 5.1.3). Multiplied by the
+    /// material's area density it is the mass of the particle, pinned or not.
     #[must_use]
     pub fn particle_areas(&self) -> &[f32] {
         &self.mesh.areas
@@ -124,8 +125,8 @@ impl Fabric {
         !self.tethers.pins.is_empty()
     }
 
-    /// Unit normals at the particles for given positions (m, one per particle), to the front: the area-weighted
-    /// mean of the normals of each particle's triangles. Zero where these have no area.
+    /// Unit normals at the particles for given positions (m, one for each particle), on the front side: the
+    /// area-weighted mean of the normals of each particle's triangles. Zero if these have no area.
     #[must_use]
     pub fn normals(&self, positions: &[Vec3]) -> Vec<Vec3> {
         let triangles = self.mesh.triangles.iter();
@@ -139,61 +140,63 @@ impl Fabric {
         &self.links.list
     }
 
-    /// Stiffness in N/m of one of this fabric's [`links`](Self::links) in a material, where diagonals resist stretch
-    /// as well as shear: on triangle meshes, and in the Gauss–Seidel scheme.
+    /// Stiffness in N/m of one of this fabric's [`links`](Self::links) for a material, if diagonals resist
+    /// stretch as well as shear: on triangle meshes, and in the Gauss–Seidel scheme.
     #[must_use]
     pub fn link_stiffness(&self, link: &Link, material: &FabricMaterial) -> f32 {
         self.links.classes[link.class as usize].stiffness(material)
     }
 
-    /// Number of edges at which the Gauss–Seidel scheme, and any scheme on a triangle mesh, resists bending.
+    /// Number of hinges: edges at which the Gauss–Seidel scheme, and any scheme on a triangle mesh, resists
+    /// bending.
     #[must_use]
     pub fn hinge_count(&self) -> usize {
         self.hinges.list.len()
     }
 
-    /// The grid that the fabric was made from, if it was.
+    /// The grid that the fabric was made from; none for other meshes.
     pub(crate) fn grid(&self) -> Option<&Grid> {
         self.grid.as_ref()
     }
 
-    /// One over the area of each particle, 1/m²; zero where it is pinned, as if infinitely heavy (thesis, 5.1.4).
+    /// One over the area of each particle, 1/m²; zero if it is pinned, as if it had infinite mass (thesis,
+    /// 5.1.4).
     pub(crate) fn inverse_areas(&self) -> &[f32] {
         &self.mesh.inverse_areas
     }
 
-    /// The triangles in pairs.
+    /// The triangles in pairs, see `patches.rs`.
     pub(crate) fn patches(&self) -> &[Patch] {
         &self.patches
     }
 
-    /// Number of particles in a row, where the patches are the cells of a grid, row by row; else none.
+    /// Number of particles in a row if the patches are the cells of a grid, row by row; otherwise none.
     pub(crate) fn patch_grid_columns(&self) -> Option<usize> {
         self.patch_grid_columns
     }
 
-    /// Stiffnesses that links refer to.
+    /// Table of stiffnesses that links refer to.
     pub(crate) fn link_classes(&self) -> &[LinkClass] {
         &self.links.classes
     }
 
-    /// The links in straight paths, colour by colour.
+    /// The yarns, colour by colour.
     pub(crate) fn yarns(&self) -> &[Yarn] {
         &self.yarns.list
     }
 
-    /// Runs of yarns that share no particle.
+    /// Ranges of yarns that share no particle.
     pub(crate) fn yarn_colours(&self) -> &Colours {
         &self.yarns.colours
     }
 
-    /// The yarns as they are solved, where each cloth has a lane.
+    /// The chains of the yarns, for cloths side by side.
     pub(crate) fn chains(&self) -> &Chains {
         &self.chains
     }
 
-    /// Whether diagonals resist shear alone (`constraints/shear.rs`): on grids whose diagonals are links of the
-    /// family [`Diagonal`](crate::LinkFamily::Diagonal).
+    /// Whether diagonals resist shear alone (`constraints/shear.rs`): on grids with diagonals of the family
+    /// [`Diagonal`](crate::LinkFamily::Diagonal).
     pub(crate) fn has_shear_cells(&self) -> bool {
         !self.chains.cells.is_empty()
     }
@@ -203,27 +206,27 @@ impl Fabric {
         &self.hinges.list
     }
 
-    /// Stiffnesses that hinges refer to.
+    /// Table of stiffnesses that hinges refer to.
     pub(crate) fn hinge_classes(&self) -> &[HingeClass] {
         &self.hinges.classes
     }
 
-    /// Rows and columns along which a grid bends; none of other meshes, which bend at their hinges.
+    /// Rows and columns along which a grid bends; none for other meshes, which bend at their hinges.
     pub(crate) fn bend_lines(&self) -> &[BendLine] {
         &self.bending.lines
     }
 
-    /// Profiles that bend lines refer to.
+    /// Table of profiles that bend lines refer to.
     pub(crate) fn bend_profiles(&self) -> &[BendProfile] {
         &self.bending.profiles
     }
 
-    /// Ribbons of cells along which a grid twists; none of other meshes.
+    /// Ribbons of cells along which a grid twists; none for other meshes.
     pub(crate) fn ribbons(&self) -> &[Ribbon] {
         &self.twist.ribbons
     }
 
-    /// Profiles that ribbons refer to.
+    /// Table of profiles that ribbons refer to.
     pub(crate) fn ribbon_profiles(&self) -> &[RibbonProfile] {
         &self.twist.profiles
     }
@@ -233,13 +236,13 @@ impl Fabric {
         &self.tethers.pins
     }
 
-    /// Of each free particle the tether to its nearest pin.
+    /// Tether of each free particle to its nearest pin.
     pub(crate) fn tethers(&self) -> &[Tether] {
         &self.tethers.near
     }
 
-    /// Tethers to the pins that are farthest from particles at rest, of particles that lie farther from them than
-    /// [`reach`](Self::reach).
+    /// Tethers to the farthest pins, of particles that lie farther from them than [`reach`](Self::reach) at
+    /// rest.
     pub(crate) fn far_tethers(&self) -> &[Tether] {
         &self.tethers.far
     }
@@ -249,13 +252,14 @@ impl Fabric {
         self.tethers.reach
     }
 
-    /// √L/l, m^−½, with L the [`reach`](Self::reach) and l the length of the shortest link of warp and weft. The
-    /// topmost links of a cloth of length L that hangs under gravity g vibrate at 2 √g times this, rad/s.
+    /// Tautness √L/l, m^−½, with L the [`reach`](Self::reach) and l the length of the shortest link of warp
+    /// and weft. The topmost links of a cloth of length L that hangs under gravity g vibrate at 2 √g times
+    /// this value, rad/s.
     pub(crate) fn tautness(&self) -> f32 {
         self.tautness
     }
 
-    /// The distance of each particle from a pin at rest, along the cloth, m; infinite where no way leads to it.
+    /// Distance of each particle from a pin at rest, along the cloth, m; infinite if they are not connected.
     pub(crate) fn distances_from(&self, pin: Pin) -> Vec<f32> {
         let edges = self.mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
         tethers::distances(&self.mesh.positions, edges, pin, self.grid.is_some())

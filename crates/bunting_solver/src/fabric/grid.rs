@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::error::FabricError;
 
-/// A rectangle of particles.
+/// A rectangular grid of particles.
 ///
 /// Particle `row * columns + column` rests at `(column · width/(columns−1), −row · height/(rows−1),
 /// 0)`: the origin is the top left corner, the front faces +z, u grows to the right and v down.
@@ -67,7 +67,7 @@ impl Grid {
         self.nodes(Vec2::new)
     }
 
-    /// A value for each particle, from how far along a row and a column it lies, from 0 to 1.
+    /// One value for each particle, from its fractions (0 to 1) along a row and along a column.
     fn nodes<T>(&self, node: impl Fn(f32, f32) -> T) -> Vec<T> {
         let fraction = |index: u32, count: u32| index as f32 / (count.max(2) - 1) as f32;
         (0..self.rows)
@@ -81,8 +81,8 @@ impl Grid {
         [self.width / (self.columns - 1) as f32, self.height / (self.rows - 1) as f32]
     }
 
-    /// The particles at the corners of each cell (top left, top right, bottom left, bottom right), and whether the
-    /// cell is one of the "even" ones of a chessboard.
+    /// The particles at the corners of each cell (top left, top right, bottom left, bottom right), and
+    /// whether the cell is an even one of a chessboard.
     pub(crate) fn cells(&self) -> impl Iterator<Item = ([u32; 4], bool)> + '_ {
         (0..self.rows - 1).flat_map(move |row| {
             (0..self.columns - 1).map(move |column| {
@@ -93,8 +93,8 @@ impl Grid {
         })
     }
 
-    /// Two triangles per cell, the diagonal alternating from cell to cell so that no direction is preferred.
-    /// `flipped` cuts each cell along its other diagonal.
+    /// Two triangles for each cell, with a diagonal that alternates from cell to cell so that no direction is
+    /// preferred. `flipped` splits each cell along its other diagonal.
     pub(crate) fn triangles(&self, flipped: bool) -> Vec<[u32; 3]> {
         self.cells()
             .flat_map(|([top_left, top_right, bottom_left, bottom_right], even)| {

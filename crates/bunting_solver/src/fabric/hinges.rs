@@ -1,4 +1,4 @@
-//! Bending of any mesh: hinges, each an edge and the two corners that fold about it.
+//! Bending of any mesh: hinges, each an edge and the two corners opposite to it.
 
 use glam::Vec3;
 
@@ -12,7 +12,7 @@ use super::topology::Edge;
 /// A bending constraint between two triangles that share an edge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Hinge {
-    /// The edge's two ends, then the corners opposite to it.
+    /// The two ends of the edge, then the corners opposite to it.
     pub particles: [u32; 4],
     /// Signed angle between the triangles' normals at rest, rad; zero is flat.
     pub rest_angle: f32,
@@ -20,35 +20,36 @@ pub(crate) struct Hinge {
     pub class: u32,
 }
 
-/// How stiff a hinge is in any material.
+/// Stiffness of a hinge for any material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct HingeClass {
-    /// Stiffness in N·m/rad² is this times the material's bending stiffness in N·m.
+    /// Factor of the material's bending stiffness (N·m) in the hinge's stiffness (N·m/rad²).
     pub coefficient: f32,
 }
 
 impl HingeClass {
-    /// Stiffness of the hinge in a material, N·m/rad².
+    /// Stiffness of the hinge for a material, N·m/rad².
     pub fn stiffness(&self, material: &FabricMaterial) -> f32 {
         self.coefficient * material.bend_stiffness
     }
 }
 
-/// Factor of |e|²/(A₁+A₂) in a hinge's stiffness. The usual energy, ½ B · 3|e|²/(A₁+A₂) θ², is three times that of
-/// a bent cylinder on equilateral meshes and on grids along their axes, at every resolution: hence 1 and not 3.
+/// Factor of |e|²/(A₁+A₂) in a hinge's stiffness. The usual energy, ½ B · 3|e|²/(A₁+A₂) θ², is three times
+/// that of a bent cylinder on equilateral meshes and on grids along their axes, at every resolution: hence 1
+/// and not 3.
 const CALIBRATION: f32 = 1.0;
 
 /// The hinges of a fabric.
 #[derive(Clone, Debug)]
 pub(crate) struct Hinges {
-    /// Colour by colour.
+    /// Hinges, colour by colour.
     pub list: Vec<Hinge>,
-    /// Stiffnesses that hinges refer to.
+    /// Table of stiffnesses that hinges refer to.
     pub classes: Vec<HingeClass>,
 }
 
 impl Hinges {
-    /// A hinge at each edge between two triangles, except where all four particles are pinned.
+    /// One hinge at each edge between two triangles, unless all four particles are pinned.
     pub fn of(mesh: &RestMesh, edges: &[Edge]) -> Self {
         let mut table = Vec::new();
         let mut classes = Classes::new();
@@ -82,8 +83,8 @@ fn coefficient([a, b, c, d]: [Vec3; 4], at_clamp: bool) -> f32 {
     clamp * CALIBRATION * a.distance_squared(b) / areas
 }
 
-/// Signed angle between the normals of the triangles (a, b, c) and (b, a, d), rad: atan2 of sine and cosine, since
-/// the arccos of the thesis (eq. 4.19) is singular where the hinge is flat and has no sign.
+/// Signed angle between the normals of the triangles (a, b, c) and (b, a, d), rad, by atan2 of sine and
+/// cosine: the arccos of the thesis (eq. 4.19) is singular at a flat hinge and has no sign.
 pub(crate) fn angle([a, b, c, d]: [Vec3; 4]) -> f32 {
     let edge = (b - a).normalize();
     let normal = edge.cross(c - a).normalize();

@@ -1,10 +1,11 @@
-//! Distance constraints ("links"): which particles they join, and how stiff they are.
+//! Distance constraints ("links"): the particles that they join, and their stiffnesses.
 //!
-//! Each triangle gives its three edges the stiffnesses with which links along those directions reproduce the
-//! material's moduli: Σ q c⁴ = A C₁₁, Σ q s⁴ = A C₂₂ and Σ q c²s² = A G, with q = k l² for an edge of stiffness k
-//! and length l, (c, s) its direction in the material and A the triangle's area. Where a triangle's directions do
-//! not tell the moduli apart, least squares picks the smallest solution. On a grid, whose cells are cut both ways,
-//! this is the textbook k = Y × width / length for warp and weft and G L²/(2 Δx Δy) for diagonals, exactly.
+//! Each triangle gives its three edges the stiffnesses with which links in those directions reproduce the
+//! material's moduli: Σ q c⁴ = A C₁₁, Σ q s⁴ = A C₂₂ and Σ q c²s² = A G, with q = k l² for an edge of
+//! stiffness k and length l, (c, s) its direction in the material and A the triangle's area. If a triangle's
+//! directions do not determine q, least squares selects the smallest solution. On a grid, whose cells are
+//! split both ways, this is the textbook k = Y × width / length for warp and weft and G L²/(2 Δx Δy) for
+//! diagonals, exactly.
 
 use std::collections::BTreeMap;
 
@@ -36,21 +37,21 @@ pub enum LinkFamily {
     Warp,
     /// Within 22.5° of the weft (v).
     Weft,
-    /// In between: resists shear.
+    /// In between: the link resists shear.
     Diagonal,
 }
 
-/// How stiff a link is in any material.
+/// Stiffness of a link for any material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LinkClass {
-    /// Stiffness in N/m is the sum of these times C₁₁, C₂₂ and G of the material.
+    /// Factors of the material's C₁₁, C₂₂ and G, whose sum is the stiffness in N/m.
     pub coefficients: [f32; 3],
-    /// Least stiffness, as a part of the material's softer stretch stiffness.
+    /// Least stiffness, as a fraction of the material's smaller stretch stiffness.
     pub floor: f32,
 }
 
 impl LinkClass {
-    /// Stiffness of the link in a material, N/m, where diagonals resist stretch too: with
+    /// Stiffness of the link for a material, N/m, if diagonals resist stretch, too: with
     /// [`FabricMaterial::lattice_moduli`].
     pub fn stiffness(&self, material: &FabricMaterial) -> f32 {
         // Coefficients of zero are skipped: an inextensible material's moduli are infinite.
@@ -58,20 +59,20 @@ impl LinkClass {
         self.combined(moduli, |coefficient| coefficient != 0.0).max(self.least(material))
     }
 
-    /// Stiffness of the link in a material, N/m, where diagonals resist shear alone (`constraints/shear.rs`): warp
-    /// and weft carry all of the stretch, so that the material's own moduli hold, and no negative coefficient
-    /// makes room for the diagonals.
+    /// Stiffness of the link for a material, N/m, if diagonals resist shear alone (`constraints/shear.rs`).
+    /// Warp and weft then carry all of the stretch: the material's own moduli hold, and negative
+    /// coefficients, which compensate for the diagonals, are left out.
     pub fn uncoupled_stiffness(&self, material: &FabricMaterial) -> f32 {
         let FabricMaterial { warp_stiffness, weft_stiffness, shear_stiffness, .. } = *material;
         let moduli = [warp_stiffness, weft_stiffness, shear_stiffness];
         self.combined(moduli, |coefficient| coefficient > 0.0).max(self.least(material))
     }
 
-    /// The sum of the moduli times those coefficients that count.
+    /// The sum of the moduli times those coefficients for which `counts` holds.
     fn combined(&self, moduli: [f32; 3], counts: fn(f32) -> bool) -> f32 {
         let terms = self.coefficients.iter().zip(moduli).filter(|(factor, _)| counts(**factor));
         let sum: f32 = terms.map(|(factor, modulus)| factor * modulus).sum();
-        // ∞ − ∞ is not a number; it means inextensible.
+        // A sum of ∞ − ∞ is not a number; the link is then inextensible.
         if sum.is_nan() { f32::INFINITY } else { sum }
     }
 
@@ -80,18 +81,18 @@ impl LinkClass {
     }
 }
 
-/// Least stiffness of a link as a part of that which an isotropic mesh would give it (Van Gelder 1998). Smaller: a
-/// mesh cannot hold its shape on links whose stiffness is zero or negative. Larger: shear-soft materials shear too
-/// little.
+/// Least stiffness of a link, as a fraction of its stiffness in an isotropic mesh (Van Gelder 1998). Smaller:
+/// a mesh cannot hold its shape on links whose stiffness is zero or negative. Larger: shear-soft materials
+/// shear too little.
 const LEAST_STIFFNESS: f64 = 0.02;
 
-/// Size, relative to the normal equations, of the term that picks the smallest solution where a triangle's three
-/// directions do not tell the moduli apart (an equilateral one, say). Smaller: the inverse is rounding. Larger:
-/// stiffnesses of other triangles are off by as much.
+/// Size, relative to the normal equations, of the term that selects the smallest solution if a triangle's
+/// three directions do not determine it (as for an equilateral triangle). Smaller: the inverse is dominated
+/// by rounding. Larger: stiffnesses of other triangles are off by as much.
 const RIDGE: f64 = 1e-7;
 
-/// Coefficients smaller than this are rounding left by the ridge, and count as zero. Larger: coefficients of
-/// triangles nearly along the warp are lost.
+/// Magnitude below which coefficients are rounding errors of the ridge, and count as zero. Larger:
+/// coefficients of triangles nearly along the warp are lost.
 const LEAST_COEFFICIENT: f64 = 1e-4;
 
 /// cos² of the angle to the warp above which a link counts as warp: 22.5°.
@@ -100,19 +101,19 @@ const FAMILY_COS2: f64 = 0.853_553_390_6;
 /// The links of a fabric.
 #[derive(Clone, Debug)]
 pub(crate) struct Links {
-    /// Warp first, then weft, then diagonals; in each, colour by colour.
+    /// Links of warp, weft and diagonals in this order; within each, colour by colour.
     pub list: Vec<Link>,
-    /// Stiffnesses that links refer to.
+    /// Table of stiffnesses that links refer to.
     pub classes: Vec<LinkClass>,
 }
 
 impl Links {
-    /// Links along the edges of a mesh, or along the rows, columns and both diagonals of a grid. A link between
-    /// two pinned particles has nothing to move and is left out.
+    /// Links along the edges of a mesh, or along the rows, columns and both diagonals of a grid. A link
+    /// between two pinned particles moves nothing and is left out.
     pub fn of(mesh: &RestMesh, grid: Option<&Grid>) -> Self {
         let mut sums = BTreeMap::new();
         match grid {
-            // Both ways of cutting a cell, half of each.
+            // A cell is split both ways, and each way contributes half.
             Some(grid) => {
                 for flipped in [false, true] {
                     for triangle in grid.triangles(flipped) {
@@ -155,16 +156,16 @@ impl Links {
     }
 }
 
-/// What the triangles on both sides of an edge have given to its link so far.
+/// Sums over the triangles on both sides of an edge, for its link.
 #[derive(Default)]
 struct LinkSum {
     /// Factors of C₁₁, C₂₂ and G.
     coefficients: [f64; 3],
-    /// The factor of Young's modulus that an isotropic mesh would give.
+    /// Factor of Young's modulus in an isotropic mesh.
     isotropic: f64,
-    /// Sum of cos² of the angle to the warp, one per triangle, times the triangle's part.
+    /// Sum over the triangles of cos² of the angle to the warp, times the triangle's fraction.
     cos2: f64,
-    /// Sum of the parts.
+    /// Sum of the fractions.
     parts: f64,
 }
 
@@ -190,7 +191,7 @@ impl LinkSum {
     }
 }
 
-/// Adds what a triangle, of which a `part` counts, gives to the links along its edges.
+/// Adds the contributions of a fraction `part` of a triangle to the links along its edges.
 fn add_triangle(
     sums: &mut BTreeMap<[u32; 2], LinkSum>,
     mesh: &RestMesh,
@@ -202,14 +203,14 @@ fn add_triangle(
     let area = 0.5 * f64::from((corners[1] - corners[0]).cross(corners[2] - corners[0]).length());
     let edges = [[a, b], [b, c], [c, a]];
     let warp = warp_direction(mesh, triangle);
-    // c⁴, s⁴ and c²s² of each edge.
+    // Rows of c⁴, s⁴ and c²s², one for each edge.
     let rows = edges.map(|ends| {
         let [from, to] = mesh.positions_of(ends);
         let edge = to - from;
         let cos2 = f64::from(edge.dot(warp).powi(2) / edge.length_squared()).clamp(0.0, 1.0);
         DVec3::new(cos2 * cos2, (1.0 - cos2).powi(2), cos2 * (1.0 - cos2))
     });
-    // Least squares for q with three columns of right sides, one per modulus.
+    // Least squares for q with three columns of right sides, one for each modulus.
     let system = DMat3::from_cols(rows[0], rows[1], rows[2]);
     let normal = system.transpose() * system + DMat3::from_diagonal(DVec3::splat(RIDGE));
     let solution = normal.inverse() * system.transpose();
@@ -227,7 +228,8 @@ fn add_triangle(
     }
 }
 
-/// The direction in which u grows, in the triangle's plane; along its first edge if the texture does not say.
+/// Direction in which u grows, in the triangle's plane; the direction of its first edge if the texture does
+/// not determine it.
 fn warp_direction(mesh: &RestMesh, triangle: [u32; 3]) -> Vec3 {
     let [a, b, c] = mesh.positions_of(triangle);
     let [uv_a, uv_b, uv_c] = triangle.map(|corner| mesh.uv[corner as usize]);

@@ -4,8 +4,8 @@ use super::error::FabricError;
 
 /// A woven or knitted material, in SI units.
 ///
-/// Masses and compliances at every level of detail follow from these values, so that a cloth behaves alike at every
-/// resolution.
+/// Masses and compliances at every level of detail follow from these values, so that a cloth behaves alike at
+/// every resolution.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FabricMaterial {
     /// Area density: mass per area, kg/m².
@@ -18,16 +18,15 @@ pub struct FabricMaterial {
     pub shear_stiffness: f32,
     /// Bending stiffness B, N·m: the energy is ½ B κ² per square metre at a curvature of κ 1/m.
     pub bend_stiffness: f32,
-    /// Rate at which all motion relative to the cloth's frame dies away, 1/s.
+    /// Rate at which all motion relative to the cloth's frame decays, 1/s.
     pub damping: f32,
-    /// Rate at which motion other than the cloth's rigid motion dies away, 1/s
-    /// (thesis, appendix A).
+    /// Rate at which all motion except the cloth's rigid motion decays, 1/s (thesis, appendix A).
     pub internal_damping: f32,
     /// Air pressure coefficient C_n: a triangle facing the air feels ½ ρ C_n A u_n².
     pub pressure_coefficient: f32,
     /// Skin friction coefficient C_t: a triangle along the air feels ½ ρ C_t A u².
     pub friction_coefficient: f32,
-    /// Distance that the cloth's middle surface keeps from what it touches, m.
+    /// Distance that the cloth's middle surface keeps from colliders, m.
     pub thickness: f32,
     /// Coulomb friction coefficient against colliders.
     pub surface_friction: f32,
@@ -39,8 +38,9 @@ const LEAST_DENSITY: f32 = 1e-6;
 /// Least stretch stiffness, N/m. Smaller: compliances overflow.
 const LEAST_STIFFNESS: f32 = 1e-6;
 
-/// Presets. Values after Wang, O'Brien and Ramamoorthi 2011, "Data-driven elastic models for cloth": the stretch
-/// stiffness is the slope at the smallest strain measured, and their bending coefficient k corresponds to B ≈ k/4.
+/// Presets, with values after Wang, O'Brien and Ramamoorthi 2011, "Data-driven elastic models for cloth": the
+/// stretch stiffness is the slope at the smallest measured strain, and the paper's bending coefficient k
+/// corresponds to B ≈ k/4.
 impl FabricMaterial {
     /// Knitted flag polyester. Density: flag makers' 110–115 g/m². Stretch, shear and bending:
     /// Wang et al. 2011, polyester tablecloth (2002/2027/19 N/m, k = 41 µN·m). The rest: estimates.
@@ -111,8 +111,8 @@ impl FabricMaterial {
     ///
     /// # Errors
     ///
-    /// [`FabricError::Material`] names the first value that cannot: a density below 10⁻⁶ kg/m² or not
-    /// finite, a stretch stiffness below 10⁻⁶ N/m, anything else that is negative or not finite.
+    /// [`FabricError::Material`] names the first invalid value: a density below 10⁻⁶ kg/m² or not finite, a
+    /// stretch stiffness below 10⁻⁶ N/m, any other value that is negative or not finite.
     pub fn validate(&self) -> Result<(), FabricError> {
         let density = |value: f32| value >= LEAST_DENSITY && value.is_finite();
         let stretch = |value: f32| value >= LEAST_STIFFNESS;
@@ -136,12 +136,13 @@ impl FabricMaterial {
         }
     }
 
-    /// The stiffnesses `[C₁₁, C₂₂, G]` in N/m with which a lattice of links measures as the material says, where its
-    /// diagonals resist stretch as well as shear.
+    /// The stiffnesses `[C₁₁, C₂₂, G]` in N/m with which a lattice of links has the material's measured
+    /// stiffnesses, if its diagonals resist stretch as well as shear.
     ///
-    /// Such diagonals couple warp and weft by C₁₂ = G. A strip that is pulled along the warp and free to narrow then
-    /// measures C₁₁ − C₁₂²/C₂₂; setting that equal to the warp stiffness, and likewise for the weft, gives C₁₁ and C₂₂.
-    /// Where diagonals resist shear alone (`constraints/shear.rs`), the material's own stiffnesses hold.
+    /// Such diagonals couple warp and weft by C₁₂ = G. A strip that is pulled along the warp and free to
+    /// narrow then measures C₁₁ − C₁₂²/C₂₂; setting this equal to the warp stiffness, and likewise for the
+    /// weft, gives C₁₁ and C₂₂. If diagonals resist shear alone (`constraints/shear.rs`), the material's own
+    /// stiffnesses hold.
     pub(crate) fn lattice_moduli(&self) -> [f32; 3] {
         let (warp, weft, shear) = (self.warp_stiffness, self.weft_stiffness, self.shear_stiffness);
         if !warp.is_finite() || !weft.is_finite() {

@@ -13,7 +13,7 @@ const LEAST_ASPECT: f32 = 1e-6;
 /// Particles and triangles at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct RestMesh {
-    /// Positions, m, one per particle.
+    /// Positions, m, one for each particle.
     pub positions: Vec<Vec3>,
     /// Texture coordinates, one per particle.
     pub uv: Vec<Vec2>,
@@ -23,14 +23,14 @@ pub(crate) struct RestMesh {
     pub particle_of_vertex: Vec<u32>,
     /// A third of the areas of a particle's triangles, m² (thesis, 5.1.3).
     pub areas: Vec<f32>,
-    /// One over these, 1/m²; zero where the particle is pinned (thesis, 5.1.4).
+    /// One over the areas, 1/m²; zero if the particle is pinned (thesis, 5.1.4).
     pub inverse_areas: Vec<f32>,
 }
 
-/// What only the construction of a fabric needs of its mesh.
+/// Properties of a mesh that only the construction of its fabric needs.
 #[derive(Clone, Debug)]
 pub(super) struct Surface {
-    /// m², one per triangle.
+    /// Areas of the triangles, m².
     pub triangle_areas: Vec<f32>,
     /// All edges, sorted by their ends.
     pub edges: Vec<Edge>,
@@ -91,7 +91,7 @@ impl RestMesh {
     }
 }
 
-/// m², one per triangle.
+/// Areas of the triangles, m².
 fn triangle_areas(rest: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<f32>, FabricError> {
     let area = |(index, triangle): (usize, &[u32; 3])| {
         let [a, b, c] = triangle.map(|corner| rest[corner as usize]);
@@ -104,7 +104,7 @@ fn triangle_areas(rest: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<f32>, Fab
     triangles.iter().enumerate().map(area).collect()
 }
 
-/// A third of each triangle's area to each of its corners, m², one per particle.
+/// Area of each particle, m²: a third of the area of each of its triangles.
 fn particle_areas(count: usize, triangles: &[[u32; 3]], triangle_areas: &[f32]) -> Vec<f32> {
     let mut areas = vec![0.0; count];
     for (triangle, area) in triangles.iter().zip(triangle_areas) {

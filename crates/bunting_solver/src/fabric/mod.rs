@@ -1,4 +1,4 @@
-//! A cloth at rest: the part of it that all cloths cut from the same mesh share, and that never moves.
+//! A cloth at rest: the immutable part that all cloths of one mesh share.
 //!
 //! A [`Fabric`] holds geometry only. Masses are areas (a particle's mass is its area times the material's area
 //! density), and the stiffness of a constraint is a modulus of the material times a coefficient of the

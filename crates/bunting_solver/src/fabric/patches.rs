@@ -1,6 +1,6 @@
 //! Triangles in pairs that share an edge, for sums over all triangles (air, normals).
 //!
-//! A pair has four corners where two triangles have six, so that a third fewer positions are loaded and results
+//! A pair has four corners, two single triangles six, so that a third fewer positions are loaded and results
 //! added. Neighbours in the list are neighbours in space.
 
 use super::grid::Grid;
@@ -10,14 +10,14 @@ use crate::simd::vec3::{Pack3, V3};
 /// Two triangles (a, b, c) and (a, c, d).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Patch {
-    /// a, b, c and d; d = c where a triangle found no partner.
+    /// The corners a, b, c and d; d = c if a triangle has no partner.
     pub corners: [u32; 4],
-    /// A third of each triangle's area, m²: the part of it that belongs to each of its corners.
+    /// A third of each triangle's area, m²: the area that belongs to each of its corners.
     pub corner_areas: [f32; 2],
 }
 
 impl Patch {
-    /// The values at the corners, of one per particle.
+    /// Loads the values at the corners from a list with one value for each particle.
     #[inline(always)]
     pub fn load<L: Lane>(&self, token: L::Token, values: &[Pack3<L::Pack>]) -> [V3<L>; 4] {
         let [a, b, c, d] = self.corners;
@@ -42,8 +42,8 @@ pub(super) fn are_cells(patches: &[Patch], grid: &Grid) -> bool {
     cells.eq(patches.iter().map(|patch| patch.corners))
 }
 
-/// Pairs each triangle with the first neighbour that has no partner yet and faces the same way, given the areas of
-/// the triangles, m².
+/// Pairs each triangle with the first neighbour that has no partner yet and faces the same way, given the
+/// areas of the triangles, m².
 pub(super) fn patches(triangles: &[[u32; 3]], areas: &[f32]) -> Vec<Patch> {
     let sides = |(index, &[a, b, c]): (usize, &[u32; 3])| {
         [[a, b], [b, c], [c, a]].map(|edge| (edge, index))

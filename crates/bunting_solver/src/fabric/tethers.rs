@@ -1,4 +1,4 @@
-//! Tethers: how far each free particle may be from the pin nearest to it, and from the one farthest from it.
+//! Tethers: bounds on the distance of each free particle from its nearest pin, and from its farthest pin.
 //!
 //! Distances are geodesic at rest ("long range attachments", Kim 2012): straight on a grid, along the edges of
 //! other meshes.
@@ -16,19 +16,20 @@ use super::topology::Edge;
 pub(crate) struct Tether {
     /// The free particle.
     pub particle: u32,
-    /// The pinned one.
+    /// The pinned particle.
     pub pin: u32,
     /// Greatest distance between the two, m.
     pub length: f32,
 }
 
-/// Slack of a tether to a pin among pins, as a part of its length. Smaller: the tether carries what warp and weft
-/// should, at the cloth's own strain under its weight. Larger: the tether catches later.
+/// Slack of a tether to a pin with neighbouring pins, as a fraction of its length. Smaller: the tether
+/// carries a load that belongs to warp and weft, at the cloth's own strain under its weight. Larger: the
+/// tether catches later.
 const SLACK_TO_LINE: f32 = 0.005;
 
-/// Slack of a tether to an isolated pin or to the farthest pin, as a part of its length: such tethers run along
-/// diagonals, and a cloth that hangs by points shears and lies farther from them than its rest shape says. Smaller:
-/// the tether stops that shear. Larger: the tether catches later.
+/// Slack of a tether to an isolated pin or to the farthest pin, as a fraction of its length. Such tethers run
+/// along diagonals, and a cloth that hangs from points shears and hangs farther from them than its rest shape
+/// says. Smaller: the tether stops that shear. Larger: the tether catches later.
 const SLACK_UNDER_SHEAR: f32 = 0.05;
 
 /// A pinned particle.
@@ -45,19 +46,19 @@ pub(crate) struct Pin {
 pub(crate) struct Tethers {
     /// All pins.
     pub pins: Vec<Pin>,
-    /// Of each free particle the tether to its nearest pin.
+    /// Tether of each free particle to its nearest pin.
     pub near: Vec<Tether>,
     /// Tethers to the farthest pin, of free particles that lie farther from it than [`reach`](Self::reach).
     ///
-    /// With tethers to the nearest pin alone, the lower corner of a flag may come to lie beneath its pole. The
-    /// particles closer to their farthest pin are held by these.
+    /// With tethers to the nearest pin alone, the lower corner of a flag may end up beneath its pole.
+    /// Particles closer to their farthest pin are held by tethers to the nearest pin.
     pub far: Vec<Tether>,
     /// Greatest length of a tether to the nearest pin, m; zero without pins.
     pub reach: f32,
 }
 
 impl Tethers {
-    /// Pins and tethers; only pins and the reach if the fabric is not `tethered`. On a `flat` mesh the shortest way
+    /// Pins and tethers; without tethers if the fabric is not `tethered`. On a `flat` mesh the shortest path
     /// between two particles at rest is straight.
     pub(super) fn of(mesh: &RestMesh, edges: &[Edge], flat: bool, tethered: bool) -> Self {
         let rest = &mesh.positions;
@@ -87,7 +88,7 @@ fn pins(mesh: &RestMesh, edges: &[Edge]) -> Vec<Pin> {
         .collect()
 }
 
-/// Of each free particle from which a way leads to a pin, the tether to the nearest pin.
+/// Tether of each free particle that is connected to a pin, to its nearest pin.
 fn near_tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -> Vec<Tether> {
     let edges = edges.iter().map(|edge| edge.ends);
     let nearest =
@@ -137,7 +138,7 @@ fn far_tethers(
     particles_of_pin.into_iter().flat_map(tethers_to_pin).collect()
 }
 
-/// The distance of each particle from a pin at rest, m; infinite where no way leads to it.
+/// Distance of each particle from a pin at rest, m; infinite if they are not connected.
 pub(super) fn distances(
     rest: &[Vec3],
     edges: impl Iterator<Item = [u32; 2]>,
@@ -160,7 +161,8 @@ fn nearest_straight(rest: &[Vec3], pins: &[Pin]) -> Vec<Option<(f32, usize)>> {
         .collect()
 }
 
-/// The same along the edges of the mesh (Dijkstra 1959), which is never shorter than the way across the triangles.
+/// Distance along the edges of the mesh to the nearest pin, m, and the index of the pin (Dijkstra 1959). It
+/// is never shorter than the path across the triangles.
 fn nearest_along(
     rest: &[Vec3],
     edges: impl Iterator<Item = [u32; 2]>,
@@ -172,7 +174,7 @@ fn nearest_along(
         neighbours[b as usize].push(a);
     }
     let mut nearest: Vec<Option<(f32, usize)>> = vec![None; rest.len()];
-    // Floats that are not negative compare like their bits.
+    // The bits of non-negative floats are ordered like the floats.
     let mut open: BinaryHeap<Reverse<(u32, usize, u32)>> =
         pins.iter().enumerate().map(|(index, pin)| Reverse((0, index, pin.particle))).collect();
     while let Some(Reverse((bits, pin, particle))) = open.pop() {
@@ -219,7 +221,7 @@ mod tests {
         };
         let [(0, length)] = lengths(&flag, 19)[..] else { panic!("the lower corner") };
         assert!((length - 2.5).abs() < 1e-4, "{length}");
-        // The upper end of the pole is not so far.
+        // The upper end of the pole is nearer than the reach.
         assert!(lengths(&flag, 16).is_empty());
         let [(4, length)] = lengths(&hung, 15)[..] else { panic!("a lower corner") };
         assert!((length - 2.5).abs() < 1e-4, "{length}");
@@ -239,7 +241,7 @@ mod tests {
         let fabric = FabricBuilder::new(positions, indices).pin([0, 1]).build().expect("good");
         let far = fabric.tethers().iter().find(|tether| tether.particle == 4).expect("tethered");
         assert!((far.length / 2.0 - 1.005).abs() < 1e-4, "{}", far.length);
-        // The shortest way along the edges: a diagonal of one of the squares, and a side of the other.
+        // The shortest path along the edges: a diagonal of one of the squares, and a side of the other.
         let far = fabric.far_tethers().iter().find(|tether| tether.particle == 4).expect("far");
         let way = 1.0 + core::f32::consts::SQRT_2;
         assert!((far.length / way - 1.05).abs() < 1e-4, "{}", far.length);

@@ -16,16 +16,16 @@ pub(crate) struct Ribbon {
     pub profile: u32,
 }
 
-/// The values that ribbons of one kind have in common.
+/// Values that ribbons of one kind share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RibbonProfile {
     /// Stiffness of a cell in units of the material's bending stiffness, 1/m².
     pub coefficient: f32,
-    /// One over the area of each particle, 1/m²; zero where it is pinned.
+    /// One over the area of each particle, 1/m²; zero if it is pinned.
     pub inverse_areas: Vec<[f32; 2]>,
 }
 
-/// The ribbons along which a grid twists; none of other meshes.
+/// The ribbons along which a grid twists; none for other meshes.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Twist {
     /// Every second ribbon and then the others, so that neighbours in the list share no particle.
@@ -35,7 +35,7 @@ pub(crate) struct Twist {
 }
 
 impl Twist {
-    /// The ribbons along a grid's longer side, where twist adds up over most cells.
+    /// The ribbons along a grid's longer side, where twist accumulates over most cells.
     pub fn of(grid: &Grid, inverse_areas: &[f32]) -> Self {
         let along_columns = grid.rows >= grid.columns;
         let (across, along) =
@@ -68,7 +68,7 @@ impl Twist {
 }
 
 impl RibbonProfile {
-    /// Equal for profiles that are alike but for rounding.
+    /// Key that is equal for profiles that differ by rounding only.
     fn key(&self) -> Vec<u32> {
         self.inverse_areas.as_flattened().iter().map(|&value| rounded_bits(value)).collect()
     }

@@ -1,4 +1,4 @@
-//! Merging of vertices that lie at one place, as they do along the seams of a texture.
+//! Merging of vertices at the same position, as along the seams of a texture.
 
 use std::collections::HashMap;
 
@@ -8,15 +8,15 @@ use glam::{IVec3, Vec3};
 /// of 32-bit positions keeps seams open. Larger: small features of large meshes collapse.
 const DEFAULT_FRACTION: f32 = 1e-6;
 
-/// Which vertex became which particle.
+/// Correspondence of vertices and particles.
 pub(super) struct Weld {
-    /// One per vertex.
+    /// Particle of each vertex.
     pub particle_of_vertex: Vec<u32>,
-    /// The first of the vertices that became the particle, one per particle.
+    /// First vertex of each particle.
     pub vertex_of_particle: Vec<u32>,
 }
 
-/// The distance within which the vertices of a mesh are merged where none is given, m.
+/// Default distance within which vertices of a mesh are merged, m.
 pub(super) fn default_distance(positions: &[Vec3]) -> f32 {
     let first = positions.first().copied().unwrap_or_default();
     let (low, high) =
@@ -24,9 +24,10 @@ pub(super) fn default_distance(positions: &[Vec3]) -> f32 {
     DEFAULT_FRACTION * (high - low).max_element()
 }
 
-/// Merges each vertex into the first particle at most `distance` metres from it. Zero merges nothing.
+/// Merges each vertex into the first particle at most `distance` metres away. A distance of zero merges
+/// nothing.
 ///
-/// Particles are looked up in cells of a hash grid as wide as the distance, so that all candidates lie in the 27
+/// Particles are found in cells of a hash grid as wide as the distance, so that all candidates lie in the 27
 /// cells around a vertex.
 pub(super) fn weld(positions: &[Vec3], distance: f32) -> Weld {
     if distance <= 0.0 {

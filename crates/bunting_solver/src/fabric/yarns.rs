@@ -1,8 +1,8 @@
-//! Yarns: the links of any mesh cut into long straight paths.
+//! Yarns: long straight paths of links, of any mesh.
 //!
-//! At each particle the pairs of links that run on most straightly are joined; a path ends where no link runs on.
-//! On a grid the paths are the rows, the columns and both diagonals. Every link lies in exactly one yarn. The links
-//! of one yarn are solved together, exactly, as a tridiagonal system (`constraints/chain.rs`).
+//! At each particle the straightest pairs of links are joined; a path ends where no link continues it. On a
+//! grid the paths are the rows, the columns and both diagonals. Every link belongs to exactly one yarn. The
+//! links of one yarn are solved together, exactly, as a tridiagonal system (`constraints/chain.rs`).
 
 use glam::Vec3;
 
@@ -12,7 +12,7 @@ use super::links::Link;
 /// A path of links.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Yarn {
-    /// Particles along the path, one more than there are links.
+    /// Particles along the path, one more than links.
     pub particles: Vec<u32>,
     /// Indices of the links, in the order of the path.
     pub links: Vec<u32>,
@@ -21,18 +21,18 @@ pub(crate) struct Yarn {
 /// The yarns of a fabric.
 #[derive(Clone, Debug)]
 pub(crate) struct Yarns {
-    /// Colour by colour, warp first; in each colour the longer yarns first, so that neighbours in the list are of
-    /// similar length.
+    /// Yarns, colour by colour, warp first; in each colour the longer yarns first, so that neighbours in the
+    /// list have similar lengths.
     pub list: Vec<Yarn>,
-    /// Runs of yarns that share no particle.
+    /// Ranges of yarns that share no particle.
     pub colours: Colours,
 }
 
-/// cos of the angle between two links below which one runs on into the other: 30°.
+/// Cosine of the angle between two links above which one continues the other: 30°.
 const STRAIGHT_COS: f32 = 0.866;
 
 impl Yarns {
-    /// Cuts links into yarns, given the positions at rest, m.
+    /// Joins links to yarns, given the positions at rest, m.
     pub(super) fn of(rest: &[Vec3], links: &[Link]) -> Self {
         let next = continuations(rest, links);
         let mut in_yarn = vec![false; links.len()];
@@ -54,11 +54,11 @@ impl Yarns {
 #[derive(Clone, Copy, PartialEq)]
 struct End {
     link: usize,
-    /// Which of the link's two particles.
+    /// Index (0 or 1) of the end's particle in the link.
     side: usize,
 }
 
-/// For each end of each link the end at which the yarn enters the next link.
+/// For each end of each link: the end at which the yarn enters the next link.
 type Continuations = Vec<[Option<End>; 2]>;
 
 /// Joins the ends at each particle, the straightest pair first.
@@ -96,7 +96,8 @@ fn continuations(rest: &[Vec3], links: &[Link]) -> Continuations {
     next
 }
 
-/// The end at which the path through a link begins: back to its beginning, or once around a ring.
+/// The end at which the path through a link begins: found by following the path backwards, or once around a
+/// ring.
 fn first_end(next: &Continuations, start: usize) -> End {
     let mut first = End { link: start, side: 0 };
     while let Some(before) = next[first.link][first.side] {
@@ -108,7 +109,7 @@ fn first_end(next: &Continuations, start: usize) -> End {
     first
 }
 
-/// Adds the yarn that begins at an end, and marks its links.
+/// Adds the yarn that begins at an end, and marks its links as used.
 fn follow(
     links: &[Link],
     next: &Continuations,
@@ -125,7 +126,7 @@ fn follow(
         }
         in_yarn[link] = true;
         let far = links[link].particles[1 - side];
-        // A ring is cut open: its last link, which would close it, is a yarn of its own.
+        // A ring is opened: its last link, which would close it, is a yarn of its own.
         if yarn.particles.contains(&far) {
             let closing = links[link].particles.to_vec();
             yarns.push(Yarn { particles: closing, links: vec![link as u32] });

@@ -1,9 +1,9 @@
 //! Sums over the triangles at each particle, for normals and air.
 //!
-//! Triangles are summed in pairs, the patches of the fabric. Where patches are the cells of a grid, a row of
-//! cells is passed from left to right: the contributions to the right are carried in registers, and those
+//! Triangles are summed in pairs, the patches of the fabric. If patches are the cells of a grid, a row of
+//! cells is passed from left to right: contributions to the right are carried in registers, and contributions
 //! downwards in one row of packs that stays in the nearest cache, so that each particle's sum is written once
-//! and never read. The terms of a sum are added in the order of the patches all the same.
+//! and never read. The order of the terms in a sum is still that of the patches.
 
 use crate::fabric::{Fabric, Patch};
 use crate::simd::lane::{Lane, Pack};
@@ -24,16 +24,16 @@ pub(crate) trait Corners<L: Lane> {
     fn where_present(&self, token: L::Token, vector: V3<L>) -> V3<L>;
 }
 
-/// What triangles contribute to the sum at each of their corners.
+/// Contribution of triangles to the sum at each of their corners.
 pub(crate) trait Contribution<L: Lane, F: ?Sized> {
     /// The contributions of the two triangles with these corners.
     fn of<C: Corners<L, Field = F>>(&self, token: L::Token, corners: &C) -> [V3<L>; 2];
 
-    /// What is stored, given the sum at a particle.
+    /// Stored result, from the sum at a particle.
     fn finish(&self, token: L::Token, sum: V3<L>) -> V3<L>;
 }
 
-/// Sums over the triangles at each particle, as a layout has them.
+/// Sums over the triangles at each particle, for one layout.
 pub(crate) trait CornerSums<P: Pack> {
     /// Vectors of all particles.
     type Field: ?Sized;
@@ -70,7 +70,7 @@ impl<L: Lane> Corners<L> for &Patch {
 /// Sums over the patches of cloths side by side.
 pub(crate) struct PatchSums<'a, P: Pack> {
     pub fabric: &'a Fabric,
-    /// Room for the contributions of a row of cells to the particles below it.
+    /// Scratch row of the contributions of a row of cells to the particles below it.
     pub below: &'a mut [Pack3<P>],
 }
 
@@ -125,7 +125,8 @@ fn sum_row<L: Lane, T: Contribution<L, [Pack3<L::Pack>]>>(
         let [first, second] = contribution.of(token, &cell);
         let both = first + second;
         let above = V3::load(token, below) + top;
-        // The diagonal runs from the top left, which is then a, to the bottom right, or from the top right.
+        // The diagonal runs to the bottom right from the top left corner, which is then a, or to the bottom
+        // left from the top right.
         if cell.corners[1] > cell.corners[3] {
             contribution.finish(token, above + both).store(sum);
             (bottom + first).store(below);
@@ -140,7 +141,7 @@ fn sum_row<L: Lane, T: Contribution<L, [Pack3<L::Pack>]>>(
     bottom.store(last_below);
 }
 
-/// Sums the contributions of patches that lie anywhere.
+/// Sums the contributions of patches in any arrangement.
 #[inline(always)]
 fn sum_patches<L: Lane, T: Contribution<L, [Pack3<L::Pack>]>>(
     token: L::Token,

@@ -5,10 +5,10 @@ use glam::{DVec3, Vec3};
 use crate::constraints::resists_twist;
 use crate::fabric::{BendLine, Fabric, FabricMaterial, Hinge, Ribbon, hinge_angle};
 
-/// Elastic energy of links and bending, J, given positions in m, by the same formulas as the constraints. Inextensible
-/// links store none.
+/// Elastic energy of links and bending, J, at positions in m, by the formulas of the constraints.
+/// Inextensible links store none.
 ///
-/// Distances are computed in single precision, in which positions are given; only their sums need more.
+/// Distances are computed in single precision, like the positions; only their sums need double precision.
 pub(crate) fn elastic(fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> f64 {
     let bending = if fabric.grid().is_some() {
         let lines = fabric.bend_lines().iter();
@@ -71,8 +71,8 @@ pub(crate) fn twist(fabric: &Fabric, positions: &[Vec3]) -> f64 {
     fabric.ribbons().iter().map(of_ribbon).sum()
 }
 
-/// Sum of area times vector over all particles, pinned or not: of velocities (m/s) the momentum per area density,
-/// m³/s; of positions the first moment of area, m³.
+/// Sum of area times vector over all particles, pinned or not. For velocities (m/s) it is the momentum per
+/// area density, m³/s; for positions the first moment of area, m³.
 pub(crate) fn area_moment(fabric: &Fabric, vectors: &[Vec3]) -> DVec3 {
     let products =
         fabric.particle_areas().iter().zip(vectors).map(|(&area, &vector)| vector * area);

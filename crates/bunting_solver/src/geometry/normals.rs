@@ -1,4 +1,4 @@
-//! Normals of the surface: each particle's is the area-weighted mean of its triangles'.
+//! Normals of the surface: the normal of a particle is the area-weighted mean of its triangles' normals.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
@@ -9,7 +9,7 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Recomputes all normals, into `scratch`.
+    /// Computes all normals and writes them into `scratch`.
     pub fn compute_normals(&mut self) {
         P::run(Normals {
             triangles: self.layout.triangles(&self.fabric),
@@ -21,7 +21,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
 struct Normals<'a, P: Pack, S: CornerSums<P>> {
     triangles: S,
-    /// m.
+    /// Positions, m.
     position: &'a S::Field,
     normal: &'a mut [Pack3<P>],
 }

@@ -1,21 +1,21 @@
-//! Numbers of the fabric that go with a pack of particles: one for all lanes, or one for each lane.
+//! Numbers of the fabric for a pack of particles: one for all lanes, or one for each lane.
 //!
-//! Where cloths of one fabric lie side by side, a pack holds the same particle of each, so that its area is
-//! one `f32`. Where one cloth lies across the lanes, a pack holds several of its particles, and each lane
-//! has its own area.
+//! Side by side, a pack holds the same particle of each cloth, so that its area is one `f32`. In the
+//! single-cloth layout a pack holds several particles, and each lane has its own area.
 
 use core::fmt::Debug;
 
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::V3;
 
-/// Number of partial sums in which a sum over all particles is taken. The widths and layouts must come to
-/// the same bits: a cloth across eight lanes has one partial sum in each, so every other layout keeps eight.
+/// Number of partial sums in which a sum over all particles is computed. All widths and layouts must give the
+/// same bits: a cloth across eight lanes has one partial sum in each lane, so every other layout keeps eight
+/// partial sums.
 pub(crate) const PARTIAL_SUMS: usize = 8;
 
-/// A number of the fabric that goes with a pack.
+/// A number of the fabric for a pack.
 pub(crate) trait Constant<P: Pack>: Copy + Debug + Send + Sync + 'static {
-    /// The number, given that of each lane of one cloth.
+    /// The number, from a value for each lane of one cloth.
     fn of(lanes: impl Fn(usize) -> f32) -> Self;
 
     /// Whether the number is known to be zero in all lanes, so that the pack can be skipped.
@@ -24,8 +24,8 @@ pub(crate) trait Constant<P: Pack>: Copy + Debug + Send + Sync + 'static {
     /// The number in a register.
     fn load<L: Lane<Pack = P>>(&self, token: L::Token) -> L;
 
-    /// `new` in lanes where the number is positive, `old` in the others. Only for numbers that are not
-    /// [`is_zero`](Self::is_zero).
+    /// `new` in lanes where the number is positive, `old` in the others. Call it only for numbers that are
+    /// not [`is_zero`](Self::is_zero).
     fn select<L: Lane<Pack = P>>(&self, token: L::Token, new: L, old: L) -> L;
 
     /// [`select`](Self::select) for vectors.
@@ -38,11 +38,11 @@ pub(crate) trait Constant<P: Pack>: Copy + Debug + Send + Sync + 'static {
         }
     }
 
-    /// The sum over all particles of each cloth, in all of the cloth's lanes, given the partial sums.
+    /// The sum over all particles of each cloth, in all of the cloth's lanes, from the partial sums.
     fn total<L: Lane<Pack = P>>(token: L::Token, partial: [L; PARTIAL_SUMS]) -> L;
 }
 
-/// The same number in all lanes: cloths side by side.
+/// One number for all lanes: cloths side by side.
 impl<P: Pack> Constant<P> for f32 {
     fn of(lanes: impl Fn(usize) -> f32) -> Self {
         lanes(0)

@@ -1,17 +1,17 @@
-//! Lanes: what a kernel may do with vectors of any width.
+//! Lanes: the operations of a kernel on vectors of any width.
 //!
 //! A coordinate of a particle is stored in a [`Pack`], which has one float for each lane of the batch. A
 //! kernel is written once over [`Lane`], the register that holds a pack, and runs at every width through
 //! [`Pack::run`]. The widths themselves are in `registers.rs`.
 //!
 //! The only operations are `+ − × ÷ √`, a sum with a product, comparisons and selections. Each is correctly
-//! rounded (IEEE 754), and none is estimated; a sum with a product is rounded once, in software where the
+//! rounded (IEEE 754), and none is estimated; a sum with a product is rounded once, in software if the
 //! instruction set has no instruction for it. The bits of a lane therefore depend neither on the width, nor
 //! on the instruction set, nor on the values in the other lanes.
 //!
-//! A kernel is compiled with the machine's instructions only as far as its calls are inlined. So every
-//! function that a kernel calls is `#[inline(always)]`. Closures cannot be, and therefore kernels contain
-//! none and use neither `map` nor `from_fn`.
+//! A kernel is compiled with the machine's instructions only as far as its calls are inlined. Therefore every
+//! function that a kernel calls is `#[inline(always)]`. Closures cannot have this attribute, so kernels
+//! contain none and use neither `map` nor `from_fn`.
 
 use core::fmt::Debug;
 use core::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Sub};
@@ -55,7 +55,7 @@ pub(crate) trait Lane:
     + Div<Output = Self>
     + Neg<Output = Self>
 {
-    /// The type of the same floats in memory.
+    /// The type of these floats in memory.
     type Pack: Pack;
     /// Proof that this machine has the instructions that the kernel is compiled for.
     type Token: Copy;

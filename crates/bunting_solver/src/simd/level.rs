@@ -1,11 +1,11 @@
-//! The instruction set that kernels run with: the best that the machine has.
+//! The instruction set of the kernels: the best one that the machine has.
 
 use core::cell::Cell;
 
 use fearless_simd::{Level, Simd};
 
 std::thread_local! {
-    /// Instruction set that this thread's kernels run with in place of the best; tests set it.
+    /// Instruction set that replaces the best one for this thread's kernels; tests set it.
     static CHOSEN: Cell<Option<Level>> = const { Cell::new(None) };
 }
 
@@ -16,8 +16,8 @@ pub(crate) fn level() -> Level {
 
 /// Evaluates an expression with the token of this thread's instruction set, compiled for that set.
 ///
-/// SSE4.2 runs what is compiled for SSE2: both compute fused multiply-adds in software, which takes most of
-/// their time, and each further set adds about a fifth to the time that this crate takes to compile.
+/// Code for SSE2 also runs on SSE4.2 machines: both compute fused multiply-adds in software, which takes most
+/// of their time, and each further set adds about a fifth to this crate's compile time.
 macro_rules! dispatch {
     ($token:pat => $work:expr) => {{
         #[cfg(target_arch = "x86_64")]
@@ -47,7 +47,7 @@ macro_rules! dispatch {
 }
 pub(crate) use dispatch;
 
-/// Name of the instruction set that kernels run with on this machine, for reports.
+/// Name of the instruction set of this machine's kernels, for reports.
 #[must_use]
 pub fn instruction_set() -> &'static str {
     match level() {
@@ -64,7 +64,7 @@ pub fn instruction_set() -> &'static str {
 }
 
 /// Calls `work` on this thread with each instruction set that the machine has, the best first, and returns
-/// the results in that order. For tests of what must not depend on the instruction set.
+/// the results in that order. For tests of independence from the instruction set.
 #[doc(hidden)]
 pub fn with_every_instruction_set<T>(mut work: impl FnMut() -> T) -> Vec<T> {
     let results = levels().into_iter().map(|level| {

@@ -1,4 +1,5 @@
-//! The widths: one float, eight and sixteen, in memory and in registers. The only file that knows them.
+//! The widths: one, eight and sixteen floats, in memory and in registers. This is the only file that knows
+//! the widths.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -7,7 +8,7 @@ use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, f32x4, f32x8, f32x
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::level::dispatch;
 
-/// A single lane: the scalar solver, against which the wide ones are tested.
+/// A single lane: the scalar solver, with which the wide ones are compared in tests.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub(crate) struct Pack1([f32; 1]);
@@ -55,7 +56,7 @@ impl Pack for Pack1 {
     }
 }
 
-/// Whether the instruction set has a fused multiply-add. Where it has none, a sum with a product is done in
+/// Whether the instruction set has a fused multiply-add. Without one, a sum with a product is computed in
 /// software, which is too long to be inlined.
 #[inline(always)]
 fn fuses<S: Simd>(token: S) -> bool {
@@ -180,7 +181,7 @@ impl Mask for bool {
     }
 }
 
-/// A single float in a register, with proof of the instruction set: only the token tells whether a fused
+/// A single float in a register, with proof of the instruction set, which decides whether a fused
 /// multiply-add exists.
 #[derive(Clone, Copy)]
 struct Single<S> {

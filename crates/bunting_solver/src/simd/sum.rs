@@ -14,7 +14,7 @@ impl<L: Lane> Sum<L> {
         Self([L::splat(token, 0.0); PARTIAL_SUMS])
     }
 
-    /// Adds the term of a pack to the partial sum to which the pack belongs.
+    /// Adds the term of a pack to the partial sum of the pack.
     #[inline(always)]
     pub fn add(&mut self, partial: u8, term: L) {
         let sum = &mut self.0[partial as usize % PARTIAL_SUMS];
@@ -42,7 +42,7 @@ impl<L: Lane> V3<Sum<L>> {
         Self { x: Sum::new(token), y: Sum::new(token), z: Sum::new(token) }
     }
 
-    /// Adds the term of a pack to the partial sum to which the pack belongs.
+    /// Adds the term of a pack to the partial sum of the pack.
     #[inline(always)]
     pub fn add_term(&mut self, partial: u8, term: V3<L>) {
         self.x.add(partial, term.x);

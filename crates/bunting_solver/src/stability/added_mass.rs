@@ -1,12 +1,12 @@
 //! Added mass where few particles carry a large load.
 //!
-//! The directions of a chain's links are frozen while the chain is solved. The transverse vibration of a
-//! link under the tension T, ω² = T/(m l), is therefore explicit, and unstable beyond h² T/(m l) ≈ ⅓. Chains
-//! of different directions, solved one after the other, do not converge either where the load is heavier than
-//! the particles that carry it. Three cases need mass: pins that stand alone carry a whole cloth on a few
-//! light particles; so does the upper end of an upright pole; and pins that are too far apart strain the cloth
-//! between them whatever it weighs. There the inertia is raised to what the substep can resolve, from static
-//! bounds alone. Gravity acts on the true mass, so that rest states are exact.
+//! The directions of a chain's links are frozen while the chain is solved. The transverse vibration of a link
+//! under the tension T, ω² = T/(m l), is therefore explicit, and unstable beyond h² T/(m l) ≈ ⅓. Chains of
+//! different directions, solved one after the other, do not converge either if the load is heavier than the
+//! particles that carry it. Mass is added in three cases: isolated pins carry a whole cloth on a few light
+//! particles; so does the upper end of an upright pole; and pins that are too far apart strain the cloth
+//! between them whatever it weighs. There the inertia is raised to the least that the substep can resolve,
+//! from static bounds alone. Gravity acts on the true mass, so that rest states are exact.
 
 use crate::constants::{GRAVITY, LEAST_LINK_COMPLIANCE};
 use crate::fabric::{Fabric, FabricMaterial};
@@ -17,25 +17,25 @@ use crate::stability::pole::Pole;
 /// oscillates; 4.2 keeps it still, with some to spare, up to 65 × 65 particles with three substeps.
 const INERTIA_PER_TENSION: f32 = 4.2;
 
-/// Part of a cloth's weight that each end of its pole is taken to carry. Smaller: with 0.3 a limp flag of
-/// 33 × 33 particles oscillates with two substeps.
+/// Fraction of a cloth's weight that each end of its pole is assumed to carry. Smaller: with 0.3 a limp flag
+/// of 33 × 33 particles oscillates with two substeps.
 const LOAD_OF_END: f32 = 0.4;
 
-/// Most mass that may be added near the ends of a pole, as a part of the whole cloth's. Larger: a flag moves
+/// Greatest mass added near the ends of a pole, as a fraction of the whole cloth's. Larger: a flag moves
 /// sluggishly.
 const MOST_ADDED: f32 = 0.45;
 
-/// What the inverse masses of one cloth depend on besides the substep.
+/// Inputs of one cloth's inverse masses, besides the substep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct AddedMass {
-    /// How far the cloth's pole stands upright, see [`Pole::uprightness`].
+    /// Uprightness of the cloth's pole, see [`Pole::uprightness`].
     pub uprightness: f32,
     /// Inertia that a particle needs for each unit of strain by pins, m².
     pub inertia_per_strain: f32,
 }
 
 impl AddedMass {
-    /// The state of a cloth in substeps of the effective length `step`, s.
+    /// The inputs of a cloth for substeps of the effective length `step`, s.
     pub fn new(
         uprightness: f32,
         pin_strain: &PinStrain,
@@ -55,9 +55,9 @@ impl AddedMass {
 /// Inverse mass of each particle of a fabric per unit of area density, for substeps of one length.
 #[derive(Clone, Debug)]
 pub(crate) struct InverseMasses {
-    /// With a level pole, or none, 1/m²; zero where pinned.
+    /// Inverse masses with a level pole, or without a pole, 1/m²; zero if pinned.
     pub level: Vec<f32>,
-    /// By how much an upright pole reduces them, 1/m².
+    /// Reduction of the inverse masses by an upright pole, 1/m².
     pub upright_reduction: Vec<f32>,
 }
 
@@ -68,7 +68,7 @@ impl InverseMasses {
         Self { upright_reduction: vec![0.0; level.len()], level }
     }
 
-    /// Inverse masses with the mass that a substep of the effective length `step`, s, needs.
+    /// Inverse masses with the added mass that a substep of the effective length `step`, s, needs.
     pub fn new(fabric: &Fabric, step: f32) -> Self {
         let mut masses = Self::without_added(fabric);
         let pins = fabric.pins();
@@ -85,7 +85,7 @@ impl InverseMasses {
         masses
     }
 
-    /// Inverse masses of one cloth, 1/m²; zero where pinned.
+    /// Inverse masses of one cloth, 1/m²; zero if pinned.
     pub fn of_cloth(&self, added_mass: AddedMass, pin_strain: &PinStrain) -> Vec<f32> {
         let pairs = self.level.iter().zip(&self.upright_reduction);
         let mut inverse_masses: Vec<f32> =
@@ -97,18 +97,18 @@ impl InverseMasses {
     }
 }
 
-/// One over each inverse mass, m²; zero where that is zero.
+/// One over each inverse mass, m²; zero if the inverse mass is zero.
 pub(crate) fn inertias(inverse_masses: &[f32]) -> Vec<f32> {
     let inertia = |&inverse_mass: &f32| if inverse_mass > 0.0 { 1.0 / inverse_mass } else { 0.0 };
     inverse_masses.iter().map(inertia).collect()
 }
 
-/// By how much the inverse masses of a cloth with an upright pole are less than one over the areas, 1/m².
+/// Reduction of a cloth's inverse masses by an upright pole, compared with one over the areas, 1/m².
 fn upright_reduction(fabric: &Fabric, pole: &Pole, step: f32) -> Vec<f32> {
     let load = fabric.area() * GRAVITY * LOAD_OF_END;
     let inverse_areas = fabric.inverse_areas();
     let areas = inverse_areas.iter().map(|inverse_area| 1.0 / inverse_area);
-    // The mass of pins is infinite, so that nothing is added to them.
+    // The mass of pins is infinite, so nothing is added to it.
     let added: Vec<f32> = needed(fabric, &pole.ends(fabric), load, step)
         .zip(areas)
         .map(|(needed, area)| (needed - area).max(0.0))
@@ -116,7 +116,7 @@ fn upright_reduction(fabric: &Fabric, pole: &Pole, step: f32) -> Vec<f32> {
     let most = MOST_ADDED * fabric.area();
     let part = (most / added.iter().sum::<f32>().max(most)).min(1.0);
     let reduction = |(&inverse_area, added): (&f32, f32)| {
-        // 1/A − 1/(A + ΔA)
+        // The reduction 1/A − 1/(A + ΔA).
         let relative = inverse_area * added * part;
         inverse_area * relative / (1.0 + relative)
     };

@@ -1,4 +1,4 @@
-//! Measures that keep a substep stable which is longer than the period of the fastest vibration.
+//! Measures that keep substeps stable although they are longer than the period of the fastest vibration.
 
 pub(crate) mod added_mass;
 pub(crate) mod pin_strain;

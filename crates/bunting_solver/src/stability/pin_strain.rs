@@ -1,16 +1,17 @@
-//! Strain by pins that are farther apart than the cloth between them is long.
+//! Strain by pins that are farther apart than the length of the cloth between them.
 //!
-//! A path of rest length s through the cloth, between two pins at a distance d, is strained by d/s − 1 or
-//! more, whatever the cloth does. A particle whose distances from the two pins along the cloth at rest are s
-//! and s' lies on a path of length s + s', and so is strained by d/(s + s') − 1 or more. Pins stay where they
-//! are in the cloth's frame, so that this bound is known before anything moves.
+//! A path of rest length s through the cloth, between two pins at a distance d, is strained by at least d/s −
+//! 1 in every state of the cloth. A particle whose distances from the two pins along the cloth at rest are s
+//! and s' lies on a path of length s + s', and so is strained by at least d/(s + s') − 1. Pins do not move in
+//! the cloth's frame, so this bound is known before anything moves.
 
 use glam::Vec3;
 
 use crate::fabric::Fabric;
 
-/// Strains below this are ignored. Smaller: pins that were only turned or moved are too far apart by rounding.
-/// Larger: a cloth of 33 × 33 particles a square metre oscillates at high frequency with two substeps.
+/// Strain below which the bound is ignored. Smaller: pins that were only rotated or moved together are too
+/// far apart by rounding. Larger: a cloth of 33 × 33 particles a square metre oscillates at high frequency
+/// with two substeps.
 const LEAST_STRAIN: f32 = 1e-4;
 
 /// Lower bounds on the strain of a cloth, by its pins.
@@ -26,21 +27,21 @@ pub(crate) struct PinStrain {
 /// Two pins that are too far apart.
 struct Pair {
     pins: [usize; 2],
-    /// Their distance, m.
+    /// Distance of the pins, m.
     distance: f32,
-    /// Their distance over that along the cloth at rest.
+    /// Ratio of this distance to the distance along the cloth at rest.
     stretch: f32,
 }
 
 impl PinStrain {
-    /// The strain of a cloth whose particles are at these positions, m.
+    /// The strain of a cloth with its particles at these positions, m.
     pub fn of(fabric: &Fabric, positions: &[Vec3]) -> Self {
         let rest = fabric.rest_positions();
         let of_pins = |positions: &[Vec3]| -> Vec<Vec3> {
             fabric.pins().iter().map(|pin| positions[pin.particle as usize]).collect()
         };
         let [at, at_rest] = [positions, rest].map(of_pins);
-        // Straight distances at rest are no longer than those along the cloth, and settle most cases.
+        // Straight distances at rest are no longer than distances along the cloth, and decide most cases.
         if at == at_rest
             || too_far(&at, |one, other| at_rest[one].distance(at_rest[other])).is_empty()
         {
@@ -55,8 +56,8 @@ impl PinStrain {
         let stretch_about = |particle: usize| {
             let mut greatest = 1.0_f32;
             for pair in &pairs {
-                // A path through the particle is no shorter than the shortest path, so that it is
-                // stretched no more. Pairs are sorted by their stretch.
+                // A path through the particle is no shorter than the shortest path, so it is stretched no
+                // more. Pairs are sorted by their stretch.
                 if pair.stretch <= greatest {
                     break;
                 }
@@ -73,7 +74,7 @@ impl PinStrain {
 }
 
 /// The pairs of pins that are too far apart, given their positions, m, and the length of the cloth between
-/// two of them, m.
+/// two pins, m.
 fn too_far(at: &[Vec3], length: impl Fn(usize, usize) -> f32) -> Vec<Pair> {
     let mut pairs = Vec::new();
     for (other, there) in at.iter().enumerate() {
@@ -118,9 +119,10 @@ mod tests {
         let PinStrain { greatest, of_particles: strains } = moved(&sheet([0, 4]), |at| 1.1 * at);
         assert!((greatest - 0.1).abs() < 1e-5);
         assert!((strains[2] - 0.1).abs() < 1e-5);
-        // Half way, a quarter of a metre below: 1.1 m of 2 √(½² + ¼²) is slack.
+        // A quarter of a metre below the middle of the pins, the cloth is slack: 1.1 m is less than 2 √(½² +
+        // ¼²) m.
         assert_eq!(strains[7], 0.0);
-        // At a corner of the next row: ¼ m and √(1 + ¼²) m.
+        // A corner of the next row: ¼ m and √(1 + ¼²) m.
         assert_eq!(strains[5], 0.0);
     }
 

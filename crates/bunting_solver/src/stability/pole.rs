@@ -1,11 +1,11 @@
 //! The spurious turn of a cloth about its pole, and its removal.
 //!
 //! A cloth whose pins lie on a line, the pole, is free to turn about it, and no internal force can turn it.
-//! Each solve of a constraint moves particles along the directions in which it finds them and so has no
-//! moment. But later solves find particles that earlier ones have moved, and the cross product of two
-//! corrections remains. It is small and always of one sign: a flag that hangs from its pole in folds turns
-//! about it for ever. Therefore the moment of all corrections about the pole is computed, and a rigid turn of
-//! the opposite moment is made with the next prediction, when all particles are moved anyway. Contacts and
+//! Each solve of a constraint moves particles along the directions between them, and so has no moment. But
+//! later solves find particles that earlier ones have moved, and the cross product of two corrections
+//! remains. It is small and always of one sign: a flag that hangs from its pole in folds would turn about it
+//! for ever. Therefore the moment of all corrections about the pole is computed, and a rigid turn of the
+//! opposite moment is applied with the next prediction, when all particles are moved anyway. Contacts and
 //! users' constraints do turn a cloth: their moment is left out.
 
 use glam::Vec3;
@@ -16,8 +16,8 @@ use crate::simd::lane::Lane;
 use crate::simd::sum::Sum;
 use crate::simd::vec3::{V3, splat3};
 
-/// How far pins may lie off the line through them, as a part of its length. Smaller: rounding bends poles.
-/// Larger: cloth that its pins hold counts as free to turn.
+/// Greatest distance of pins from the line through them, as a fraction of its length. Smaller: rounding bends
+/// poles. Larger: cloth that its pins hold counts as free to turn.
 const STRAIGHT: f32 = 1e-3;
 
 /// The line through all pins.
@@ -54,8 +54,8 @@ impl Pole {
         ends.map(|end| end.expect("a pole has pins"))
     }
 
-    /// |cos| of the angle between the pole and gravity: 0 of a level pole, 1 of an upright one. Rounded to
-    /// 32 steps, so that inverse masses are not computed anew for every small turn.
+    /// |cos| of the angle between the pole and gravity: 0 for a level pole, 1 for an upright one. Rounded to
+    /// 32 steps, so that inverse masses are not computed again for every small turn.
     pub fn uprightness(&self, gravity: Vec3) -> f32 {
         const STEPS: f32 = 32.0;
         libm::roundf(STEPS * gravity.normalize_or_zero().dot(self.along).abs()) / STEPS
@@ -71,9 +71,9 @@ impl Pole {
 /// A turn about the pole by the corrections of a substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct PoleTurn {
-    /// rad.
+    /// Angle, rad.
     pub angle: f32,
-    /// rad/s.
+    /// Rate, rad/s.
     pub rate: f32,
 }
 
@@ -121,7 +121,7 @@ impl<L: Lane> Moment<L> {
         self.inertia.add_product(partial, inertia, turn.dot(turn));
     }
 
-    /// The rigid turn, rad, that has the moment of the corrections less that of corrections from outside the
+    /// The rigid turn, rad, with the moment of the corrections minus that of corrections from outside the
     /// cloth, m⁴.
     #[inline(always)]
     pub fn turn<C: Constant<L::Pack>>(self, token: L::Token, external: L) -> L {

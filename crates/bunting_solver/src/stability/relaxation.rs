@@ -1,17 +1,17 @@
 //! Under-relaxation of particles that oscillate at rest.
 //!
 //! The directions of a chain's links are frozen at the predicted positions, so that tension pulls a particle
-//! across its links according to where it was predicted and not where it comes to lie. A particle that
-//! oscillates by X from substep to substep is predicted at −9.2 X (at −3 X by backward Euler), and pulled to
-//! the other side as soon as (β h)² ω² > 1.1 (1.3), ω² = 4 T/(m l). Where cloth hangs limp that is exceeded near
-//! its supports and along its borders, whatever the order of chains and the number of passes, and also without
-//! shear and bending: neighbours oscillate against one another for ever, turning round in every substep.
+//! across its links according to its predicted and not its final position. A particle that oscillates by X
+//! from substep to substep is predicted at −9.2 X (at −3 X by backward Euler), and pulled to the other side
+//! as soon as (β h)² ω² > 1.1 (1.3), with ω² = 4 T/(m l). Limp hanging cloth exceeds this near its supports
+//! and along its borders, whatever the order of chains and the number of passes, and also without shear and
+//! bending: neighbours oscillate against one another for ever, reversing in every substep.
 //!
-//! No other motion turns round in each of three substeps. So where a cloth hardly moves, a particle that does
-//! makes only a part of each change of its velocity, its relaxation factor: half as much with every further
-//! turn, and slowly more again once the turns have stopped (dynamic relaxation, as in partitioned solvers of
-//! fluids and structures, which are unstable for the same reason: Küttler and Wall 2008). A steady velocity is
-//! kept, and at rest nothing changes, so that rest states are exact.
+//! No other motion reverses in each of three substeps. Therefore, in a cloth that hardly moves, such a
+//! particle makes only a fraction of each change of its velocity, its relaxation factor: half as much with
+//! every further reversal, and slowly more again once the reversals have stopped (dynamic relaxation, as in
+//! partitioned solvers of fluids and structures, which are unstable for the same reason: Küttler and Wall
+//! 2008). A steady velocity is kept, and at rest nothing changes, so that rest states are exact.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Layout;
@@ -23,22 +23,22 @@ use crate::step::parameters::Parameters;
 /// oscillation. Larger than twice this: cloth that oscillates never counts as at rest.
 const UNSEEN: f32 = 5e-4;
 
-/// Change of the factor with each substep in which a particle turns round.
+/// Ratio of the factor to the one before in each substep in which a particle reverses.
 const REDUCED: f32 = 0.5;
 
-/// Change of the factor with each other substep. Smaller: cloth is slow to move again. Larger: oscillation
-/// returns.
+/// Ratio of the factor to the one before in each other substep. Smaller: cloth is slow to move again. Larger:
+/// oscillation returns.
 const RECOVERED: f32 = 1.0 + 1.0 / 32.0;
 
-/// Least factor.
+/// Least relaxation factor. Smaller: particles take longer to move again.
 const LEAST: f32 = 1.0 / 32.0;
 
-/// Part of the former velocity that a particle keeps in place of a change that it does not make. With all of
-/// it the delay itself makes the border of a limp flag swing, at 8 Hz.
+/// Fraction of the former velocity that a particle keeps in place of the rejected change. With 1 the delay
+/// itself makes the border of a limp flag swing, at 8 Hz.
 const KEPT: f32 = 0.9;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Relaxation factor of each particle of a cloth; empty where the cloth is not near rest and all are 1.
+    /// Relaxation factor of each particle of a cloth; empty if the cloth is not near rest, so that all are 1.
     pub fn relaxation_of(&self, cloth: usize) -> Vec<f32> {
         if !self.parameters.is_near_rest(Y::lanes(cloth)) {
             return Vec::new();
@@ -47,7 +47,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         located.map(|(pack, lane)| self.relaxation[pack].lanes()[lane]).collect()
     }
 
-    /// Overwrites the relaxation factors of a cloth, which is near rest unless there are none.
+    /// Overwrites the relaxation factors of a cloth. The cloth is near rest unless `factors` is empty.
     pub fn set_relaxation(&mut self, cloth: usize, factors: &[f32]) {
         self.reset_relaxation(cloth);
         self.layout.write_numbers(factors, cloth, &mut self.relaxation);
@@ -65,7 +65,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 /// Under-relaxation of a batch, in registers.
 pub(crate) struct UnderRelaxation<L: Lane> {
     near_rest: L::Mask,
-    /// Scalar product of two velocities below which they are opposed, m²/s².
+    /// Scalar product of two velocities below which the velocities are opposed, m²/s².
     opposed: L,
     one: L,
 }
@@ -74,7 +74,7 @@ pub(crate) struct UnderRelaxation<L: Lane> {
 pub(crate) struct RelaxedPack<L: Lane> {
     /// Lanes whose factor is less than 1.
     relaxed: L::Mask,
-    /// One less the factor.
+    /// One minus the factor.
     missing: L,
 }
 
@@ -105,7 +105,7 @@ impl<L: Lane> UnderRelaxation<L> {
         let older: V3<L> = V3::load(token, older);
         let turns = velocity.dot(older).lt(self.opposed) & self.near_rest;
         let last = L::load(token, factor);
-        // Seldom true of any lane, so that the oldest velocities are seldom loaded.
+        // Reversals are rare in any lane, so the oldest velocities are seldom loaded.
         if !(turns | last.lt(self.one)).any() {
             return None;
         }
@@ -121,8 +121,8 @@ impl<L: Lane> UnderRelaxation<L> {
 }
 
 impl<L: Lane> RelaxedPack<L> {
-    /// What to subtract from the value `now` of a quantity whose value was `before`; zero where the factor
-    /// is 1.
+    /// Value to subtract from `now`, a quantity whose value in the last substep was `before`; zero if the
+    /// factor is 1.
     #[inline(always)]
     pub fn excess(&self, token: L::Token, now: V3<L>, before: V3<L>) -> V3<L> {
         let excess = (now - before * L::splat(token, KEPT)) * self.missing;

@@ -1,15 +1,15 @@
 //! Air: pressure and skin friction on each triangle (thesis, eq. 5.1 and 5.2 in one).
 //!
-//! With u the air's velocity relative to a triangle of area A and normal n, the pressure force is
-//! ½ρ C_n A |u·n| (u·n) n and the friction ½ρ C_t A |u| (u − (u·n) n). A third of the impulse goes to each corner.
+//! With u the air's velocity relative to a triangle of area A and normal n, the pressure force is ½ρ C_n A
+//! |u·n| (u·n) n and the friction ½ρ C_t A |u| (u − (u·n) n). Each corner receives a third of the impulse.
 //!
 //! Explicitly, a substep of h seconds changes a particle's velocity by J = a u, a = ½ρ C_n |u·n| h/σ, which
-//! reverses the relative motion where a > 1 (the thesis then sets it to zero). Implicitly the change is the part
-//! a/(1 + a) of the relative velocity that all other forces alone would lead to. All other forces are taken to
-//! change the velocity by c, as in the substep before: j = a (u − c)/(1 + a). Drag alone (c = 0) is then exact,
-//! and so are the force on particles that are held fast (c = −J) and the terminal speed. The a of a particle
-//! follows from its J, |J| = a² σ/(½ρ C_n h). Backward Euler has no c, and takes a/(1 + a min(a, 1)): right to
-//! second order for particles that are held in weak air, implicit in strong air.
+//! reverses the relative motion if a > 1 (the thesis then sets it to zero). Implicitly the change is the
+//! fraction a/(1 + a) of the relative velocity to which all other forces alone would lead. These forces are
+//! assumed to change the velocity by c, as in the substep before: j = a (u − c)/(1 + a). Drag alone (c = 0)
+//! is then exact, and so are the force on particles that are held fast (c = −J) and the terminal speed. The a
+//! of a particle follows from its J, |J| = a² σ/(½ρ C_n h). Backward Euler has no c, and uses a/(1 + a min(a,
+//! 1)): exact to second order for held particles in weak air, implicit in strong air.
 //!
 //! With c limited to u, j is at most 2u, and so never adds energy in still air.
 
@@ -23,8 +23,8 @@ use crate::simd::vec3::{Pack3, V3};
 use crate::step::parameters::Parameters;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Sums over the triangles at each particle the corner area times the change of their velocity by air in
-    /// this substep, m³/s, into `scratch`.
+    /// Computes for each particle the sum over its triangles of corner area times the change of their
+    /// velocity by air in this substep, m³/s, and writes it into `scratch`.
     pub fn gather_air(&mut self) {
         let (triangles, velocity) = self.layout.moving_triangles(&self.fabric, &self.velocity);
         P::run(Air {
@@ -40,9 +40,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 struct Air<'a, P: Pack, S: CornerSums<P>> {
     triangles: S,
     parameters: &'a Parameters<P>,
-    /// m.
+    /// Positions, m.
     position: &'a S::Field,
-    /// m/s.
+    /// Velocities, m/s.
     velocity: &'a S::Field,
     sums: &'a mut [Pack3<P>],
 }
@@ -83,12 +83,12 @@ impl<L: Lane, F: ?Sized> Contribution<L, F> for AirImpulse<'_, L, F> {
 
 /// Wind and the coefficients of the air, in registers.
 struct Airflow<L: Lane> {
-    /// m/s.
+    /// Velocity of the wind, m/s.
     wind: V3<L>,
     /// ½ρ C_n h/σ and ½ρ C_t h/σ, s/m.
     pressure: L,
     friction: L,
-    /// Lanes with friction.
+    /// Lanes with skin friction.
     rubs: L::Mask,
     any_rubs: bool,
     third: L,
@@ -119,7 +119,7 @@ impl<L: Lane> Airflow<L> {
         let squared = normal.dot(normal).max(self.least);
         let across = u.dot(normal);
         let braking = self.pressure * across.abs();
-        // a (u·n) n with n not normalised and a = braking/length.
+        // The pressure a (u·n) n, with n not normalised and a = braking/length.
         let length = squared.sqrt();
         let part = braking / (squared * length);
         let pressed = normal * (across * part);
@@ -181,7 +181,8 @@ impl<L: Lane> Response<L> {
         let a = (self.braking * true_part * squared.sqrt()).sqrt();
         // −c.
         let held = (velocity * self.damping_factor - extrapolated) * self.inverse_extrapolation;
-        // J·(J − a c), between zero and 2 J²: over J² (1 + a) the part of J that j is.
+        // The quotient of J·(J − a c), limited to between zero and 2 J², and J² (1 + a) is the ratio of j to
+        // J.
         let projected = squared.plus_product(a, held.dot(explicit)).max(self.zero);
         let most = squared + squared;
         let projected = projected.or_where_not(projected.lt(most), most);

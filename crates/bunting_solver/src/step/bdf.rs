@@ -1,29 +1,30 @@
-//! The backward differentiation formula of a substep, and the history that it is chosen from.
+//! The backward differentiation formula of a substep, and the history from which it is selected.
 
 use crate::constants::GRAVITY;
 use crate::stability::pole::PoleTurn;
 use crate::step::Scheme;
 
-/// A backward differentiation formula of order one or two. With Δ and Δ₋₁ the last two changes of x and ẋ the
-/// derivative at the end of the substep, x changes in a substep of h seconds by γ₁ Δ + γ₂ Δ₋₁ + β h ẋ; so does
-/// v.
+/// A backward differentiation formula of order one or two. With Δ and Δ₋₁ the last two changes of x, and ẋ
+/// the derivative at the end of the substep, x changes in a substep of h seconds by γ₁ Δ + γ₂ Δ₋₁ + β h ẋ; v
+/// changes likewise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Formula {
-    /// γ₁ and γ₂: the parts of the last change, and of the one before, that are extrapolated.
+    /// Coefficients γ₁ and γ₂: the fractions of the last change, and of the one before, that are
+    /// extrapolated.
     pub extrapolation: [f32; 2],
-    /// β: the effective substep is β h.
+    /// Coefficient β: the effective length of the substep is β h.
     pub beta: f32,
-    /// h/(γ₁ h₁ + γ₂ h₂): times the extrapolated part of a steady change it is the whole change. Zero for formulas
-    /// of less than three substeps, as the first change after a restart is not like those that follow.
+    /// h/(γ₁ h₁ + γ₂ h₂): the ratio of a steady change to its extrapolated part. Zero for formulas of fewer
+    /// than three substeps, since the first change after a restart is unlike the following ones.
     pub inverse_extrapolation: f32,
 }
 
 impl Formula {
     pub const BACKWARD_EULER: Self =
         Self { extrapolation: [0.0, 0.0], beta: 1.0, inverse_extrapolation: 0.0 };
-    /// The mean of BDF2 and BDF3 in equal substeps: of order two, with half the error of BDF2, and as stable. With a
-    /// larger part of BDF3 undamped oscillations would grow (BDF2OPT, Vatsa, Carpenter and Lockard 2010, has 0.48 of
-    /// BDF3 where this has 0.5).
+    /// The mean of BDF2 and BDF3 in equal substeps: of order two, with half the error of BDF2, and as stable.
+    /// With a larger fraction of BDF3, undamped oscillations would grow (BDF2OPT, Vatsa, Carpenter and
+    /// Lockard 2010, has 0.48 of BDF3 where this has 0.5).
     pub const BDF2_OPT: Self =
         Self { extrapolation: [0.5, -0.1], beta: 0.6, inverse_extrapolation: 2.5 };
 
@@ -60,43 +61,44 @@ impl Formula {
     }
 }
 
-/// The integrator restarts where a substep is this many times as long as the one before. BDF2 is stable up to
-/// 1 + √2 (Grigorieff 1983). Larger: alternating ticks of 1/30 and 1/90 s gain energy. Smaller: hosts whose ticks
-/// vary lose their second order.
+/// Ratio of a substep's length to that of the one before at which the integrator restarts. BDF2 is stable up
+/// to 1 + √2 (Grigorieff 1983). Larger: alternating ticks of 1/30 and 1/90 s gain energy. Smaller: hosts
+/// whose ticks vary lose their second order.
 const MOST_GROWTH: f32 = 2.4;
 
-/// How many times as long as the one before a substep may be for BDF3 to have a part in its formula: BDF3 by itself
-/// is stable up to 1.534 (Calvo, Grande and Grigorieff 1990).
+/// Greatest ratio of a substep's length to that of the one before at which BDF3 is part of the formula: BDF3
+/// by itself is stable up to 1.534 (Calvo, Grande and Grigorieff 1990).
 const MOST_GROWTH_OF_BDF3: f32 = 1.5;
 
-/// The integrator restarts where the first or the second difference of velocities, squared and summed over the
-/// particles, is this many times the squared velocities. Where taut links vibrate faster than a substep can
-/// resolve, extrapolation feeds on itself and the whole cloth oscillates from substep to substep: white noise
-/// has 2 and 6. Where air stops a cloth at once, extrapolation would reverse it. Smaller: flags in wind lose
-/// their second order; in a strong wind, with two substeps, one substep of a thousand exceeds 1.
+/// Ratio of the squared first or second difference of velocities, summed over the particles, to the squared
+/// velocities at which the integrator restarts. If taut links vibrate faster than a substep can resolve,
+/// extrapolation amplifies itself and the whole cloth oscillates from substep to substep: white noise has
+/// ratios of 2 and 6. If air stops a cloth at once, extrapolation would reverse its motion. Smaller: flags in
+/// wind lose their second order; in a strong wind, with two substeps, one substep of a thousand exceeds 1.
 const ROUGH: f32 = 2.0;
 
-/// RMS speed that is added to the cloth's own in this comparison, in units of the speed that gravity gives in
-/// a substep. Smaller: cloth at rest is rough by its rounding.
+/// RMS speed that is added to the cloth's own in this comparison, in units of the speed that gravity adds in
+/// a substep. Smaller: cloth at rest counts as rough by its rounding.
 const SLOW: f32 = 5.0;
 
-/// RMS speed below which a cloth hardly moves, in units of the speed that gravity gives in a substep. Smaller:
-/// limp flags, which oscillate with 0.7 to 1.2, are not relaxed. Larger: with 3 a flag in a light wind is held.
+/// RMS speed below which a cloth hardly moves, in units of the speed that gravity adds in a substep. Smaller:
+/// limp flags, which oscillate with 0.7 to 1.2, are not relaxed. Larger: with 3 a flag in a light wind is
+/// held.
 const NEAR_REST: f32 = 2.0;
 
 /// History of a cloth's integrator besides its particles' vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct IntegratorHistory {
-    /// Lengths of the last two substeps, s, the latest first; zero where there is none.
+    /// Lengths of the last two substeps, s, the latest first; zero before the first ones.
     steps: [f32; 2],
-    /// Substeps since the integrator restarted.
+    /// Number of substeps since the integrator restarted.
     substeps: u32,
-    /// Turn of the cloth about its pole by the last substep's corrections, to be taken back.
+    /// Turn of the cloth about its pole by the last substep's corrections, which the next prediction undoes.
     pub pole_turn: PoleTurn,
 }
 
 impl IntegratorHistory {
-    /// Whether there was a substep.
+    /// Whether any substep has been recorded.
     pub fn exists(&self) -> bool {
         self.steps[0] > 0.0
     }
@@ -128,7 +130,7 @@ impl IntegratorHistory {
     pub fn restart_if_rough(&mut self, sums: MotionSums<f32>, particles: usize) {
         let slow = SLOW * GRAVITY * self.steps[0];
         let smooth = ROUGH * (sums.velocity + particles as f32 * slow * slow);
-        // In the first substep no velocity before is known, in the second only one.
+        // The first substep has no earlier velocity, the second only one.
         let first = self.substeps > 1 && sums.first_difference > smooth;
         let second = self.substeps > 2 && sums.second_difference > smooth;
         if first || second {
@@ -137,14 +139,14 @@ impl IntegratorHistory {
     }
 }
 
-/// Sums over the particles of a cloth, or of those in each lane, (m/s)².
+/// Sums over the particles of a cloth, or over those in each lane, (m/s)².
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MotionSums<T> {
-    /// Of |v|².
+    /// Sum of |v|².
     pub velocity: T,
-    /// Of |Δv|², Δv being the change of velocity in the last substep.
+    /// Sum of |Δv|², with Δv the change of velocity in the last substep.
     pub first_difference: T,
-    /// Of |Δ²v|², Δ²v being the change of Δv.
+    /// Sum of |Δ²v|², with Δ²v the change of Δv.
     pub second_difference: T,
 }
 
@@ -155,7 +157,7 @@ mod tests {
 
     const STEP: f32 = 0.01;
 
-    /// Curtiss and Hirschfelder 1952.
+    /// BDF2 in equal substeps (Curtiss and Hirschfelder 1952).
     const BDF2: Formula =
         Formula { extrapolation: [1.0 / 3.0, 0.0], beta: 2.0 / 3.0, inverse_extrapolation: 0.0 };
 
@@ -182,7 +184,7 @@ mod tests {
         for formula in [BDF2, Formula::BDF2_OPT] {
             assert!((change(formula, [-1.0, -3.0], 2.0) - 1.0).abs() < 1e-6, "{formula:?}, x = t²");
         }
-        // x = t³: the difference is the error constant.
+        // With x = t³ the difference is the error constant.
         let error = |formula| change(formula, [1.0, 7.0], 3.0) - 1.0;
         assert!((error(Formula::BDF2_OPT) / error(BDF2) - 0.45).abs() < 1e-5);
     }
@@ -191,7 +193,7 @@ mod tests {
     fn substeps_of_different_lengths_have_the_same_order() {
         for steps in [[1.0, 1.0, 1.0], [0.5, 1.0, 2.0], [1.5, 1.0, 0.7], [1.0, 2.0, 0.3]] {
             let [h, h1, h2] = steps;
-            // t at the ends of the last three substeps and at the start of the first.
+            // Values of t at the ends of the last three substeps and at the start of the first.
             let at = [h, 0.0, -h1, -h1 - h2];
             let second_order = [Formula::bdf2_opt(h, h1, h2), Formula::bdf2(h, h1)];
             for (formula, power) in second_order.iter().flat_map(|&f| [(f, 1), (f, 2)]) {
@@ -200,7 +202,7 @@ mod tests {
                 let found = change(formula, [x[1] - x[2], x[2] - x[3]], h * slope);
                 assert!((found - (x[0] - x[1])).abs() < 1e-5, "{steps:?} {formula:?} t^{power}");
             }
-            // v = t changes steadily.
+            // With v = t the velocity changes steadily.
             let [of_last, of_before] = second_order[0].extrapolation;
             let extrapolated = of_last * h1 + of_before * h2;
             assert!((second_order[0].inverse_extrapolation * extrapolated - h).abs() < 1e-5);
@@ -230,7 +232,7 @@ mod tests {
     #[test]
     fn a_cloth_that_is_slow_for_three_substeps_is_near_rest() {
         let of = |speed: f32| MotionSums { velocity: 4.0 * speed * speed, ..MotionSums::default() };
-        // 9.81 m/s² in a hundredth of a second.
+        // Gravity of 9.81 m/s² acts for a hundredth of a second.
         assert!(after(3).is_near_rest(of(0.19), 4));
         assert!(!after(3).is_near_rest(of(0.20), 4));
         assert!(!after(2).is_near_rest(of(0.0), 4));

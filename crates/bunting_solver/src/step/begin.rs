@@ -1,4 +1,4 @@
-//! The beginning of a tick and of a substep: everything that is constant over it is computed.
+//! The beginning of a tick and of a substep: all values that are constant over it are computed.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
@@ -13,7 +13,8 @@ use crate::step::parameters::ParameterInputs;
 use crate::step::{Scheme, StepSettings};
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Begins a tick of `tick` seconds: computes what is constant over it, and gathers contact candidates.
+    /// Begins a tick of `tick` seconds: computes all values that are constant over it, and gathers contact
+    /// candidates.
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
         let step = tick / settings.substeps as f32;
         self.clock = Clock { settings, step, begun: 0, predicted: false };
@@ -32,11 +33,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.gather_contacts(tick);
     }
 
-    /// Computes what is constant over the coming substep.
+    /// Computes all values that are constant over the coming substep.
     pub fn begin_substep(&mut self) {
         let moved = self.parameters.any_frame_moves();
         for cloth in 0..self.lanes.len() {
-            // Taken out, so that the rest of the batch can be written.
+            // The lane's state is taken out, so that the rest of the batch can be written.
             match self.lanes[cloth].take() {
                 Some(mut state) => {
                     self.begin_substep_of(cloth, &mut state);
@@ -45,7 +46,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 None => self.parameters.set_empty(Y::lanes(cloth)),
             }
         }
-        // One substep more than the motion lasts, so that the velocities of pins become zero again.
+        // The flag stays set for one substep after the motion, so that the velocities of pins become zero
+        // again.
         self.parameters.any_frame_moved = moved || self.parameters.any_frame_moves();
     }
 
@@ -76,7 +78,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.parameters.set_load_stretch(Y::lanes(cloth), &stretch);
     }
 
-    /// Computes what depends on a cloth's material and on the formula.
+    /// Computes all values that depend on a cloth's material and on the formula.
     fn set_inputs(&mut self, cloth: usize, inputs: &ParameterInputs) {
         let stiffness = Stiffness {
             material: &inputs.material,
@@ -88,7 +90,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.parameters.set_inputs(Y::lanes(cloth), &self.fabric, inputs, bends_stiffly);
     }
 
-    /// Computes a cloth's inverse masses, where what they depend on has changed.
+    /// Computes a cloth's inverse masses if their inputs have changed.
     fn set_added_mass(&mut self, cloth: usize, state: &mut LaneState) {
         let uprightness = self.pole.map_or(0.0, |pole| pole.uprightness(state.drive.gravity));
         let added_mass = AddedMass::new(

@@ -1,4 +1,4 @@
-//! The state in the coordinates of the frame after it has moved by one substep.
+//! Transformation of the state into the frame after the frame has moved by one substep.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
@@ -8,8 +8,8 @@ use crate::simd::vec3::{Pack3, V3};
 use crate::step::parameters::Parameters;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Rewrites the state in the coordinates of the moved frame. Free particles stay where they are in the
-    /// world; pinned ones move with the frame, and so have a velocity.
+    /// Transforms the state into the moved frame. Free particles keep their positions in the world; pinned
+    /// ones move with the frame, and so have a velocity.
     pub fn carry_state(&mut self) {
         P::run(CarryState {
             inverse_areas: &self.masses.inverse_areas,
@@ -29,9 +29,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
 /// The frame's motion in a substep, in registers.
 pub(crate) struct FrameRegisters<L: Lane> {
-    /// Rows of the rotation less the identity.
+    /// Rows of the rotation minus the identity.
     turn: [V3<L>; 3],
-    /// m.
+    /// Shift of the coordinates, m.
     shift: V3<L>,
     /// Lanes whose frame moves.
     pub moves: L::Mask,
@@ -48,21 +48,22 @@ impl<L: Lane> FrameRegisters<L> {
         }
     }
 
-    /// Change of the coordinates of a direction that stays in the world.
+    /// Change of the coordinates of a direction that is constant in the world.
     #[inline(always)]
     fn change_of_direction(&self, direction: V3<L>) -> V3<L> {
         let [x, y, z] = &self.turn;
         V3 { x: x.dot(direction), y: y.dot(direction), z: z.dot(direction) }
     }
 
-    /// Change of the coordinates of a point that stays in the world, m.
+    /// Change of the coordinates of a point that is fixed in the world, m.
     #[inline(always)]
     fn change_of_point(&self, point: V3<L>) -> V3<L> {
         self.change_of_direction(point) + self.shift
     }
 
-    /// Change of the coordinates of a point that stays in the world along the tangent of its path, m. The
-    /// chord of a turn points outwards, and damping towards the chord would throw the cloth outwards.
+    /// Change of the coordinates of a point that is fixed in the world, along the tangent of its path in the
+    /// frame, m. The chord of a turn points outwards, and damping towards the chord would throw the cloth
+    /// outwards.
     #[inline(always)]
     pub fn tangent_at(&self, point: V3<L>, half: L) -> V3<L> {
         let [x, y, z] = &self.turn;
@@ -70,14 +71,14 @@ impl<L: Lane> FrameRegisters<L> {
         self.shift.plus_scaled(self.change_of_direction(point) - transposed, half)
     }
 
-    /// Rewrites a direction that stays in the world.
+    /// Transforms a direction that is constant in the world.
     #[inline(always)]
     fn rewrite(&self, token: L::Token, direction: &mut Pack3<L::Pack>) {
         let d: V3<L> = V3::load(token, direction);
         self.apply(d, self.change_of_direction(d)).store(direction);
     }
 
-    /// The changed vector in lanes whose frame moves; other lanes keep their bits.
+    /// The changed vector in lanes with a moving frame; other lanes keep their bits.
     #[inline(always)]
     fn apply(&self, vector: V3<L>, change: V3<L>) -> V3<L> {
         (vector + change).or_where_not(self.moves, vector)
@@ -87,11 +88,11 @@ impl<L: Lane> FrameRegisters<L> {
 struct CarryState<'a, P: Pack, C> {
     inverse_areas: &'a [C],
     parameters: &'a Parameters<P>,
-    /// 1/h, 1/s.
+    /// Rate of substeps, 1/h, 1/s.
     inverse_step: f32,
     position: &'a mut [Pack3<P>],
     velocity: &'a mut [Pack3<P>],
-    /// Everything else that has a direction.
+    /// All other vectors that are transformed as directions.
     history: [&'a mut [Pack3<P>]; 4],
 }
 

@@ -1,7 +1,7 @@
 //! Damping of all but the rigid motion (thesis, appendix A), for cloth without pins.
 //!
 //! Mean velocity v_cm and angular velocity ω follow from momentum, angular momentum and inertia of the whole
-//! cloth, and each velocity is drawn towards v_cm + ω × r. The rigid motion of a pinned cloth is that of its
+//! cloth, and each velocity is damped towards v_cm + ω × r. The rigid motion of a pinned cloth is that of its
 //! frame, towards which the prediction damps.
 
 use crate::batch::lane_batch::LaneBatch;
@@ -88,8 +88,8 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for DampInternally<'_, P, C> {
     }
 }
 
-/// ω = I⁻¹ L by Cramer's rule, from Σ m x² and the like, Σ m y z and the like, and L. A ridge is added to the
-/// diagonal, as the inertia of a line or a point has no inverse.
+/// ω = I⁻¹ L by Cramer's rule, from sums such as Σ m x², sums such as Σ m y z, and L. A ridge is added to the
+/// diagonal, since the inertia of a line or a point has no inverse.
 #[inline(always)]
 fn solve_inertia<L: Lane>(token: L::Token, squares: V3<L>, products: V3<L>, spin: V3<L>) -> V3<L> {
     let trace = squares.x + squares.y + squares.z;

@@ -12,10 +12,10 @@ pub struct FrameMotion {
 }
 
 impl FrameMotion {
-    /// A frame that stays where it is.
+    /// A frame at rest.
     pub const NONE: Self = Self { rotation: Quat::IDENTITY, translation: Vec3::ZERO };
 
-    /// The motion from one pose to another, both given in the world.
+    /// The motion from one pose to another, both in the world.
     #[must_use]
     pub fn between(from: (Vec3, Quat), to: (Vec3, Quat)) -> Self {
         if from == to {
@@ -25,13 +25,13 @@ impl FrameMotion {
         Self { rotation: (inverse * to.1).normalize(), translation: inverse * (to.0 - from.0) }
     }
 
-    /// Whether the frame stays where it is.
+    /// Whether the frame is at rest.
     #[must_use]
     pub fn is_none(&self) -> bool {
         *self == Self::NONE
     }
 
-    /// The orientation after a part of the tick, turning at a constant rate about a fixed axis.
+    /// The orientation after a fraction of the tick, turning at a constant rate about a fixed axis.
     pub(crate) fn rotation_at(&self, part: f32) -> Quat {
         let rotation = if self.rotation.w < 0.0 { -self.rotation } else { self.rotation };
         let sine = rotation.xyz().length();
@@ -44,8 +44,8 @@ impl FrameMotion {
         Quat::from_xyzw(axis.x, axis.y, axis.z, libm::cosf(half_angle))
     }
 
-    /// Coordinates of a direction along the frame's axes after substep `index` of `count`, given those along
-    /// its axes at the end of the tick.
+    /// Coordinates of a direction along the frame's axes after substep `index` of `count`, from its
+    /// coordinates along the axes at the end of the tick.
     pub(crate) fn turn_back(&self, direction: Vec3, index: u32, count: u32) -> Vec3 {
         if self.is_none() {
             return direction;
@@ -77,7 +77,7 @@ impl Default for FrameMotion {
     }
 }
 
-/// A rotation matrix less the identity: of a small turn the rotation matrix itself loses digits.
+/// A rotation matrix minus the identity: for a small turn the rotation matrix itself loses digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Turn {
     pub rows: [Vec3; 3],
@@ -97,12 +97,12 @@ impl Turn {
     }
 }
 
-/// Change of coordinates of points that stay in the world while a cloth's frame moves by one substep: x
+/// Change of coordinates of points that are fixed in the world while a cloth's frame moves by one substep: x
 /// becomes x + turn · x + shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FrameStep {
     pub turn: Turn,
-    /// m.
+    /// Shift of the coordinates, m.
     pub shift: Vec3,
     /// Whether the frame moves.
     pub moves: bool,
@@ -112,12 +112,12 @@ impl FrameStep {
     pub const NONE: Self =
         Self { turn: Turn { rows: [Vec3::ZERO; 3] }, shift: Vec3::ZERO, moves: false };
 
-    /// The new coordinates of a point that stays in the world.
+    /// The new coordinates of a point that is fixed in the world.
     pub fn to_new(self, point: Vec3) -> Vec3 {
         point + (Vec3::from_array(self.turn.rows.map(|row| row.dot(point))) + self.shift)
     }
 
-    /// The old coordinates of a point that stays in the world.
+    /// The old coordinates of a point that is fixed in the world.
     pub fn to_old(self, point: Vec3) -> Vec3 {
         // The transpose of 1 + turn is its inverse.
         let moved = point - self.shift;
@@ -130,7 +130,7 @@ impl FrameStep {
 mod tests {
     use super::*;
 
-    /// The new coordinates of a point, which lead back to the old ones.
+    /// The new coordinates of a point; asserts that they lead back to the old ones.
     fn moved(frame: &FrameStep, point: Vec3) -> Vec3 {
         let moved = frame.to_new(point);
         assert!(frame.to_old(moved).distance(point) < 1e-6);

@@ -10,7 +10,7 @@ use crate::step::bdf::MotionSums;
 use crate::step::predict::Predict;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Begins a substep: carries the state into the moved frame, applies air, damping and gravity, and
+    /// Begins a substep: transforms the state into the moved frame, applies air, damping and gravity, and
     /// predicts positions.
     pub fn integrate(&mut self) {
         if self.clock.stands_still() {
@@ -31,7 +31,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 
     /// Predicts positions and velocities, and sums the squares of velocities and of their differences. The
-    /// oldest arrays are overwritten by the newest, and the arrays change names.
+    /// newest values overwrite the oldest arrays, and the arrays swap their names.
     fn predict(&mut self, feels_air: bool) -> MotionSums<P> {
         let zero = P::splat(0.0);
         let mut sums =

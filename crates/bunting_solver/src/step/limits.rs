@@ -5,25 +5,26 @@ use core::ops::RangeInclusive;
 use crate::fabric::Fabric;
 use crate::step::{Scheme, StepSettings};
 
-/// Greatest h² T/(m l) of the topmost link of a hanging cloth. Larger: links vibrate faster than substeps with
-/// frozen directions of the links can resolve. With this, grids of 33 × 33 and 65 × 65 particles a square metre
-/// take 2 and 4 substeps of a tick of 1/60 s.
+/// Greatest h² T/(m l) of the topmost link of a hanging cloth. Larger: links vibrate faster than substeps
+/// with frozen link directions can resolve. With this value, grids of 33 × 33 and 65 × 65 particles a square
+/// metre take 2 and 4 substeps in a tick of 1/60 s.
 const FASTEST_VIBRATION: f32 = 0.75;
 
-/// Part of a substep by which ticks may be too long for a whole number of substeps: 1/60 s in 32 bits is longer than
-/// two of 1/120 s. Larger: substeps are longer than they should be.
+/// Fraction of a substep by which a tick may exceed a whole number of substeps: in 32 bits 1/60 s is longer
+/// than two of 1/120 s. Larger: substeps are longer than they should be.
 const TOO_LONG: f32 = 1e-3;
 
-/// Limits within which the number of substeps is chosen. Within them it depends on the fabric, the tick and
-/// gravity alone, so that it is the same for all cloths of a fabric, however they move.
+/// Limits within which the number of substeps is chosen. It depends on the fabric, the tick and gravity only,
+/// so that it is the same for all cloths of a fabric, however they move.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct StepLimits {
-    /// How the constraints are solved.
+    /// Constraint solver and integrator.
     pub scheme: Scheme,
-    /// Fewest and most substeps in a tick. Strong wind needs more than weight does, and is not considered: at
-    /// 25 m/s five for 33 × 33 particles a square metre.
+    /// Least and greatest number of substeps in a tick. Strong wind needs more substeps than weight does, and
+    /// is not taken into account: at 25 m/s five for 33 × 33 particles a square metre.
     pub substeps: RangeInclusive<u32>,
-    /// Fewest substeps in a second: longer ticks are divided into more. Motion that is faster is damped.
+    /// Least number of substeps in a second: longer ticks are divided into more. Faster motion than the
+    /// substeps resolve is damped.
     pub rate: u32,
     /// Passes in a substep, see [`StepSettings::passes`].
     pub passes: u32,
@@ -50,14 +51,14 @@ impl StepLimits {
 }
 
 impl From<StepSettings> for StepLimits {
-    /// Limits that leave only these settings.
+    /// Limits that allow only these settings.
     fn from(StepSettings { scheme, substeps, passes }: StepSettings) -> Self {
         Self { scheme, substeps: substeps..=substeps, rate: 0, passes }
     }
 }
 
 impl Default for StepLimits {
-    /// Yarns, one to eight substeps of two passes, 120 a second or more.
+    /// The scheme of yarns with one to eight substeps of two passes, at least 120 a second.
     fn default() -> Self {
         let StepSettings { scheme, passes, .. } = StepSettings::default();
         Self { scheme, substeps: 1..=8, rate: 120, passes }

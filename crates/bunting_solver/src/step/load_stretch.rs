@@ -1,23 +1,23 @@
-//! Bounds on how far loads and pins may stretch a cloth, from its size, its material and what acts on it.
+//! Bounds on the stretch of a cloth by loads and pins, from its size, its material and its loads.
 
 use crate::fabric::FabricMaterial;
 use crate::step::Drive;
 
-/// Strain by wind beyond which it counts as not yet solved, and not as the material's. Larger: diagonals no
-/// longer hold a flag that a storm has stretched too far. Smaller: cloth that the wind holds taut stretches
-/// too little.
+/// Strain by wind above which the strain counts as an unsolved error and not as the material's. Larger:
+/// diagonals no longer hold a flag that a storm has stretched too far. Smaller: cloth that the wind holds
+/// taut stretches too little.
 const GREATEST_WIND_STRAIN: f32 = 0.01;
 
-/// Tethers are this many times as much longer than at rest as the bounds say, so that they do not hide the
-/// material's own strain.
+/// Factor on the bounds by which tethers are longer than at rest, so that they do not hide the material's own
+/// strain.
 const TETHER_MARGIN: f32 = 2.0;
 
 /// Lengths under load, in units of those at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LoadStretch {
-    /// Of tethers to the farthest pins, which run along diagonals, and to the nearest.
+    /// Lengths of tethers to the farthest pins, which run along diagonals, and to the nearest pins.
     pub tethers: [f32; 2],
-    /// Of a grid's diagonals, at most.
+    /// Greatest length of a grid's diagonals.
     pub diagonals: f32,
 }
 
@@ -39,13 +39,13 @@ impl LoadStretch {
     }
 }
 
-/// Strain along a diagonal for each N/m, m/N: that of warp and weft, and of shear.
+/// Strain along a diagonal for each N/m of tension, m/N: of warp and weft, and of shear.
 fn diagonal_softness(material: &FabricMaterial) -> f32 {
     let FabricMaterial { warp_stiffness, weft_stiffness, shear_stiffness, .. } = *material;
     0.25 * (1.0 / warp_stiffness + 1.0 / weft_stiffness + 1.0 / shear_stiffness)
 }
 
-/// Greatest tension at the top of a cloth that hangs by a length of `reach` metres, by its weight and by the
+/// Greatest tensions at the top of a cloth that hangs by a length of `reach` metres, by its weight and by the
 /// wind, N/m.
 fn greatest_tensions(material: &FabricMaterial, drive: &Drive, reach: f32) -> [f32; 2] {
     let weight = material.area_density * drive.gravity.length();

@@ -1,4 +1,4 @@
-//! What differs from cloth to cloth of a batch and is constant over a substep, in lanes.
+//! Parameters of each lane: values that differ from cloth to cloth and are constant over a substep.
 
 use core::ops::Range;
 
@@ -13,16 +13,17 @@ use crate::step::clock::Clock;
 use crate::step::load_stretch::LoadStretch;
 use crate::step::{Drive, Scheme};
 
-/// What a cloth's compliances, air and damping are computed from: they are computed anew when it changes.
+/// Inputs of a cloth's compliances, air coefficients and damping, which are computed again when an input
+/// changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ParameterInputs {
     pub material: FabricMaterial,
-    /// kg/m³.
+    /// Density of the air, kg/m³.
     pub air_density: f32,
     /// Length h of a substep, s.
     pub step: f32,
     pub formula: Formula,
-    /// Link stiffnesses of a grid depend on it.
+    /// Scheme, on which the link stiffnesses of a grid depend.
     pub scheme: Scheme,
 }
 
@@ -33,46 +34,46 @@ impl ParameterInputs {
     }
 }
 
-/// One value for each lane of what kernels need besides the particles and the constraints' factors.
+/// Values of each lane that kernels need besides the particles and the constraints' factors.
 #[derive(Clone, Debug)]
 pub(crate) struct Parameters<P: Pack> {
-    /// γ₁ and γ₂ of the [`Formula`].
+    /// Coefficients γ₁ and γ₂ of the [`Formula`].
     pub extrapolation: [P; 2],
     /// See [`Formula::inverse_extrapolation`].
     pub inverse_extrapolation: P,
-    /// Effective length β h of the substep, s. Everything below that is "in a substep" is in this one.
+    /// Effective length β h of the substep, s. All values below that refer to a substep refer to this length.
     pub step: P,
     /// One over the effective length, 1/s.
     pub inverse_step: P,
-    /// 1 in lanes whose cloth bends stiffly, else 0.
+    /// 1 in lanes whose cloth bends stiffly, otherwise 0.
     pub bends_stiffly: P,
-    /// Gravity times the substep, m/s.
+    /// Change of velocity by gravity in a substep, m/s.
     pub gravity_step: Pack3<P>,
     /// Velocity of the air, m/s.
     pub wind: Pack3<P>,
-    /// ½ ρ C_n h/σ, s/m.
+    /// Pressure coefficient ½ ρ C_n h/σ, s/m.
     pub pressure: P,
-    /// ½ ρ C_t h/σ, s/m.
+    /// Friction coefficient ½ ρ C_t h/σ, s/m.
     pub friction: P,
     /// Angle, rad, and rate, rad/s, by which the last substep's corrections have turned the cloth about its
     /// pole.
     pub pole_turn: [P; 2],
-    /// 1 in lanes whose cloth hardly moves, else 0.
+    /// 1 in lanes whose cloth hardly moves, otherwise 0.
     pub near_rest: P,
-    /// Part of the velocity relative to the frame that damping leaves in a substep.
+    /// Fraction of the velocity relative to the frame that damping leaves in a substep.
     pub damping_factor: P,
-    /// Part of the non-rigid velocity that internal damping leaves in a substep, for cloth without pins.
+    /// Fraction of the non-rigid velocity that internal damping leaves in a substep, for cloth without pins.
     pub internal_damping_factor: P,
-    /// Length of tethers to the farthest pins, and to the nearest, in units of that at rest.
+    /// Lengths of tethers to the farthest pins, and to the nearest pins, in units of their rest lengths.
     pub tether_stretch: [P; 2],
-    /// Greatest length of a grid's diagonals, in units of that at rest.
+    /// Greatest length of a grid's diagonals, in units of their rest length.
     pub diagonal_stretch: P,
-    /// Rotation of the frame in this substep less the identity, see
+    /// Rotation of the frame in this substep minus the identity, see
     /// [`FrameStep`](crate::step::frame::FrameStep).
     pub frame_turn: [Pack3<P>; 3],
     /// Shift of coordinates by the frame in this substep, m.
     pub frame_shift: Pack3<P>,
-    /// 1 in lanes whose frame moves in this substep, else 0.
+    /// 1 in lanes whose frame moves in this substep, otherwise 0.
     pub frame_moves: P,
     /// Whether any frame moves, or moved in the substep before.
     pub any_frame_moved: bool,
@@ -120,7 +121,7 @@ impl<P: Pack> Parameters<P> {
         fill_lanes3(&mut self.wind, &lanes, Vec3::ZERO);
     }
 
-    /// Sets the turn about the pole that the coming substep takes back.
+    /// Sets the turn about the pole that the coming substep undoes.
     pub fn set_pole_turn(&mut self, lanes: Range<usize>, turn: PoleTurn) {
         let [angle, rate] = &mut self.pole_turn;
         angle.lanes_mut()[lanes.clone()].fill(turn.angle);
@@ -149,7 +150,7 @@ impl<P: Pack> Parameters<P> {
         let air = 0.5 * air_density * inputs.step / material.area_density;
         set(&mut self.pressure, air * material.pressure_coefficient);
         set(&mut self.friction, air * material.friction_coefficient);
-        // The rigid motion of a pinned cloth is its frame's.
+        // The rigid motion of a pinned cloth is that of its frame.
         let (relative_to_frame, internal) = if fabric.has_pins() {
             (material.internal_damping, 0.0)
         } else {
@@ -175,7 +176,7 @@ impl<P: Pack> Parameters<P> {
         self.frame_moves.lanes_mut()[lanes].fill(if frame.moves { 1.0 } else { 0.0 });
     }
 
-    /// Sets how far tethers and diagonals may be stretched.
+    /// Sets the greatest stretch of tethers and diagonals.
     pub fn set_load_stretch(&mut self, lanes: Range<usize>, stretch: &LoadStretch) {
         for (pack, length) in self.tether_stretch.iter_mut().zip(stretch.tethers) {
             pack.lanes_mut()[lanes.clone()].fill(length);

@@ -1,8 +1,8 @@
 //! Prediction: the thesis's `v += Δt w F`, `damp`, `p = x + Δt v`.
 //!
-//! All orders have one form (see [`Formula`](crate::step::bdf::Formula)): the changes of the last two substeps
-//! are extrapolated by γ₁ and γ₂, and the new derivative counts for β h. Gravity and air come after damping, so
-//! that rest states are exact.
+//! Formulas of all orders have one form (see [`Formula`](crate::step::bdf::Formula)): the changes of the last
+//! two substeps are extrapolated by γ₁ and γ₂, and the new derivative acts for β h. Gravity and air come
+//! after damping, so that rest states are exact.
 
 use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
@@ -14,20 +14,21 @@ use crate::step::bdf::MotionSums;
 use crate::step::carry::FrameRegisters;
 use crate::step::parameters::Parameters;
 
-/// Added to a velocity in m/s or a position in m and subtracted again, this rounds values below 10⁻⁵ to multiples
-/// of 2⁻⁴³, 1.1 × 10⁻¹³, and returns larger ones but for rare units in the last place. Damped motion decays
-/// exponentially, to values that are subnormal, or whose products are, and processors take a hundred times as long
-/// over each. Near one and a half times a power of two it rounds both signs alike. Its last place is odd, so that it
-/// is half a unit in the last place of no larger value: a tie to even would change every odd one. Smaller: products
-/// of three values are subnormal. Larger: the rounding is seen in slow motion.
+/// Constant that, added to a velocity in m/s or a position in m and subtracted again, rounds values below
+/// 10⁻⁵ to multiples of 2⁻⁴³, 1.1 × 10⁻¹³, and returns larger values unchanged except for rare units in the
+/// last place. It is needed because damped motion decays exponentially, to values that are subnormal or have
+/// subnormal products, each of which takes processors a hundred times as long. Near one and a half times a
+/// power of two, the constant rounds both signs alike. Its last place is odd, so that it is half a unit in
+/// the last place of no larger value: a tie to even would change every odd one. Smaller: products of three
+/// values are subnormal. Larger: the rounding is visible in slow motion.
 const ROUNDING: f32 = 1.430_511_6e-6;
 
-/// The same for the change of velocity by air in a substep, m/s, which is squared: it is rounded to multiples of
-/// 2⁻⁵³.
+/// Rounding constant for the change of velocity by air in a substep, m/s, which is squared: it rounds to
+/// multiples of 2⁻⁵³.
 const AIR_ROUNDING: f32 = ROUNDING / 1024.0;
 
-/// Extrapolates velocities and damps them, adds air and gravity, and moves particles to where they would go
-/// without constraints.
+/// Kernel that extrapolates and damps velocities, adds air and gravity, and moves particles to their
+/// positions without constraints.
 pub(crate) struct Predict<'a, P: Pack, C> {
     pub areas: &'a [C],
     pub inverse_areas: &'a [C],
@@ -35,21 +36,21 @@ pub(crate) struct Predict<'a, P: Pack, C> {
     pub partial_sums: &'a [u8],
     pub pole: Option<Pole>,
     pub parameters: &'a Parameters<P>,
-    /// −1/h, 1/s.
+    /// Negative rate of substeps, −1/h, 1/s.
     pub frame_rate: f32,
     pub position: &'a [Pack3<P>],
     /// Before: the sums of the air, m³/s. After: the predicted positions, m.
     pub next: &'a mut [Pack3<P>],
     pub displacement: &'a [Pack3<P>],
-    /// Overwritten by the displacement of this substep.
+    /// Displacement in the substep before; overwritten by that of this substep, m.
     pub older_displacement: &'a mut [Pack3<P>],
     /// Velocities of this and of the last substep: changes by air are added to both, so that they are not
     /// extrapolated.
     pub velocity: &'a mut [Pack3<P>],
     pub older_velocity: &'a mut [Pack3<P>],
-    /// Overwritten by the predicted velocity.
+    /// Velocities two substeps earlier; overwritten by the predicted velocities, m/s.
     pub oldest_velocity: &'a mut [Pack3<P>],
-    /// Whether `next` has the sums of the air.
+    /// Whether `next` contains the sums of the air.
     pub feels_air: bool,
     pub sums: &'a mut MotionSums<P>,
 }
@@ -88,7 +89,7 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
             let damped = substep.damped(x, v, changes, turn);
 
             let inverse_mass = L::load(token, inverse_mass);
-            // Gravity acts on the true mass, whatever inertia is added to it.
+            // Gravity acts on the true mass, without added inertia.
             let true_part = inverse_mass * area.load(token);
             let mut forced = damped.plus_scaled(gravity, true_part);
             if self.feels_air {
@@ -118,9 +119,9 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
 struct Substep<L: Lane> {
     /// Effective length β h, s.
     step: L,
-    /// γ₁ and γ₂.
+    /// Coefficients γ₁ and γ₂.
     extrapolation: [L; 2],
-    /// Part of the velocity relative to the frame that damping removes.
+    /// Fraction of the velocity relative to the frame that damping removes.
     damping: L,
     frame: FrameRegisters<L>,
     any_frame_moves: bool,
@@ -128,7 +129,7 @@ struct Substep<L: Lane> {
     half: L,
     zero: V3<L>,
     axis: Option<Axis<L>>,
-    /// Turn about the pole to be taken back, rad, and its rate, rad/s.
+    /// Turn about the pole that is undone, rad, and its rate, rad/s.
     pole_turn: [L; 2],
 }
 
@@ -166,8 +167,8 @@ impl<L: Lane> Substep<L> {
         }
     }
 
-    /// The extrapolated velocity, damped relative to the frame, and without the spurious turn about the pole.
-    /// That of the last two changes is small and left in.
+    /// The extrapolated velocity, damped relative to the frame, and without the spurious turn about the pole
+    /// in the present velocity. The small turn in the last two changes remains.
     #[inline(always)]
     fn damped(
         &self,

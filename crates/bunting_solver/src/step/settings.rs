@@ -1,32 +1,33 @@
-//! The input of a step: how finely to solve a batch, and what acts on each cloth.
+//! The input of a step: scheme, substeps and passes of a batch, and the forces on each cloth.
 
 use glam::Vec3;
 
 use crate::constants::GRAVITY;
 use crate::step::frame::FrameMotion;
 
-/// How the constraints are solved, and with which integrator.
+/// Constraint solver and integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Scheme {
-    /// The thesis's scheme (4.4): Gauss–Seidel over single constraints, and backward Euler. PBD, and XPBD where
-    /// the material has a compliance. Needs ten substeps or more.
+    /// The thesis's scheme (4.4): Gauss–Seidel over single constraints, and backward Euler. It is PBD, and
+    /// XPBD if the material has a compliance. It needs ten substeps or more.
     GaussSeidel,
-    /// All links of a yarn solved at once, exactly, as a tridiagonal system; BDF2, of second order.
+    /// All links of a yarn are solved at once, exactly, as a tridiagonal system. The integrator is the mean
+    /// of BDF2 and BDF3, of second order.
     #[default]
     Yarns,
 }
 
-/// How finely a batch is solved.
+/// Scheme, substeps and passes of a batch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct StepSettings {
-    /// How the constraints are solved.
+    /// Constraint solver and integrator.
     pub scheme: Scheme,
-    /// Substeps in a tick; at least 1. Time is in proportion to them, and they improve accuracy more than
-    /// passes do (Macklin 2019, "Small steps in physics simulation").
+    /// Number of substeps in a tick; at least 1. The cost is proportional to it. Substeps improve accuracy
+    /// more than passes do (Macklin 2019, "Small steps in physics simulation").
     pub substeps: u32,
-    /// Passes in a substep; at least 1. Gauss–Seidel solves all constraints in each; the scheme of yarns
-    /// solves warp and weft once more. Cloth that snaps or folds sharply needs more passes, cloth that swings
-    /// more substeps.
+    /// Number of passes in a substep; at least 1. Gauss–Seidel solves all constraints in each; the scheme of
+    /// yarns solves warp and weft once more in each. Cloth that snaps or folds sharply needs more passes,
+    /// cloth that swings more substeps.
     pub passes: u32,
 }
 
@@ -52,8 +53,8 @@ impl Default for StepSettings {
     }
 }
 
-/// What acts on one cloth during a tick. Vectors are along the axes that the cloth's frame has at the end of
-/// the tick.
+/// Frame motion, gravity and air that act on one cloth during a tick. Vectors are along the axes of the
+/// cloth's frame at the end of the tick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
     /// Motion of the cloth's frame in this tick.
@@ -67,11 +68,11 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// Nothing acts.
+    /// A frame at rest, without gravity and air.
     pub const NONE: Self =
         Self { motion: FrameMotion::NONE, gravity: Vec3::ZERO, wind: Vec3::ZERO, air_density: 0.0 };
 
-    /// Names the first field that is not finite or, in the case of the air's density, negative.
+    /// Names the first field that is not finite, or the air's density if it is negative.
     pub(crate) fn validate(&self) -> Result<(), &'static str> {
         let motion = &self.motion;
         let checks = [

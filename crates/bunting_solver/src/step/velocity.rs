@@ -1,8 +1,8 @@
 //! Velocities from corrected positions: the thesis's `v = (p − x)/Δt`.
 //!
-//! With p̃ and ṽ the predicted position and velocity, this is ṽ + (p − p̃)/Δt, and is computed so: the
-//! difference p − x would round ṽ to a unit in the last place of x over Δt, and lose accelerations smaller than
-//! that.
+//! With p̃ and ṽ the predicted position and velocity, this equals ṽ + (p − p̃)/Δt, and is computed in this
+//! form: the difference p − x would round ṽ to a unit in the last place of x over Δt, and lose accelerations
+//! smaller than that.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};

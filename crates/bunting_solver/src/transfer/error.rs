@@ -1,23 +1,23 @@
-//! The ways in which two fabrics cannot be neighbouring levels.
+//! Errors of transfers between levels.
 
-/// The reason why two fabrics are not neighbours in a chain of levels.
+/// Reason why two fabrics are not neighbouring levels of a cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TransferError {
-    /// Of fabrics that are not grids the shared vertices must be given.
+    /// The fabrics are no grids, so that their shared vertices must be given.
     #[error("the fabrics are no grids: say which vertices they share")]
     NotAGrid,
-    /// The coarser fabric must have some of the finer one's vertices.
+    /// The vertices of the coarser fabric are not some of the finer one's.
     #[error(
         "{given} shared vertices do not fit a fabric of {expected}, or are not the finer one's"
     )]
     NotShared {
-        /// Number of vertices that are said to be shared.
+        /// Number of given shared vertices.
         given: usize,
         /// Number of vertices of the coarser fabric.
         expected: usize,
     },
-    /// The finer grid must have a particle halfway between any two of the coarser.
+    /// The finer grid does not have exactly one particle between any two neighbours of the coarser one.
     #[error(
         "{fine:?} particles do not halve to {coarse:?}: use 2ⁿ + 1 columns and rows, or any that halve"
     )]

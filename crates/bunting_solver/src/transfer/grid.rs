@@ -1,4 +1,4 @@
-//! Interpolation between a grid and every second column and row of it.
+//! Interpolation between a grid and the grid of its every second column and row.
 
 use super::interpolation::Interpolation;
 use crate::fabric::Grid;
@@ -18,7 +18,7 @@ pub(super) fn smooth(fine: &Grid, coarse: &Grid) -> Interpolation {
     interpolation
 }
 
-/// Linear interpolation over the coarse triangles as they are drawn.
+/// Linear interpolation over the displayed coarse triangles.
 pub(super) fn flat(fine: &Grid, coarse: &Grid) -> Interpolation {
     let mut interpolation = Interpolation::default();
     for row in 0..fine.rows {
@@ -42,8 +42,8 @@ pub(super) fn flat(fine: &Grid, coarse: &Grid) -> Interpolation {
     interpolation
 }
 
-/// Weights of coarse nodes at a fine node of one line of `coarse` nodes. In the first and the last interval a parabola
-/// takes the place of the cubic.
+/// Weights of coarse nodes at a fine node of a line of `coarse` nodes. In the first and the last interval a
+/// parabola replaces the cubic.
 fn four_point(fine: u32, coarse: u32) -> Vec<(u32, f32)> {
     let (left, last) = (fine / 2, coarse - 1);
     let weighted = |weights: &[f32], first: u32| -> Vec<(u32, f32)> {
@@ -88,8 +88,8 @@ mod tests {
         }
     }
 
-    /// Along the diagonal of a coarse cell the drawn surface has a crease; the fine one must pass
-    /// through it.
+    /// The displayed surface has a crease along the diagonal of a coarse cell; the fine surface must contain
+    /// it.
     #[test]
     fn the_flat_stencil_follows_the_triangles() {
         let (fine, coarse) = (Grid::new(9, 9, 1.0, 1.0), Grid::new(5, 5, 1.0, 1.0));
@@ -99,7 +99,7 @@ mod tests {
             let holds = |triangle: &[u32; 3]| row.iter().all(|(node, _)| triangle.contains(node));
             assert!(triangles.iter().any(holds), "{row:?} is on no triangle");
         }
-        // And every fine triangle lies on one coarse triangle.
+        // Every fine triangle lies on one coarse triangle.
         for triangle in fine.triangles(false) {
             let corners = triangle.map(|corner| &rows[corner as usize]);
             let holds = |coarse: &[u32; 3]| {

@@ -5,7 +5,7 @@ use core::ops::{Add, Mul};
 /// For each fine particle a row of coarse particles with interpolation weights, whose sum is one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Interpolation {
-    /// The end of each row in `entries`.
+    /// End of each row in `entries`.
     ends: Vec<usize>,
     entries: Vec<(u32, f32)>,
 }
@@ -17,7 +17,7 @@ impl Interpolation {
         self.ends.push(self.entries.len());
     }
 
-    /// The rows, one per fine particle.
+    /// The rows, one for each fine particle.
     pub fn rows(&self) -> impl Iterator<Item = &[(u32, f32)]> {
         let mut start = 0;
         self.ends.iter().map(move |&end| {
@@ -38,8 +38,8 @@ impl Interpolation {
         })
     }
 
-    /// The transposed product with fine values: each is distributed over the coarse particles of its row. `count` is
-    /// the number of coarse particles.
+    /// The transposed product with fine values: each value is distributed over the coarse particles of its
+    /// row. `count` is the number of coarse particles.
     pub fn gather<T>(&self, fine: impl IntoIterator<Item = T>, count: usize) -> Vec<T>
     where
         T: Copy + Default + Add<Output = T> + Mul<f32, Output = T>,

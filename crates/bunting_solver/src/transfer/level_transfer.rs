@@ -16,26 +16,26 @@ use crate::batch::snapshot::ClothSnapshot;
 use crate::fabric::{Fabric, FabricMaterial, Grid};
 use crate::geometry::energy::{area_moment, elastic};
 
-/// Part of the elastic and the kinetic energy that a transfer may add as strain; the motion gives it. Smaller: cloth
-/// at rest is settled that needs no settling. Larger: motion is lost.
+/// Fraction of the elastic and the kinetic energy that a transfer may add as strain energy, which is taken
+/// from the motion. Smaller: cloth at rest is settled without need. Larger: motion is lost.
 const ALLOWED_STRAIN: f64 = 0.01;
 
-/// How the particles of a finer and a coarser fabric of one cloth correspond.
+/// Correspondence of the particles of a finer and a coarser fabric of one cloth.
 #[derive(Clone, Debug)]
 pub struct LevelTransfer {
-    /// Takes the strain off cloths that became finer.
+    /// Settler of cloths that became finer.
     fine: Arc<Settler>,
-    /// Takes the strain off cloths that became coarser.
+    /// Settler of cloths that became coarser.
     coarse: Arc<Settler>,
-    /// From coarse particles to fine ones, by a smooth stencil.
+    /// Smooth interpolation from coarse to fine particles.
     pub(super) smooth: Interpolation,
-    /// From coarse particles to fine ones, along the coarse triangles as they are drawn.
+    /// Linear interpolation from coarse to fine particles, along the displayed coarse triangles.
     flat: Interpolation,
-    /// How far fine particles lie from the interpolated surface at rest.
+    /// Offsets of fine particles from the interpolated surface at rest.
     pub(super) offsets: RestOffsets,
-    /// For each coarse particle the fine particle at the same place.
+    /// For each coarse particle, the fine particle at the same position.
     pub(super) shared: Vec<u32>,
-    /// For each coarse particle the part of the free fine particles' areas that falls to it by the transposed smooth
+    /// For each coarse particle, the sum of the free fine particles' areas weighted by the transposed smooth
     /// stencil, m².
     gathered_areas: Vec<f32>,
 }
@@ -45,14 +45,15 @@ impl LevelTransfer {
     ///
     /// # Errors
     ///
-    /// The fabrics are not grids, or the coarser is not every second column and row of the finer.
+    /// The fabrics are not grids, or the coarser grid is not every second column and row of the finer.
     pub fn between(fine: &Arc<Fabric>, coarse: &Arc<Fabric>) -> Result<Self, TransferError> {
         Self::of_grids(Settler::new(fine), Settler::new(coarse))
     }
 
-    /// The correspondence of a fabric and one whose mesh has some of its mesh's vertices: for each of the coarser
-    /// mesh the vertex of the finer mesh, as in [`CoarserMesh::vertices`](crate::CoarserMesh::vertices). Grids as in
-    /// [`between`](Self::between), other meshes by where their particles lie at rest.
+    /// The correspondence of a fabric and a fabric whose mesh has some of the vertices of its mesh.
+    /// `vertices` holds for each vertex of the coarser mesh the vertex of the finer one, as in
+    /// [`CoarserMesh::vertices`](crate::CoarserMesh::vertices). Grids correspond as in
+    /// [`between`](Self::between), other meshes by the positions of their particles at rest.
     ///
     /// # Errors
     ///
@@ -65,8 +66,9 @@ impl LevelTransfer {
         Self::of_any(Settler::new(fine), Settler::new(coarse), vertices)
     }
 
-    /// The correspondence of this transfer's coarser fabric and the next coarser one, as [`nested`](Self::nested).
-    /// The two transfers share the batch in which cloths of the fabric between them settle.
+    /// The correspondence of this transfer's coarser fabric and the next coarser one, as by
+    /// [`nested`](Self::nested). Both transfers share the batch in which cloths of the fabric between them
+    /// settle.
     ///
     /// # Errors
     ///
@@ -125,7 +127,8 @@ impl LevelTransfer {
         Self { fine, coarse, smooth, flat, offsets, shared, gathered_areas }
     }
 
-    /// The finer state of a coarser one, for a cloth of a material under a gravity along the axes of its frame, m/s².
+    /// Converts a coarser state to a finer one, for a cloth with a material and gravity along the axes of its
+    /// frame, m/s².
     #[must_use]
     pub fn prolong(
         &self,
@@ -140,7 +143,8 @@ impl LevelTransfer {
         before.conserve(&self.fine, positions, velocities, material, gravity)
     }
 
-    /// The coarser state of a finer one, for a cloth of a material under a gravity along the axes of its frame, m/s².
+    /// Converts a finer state to a coarser one, for a cloth with a material and gravity along the axes of its
+    /// frame, m/s².
     #[must_use]
     pub fn restrict(
         &self,
@@ -151,12 +155,13 @@ impl LevelTransfer {
         Self::restrict_through(slice::from_ref(self), fine, material, gravity)
     }
 
-    /// The state at the coarsest fabric of a chain of transfers, the finest first, of a state at the finest. Strain is
-    /// taken off at the coarsest level only, which is cheaper than one transfer after the other.
+    /// Converts a state of the finest fabric of a chain of transfers, the finest first, to one of the
+    /// coarsest. Strain is removed at the coarsest level only, which is cheaper than single transfers one
+    /// after the other.
     ///
     /// # Panics
     ///
-    /// If the chain is empty, or not of neighbours.
+    /// If the chain is empty, or its transfers are not neighbours.
     #[must_use]
     pub fn restrict_through(
         chain: &[Self],
@@ -176,15 +181,16 @@ impl LevelTransfer {
         before.conserve(&coarsest.coarse, positions, velocities, material, gravity)
     }
 
-    /// For each coarse particle the fine particle at the same place.
+    /// For each coarse particle, the fine particle at the same position.
     #[must_use]
     pub fn shared(&self) -> &[u32] {
         &self.shared
     }
 
-    /// Takes the strain off a coarse state that has the shared particles' positions and velocities, until little more
-    /// elastic energy is stored than a part of the kinetic energy. For cloth that nobody sees: much cheaper than
-    /// [`restrict`](Self::restrict), but neither momentum nor energy are those of the fine cloth.
+    /// Settles a coarse state with the shared particles' positions and velocities: removes strain until the
+    /// elastic energy hardly exceeds a fraction of the kinetic energy. This is much cheaper than
+    /// [`restrict`](Self::restrict), but conserves neither momentum nor energy, and is meant for cloth that
+    /// no viewer sees.
     #[must_use]
     pub fn settle(&self, coarse: ClothSnapshot, material: &FabricMaterial) -> ClothSnapshot {
         let ClothSnapshot { mut positions, velocities, .. } = coarse;
@@ -195,21 +201,23 @@ impl LevelTransfer {
         ClothSnapshot::new(positions, velocities)
     }
 
-    /// The values of the shared particles, one per coarse particle, of values at all fine particles.
+    /// Values of the shared particles, one for each coarse particle, from values at all fine particles.
     pub fn pick<'a>(&'a self, fine: &'a [Vec3]) -> impl Iterator<Item = Vec3> + 'a {
         self.shared.iter().map(|&particle| fine[particle as usize])
     }
 
-    /// Values at the fine particles, interpolated linearly over the coarse triangles as they are drawn, of values at
-    /// the coarse particles: where each fine particle would lie on the drawn coarse surface.
+    /// Values at the fine particles, interpolated linearly over the displayed coarse triangles from values at
+    /// the coarse particles. Of positions, this is where each fine particle would lie on the displayed coarse
+    /// surface.
     pub fn spread<'a>(&'a self, coarse: &'a [Vec3]) -> impl Iterator<Item = Vec3> + 'a {
         self.flat.interpolate(coarse)
     }
 
-    /// Coarse velocities v_c = v_s + D⁻¹ Pᵀ M (v − P v_s), with v the fine velocities, v_s those of the shared
-    /// particles, P the smooth stencil, M the masses of the free fine particles and D = Pᵀ M 1: to the velocity of a
-    /// shared particle comes the mean of what the fine ones around it have beyond the interpolated velocity. After
-    /// prolongation that is nothing, so that up and down again gives back the velocities.
+    /// Coarse velocities v_c = v_s + D⁻¹ Pᵀ M (v − P v_s), with v the fine velocities, v_s those of the
+    /// shared particles, P the smooth stencil, M the masses of the free fine particles and D = Pᵀ M 1. The
+    /// velocity of a shared particle is increased by the mean difference between the fine velocities around
+    /// it and the interpolated ones. After prolongation this difference is zero, so that prolongation and
+    /// restriction give back the velocities.
     pub(super) fn gather_velocities(&self, fine: &[Vec3]) -> Vec<Vec3> {
         let mut coarse: Vec<Vec3> = self.pick(fine).collect();
         let interpolated = self.smooth.interpolate(&coarse);
@@ -234,8 +242,8 @@ impl LevelTransfer {
     }
 }
 
-/// For each coarse particle the fine particle at the same place, given the fine vertex of each coarse vertex; none if
-/// the vertices do not fit.
+/// For each coarse particle, the fine particle at the same position, given the fine vertex of each coarse
+/// vertex; none if the vertices do not fit.
 fn shared_particles(fine: &Fabric, coarse: &Fabric, vertices: &[u32]) -> Option<Vec<u32>> {
     if vertices.len() != coarse.particle_of_vertex().len() {
         return None;
@@ -254,8 +262,8 @@ struct Before<'a> {
 }
 
 impl Before<'_> {
-    /// The state on the settler's fabric, from positions and velocities there: without the strain that came with the
-    /// change, with the same momentum, and with no more energy.
+    /// Completes the state on the settler's fabric from positions and velocities there: removes the strain of
+    /// the change, conserves the momentum, and limits the energy to that before.
     fn conserve(
         &self,
         settler: &Settler,
@@ -273,7 +281,7 @@ impl Before<'_> {
         let kinetic = 0.5 * density * motion;
         let stored = elastic(self.fabric, material, &self.state.positions);
         let limit = stored + ALLOWED_STRAIN * (stored + kinetic);
-        // Cloth that flies is folded, and its folds are strained by new particles or by the lack of old ones.
+        // Cloth in flight is folded, and its folds are strained by new particles or by the lack of old ones.
         let folded = kinetic > stored;
         let stretched = settler.settle(material, &mut positions, limit, folded) - stored;
         let sunk =

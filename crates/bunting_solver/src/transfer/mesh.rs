@@ -1,4 +1,4 @@
-//! Interpolation between any mesh and one with some of its vertices.
+//! Interpolation between any mesh and a mesh with some of its vertices.
 
 use glam::Vec3;
 use parry3d::query::PointQueryWithLocation;
@@ -7,12 +7,13 @@ use parry3d::shape::TriMesh;
 use super::interpolation::Interpolation;
 use crate::fabric::Fabric;
 
-/// Distance from the coarse triangles, as a part of the root of the fabric's area, below which a particle counts as
-/// on them. Smaller: flat meshes get offsets of rounding errors. Larger: shallow curves are flattened.
+/// Distance from the coarse triangles, as a fraction of the square root of the fabric's area, below which a
+/// particle counts as on them. Smaller: flat meshes get offsets of rounding errors. Larger: shallow curves
+/// are flattened.
 const FLAT: f32 = 1e-4;
 
-/// For each fine particle barycentric weights on the coarse triangle nearest to it at rest, and how far it lies from
-/// that. None if the coarse mesh has no triangles that can be searched.
+/// For each fine particle: barycentric weights on the coarse triangle nearest to it at rest, and its offset
+/// from this triangle. None if the coarse mesh has no triangles that can be searched.
 pub(super) fn nearest(
     fine: &Fabric,
     coarse: &Fabric,
@@ -46,7 +47,7 @@ pub(super) fn nearest(
     Some((interpolation, offsets))
 }
 
-/// How far fine particles lie from the coarse triangles at rest, along axes that turn with the triangles.
+/// Offsets of fine particles from the coarse triangles at rest, along axes that turn with the triangles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct RestOffsets(Vec<RestOffset>);
 
@@ -54,7 +55,7 @@ pub(super) struct RestOffsets(Vec<RestOffset>);
 struct RestOffset {
     particle: u32,
     corners: [u32; 3],
-    /// Along the triangle's axes, m.
+    /// Components along the triangle's axes, m.
     along: [f32; 3],
 }
 
@@ -86,7 +87,7 @@ mod tests {
     use crate::fabric::{CoarserMesh, FabricBuilder, FabricMaterial, Grid};
     use crate::transfer::LevelTransfer;
 
-    /// A quarter of a tube, as plain triangles, held along one side, and its next level.
+    /// A quarter of a tube, as a mesh of triangles, held along one side, and its next level.
     fn cape() -> (Arc<crate::Fabric>, Arc<crate::Fabric>, LevelTransfer) {
         let grid = Grid::new(17, 17, 1.0, 1.0);
         let bend = |at: &Vec3| {

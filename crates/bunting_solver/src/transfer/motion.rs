@@ -1,12 +1,12 @@
-//! Velocities after a change of level: the same linear momentum, and no more energy than before.
+//! Velocities after a change of level: equal linear momentum, and no more energy than before.
 
 use glam::{DVec3, Vec3};
 
 use crate::fabric::Fabric;
 use crate::geometry::energy::area_moment;
 
-/// Areas of the particles, m²; zero where they are pinned. Times the area density they are the masses of the free
-/// particles.
+/// Areas of the particles, m²; zero if they are pinned. Multiplied by the area density they are the masses of
+/// the free particles.
 pub(super) fn free_areas(fabric: &Fabric) -> impl Iterator<Item = f32> + '_ {
     let areas = fabric.particle_areas().iter().enumerate();
     areas.map(|(particle, &area)| if fabric.is_pinned(particle) { 0.0 } else { area })
@@ -18,7 +18,7 @@ pub(super) fn match_momentum(fabric: &Fabric, wanted: DVec3, velocities: &mut [V
     if free_area == 0.0 {
         return;
     }
-    // The second time for the rounding errors of the first.
+    // A second iteration corrects the rounding errors of the first.
     for _ in 0..2 {
         let missing = ((wanted - area_moment(fabric, velocities)) / free_area).as_vec3();
         for (velocity, area) in velocities.iter_mut().zip(free_areas(fabric)) {
@@ -37,8 +37,8 @@ pub(super) fn internal_motion(fabric: &Fabric, velocities: &[Vec3]) -> f64 {
     areas.zip(velocities).map(|(area, v)| area * (v.as_dvec3() - mean).length_squared()).sum()
 }
 
-/// Scales the velocities of the free particles relative to their mean, which keeps the momentum, until the
-/// [`internal_motion`] is at most `limit`, m⁴/s², or as near to it as that can bring it.
+/// Scales the velocities of the free particles relative to their mean, which conserves the momentum, until
+/// the [`internal_motion`] is at most `limit`, m⁴/s², or as close to it as scaling allows.
 pub(super) fn limit_internal_motion(fabric: &Fabric, limit: f64, velocities: &mut [Vec3]) {
     let areas: Vec<f64> = free_areas(fabric).map(f64::from).collect();
     let free_area: f64 = areas.iter().sum();

@@ -1,9 +1,10 @@
-//! Settling: takes off the strain that a change of level brings.
+//! Settling: removal of the strain that a change of level brings.
 //!
-//! Between interpolated particles a fold is longer or shorter than the cloth is. The next substep would turn that
-//! strain into velocity. Here it is taken off the positions alone, by damped substeps from rest and without loads,
-//! until hardly more elastic energy is stored than before the change. One substep is enough towards more particles;
-//! towards fewer, where a fold may be narrower than two particles are apart, the cloth must find other folds.
+//! Between interpolated particles a fold is longer or shorter than the cloth at rest. The next substep would
+//! turn this strain into velocity. Settling removes it from the positions alone, by damped substeps from rest
+//! and without loads, until the elastic energy hardly exceeds that before the change. One substep is enough
+//! after a change to more particles; after a change to fewer, where a fold may be narrower than the distance
+//! of two particles, the cloth must find other folds.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -16,15 +17,17 @@ use crate::fabric::{Fabric, FabricMaterial};
 use crate::geometry::energy::elastic;
 use crate::step::{Drive, StepSettings};
 
-/// Length of a substep, s. Shorter: settling takes more substeps. Longer: soft cloth shrinks, since its weight does
-/// not hold its stretch here.
+/// Length of a substep, s. Shorter: settling takes more substeps. Longer: soft cloth shrinks, since no weight
+/// holds its stretch here.
 const STEP: f32 = 1.0 / 120.0;
 
-/// Most substeps. One flag in thirty, the most crumpled, needs more on its way down, and ends with more energy than it
-/// had. Fewer: more flags do. More: it costs time, and the cloth moves farther from where it was.
+/// Greatest number of substeps. One flag in thirty, the most crumpled, needs more on its way down, and ends
+/// with more energy than before. Fewer: more flags do so. More: settling costs time, and the cloth moves
+/// farther from its position.
 const MOST_STEPS: u32 = 24;
 
-/// Damping, 1/s: 7 % of the velocity in a substep. Less: the cloth overshoots. More: it takes longer.
+/// Damping, 1/s: it removes 7 % of the velocity in a substep. Less: the cloth overshoots. More: settling
+/// takes longer.
 const DAMPING: f32 = 8.7;
 
 /// A fabric and a batch of one lane, in which cloths of the fabric settle one after the other.
@@ -46,13 +49,13 @@ impl Settler {
     }
 
     fn lock(&self) -> MutexGuard<'_, ClothBatch> {
-        // The next cloth replaces all of the state that a panic may have left behind.
+        // The next cloth replaces all state that a panic may have left behind.
         self.batch.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Settles positions (m) until at most `limit` joules of elastic energy are stored, or the substeps are used up,
-    /// and returns the energy that is then stored, J. Of `folded` positions the first energy is not computed, since it
-    /// is over the limit. A material that cannot be simulated leaves the positions as they are.
+    /// Settles positions (m) until the elastic energy is at most `limit` joules, or the substeps are used up.
+    /// Returns the elastic energy then, J. For `folded` positions the first energy is not computed, since it
+    /// exceeds the limit. With an invalid material the positions stay unchanged.
     pub fn settle(
         &self,
         material: &FabricMaterial,
@@ -69,14 +72,15 @@ impl Settler {
         let settings = StepSettings { passes: 2, ..StepSettings::yarns(MOST_STEPS) };
         batch.begin_tick(STEP * MOST_STEPS as f32, settings);
         for step in 0..MOST_STEPS {
-            // Computing the energy takes half as long as a substep: only after none, one, two, four, …
+            // Computing the energy takes half as long as a substep, so it is computed only after 0, 1, 2, 4,
+            // … substeps.
             if (step == 0 && !folded) || step.is_power_of_two() {
                 let stored = elastic(&self.fabric, material, positions);
                 if stored <= limit {
                     return stored;
                 }
             }
-            // Every step is of first order, which extrapolates no correction of the step before.
+            // Every substep is of first order, which extrapolates no correction of the one before.
             batch.restart_integrator(0);
             batch.integrate();
             batch.solve_constraints();
@@ -87,7 +91,8 @@ impl Settler {
     }
 }
 
-/// Replaces the cloth in the batch's lane. The parameters of a material are kept if the next cloth has the same.
+/// Replaces the cloth in the batch's lane. The parameters of a material are kept if the next cloth has the
+/// same material.
 fn insert(
     batch: &mut ClothBatch,
     state: &ClothSnapshot,

@@ -1,4 +1,4 @@
-//! What a change of level conserves: momentum, energy, shape.
+//! Tests of the quantities that a change of level conserves: momentum, energy, shape.
 
 use std::sync::Arc;
 
@@ -68,14 +68,14 @@ fn momentum_is_kept_and_energy_does_not_grow() {
             assert!(had.distance(has) < 1e-5 * had.length(), "pinned {pinned}: {had} {has}");
             let (had, has) = (energies(from, before), energies(to, &after));
             let sum = |energies: [f64; 3]| energies.iter().sum::<f64>();
-            // The sum is rounded as its largest part.
+            // The sum is rounded like its largest term.
             let rounding = 1e-6 * had.map(f64::abs).iter().sum::<f64>();
             assert!(sum(has) < sum(had) + rounding, "pinned {pinned}: {had:?} {has:?}");
         }
     }
 }
 
-/// A restriction over several levels conserves what one over a single level does.
+/// A restriction over several levels conserves the same quantities as one over a single level.
 #[test]
 fn several_levels_are_crossed_at_once_without_strain() {
     let fabrics = [(17, 9), (9, 5), (5, 3)].map(|(columns, rows)| fabric(columns, rows, true));
@@ -95,7 +95,7 @@ fn several_levels_are_crossed_at_once_without_strain() {
     assert!(has[1] < had[1] + 0.1 * had[0], "strain is left: {had:?} {has:?}");
 }
 
-/// A cloth whose particles, pins included, all move at the velocity of the frame.
+/// All particles of the cloth, pins included, move at the velocity of the frame.
 #[test]
 fn a_uniform_velocity_stays_uniform() {
     let (fine, coarse, transfer) = levels(true);
@@ -134,7 +134,8 @@ fn velocities_are_gathered_from_all_particles() {
     assert!(gathered.iter().all(|v| (0.3..1.0).contains(&v.x)), "{gathered:?}");
 }
 
-/// A wave of eight coarse cells: straight lines between shared particles cut off 7 % of its height.
+/// The wave is eight coarse cells long: straight lines between shared particles would cut off 7 % of its
+/// height.
 #[test]
 fn folds_are_not_flattened() {
     let (fine, coarse, transfer) = levels(false);
@@ -149,7 +150,7 @@ fn folds_are_not_flattened() {
     assert!(smooth < 0.4 * flat, "{smooth} {flat}");
 }
 
-/// Particles interpolated on a fold lie farther apart than the cloth is long. Settling takes off that strain, which would
+/// Particles interpolated on a fold lie farther apart than at rest. Settling removes this strain, which would
 /// become velocity in the next substep.
 #[test]
 fn little_strain_is_left() {
@@ -201,7 +202,7 @@ fn stretch_by_weight_is_kept() {
     }
 }
 
-/// Ten seconds of a swing with a change of level in every tick.
+/// A swing changes its level in every tick for ten seconds.
 #[test]
 fn a_change_in_every_tick_conserves_momentum_and_adds_no_energy() {
     let (fine, coarse, transfer) = levels(true);

@@ -4,8 +4,8 @@ use std::time::Instant;
 
 use super::*;
 
-/// Prints what it costs to show a flag of 33 × 33 particles, without Bevy's upload of its mesh:
-/// `cargo test --release -p bevy_bunting --features render --lib -- --ignored --nocapture cost`.
+/// Prints the cost of showing a flag of 33 × 33 particles, without Bevy's upload of its mesh: `cargo test
+/// --release -p bevy_bunting --features render --lib -- --ignored --nocapture cost`.
 #[test]
 #[ignore = "it measures"]
 fn cost_of_a_visible_flag() {

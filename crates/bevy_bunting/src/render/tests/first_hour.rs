@@ -1,4 +1,4 @@
-//! What a newcomer ran into in a game's first hour, as far as it is seen.
+//! Tests of defects that newcomers met in their first hour and that rendering shows.
 
 use bevy_camera::visibility::Visibility;
 use bevy_ecs::hierarchy::ChildOf;

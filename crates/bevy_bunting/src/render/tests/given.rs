@@ -1,9 +1,9 @@
-//! Meshes that the user gives.
+//! Tests of meshes that the user gives.
 
 use super::*;
 
 #[test]
-fn a_given_mesh_is_written_in_place_tangents_and_all() {
+fn a_given_mesh_is_written_in_place_with_its_tangents() {
     let mut app = app(TICK);
     let tangents = vec![[1.0, 0.0, 0.0, -1.0]; 45];
     let given = flag_mesh(&mut app).with_inserted_attribute(Mesh::ATTRIBUTE_TANGENT, tangents);
@@ -37,7 +37,7 @@ fn a_given_mesh_is_written_in_place_tangents_and_all() {
 
 #[test]
 fn a_seam_is_written_on_both_sides() {
-    // Two squares that share an edge, whose vertices the texture has twice.
+    // Two squares share an edge, whose vertices the mesh has twice, as at a texture seam.
     let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
     let square = |x: f32| corners.map(|(dx, dy)| Vec3::new(x + dx, -dy, 0.0));
     let uv = corners.map(|(u, v)| Vec2::new(u, v));

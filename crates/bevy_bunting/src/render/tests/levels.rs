@@ -1,4 +1,4 @@
-//! The meshes of levels of detail.
+//! Tests of the meshes of levels of detail.
 
 use bunting_solver::{FabricBuilder, Grid};
 
@@ -13,7 +13,7 @@ fn a_level_has_its_mesh() {
     let fine = handle(&app, cloth).clone();
     let count = app.world().resource::<Assets<Mesh>>().len();
     app.world_mut().entity_mut(cloth).insert(levels.clone().pinned_to(1));
-    // The finer mesh eases the surface across.
+    // The change of level is eased with the finer mesh.
     run(&mut app, 2);
     assert_eq!(*handle(&app, cloth), fine);
     run(&mut app, 20);
@@ -35,7 +35,7 @@ fn a_level_has_its_mesh() {
     assert_eq!(app.world().resource::<Assets<Mesh>>().len(), count);
 }
 
-/// A mesh that is no grid goes through its levels, and is shown with the mesh of each.
+/// A mesh that is no grid passes through its levels, and is shown with the mesh of each.
 #[test]
 fn any_mesh_has_a_mesh_for_each_level() {
     let mut app = app(TICK);
@@ -62,7 +62,7 @@ fn any_mesh_has_a_mesh_for_each_level() {
     run(&mut app, 30);
     assert_eq!(positions(&app, cloth).len(), 169);
     assert!(is_current(&app, cloth));
-    // The transfers between levels neither tear nor crumple it.
+    // Transfers between levels neither tear nor crumple the cloth.
     let state = app.world().get::<ClothState>(cloth).expect("a state");
     for link in state.fabric().expect("a fabric").links() {
         let [a, b] = link.particles.map(|end| state.positions()[end as usize]);

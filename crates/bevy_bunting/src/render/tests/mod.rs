@@ -1,4 +1,4 @@
-//! Meshes without a renderer: with assets, cameras and visibility only.
+//! Tests of rendering without a renderer: with assets, cameras and visibility only.
 
 mod cost;
 mod first_hour;
@@ -26,7 +26,7 @@ const TICK: Duration = Duration::from_micros(15_625);
 
 const FLAG: ClothMesh = ClothMesh::grid(9, 5, 1.5, 1.0);
 
-/// Rounding of a direction.
+/// Rounding error of a unit vector's component.
 const ROUNDING: f32 = 1e-5;
 
 #[derive(Resource, Default)]
@@ -59,7 +59,7 @@ fn add(app: &mut App, mesh: Mesh) -> Mesh3d {
     Mesh3d(app.world_mut().resource_mut::<Assets<Mesh>>().add(mesh))
 }
 
-/// The mesh of the flag, to be given to a cloth.
+/// The flag's mesh, which tests give to a cloth.
 fn flag_mesh(app: &mut App) -> Mesh {
     let cloth = spawn(app, ());
     run(app, 3);

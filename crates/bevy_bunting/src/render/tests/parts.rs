@@ -1,4 +1,4 @@
-//! Meshes of cloths of which a part is rigid.
+//! Tests of the meshes of cloths with a rigid part.
 
 use super::*;
 
@@ -53,7 +53,7 @@ fn rigid_vertices_are_drawn_in_their_place_at_every_level() {
 }
 
 #[test]
-fn what_becomes_rigid_goes_back_to_its_place_in_a_mesh_that_was_given() {
+fn vertices_that_become_rigid_return_to_rest_in_a_given_mesh() {
     let mut app = app(TICK);
     let all = half_rigid().with_weights(vec![1.0; 169]);
     let attachment = Attachment::in_place(ClothEdge::Top);

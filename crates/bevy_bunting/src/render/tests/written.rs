@@ -1,4 +1,4 @@
-//! What is written into meshes, and when.
+//! Tests of the contents of written meshes, and of the frames in which meshes are written.
 
 use bevy_gizmos::config::GizmoConfigStore;
 use bevy_gizmos::{GizmoHandles, GizmoPlugin};
@@ -102,7 +102,7 @@ fn a_camera_gets_a_viewer() {
 }
 
 #[test]
-fn gizmos_are_drawn_of_chosen_cloths() {
+fn gizmos_of_chosen_cloths_are_drawn() {
     let mut app = app(TICK);
     app.add_plugins((GizmoPlugin, ClothDebugPlugin));
     let [cloth, _] = [0.0_f32, 0.5].map(|x| spawn(&mut app, Transform::from_xyz(x, 0.0, 0.0)));

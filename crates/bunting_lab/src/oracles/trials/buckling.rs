@@ -19,11 +19,12 @@ use crate::{
 
 /// Links along the free metre of a column.
 const COLUMNS: [usize; 5] = [2, 4, 8, 16, 32];
-/// Sizes over which the order is observed, the first of all: beyond them the step's error shows.
+/// Number of column sizes, from the first on, over which the order is observed: beyond them the step's error
+/// dominates.
 const ORDERED: usize = 3;
-/// Links along the free metre on edge.
+/// Links along the free metre of a strip on edge.
 const ON_EDGE: [usize; 3] = [8, 16, 32];
-/// Relative rise of the critical load of a strip on edge of square cells by restrained warping, times N: at
+/// Relative rise of the critical load of a strip on edge of square cells by restrained warping, times N. At
 /// the clamp the hinges stiffen the first cell's twist by a quarter, which raises the load by three times a
 /// fifth of a cell. The stencil lowers it by 0.5/N².
 const WARPING: f64 = 0.6;
@@ -34,31 +35,31 @@ const MARGIN: f64 = 1.5;
 const READING: f64 = 2e-3;
 /// Initial sideways displacement of the tip, m.
 const PERTURBATION: f64 = 1e-4;
-/// Displacement over the perturbation from which it counts as grown: a stable mode oscillates within its
-/// initial amplitude.
+/// Ratio of the displacement to the perturbation above which the perturbation has grown: a stable mode
+/// oscillates within its initial amplitude.
 const GROWN: f64 = 2.0;
-/// Longest run, s: it lets a load 0.1 ‰ beyond the critical one double the perturbation.
+/// Longest run, s: a load 0.1 ‰ above the critical one doubles the perturbation in this time.
 const SECONDS: f64 = 40.0;
-/// Halvings of the interval of loads from none to twice the expected one.
+/// Number of bisections of the interval of loads from zero to twice the expected load.
 const HALVINGS: u32 = 16;
-/// Stiffness against stretch, N/m: the strip of N = 32 is 200 times as stiff in its plane as across.
+/// Stretch stiffness, N/m: the strip of N = 32 is 200 times as stiff in its plane as across.
 const STIFF: f64 = 1e5;
 
-/// How a strip is laid, and in which direction it buckles.
+/// The position of a strip, and the direction in which it buckles.
 struct Form {
     /// Critical σgL³/B of the continuum.
     critical: f64,
-    /// All but the bending stiffness, by which it buckles.
+    /// Properties of the fabric, except for the bending stiffness.
     fabric: Fabric,
-    /// Maps the scene's positions, a vertical sheet clamped at its upper end, to those of the strip.
+    /// Map from the scene's positions, a vertical sheet clamped at its upper end, to those of the strip.
     lay: fn(DVec3) -> DVec3,
-    /// Direction in which it buckles.
+    /// Direction in which the strip buckles.
     sideways: DVec3,
-    /// Sign of gravity: a column stands on its clamp.
+    /// Sign of gravity: negative for a column, which stands on its clamp.
     upright: f64,
 }
 
-/// Clamped at its foot (Greenhill 1881).
+/// A column clamped at its foot (Greenhill 1881).
 const COLUMN: Form = Form {
     critical: SELF_WEIGHT_COLUMN,
     fabric: chains(STIFF),
@@ -67,8 +68,8 @@ const COLUMN: Form = Form {
     upright: -1.0,
 };
 
-/// On edge, its length level (Prandtl 1899): qL³/√(EI·C) with EI = Bb and, for a sheet that does not
-/// contract sideways, C = 2Bb.
+/// A strip on edge, with its length level (Prandtl 1899): qL³/√(EI·C) with EI = Bb and, for a sheet that does
+/// not contract sideways, C = 2Bb.
 const STRIP_ON_EDGE: Form = Form {
     critical: LATERAL_BUCKLING * SQRT_2,
     fabric: Fabric { stretch: [STIFF, STIFF], shear: 0.1 * STIFF, ..Fabric::STANDARD },
@@ -77,7 +78,7 @@ const STRIP_ON_EDGE: Form = Form {
     upright: 1.0,
 };
 
-/// Columns of N links and the order at which they near the continuum's, and strips on edge.
+/// Cases of columns of N links, of the order at which they approach the continuum, and of strips on edge.
 pub fn cases(mount: &Mount) -> Vec<Case> {
     let columns = COLUMNS.map(|segments| column(mount, segments));
     let errors = columns.each_ref().map(|case| case.measured - COLUMN.critical);
@@ -88,12 +89,11 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
     cases
 }
 
-/// The expected load is that of the discrete column: masses of a third of each triangle alternate between
-/// the two lines of vertices, so the weaker line would buckle first but for the twist that ties it to the
-/// other.
+/// The expected load is that of the discrete column. Masses of a third of each triangle alternate between the
+/// two lines of vertices; without the twist that couples the lines, the weaker line would buckle first.
 fn column(mount: &Mount, segments: usize) -> Case {
     let masses = Grid::new(&scene(&COLUMN, segments)).masses;
-    // In masses of a whole row.
+    // The masses are in units of a whole row's mass.
     let row = masses[4..6].iter().sum::<f64>();
     let rows: Vec<[f64; 2]> =
         masses[4..].chunks_exact(2).map(|ends| [ends[0] / row, ends[1] / row]).collect();
@@ -105,8 +105,8 @@ fn column(mount: &Mount, segments: usize) -> Case {
     )
 }
 
-/// The product fails this at two substeps: its stiffness in the plane of a two-column strip is too low by a
-/// factor of ten and more, so the strip sags in its plane and buckles early.
+/// The product fails this case with two substeps: its stiffness in the plane of a two-column strip is too low
+/// by a factor of ten and more, so the strip sags in its plane and buckles early.
 fn on_edge(mount: &Mount, segments: usize) -> Case {
     Case::new(
         format!("lateral buckling σgL³/B (twist), N = {segments}, {}", label(YARNS)),
@@ -116,12 +116,12 @@ fn on_edge(mount: &Mount, segments: usize) -> Case {
     )
 }
 
-/// Whether a perturbation of a strip on edge grows under a part of its critical load.
+/// Whether a perturbation of a strip on edge grows under a fraction of its critical load.
 pub fn on_edge_grows(mount: &Mount, segments: usize, part: f64) -> bool {
     grows(mount, &STRIP_ON_EDGE, segments, YARNS, part * STRIP_ON_EDGE.critical)
 }
 
-/// The load σgL³/B from which a perturbation of the tip grows, by bisection.
+/// The load σgL³/B above which a perturbation of the tip grows, by bisection.
 fn critical_load(mount: &Mount, form: &Form, segments: usize, settings: StepSettings) -> f64 {
     let grows = |load| grows(mount, form, segments, settings, load);
     bisect_times(HALVINGS, 0.0, 2.0 * form.critical, grows)
@@ -150,7 +150,7 @@ fn grows(mount: &Mount, form: &Form, segments: usize, settings: StepSettings, lo
     })
 }
 
-/// A strip that buckles at standard gravity. A metre is free, one cell more lies in the clamp.
+/// Scene of a strip at standard gravity: one metre is free, and one more cell lies in the clamp.
 fn scene(form: &Form, segments: usize) -> Scene {
     let bending = Fabric::STANDARD.density * GRAVITY / form.critical;
     let length = 1.0 + 1.0 / segments as f64;

@@ -19,18 +19,18 @@ const GAMMAS: [f64; 11] = [0.1, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 5
 const SEGMENTS: usize = 32;
 /// The Γ at which the order is observed.
 const OBSERVED: f64 = 10.0;
-/// Time over which the load grows, and then to come to rest, s.
+/// Time in which the load grows, and again time to come to rest, s.
 const LOADING: f64 = 10.0;
 /// Damping, 1/s.
 const DAMPING: f64 = 4.0;
-/// Error of the three-point stencil at Γ = 10 times N²: the double-precision reference, relaxed to
-/// rest, has 2.7, 0.73 and 0.20 % at N = 8, 16 and 32. It grows in proportion to Γ as the fold narrows,
-/// and is of one size where the strip is nearly straight.
+/// Error of the three-point stencil at Γ = 10, times N². The double-precision reference, relaxed to rest, has
+/// errors of 2.7, 0.73 and 0.20 % at N = 8, 16 and 32. The error grows in proportion to Γ as the fold
+/// narrows, and is constant where the strip is nearly straight.
 const STENCIL: f64 = 2.1;
-/// How much more than the stencil's error passes.
+/// Factor on the stencil's error within which a case passes.
 const MARGIN: f64 = 1.5;
 
-/// The strip's shape H/W for every Γ, and the order at which it nears the continuum's.
+/// Cases of the strip's shape H/W for every Γ, and of the order at which it approaches the continuum.
 pub fn cases(mount: &Mount) -> Vec<Case> {
     let mut cases: Vec<Case> =
         GAMMAS.into_iter().map(|gamma| case(mount, gamma, SEGMENTS, YARNS)).collect();
@@ -64,7 +64,7 @@ pub fn case(mount: &Mount, gamma: f64, segments: usize, settings: StepSettings) 
     )
 }
 
-/// Drop of the tip over its reach. A metre of strip is free, one cell more lies in the clamp.
+/// Drop of the tip over its reach. One metre of the strip is free, and one more cell lies in the clamp.
 fn aspect(mount: &Mount, gamma: f64, segments: usize, settings: StepSettings) -> f64 {
     let fabric = Fabric { bending: Fabric::STANDARD.density * GRAVITY / gamma, ..Fabric::STANDARD };
     let length = 1.0 + 1.0 / segments as f64;
@@ -77,7 +77,7 @@ fn aspect(mount: &Mount, gamma: f64, segments: usize, settings: StepSettings) ->
     -reach.y / reach.z
 }
 
-/// Raises gravity from nothing, as other equilibria exist.
+/// Raises gravity slowly from zero, since other equilibria exist.
 fn load_slowly(specimen: &mut dyn Specimen) {
     let last = ticks(LOADING);
     for tick in 1..=last {

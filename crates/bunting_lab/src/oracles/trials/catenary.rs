@@ -13,18 +13,20 @@ use crate::{
     specimen::{Mount, Specimen},
 };
 
-/// Stiffness of a strip as good as inextensible, N/m: it strains by 4e-6.
+/// Stiffness of a nearly inextensible strip, N/m: it strains by 4e-6.
 const STIFF: f64 = 1e6;
 /// Time to come to rest, s.
 const SETTLING: f64 = 12.0;
 /// Damping, 1/s.
 const DAMPING: f64 = 3.0;
-/// What strain and rounding do to the sag, relative.
+/// Relative error of the sag by strain and rounding.
 const SAG: f64 = 5e-5;
-/// Sizes over which the order is observed, the first of all: beyond them the step's error shows.
+/// Number of sizes, from the first on, over which the order is observed: beyond them the step's error
+/// dominates.
 const ORDERED: usize = 3;
 
-/// The sag of chains of N links at three spans, and the order at which it nears the continuum's.
+/// Cases of the sag of chains of N links at three spans, and of the order at which it approaches the
+/// continuum.
 pub fn cases(mount: &Mount) -> Vec<Case> {
     let mut cases = Vec::new();
     for span in [0.5, 0.8, 0.9] {
@@ -50,7 +52,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
     cases
 }
 
-/// How far gravity moves the predicted positions, m, of whose links the directions are frozen: g(2h/3)².
+/// Distance by which gravity moves the predicted positions, at which link directions are frozen, m: g(2h/3)².
 fn frozen() -> f64 {
     GRAVITY * (2.0 / 3.0 * substep(YARNS)).powi(2)
 }
@@ -60,7 +62,7 @@ fn scene(segments: usize) -> Scene {
     Scene { damping: DAMPING, ..strip }
 }
 
-/// The strip at rest between edges `span` apart, let go folded at its middle.
+/// The strip at rest between edges `span` metres apart, released folded at its middle.
 fn hang(mount: &Mount, scene: &Scene, span: f64) -> Box<dyn Specimen> {
     let mut specimen = mount(scene, YARNS);
     let half_drop = (0.25 - 0.25 * span * span).sqrt();

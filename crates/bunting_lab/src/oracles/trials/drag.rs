@@ -1,4 +1,4 @@
-//! A sheet that falls or flies broadside on through still air.
+//! A sheet that falls or flies broadside through still air.
 
 use bunting_solver::StepSettings;
 use glam::DVec3;
@@ -20,12 +20,12 @@ const FALL: BroadsideFall = BroadsideFall { gravity: GRAVITY, density: 0.1, drag
 const FAST: f64 = 20.0;
 /// Time for which the fast sheet is dragged, s.
 const DRAGGED: f64 = 0.1;
-/// The implicit update is exact for drag alone: what is left is rounding, in single precision.
+/// Relative error of the implicit update, which is exact for drag alone: rounding in single precision.
 const EXACT: f64 = 1e-4;
-/// Gauss–Seidel with few substeps: of the air alone no more are needed.
+/// Gauss–Seidel with few substeps, which suffice for air alone.
 const GAUSS_SEIDEL: StepSettings = StepSettings::gauss_seidel(10);
 
-/// Fall from rest, and drag alone.
+/// Cases of a fall from rest, and of drag alone.
 pub fn cases(mount: &Mount) -> Vec<Case> {
     let mut cases = Vec::new();
     for settings in [YARNS, GAUSS_SEIDEL] {
@@ -34,8 +34,8 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
             run(specimen.as_mut(), seconds);
             specimen
         };
-        // Gravity and drag in turn are of first order: the terminal speed is too high by gh/2v_t, and
-        // a fall from rest misses up to twice as much.
+        // Gravity and drag applied in turn are of first order: the terminal speed is too high by gh/2v_t, and
+        // a fall from rest is off by up to twice as much.
         let tolerance = GRAVITY * substep(settings) / FALL.terminal_speed();
         let label = label(settings);
         cases.push(Case::new(
@@ -64,7 +64,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
             format!("drag alone from {FAST} m/s, ticks not turned round, {}", label(settings));
         cases.push(Case::new(name, 1.0, onward(mount, settings), 0.0));
     }
-    // Backward Euler treats the air to first order; the multistep formula to second.
+    // Backward Euler treats the air to first order; the multistep formula to second order.
     for (scheme, expected) in
         [(StepSettings::yarns as Substeps, 2.0), (StepSettings::gauss_seidel, 1.0)]
     {
@@ -79,7 +79,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
     cases
 }
 
-/// Speed left of the fast sheet, m/s.
+/// Final speed of the fast sheet, m/s.
 fn dragged(mount: &Mount, settings: StepSettings) -> f64 {
     let mut specimen = start(mount, 0.0, FAST, settings);
     run(specimen.as_mut(), DRAGGED);
@@ -87,7 +87,8 @@ fn dragged(mount: &Mount, settings: StepSettings) -> f64 {
 }
 
 /// Fraction of the ticks after which the fast sheet still moves in its first direction. Explicit drag
-/// reverses the motion in steps longer than 2σ/(ρ C_d v), 6.8 ms, and diverges beyond twice that.
+/// reverses the motion in steps longer than 2σ/(ρ C_d v), 6.8 ms, and diverges in steps of more than twice
+/// that.
 fn onward(mount: &Mount, settings: StepSettings) -> f64 {
     let mut specimen = start(mount, 0.0, FAST, settings);
     let ticks = ticks(DRAGGED);

@@ -20,7 +20,7 @@ const ROUNDING: f64 = 3e-5;
 /// Height in metres after a number of steps, by gravity and step.
 type Sum = fn(f64, f64, u32) -> f64;
 
-/// The fall that each integrator sums, and the order at which it nears ½gt².
+/// Cases of the fall that each integrator sums, and of the order at which it approaches ½gt².
 pub fn cases(mount: &Mount) -> Vec<Case> {
     let schemes: [(Substeps, Sum, f64); 2] = [
         (StepSettings::yarns, free_fall::bdf2_opt, 2.0),

@@ -1,7 +1,7 @@
-//! Each closed form put to a cloth.
+//! Trials: each closed form compared with a cloth.
 //!
-//! A tolerance is the known error of the discretisation plus the rounding of single precision; its source
-//! stands beside it.
+//! A tolerance is the known error of the discretisation plus the rounding of single precision; each constant
+//! states its source.
 
 mod buckling;
 mod cantilever;
@@ -34,30 +34,30 @@ pub const ALL: [(&str, Trial); 10] = [
     ("spin", spin::cases),
 ];
 
-/// Cases of the trial of this name.
+/// Cases of the trial with the given name.
 ///
 /// # Panics
 ///
-/// When there is none.
+/// When there is no such trial.
 #[must_use]
 pub fn named(name: &str, mount: &Mount) -> Vec<Case> {
     let (_, trial) = ALL.iter().find(|(known, _)| *known == name).expect("a known trial");
     trial(mount)
 }
 
-/// Γ of a case of the cantilevers of most links, which are named by it.
+/// Γ of a case of the cantilevers with the most links, parsed from its name.
 #[must_use]
 pub fn gamma_of(case: &Case) -> Option<f64> {
     cantilever::gamma_of(case)
 }
 
-/// Relative error of a cantilever that hardly bends, Γ = 0.01, whose H/W is Γ/8.
+/// Relative error of a cantilever that hardly bends, at Γ = 0.01, where H/W is Γ/8.
 #[must_use]
 pub fn stiffest_cantilever(mount: &Mount) -> f64 {
     cantilever::case(mount, 0.01, 32, super::rig::YARNS).relative_error
 }
 
-/// Whether a small perturbation of a narrow strip on edge, of `segments` links, grows under a part of the
+/// Whether a small perturbation of a narrow strip on edge, of `segments` links, grows under a fraction of the
 /// load at which the strip should buckle.
 #[must_use]
 pub fn strip_on_edge_buckles(mount: &Mount, segments: usize, part: f64) -> bool {

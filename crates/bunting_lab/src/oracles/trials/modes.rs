@@ -22,11 +22,11 @@ const STIFF: f64 = 1e6;
 const AMPLITUDE: f64 = 0.001;
 /// Length of the observation, s.
 const SECONDS: f64 = 10.0;
-/// Strain and the square of the slope change a frequency by their own order, 1e-5; a crossing placed
-/// by linear interpolation is off by 1e-3 of a period, over 6 periods and more.
+/// Relative error of a frequency. Strain and the square of the slope change it by 1e-5; zero crossings by
+/// linear interpolation are off by 1e-3 of a period, over 6 periods and more.
 const READING: f64 = 2e-4;
 
-/// The first three modes at two sizes, and the third at other substeps.
+/// Cases of the first three modes at two sizes, and of the third at other numbers of substeps.
 pub fn cases(mount: &Mount) -> Vec<Case> {
     let mut cases = Vec::new();
     for segments in [8, 32] {
@@ -35,7 +35,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
         }
     }
     cases.push(case(mount, 8, 0, GAUSS_SEIDEL));
-    // What two substeps miss can already not be read, so that the next show no order.
+    // The error at two substeps is already below the resolution, so that further ones show no order.
     for substeps in [4, 8] {
         cases.push(case(mount, 32, 2, StepSettings::yarns(substeps)));
     }
@@ -61,7 +61,7 @@ fn case(mount: &Mount, segments: usize, mode: usize, settings: StepSettings) -> 
     )
 }
 
-/// Frequency in Hz of what the first column does in the mode.
+/// Frequency in Hz of the first column's motion in the mode.
 fn frequency(
     mount: &Mount,
     scene: &Scene,

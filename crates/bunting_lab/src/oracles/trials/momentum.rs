@@ -20,12 +20,12 @@ use crate::{
 const ROUNDING: f64 = 1e-3;
 /// Spin of the dumbbell, rad/s.
 const SPIN: f64 = 20.0;
-/// Whole ticks of about a revolution.
+/// Ticks of about one revolution.
 const REVOLUTION: u32 = 19;
 /// Relative error of the dumbbell's spin: it stretches by 2e-4 and is a thin sheet.
 const DUMBBELL: f64 = 2e-3;
 
-/// Linear and angular momentum.
+/// Cases of linear and angular momentum.
 pub fn cases(mount: &Mount) -> Vec<Case> {
     let mut cases = Vec::new();
     for settings in [YARNS, GAUSS_SEIDEL] {
@@ -60,7 +60,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
     cases
 }
 
-/// Momentum of a crumpled, moving sheet before and after a second, kg m/s.
+/// Momenta of a crumpled, moving sheet before and after a second, kg m/s.
 fn drift(mount: &Mount, settings: StepSettings) -> (DVec3, DVec3) {
     let scene = Scene { pins: Pins::Free, pose: Pose::Vertical, gravity: 0.0, ..Scene::swing(7) };
     let crumple = |x: &DVec3| 0.1 * (7.0 * x.x + 3.0 * x.y).sin();
@@ -79,7 +79,7 @@ fn drift(mount: &Mount, settings: StepSettings) -> (DVec3, DVec3) {
     (before, moving.map(|(v, m)| v.as_dvec3() * *m).sum())
 }
 
-/// Part of the angular momentum that a sheet a metre long and a centimetre wide keeps in a revolution
+/// Fraction of the angular momentum that a sheet one metre long and one centimetre wide keeps in a revolution
 /// about its middle.
 fn spin_kept(mount: &Mount, settings: StepSettings) -> f64 {
     let scene = Scene {

@@ -19,11 +19,11 @@ const RIGID: f64 = 100.0;
 const SEGMENTS: usize = 8;
 /// Length of the observation, s.
 const SECONDS: f64 = 10.0;
-/// The swing bends the strip by the square of the ratio of the frequencies, 1.2e-4; a crossing placed
-/// by linear interpolation and the strain are of the same size.
+/// Relative error of a period. The swing bends the strip by the square of the ratio of the frequencies,
+/// 1.2e-4; strain and zero crossings by linear interpolation have errors of the same size.
 const READING: f64 = 5e-4;
 
-/// The period at four amplitudes.
+/// Cases of the period at four amplitudes.
 pub fn cases(mount: &Mount) -> Vec<Case> {
     [1.0, 30.0, 60.0, 90.0].into_iter().map(|degrees| case(mount, degrees)).collect()
 }
@@ -31,7 +31,8 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
 fn case(mount: &Mount, degrees: f64) -> Case {
     let amplitude = degrees.to_radians();
     let expected = stiff_period(GRAVITY, 1.0, Some(SEGMENTS)) * amplitude_factor(amplitude);
-    // The mean of BDF2 and BDF3 slows a swing by (ωh)²/6, its fastest part at large amplitude by more: four times.
+    // The mean of BDF2 and BDF3 slows a swing by (ωh)²/6, and by four times as much in the fastest part of a
+    // large swing.
     let rate = std::f64::consts::TAU / expected;
     let phase = 4.0 * (rate * substep(YARNS)).powi(2) / 6.0;
     Case::new(
@@ -42,7 +43,7 @@ fn case(mount: &Mount, degrees: f64) -> Case {
     )
 }
 
-/// Period in seconds of a swing let go at `amplitude` radians from hanging.
+/// Period in seconds of a swing released at `amplitude` radians from hanging.
 fn period(mount: &Mount, amplitude: f64) -> f64 {
     let fabric = Fabric { bending: RIGID, ..Fabric::STANDARD };
     let scene = strip(SEGMENTS, 1.0, Pins::Top, Pose::Vertical, fabric);

@@ -19,9 +19,9 @@ const SETTLING: f64 = 8.0;
 const DAMPING: f64 = 5.0;
 /// Unit in the last place of a length just below a metre, m.
 const ULP: f64 = 6e-8;
-/// Stiffness of a strip that stretches by 0.1 %, N/m, so that rounding is small against it.
+/// Stiffness of a strip that stretches by 0.1 %, N/m: rounding is small compared with this stretch.
 const SOFT: f64 = 1e3;
-/// Stiffness of one that stretches by 1 %, N/m, as knitted cloth does.
+/// Stiffness of a strip that stretches by 1 %, N/m, as knitted cloth does.
 const ELASTIC: f64 = 100.0;
 
 /// Fabrics measured by Wang et al. 2011: σ in kg/m², stretch along warp and weft and shear in N/m.
@@ -33,17 +33,17 @@ const FABRICS: [(&str, f64, [f64; 2], f64); 5] = [
     ("nylon/spandex", 0.204, [48.0, 105.0], 61.0),
 ];
 
-/// δ/L = σgL/2Y at every resolution, for every fabric.
+/// Cases of δ/L = σgL/2Y at every resolution, for every fabric.
 pub fn cases(mount: &Mount) -> Vec<Case> {
     let mut cases = Vec::new();
     for segments in [8, 16, 32, 64] {
-        // Exact at every resolution, but for rounding.
+        // The strain is exact at every resolution, except for rounding.
         cases.push(soft(mount, segments, SOFT, YARNS, 0.0));
     }
     cases.push(soft(mount, 32, ELASTIC, YARNS, 0.0));
     for segments in [8, 16] {
-        // One sweep at substep h hides a compliance h²/m a link: the strain grows by g h² N²/2L, and
-        // by 9/8 of it where masses alternate as 2 : 1.
+        // One sweep in a substep of length h has a numerical compliance of h²/m for each link: the strain
+        // grows by g h² N²/2L, and by 9/8 of that where masses alternate as 2 : 1.
         let steps = substep(GAUSS_SEIDEL) * segments as f64;
         let hidden = 9.0 / 8.0 * steps * steps * ELASTIC / Fabric::STANDARD.density;
         cases.push(soft(mount, segments, ELASTIC, GAUSS_SEIDEL, hidden));
@@ -58,7 +58,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
     cases
 }
 
-/// A strip of chains, whose stretch is exact.
+/// Case of a strip of chains, whose stretch is exact.
 fn soft(
     mount: &Mount,
     segments: usize,
@@ -76,8 +76,8 @@ fn soft(
     )
 }
 
-/// A strip with its diagonals, which are linear only for small strain: they miss the order of the largest
-/// strain.
+/// Case of a strip with diagonals. They are linear only for small strain: the error is of the order of the
+/// largest strain.
 fn sheared(mount: &Mount, name: &str, segments: usize, fabric: Fabric) -> Case {
     let expected = hung_strip(fabric.density, GRAVITY, 1.0, fabric.stretch[1]);
     Case::new(
@@ -88,8 +88,8 @@ fn sheared(mount: &Mount, name: &str, segments: usize, fabric: Fabric) -> Case {
     )
 }
 
-/// What single precision does to a stretch: each row is off by a unit in the last place, and the
-/// effective step of 2h/3 cannot tell a force from its rounding, ulp/(2h/3)².
+/// Error of a stretch by single precision: each row is off by a unit in the last place, and within the
+/// effective step of 2h/3 a force of less than ulp/(2h/3)² is lost.
 fn rounding(segments: usize, expected: f64, settings: StepSettings) -> f64 {
     let step = 2.0 / 3.0 * substep(settings);
     segments as f64 * ULP / expected + ULP / (GRAVITY * step * step)

@@ -1,4 +1,4 @@
-//! Free meshes at rest, without loads and damping: any motion is energy from nothing.
+//! Free meshes at rest, without loads and damping: any motion is energy gained by an error.
 
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -46,8 +46,8 @@ fn sphere(around: u32, rings: u32, [first, last]: [f32; 2]) -> Arc<Fabric> {
     Arc::new(FabricBuilder::new(positions, triangles.collect()).build().expect("a good mesh"))
 }
 
-/// RMS speed of a mesh at rest in eight lanes of polyester without damping: with stretch stiffnesses over four
-/// decades, and with bending stiffnesses over six.
+/// Case of a mesh at rest in eight lanes of polyester without damping: its RMS speed, with stretch
+/// stiffnesses over four decades and bending stiffnesses over six.
 fn at_rest(name: &str, fabric: &Arc<Fabric>, seconds: f32, settings: StepSettings) -> HardCase {
     let scaled = |stretch: f32, bend: f32| {
         let polyester = FabricMaterial::FLAG_POLYESTER;

@@ -1,4 +1,4 @@
-//! Cloth that has hung without air until nothing moves takes no longer than at the start.
+//! Cloth that has hung without air until nothing moves: its ticks must take no longer than at the start.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -12,14 +12,15 @@ use super::{GRAVITY, advance};
 use crate::product::{DEFAULT, TICK};
 use crate::stability::case::HardCase;
 
-/// How much longer a tick may take than at the start.
+/// Greatest ratio of a tick's time to that at the start.
 const SLOWER: f64 = 1.2;
-/// Magnitude below which products of two are subnormal, and processors slow. Positions are in m, velocities in m/s.
+/// Magnitude below which products of two values are subnormal, and processors slow. Positions are in m,
+/// velocities in m/s.
 const SLOW: f32 = 1e-19;
-/// Ticks of which the shortest is taken, as other programs use the machine, too.
+/// Number of ticks of which the shortest is taken, since other programs use the machine, too.
 const TIMED: usize = 300;
 
-/// Numbers that make a processor slow and, where not `quick`, the time that a tick takes.
+/// Cases of subnormal numbers and, unless `quick`, of the time of a tick.
 pub(super) fn cases(quick: bool) -> Vec<HardCase> {
     let mut cases = vec![slow_numbers()];
     if !quick {
@@ -46,7 +47,8 @@ fn hung(n: u32) -> ClothBatch {
     batch
 }
 
-/// The part of the coordinates of positions and velocities that are not zero and whose squares are subnormal.
+/// Case of the fraction of the coordinates of positions and velocities that are not zero but whose squares
+/// are subnormal.
 fn slow_numbers() -> HardCase {
     let n = 9;
     let mut batch = hung(n);
@@ -65,7 +67,7 @@ fn slow_numbers() -> HardCase {
     )
 }
 
-/// Time of a tick against that at the start.
+/// Case of the time of a tick, relative to that at the start.
 fn time() -> HardCase {
     let n = 33;
     let mut batch = hung(n);

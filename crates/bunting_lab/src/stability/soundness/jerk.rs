@@ -1,4 +1,4 @@
-//! A frame that jumps within the plane of its cloth leaves no cell locked.
+//! A jump of the frame within the plane of its cloth, which must leave no cell locked.
 
 use std::sync::Arc;
 
@@ -12,20 +12,21 @@ use super::{GRAVITY, advance};
 use crate::product::{DEFAULT, TICK};
 use crate::stability::case::HardCase;
 
-/// Farthest that the strain of a link may be from that of a cloth that was not jerked, in points.
+/// Greatest difference of a link's strain from that of a cloth that was not jerked, percentage points.
 const UNLOCKED: f64 = 0.5;
 /// Lengths of the jerks, m. The last lane is not jerked.
 const JERKS: [f32; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 1.0, 2.0, 0.0];
-/// Offset of particles from the plane at the start, m: as much as an imperfection of real cloth.
+/// Offset of particles from the plane at the start, m: that of an imperfection in real cloth.
 const OFFSET: f32 = 1e-5;
 
-/// Sheets of a metre.
+/// Cases of sheets of one metre.
 pub(super) fn cases(quick: bool) -> Vec<HardCase> {
     let sizes: &[u32] = if quick { &[17] } else { &[17, 33] };
     sizes.iter().map(|&n| jerked(n)).collect()
 }
 
-/// The greatest difference of strains 3 s after a jerk within the plane of a sheet that hangs from its top edge.
+/// Case of the greatest difference of strains 3 s after a jerk within the plane of a sheet that hangs from
+/// its top edge.
 fn jerked(n: u32) -> HardCase {
     let grid = FabricBuilder::grid(Grid::new(n, n, 1.0, 1.0)).pin(0..n);
     let fabric = Arc::new(grid.build().expect("a good grid"));

@@ -1,4 +1,4 @@
-//! What a sound solver never does: gain energy by itself, oscillate at rest, stay locked, or slow down.
+//! Soundness: a solver must not gain energy by itself, oscillate at rest, stay locked, or slow down.
 
 mod free;
 mod hang;
@@ -15,8 +15,8 @@ use crate::product::TICK;
 /// Acceleration of gravity, m/s².
 const GRAVITY: f32 = 9.81;
 
-/// Fastest that cloth at rest may move, m/s RMS. It is seen from 10 mm/s on. With eight substeps the rounding of
-/// corrections, 3 × 10⁻⁸ m in each, alone makes 2 to 9 mm/s of free cloth without damping.
+/// Greatest speed of cloth at rest, m/s RMS. Motion is visible from 10 mm/s on. With eight substeps the
+/// rounding of corrections, 3 × 10⁻⁸ m in each, alone moves free cloth without damping at 2 to 9 mm/s.
 const AT_REST: f64 = 1e-3;
 
 /// All cases.
@@ -43,12 +43,12 @@ fn standard() -> FabricMaterial {
     }
 }
 
-/// Steps a batch for some seconds.
+/// Steps a batch for `seconds` s.
 fn advance(batch: &mut ClothBatch, seconds: f32, settings: StepSettings) {
     (0..(seconds / TICK).round() as usize).for_each(|_| batch.step(TICK, settings));
 }
 
-/// RMS speed of a lane, m/s; infinite where it is not a number.
+/// RMS speed of a lane, m/s; infinite if it is not a number.
 fn speed(batch: &ClothBatch, lane: usize) -> f64 {
     let mut velocities = Vec::new();
     batch.copy_velocities(lane, &mut velocities);

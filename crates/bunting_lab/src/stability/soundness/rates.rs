@@ -1,4 +1,4 @@
-//! Ticks of other lengths than 1/60 s.
+//! Ticks of lengths other than 1/60 s.
 
 use std::sync::Arc;
 
@@ -12,11 +12,12 @@ use super::{GRAVITY, speed, standard};
 use crate::product::DEFAULT;
 use crate::stability::case::HardCase;
 
-/// Most energy that a swing may lose in 20 s of random ticks, as a part of that at the start; 0.5 % in equal ones.
+/// Greatest fraction of its initial energy that a swing may lose in 20 s of random ticks; equal ticks lose
+/// 0.5 %.
 const LOST: f64 = 0.05;
-/// Farthest that the period of a swing may be from that in ticks of 1/240 s, as a part of it.
+/// Greatest relative difference of a swing's period from that in ticks of 1/240 s.
 const OFF_PERIOD: f64 = 0.02;
-/// Farthest that the RMS speed of a flag in wind may be from that in ticks of 1/60 s, as a part of it. Flights of
+/// Greatest relative difference of the RMS speed of a flag in wind from that in ticks of 1/60 s. Flights of
 /// eight flags that differ by rounding alone differ by 0.01.
 const OFF_SPEED: f64 = 0.05;
 
@@ -31,7 +32,7 @@ fn sheet(n: u32, is_pinned: impl Fn(u32) -> bool) -> Arc<Fabric> {
     Arc::new(FabricBuilder::grid(Grid::new(n, n, 1.0, 1.0)).pin(pins).build().expect("a good grid"))
 }
 
-/// A sheet that hangs from its top edge, turned about it by an angle (rad), and its state.
+/// A sheet that hangs from its top edge, turned about this edge by an angle (rad), and its state.
 fn turned(n: u32, angle: f32, material: FabricMaterial) -> (ClothBatch, ClothSnapshot) {
     let fabric = sheet(n, |particle| particle < n);
     let mut start = ClothSnapshot::at_rest(&fabric);
@@ -45,7 +46,7 @@ fn turned(n: u32, angle: f32, material: FabricMaterial) -> (ClothBatch, ClothSna
     (batch, start)
 }
 
-/// Energy that a stiff sheet without damping loses in 20 s of swinging in random ticks.
+/// Case of the energy that a stiff sheet without damping loses in 20 s of swinging in random ticks.
 fn random_ticks() -> HardCase {
     let n = 9;
     let stiff = FabricMaterial { bend_stiffness: 0.5, ..standard() };
@@ -69,7 +70,8 @@ fn random_ticks() -> HardCase {
     HardCase::new(name, n as usize, "energy lost in 20 s of a swing", lost, LOST)
 }
 
-/// Period of a limp sheet that swings in ticks of 1/30 s, substeps chosen by default, against that in short ticks.
+/// Case of the period of a limp sheet that swings in ticks of 1/30 s, with default substeps, relative to
+/// short ticks.
 fn long_ticks() -> HardCase {
     let n = 33;
     let period = |rate: f32| {
@@ -101,7 +103,8 @@ fn long_ticks() -> HardCase {
     )
 }
 
-/// RMS speed of flags in wind in ticks of 1/120 and 1/30 s, at 120 substeps a second, against ticks of 1/60 s.
+/// Case of the RMS speed of flags in wind in ticks of 1/120 and 1/30 s, at 120 substeps a second, relative to
+/// ticks of 1/60 s.
 fn ticks_in_wind() -> HardCase {
     let n = 17;
     let fabric = sheet(n, |particle| particle % n == 0);

@@ -1,4 +1,4 @@
-//! Stiff strips under their own weight come to rest.
+//! Stiff strips under their own weight, which must come to rest.
 
 use std::sync::Arc;
 
@@ -16,13 +16,13 @@ const ROWS: u32 = 33;
 /// Loads Γ = σ g L³/B of the strips.
 const LOADS: [f32; 8] = [5.0, 10.0, 15.0, 20.0, 30.0, 50.0, 70.0, 100.0];
 
-/// Cantilevers of two columns and more.
+/// Cases of cantilevers of two and more columns.
 pub(super) fn cases(quick: bool) -> Vec<HardCase> {
     let columns: &[u32] = if quick { &[2] } else { &[2, 3, 5, 17] };
     columns.iter().map(|&columns| cantilever(columns)).collect()
 }
 
-/// RMS speed of clamped cantilevers after 10 s, at one to eight substeps.
+/// Case of the RMS speed of clamped cantilevers after 10 s, with one to eight substeps.
 fn cantilever(columns: u32) -> HardCase {
     let width = (columns - 1) as f32 / (ROWS - 1) as f32;
     let grid = FabricBuilder::grid(Grid::new(columns, ROWS, width, 1.0)).pin(0..2 * columns);

@@ -1,4 +1,4 @@
-//! Forces, impulses and constraints from outside the solver, in both layouts.
+//! Tests of forces, impulses and constraints of the user, in both layouts.
 
 use std::sync::Arc;
 
@@ -14,8 +14,8 @@ const TICK: f32 = 1.0 / 60.0;
 const SETTINGS: [StepSettings; 2] = [StepSettings::yarns(3), StepSettings::gauss_seidel(4)];
 const MATERIAL: FabricMaterial =
     FabricMaterial { damping: 0.0, internal_damping: 0.0, ..FabricMaterial::COTTON };
-/// A single cloth across the lanes, or a single lane with the scheme that has no chains; and cloths side by
-/// side.
+/// Widths of the batches: a single cloth across the lanes (or in a single lane, for the scheme without
+/// chains), and cloths side by side.
 const LAYOUTS: [LaneCount; 2] = [LaneCount::One, LaneCount::Eight];
 
 fn sheet(pins: impl IntoIterator<Item = u32>) -> Arc<Fabric> {
@@ -33,7 +33,8 @@ fn batch_of(fabric: &Arc<Fabric>, lanes: LaneCount, drive: Drive) -> (ClothBatch
     (batch, lane)
 }
 
-/// Runs ticks with a force after the prediction and a constraint after the solver's own.
+/// Runs ticks with a user's force after the prediction and a user's constraint after the solver's
+/// constraints.
 fn run(
     (batch, lane): (&mut ClothBatch, usize),
     settings: StepSettings,
@@ -62,8 +63,8 @@ fn farthest(one: &[Vec3], other: &[Vec3]) -> f32 {
     one.iter().zip(other).map(|(one, other)| one.distance(*other)).fold(0.0, f32::max)
 }
 
-/// Rounding errors of positions of a metre, a few 6e-8 m, that constraints correct within an effective substep
-/// of 3 ms, m/s.
+/// Noise of velocities, m/s: rounding errors of positions of a metre, a few 6e-8 m, that constraints correct
+/// within an effective substep of 3 ms.
 const VELOCITY_NOISE: f32 = 2e-4;
 const ACCELERATION: Vec3 = Vec3::new(1.0, -3.0, 0.5);
 
@@ -87,7 +88,7 @@ fn an_acceleration_equals_gravity() {
     }
 }
 
-/// Beside pins that stand alone mass is added, on which gravity does not act.
+/// Mass is added beside isolated pins; gravity does not act on it.
 #[test]
 fn an_acceleration_acts_on_the_true_mass() {
     let fabric = sheet([0, 8]);
@@ -152,7 +153,7 @@ fn a_position_constraint_holds() {
     }
 }
 
-/// The turn by a user's constraint is not taken back as one by the solver's own corrections is.
+/// The solver does not undo a turn by a user's constraint as it undoes turns by its own corrections.
 #[test]
 fn a_constraint_turns_a_flag_about_its_pole() {
     const TURN: f32 = 0.01;
@@ -165,12 +166,12 @@ fn a_constraint_turns_a_flag_about_its_pole() {
                 particles.set_position(at, Quat::from_rotation_y(TURN) * position);
             }
         };
-        // One substep a tick, of first order and then of second.
+        // Each tick has one substep: first of first order, then of second.
         let ticks = 2;
         let found = run((&mut batch, lane), StepSettings::yarns(1), ticks, |_| {}, turn);
         let tip = found.positions[8];
         let angle = libm::atan2f(-tip.z, tip.x);
-        // The motion of the first tick goes on in the second: ⅓ of the displacement and 8/9 of the velocity.
+        // The second tick continues the motion of the first: ⅓ of the displacement and 8/9 of the velocity.
         assert!(angle > 3.0 * TURN && angle < 3.4 * TURN, "{lanes:?}: {angle} rad");
     }
 }
@@ -190,7 +191,7 @@ fn masses_are_those_of_the_cloth_and_pins_stay() {
             let inverse_mass = particles.inverse_mass(at);
             let mass = MATERIAL.area_density * fabric.particle_areas()[at];
             let pinned = fabric.is_pinned(at);
-            // Nothing hangs, so that no mass is added.
+            // The cloth carries no load, so no mass is added.
             let expected = if pinned { 0.0 } else { 1.0 };
             assert!((inverse_mass * mass - expected).abs() < 1e-5, "{lanes:?} {settings:?}");
             particles.set_position(at, Vec3::ONE);

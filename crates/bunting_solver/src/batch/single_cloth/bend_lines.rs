@@ -1,4 +1,4 @@
-//! Bend lines of a single cloth, in packs of lines that lie side by side.
+//! Bend lines of a single cloth, in packs of neighbouring lines.
 
 use super::LaneIndices;
 use super::grid_shape::GridShape;
@@ -19,7 +19,7 @@ impl BendLinePacks {
     pub fn new<P: Pack>(fabric: &Fabric, shape: GridShape) -> Self {
         let mut profiles = Vec::new();
         let is_row = |line: &&BendLine| line.particles[1] == line.particles[0] + 1;
-        // Rows that lie side by side are consecutive in column-major order.
+        // Neighbouring rows are consecutive in column-major order.
         let lines = [Order::ColumnMajor, Order::RowMajor].map(|order| {
             let parallel: Vec<&BendLine> = fabric
                 .bend_lines()

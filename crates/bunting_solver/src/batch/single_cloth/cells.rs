@@ -14,17 +14,17 @@ use crate::simd::vec3::{Pack3, V3};
 /// The cells of a grid.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells<P: Pack> {
-    /// Numbers from one row of particles to the next.
+    /// Number of elements from one row of particles to the next.
     stride: usize,
     /// A third of the area, m², of the first and of the second triangle of each cell, in packs of cells, row
     /// by row; zero in lanes without a cell.
     corner_areas: Vec<[P; 2]>,
-    /// One in lanes whose cells are cut from the top left to the bottom right, zero in others: of even rows
-    /// of cells, and of odd ones.
+    /// One in lanes whose cells have their diagonal from the top left to the bottom right, zero in others:
+    /// for even rows of cells, and for odd ones.
     falling: [P; 2],
     /// Contributions of a row of cells to their top left and top right corners.
     top: [VectorGrid; 2],
-    /// The same to the bottom left and bottom right: of the row above, and of this row.
+    /// Contributions to the bottom left and bottom right corners: of the row above, and of this row.
     bottom: [[VectorGrid; 2]; 2],
 }
 
@@ -112,7 +112,7 @@ impl<P: Pack> CornerSums<P> for &mut Cells<P> {
             above[0].store(MARGIN + block * P::WIDTH, zero);
             above[1].store(MARGIN + block * P::WIDTH, zero);
         }
-        // Row by row of particles, each with the cells below it; there are none below the last.
+        // Rows of particles are summed one by one, each with the cells below it; the last row has none below.
         for row in 0..=rows {
             let areas = corner_areas.get(row * blocks..(row + 1) * blocks);
             let falling = half.lt(L::load(token, &falling[row % 2]));

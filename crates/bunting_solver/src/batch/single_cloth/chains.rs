@@ -1,7 +1,7 @@
-//! Chains of a single cloth, in packs of yarns that lie side by side.
+//! Chains of a single cloth, in packs of neighbouring yarns.
 //!
-//! A pack of chains has one yarn in each lane. Its links lie between consecutive lines of the arrays, and
-//! where the yarns are diagonals each line begins one particle further on than the line before.
+//! A pack of chains has one yarn in each lane. Its links lie between consecutive lines of the arrays. If the
+//! yarns are diagonals, each line begins one particle further on than the line before.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Grid, Link, LinkFami
 use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;
 
-/// A link of a yarn, and its index on it.
+/// A link, and its index along its yarn.
 type OnYarn<'a> = (&'a Link, usize);
 
 /// Links of yarns in one direction: by the line of the arrays on which the link begins, and by the yarn.
@@ -44,7 +44,7 @@ impl<'a> Links<'a> {
         self.table.len() / self.yarns
     }
 
-    /// The link of a yarn, counted from the first one, that begins on a line.
+    /// The link that begins on a line, of a yarn counted from the first one.
     fn get(&self, line: usize, yarn: usize) -> Option<OnYarn<'a>> {
         if yarn < self.yarns { self.table[line * self.yarns + yarn] } else { None }
     }
@@ -58,7 +58,7 @@ struct Direction {
 }
 
 impl Direction {
-    /// The direction of a straight yarn; none if the yarn bends, or its direction is not that of a row, a
+    /// The direction of a straight yarn; none if the yarn bends, or runs in a direction other than a row, a
     /// column or a diagonal.
     fn of(grid: &Grid, yarn: &Yarn) -> Option<Self> {
         let place = |particle: u32| {
@@ -73,12 +73,12 @@ impl Direction {
         (fits && steps.all(|step| step == direction)).then_some(direction)
     }
 
-    /// The order in which yarns that lie side by side are consecutive.
+    /// The order in which neighbouring yarns are consecutive.
     fn order(self) -> Order {
         if self.rows == 0 { Order::ColumnMajor } else { Order::RowMajor }
     }
 
-    /// How many particles further on each line begins than the line before.
+    /// Number of particles by which each line begins further on than the line before.
     fn skew(self) -> isize {
         if self.rows == 0 { 0 } else { self.columns }
     }
@@ -105,7 +105,7 @@ pub(super) struct ChainPacks<P: Pack> {
 }
 
 impl<P: Pack> ChainPacks<P> {
-    /// The chains of a grid; none where its yarns do not run straight.
+    /// The chains of a grid; none if its yarns do not run straight.
     pub fn new(fabric: &Fabric, shape: GridShape) -> Option<Self> {
         let grid = fabric.grid()?;
         let mut packer = Packer { shape, classes: Vec::new() };
@@ -125,8 +125,8 @@ impl<P: Pack> ChainPacks<P> {
     }
 }
 
-/// The links of yarns of one colour; diagonals that cross between particles may be of one colour. None where
-/// a yarn does not run straight.
+/// The links of yarns of one colour, by direction; diagonals that cross between particles may share a colour.
+/// None if a yarn does not run straight.
 fn by_direction<'a>(
     fabric: &'a Fabric,
     grid: &Grid,
@@ -155,7 +155,7 @@ fn cells<P: Pack>(chains: &Chains<P>, shape: GridShape) -> Vec<Cell> {
     chains.diagonals().map(of_diagonal).collect()
 }
 
-/// Packs yarns that lie side by side.
+/// Packs neighbouring yarns.
 struct Packer {
     shape: GridShape,
     classes: Vec<LaneIndices>,
@@ -172,7 +172,7 @@ impl Packer {
         chains
     }
 
-    /// Packs the yarns from the `first` of all on; none where there are no links.
+    /// Packs neighbouring yarns from number `first` on; none if there are no links.
     fn chain<P: Pack>(
         &mut self,
         direction: Direction,
@@ -193,7 +193,7 @@ impl Packer {
                 class: self.class(lanes.iter().map(|link| link.map(of_link)).collect()),
                 rest_length: P::of(|lane| lanes[lane].map_or(0.0, |(link, _)| link.rest_length)),
             });
-            // Even and odd links are counted from the beginning of each yarn, which pins may put off.
+            // Even and odd links are counted from the beginning of each yarn, which pins may shift.
             for (parity, sweep) in sweep.iter_mut().enumerate() {
                 let of_parity = lanes.iter().map(|link| link.filter(|(_, at)| at % 2 == parity));
                 let of_lanes: LaneIndices = of_parity.map(|link| link.map(of_link)).collect();
@@ -214,7 +214,7 @@ impl Packer {
 
     /// The class of links with these classes of the fabric in their lanes.
     fn class(&mut self, of_lanes: LaneIndices) -> u32 {
-        // Neighbours are mostly of the same classes, which are the last ones.
+        // Neighbours mostly have equal classes, which are the last ones in the list.
         let known = self.classes.iter().rposition(|known| *known == of_lanes);
         known.unwrap_or_else(|| {
             self.classes.push(of_lanes);

@@ -1,14 +1,14 @@
-//! How the arrays of a grid are arranged in memory, in row-major and in column-major order.
+//! The arrangement of a grid's arrays in memory, in row-major and in column-major order.
 
 use crate::batch::layout::Order;
 use crate::fabric::Grid;
 use crate::simd::lane::Pack;
 
-/// Numbers before the first line of an array and after the last: a pack of diagonals begins up to all lanes
-/// but one before a line, or ends that far behind it.
+/// Number of elements before the first line of an array and after the last: a pack of diagonals may extend
+/// beyond a line by up to all lanes but one.
 pub(super) const MARGIN: usize = 16;
 
-/// Extent of a grid and of the arrays with a number for each particle.
+/// Extent of a grid, and of the arrays with one number for each particle.
 ///
 /// A line is a row in row-major order and a column in column-major order. Lines are filled up to whole packs
 /// by particles that are pinned to the origin.
@@ -16,9 +16,9 @@ pub(super) const MARGIN: usize = 16;
 pub(crate) struct GridShape {
     pub columns: usize,
     pub rows: usize,
-    /// Numbers from one line to the next in row-major order, a multiple of the lanes.
+    /// Number of elements from one line to the next in row-major order, a multiple of the lanes.
     pub row_stride: usize,
-    /// The same in column-major order.
+    /// Number of elements from one line to the next in column-major order.
     pub column_stride: usize,
 }
 
@@ -40,8 +40,8 @@ impl GridShape {
         (MARGIN + pack * P::WIDTH) as u32
     }
 
-    /// Index of the particle at a place on a line. Places before the line and behind it are other particles,
-    /// or lie in the margin.
+    /// Index of the particle at a place on a line. Places before or behind the line are other particles, or
+    /// lie in the margin.
     pub fn index(&self, order: Order, line: usize, place: isize) -> u32 {
         let stride = match order {
             Order::RowMajor => self.row_stride,

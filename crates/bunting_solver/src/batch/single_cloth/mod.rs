@@ -1,13 +1,12 @@
-//! The layout of a single cloth across the lanes, for cloth cut from a grid.
+//! The single-cloth layout: one cloth on a grid across the lanes.
 //!
-//! Chains of one colour share no particle, so that their order does not matter, nor whether they are solved
-//! at once. Those of a grid are its rows, columns and diagonals. In row-major order consecutive particles
-//! belong to consecutive columns, so that a pack of them is one particle of each of as many chains; of
-//! diagonals, too, where each row begins one particle further on. In column-major order the same holds for
-//! rows. The kernels are those of cloths side by side, and every chain has the bits of scalar code.
+//! Chains of one colour share no particle, so that they can be solved in any order, or at once. The chains of
+//! a grid are its rows, columns and diagonals. In row-major order consecutive particles belong to consecutive
+//! columns, so that a pack holds one particle of each of as many columns as there are lanes; the same holds
+//! for diagonals, if each row begins one particle further on. In column-major order it holds for rows. The
+//! kernels are those of cloths side by side, and every chain has the bits of scalar code.
 //!
-//! What concerns each particle by itself is done to packs of one row, and triangles are summed in packs of
-//! cells.
+//! Operations on single particles are done to packs of one row, and triangles are summed in packs of cells.
 
 mod bend_lines;
 mod cells;
@@ -53,10 +52,10 @@ pub(crate) struct SingleCloth<P: Pack> {
     bend_lines: BendLinePacks,
     ribbons: RibbonPacks,
     factors: Factors<P, P>,
-    /// To the farthest pins, and to the nearest.
+    /// Tethers to the farthest pins, and to the nearest pins.
     tethers: [TetherPacks<P>; 2],
     cells: Cells<P>,
-    /// m/s.
+    /// Velocities in the form that sums over triangles read, m/s.
     velocity: VectorGrid,
 }
 

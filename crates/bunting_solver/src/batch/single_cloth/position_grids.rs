@@ -1,4 +1,4 @@
-//! Positions of a single cloth: in packs, and for its constraints in arrays of either order.
+//! Positions of a single cloth: in packs, and in arrays of either order for its constraints.
 
 use super::grid_shape::{GridShape, MARGIN};
 use super::vector_grid::VectorGrid;
@@ -6,24 +6,24 @@ use crate::batch::layout::{Order, Particles, Positions};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
-/// Positions of a single cloth, m. They are right in one of three places: the packs, the row-major arrays
-/// and the column-major arrays.
+/// Positions of a single cloth, m. They are valid in one of three places: the packs, the row-major arrays or
+/// the column-major arrays.
 #[derive(Clone, Debug)]
 pub(crate) struct PositionGrids<P: Pack> {
     shape: GridShape,
     packs: Vec<Pack3<P>>,
     row_major: ParticleArrays,
     column_major: ParticleArrays,
-    /// The order of the arrays that have the positions; none where the packs do.
+    /// The order of the arrays that hold the valid positions; none if the packs hold them.
     order: Option<Order>,
 }
 
 /// Positions and inverse masses of all particles in one order.
 #[derive(Clone, Debug)]
 struct ParticleArrays {
-    /// m.
+    /// Positions, m.
     position: VectorGrid,
-    /// Per unit of area density, 1/m²; zero where pinned, and where there is no particle.
+    /// Inverse masses per unit area density, 1/m²; zero if pinned, and in places without a particle.
     inverse_mass: Vec<f32>,
 }
 

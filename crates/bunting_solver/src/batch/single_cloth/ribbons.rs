@@ -1,7 +1,7 @@
-//! Ribbons of a single cloth, in packs of ribbons that lie side by side.
+//! Ribbons of a single cloth, in packs of neighbouring ribbons.
 //!
-//! Neighbouring ribbons share particles. So the even lanes of all packs are solved first and then the odd
-//! ones; the factors of the other lanes are zero, so that they find no moment.
+//! Neighbouring ribbons share particles. Therefore the even lanes of all packs are solved first, and then the
+//! odd ones; the factors of the other lanes are zero, which makes their moments zero.
 
 use super::LaneIndices;
 use super::grid_shape::GridShape;
@@ -12,7 +12,7 @@ use crate::simd::lane::Pack;
 /// Packs of ribbons.
 #[derive(Clone, Debug)]
 pub(super) struct RibbonPacks {
-    /// Order in which ribbons that lie side by side are consecutive.
+    /// Order in which neighbouring ribbons are consecutive.
     pub order: Order,
     /// The `profile` of a pack is an index into `profiles`.
     pub ribbons: Vec<Ribbon>,

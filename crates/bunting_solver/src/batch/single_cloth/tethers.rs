@@ -12,7 +12,7 @@ use crate::simd::vec3::{Pack3, V3, set_lane3, splat3};
 #[derive(Clone, Debug)]
 pub(super) struct TetherPacks<P: Pack> {
     pub packs: Vec<TetherPack<P>>,
-    /// For each tether of the fabric its index among the packs, its lane, and its pin.
+    /// For each tether of the fabric: its index among the packs, its lane, and its pin.
     pins: Vec<(usize, usize, u32)>,
 }
 
@@ -50,7 +50,7 @@ impl<P: Pack> TetherPacks<P> {
         Self { packs, pins }
     }
 
-    /// Takes over where the pins are, given the positions of all particles, m. Pins stay there until the
+    /// Updates the positions of the pins, given the positions of all particles, m. Pins keep them until the
     /// cloth's state is overwritten.
     pub fn set_pins(&mut self, positions: &[Vec3]) {
         for &(index, lane, pin) in &self.pins {

@@ -7,7 +7,7 @@ use crate::simd::lane::{Lane, Pack};
 use crate::simd::level::dispatch;
 use crate::simd::vec3::{Pack3, V3};
 
-/// Numbers along each side of the tiles in which a grid is transposed: those of four registers.
+/// Number of elements along each side of the tiles in which a grid is transposed: four registers.
 const TILE: usize = 4;
 
 /// A vector for each particle of a grid: arrays of x, y and z.
@@ -70,8 +70,8 @@ impl VectorGrid {
         }
     }
 
-    /// Takes over the vectors of the other order: `extent` says how long its lines are and how many,
-    /// `strides` how far its lines lie apart and how far these do.
+    /// Copies the vectors from the other order. `extent` is the length and the number of its lines, `strides`
+    /// the distances between its lines and between these lines.
     pub fn transpose_from(&mut self, other: &Self, strides: [usize; 2], extent: [usize; 2]) {
         dispatch!(token => transpose_all(token, &other.0, &mut self.0, strides, extent));
     }
@@ -93,8 +93,8 @@ fn transpose_all<S: Simd>(
 
 /// Transposes `lines` lines of `length` numbers, tile by tile.
 ///
-/// The loops count by hand: `step_by` divides to find its number of steps, which took two thirds of the time for
-/// 5 × 5 particles.
+/// The loops count by hand: `step_by` divides to find its number of steps, which took two thirds of the time
+/// for 5 × 5 particles.
 #[inline(always)]
 fn transpose<S: Simd>(
     token: S,

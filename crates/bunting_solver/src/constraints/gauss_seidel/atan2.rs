@@ -1,9 +1,9 @@
-//! atan2 in lanes.
+//! The function atan2 in lanes.
 
 use crate::simd::lane::Lane;
 
-/// Angle of the point (x, y), rad, exact to 2e-7 rad. By a polynomial: the coefficients are a minimax fit to
-/// atan(r)/r in r² on [0, 1].
+/// Angle of the point (x, y), rad, exact to 2e-7 rad. The polynomial is a minimax fit to atan(r)/r in r² on
+/// [0, 1].
 #[inline(always)]
 pub(super) fn atan2<L: Lane>(token: L::Token, y: L, x: L) -> L {
     const COEFFICIENTS: [f32; 8] = [

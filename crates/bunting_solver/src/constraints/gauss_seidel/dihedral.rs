@@ -1,4 +1,5 @@
-//! Bending of any mesh: C = θ − θ₀, the angle between the two triangles of a hinge (thesis, eq. 4.19 to 4.33).
+//! Bending of any mesh: C = θ − θ₀, with θ the angle between the two triangles of a hinge (thesis, eq. 4.19
+//! to 4.33).
 //!
 //! The correction is scaled by the gradients and masses (thesis, eq. 4.13 and 4.14: eq. 4.34 holds for equal
 //! masses only).
@@ -11,12 +12,12 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
 impl<P: Pack> LaneBatch<P> {
-    /// Projects every hinge once. `accumulate` says that multipliers are kept from pass to pass.
+    /// Projects every hinge once. With `accumulate`, multipliers are kept from pass to pass.
     pub fn solve_dihedral(&mut self, accumulate: bool) {
         self.sweep_hinges(accumulate, false);
     }
 
-    /// Projects every hinge, and once more in the opposite order: a symmetric Gauss–Seidel sweep.
+    /// Projects every hinge, and then again in the opposite order: a symmetric Gauss–Seidel sweep.
     pub fn solve_dihedral_both_ways(&mut self) {
         self.layout.hinge_multiplier.fill(P::splat(0.0));
         self.sweep_hinges(true, false);
@@ -41,7 +42,7 @@ struct Dihedral<'a, P: Pack> {
     multiplier: &'a mut [P],
     position: &'a mut [Pack3<P>],
     accumulate: bool,
-    /// Whether the last hinge is projected first.
+    /// Whether the hinges are projected in the opposite order.
     backwards: bool,
 }
 

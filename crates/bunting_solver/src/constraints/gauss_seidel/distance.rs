@@ -8,7 +8,7 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
 impl<P: Pack> LaneBatch<P> {
-    /// Projects every link once. `accumulate` says that targets are kept from pass to pass.
+    /// Projects every link once. With `accumulate`, targets are kept from pass to pass.
     pub fn solve_distance(&mut self, accumulate: bool) {
         let solve = Distance {
             links: self.fabric.links(),
@@ -50,7 +50,7 @@ impl<P: Pack> Distance<'_, P> {
             let length = along.dot(along).sqrt().max(least);
             let target =
                 if ACCUMULATE { L::load(token, stored) } else { L::splat(token, link.rest_length) };
-            // −Δλ/|d| with one division: the length of d is part of the denominator.
+            // The result is −Δλ/|d|, with a single division: |d| is part of the denominator.
             let pull = (length - target) / ((mass_a + mass_b + compliance) * length);
             if ACCUMULATE {
                 target.plus_product(compliance * length, pull).store(stored);
@@ -68,7 +68,7 @@ impl<P: Pack> Kernel<P> for Distance<'_, P> {
     }
 }
 
-/// The same with targets that are kept from pass to pass.
+/// The same projection with targets that are kept from pass to pass.
 struct Accumulating<K>(K);
 
 impl<P: Pack> Kernel<P> for Accumulating<Distance<'_, P>> {

@@ -12,9 +12,9 @@ use crate::simd::vec3::V3;
 
 /// A hinge's angle and the angle's gradients, in the order of its particles.
 pub(super) struct Fold<L> {
-    /// rad.
+    /// Angle, rad.
     pub angle: L,
-    /// rad/m.
+    /// Gradient for each particle, rad/m.
     pub gradient: [V3<L>; 4],
 }
 
@@ -36,8 +36,8 @@ pub(super) fn fold<L: Lane>(token: L::Token, [a, b, c, d]: [V3<L>; 4]) -> Fold<L
     let per_second = -length / second_squared.max(least);
     let at_c = first * per_first;
     let at_d = second * per_second;
-    // The projections of c and d on the edge, as parts of its length: they say how the ends a and b share the
-    // opposite of the gradients at c and d.
+    // Projections of c and d on the edge, as fractions of its length: they distribute the opposite of the
+    // gradients at c and d over the ends a and b.
     let per_edge = one / (length * length);
     let (c_part, d_part) = (ac.dot(edge) * per_edge, ad.dot(edge) * per_edge);
     let at_b = at_c * -c_part + at_d * -d_part;

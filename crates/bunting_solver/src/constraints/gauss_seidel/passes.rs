@@ -1,13 +1,13 @@
-//! Passes over all constraints.
+//! Passes over all constraints of the Gauss–Seidel scheme.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::simd::lane::Pack;
 
 impl<P: Pack> LaneBatch<P> {
-    /// Solves bending, stretch and contacts in each of as many passes as the settings say.
+    /// Solves bending, stretch and contacts once in each pass of the settings.
     pub fn solve_gauss_seidel(&mut self) {
         let passes = self.clock.settings.passes;
-        // With a single pass no other reads the multipliers.
+        // With a single pass no later pass reads the multipliers.
         let accumulate = passes > 1;
         if accumulate {
             for (target, link) in self.link_target.iter_mut().zip(self.fabric.links()) {

@@ -11,7 +11,7 @@ impl FabricBuilder {
     ///
     /// # Errors
     ///
-    /// A [`FabricError`] says what is wrong with the mesh, and where.
+    /// A [`FabricError`] names the defect of the mesh and its location.
     pub fn build(self) -> Result<Fabric, FabricError> {
         self.validate()?;
         let welded = weld(&self.positions, self.effective_weld_distance());

@@ -6,31 +6,31 @@ use super::slivers::flip_slivers;
 use super::source::FabricBuilder;
 use crate::fabric::grid::Grid;
 
-/// The simplified mesh should have one triangle for so many of the finer mesh.
+/// Number of triangles of the finer mesh for each triangle of the simplified one.
 const REDUCTION: usize = 4;
 
-/// Part of the triangles above which a simplified mesh is not worth a level of its own.
+/// Fraction of the triangles above which a simplified mesh is no level of its own.
 const WORTHWHILE: f32 = 0.75;
 
-/// Cost of the texture's distortion in the simplification, 1/m: how many units of texture weigh as much as a metre of
-/// shape.
+/// Cost of the texture's distortion in the simplification, 1/m: units of texture coordinates that weigh as
+/// much as a metre of shape.
 const UV_COST: f32 = 1.0;
 
 /// A mesh with some of the vertices of a finer mesh.
 #[derive(Clone, Debug)]
 pub struct CoarserMesh {
-    /// The mesh, with those of the pins that are left.
+    /// The mesh, with those pins that remain.
     pub builder: FabricBuilder,
-    /// For each of its vertices the vertex of the finer mesh at the same place.
+    /// For each vertex of the coarser mesh, the vertex of the finer mesh at the same position.
     pub vertices: Vec<u32>,
 }
 
 impl FabricBuilder {
-    /// The next coarser level: every second column and row of a grid; of other meshes about a fourth of the
-    /// triangles, with all vertices of the border and all pinned vertices (`meshoptimizer`'s simplification by
-    /// quadric error metrics, which takes the texture into account).
+    /// Builds the next coarser level: every second column and row of a grid; of other meshes about a quarter
+    /// of the triangles, with all vertices of the border and all pinned vertices (simplification by quadric
+    /// error metrics with `meshoptimizer`, which takes the texture into account).
     ///
-    /// None where a grid cannot be halved, or hardly a triangle can be left out.
+    /// None if a grid cannot be halved, or if hardly any triangle can be removed.
     #[must_use]
     pub fn coarser(&self) -> Option<CoarserMesh> {
         match &self.grid {
@@ -70,7 +70,7 @@ impl FabricBuilder {
         Some(CoarserMesh { builder, vertices })
     }
 
-    /// Three vertices of this mesh per triangle of the simplified one.
+    /// Triangles of the simplified mesh, as three vertices of this mesh each.
     fn simplified_triangles(&self) -> Option<Vec<u32>> {
         let positions: Vec<[f32; 3]> = self.positions.iter().map(|at| at.to_array()).collect();
         let adapter =
@@ -114,7 +114,7 @@ mod tests {
 
     use super::*;
 
-    /// A curtain with a hole, as plain triangles.
+    /// A curtain with a hole, as a mesh of triangles.
     fn curtain() -> FabricBuilder {
         let grid = Grid::new(25, 21, 1.2, 1.0);
         let hole = |at: &Vec3| at.distance(Vec3::new(0.6, -0.5, 0.0)) < 0.2;

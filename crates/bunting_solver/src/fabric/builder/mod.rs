@@ -1,4 +1,4 @@
-//! From a triangle mesh to a fabric, and from a mesh to the next coarser one.
+//! Building of fabrics from triangle meshes, and of coarser meshes.
 
 mod build;
 mod coarser;

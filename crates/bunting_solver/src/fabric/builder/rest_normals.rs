@@ -1,4 +1,4 @@
-//! Normals of a mesh from which no fabric has been built, or can be.
+//! Normals of a mesh without a fabric.
 
 use glam::Vec3;
 
@@ -8,12 +8,12 @@ use crate::fabric::normals::vertex_normals;
 use crate::fabric::weld::weld;
 
 impl FabricBuilder {
-    /// Unit normals at rest, one per vertex, to the front; vertices that a fabric would merge have the same normal.
-    /// Triangles without area and edges of more than two triangles are no errors here.
+    /// Unit normals at rest, one for each vertex, on the front side. Vertices that a fabric would merge have
+    /// the same normal. Triangles without area and edges of more than two triangles are accepted here.
     ///
     /// # Errors
     ///
-    /// A [`FabricError`] where the lists do not fit one another, or a position is not finite.
+    /// The lists do not fit one another, or a position is not finite.
     pub fn rest_normals(&self) -> Result<Vec<Vec3>, FabricError> {
         self.validate()?;
         let welded = weld(&self.positions, self.effective_weld_distance());
@@ -49,7 +49,7 @@ mod tests {
     #[test]
     fn a_roof_is_smooth_across_its_seam() {
         let (ridge, far) = (Vec3::Y, Vec3::new(0.0, 1.0, 1.0));
-        // Each side has vertices of its own along the ridge.
+        // Each side of the roof has its own vertices along the ridge.
         let positions = vec![-Vec3::X, far, ridge, Vec3::X, ridge, far];
         let normals = FabricBuilder::new(positions, vec![0, 1, 2, 3, 4, 5]).rest_normals();
         let normals = normals.expect("a roof");

@@ -1,7 +1,7 @@
 //! Removes triangles that are almost lines from a simplified mesh.
 //!
-//! Where all vertices of a straight border are kept, three of them may end up as one triangle. Flipping the edge that
-//! it shares with its neighbour gives two sound triangles.
+//! If all vertices of a straight border are kept, three of them may end up as one triangle. Flipping the edge
+//! that this triangle shares with its neighbour gives two sound triangles.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use glam::Vec3;
 /// needles remain. Larger: edges are flipped against the shape of the surface.
 const SLIVER: f32 = 0.03;
 
-/// Flips the longest edges of slivers as long as that makes the worse of the two triangles better.
+/// Flips the longest edges of slivers as long as this improves the worse of the two triangles.
 pub(super) fn flip_slivers(positions: &[Vec3], triangles: &mut [[u32; 3]]) {
     let shape = |triangle: [u32; 3]| {
         let [a, b, c] = triangle.map(|corner| positions[corner as usize]);
@@ -57,7 +57,7 @@ mod tests {
     fn the_edge_of_a_triangle_on_a_straight_border_is_flipped() {
         let at = |x: f32, y: f32| Vec3::new(x, y, 0.0);
         let positions = [at(0.0, 0.0), at(1.0, 0.0), at(2.0, 0.0), at(1.0, 1.5)];
-        // 0, 1 and 2 lie on one line; 0, 2 and 3 stand on it.
+        // Vertices 0, 1 and 2 lie on one line; the second triangle shares the edge from 0 to 2.
         let mut triangles = [[0, 1, 2], [0, 2, 3]];
         flip_slivers(&positions, &mut triangles);
         let area = |[a, b, c]: [u32; 3]| {

@@ -22,10 +22,10 @@ use crate::fabric::weld::default_distance;
 pub struct FabricBuilder {
     pub(super) positions: Vec<Vec3>,
     pub(super) indices: Vec<u32>,
-    /// One per vertex, or none.
+    /// Texture coordinates, one for each vertex or none.
     pub(super) uv: Vec<Vec2>,
     pub(super) pinned: BTreeSet<u32>,
-    /// m; by default a part of the mesh's extent.
+    /// Welding distance, m; by default a fraction of the mesh's extent.
     pub(super) weld_distance: Option<f32>,
     pub(super) tethered: bool,
     /// The grid that the mesh was made from.
@@ -52,7 +52,7 @@ impl FabricBuilder {
     #[must_use]
     pub fn grid(grid: Grid) -> Self {
         if grid.validate().is_err() {
-            // `build` reports it.
+            // `build` reports the invalid grid.
             return Self { grid: Some(grid), ..Self::new(Vec::new(), Vec::new()) };
         }
         Self {
@@ -64,8 +64,8 @@ impl FabricBuilder {
         }
     }
 
-    /// Texture coordinates, one per vertex: the warp runs along u. Without them the warp of each triangle runs along
-    /// its first edge, which does not matter to a material of equal warp and weft stiffness.
+    /// Sets texture coordinates, one for each vertex: the warp runs along u. Without them the warp of each
+    /// triangle runs along its first edge, which does not matter if warp and weft are equally stiff.
     #[must_use]
     pub fn uv(mut self, uv: Vec<Vec2>) -> Self {
         self.uv = uv;
@@ -89,16 +89,17 @@ impl FabricBuilder {
         self
     }
 
-    /// Distance in metres at which vertices are merged into one particle; zero merges none. By default a millionth of
-    /// the mesh's extent.
+    /// Sets the distance in metres at which vertices are merged into one particle; zero merges none. The
+    /// default is a millionth of the mesh's extent.
     #[must_use]
     pub fn weld_distance(mut self, distance: f32) -> Self {
         self.weld_distance = Some(distance);
         self
     }
 
-    /// Whether free particles are tethered to their pins, as they are by default. A tether bounds the distance from a
-    /// pin along the cloth, which stops overshoot in violent motion; without tethers a step costs a little less.
+    /// Sets whether free particles are tethered to their pins, as they are by default. A tether bounds the
+    /// distance from a pin along the cloth, which stops overshoot in violent motion; without tethers a step
+    /// costs a little less.
     #[must_use]
     pub fn tethered(mut self, tethered: bool) -> Self {
         self.tethered = tethered;
@@ -117,7 +118,7 @@ impl FabricBuilder {
         &self.indices
     }
 
-    /// The distance in metres at which vertices are merged.
+    /// Distance in metres at which vertices are merged.
     pub(super) fn effective_weld_distance(&self) -> f32 {
         self.weld_distance.unwrap_or_else(|| default_distance(&self.positions))
     }
