@@ -49,6 +49,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     /// Length that each link has under the tension found so far in the substep, l − α̃ λ, m, in the order in
     /// which the scheme solves links.
     pub link_target: Vec<P>,
+    /// Sums of corrections in a phase of a substep, m; empty unless the fabric is a mesh.
+    pub correction: Vec<Pack3<P>>,
     /// Room for predicted positions, m, where a lane bends stiffly.
     pub predicted_position: Vec<Pack3<P>>,
     /// Room for the displacement by stretch, m, where a lane bends stiffly.
@@ -96,6 +98,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             older_displacement: zero.clone(),
             older_velocity: zero.clone(),
             oldest_velocity: zero.clone(),
+            correction: Vec::new(),
             predicted_position: Vec::new(),
             stretch_shift: Vec::new(),
             velocity: zero,

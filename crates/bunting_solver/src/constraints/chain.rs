@@ -12,6 +12,7 @@
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
+use crate::constraints::corrections::CorrectedParticles;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, ChainLink, ChainPair, LinkFamily};
 use crate::simd::constant::Constant;
@@ -33,18 +34,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let pass = if passes > 1 { Pass::Again } else { Pass::Last };
         for _ in 0..passes {
             self.solve_warp_and_weft(pass);
-        }
-    }
-
-    /// Solves the chains of all colours, diagonals with them, forwards and then backwards in each pass.
-    pub fn solve_chains_both_ways(&mut self, passes: u32) {
-        let colours = self.layout.chains(&self.fabric).colours.len();
-        for pass in 0..passes {
-            // The first colour of a pass is the last of the pass before.
-            let (first, forwards) = if pass == 0 { (0, Pass::First) } else { (1, Pass::Again) };
-            (first..colours).for_each(|colour| self.solve_colour(colour, forwards));
-            let backwards = (0..colours.saturating_sub(1)).rev();
-            backwards.for_each(|colour| self.solve_colour(colour, Pass::Again));
         }
     }
 
@@ -77,6 +66,39 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             rows: &mut self.rows,
             target: &mut self.link_target,
             particles: self.positions.particles(order, masses, linked),
+        });
+    }
+}
+
+impl<P: Pack> LaneBatch<P> {
+    /// Solves the chains of all colours of a mesh, diagonals with them, forwards and then backwards in each pass.
+    pub fn solve_chains_both_ways(&mut self, passes: u32) {
+        self.sum_corrections();
+        let colours = self.layout.chains(&self.fabric).colours.len();
+        for pass in 0..passes {
+            // The first colour of a pass is the last of the pass before.
+            let (first, forwards) = if pass == 0 { (0, Pass::First) } else { (1, Pass::Again) };
+            (first..colours).for_each(|colour| self.correct_by_colour(colour, forwards));
+            let backwards = (0..colours.saturating_sub(1)).rev();
+            backwards.for_each(|colour| self.correct_by_colour(colour, Pass::Again));
+        }
+        self.apply_corrections();
+    }
+
+    /// Solves the chains of one colour, and adds to the sums of corrections.
+    pub(super) fn correct_by_colour(&mut self, colour: usize, pass: Pass) {
+        let chains = self.fabric.chains();
+        P::run(SolveChains {
+            pairs: &chains.pairs[chains.colours[colour].pairs.clone()],
+            pass,
+            compliance: &self.layout.factors().link_compliance,
+            rows: &mut self.rows,
+            target: &mut self.link_target,
+            particles: CorrectedParticles {
+                inverse_masses: &self.masses.inverse,
+                predicted: self.positions.packs(),
+                correction: &mut self.correction,
+            },
         });
     }
 }
@@ -221,14 +243,14 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let inverse_mass = particles.inverse_mass(token, particle);
                 let position = particles.position(token, particle);
                 let pull = tension - next_tension[at];
-                particles.set_position(particle, position.plus_scaled(pull, inverse_mass));
+                particles.correct(token, particle, position, (pull, inverse_mass));
                 next_tension[at] = tension;
             }
         }
         for (at, &particle) in first_of::<N>(&pair.particles[0]).iter().enumerate() {
-            let inverse_mass = particles.inverse_mass(token, particle);
+            let inverse_mass: L = particles.inverse_mass(token, particle);
             let position = particles.position(token, particle);
-            particles.set_position(particle, position.minus_scaled(next_tension[at], inverse_mass));
+            particles.correct(token, particle, position, (next_tension[at], -inverse_mass));
         }
     }
 }

@@ -10,6 +10,7 @@ mod bench;
 pub(crate) mod bend_factors;
 mod bending;
 mod chain;
+mod corrections;
 pub(crate) mod factors;
 mod gauss_seidel;
 mod shear;

@@ -39,7 +39,12 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         }
         match self.clock.settings.scheme {
             Scheme::GaussSeidel => self.solve_gauss_seidel(),
-            Scheme::Yarns => self.solve_stretch_and_contacts(),
+            Scheme::Yarns if self.fabric.has_shear_cells() => self.solve_grid_and_contacts(),
+            Scheme::Yarns => {
+                self.solve_chains_both_ways(self.clock.settings.passes);
+                self.solve_tethers();
+                self.solve_contacts();
+            }
         }
     }
 }
@@ -61,25 +66,20 @@ impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
     /// The rest of [`solve_constraints`](Self::solve_constraints).
     pub fn solve_all_but_bending(&mut self) {
         if !self.clock.stands_still() {
-            self.solve_stretch_and_contacts();
+            self.solve_grid_and_contacts();
         }
     }
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves stretch and contacts after bending, since stretch is the stiffer: chains and tethers. On a grid a sweep
+    /// Solves stretch of a grid, and contacts, after bending, since stretch is the stiffer: chains and tethers. A sweep
     /// over warp and weft for every second pass corrects what the chains' frozen directions overshoot.
-    fn solve_stretch_and_contacts(&mut self) {
+    fn solve_grid_and_contacts(&mut self) {
         let passes = self.clock.settings.passes;
-        if self.fabric.has_shear_cells() {
-            self.solve_chains(passes);
-            self.solve_tethers();
-            for _ in 0..passes / 2 {
-                self.sweep_links();
-            }
-        } else {
-            self.solve_chains_both_ways(passes);
-            self.solve_tethers();
+        self.solve_chains(passes);
+        self.solve_tethers();
+        for _ in 0..passes / 2 {
+            self.sweep_links();
         }
         // Takes the positions back from the constraints.
         self.positions.packs_mut();
