@@ -8,6 +8,7 @@ use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::masses::Masses;
 use crate::batch::side_by_side::SideBySide;
+use crate::constraints::strip::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, Fabric};
 use crate::simd::lane::Pack;
@@ -57,6 +58,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub stretch_shift: Vec<Pack3<P>>,
     /// Room for the tridiagonal systems of a pair of chains.
     pub rows: Vec<TridiagonalRow<P>>,
+    /// Room for the block tridiagonal system of a strip.
+    pub strip_blocks: Vec<StripBlock<P>>,
     /// Room for the bending moments of a line, and the twisting moments of a ribbon.
     pub moments: Vec<Pack3<P>>,
 
@@ -105,6 +108,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             relaxation: vec![P::splat(1.0); layout.pack_count()],
             link_target: vec![P::splat(0.0); chains.target_count()],
             rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
+            strip_blocks: Vec::new(),
             moments: vec![splat3(Vec3::ZERO); longest_line],
             masses: Masses::new(&layout, &fabric),
             partial_sums: layout.partial_sums(),

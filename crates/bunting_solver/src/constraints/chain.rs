@@ -13,6 +13,7 @@
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
 use crate::constraints::corrections::CorrectedParticles;
+use crate::constraints::shear::SHORTEST_DIAGONAL;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, ChainLink, ChainPair, LinkFamily};
 use crate::simd::constant::Constant;
@@ -115,12 +116,6 @@ pub(super) enum Pass {
     /// The same of diagonals that carry shear alone: short ones do not resist.
     Diagonals,
 }
-
-/// Part of its target below which a diagonal of a grid does not resist: a cell that is sheared by more than 31°.
-/// A diagonal that resisted to the end would keep cells that have turned over, as in a crumpled sheet, from turning
-/// back: creases would stay locked, strained by some percent. The force ends and the energy does not, so none is
-/// created. Smaller: with 0.3 creases stay locked. Larger: cloth in wind resists shear less.
-const SHORTEST_DIAGONAL: f32 = 0.7;
 
 /// The chains of one colour, in pairs.
 struct SolveChains<'a, P: Pack, S: Particles<P>> {

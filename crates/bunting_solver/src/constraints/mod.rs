@@ -17,6 +17,8 @@ mod shear;
 mod solve;
 mod stiff_bending;
 pub(crate) mod stiffness;
+pub(crate) mod strip;
+mod strip_system;
 mod sweep;
 mod tether;
 pub(crate) mod tridiagonal;

@@ -76,7 +76,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// over warp and weft for every second pass corrects what the chains' frozen directions overshoot.
     fn solve_grid_and_contacts(&mut self) {
         let passes = self.clock.settings.passes;
-        self.solve_chains(passes);
+        if self.is_strip() {
+            self.solve_strip(passes);
+        } else {
+            self.solve_chains(passes);
+        }
         self.solve_tethers();
         for _ in 0..passes / 2 {
             self.sweep_links();
