@@ -8,6 +8,7 @@ use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::masses::Masses;
 use crate::batch::side_by_side::SideBySide;
+use crate::constraints::strip::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, Fabric};
 use crate::simd::lane::Pack;
@@ -50,12 +51,16 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     /// Length that each link has under the tension found so far in the substep, l − α̃ λ, m, in the order in
     /// which the scheme solves links.
     pub link_target: Vec<P>,
+    /// Sums of corrections in a phase of a substep, m; empty unless the fabric is a mesh.
+    pub correction: Vec<Pack3<P>>,
     /// Scratch array of predicted positions, m, for lanes that bend stiffly.
     pub predicted_position: Vec<Pack3<P>>,
     /// Scratch array of displacements by stretch, m, for lanes that bend stiffly.
     pub stretch_shift: Vec<Pack3<P>>,
     /// Scratch array of the tridiagonal systems of a pair of chains.
     pub rows: Vec<TridiagonalRow<P>>,
+    /// Scratch array of the block tridiagonal system of a strip.
+    pub strip_blocks: Vec<StripBlock<P>>,
     /// Scratch array of the bending moments of a line, or the twisting moments of a ribbon.
     pub moments: Vec<Pack3<P>>,
 
@@ -97,12 +102,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             older_displacement: zero.clone(),
             older_velocity: zero.clone(),
             oldest_velocity: zero.clone(),
+            correction: Vec::new(),
             predicted_position: Vec::new(),
             stretch_shift: Vec::new(),
             velocity: zero,
             relaxation: vec![P::splat(1.0); layout.pack_count()],
             link_target: vec![P::splat(0.0); chains.target_count()],
             rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
+            strip_blocks: Vec::new(),
             moments: vec![splat3(Vec3::ZERO); longest_line],
             masses: Masses::new(&layout, &fabric),
             partial_sums: layout.partial_sums(),

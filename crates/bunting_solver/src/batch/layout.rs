@@ -166,7 +166,19 @@ pub(crate) trait Particles<P: Pack> {
     fn position<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> V3<L>;
 
     /// Overwrites the position, m.
-    fn set_position<L: Lane<Pack = P>>(&mut self, at: u32, position: V3<L>);
+    fn set_position<L: Lane<Pack = P>>(&mut self, token: L::Token, at: u32, position: V3<L>);
+
+    /// Moves a particle from its position, m, by `direction` × `factor`.
+    #[inline(always)]
+    fn correct<L: Lane<Pack = P>>(
+        &mut self,
+        token: L::Token,
+        at: u32,
+        position: V3<L>,
+        (direction, factor): (V3<L>, L),
+    ) {
+        self.set_position(token, at, position.plus_scaled(direction, factor));
+    }
 
     /// Inverse mass per unit area density, 1/m²; zero if the particle is pinned.
     fn inverse_mass<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> L;

@@ -219,7 +219,7 @@ impl<P: Pack> Particles<P> for PackParticles<'_, P> {
     }
 
     #[inline(always)]
-    fn set_position<L: Lane<Pack = P>>(&mut self, at: u32, position: V3<L>) {
+    fn set_position<L: Lane<Pack = P>>(&mut self, _: L::Token, at: u32, position: V3<L>) {
         position.store(&mut self.position[at as usize]);
     }
 

@@ -116,7 +116,7 @@ impl<P: Pack, S: Particles<P>> Bending<'_, P, S> {
     ) {
         let position = self.particles.position(token, particle);
         let moved = position.plus_scaled(difference, mobility.load(token));
-        self.particles.set_position(particle, moved);
+        self.particles.set_position(token, particle, moved);
     }
 }
 

@@ -13,6 +13,8 @@
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
+use crate::constraints::corrections::CorrectedParticles;
+use crate::constraints::shear::SHORTEST_DIAGONAL;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, ChainLink, ChainPair, LinkFamily};
 use crate::simd::constant::Constant;
@@ -30,22 +32,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.find_diagonal_targets();
         }
         self.solve_diagonals();
-        // Only the sweep reads targets after the last pass, and with a single pass there is no sweep.
-        let pass = if passes > 1 { Pass::Again } else { Pass::Last };
         for _ in 0..passes {
-            self.solve_warp_and_weft(pass);
-        }
-    }
-
-    /// Solves the chains of all colours, diagonals included, forwards and then backwards in each pass.
-    pub fn solve_chains_both_ways(&mut self, passes: u32) {
-        let colours = self.layout.chains(&self.fabric).colours.len();
-        for pass in 0..passes {
-            // A pass begins with the colour that ended the pass before, which is not solved again.
-            let (first, forwards) = if pass == 0 { (0, Pass::First) } else { (1, Pass::Again) };
-            (first..colours).for_each(|colour| self.solve_colour(colour, forwards));
-            let backwards = (0..colours.saturating_sub(1)).rev();
-            backwards.for_each(|colour| self.solve_colour(colour, Pass::Again));
+            self.solve_warp_and_weft(Pass::Again);
         }
     }
 
@@ -55,7 +43,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 
     fn solve_diagonals(&mut self) {
-        self.solve_colours(Pass::Last, |family| family == LinkFamily::Diagonal);
+        self.solve_colours(Pass::Diagonals, |family| family == LinkFamily::Diagonal);
     }
 
     pub(super) fn solve_colours(&mut self, pass: Pass, is_solved: impl Fn(LinkFamily) -> bool) {
@@ -91,6 +79,39 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 }
 
+impl<P: Pack> LaneBatch<P> {
+    /// Solves the chains of all colours of a mesh, diagonals included, forwards and then backwards in each pass.
+    pub fn solve_chains_both_ways(&mut self, passes: u32) {
+        self.sum_corrections();
+        let colours = self.layout.chains(&self.fabric).colours.len();
+        for pass in 0..passes {
+            // A pass begins with the colour that ended the pass before, which is not solved again.
+            let (first, forwards) = if pass == 0 { (0, Pass::First) } else { (1, Pass::Again) };
+            (first..colours).for_each(|colour| self.correct_by_colour(colour, forwards));
+            let backwards = (0..colours.saturating_sub(1)).rev();
+            backwards.for_each(|colour| self.correct_by_colour(colour, Pass::Again));
+        }
+        self.apply_corrections();
+    }
+
+    /// Solves the chains of one colour, and adds to the sums of corrections.
+    pub(super) fn correct_by_colour(&mut self, colour: usize, pass: Pass) {
+        let chains = self.fabric.chains();
+        P::run(SolveChains {
+            pairs: &chains.pairs[chains.colours[colour].pairs.clone()],
+            pass,
+            compliance: &self.layout.factors().link_compliance,
+            rows: &mut self.rows,
+            target: &mut self.link_target,
+            particles: CorrectedParticles {
+                inverse_masses: &self.masses.inverse,
+                predicted: self.positions.packs(),
+                correction: &mut self.correction,
+            },
+        });
+    }
+}
+
 /// Position of a pass over chains in a substep, which decides which targets it reads and stores.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pass {
@@ -98,8 +119,9 @@ pub(super) enum Pass {
     First,
     /// A further pass, which starts from the stored targets.
     Again,
-    /// The last pass, which starts from the stored targets and stores none, as nothing reads them.
-    Last,
+    /// The pass over diagonals that carry shear alone: it starts from the stored targets and stores none, as nothing
+    /// reads them, and short diagonals do not resist.
+    Diagonals,
 }
 
 /// The chains of one colour, in pairs.
@@ -116,25 +138,25 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         match self.pass {
-            Pass::First => self.solve_all::<L, false, true>(token),
-            Pass::Again => self.solve_all::<L, true, true>(token),
-            Pass::Last => self.solve_all::<L, true, false>(token),
+            Pass::First => self.solve_all::<L, false, true, false>(token),
+            Pass::Again => self.solve_all::<L, true, true, false>(token),
+            Pass::Diagonals => self.solve_all::<L, true, false, true>(token),
         }
     }
 }
 
 impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
     /// Solves all pairs. `WARM` starts from stored targets instead of lengths at rest; `STORE` stores the new
-    /// targets.
+    /// targets; with `YIELD`, links much shorter than their targets do not resist.
     #[inline(always)]
-    fn solve_all<L: Lane<Pack = P>, const WARM: bool, const STORE: bool>(
+    fn solve_all<L: Lane<Pack = P>, const WARM: bool, const STORE: bool, const YIELD: bool>(
         &mut self,
         token: L::Token,
     ) {
         for pair in self.pairs {
             match pair.count {
                 CHAINS_PER_PAIR => {
-                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE, false>(
+                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE, YIELD, false>(
                         token,
                         pair,
                         [L::splat(token, 1.0); _],
@@ -142,7 +164,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                     self.substitute::<L, CHAINS_PER_PAIR, WARM, STORE>(token, pair);
                 }
                 _ => {
-                    self.eliminate::<L, 1, WARM, STORE, false>(
+                    self.eliminate::<L, 1, WARM, STORE, YIELD, false>(
                         token,
                         pair,
                         [L::splat(token, 1.0); _],
@@ -161,6 +183,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         const N: usize,
         const WARM: bool,
         const STORE: bool,
+        const YIELD: bool,
         const MASKED: bool,
     >(
         &mut self,
@@ -199,8 +222,15 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let coupling = end_mass[at] * last[at].dot(along);
                 let multiplier = coupling * inverse[at];
                 let diagonal = least.plus_product(end_mass[at] + next_mass + compliance, squared);
-                let one = particles.one_if_linked::<L>(token, class);
-                let one = if MASKED { one * mask[at] } else { one };
+                let mut one: L = particles.one_if_linked(token, class);
+                if MASKED {
+                    one = one * mask[at];
+                }
+                if YIELD {
+                    // An inverse of zero takes the link out of the system.
+                    let shortest = L::splat(token, SHORTEST_DIAGONAL) * target;
+                    one = zero.or_where_not(length.lt(shortest), one);
+                }
                 inverse[at] = one / diagonal.minus_product(coupling, multiplier);
                 unknown[at] = right.plus_product(coupling, unknown[at]) * inverse[at];
                 along.store(&mut rows[at].along);
@@ -253,14 +283,14 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let inverse_mass = particles.inverse_mass(token, particle);
                 let position = particles.position(token, particle);
                 let pull = tension - next_tension[at];
-                particles.set_position(particle, position.plus_scaled(pull, inverse_mass));
+                particles.correct(token, particle, position, (pull, inverse_mass));
                 next_tension[at] = tension;
             }
         }
         for (at, &particle) in first_of::<N>(&pair.particles[0]).iter().enumerate() {
-            let inverse_mass = particles.inverse_mass(token, particle);
+            let inverse_mass: L = particles.inverse_mass(token, particle);
             let position = particles.position(token, particle);
-            particles.set_position(particle, position.minus_scaled(next_tension[at], inverse_mass));
+            particles.correct(token, particle, position, (next_tension[at], -inverse_mass));
         }
     }
 }

@@ -40,7 +40,12 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         }
         match self.clock.settings.scheme {
             Scheme::GaussSeidel => self.solve_gauss_seidel(),
-            Scheme::Yarns => self.solve_stretch_and_contacts(),
+            Scheme::Yarns if self.fabric.has_shear_cells() => self.solve_grid_and_contacts(),
+            Scheme::Yarns => {
+                self.solve_chains_both_ways(self.clock.settings.passes);
+                self.solve_tethers();
+                self.solve_contacts();
+            }
         }
     }
 }
@@ -62,28 +67,27 @@ impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
     /// The second part of [`solve_constraints`](Self::solve_constraints): all other constraints.
     pub fn solve_all_but_bending(&mut self) {
         if !self.clock.stands_still() {
-            self.solve_stretch_and_contacts();
+            self.solve_grid_and_contacts();
         }
     }
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves chains, tethers and contacts after bending, since stretch is stiffer. On a grid, for every
-    /// second pass a sweep over warp and weft corrects the overshoot of the chains' frozen directions, and chains
-    /// that still have overlong links are solved again.
-    fn solve_stretch_and_contacts(&mut self) {
+    /// Solves chains, tethers and contacts of a grid after bending, since stretch is stiffer. For every second pass a
+    /// sweep over warp and weft corrects the overshoot of the chains' frozen directions, and chains that still have
+    /// overlong links are solved again.
+    fn solve_grid_and_contacts(&mut self) {
         let passes = self.clock.settings.passes;
-        if self.fabric.has_shear_cells() {
-            self.solve_chains(passes);
-            self.solve_tethers();
-            for _ in 0..passes / 2 {
-                self.sweep_links();
-            }
-            self.solve_overlong_chains();
+        if self.is_strip() {
+            self.solve_strip(passes);
         } else {
-            self.solve_chains_both_ways(passes);
-            self.solve_tethers();
+            self.solve_chains(passes);
         }
+        self.solve_tethers();
+        for _ in 0..passes / 2 {
+            self.sweep_links();
+        }
+        self.solve_overlong_chains();
         // This call copies the positions back from the constraints' arrays.
         self.positions.packs_mut();
         self.solve_contacts();

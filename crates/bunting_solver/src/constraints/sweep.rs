@@ -58,8 +58,8 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Sweep<'_, P, S> {
             let unknown = right * inverse;
             target.minus_product(compliance * length, unknown).store(stored);
             let tension = along * unknown;
-            self.particles.set_position(a, from.minus_scaled(tension, mass_a));
-            self.particles.set_position(b, to.plus_scaled(tension, mass_b));
+            self.particles.set_position(token, a, from.minus_scaled(tension, mass_a));
+            self.particles.set_position(token, b, to.plus_scaled(tension, mass_b));
         }
     }
 }

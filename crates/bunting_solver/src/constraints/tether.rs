@@ -46,7 +46,7 @@ impl<P: Pack, T: PackedTether<P>, S: Particles<P>> Kernel<P> for Tethers<'_, P, 
             let length = stretch * tether.length(token);
             let position: V3<L> = self.particles.position(token, particle);
             if let Some(position) = drawn_back(token, position, pin, length) {
-                self.particles.set_position(particle, position);
+                self.particles.set_position(token, particle, position);
             }
         }
     }

@@ -97,10 +97,10 @@ impl<P: Pack, S: Particles<P>> Twist<'_, P, S> {
     ) {
         let position = self.particles.position(token, from);
         let moved = position.minus_scaled(moment, mass_from.load(token));
-        self.particles.set_position(from, moved);
+        self.particles.set_position(token, from, moved);
         let position = self.particles.position(token, to);
         let moved = position.plus_scaled(moment, mass_to.load(token));
-        self.particles.set_position(to, moved);
+        self.particles.set_position(token, to, moved);
     }
 }
 

@@ -12,6 +12,7 @@ use super::material::FabricMaterial;
 use super::mesh::{RestMesh, Surface};
 use super::normals::vertex_normals;
 use super::patches::{self, Patch};
+use super::strip::{self, StripRow};
 use super::tethers::{self, Pin, Tether, Tethers};
 use super::twist::{Ribbon, RibbonProfile, Twist};
 use super::yarns::{Yarn, Yarns};
@@ -30,6 +31,7 @@ pub struct Fabric {
     links: Links,
     yarns: Yarns,
     chains: Chains,
+    strip_rows: Vec<StripRow>,
     hinges: Hinges,
     bending: Bending,
     twist: Twist,
@@ -48,6 +50,8 @@ impl Fabric {
         let links = Links::of(&mesh, grid.as_ref());
         let yarns = Yarns::of(&mesh.positions, &links.list);
         let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref());
+        let strip_rows =
+            grid.map(|grid| strip::rows(&grid, &links.list, &chains)).unwrap_or_default();
         let hinges = Hinges::of(&mesh, &surface.edges);
         let bending = grid.map(|grid| Bending::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
         let twist = grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
@@ -63,6 +67,7 @@ impl Fabric {
             links,
             yarns,
             chains,
+            strip_rows,
             hinges,
             bending,
             twist,
@@ -199,6 +204,11 @@ impl Fabric {
     /// [`Diagonal`](crate::LinkFamily::Diagonal).
     pub(crate) fn has_shear_cells(&self) -> bool {
         !self.chains.cells.is_empty()
+    }
+
+    /// Rows of a strip, a grid of two lines of particles; none of other fabrics.
+    pub(crate) fn strip_rows(&self) -> &[StripRow] {
+        &self.strip_rows
     }
 
     /// Bending constraints of the Gauss–Seidel scheme and of triangle meshes, colour by colour.

@@ -60,8 +60,12 @@ pub(crate) struct SingleCloth<P: Pack> {
 }
 
 impl<P: Pack> SingleCloth<P> {
-    /// The layout of a fabric; none unless it is a grid whose yarns run straight.
+    /// The layout of a fabric; none unless it is a grid whose yarns run straight, and wider than a strip, whose rows
+    /// follow one on another.
     pub fn of(fabric: &Fabric) -> Option<Self> {
+        if !fabric.strip_rows().is_empty() {
+            return None;
+        }
         let shape = GridShape::new::<P>(fabric.grid()?);
         let chains = ChainPacks::new(fabric, shape)?;
         let cells = Cells::new(fabric, shape)?;
@@ -251,9 +255,17 @@ mod tests {
 
     #[test]
     fn grids_with_straight_yarns_have_the_layout() {
-        for (columns, rows) in [(33, 33), (17, 9), (5, 23), (8, 16), (2, 9), (9, 2), (2, 2)] {
+        for (columns, rows) in [(33, 33), (17, 9), (5, 23), (8, 16), (3, 9), (2, 2)] {
             let layout = SingleCloth::<Pack8>::of(&flag(columns, rows, 0.8));
             assert!(layout.is_some(), "{columns} × {rows}");
+        }
+    }
+
+    #[test]
+    fn strips_have_not() {
+        for (columns, rows) in [(2, 9), (9, 2)] {
+            let layout = SingleCloth::<Pack8>::of(&flag(columns, rows, 0.8));
+            assert!(layout.is_none(), "{columns} × {rows}");
         }
     }
 

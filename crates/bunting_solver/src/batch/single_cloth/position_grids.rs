@@ -147,7 +147,7 @@ impl<P: Pack> Particles<P> for GridParticles<'_, P> {
     }
 
     #[inline(always)]
-    fn set_position<L: Lane<Pack = P>>(&mut self, at: u32, position: V3<L>) {
+    fn set_position<L: Lane<Pack = P>>(&mut self, _: L::Token, at: u32, position: V3<L>) {
         let ([x, y, z], at) = (&mut self.position, at as usize);
         position.x.store_at(x, at);
         position.y.store_at(y, at);

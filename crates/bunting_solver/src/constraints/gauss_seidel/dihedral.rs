@@ -6,49 +6,64 @@
 
 use super::fold::{Fold, fold};
 use crate::batch::lane_batch::LaneBatch;
-use crate::batch::layout::Positions;
+use crate::batch::layout::{Order, Particles, Positions};
+use crate::constraints::corrections::CorrectedParticles;
 use crate::fabric::Fabric;
 use crate::simd::lane::{Kernel, Lane, Pack};
-use crate::simd::vec3::{Pack3, V3};
+use crate::simd::vec3::V3;
 
 impl<P: Pack> LaneBatch<P> {
     /// Projects every hinge once. With `accumulate`, multipliers are kept from pass to pass.
     pub fn solve_dihedral(&mut self, accumulate: bool) {
-        self.sweep_hinges(accumulate, false);
-    }
-
-    /// Projects every hinge, and then again in the opposite order: a symmetric Gauss–Seidel sweep.
-    pub fn solve_dihedral_both_ways(&mut self) {
-        self.layout.hinge_multiplier.fill(P::splat(0.0));
-        self.sweep_hinges(true, false);
-        self.sweep_hinges(true, true);
-    }
-
-    fn sweep_hinges(&mut self, accumulate: bool, backwards: bool) {
         P::run(Dihedral {
             fabric: &self.fabric,
             compliance: &self.layout.hinge_compliance,
             multiplier: &mut self.layout.hinge_multiplier,
-            position: self.positions.packs_mut(),
+            particles: self.positions.particles(Order::RowMajor, &self.masses.inverse, &[]),
             accumulate,
+            backwards: false,
+        });
+    }
+
+    /// Projects every hinge, and once more in the opposite order: a symmetric Gauss–Seidel sweep.
+    pub fn solve_dihedral_both_ways(&mut self) {
+        self.sum_corrections();
+        self.layout.hinge_multiplier.fill(P::splat(0.0));
+        self.correct_by_hinges(false);
+        self.correct_by_hinges(true);
+        self.apply_corrections();
+    }
+
+    /// Projects every hinge, and adds to the sums of corrections.
+    fn correct_by_hinges(&mut self, backwards: bool) {
+        P::run(Dihedral {
+            fabric: &self.fabric,
+            compliance: &self.layout.hinge_compliance,
+            multiplier: &mut self.layout.hinge_multiplier,
+            particles: CorrectedParticles {
+                inverse_masses: &self.masses.inverse,
+                predicted: self.positions.packs(),
+                correction: &mut self.correction,
+            },
+            accumulate: true,
             backwards,
         });
     }
 }
 
-struct Dihedral<'a, P: Pack> {
+struct Dihedral<'a, P: Pack, S: Particles<P>> {
     fabric: &'a Fabric,
     compliance: &'a [P],
     multiplier: &'a mut [P],
-    position: &'a mut [Pack3<P>],
+    particles: S,
     accumulate: bool,
     /// Whether the hinges are projected in the opposite order.
     backwards: bool,
 }
 
-impl<P: Pack> Kernel<P> for Dihedral<'_, P> {
+impl<P: Pack, S: Particles<P>> Kernel<P> for Dihedral<'_, P, S> {
     #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+    fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         let inverse_masses = self.fabric.inverse_areas();
         let hinges = self.fabric.hinges();
         for turn in 0..hinges.len() {
@@ -57,7 +72,7 @@ impl<P: Pack> Kernel<P> for Dihedral<'_, P> {
             let mut at = [V3::<L>::splat(token, 0.0); 4];
             let mut masses = [L::splat(token, 0.0); 4];
             for (corner, &particle) in hinge.particles.iter().enumerate() {
-                at[corner] = V3::load(token, &self.position[particle as usize]);
+                at[corner] = self.particles.position(token, particle);
                 masses[corner] = L::splat(token, inverse_masses[particle as usize]);
             }
             let Fold { angle, gradient } = fold(token, at);
@@ -78,7 +93,7 @@ impl<P: Pack> Kernel<P> for Dihedral<'_, P> {
             for ((particle, x), (w, g)) in
                 hinge.particles.into_iter().zip(at).zip(masses.into_iter().zip(gradient))
             {
-                (x + g * (w * step)).store(&mut self.position[particle as usize]);
+                self.particles.correct(token, particle, x, (g, w * step));
             }
         }
     }
