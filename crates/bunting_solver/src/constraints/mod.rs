@@ -12,7 +12,7 @@ mod bending;
 mod chain;
 pub(crate) mod factors;
 mod gauss_seidel;
-mod shear;
+pub(crate) mod shear;
 mod solve;
 mod stiff_bending;
 pub(crate) mod stiffness;

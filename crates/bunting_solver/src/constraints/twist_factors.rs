@@ -5,7 +5,7 @@
 //! factorised as L D Lᵀ, L having ones on its diagonal and one band below it.
 
 use crate::fabric::RibbonProfile;
-use crate::simd::constant::Constant;
+use crate::simd::constant::{Constant, PerLane};
 use crate::simd::lane::Pack;
 
 /// The factors of the ribbons of a profile.
@@ -47,6 +47,17 @@ impl<P: Pack, C: Constant<P>> TwistFactors<P, C> {
         for (packs, row) in self.rows.iter_mut().zip(rows) {
             packs.lower.lanes_mut()[lane] = row.lower;
             packs.inverse_diagonal.lanes_mut()[lane] = row.inverse_diagonal;
+        }
+    }
+}
+
+impl<P: Pack> TwistFactors<P, PerLane<P>> {
+    /// Takes over the profile of one lane. Its rows are yet to be computed.
+    pub fn set_profile(&mut self, lane: usize, profile: &RibbonProfile) {
+        for (packs, pair) in self.inverse_masses.iter_mut().zip(&profile.inverse_areas) {
+            for (pack, &inverse_area) in packs.iter_mut().zip(pair) {
+                pack.set_lane(lane, inverse_area);
+            }
         }
     }
 }

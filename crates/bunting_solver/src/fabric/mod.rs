@@ -26,6 +26,7 @@ mod material;
 mod mesh;
 mod normals;
 mod patches;
+mod shared_topology;
 mod tethers;
 mod topology;
 mod twist;
