@@ -2,8 +2,8 @@
 
 use bunting_solver::{LaneCount, StepSettings};
 
-use crate::batch::batches::BatchTiming;
-use crate::lod::batch_costs::BatchCosts;
+use crate::batch::batches::{BatchTiming, CostKind};
+use crate::lod::batch_costs::{BatchCosts, Pool};
 use crate::lod::cost_table::CostTable;
 
 /// Fractions by which the model approaches a dearer measurement, and a cheaper one. They differ so that
@@ -18,22 +18,14 @@ const KEPT: f32 = 0.95;
 /// with something else says nothing about cloth.
 const GREATEST_RATIO: f32 = 1.5;
 
-/// Measured over tabulated cost of batches of one size, settings and width.
+/// Measured over tabulated cost of batches of one kind.
 #[derive(Clone, Copy, Debug)]
 struct BatchFactor {
-    particles: usize,
-    settings: StepSettings,
-    lanes: LaneCount,
+    kind: CostKind,
     /// None until the end of the first tick in which there are such batches.
     factor: Option<f32>,
     /// Costs of all such batches in the tick that is learnt from, µs: tabulated and measured.
     sums: [f32; 2],
-}
-
-impl BatchFactor {
-    fn is_of(&self, particles: usize, settings: StepSettings, lanes: LaneCount) -> bool {
-        (self.particles, self.settings, self.lanes) == (particles, settings, lanes)
-    }
 }
 
 /// Expects of every batch the cost in the table, times what was measured of such batches.
@@ -58,16 +50,15 @@ impl CostModel {
     /// Learns from the measured batches of a tick. Those of one size, settings and width count as one: of many, some
     /// always take long.
     pub fn learn_batches(&mut self, table: &CostTable, batches: impl Iterator<Item = BatchTiming>) {
-        for BatchTiming { particles, settings, lanes, time } in batches {
-            let by_table = table.batch(particles, settings, lanes);
+        for BatchTiming { kind, time } in batches {
+            let by_table = table.batch(kind);
             if by_table <= 0.0 || !time.is_finite() {
                 continue;
             }
-            let known = self.factors.iter().position(|it| it.is_of(particles, settings, lanes));
+            let known = self.factors.iter().position(|it| it.kind == kind);
             let index = known.unwrap_or(self.factors.len());
             if known.is_none() {
-                let new = BatchFactor { particles, settings, lanes, factor: None, sums: [0.0; 2] };
-                self.factors.push(new);
+                self.factors.push(BatchFactor { kind, factor: None, sums: [0.0; 2] });
             }
             let [tabulated, measured] = &mut self.factors[index].sums;
             *tabulated += by_table;
@@ -118,7 +109,8 @@ impl CostModel {
     }
 
     /// Expected costs of batches with so many particles in a lane, on a machine whose batches are at most
-    /// `widest`, with at most `most_single` cloths in batches of one lane.
+    /// `widest`, with at most `most_single` cloths in batches of one lane. `pool` is the number of the pool of cloths of
+    /// several fabrics.
     pub fn costs(
         &self,
         table: &CostTable,
@@ -126,25 +118,32 @@ impl CostModel {
         settings: StepSettings,
         widest: LaneCount,
         most_single: u32,
+        pool: Option<u32>,
     ) -> BatchCosts {
-        let cost = |lanes: LaneCount| {
-            let known = self.factors.iter().find(|it| it.is_of(particles, settings, lanes));
+        let cost = |lanes: LaneCount, mixed: bool| {
+            let kind = CostKind { particles, settings, lanes, mixed };
+            let known = self.factors.iter().find(|it| it.kind == kind);
             let factor = known.and_then(|known| known.factor).unwrap_or(self.general_factor);
-            factor * table.batch(particles, settings, lanes)
+            factor * table.batch(kind)
         };
-        let one = cost(LaneCount::One);
-        let (eight, sixteen, most_single) = match widest {
-            LaneCount::One => (8.0 * one, None, 8),
-            LaneCount::Eight => (cost(LaneCount::Eight), None, most_single),
+        let one = cost(LaneCount::One, false);
+        let costs_of = |mixed: bool| match widest {
+            LaneCount::One => (8.0 * one, None),
+            LaneCount::Eight => (cost(LaneCount::Eight, mixed), None),
             LaneCount::Sixteen => {
-                (cost(LaneCount::Eight), Some(cost(LaneCount::Sixteen)), most_single)
+                (cost(LaneCount::Eight, mixed), Some(cost(LaneCount::Sixteen, mixed)))
             }
         };
+        let (eight, sixteen) = costs_of(false);
         BatchCosts {
             one,
             eight,
             sixteen,
-            most_single,
+            most_single: if widest == LaneCount::One { 8 } else { most_single },
+            pool: pool.map(|index| {
+                let (eight, sixteen) = costs_of(true);
+                Pool { index, eight, sixteen }
+            }),
             per_cloth: self.overhead_factor * table.per_cloth(particles),
             change: self.change_factor() * table.change(particles),
         }
@@ -170,6 +169,8 @@ mod tests {
     const TABLE: CostTable = CostTable {
         substep: [100.0, 200.0, 300.0],
         pass: [10.0, 20.0, 30.0],
+        batch: [0.0; 3],
+        mixed: 1.0,
         publish: 2.0,
         cloth: 0.0,
         tick: 10.0,
@@ -177,27 +178,32 @@ mod tests {
     };
     const SETTINGS: StepSettings = StepSettings::yarns(2);
 
+    fn kind(settings: StepSettings, lanes: LaneCount) -> CostKind {
+        CostKind { particles: 1000, settings, lanes, mixed: false }
+    }
+
     fn sixteen(time: f32) -> BatchTiming {
-        BatchTiming { particles: 1000, settings: SETTINGS, lanes: LaneCount::Sixteen, time }
+        BatchTiming { kind: kind(SETTINGS, LaneCount::Sixteen), time }
     }
 
     #[test]
     fn costs_are_those_of_whole_batches() {
-        assert_eq!(TABLE.batch(1000, SETTINGS, LaneCount::Sixteen), 600.0);
+        assert_eq!(TABLE.batch(kind(SETTINGS, LaneCount::Sixteen)), 600.0);
         let passes = StepSettings { passes: 3, ..SETTINGS };
-        assert_eq!(TABLE.batch(1000, passes, LaneCount::Eight), 480.0);
-        let costs = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1);
+        assert_eq!(TABLE.batch(kind(passes, LaneCount::Eight)), 480.0);
+        let costs = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1, None);
         let sixteen = Some(600.0);
         let expected = BatchCosts {
             one: 200.0,
             eight: 400.0,
             sixteen,
             most_single: 1,
+            pool: None,
             per_cloth: 2.0,
             change: 50.0,
         };
         assert_eq!(costs, expected);
-        let narrow = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Eight, 1);
+        let narrow = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Eight, 1, None);
         assert_eq!(narrow.sixteen, None);
     }
 
@@ -209,7 +215,8 @@ mod tests {
             model.learn_overhead(10.0, 40.0);
             model.learn_changes(30.0, 60.0);
         }
-        let costs = |particles| model.costs(&TABLE, particles, SETTINGS, LaneCount::Sixteen, 1);
+        let costs =
+            |particles| model.costs(&TABLE, particles, SETTINGS, LaneCount::Sixteen, 1, None);
         assert!((costs(1000).sixteen.expect("wide") / 1800.0 - 1.0).abs() < 0.01);
         // Batches that were never measured have the general factor.
         assert!((costs(500).eight / 600.0 - 1.0).abs() < 0.01);
@@ -224,7 +231,7 @@ mod tests {
             let times = (0..200).map(|batch| if batch % 10 == 0 { 1500.0 } else { 500.0 });
             model.learn_batches(&TABLE, times.map(sixteen));
         }
-        let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1);
+        let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1, None);
         assert!((costs.sixteen.expect("wide") / 600.0 - 1.0).abs() < 0.01, "{costs:?}");
     }
 
@@ -233,7 +240,7 @@ mod tests {
         let mut model = CostModel::default();
         (0..50).for_each(|_| model.learn_batches(&TABLE, [sixteen(600.0)].into_iter()));
         model.learn_batches(&TABLE, [sixteen(60_000.0)].into_iter());
-        let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1);
+        let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1, None);
         assert!(costs.sixteen.expect("wide") < 1.11 * 600.0);
     }
 }

@@ -177,7 +177,7 @@ impl Governor {
             let more = self.counts.difference(tables, cloth.table, step.to + 1, step.to);
             if more <= 0.0 || cost + more <= fraction * budget {
                 cost += more;
-                self.counts.shift(cloth.table, step.to + 1, step.to);
+                self.counts.shift(tables, cloth.table, step.to + 1, step.to);
                 self.chosen[index] = step.to;
             }
         }
@@ -206,7 +206,7 @@ impl Governor {
             let to = coarsest(cloth);
             if cloth.level != to {
                 cost += self.counts.difference(tables, cloth.table, cloth.level, to);
-                self.counts.shift(cloth.table, cloth.level, to);
+                self.counts.shift(tables, cloth.table, cloth.level, to);
             }
         }
         for (index, cloth) in cloths.iter().enumerate().filter(|(_, cloth)| is_fresh(cloth)) {
@@ -215,7 +215,7 @@ impl Governor {
                 let more = self.counts.difference(tables, cloth.table, from, to);
                 if cost + more <= budget {
                     cost += more;
-                    self.counts.shift(cloth.table, from, to);
+                    self.counts.shift(tables, cloth.table, from, to);
                 } else {
                     to = from;
                 }
@@ -250,7 +250,7 @@ impl Governor {
                 *left -= 1;
                 changes += cloth.cost_of_change(tables, to);
                 cost += self.counts.difference(tables, cloth.table, cloth.level, to);
-                self.counts.shift(cloth.table, cloth.level, to);
+                self.counts.shift(tables, cloth.table, cloth.level, to);
                 switches.push((index, to as usize));
             }
         }
@@ -269,7 +269,7 @@ impl Governor {
                 cost += more;
                 changes += change;
                 *left -= 1;
-                self.counts.shift(cloth.table, cloth.level, to);
+                self.counts.shift(tables, cloth.table, cloth.level, to);
                 switches.push((step.cloth as usize, to as usize));
             }
         }
