@@ -10,6 +10,10 @@ use crate::lod::cost_table::CostTable;
 /// the model expects a cost that most ticks do not exceed, rather than the mean.
 const RATES: [f32; 2] = [0.2, 0.05];
 
+/// Factor on the table's costs before anything was measured: the machine is unknown, and caches are cold. Smaller: the
+/// first second is over the budget on slow machines. Larger: cloths start coarser than they need to.
+const UNKNOWN_MACHINE: f32 = 1.5;
+
 /// Fraction of the sums of earlier changes of level that is kept when one more is measured: about twenty
 /// changes count.
 const KEPT: f32 = 0.95;
@@ -23,9 +27,31 @@ const GREATEST_RATIO: f32 = 1.5;
 struct BatchFactor {
     kind: CostKind,
     /// None until the end of the first tick in which there are such batches.
-    factor: Option<f32>,
+    factor: Option<Factor>,
     /// Costs of all such batches in the tick that is learnt from, µs: tabulated and measured.
     sums: [f32; 2],
+}
+
+/// Measured over tabulated cost.
+#[derive(Clone, Copy, Debug)]
+struct Factor {
+    value: f32,
+    /// Number of measurements so far.
+    measured: u32,
+}
+
+impl Factor {
+    /// Nothing measured yet.
+    const UNKNOWN: Self = Self { value: UNKNOWN_MACHINE, measured: 0 };
+
+    /// Moves towards a measured factor: the mean of the first ones.
+    fn approach(&mut self, measured: f32) {
+        let measured = measured.min(GREATEST_RATIO * self.value);
+        self.measured = self.measured.saturating_add(1);
+        let least = RATES[usize::from(measured <= self.value)];
+        let rate = least.max(1.0 / self.measured as f32);
+        self.value += rate * (measured - self.value);
+    }
 }
 
 /// Expects of every batch the cost in the table, times what was measured of such batches.
@@ -33,20 +59,31 @@ struct BatchFactor {
 pub(crate) struct CostModel {
     factors: Vec<BatchFactor>,
     /// Measured over tabulated cost of all batches: the factor of batches that were not measured yet.
-    general_factor: f32,
+    general_factor: Factor,
     /// Measured over tabulated cost of the overhead: everything besides batches and changes of level.
-    overhead_factor: f32,
+    overhead_factor: Factor,
     /// Sums over changes of level, µs: tabulated and measured. Later changes count more.
     changes: [f32; 2],
 }
 
 impl Default for CostModel {
     fn default() -> Self {
-        Self { factors: Vec::new(), general_factor: 1.0, overhead_factor: 1.0, changes: [1.0; 2] }
+        Self {
+            factors: Vec::new(),
+            general_factor: Factor::UNKNOWN,
+            overhead_factor: Factor::UNKNOWN,
+            changes: [1.0; 2],
+        }
     }
 }
 
 impl CostModel {
+    /// Expects the costs in the table.
+    pub fn of_table() -> Self {
+        let exact = Factor { value: 1.0, measured: 0 };
+        Self { general_factor: exact, overhead_factor: exact, ..Self::default() }
+    }
+
     /// Learns from the measured batches of a tick. Those of one size, settings and width count as one: of many, some
     /// always take long.
     pub fn learn_batches(&mut self, table: &CostTable, batches: impl Iterator<Item = BatchTiming>) {
@@ -69,22 +106,20 @@ impl CostModel {
             let [tabulated, measured] = core::mem::take(sums);
             if tabulated > 0.0 {
                 let ratio = measured / tabulated;
-                match factor {
-                    Some(factor) => approach(factor, ratio),
-                    None => *factor = Some(ratio.min(GREATEST_RATIO * self.general_factor)),
-                }
+                let start = Factor { measured: 0, ..self.general_factor };
+                factor.get_or_insert(start).approach(ratio);
                 all = [all[0] + tabulated, all[1] + measured];
             }
         }
         if all[0] > 0.0 {
-            approach(&mut self.general_factor, all[1] / all[0]);
+            self.general_factor.approach(all[1] / all[0]);
         }
     }
 
     /// Learns from the measured overhead of a tick, µs.
     pub fn learn_overhead(&mut self, tabulated: f32, measured: f32) {
         if tabulated > 0.0 && measured.is_finite() {
-            approach(&mut self.overhead_factor, measured.max(0.0) / tabulated);
+            self.overhead_factor.approach(measured.max(0.0) / tabulated);
         }
     }
 
@@ -105,7 +140,7 @@ impl CostModel {
 
     /// Expected cost of a tick without any cloth, µs.
     pub fn empty_tick(&self, table: &CostTable) -> f32 {
-        self.overhead_factor * table.tick
+        self.overhead_factor.value * table.tick
     }
 
     /// Expected costs of batches with so many particles in a lane, on a machine whose batches are at most
@@ -124,7 +159,7 @@ impl CostModel {
             let kind = CostKind { particles, settings, lanes, mixed };
             let known = self.factors.iter().find(|it| it.kind == kind);
             let factor = known.and_then(|known| known.factor).unwrap_or(self.general_factor);
-            factor * table.batch(kind)
+            factor.value * table.batch(kind)
         };
         let one = cost(LaneCount::One, false);
         let costs_of = |mixed: bool| match widest {
@@ -144,7 +179,7 @@ impl CostModel {
                 let (eight, sixteen) = costs_of(true);
                 Pool { index, eight, sixteen }
             }),
-            per_cloth: self.overhead_factor * table.per_cloth(particles),
+            per_cloth: self.overhead_factor.value * table.per_cloth(particles),
             change: self.change_factor() * table.change(particles),
         }
     }
@@ -153,13 +188,6 @@ impl CostModel {
     pub fn tabulated_overhead(table: &CostTable, cloths: impl Iterator<Item = usize>) -> f32 {
         table.tick + cloths.map(|particles| table.per_cloth(particles)).sum::<f32>()
     }
-}
-
-/// Moves a factor towards a measured one.
-fn approach(factor: &mut f32, measured: f32) {
-    let measured = measured.min(GREATEST_RATIO * *factor);
-    let rate = if measured > *factor { RATES[0] } else { RATES[1] };
-    *factor += rate * (measured - *factor);
 }
 
 #[cfg(test)]
@@ -191,7 +219,8 @@ mod tests {
         assert_eq!(TABLE.batch(kind(SETTINGS, LaneCount::Sixteen)), 600.0);
         let passes = StepSettings { passes: 3, ..SETTINGS };
         assert_eq!(TABLE.batch(kind(passes, LaneCount::Eight)), 480.0);
-        let costs = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1, None);
+        let costs =
+            CostModel::of_table().costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1, None);
         let sixteen = Some(600.0);
         let expected = BatchCosts {
             one: 200.0,
@@ -203,13 +232,13 @@ mod tests {
             change: 50.0,
         };
         assert_eq!(costs, expected);
-        let narrow = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Eight, 1, None);
+        let narrow = CostModel::of_table().costs(&TABLE, 1000, SETTINGS, LaneCount::Eight, 1, None);
         assert_eq!(narrow.sixteen, None);
     }
 
     #[test]
     fn the_model_approaches_what_is_measured() {
-        let mut model = CostModel::default();
+        let mut model = CostModel::of_table();
         for _ in 0..200 {
             model.learn_batches(&TABLE, [sixteen(1800.0)].into_iter());
             model.learn_overhead(10.0, 40.0);
@@ -226,7 +255,7 @@ mod tests {
 
     #[test]
     fn of_many_batches_the_mean_counts() {
-        let mut model = CostModel::default();
+        let mut model = CostModel::of_table();
         for _ in 0..50 {
             let times = (0..200).map(|batch| if batch % 10 == 0 { 1500.0 } else { 500.0 });
             model.learn_batches(&TABLE, times.map(sixteen));
@@ -237,7 +266,7 @@ mod tests {
 
     #[test]
     fn one_bad_tick_changes_little() {
-        let mut model = CostModel::default();
+        let mut model = CostModel::of_table();
         (0..50).for_each(|_| model.learn_batches(&TABLE, [sixteen(600.0)].into_iter()));
         model.learn_batches(&TABLE, [sixteen(60_000.0)].into_iter());
         let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1, None);

@@ -33,12 +33,12 @@ impl Default for CostTable {
     /// Costs of a 33 × 33 flag in the wind on one core of a server Xeon with AVX-512, in 2026.
     fn default() -> Self {
         Self {
-            substep: [21.0, 80.0, 137.0],
-            pass: [4.8, 17.5, 31.0],
-            batch: [1500.0, 500.0, 500.0],
-            mixed: 1.1,
+            substep: [36.0, 140.0, 230.0],
+            pass: [5.0, 18.0, 45.0],
+            batch: [1200.0, 500.0, 500.0],
+            mixed: 1.2,
             publish: 2.0,
-            cloth: 200.0,
+            cloth: 700.0,
             tick: 20.0,
             change: 170.0,
         }

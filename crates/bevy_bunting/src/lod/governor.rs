@@ -29,6 +29,10 @@ const FINER_FRACTION: f32 = 0.95;
 /// Greatest fraction of the budget that is left free for changes of level: dearer ones exceed the budget.
 const MOST_RESERVED: f32 = 0.25;
 
+/// What it takes to give a new cloth a lane, over a change of level. It happens once, so that of many new cloths, as when
+/// a scene is loaded, it counts for each by itself.
+const ENTERING: f32 = 0.5;
+
 /// Number of low bits of a value that are dropped to make its bucket: the exponent and four bits are
 /// left, a resolution of 1/16.
 const BUCKET_SHIFT: u32 = 19;
@@ -213,7 +217,8 @@ impl Governor {
             let (from, mut to) = (coarsest(cloth), self.chosen[index]);
             if from != to {
                 let more = self.counts.difference(tables, cloth.table, from, to);
-                if cost + more <= budget {
+                let entering = ENTERING * tables[cloth.table as usize].costs[to as usize].change;
+                if cost + more + entering <= budget {
                     cost += more;
                     self.counts.shift(tables, cloth.table, from, to);
                 } else {
