@@ -84,3 +84,55 @@ fn lone_cloths<'a>(
     }
     lone
 }
+
+#[cfg(test)]
+mod tests {
+    use bunting_solver::{FabricBuilder, Grid};
+
+    use super::*;
+
+    /// The batches for so many cloths of each fabric: how many of one fabric and how many mixed ones of each width.
+    fn batches(columns: u32, cloths: &[usize]) -> [[usize; 2]; 2] {
+        let fabric = |index: usize| {
+            let grid = Grid::new(columns, columns, 1.0 + 0.01 * index as f32, 1.0);
+            Arc::new(FabricBuilder::grid(grid).build().expect("a good fabric"))
+        };
+        let counts = cloths.iter().enumerate();
+        let counts = counts.map(|(index, &cloths)| FabricCount { fabric: fabric(index), cloths });
+        let fabrics: Vec<FabricCount> = counts.collect();
+        let wanted = wanted_batches(&fabrics, None, Scheme::Yarns, core::iter::empty());
+        let lanes_of = |index: usize| {
+            let of_fabric = wanted.iter().filter(move |kind| kind.fabric == Some(index));
+            of_fabric.map(|kind| kind.width.get()).sum::<usize>()
+        };
+        let mixed = wanted.iter().filter(|kind| kind.fabric.is_none());
+        let mixed: usize = mixed.map(|kind| kind.width.get()).sum();
+        let over = cloths.iter().enumerate();
+        let over: usize = over.map(|(index, &cloths)| cloths.saturating_sub(lanes_of(index))).sum();
+        assert!(over <= mixed, "all cloths have a lane: {wanted:?}");
+        [false, true].map(|is_mixed| {
+            [1, 8].map(|least| {
+                let of_kind = wanted.iter().filter(|kind| kind.fabric.is_none() == is_mixed);
+                of_kind.filter(|kind| (kind.width.get() > 1) == (least > 1)).count()
+            })
+        })
+    }
+
+    #[test]
+    fn cloths_of_one_fabric_stay_among_themselves() {
+        assert_eq!(batches(5, &[1]), [[1, 0], [0, 0]]);
+        assert_eq!(batches(5, &[3]), [[0, 1], [0, 0]]);
+        assert_eq!(batches(33, &[3]), [[3, 0], [0, 0]]);
+        assert_eq!(batches(5, &[8, 7]), [[0, 2], [0, 0]]);
+    }
+
+    #[test]
+    fn what_is_left_of_several_fabrics_shares_batches() {
+        assert_eq!(batches(5, &[1; 8]), [[0, 0], [0, 1]]);
+        assert_eq!(batches(5, &[8, 1, 2, 1]), [[0, 1], [0, 1]]);
+        // Cloths with long rows get a batch each as long as they are few.
+        assert_eq!(batches(33, &[1; 3]), [[3, 0], [0, 0]]);
+        assert_eq!(batches(33, &[1; 4]), [[0, 0], [0, 1]]);
+        assert_eq!(batches(33, &[1; 10]), [[2, 0], [0, 1]]);
+    }
+}

@@ -54,7 +54,7 @@ impl CostTable {
         let of_particle = self.substep[width] + passes * self.pass[width];
         let of_substep = self.batch[width] + particles as f32 * of_particle;
         let factor = if mixed { self.mixed } else { 1.0 };
-        1e-3 * (factor * settings.substeps as f32 * of_substep)
+        factor * settings.substeps as f32 * of_substep / NANOSECONDS
     }
 
     /// Cost of a change between two levels on a screen, µs; `particles` of the finer.
@@ -67,6 +67,9 @@ impl CostTable {
         1e-3 * (self.cloth + self.publish * particles as f32)
     }
 }
+
+/// Nanoseconds in a microsecond.
+const NANOSECONDS: f32 = 1e3;
 
 /// Index of a width in the table's arrays.
 fn width(lanes: LaneCount) -> usize {

@@ -249,12 +249,17 @@ impl Governor {
             if cloth.fresh {
                 continue;
             }
-            let may = cloth.ready || cost > budget;
+            let exceeds = cost > budget;
             let left = &mut left[usize::from(cloth.on_screen)];
-            if to > cloth.level && may && *left > 0 {
+            if to <= cloth.level || *left == 0 || !(cloth.ready || exceeds) {
+                continue;
+            }
+            let more = self.counts.difference(tables, cloth.table, cloth.level, to);
+            // A coarser level costs more where it needs another batch, and none becomes empty.
+            if exceeds || more <= 0.0 || cost + more <= budget {
                 *left -= 1;
                 changes += cloth.cost_of_change(tables, to);
-                cost += self.counts.difference(tables, cloth.table, cloth.level, to);
+                cost += more;
                 self.counts.shift(tables, cloth.table, cloth.level, to);
                 switches.push((index, to as usize));
             }
