@@ -29,8 +29,12 @@ impl<T: Send + 'static> Background<T> {
         Self { work, task }
     }
 
-    /// Returns the result. If no thread has begun the work, this thread does it: the others may be busy for
-    /// long.
+    /// Whether the result is there, so that nobody has to wait for it.
+    pub fn is_done(&self) -> bool {
+        self.task.as_ref().is_some_and(Task::is_finished)
+    }
+
+    /// The result. Work that has not begun is done on this thread: the others may be busy for long.
     pub fn take(self) -> T {
         let done = match take(&self.work) {
             Some(work) => Some(work()),

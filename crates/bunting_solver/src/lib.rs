@@ -75,7 +75,7 @@ mod transfer;
 
 pub use batch::lane_count::LaneCount;
 pub use batch::snapshot::ClothSnapshot;
-pub use batch::{BatchError, ClothBatch, LaneSurface, ParticlesMut};
+pub use batch::{BatchError, ClothBatch, Entering, LaneSurface, ParticlesMut};
 pub use contact::collider::Collider;
 pub use contact::lift::SurfaceLift;
 pub use fabric::{

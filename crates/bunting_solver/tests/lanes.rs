@@ -5,8 +5,8 @@ use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use bunting_solver::{
-    BatchError, ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial,
-    FrameMotion, Grid, LaneCount, LaneSurface, StepSettings, instruction_set,
+    BatchError, ClothBatch, ClothSnapshot, Collider, Drive, Entering, Fabric, FabricBuilder,
+    FabricMaterial, FrameMotion, Grid, LaneCount, LaneSurface, StepSettings, instruction_set,
     with_every_instruction_set,
 };
 use glam::{Quat, Vec3};
@@ -213,13 +213,18 @@ fn an_exchange_of_many_lanes_equals_single_replacements() {
             .iter()
             .copied()
             .filter(stays)
-            .map(|lane| (lane, &states[count - 1 - lane], material(lane)))
+            .map(|lane| Entering {
+                lane,
+                fabric: &fabric,
+                snapshot: &states[count - 1 - lane],
+                material: material(lane),
+            })
             .collect();
         let leave: Vec<usize> = seeds.iter().copied().filter(|lane| !stays(lane)).collect();
         at_once.exchange(&leave, &come).expect("good states");
         leave.iter().for_each(|&lane| one_by_one.remove(lane).expect("a lane"));
-        for &(lane, state, material) in &come {
-            one_by_one.replace(lane, state, material).expect("a good state");
+        for &Entering { lane, snapshot, material, .. } in &come {
+            one_by_one.replace(lane, snapshot, material).expect("a good state");
         }
         for batch in [&mut at_once, &mut one_by_one] {
             (0..10).for_each(|_| batch.step(TICK, settings));

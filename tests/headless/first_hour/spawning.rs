@@ -3,7 +3,7 @@
 use std::{thread, time::Duration};
 
 use bevy_bunting::prelude::*;
-use bevy_bunting::{CostTable, LodCosts, LodReport};
+use bevy_bunting::{ClothBatches, CostTable, LodCosts, LodReport};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_tasks::{AsyncComputeTaskPool, TaskPoolBuilder, block_on};
@@ -43,6 +43,41 @@ fn different_flags_are_built_over_several_ticks() {
         cut = now;
     }
     assert_eq!(cut, FLAGS);
+}
+
+#[test]
+fn different_flags_share_batches() {
+    let mut app = app();
+    furnish(&mut app);
+    run(&mut app, 2 * FLAGS);
+    let batches = app.world().resource::<ClothBatches>().batch_count();
+    assert!(batches <= FLAGS / 4, "{batches} batches");
+}
+
+/// Positions of flags of these widths, m, after a second in the wind.
+fn flown(widths: &[f32]) -> Vec<Vec<Vec3>> {
+    let mut app = app();
+    app.world_mut().spawn(WindField::steady(Vec3::new(6.0, 0.0, 2.0)));
+    let flags: Vec<Entity> = widths
+        .iter()
+        .map(|&width| {
+            let held = Attachment::in_place(ClothEdge::Left);
+            app.world_mut().spawn((ClothMesh::grid(9, 9, width, 1.0), held, ClothSeed(1))).id()
+        })
+        .collect();
+    run(&mut app, 64);
+    let batches = app.world().resource::<ClothBatches>().batch_count();
+    assert!(batches <= 2, "{batches} batches");
+    flags.iter().map(|&flag| state(&app, flag).positions().to_vec()).collect()
+}
+
+#[test]
+fn a_flag_among_different_ones_flies_as_it_does_alone() {
+    let widths: Vec<f32> = (0..11).map(|index| 1.0 + 0.03 * index as f32).collect();
+    let together = flown(&widths);
+    for (&width, positions) in widths.iter().zip(&together) {
+        assert_eq!(flown(&[width])[0], *positions, "{width} m");
+    }
 }
 
 #[test]

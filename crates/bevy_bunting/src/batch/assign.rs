@@ -67,7 +67,7 @@ pub(crate) fn assign_lanes(
         if let (Some(fabric), StateStorage::Snapshot(snapshot)) =
             (instance.fabric().cloned(), core::mem::take(&mut instance.storage))
         {
-            let pending = PendingCloth { entity, snapshot, material: instance.material };
+            let pending = PendingCloth { entity, fabric: 0, snapshot, material: instance.material };
             let limits = settings.limits(instance.level);
             batches.add(&fabric, limits.of_fabric(&fabric, tick, gravity), pending);
         }

@@ -31,11 +31,20 @@ pub struct ClothBatches {
 /// Time that a batch took in a tick.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BatchTiming {
+    pub kind: CostKind,
+    /// µs.
+    pub time: f32,
+}
+
+/// What the cost of a batch depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CostKind {
+    /// Particles in a lane.
     pub particles: usize,
     pub settings: StepSettings,
     pub lanes: LaneCount,
-    /// µs.
-    pub time: f32,
+    /// Whether its cloths may be of different fabrics.
+    pub mixed: bool,
 }
 
 impl ClothBatches {
@@ -72,8 +81,7 @@ impl ClothBatches {
                 }
             }
         });
-        self.groups[index].changed = true;
-        self.groups[index].pending.push(cloth);
+        self.groups[index].add(fabric, cloth);
     }
 
     /// State in a lane, if the lane holds another cloth than `cloth`.
@@ -109,11 +117,7 @@ impl ClothBatches {
 
     /// Frees a lane. The cloth's state can be read until another cloth gets the lane.
     fn free(&mut self, lane: LaneHandle) -> &ClothBatch {
-        let group = &mut self.groups[lane.group];
-        let batch = &mut group.batches[lane.batch];
-        group.changed = true;
-        batch.occupants[lane.lane] = None;
-        &batch.batch
+        self.groups[lane.group].free(lane.batch, lane.lane)
     }
 
     /// Gives every pending cloth a lane and closes gaps. Calls `assigned` with each cloth whose lane changes,
@@ -169,9 +173,12 @@ impl ClothBatches {
     pub(crate) fn timings(&self) -> impl Iterator<Item = BatchTiming> + '_ {
         self.groups.iter().flat_map(|group| {
             group.batches.iter().map(|batch| BatchTiming {
-                particles: group.fabric.particle_count(),
-                settings: group.settings,
-                lanes: batch.width,
+                kind: CostKind {
+                    particles: group.particle_count(),
+                    settings: group.settings,
+                    lanes: batch.width,
+                    mixed: batch.batch.is_mixed(),
+                },
                 time: batch.time.as_secs_f32() * 1e6,
             })
         })

@@ -3,21 +3,31 @@
 use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
-use bunting_solver::{Fabric, LaneCount, StepSettings};
+use bunting_solver::{ClothBatch, Fabric, LaneCount, Scheme, StepSettings};
 
+use crate::batch::batch_kind::{BatchKind, wanted_batches};
 use crate::batch::occupancy::{OccupiedBatch, PendingCloth};
 
 /// Number of empty batches of each width that are kept as spares, since making a batch takes longer than a
 /// tick. It equals the greatest number of cloths in batches of one lane.
 const MOST_SPARE: usize = 3;
 
-/// Cloths of one fabric with equal settings, which are stepped alike.
+/// A fabric of a group, and the number of its cloths.
+#[derive(Debug)]
+pub(crate) struct FabricCount {
+    pub fabric: Arc<Fabric>,
+    /// Cloths in lanes, and cloths that wait for one.
+    pub cloths: usize,
+}
+
+/// Cloths of fabrics of one topology with the same settings, which are stepped alike.
 #[derive(Debug)]
 pub(crate) struct Group {
-    pub fabric: Arc<Fabric>,
     pub settings: StepSettings,
+    /// The first of these tells the topology. One without cloths is replaced by the next that comes.
+    pub fabrics: Vec<FabricCount>,
     pub batches: Vec<OccupiedBatch>,
-    /// Empty batches, at most [`MOST_SPARE`] of each width.
+    /// Empty batches, at most [`MOST_SPARE`] of each kind.
     spare: Vec<OccupiedBatch>,
     /// Cloths that wait for a lane.
     pub pending: Vec<PendingCloth>,
@@ -29,8 +39,8 @@ impl Group {
     /// A group without cloths.
     pub fn new(fabric: &Arc<Fabric>, settings: StepSettings) -> Self {
         Self {
-            fabric: Arc::clone(fabric),
             settings,
+            fabrics: vec![FabricCount { fabric: Arc::clone(fabric), cloths: 0 }],
             batches: Vec::new(),
             spare: Vec::new(),
             pending: Vec::new(),
@@ -40,7 +50,10 @@ impl Group {
 
     /// Whether cloths with this fabric and these settings belong to the group.
     pub fn is_of(&self, fabric: &Arc<Fabric>, settings: StepSettings) -> bool {
-        Arc::ptr_eq(&self.fabric, fabric) && self.settings == settings
+        let first = &self.fabrics[0].fabric;
+        self.settings == settings
+            && (Arc::ptr_eq(first, fabric)
+                || (settings.scheme == Scheme::Yarns && first.has_topology_of(fabric)))
     }
 
     /// Whether the group has neither batches nor pending cloths, and may be replaced.
@@ -48,56 +61,95 @@ impl Group {
         self.batches.is_empty() && self.pending.is_empty()
     }
 
-    /// Assigns a lane to every cloth, in batches of a given width or of widths that suit the number of
-    /// cloths. Calls `assigned` with each cloth whose lane changes, its batch and its lane.
+    /// Adds a cloth that waits for a lane.
+    pub fn add(&mut self, fabric: &Arc<Fabric>, cloth: PendingCloth) {
+        let known = self.fabrics.iter().position(|it| Arc::ptr_eq(&it.fabric, fabric));
+        let index = known.unwrap_or_else(|| {
+            let new = FabricCount { fabric: Arc::clone(fabric), cloths: 0 };
+            match self.fabrics.iter().position(|it| it.cloths == 0) {
+                Some(unused) => {
+                    self.fabrics[unused] = new;
+                    unused
+                }
+                None => {
+                    self.fabrics.push(new);
+                    self.fabrics.len() - 1
+                }
+            }
+        });
+        self.fabrics[index].cloths += 1;
+        self.changed = true;
+        self.pending.push(PendingCloth { fabric: index, ..cloth });
+    }
+
+    /// Frees a lane. The cloth's state can be read until another cloth gets the lane.
+    pub fn free(&mut self, batch: usize, lane: usize) -> &ClothBatch {
+        self.changed = true;
+        let batch = &mut self.batches[batch];
+        if let Some(occupant) = batch.occupants[lane].take() {
+            self.fabrics[occupant.fabric].cloths -= 1;
+        }
+        &batch.batch
+    }
+
+    /// Number of particles of each cloth.
+    pub fn particle_count(&self) -> usize {
+        self.fabrics[0].fabric.particle_count()
+    }
+
+    /// Assigns a lane to every cloth, in batches of a given width or of the widths that suit the number
+    /// of cloths. Calls `assigned` with each cloth whose lane is another, its batch and its lane.
     ///
-    /// Batches of the wanted widths are kept, the fullest first; all others are dissolved.
+    /// Batches of the wanted kinds are kept, the fullest first; the others are dissolved.
     pub fn assign_lanes(
         &mut self,
         width: Option<LaneCount>,
         mut assigned: impl FnMut(Entity, usize, usize),
     ) {
-        let occupied: usize = self.batches.iter().map(OccupiedBatch::occupied_count).sum();
-        let mut missing = self.widths(occupied + self.pending.len(), width);
-        let superfluous = self.superfluous(&mut missing);
+        let fullest_first = self.fullest_first();
+        let singles = fullest_first.iter().filter_map(|&batch| {
+            let batch = &self.batches[batch];
+            (batch.width == LaneCount::One).then(|| batch.batch.fabric())
+        });
+        let mut missing = wanted_batches(&self.fabrics, width, self.settings.scheme, singles);
+        let superfluous = self.superfluous(fullest_first, &mut missing);
         self.dissolve(superfluous, &mut assigned);
-        for width in missing {
-            let spare = self.spare.iter().position(|spare| spare.width == width);
+        for kind in missing {
+            let spare = self.spare.iter().position(|spare| spare.is_of(kind, &self.fabrics));
             self.batches.push(match spare {
                 Some(index) => self.spare.swap_remove(index),
-                None => OccupiedBatch::new(&self.fabric, width),
+                None => OccupiedBatch::new(kind, &self.fabrics),
             });
         }
-        let mut pending = self.pending.drain(..).peekable();
-        for (index, batch) in self.batches.iter_mut().enumerate() {
-            batch.fill(&mut pending, |entity, lane| assigned(entity, index, lane));
+        self.move_out_of_mixed();
+        // Batches of one fabric first: mixed ones hold what is left.
+        for mixed in [false, true] {
+            for (index, batch) in self.batches.iter_mut().enumerate() {
+                if batch.batch.is_mixed() == mixed {
+                    batch.fill(&mut self.pending, &self.fabrics, |entity, lane| {
+                        assigned(entity, index, lane);
+                    });
+                }
+            }
         }
-        debug_assert!(pending.peek().is_none(), "the widths hold all cloths");
-        drop(pending);
+        debug_assert!(self.pending.is_empty(), "the batches hold all cloths");
         self.changed = false;
     }
 
-    /// Widths of the batches that hold the given number of cloths.
-    fn widths(&self, mut cloths: usize, width: Option<LaneCount>) -> Vec<LaneCount> {
-        let mut widths = Vec::new();
-        while cloths > 0 {
-            let scheme = self.settings.scheme;
-            let next = width.unwrap_or_else(|| LaneCount::first_of(cloths, &self.fabric, scheme));
-            widths.push(next);
-            cloths = cloths.saturating_sub(next.get());
-        }
-        widths
+    /// Indices of the batches, the fullest first.
+    fn fullest_first(&self) -> Vec<usize> {
+        let mut batches: Vec<usize> = (0..self.batches.len()).collect();
+        batches.sort_by_key(|&batch| core::cmp::Reverse(self.batches[batch].occupied_count()));
+        batches
     }
 
-    /// Indices of the batches whose widths are not wanted, ascending. The widths of the batches that are kept
-    /// are removed from `wanted`.
-    fn superfluous(&self, wanted: &mut Vec<LaneCount>) -> Vec<usize> {
-        let mut fullest_first: Vec<usize> = (0..self.batches.len()).collect();
-        fullest_first
-            .sort_by_key(|&batch| core::cmp::Reverse(self.batches[batch].occupied_count()));
+    /// Indices of the batches whose kinds are not wanted, ascending. The kinds of the other batches
+    /// are taken off the list of wanted ones.
+    fn superfluous(&self, fullest_first: Vec<usize>, wanted: &mut Vec<BatchKind>) -> Vec<usize> {
         let mut superfluous = fullest_first;
         superfluous.retain(|&batch| {
-            let fitting = wanted.iter().position(|&width| width == self.batches[batch].width);
+            let batch = &self.batches[batch];
+            let fitting = wanted.iter().position(|&kind| batch.is_of(kind, &self.fabrics));
             fitting.map(|index| wanted.swap_remove(index)).is_none()
         });
         superfluous.sort_unstable();
@@ -110,14 +162,43 @@ impl Group {
         for index in batches.into_iter().rev() {
             let mut dissolved = self.batches.swap_remove(index);
             dissolved.dissolve(&mut self.pending);
-            let same_width = self.spare.iter().filter(|spare| spare.width == dissolved.width);
-            if same_width.count() < MOST_SPARE {
+            let same_kind = self.spare.iter().filter(|spare| spare.is_like(&dissolved));
+            if same_kind.count() < MOST_SPARE {
                 self.spare.push(dissolved);
             }
             let moved = self.batches.get(index).into_iter().flat_map(OccupiedBatch::occupied);
             for (lane, occupant) in moved {
                 assigned(occupant.entity, index, lane);
             }
+        }
+    }
+
+    /// Takes cloths out of mixed batches for which batches of their own fabric have room.
+    fn move_out_of_mixed(&mut self) {
+        if self.fabrics.len() == 1 {
+            return;
+        }
+        // Lanes of each fabric's own batches, less the cloths that are in them or wait.
+        let mut room = vec![0_isize; self.fabrics.len()];
+        let own = self.batches.iter().filter(|batch| !batch.batch.is_mixed());
+        for batch in own {
+            let is_of = |it: &FabricCount| Arc::ptr_eq(&it.fabric, batch.batch.fabric());
+            if let Some(fabric) = self.fabrics.iter().position(is_of) {
+                room[fabric] += (batch.occupants.len() - batch.occupied_count()) as isize;
+            }
+        }
+        for cloth in &self.pending {
+            room[cloth.fabric] -= 1;
+        }
+        if room.iter().all(|&room| room <= 0) {
+            return;
+        }
+        for batch in self.batches.iter_mut().filter(|batch| batch.batch.is_mixed()) {
+            batch.take_out(&mut self.pending, |fabric| {
+                let has_room = room[fabric] > 0;
+                room[fabric] -= isize::from(has_room);
+                has_room
+            });
         }
     }
 }

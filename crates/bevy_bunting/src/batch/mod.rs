@@ -1,6 +1,7 @@
 //! Batches, whose lanes hold the state of all simulated cloths, and the systems that step them.
 
 pub mod assign;
+pub mod batch_kind;
 pub mod batches;
 pub mod group;
 pub mod lane_handle;

@@ -5,13 +5,18 @@ use std::time::Duration;
 
 use bevy_ecs::prelude::*;
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricMaterial, LaneCount, LaneSurface,
+    ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, LaneCount, LaneSurface,
 };
+
+use crate::batch::batch_kind::BatchKind;
+use crate::batch::group::FabricCount;
 
 /// A cloth that waits for a lane.
 #[derive(Debug)]
 pub(crate) struct PendingCloth {
     pub entity: Entity,
+    /// Index of its fabric in the group.
+    pub fabric: usize,
     pub snapshot: ClothSnapshot,
     pub material: FabricMaterial,
 }
@@ -20,6 +25,8 @@ pub(crate) struct PendingCloth {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Occupant {
     pub entity: Entity,
+    /// Index of its fabric in the group.
+    pub fabric: usize,
     pub material: FabricMaterial,
 }
 
@@ -43,10 +50,16 @@ pub(crate) struct OccupiedBatch {
 }
 
 impl OccupiedBatch {
-    /// A batch with free lanes only.
-    pub fn new(fabric: &Arc<Fabric>, width: LaneCount) -> Self {
+    /// A batch with free lanes only, of a group of these fabrics.
+    pub fn new(kind: BatchKind, fabrics: &[FabricCount]) -> Self {
+        let BatchKind { fabric, width } = kind;
+        let fabric_at = |index: usize| &fabrics[index].fabric;
+        let batch = match fabric {
+            Some(fabric) => ClothBatch::new(Arc::clone(fabric_at(fabric)), width),
+            None => ClothBatch::mixed(fabric_at(0), width).expect("groups of fabrics are of grids"),
+        };
         Self {
-            batch: ClothBatch::new(Arc::clone(fabric), width),
+            batch,
             occupants: vec![None; width.get()],
             surfaces: vec![LaneSurface::default(); width.get()],
             width,
@@ -55,6 +68,26 @@ impl OccupiedBatch {
             covered: 0.0,
             time: Duration::ZERO,
         }
+    }
+
+    /// Whether the batch is of a kind, in a group of these fabrics.
+    pub fn is_of(&self, kind: BatchKind, fabrics: &[FabricCount]) -> bool {
+        self.width == kind.width
+            && match kind.fabric {
+                Some(fabric) => {
+                    !self.batch.is_mixed()
+                        && Arc::ptr_eq(self.batch.fabric(), &fabrics[fabric].fabric)
+                }
+                None => self.batch.is_mixed(),
+            }
+    }
+
+    /// Whether another batch is of the same kind.
+    pub fn is_like(&self, other: &Self) -> bool {
+        let mixed = [self, other].map(|batch| batch.batch.is_mixed());
+        self.width == other.width
+            && mixed[0] == mixed[1]
+            && (mixed[0] || Arc::ptr_eq(self.batch.fabric(), other.batch.fabric()))
     }
 
     /// Number of particles in all lanes, whether occupied or not.
@@ -73,24 +106,37 @@ impl OccupiedBatch {
         self.occupants.iter().flatten().count()
     }
 
-    /// Fills free lanes with pending cloths, calls `assigned` with each cloth and its lane, and clears lanes
-    /// whose cloths were removed.
+    /// Fills free lanes with those pending cloths that may be in the batch, as long as there are any of both, calls
+    /// `assigned` with each cloth and its lane, and clears lanes whose cloths were removed.
     pub fn fill(
         &mut self,
-        pending: &mut impl Iterator<Item = PendingCloth>,
+        pending: &mut Vec<PendingCloth>,
+        fabrics: &[FabricCount],
         mut assigned: impl FnMut(Entity, usize),
     ) {
+        let fabric_of = |cloth: &PendingCloth| &fabrics[cloth.fabric].fabric;
+        let (mixed, own) = (self.batch.is_mixed(), Arc::clone(self.batch.fabric()));
+        let mut fitting =
+            pending.extract_if(.., |cloth| mixed || Arc::ptr_eq(fabric_of(cloth), &own));
         let free = (0..self.occupants.len()).filter(|&lane| self.occupants[lane].is_none());
-        let entering: Vec<(usize, PendingCloth)> = free.zip(pending).collect();
-        for (lane, PendingCloth { entity, material, .. }) in &entering {
-            self.occupants[*lane] = Some(Occupant { entity: *entity, material: *material });
+        let entering: Vec<(usize, PendingCloth)> =
+            free.map_while(|lane| Some((lane, fitting.next()?))).collect();
+        drop(fitting);
+        for (lane, PendingCloth { entity, fabric, material, .. }) in &entering {
+            let occupant = Occupant { entity: *entity, fabric: *fabric, material: *material };
+            self.occupants[*lane] = Some(occupant);
             assigned(*entity, *lane);
         }
         let is_left =
             |lane: &usize| self.occupants[*lane].is_none() && self.batch.is_occupied(*lane);
         let leaving: Vec<usize> = (0..self.occupants.len()).filter(is_left).collect();
-        let entering: Vec<_> =
-            entering.iter().map(|(lane, cloth)| (*lane, &cloth.snapshot, cloth.material)).collect();
+        let entering = entering.iter().map(|(lane, cloth)| Entering {
+            lane: *lane,
+            fabric: fabric_of(cloth),
+            snapshot: &cloth.snapshot,
+            material: cloth.material,
+        });
+        let entering: Vec<Entering> = entering.collect();
         if !leaving.is_empty() || !entering.is_empty() {
             self.batch.exchange(&leaving, &entering).expect("pending cloths are valid");
         }
@@ -98,16 +144,23 @@ impl OccupiedBatch {
 
     /// Frees all lanes and adds their cloths to the pending ones.
     pub fn dissolve(&mut self, pending: &mut Vec<PendingCloth>) {
+        self.take_out(pending, |_| true);
+        self.fill(&mut Vec::new(), &[], |_, _| {});
+    }
+
+    /// Frees the lanes of those cloths whose fabrics, by their index in the group, leave; they wait for other lanes.
+    pub fn take_out(
+        &mut self,
+        pending: &mut Vec<PendingCloth>,
+        mut leaves: impl FnMut(usize) -> bool,
+    ) {
         for (lane, occupant) in self.occupants.iter_mut().enumerate() {
-            if let Some(Occupant { entity, material }) = occupant.take() {
-                pending.push(PendingCloth {
-                    entity,
-                    snapshot: self.batch.snapshot(lane),
-                    material,
-                });
+            let leaving = occupant.take_if(|occupant| leaves(occupant.fabric));
+            if let Some(Occupant { entity, fabric, material }) = leaving {
+                let snapshot = self.batch.snapshot(lane);
+                pending.push(PendingCloth { entity, fabric, snapshot, material });
             }
         }
-        self.fill(&mut core::iter::empty(), |_, _| {});
     }
 }
 

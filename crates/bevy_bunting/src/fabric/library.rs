@@ -24,6 +24,10 @@ const ASYNC_VERTICES: usize = 8192;
 /// cloths appear late without need.
 const VERTICES_PER_TICK: usize = 1024;
 
+/// Number of ticks by which levels may be late where they depend on the machine anyway. Fewer: ticks wait for other
+/// threads on a busy machine. More: cloths appear late there.
+const MOST_LATE: u64 = 256;
+
 /// The levels of all cloths in use, by content.
 #[derive(Resource, Debug, Default)]
 pub(crate) struct FabricLibrary {
@@ -36,10 +40,12 @@ pub(crate) struct FabricLibrary {
     expected: usize,
     /// Whether a cloth waits for its levels, or for levels that replace its present ones.
     pub awaited: bool,
+    /// Whether levels may be taken later than they are due, so that no tick waits for another thread.
+    pub may_be_late: bool,
 }
 
-/// Levels that are being built in the background. The tick in which they are taken follows from the numbers
-/// of vertices.
+/// Levels that are being cut in the background. They are taken in a tick that follows from the numbers of vertices, or
+/// later where they are not cut yet and may be late.
 #[derive(Debug)]
 struct Cutting {
     /// Tick in which the levels are taken.
@@ -47,7 +53,15 @@ struct Cutting {
     levels: Background<Result<ClothLevels, FabricError>>,
 }
 
-/// Content key: all inputs of a cloth's levels, bit for bit; each list follows its length.
+impl Cutting {
+    /// Whether levels are taken in a tick.
+    fn is_ready(&self, tick: u64, may_be_late: bool) -> bool {
+        let waits = may_be_late && !self.levels.is_done() && tick < self.due + MOST_LATE;
+        tick >= self.due && !waits
+    }
+}
+
+/// Everything that the levels of a cloth depend on, bit for bit; each list after its length.
 type ContentKey = Vec<u32>;
 
 /// Result of a request for a cloth's levels.
@@ -72,7 +86,8 @@ impl FabricLibrary {
 
     /// Whether levels are expected in a later tick.
     pub fn is_cutting(&self, key: &ContentKey) -> bool {
-        self.cutting.get(key).is_some_and(|cutting| self.tick < cutting.due)
+        let is_ready = |cutting: &Cutting| cutting.is_ready(self.tick, self.may_be_late);
+        self.cutting.get(key).is_some_and(|cutting| !is_ready(cutting))
     }
 
     /// Number of ticks until all levels that are being built are ready.

@@ -20,6 +20,7 @@ use crate::cloth::mesh::ClothMesh;
 use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::library::{FabricLibrary, Found};
+use crate::lod::budget::{ClothBudget, LodCosts};
 use crate::lod::lod_set::LodSet;
 use crate::motion::attachment::Attachment;
 use crate::motion::frame::{frame_of, is_finite};
@@ -99,11 +100,13 @@ fn cut_cloths(
     mut cloths: Query<CutCloth>,
     targets: Query<(), With<Transform>>,
     transforms: TransformHelper,
+    budget: Res<ClothBudget>,
     mut library: ResMut<FabricLibrary>,
     mut batches: ResMut<ClothBatches>,
     mut commands: Commands,
 ) {
     library.begin_tick();
+    library.may_be_late = budget.costs == LodCosts::Measured;
     for mut cloth in &mut cloths {
         let target = cloth.target();
         let is_cutting = cloth.instance.cutting.as_ref().is_some_and(|key| library.is_cutting(key));

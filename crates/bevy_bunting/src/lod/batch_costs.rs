@@ -12,25 +12,63 @@ pub(crate) struct BatchCosts {
     /// Greatest number of cloths in batches of one lane beside full batches; one fewer beside a batch of
     /// eight lanes that is not full.
     pub most_single: u32,
-    /// Cost of each cloth besides its batch, µs.
+    /// The pool of cloths of several fabrics that are put together in mixed batches; none where there is only this
+    /// fabric.
+    pub pool: Option<Pool>,
+    /// Cost of each cloth besides its batch.
     pub per_cloth: f32,
     /// Cost of one change between this level and a coarser one on a screen, µs.
     pub change: f32,
 }
 
+/// Cloths that do not fill half of a batch of their own fabric, of all fabrics of one topology.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pool {
+    /// Number of the pool.
+    pub index: u32,
+    /// Costs of mixed batches of eight lanes and of sixteen; the latter none where batches are at most eight wide.
+    pub eight: f32,
+    pub sixteen: Option<f32>,
+}
+
 impl BatchCosts {
-    /// Cost of a number of cloths in a tick, µs.
+    /// Cost of a number of cloths of one fabric in a tick, µs, without those of them that are in the pool.
     pub fn of(&self, cloths: u32) -> f32 {
+        let (in_batches, pooled) = self.own(cloths);
+        let rest = if self.pool.is_none() { self.rest(pooled) } else { 0.0 };
+        in_batches + rest + cloths as f32 * self.per_cloth
+    }
+
+    /// Number of cloths, of so many of one fabric, that are in the pool.
+    pub fn pooled(&self, cloths: u32) -> u32 {
+        if self.pool.is_some() { self.own(cloths).1 } else { 0 }
+    }
+
+    /// Cost of the batches of a pool of so many cloths, µs.
+    pub fn of_pool(&self, cloths: u32) -> f32 {
+        let Some(Pool { eight, sixteen, .. }) = self.pool else { return 0.0 };
+        let mixed = Self { eight, sixteen, pool: None, ..*self };
+        let (in_batches, rest) = mixed.own(cloths);
+        in_batches + mixed.rest(rest)
+    }
+
+    /// Cost of batches of cloths of one fabric that are half full or more, µs, and the number of cloths left.
+    fn own(&self, cloths: u32) -> (f32, u32) {
         let (bits, widest) = self.widest();
         // Shifts replace a division, since the governor calls this in its innermost loop.
         let full = cloths >> bits;
-        let rest = match cloths - (full << bits) {
-            rest if rest <= self.most_single => rest as f32 * self.one,
-            ..=8 => self.eight,
-            rest if rest - 8 < self.most_single => self.eight + (rest - 8) as f32 * self.one,
-            _ => widest,
+        let (part, left) = match cloths - (full << bits) {
+            rest if rest <= self.most_single || rest < 4 => (0.0, rest),
+            ..=8 => (self.eight, 0),
+            rest if rest - 8 < self.most_single => (self.eight, rest - 8),
+            _ => (widest, 0),
         };
-        full as f32 * widest + rest + cloths as f32 * self.per_cloth
+        (full as f32 * widest + part, left)
+    }
+
+    /// Cost of batches of less than four cloths in one batch, or in a batch each, µs.
+    fn rest(&self, cloths: u32) -> f32 {
+        if cloths <= self.most_single { cloths as f32 * self.one } else { self.eight }
     }
 
     /// Cost in a tick of one more cloth among many, µs.
@@ -56,6 +94,7 @@ mod tests {
             eight: 3.0,
             sixteen: Some(5.0),
             most_single: 1,
+            pool: None,
             per_cloth: 0.5,
             change: 0.0,
         };
@@ -67,5 +106,12 @@ mod tests {
         let counts = [1, 2, 3, 4, 8, 9, 10, 11, 16, 17, 19];
         let each = counts.map(|count| single.of(count));
         assert_eq!(each, [1.5, 3.0, 4.5, 5.0, 7.0, 8.5, 10.0, 10.5, 13.0, 14.5, 17.5]);
+        // Of several fabrics, cloths that do not fill half a batch are in the pool.
+        let pool = Some(Pool { index: 0, eight: 3.5, sixteen: Some(6.0) });
+        let pooled = BatchCosts { pool, ..costs };
+        assert_eq!([1, 3, 4, 9, 17, 19].map(|count| pooled.pooled(count)), [1, 3, 0, 0, 1, 3]);
+        assert_eq!([1, 3, 4, 19].map(|count| pooled.of(count)), [0.5, 1.5, 5.0, 14.5]);
+        let each = [0, 1, 2, 8, 9, 16, 17, 26].map(|count| pooled.of_pool(count));
+        assert_eq!(each, [0.0, 1.0, 3.5, 3.5, 6.0, 6.0, 7.0, 12.0]);
     }
 }

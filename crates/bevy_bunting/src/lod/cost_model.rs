@@ -2,13 +2,17 @@
 
 use bunting_solver::{LaneCount, StepSettings};
 
-use crate::batch::batches::BatchTiming;
-use crate::lod::batch_costs::BatchCosts;
+use crate::batch::batches::{BatchTiming, CostKind};
+use crate::lod::batch_costs::{BatchCosts, Pool};
 use crate::lod::cost_table::CostTable;
 
 /// Rates at which the model approaches a measurement above, and one below, its expectation. They differ so
 /// that most ticks cost no more than expected; equal rates would give the mean.
 const RATES: [f32; 2] = [0.2, 0.05];
+
+/// Factor on the table's costs before anything was measured: the machine is unknown, and caches are cold. Smaller: the
+/// first second is over the budget on slow machines. Larger: cloths start coarser than they need to.
+const UNKNOWN_MACHINE: f32 = 1.5;
 
 /// Fraction of the sums of earlier changes of level that is kept when one more is measured: about twenty
 /// changes count.
@@ -18,21 +22,35 @@ const KEPT: f32 = 0.95;
 /// of the machine.
 const GREATEST_RATIO: f32 = 1.5;
 
-/// Measured over tabulated cost of batches of one size, settings and width.
+/// Measured over tabulated cost of batches of one kind.
 #[derive(Clone, Copy, Debug)]
 struct BatchFactor {
-    particles: usize,
-    settings: StepSettings,
-    lanes: LaneCount,
-    /// Factor; none until the end of the first tick with such batches.
-    factor: Option<f32>,
-    /// Costs of all such batches in the measured tick, µs: tabulated and measured.
+    kind: CostKind,
+    /// None until the end of the first tick in which there are such batches.
+    factor: Option<Factor>,
+    /// Costs of all such batches in the tick that is learnt from, µs: tabulated and measured.
     sums: [f32; 2],
 }
 
-impl BatchFactor {
-    fn is_of(&self, particles: usize, settings: StepSettings, lanes: LaneCount) -> bool {
-        (self.particles, self.settings, self.lanes) == (particles, settings, lanes)
+/// Measured over tabulated cost.
+#[derive(Clone, Copy, Debug)]
+struct Factor {
+    value: f32,
+    /// Number of measurements so far.
+    measured: u32,
+}
+
+impl Factor {
+    /// Nothing measured yet.
+    const UNKNOWN: Self = Self { value: UNKNOWN_MACHINE, measured: 0 };
+
+    /// Moves towards a measured factor: the mean of the first ones.
+    fn approach(&mut self, measured: f32) {
+        let measured = measured.min(GREATEST_RATIO * self.value);
+        self.measured = self.measured.saturating_add(1);
+        let least = RATES[usize::from(measured <= self.value)];
+        let rate = least.max(1.0 / self.measured as f32);
+        self.value += rate * (measured - self.value);
     }
 }
 
@@ -40,34 +58,44 @@ impl BatchFactor {
 #[derive(Clone, Debug)]
 pub(crate) struct CostModel {
     factors: Vec<BatchFactor>,
-    /// Ratio of measured to tabulated cost of all batches, used for batches that were never measured.
-    general_factor: f32,
-    /// Ratio of measured to tabulated overhead: everything besides batches and changes of level.
-    overhead_factor: f32,
-    /// Sums over changes of level, µs: tabulated and measured. Later changes weigh more.
+    /// Measured over tabulated cost of all batches: the factor of batches that were not measured yet.
+    general_factor: Factor,
+    /// Measured over tabulated cost of the overhead: everything besides batches and changes of level.
+    overhead_factor: Factor,
+    /// Sums over changes of level, µs: tabulated and measured. Later changes count more.
     changes: [f32; 2],
 }
 
 impl Default for CostModel {
     fn default() -> Self {
-        Self { factors: Vec::new(), general_factor: 1.0, overhead_factor: 1.0, changes: [1.0; 2] }
+        Self {
+            factors: Vec::new(),
+            general_factor: Factor::UNKNOWN,
+            overhead_factor: Factor::UNKNOWN,
+            changes: [1.0; 2],
+        }
     }
 }
 
 impl CostModel {
-    /// Learns from the measured batches of a tick. All batches of one size, settings and width are averaged,
-    /// since among many batches some always take long.
+    /// Expects the costs in the table.
+    pub fn of_table() -> Self {
+        let exact = Factor { value: 1.0, measured: 0 };
+        Self { general_factor: exact, overhead_factor: exact, ..Self::default() }
+    }
+
+    /// Learns from the measured batches of a tick. Those of one size, settings and width count as one: of many, some
+    /// always take long.
     pub fn learn_batches(&mut self, table: &CostTable, batches: impl Iterator<Item = BatchTiming>) {
-        for BatchTiming { particles, settings, lanes, time } in batches {
-            let by_table = table.batch(particles, settings, lanes);
+        for BatchTiming { kind, time } in batches {
+            let by_table = table.batch(kind);
             if by_table <= 0.0 || !time.is_finite() {
                 continue;
             }
-            let known = self.factors.iter().position(|it| it.is_of(particles, settings, lanes));
+            let known = self.factors.iter().position(|it| it.kind == kind);
             let index = known.unwrap_or(self.factors.len());
             if known.is_none() {
-                let new = BatchFactor { particles, settings, lanes, factor: None, sums: [0.0; 2] };
-                self.factors.push(new);
+                self.factors.push(BatchFactor { kind, factor: None, sums: [0.0; 2] });
             }
             let [tabulated, measured] = &mut self.factors[index].sums;
             *tabulated += by_table;
@@ -78,22 +106,20 @@ impl CostModel {
             let [tabulated, measured] = core::mem::take(sums);
             if tabulated > 0.0 {
                 let ratio = measured / tabulated;
-                match factor {
-                    Some(factor) => approach(factor, ratio),
-                    None => *factor = Some(ratio.min(GREATEST_RATIO * self.general_factor)),
-                }
+                let start = Factor { measured: 0, ..self.general_factor };
+                factor.get_or_insert(start).approach(ratio);
                 all = [all[0] + tabulated, all[1] + measured];
             }
         }
         if all[0] > 0.0 {
-            approach(&mut self.general_factor, all[1] / all[0]);
+            self.general_factor.approach(all[1] / all[0]);
         }
     }
 
     /// Learns from the measured overhead of a tick, µs.
     pub fn learn_overhead(&mut self, tabulated: f32, measured: f32) {
         if tabulated > 0.0 && measured.is_finite() {
-            approach(&mut self.overhead_factor, measured.max(0.0) / tabulated);
+            self.overhead_factor.approach(measured.max(0.0) / tabulated);
         }
     }
 
@@ -114,11 +140,12 @@ impl CostModel {
 
     /// Expected cost of a tick without any cloth, µs.
     pub fn empty_tick(&self, table: &CostTable) -> f32 {
-        self.overhead_factor * table.tick
+        self.overhead_factor.value * table.tick
     }
 
-    /// Expected costs of batches with a number of particles in each lane, on a machine with batches of at
-    /// most `widest`, and with at most `most_single` cloths in batches of one lane.
+    /// Expected costs of batches with so many particles in a lane, on a machine whose batches are at most
+    /// `widest`, with at most `most_single` cloths in batches of one lane. `pool` is the number of the pool of cloths of
+    /// several fabrics.
     pub fn costs(
         &self,
         table: &CostTable,
@@ -126,26 +153,33 @@ impl CostModel {
         settings: StepSettings,
         widest: LaneCount,
         most_single: u32,
+        pool: Option<u32>,
     ) -> BatchCosts {
-        let cost = |lanes: LaneCount| {
-            let known = self.factors.iter().find(|it| it.is_of(particles, settings, lanes));
+        let cost = |lanes: LaneCount, mixed: bool| {
+            let kind = CostKind { particles, settings, lanes, mixed };
+            let known = self.factors.iter().find(|it| it.kind == kind);
             let factor = known.and_then(|known| known.factor).unwrap_or(self.general_factor);
-            factor * table.batch(particles, settings, lanes)
+            factor.value * table.batch(kind)
         };
-        let one = cost(LaneCount::One);
-        let (eight, sixteen, most_single) = match widest {
-            LaneCount::One => (8.0 * one, None, 8),
-            LaneCount::Eight => (cost(LaneCount::Eight), None, most_single),
+        let one = cost(LaneCount::One, false);
+        let costs_of = |mixed: bool| match widest {
+            LaneCount::One => (8.0 * one, None),
+            LaneCount::Eight => (cost(LaneCount::Eight, mixed), None),
             LaneCount::Sixteen => {
-                (cost(LaneCount::Eight), Some(cost(LaneCount::Sixteen)), most_single)
+                (cost(LaneCount::Eight, mixed), Some(cost(LaneCount::Sixteen, mixed)))
             }
         };
+        let (eight, sixteen) = costs_of(false);
         BatchCosts {
             one,
             eight,
             sixteen,
-            most_single,
-            per_cloth: self.overhead_factor * table.per_cloth(particles),
+            most_single: if widest == LaneCount::One { 8 } else { most_single },
+            pool: pool.map(|index| {
+                let (eight, sixteen) = costs_of(true);
+                Pool { index, eight, sixteen }
+            }),
+            per_cloth: self.overhead_factor.value * table.per_cloth(particles),
             change: self.change_factor() * table.change(particles),
         }
     }
@@ -156,13 +190,6 @@ impl CostModel {
     }
 }
 
-/// Moves a factor towards a measured one.
-fn approach(factor: &mut f32, measured: f32) {
-    let measured = measured.min(GREATEST_RATIO * *factor);
-    let rate = if measured > *factor { RATES[0] } else { RATES[1] };
-    *factor += rate * (measured - *factor);
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -170,6 +197,8 @@ mod tests {
     const TABLE: CostTable = CostTable {
         substep: [100.0, 200.0, 300.0],
         pass: [10.0, 20.0, 30.0],
+        batch: [0.0; 3],
+        mixed: 1.0,
         publish: 2.0,
         cloth: 0.0,
         tick: 10.0,
@@ -177,39 +206,46 @@ mod tests {
     };
     const SETTINGS: StepSettings = StepSettings::yarns(2);
 
+    fn kind(settings: StepSettings, lanes: LaneCount) -> CostKind {
+        CostKind { particles: 1000, settings, lanes, mixed: false }
+    }
+
     fn sixteen(time: f32) -> BatchTiming {
-        BatchTiming { particles: 1000, settings: SETTINGS, lanes: LaneCount::Sixteen, time }
+        BatchTiming { kind: kind(SETTINGS, LaneCount::Sixteen), time }
     }
 
     #[test]
     fn costs_are_those_of_whole_batches() {
-        assert_eq!(TABLE.batch(1000, SETTINGS, LaneCount::Sixteen), 600.0);
+        assert_eq!(TABLE.batch(kind(SETTINGS, LaneCount::Sixteen)), 600.0);
         let passes = StepSettings { passes: 3, ..SETTINGS };
-        assert_eq!(TABLE.batch(1000, passes, LaneCount::Eight), 480.0);
-        let costs = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1);
+        assert_eq!(TABLE.batch(kind(passes, LaneCount::Eight)), 480.0);
+        let costs =
+            CostModel::of_table().costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1, None);
         let sixteen = Some(600.0);
         let expected = BatchCosts {
             one: 200.0,
             eight: 400.0,
             sixteen,
             most_single: 1,
+            pool: None,
             per_cloth: 2.0,
             change: 50.0,
         };
         assert_eq!(costs, expected);
-        let narrow = CostModel::default().costs(&TABLE, 1000, SETTINGS, LaneCount::Eight, 1);
+        let narrow = CostModel::of_table().costs(&TABLE, 1000, SETTINGS, LaneCount::Eight, 1, None);
         assert_eq!(narrow.sixteen, None);
     }
 
     #[test]
     fn the_model_approaches_what_is_measured() {
-        let mut model = CostModel::default();
+        let mut model = CostModel::of_table();
         for _ in 0..200 {
             model.learn_batches(&TABLE, [sixteen(1800.0)].into_iter());
             model.learn_overhead(10.0, 40.0);
             model.learn_changes(30.0, 60.0);
         }
-        let costs = |particles| model.costs(&TABLE, particles, SETTINGS, LaneCount::Sixteen, 1);
+        let costs =
+            |particles| model.costs(&TABLE, particles, SETTINGS, LaneCount::Sixteen, 1, None);
         assert!((costs(1000).sixteen.expect("wide") / 1800.0 - 1.0).abs() < 0.01);
         // Batches that were never measured have the general factor.
         assert!((costs(500).eight / 600.0 - 1.0).abs() < 0.01);
@@ -219,21 +255,21 @@ mod tests {
 
     #[test]
     fn of_many_batches_the_mean_counts() {
-        let mut model = CostModel::default();
+        let mut model = CostModel::of_table();
         for _ in 0..50 {
             let times = (0..200).map(|batch| if batch % 10 == 0 { 1500.0 } else { 500.0 });
             model.learn_batches(&TABLE, times.map(sixteen));
         }
-        let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1);
+        let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1, None);
         assert!((costs.sixteen.expect("wide") / 600.0 - 1.0).abs() < 0.01, "{costs:?}");
     }
 
     #[test]
     fn one_bad_tick_changes_little() {
-        let mut model = CostModel::default();
+        let mut model = CostModel::of_table();
         (0..50).for_each(|_| model.learn_batches(&TABLE, [sixteen(600.0)].into_iter()));
         model.learn_batches(&TABLE, [sixteen(60_000.0)].into_iter());
-        let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1);
+        let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1, None);
         assert!(costs.sixteen.expect("wide") < 1.11 * 600.0);
     }
 }

@@ -2,7 +2,9 @@
 
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
-use bunting_solver::{LaneCount, StepSettings};
+use bunting_solver::LaneCount;
+
+use crate::batch::batches::CostKind;
 
 /// Costs of cloth; where the width of the batch matters, for one, eight and sixteen lanes. A partly filled
 /// batch costs as much as a full one.
@@ -13,6 +15,10 @@ pub struct CostTable {
     pub substep: [f32; 3],
     /// One particle in all lanes, in each further pass, ns.
     pub pass: [f32; 3],
+    /// A batch, in a substep, besides its particles, ns.
+    pub batch: [f32; 3],
+    /// Factor on the cost of a batch of cloths of different fabrics.
+    pub mixed: f32,
     /// Driving a cloth and publishing its state in a tick, ns a particle.
     pub publish: f32,
     /// Driving a cloth and publishing its state in a tick, besides its particles, ns.
@@ -27,10 +33,12 @@ impl Default for CostTable {
     /// Costs of a 33 × 33 flag in the wind on one core of a server Xeon with AVX-512, in 2026.
     fn default() -> Self {
         Self {
-            substep: [21.0, 80.0, 137.0],
-            pass: [4.8, 17.5, 31.0],
+            substep: [36.0, 140.0, 230.0],
+            pass: [5.0, 18.0, 45.0],
+            batch: [1200.0, 500.0, 500.0],
+            mixed: 1.2,
             publish: 2.0,
-            cloth: 200.0,
+            cloth: 700.0,
             tick: 20.0,
             change: 170.0,
         }
@@ -38,13 +46,15 @@ impl Default for CostTable {
 }
 
 impl CostTable {
-    /// Cost of a batch in a tick, µs; `particles` are those of one lane.
-    #[must_use]
-    pub fn batch(&self, particles: usize, settings: StepSettings, lanes: LaneCount) -> f32 {
+    /// Cost of a batch in a tick, µs.
+    pub(crate) fn batch(&self, kind: CostKind) -> f32 {
+        let CostKind { particles, settings, lanes, mixed } = kind;
         let width = width(lanes);
         let passes = settings.passes.saturating_sub(1) as f32;
-        let substep = self.substep[width] + passes * self.pass[width];
-        1e-3 * particles as f32 * settings.substeps as f32 * substep
+        let of_particle = self.substep[width] + passes * self.pass[width];
+        let of_substep = self.batch[width] + particles as f32 * of_particle;
+        let factor = if mixed { self.mixed } else { 1.0 };
+        factor * settings.substeps as f32 * of_substep / NANOSECONDS
     }
 
     /// Cost of a change between two levels on a screen, µs; `particles` are those of the finer level.
@@ -57,6 +67,9 @@ impl CostTable {
         1e-3 * (self.cloth + self.publish * particles as f32)
     }
 }
+
+/// Nanoseconds in a microsecond.
+const NANOSECONDS: f32 = 1e3;
 
 /// Index of a width in the table's arrays.
 fn width(lanes: LaneCount) -> usize {

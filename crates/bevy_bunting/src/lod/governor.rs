@@ -28,8 +28,12 @@ const FINER_FRACTION: f32 = 0.95;
 /// Greatest fraction of the budget that is reserved for changes of level: dearer changes exceed the budget.
 const MOST_RESERVED: f32 = 0.25;
 
-/// Number of low bits of a value that are dropped to make its bucket: the exponent and four bits of the
-/// mantissa remain, a resolution of 1/16.
+/// What it takes to give a new cloth a lane, over a change of level. It happens once, so that of many new cloths, as when
+/// a scene is loaded, it counts for each by itself.
+const ENTERING: f32 = 0.5;
+
+/// Number of low bits of a value that are dropped to make its bucket: the exponent and four bits are
+/// left, a resolution of 1/16.
 const BUCKET_SHIFT: u32 = 19;
 
 /// Number of buckets for all positive floats.
@@ -176,7 +180,7 @@ impl Governor {
             let more = self.counts.difference(tables, cloth.table, step.to + 1, step.to);
             if more <= 0.0 || cost + more <= fraction * budget {
                 cost += more;
-                self.counts.shift(cloth.table, step.to + 1, step.to);
+                self.counts.shift(tables, cloth.table, step.to + 1, step.to);
                 self.chosen[index] = step.to;
             }
         }
@@ -205,16 +209,17 @@ impl Governor {
             let to = coarsest(cloth);
             if cloth.level != to {
                 cost += self.counts.difference(tables, cloth.table, cloth.level, to);
-                self.counts.shift(cloth.table, cloth.level, to);
+                self.counts.shift(tables, cloth.table, cloth.level, to);
             }
         }
         for (index, cloth) in cloths.iter().enumerate().filter(|(_, cloth)| is_fresh(cloth)) {
             let (from, mut to) = (coarsest(cloth), self.chosen[index]);
             if from != to {
                 let more = self.counts.difference(tables, cloth.table, from, to);
-                if cost + more <= budget {
+                let entering = ENTERING * tables[cloth.table as usize].costs[to as usize].change;
+                if cost + more + entering <= budget {
                     cost += more;
-                    self.counts.shift(cloth.table, from, to);
+                    self.counts.shift(tables, cloth.table, from, to);
                 } else {
                     to = from;
                 }
@@ -243,13 +248,18 @@ impl Governor {
             if cloth.fresh {
                 continue;
             }
-            let may = cloth.ready || cost > budget;
+            let exceeds = cost > budget;
             let left = &mut left[usize::from(cloth.on_screen)];
-            if to > cloth.level && may && *left > 0 {
+            if to <= cloth.level || *left == 0 || !(cloth.ready || exceeds) {
+                continue;
+            }
+            let more = self.counts.difference(tables, cloth.table, cloth.level, to);
+            // A coarser level costs more where it needs another batch, and none becomes empty.
+            if exceeds || more <= 0.0 || cost + more <= budget {
                 *left -= 1;
                 changes += cloth.cost_of_change(tables, to);
-                cost += self.counts.difference(tables, cloth.table, cloth.level, to);
-                self.counts.shift(cloth.table, cloth.level, to);
+                cost += more;
+                self.counts.shift(tables, cloth.table, cloth.level, to);
                 switches.push((index, to as usize));
             }
         }
@@ -269,7 +279,7 @@ impl Governor {
                 cost += more;
                 changes += change;
                 *left -= 1;
-                self.counts.shift(cloth.table, cloth.level, to);
+                self.counts.shift(tables, cloth.table, cloth.level, to);
                 switches.push((step.cloth as usize, to as usize));
             }
         }

@@ -13,6 +13,7 @@ fn table() -> LevelTable {
         eight: 0.6 * sixteen,
         sixteen: Some(sixteen),
         most_single: 1,
+        pool: None,
         per_cloth: 0.0,
         change: 0.0,
     });

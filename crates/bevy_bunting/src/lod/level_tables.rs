@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Weak};
 
-use bunting_solver::{Fabric, LaneCount, StepSettings, instruction_set};
+use bunting_solver::{Fabric, LaneCount, Scheme, StepSettings, instruction_set};
 
 use crate::fabric::levels::ClothLevels;
 use crate::lod::batch_costs::BatchCosts;
@@ -22,6 +22,10 @@ struct Work {
     particles: usize,
     step: StepSettings,
     most_single: u32,
+    /// Topology of the fabric, see [`Fabric::topology`].
+    topology: Option<u64>,
+    /// Number of the pool of cloths of several fabrics; none where no other fabric has the topology.
+    pool: Option<u32>,
 }
 
 /// One table for each [`ClothLevels`] in use.
@@ -103,8 +107,8 @@ impl LevelTables {
             for (work, cost) in levels.iter().zip(&mut table_of_costs.costs) {
                 let known = self.costs.iter().find(|(known, _)| known == work);
                 *cost = known.map(|(_, cost)| *cost).unwrap_or_else(|| {
-                    let Work { particles, step, most_single } = *work;
-                    let new = model.costs(table, particles, step, widest, most_single);
+                    let Work { particles, step, most_single, pool, .. } = *work;
+                    let new = model.costs(table, particles, step, widest, most_single, pool);
                     self.costs.push((*work, new));
                     new
                 });
@@ -119,6 +123,7 @@ impl LevelTables {
             self.work.iter_mut().for_each(Vec::clear);
         }
         let gravity = settings.gravity.length();
+        let mut is_new = false;
         for (levels, work) in self.levels.iter().zip(&mut self.work) {
             if !work.is_empty() {
                 continue;
@@ -131,9 +136,36 @@ impl LevelTables {
                     None => LaneCount::most_alone(fabric, step.scheme) as u32,
                     Some(_) => 0,
                 };
-                Work { particles: fabric.particle_count(), step, most_single }
+                let topology = fabric.topology().filter(|_| step.scheme == Scheme::Yarns);
+                Work { particles: fabric.particle_count(), step, most_single, topology, pool: None }
             };
             work.extend((0..levels.count()).map(work_of));
+            is_new = true;
+        }
+        if is_new {
+            self.number_pools();
+        }
+    }
+
+    /// Numbers the topologies, with settings, of more than one fabric.
+    fn number_pools(&mut self) {
+        let mut pools: Vec<(u64, StepSettings, u32)> = Vec::new();
+        for numbers in [false, true] {
+            let in_use = self.levels.iter().zip(&mut self.work);
+            let in_use = in_use.filter(|(levels, _)| levels.strong_count() > 0);
+            for work in in_use.flat_map(|(_, work)| work) {
+                let Some(topology) = work.topology else { continue };
+                let is_of =
+                    |pool: &(u64, StepSettings, u32)| (pool.0, pool.1) == (topology, work.step);
+                let known = pools.iter().position(is_of);
+                match known {
+                    Some(index) if numbers => {
+                        work.pool = (pools[index].2 > 1).then_some(index as u32);
+                    }
+                    Some(index) => pools[index].2 += 1,
+                    None => pools.push((topology, work.step, 1)),
+                }
+            }
         }
     }
 }

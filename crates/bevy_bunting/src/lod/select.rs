@@ -32,6 +32,9 @@ use crate::timings::ClothTimings;
 /// Number of ticks between two measurements of costs, since reading clocks takes time, too.
 const MEASURED_EVERY: u32 = 8;
 
+/// Ticks at the beginning that are all measured, as the machine is unknown.
+const FIRST_MEASURED: u32 = 64;
+
 /// Factor on the importance of a cloth that is not on a screen but near one.
 const NEAR_SCREEN_IMPORTANCE: f32 = 1e-3;
 
@@ -69,6 +72,8 @@ pub(crate) struct LevelSelector {
     tick: u32,
     /// Number of cloths so far; it staggers the examinations of cloths over ticks.
     cloths: u32,
+    /// Whether there were cloths in the last tick that had not been simulated yet.
+    has_fresh: bool,
     /// Tabulated overhead of the last tick: its cost besides batches and changes of level, µs.
     overhead: f32,
     /// Number of particles of the finer level, summed over the last tick's changes on a screen.
@@ -162,14 +167,15 @@ impl LevelSelector {
     fn learn(&mut self, conditions: &Conditions, batches: &mut ClothBatches) -> CostTable {
         match conditions.budget.costs {
             LodCosts::Fixed(table) => {
-                self.model = CostModel::default();
+                self.model = CostModel::of_table();
                 batches.is_timed = false;
                 table
             }
             LodCosts::Measured => {
                 let table = CostTable::default();
                 self.learn_costs(&table, batches, conditions.timings.as_deref());
-                batches.is_timed = self.tick.is_multiple_of(MEASURED_EVERY);
+                batches.is_timed =
+                    self.tick < FIRST_MEASURED || self.tick.is_multiple_of(MEASURED_EVERY);
                 table
             }
         }
@@ -191,7 +197,8 @@ impl LevelSelector {
         }
         let in_batches: f32 = batches.timings().map(|batch| batch.time).sum();
         self.model.learn_batches(table, batches.timings());
-        if let Some(timings) = timings {
+        // What becomes of a new cloth once is no overhead of every tick.
+        if let Some(timings) = timings.filter(|_| !self.has_fresh) {
             let total = timings.total().as_secs_f32() * 1e6;
             self.model.learn_overhead(self.overhead, total - in_batches - in_changes);
         }
@@ -346,6 +353,7 @@ impl LevelSelector {
             .iter()
             .map(|it| self.tables.particles(it.table as usize, it.level as usize));
         self.overhead = CostModel::tabulated_overhead(table, particles);
+        self.has_fresh = self.candidates.iter().any(|it| it.fresh);
         self.governor.choose(&self.tables.tables, &self.candidates, limits).clone()
     }
 }

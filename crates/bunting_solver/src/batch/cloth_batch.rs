@@ -5,8 +5,10 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use crate::batch::error::BatchError;
+use crate::batch::exchange::Entering;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_count::LaneCount;
+use crate::batch::mixed::Mixed;
 use crate::batch::particles_mut::ParticlesMut;
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::snapshot::ClothSnapshot;
@@ -19,7 +21,7 @@ use crate::step::bdf::IntegratorHistory;
 use crate::step::limits::StepLimits;
 use crate::step::{Drive, Scheme, StepSettings};
 
-/// The state of up to [`LaneCount`] cloths of one [`Fabric`], stepped together.
+/// The state of up to [`LaneCount`] cloths of one [`Fabric`], or of fabrics of one topology, stepped together.
 ///
 /// Each cloth has a lane, numbered from 0. The bits of its state depend on its own history only. If there is
 /// no lane with a given number, methods that change a lane return [`BatchError::NoLane`], and methods that
@@ -34,6 +36,8 @@ enum Lanes {
     One(Box<LaneBatch<Pack1>>),
     Eight(Box<LaneBatch<Pack8>>),
     Sixteen(Box<LaneBatch<Pack16>>),
+    MixedEight(Box<LaneBatch<Pack8, Mixed<Pack8>>>),
+    MixedSixteen(Box<LaneBatch<Pack16, Mixed<Pack16>>>),
 }
 
 /// Evaluates an expression with the batch of any width and layout.
@@ -44,6 +48,8 @@ macro_rules! with_batch {
             Lanes::One($batch) => $body,
             Lanes::Eight($batch) => $body,
             Lanes::Sixteen($batch) => $body,
+            Lanes::MixedEight($batch) => $body,
+            Lanes::MixedSixteen($batch) => $body,
         }
     };
 }
@@ -62,7 +68,26 @@ impl ClothBatch {
         })
     }
 
-    /// The fabric that all cloths of the batch share.
+    /// An empty batch of cloths of different fabrics, which all have the topology of this one, for
+    /// [`Scheme::Yarns`]. A cloth has the same bits as among cloths of its own fabric, and the batch takes longer than
+    /// one of a single fabric. None where the fabric has no [`topology`](Fabric::topology), and for one lane.
+    #[must_use]
+    pub fn mixed(fabric: &Arc<Fabric>, lanes: LaneCount) -> Option<Self> {
+        Some(Self(match lanes {
+            LaneCount::One => return None,
+            LaneCount::Eight => Lanes::MixedEight(Box::new(LaneBatch::mixed(fabric)?)),
+            LaneCount::Sixteen => Lanes::MixedSixteen(Box::new(LaneBatch::mixed(fabric)?)),
+        }))
+    }
+
+    /// Whether cloths of different fabrics can be put into the batch.
+    #[must_use]
+    pub fn is_mixed(&self) -> bool {
+        matches!(self.0, Lanes::MixedEight(_) | Lanes::MixedSixteen(_))
+    }
+
+    /// The fabric that all cloths of the batch are cut from, or whose topology they have where the batch is
+    /// [`mixed`](Self::mixed).
     #[must_use]
     pub fn fabric(&self) -> &Arc<Fabric> {
         with_batch!(&self.0, batch => &batch.fabric)
@@ -136,7 +161,8 @@ impl ClothBatch {
         snapshot: &ClothSnapshot,
         material: FabricMaterial,
     ) -> Result<(), BatchError> {
-        self.exchange(&[], &[(lane, snapshot, material)])
+        let fabric = &Arc::clone(self.fabric());
+        self.exchange(&[], &[Entering { lane, fabric, snapshot, material }])
     }
 
     /// Removes cloths from lanes, and inserts others in place of any cloths that their lanes hold. Exchanging
@@ -144,18 +170,19 @@ impl ClothBatch {
     ///
     /// # Errors
     ///
-    /// A material is invalid, a state is not finite or of another fabric, or there is no such lane. The batch
-    /// is then unchanged.
-    pub fn exchange(
-        &mut self,
-        leave: &[usize],
-        come: &[(usize, &ClothSnapshot, FabricMaterial)],
-    ) -> Result<(), BatchError> {
+    /// A material is bad, a state is not finite or of another fabric, a fabric is not one of the batch's, or there is
+    /// no such lane. The batch is then as it was.
+    pub fn exchange(&mut self, leave: &[usize], come: &[Entering]) -> Result<(), BatchError> {
         for &lane in leave {
             self.check_lane(lane)?;
         }
-        for (lane, snapshot, material) in come {
+        for Entering { lane, fabric, snapshot, material } in come {
             self.check_lane(*lane)?;
+            let may_enter = Arc::ptr_eq(fabric, self.fabric())
+                || (self.is_mixed() && fabric.has_topology_of(self.fabric()));
+            if !may_enter {
+                return Err(BatchError::Fabric);
+            }
             material.validate()?;
             self.check(snapshot)?;
         }
@@ -279,14 +306,19 @@ impl ClothBatch {
         near.filter(|(_, candidates)| !candidates.is_empty()).map(|(collider, _)| collider)
     }
 
-    /// Begins a tick of `tick` seconds: sets the length of its substeps, and finds the particles that may
-    /// touch each collider. In a tick of zero length nothing moves.
+    /// Begins a tick of `tick` seconds: sets the length of its substeps, and finds the particles that may touch
+    /// each collider. In a tick without length nothing moves.
+    ///
+    /// # Panics
+    ///
+    /// When the batch is [`mixed`](Self::mixed) and the scheme is not [`Scheme::Yarns`].
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
         if let Lanes::Single(single) = &self.0
             && settings.scheme != Scheme::Yarns
         {
             self.0 = Lanes::One(Box::new(single.to_one_lane()));
         }
+        assert!(!self.is_mixed() || settings.scheme == Scheme::Yarns, "a mixed batch has yarns");
         with_batch!(&mut self.0, batch => batch.begin_tick(tick, settings));
     }
 
@@ -331,9 +363,9 @@ impl ClothBatch {
         with_batch!(&mut self.0, batch => batch.compute_normals());
     }
 
-    /// Runs a whole tick of `tick` seconds: all substeps, then the normals. The number of substeps is chosen
-    /// within the limits for this fabric under standard gravity; [`StepSettings`] leave no choice. For
-    /// stronger gravity, see [`StepLimits::of_fabric`].
+    /// Runs one whole tick of `tick` seconds: all substeps, then the normals. Their number is chosen within the limits
+    /// for the batch's fabric under standard gravity; settings are limits that leave no choice. Where gravity is stronger, see
+    /// [`StepLimits::of_fabric`].
     pub fn step(&mut self, tick: f32, limits: impl Into<StepLimits>) {
         let settings = limits.into().of_fabric(self.fabric(), tick, GRAVITY);
         self.begin_tick(tick, settings);

@@ -20,6 +20,9 @@ pub enum BatchError {
         /// Particles in the fabric.
         expected: usize,
     },
+    /// The cloth's fabric is not that of the batch, or not of its topology where the batch is mixed.
+    #[error("the cloth's fabric is not one of the batch's")]
+    Fabric,
     /// The state is infinite or not a number.
     #[error("the state is not finite")]
     NotFinite,

@@ -16,14 +16,27 @@ use crate::simd::vec3::set_lane3;
 use crate::stability::pin_strain::PinStrain;
 use crate::step::bdf::IntegratorHistory;
 
-/// One kind of vector of each particle, if the state has it.
+/// A cloth on its way into a lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Entering<'a> {
+    /// The lane.
+    pub lane: usize,
+    /// The fabric that the cloth is cut from: the batch's own, or one of its topology where the batch is mixed.
+    pub fabric: &'a Arc<Fabric>,
+    /// The state of the cloth.
+    pub snapshot: &'a ClothSnapshot,
+    /// The material of the cloth.
+    pub material: FabricMaterial,
+}
+
+/// One of the vectors of each particle, if the state has it.
 type VectorsOf = fn(&ClothSnapshot) -> Option<&[Vec3]>;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Removes cloths from lanes, and inserts others.
-    pub fn exchange(&mut self, leave: &[usize], come: &[(usize, &ClothSnapshot, FabricMaterial)]) {
-        // An empty lane affects no other lane, so its state is kept. A state that is not finite is replaced,
-        // as it would stay so and slow down the processor.
+    /// Takes cloths out of lanes, and puts others in, whose fabrics are the batch's or have its topology.
+    pub fn exchange(&mut self, leave: &[usize], come: &[Entering]) {
+        // The state of an empty lane matters to no other and is left, unless it is not finite, which would
+        // stay so and be slow.
         let rest = ClothSnapshot::at_rest(&self.fabric);
         let mut states = Vec::new();
         for &lane in leave {
@@ -32,7 +45,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 states.push((lane, &rest));
             }
         }
-        for &(lane, snapshot, material) in come {
+        for &Entering { lane, fabric, snapshot, material } in come {
+            self.set_fabric(lane, fabric);
             self.lanes[lane] = Some(LaneState::new(material));
             states.push((lane, snapshot));
         }
@@ -103,11 +117,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
         }
         self.positions.clear();
-        self.layout.set_pins(positions);
+        let fabric = &self.fabrics[Y::fabric_of(lane)].fabric;
+        self.layout.set_pins(lane, fabric, positions);
         if let Some(cloth) = &mut self.lanes[lane] {
             cloth.history =
                 history.map_or_else(IntegratorHistory::default, |history| history.integrator);
-            let pin_strain = PinStrain::of(&self.fabric, positions);
+            let pin_strain = PinStrain::of(fabric, positions);
             if cloth.pin_strain != pin_strain {
                 cloth.pin_strain = pin_strain;
                 cloth.added_mass = None;
@@ -128,7 +143,9 @@ impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
     pub fn to_one_lane(&self) -> LaneBatch<Pack1> {
         let mut batch = LaneBatch::side_by_side(Arc::clone(&self.fabric));
         if let Some(cloth) = &self.lanes[0] {
-            batch.exchange(&[], &[(0, &self.snapshot(0), cloth.material)]);
+            let (snapshot, material) = (&self.snapshot(0), cloth.material);
+            let fabric = &self.fabric;
+            batch.exchange(&[], &[Entering { lane: 0, fabric, snapshot, material }]);
             batch.lanes[0] = Some(LaneState { inputs: None, added_mass: None, ..cloth.clone() });
         }
         for (pack, normal) in batch.scratch.iter_mut().zip(self.of_cloth(&self.scratch, 0)) {

@@ -4,27 +4,33 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::batch::lane_fabric::{FabricNumbers, LaneFabric};
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::masses::Masses;
+use crate::batch::mixed::Mixed;
 use crate::batch::side_by_side::SideBySide;
 use crate::constraints::strip::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, Fabric};
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, set_lane3, splat3};
-use crate::stability::pole::Pole;
 use crate::step::clock::Clock;
 use crate::step::parameters::Parameters;
 
-/// Cloths of one fabric in the lanes of packs of type `P`, in the layout `Y`.
+/// Cloths of one fabric, or of one topology, in the lanes of packs of `P`, in the layout `Y`.
 ///
 /// Arrays of packs have one pack for each particle, or for several particles of one cloth: see
 /// [`Layout::locate`].
 #[derive(Clone, Debug)]
 pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
+    /// The fabric of the batch. Where cloths have fabrics of their own, it tells their topology.
     pub fabric: Arc<Fabric>,
-    /// The cloth in each lane that can hold a cloth.
+    /// The fabric of all cloths, or of each lane's cloth, present or last.
+    pub fabrics: Vec<LaneFabric>,
+    /// Numbers of these fabrics, in lanes.
+    pub numbers: FabricNumbers<P>,
+    /// For each lane that can hold a cloth, the cloth that it holds.
     pub lanes: Vec<Option<LaneState>>,
     pub layout: Y,
 
@@ -67,8 +73,6 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub masses: Masses<P, Y::Constant>,
     /// Index of the partial sum to which each pack adds, in sums over all particles.
     pub partial_sums: Vec<u8>,
-    /// The line about which the cloth is free to turn.
-    pub pole: Option<Pole>,
     pub parameters: Parameters<P>,
     pub clock: Clock,
 }
@@ -78,6 +82,15 @@ impl<P: Pack> LaneBatch<P> {
     pub fn side_by_side(fabric: Arc<Fabric>) -> Self {
         let layout = SideBySide::new(&fabric);
         Self::new(fabric, layout)
+    }
+}
+
+impl<P: Pack> LaneBatch<P, Mixed<P>> {
+    /// An empty batch of cloths of different fabrics with the topology of this one; none where it has no
+    /// [`topology`](Fabric::topology).
+    pub fn mixed(fabric: &Arc<Fabric>) -> Option<Self> {
+        let layout = Mixed::of(fabric)?;
+        Some(Self::new(Arc::clone(fabric), layout))
     }
 }
 
@@ -94,7 +107,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         let chains = layout.chains(&fabric);
         let longest_line = fabric.grid().map_or(0, |grid| grid.columns.max(grid.rows) as usize);
+        let of_lanes = LaneFabric::new(Arc::clone(&fabric), 0.0);
         let mut batch = Self {
+            numbers: FabricNumbers::new(&of_lanes),
+            fabrics: vec![of_lanes; Y::FABRICS],
             lanes: vec![None; Y::CLOTHS],
             positions: layout.positions(position),
             scratch: zero.clone(),
@@ -113,7 +129,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             moments: vec![splat3(Vec3::ZERO); longest_line],
             masses: Masses::new(&layout, &fabric),
             partial_sums: layout.partial_sums(),
-            pole: Pole::of(&fabric),
             parameters: Parameters::new(),
             clock: Clock::default(),
             fabric,
@@ -121,8 +136,26 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         };
         batch.set_diagonals_at_rest(0..P::WIDTH);
         batch.positions.set_inverse_masses(batch.fabric.inverse_areas());
-        batch.layout.set_pins(batch.fabric.rest_positions());
+        for cloth in 0..Y::CLOTHS {
+            batch.layout.set_pins(cloth, &batch.fabric, batch.fabric.rest_positions());
+        }
         batch
+    }
+
+    /// The fabric of a lane's cloth.
+    pub fn fabric_of(&self, cloth: usize) -> &LaneFabric {
+        &self.fabrics[Y::fabric_of(cloth)]
+    }
+
+    /// Gives a lane another fabric of the batch's topology, before a cloth of that fabric is put into it.
+    pub fn set_fabric(&mut self, cloth: usize, fabric: &Arc<Fabric>) {
+        let of_lane = &mut self.fabrics[Y::fabric_of(cloth)];
+        if Arc::ptr_eq(&of_lane.fabric, fabric) {
+            return;
+        }
+        *of_lane = LaneFabric::new(Arc::clone(fabric), self.masses.substep);
+        self.numbers.set(Y::lanes(cloth), of_lane);
+        self.layout.set_fabric(cloth, fabric, &mut self.masses);
     }
 }
 

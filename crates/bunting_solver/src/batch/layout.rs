@@ -1,18 +1,20 @@
 //! The layouts of a batch: the pack and lane of each particle, and the order in which constraints are solved.
 //!
-//! There are two layouts. [`SideBySide`](crate::batch::side_by_side::SideBySide) holds up to as many cloths
-//! of one fabric as there are lanes: a pack holds the same particle of each cloth, and numbers of the fabric
-//! are the same in all lanes. [`SingleCloth`](crate::batch::single_cloth::SingleCloth) spreads one cloth
-//! across the lanes: a pack holds consecutive particles of a row of its grid, constraints that share no
-//! particle are solved in one pack, and numbers of the fabric differ from lane to lane.
+//! There are three. [`SideBySide`](crate::batch::side_by_side::SideBySide) holds up to as many cloths of one
+//! fabric as there are lanes: a pack holds the same particle of each cloth, and numbers of the fabric are
+//! the same in all lanes. [`Mixed`](crate::batch::mixed::Mixed) does so with cloths of different fabrics of one
+//! topology: numbers of the fabric are each lane's own. [`SingleCloth`](crate::batch::single_cloth::SingleCloth) spreads one cloth across
+//! the lanes: a pack holds consecutive particles of a row of its grid, constraints that share no particle
+//! are solved in one pack, and numbers of the fabric are each lane's own, too.
 //!
-//! Kernels are written once for both layouts, over [`Constant`] and [`Particles`].
+//! Kernels are written once for all, over [`Constant`] and [`Particles`].
 
 use core::fmt::Debug;
 use core::ops::Range;
 
 use glam::Vec3;
 
+use crate::batch::masses::Masses;
 use crate::constraints::factors::Factors;
 use crate::constraints::stiffness::Stiffness;
 use crate::fabric::{BendLine, Chains, Fabric, Ribbon, Tether};
@@ -47,6 +49,13 @@ pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
 
     /// Greatest number of cloths in a batch.
     const CLOTHS: usize;
+    /// Number of fabrics that a batch holds: one, or one for each cloth.
+    const FABRICS: usize = 1;
+
+    /// Which of the batch's fabrics is that of a cloth.
+    fn fabric_of(cloth: usize) -> usize {
+        if Self::FABRICS == 1 { 0 } else { cloth }
+    }
 
     /// The lanes of a cloth.
     fn lanes(cloth: usize) -> Range<usize>;
@@ -105,11 +114,16 @@ pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
     /// Compliances and factorised systems of chains, bend lines and ribbons.
     fn factors(&self) -> &Factors<P, Self::Constant>;
 
+    /// Takes over the numbers of a cloth's fabric. Called only where batches hold different fabrics.
+    fn set_fabric(&mut self, _: usize, _: &Fabric, _: &mut Masses<P, Self::Constant>) {
+        unreachable!("a batch of one fabric keeps it");
+    }
+
     /// Computes the factors of a cloth.
     fn set_stiffness(&mut self, cloth: usize, fabric: &Fabric, stiffness: &Stiffness);
 
-    /// Updates the positions of a cloth's pins, given the positions of all its particles, m.
-    fn set_pins(&mut self, positions: &[Vec3]);
+    /// Takes over where a cloth's pins are, given the positions of all its particles, m.
+    fn set_pins(&mut self, cloth: usize, fabric: &Fabric, positions: &[Vec3]);
 
     /// The triangles, for sums that depend on positions only.
     fn triangles<'a>(&'a mut self, fabric: &'a Fabric) -> Self::Triangles<'a>;

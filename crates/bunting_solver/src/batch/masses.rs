@@ -3,7 +3,6 @@
 use crate::batch::layout::Layout;
 use crate::fabric::Fabric;
 use crate::simd::lane::Pack;
-use crate::stability::added_mass::InverseMasses;
 
 /// Areas and inverse masses of all particles. Masses are in units of the area density, so that a particle
 /// without added mass has the mass of its area, in m².
@@ -17,9 +16,8 @@ pub(crate) struct Masses<P: Pack, C> {
     pub inverse: Vec<P>,
     /// One over the inverse mass, m²; zero if pinned.
     pub inertia: Vec<P>,
-    /// Inverse masses for a length of substep, from which each cloth's inverse masses are computed.
-    pub of_substep: InverseMasses,
-    /// Effective length of the substep for which `of_substep` was computed, s; zero without added mass.
+    /// Effective length of the substep that the inverse masses of fabrics are for, s; zero for those without added
+    /// mass.
     pub substep: f32,
 }
 
@@ -32,7 +30,6 @@ impl<P: Pack, C> Masses<P, C> {
             inverse_areas: layout.constants(fabric.inverse_areas()),
             inverse: zero.clone(),
             inertia: zero,
-            of_substep: InverseMasses::without_added(fabric),
             substep: 0.0,
         }
     }

@@ -1,21 +1,25 @@
-//! Batches: the state of cloths of one fabric, in the lanes of vectors.
+//! Batches: the state of cloths of one fabric, or of one topology, in the lanes of vectors.
 
 mod cloth_batch;
 mod error;
-mod exchange;
+pub(crate) mod exchange;
 pub(crate) mod lane_batch;
 pub(crate) mod lane_count;
+pub(crate) mod lane_fabric;
 pub(crate) mod lane_state;
 pub(crate) mod layout;
 mod masses;
+pub(crate) mod mixed;
 mod particles_mut;
 mod readout;
 pub(crate) mod side_by_side;
 pub(crate) mod single_cloth;
 pub(crate) mod snapshot;
 mod surfaces;
+mod tether_pack;
 
 pub use cloth_batch::ClothBatch;
 pub use error::BatchError;
+pub use exchange::Entering;
 pub use particles_mut::ParticlesMut;
 pub use surfaces::LaneSurface;

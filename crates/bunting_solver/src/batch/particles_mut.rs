@@ -149,8 +149,8 @@ impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
         let stored = &mut self.positions.packs_mut()[pack];
         let before = lane3(stored, lane);
         set_lane3(stored, lane, position);
-        // A correction by the user may turn the cloth about its pole.
-        if let (Some(pole), Some(state)) = (self.pole, &mut self.lanes[cloth]) {
+        // A correction from outside may turn the cloth about its pole.
+        if let (Some(pole), Some(state)) = (self.fabric_of(cloth).pole, &mut self.lanes[cloth]) {
             let predicted =
                 lane3(&self.scratch[pack], lane) + lane3(&self.displacement[pack], lane);
             let inertia = self.masses.inertia[pack].lanes()[lane];
@@ -162,9 +162,9 @@ impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
     fn add_acceleration(&mut self, particle: usize, cloth: usize, acceleration: Vec3) {
         let (pack, lane) = self.layout.locate(particle, cloth);
         let step = self.effective_step(cloth);
-        // Like gravity, the acceleration acts on the true mass, without added inertia; it is zero for pins.
-        let true_part =
-            self.masses.inverse[pack].lanes()[lane] * self.fabric.particle_areas()[particle];
+        // As gravity, on the true mass, whatever inertia is added to it; zero for pins.
+        let area = self.fabric_of(cloth).fabric.particle_areas()[particle];
+        let true_part = self.masses.inverse[pack].lanes()[lane] * area;
         let change = acceleration * (true_part * step);
         add(&mut self.velocity[pack], lane, change);
         self.shift_prediction(pack, lane, change * step);

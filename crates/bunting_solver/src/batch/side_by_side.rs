@@ -1,5 +1,6 @@
 //! The side-by-side layout: a pack holds the same particle of each cloth, with one cloth in each lane.
 
+use core::marker::PhantomData;
 use core::ops::Range;
 
 use glam::Vec3;
@@ -11,7 +12,7 @@ use crate::constraints::stiffness::Stiffness;
 use crate::constraints::twist_factors::TwistFactors;
 use crate::fabric::{BendLine, Chains, Fabric, Ribbon, Tether};
 use crate::geometry::corners::PatchSums;
-use crate::simd::constant::PARTIAL_SUMS;
+use crate::simd::constant::{Constant, PARTIAL_SUMS};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::{Pack3, V3, lane3, set_lane3, splat3};
 
@@ -56,7 +57,7 @@ impl<P: Pack> Layout<P> for SideBySide<P> {
     type Constant = f32;
     type Positions = Packs<P>;
     type Tether = Tether;
-    type Triangles<'a> = PatchSums<'a, P>;
+    type Triangles<'a> = PatchSums<'a, P, f32>;
 
     const CLOTHS: usize = P::WIDTH;
 
@@ -74,22 +75,11 @@ impl<P: Pack> Layout<P> for SideBySide<P> {
     }
 
     fn read(&self, packs: &[Pack3<P>], cloth: usize, into: &mut Vec<Vec3>) {
-        // The check is made once and not for every number.
-        assert!(cloth < P::WIDTH, "lanes of the batch");
-        into.resize(packs.len(), Vec3::ZERO);
-        for (value, pack) in into.iter_mut().zip(packs) {
-            *value = lane3(pack, cloth);
-        }
+        read_lane(packs, cloth, into);
     }
 
-    /// Writes pack by pack, so that each is fetched once for all cloths.
     fn write(&self, packs: &mut [Pack3<P>], cloths: &[OfCloth]) {
-        for (particle, pack) in packs.iter_mut().enumerate() {
-            for &(lane, values) in cloths {
-                let value = values.and_then(|values| values.get(particle));
-                set_lane3(pack, lane, value.copied().unwrap_or(Vec3::ZERO));
-            }
-        }
+        write_lanes(packs, cloths);
     }
 
     fn constants(&self, of_particles: &[f32]) -> Vec<f32> {
@@ -97,11 +87,11 @@ impl<P: Pack> Layout<P> for SideBySide<P> {
     }
 
     fn partial_sums(&self) -> Vec<u8> {
-        (0..self.particles).map(|at| (at % self.columns % PARTIAL_SUMS) as u8).collect()
+        partial_sums(self.particles, self.columns)
     }
 
     fn positions(&self, packs: Vec<Pack3<P>>) -> Packs<P> {
-        Packs(packs)
+        Packs::new(packs)
     }
 
     fn chains<'a>(&'a self, fabric: &'a Fabric) -> &'a Chains {
@@ -154,28 +144,64 @@ impl<P: Pack> Layout<P> for SideBySide<P> {
         }
     }
 
-    fn set_pins(&mut self, _: &[Vec3]) {}
+    fn set_pins(&mut self, _: usize, _: &Fabric, _: &[Vec3]) {}
 
-    fn triangles<'a>(&'a mut self, fabric: &'a Fabric) -> PatchSums<'a, P> {
-        PatchSums { fabric, below: &mut self.below }
+    fn triangles<'a>(&'a mut self, fabric: &'a Fabric) -> PatchSums<'a, P, f32> {
+        PatchSums {
+            patches: fabric.patches(),
+            grid_columns: fabric.patch_grid_columns(),
+            below: &mut self.below,
+        }
     }
 
     fn moving_triangles<'a>(
         &'a mut self,
         fabric: &'a Fabric,
         velocity: &'a [Pack3<P>],
-    ) -> (PatchSums<'a, P>, &'a [Pack3<P>]) {
+    ) -> (PatchSums<'a, P, f32>, &'a [Pack3<P>]) {
         (self.triangles(fabric), velocity)
     }
 }
 
-/// Positions in packs only, m: constraints move them in place.
-#[derive(Clone, Debug)]
-pub(crate) struct Packs<P: Pack>(Vec<Pack3<P>>);
+/// Reads the vectors of one lane.
+pub(super) fn read_lane<P: Pack>(packs: &[Pack3<P>], lane: usize, into: &mut Vec<Vec3>) {
+    // Checked once, and not for every number.
+    assert!(lane < P::WIDTH, "lanes of the batch");
+    into.resize(packs.len(), Vec3::ZERO);
+    for (value, pack) in into.iter_mut().zip(packs) {
+        *value = lane3(pack, lane);
+    }
+}
 
-impl<P: Pack> Positions<P> for Packs<P> {
-    type Constant = f32;
-    type Particles<'a> = PackParticles<'a, P>;
+/// Writes pack by pack, so that each is fetched once for all cloths.
+pub(super) fn write_lanes<P: Pack>(packs: &mut [Pack3<P>], cloths: &[OfCloth]) {
+    for (particle, pack) in packs.iter_mut().enumerate() {
+        for &(lane, values) in cloths {
+            let value = values.and_then(|values| values.get(particle));
+            set_lane3(pack, lane, value.copied().unwrap_or(Vec3::ZERO));
+        }
+    }
+}
+
+/// For each particle, to which partial sum it adds: by its column.
+pub(super) fn partial_sums(particles: usize, columns: usize) -> Vec<u8> {
+    (0..particles).map(|at| (at % columns % PARTIAL_SUMS) as u8).collect()
+}
+
+/// Positions in packs alone, m: constraints move them where they are. Numbers of the fabric are of the type `C`.
+#[derive(Clone, Debug)]
+pub(crate) struct Packs<P: Pack, C = f32>(Vec<Pack3<P>>, PhantomData<C>);
+
+impl<P: Pack, C> Packs<P, C> {
+    /// Positions in packs, m.
+    pub fn new(packs: Vec<Pack3<P>>) -> Self {
+        Self(packs, PhantomData)
+    }
+}
+
+impl<P: Pack, C: Constant<P>> Positions<P> for Packs<P, C> {
+    type Constant = C;
+    type Particles<'a> = PackParticles<'a, P, C>;
     type Field = [Pack3<P>];
 
     fn packs(&self) -> &[Pack3<P>] {
@@ -191,8 +217,8 @@ impl<P: Pack> Positions<P> for Packs<P> {
         _: Order,
         inverse_masses: &'a [P],
         _: &'a [P],
-    ) -> PackParticles<'a, P> {
-        PackParticles { inverse_masses, position: &mut self.0 }
+    ) -> PackParticles<'a, P, C> {
+        PackParticles { inverse_masses, position: &mut self.0, constant: PhantomData }
     }
 
     fn field(&mut self) -> &[Pack3<P>] {
@@ -204,14 +230,15 @@ impl<P: Pack> Positions<P> for Packs<P> {
     fn clear(&mut self) {}
 }
 
-/// Particles in packs: each pack holds the same particle of all cloths.
-pub(crate) struct PackParticles<'a, P: Pack> {
+/// Particles in packs, each the same of all cloths.
+pub(crate) struct PackParticles<'a, P: Pack, C> {
     inverse_masses: &'a [P],
     position: &'a mut [Pack3<P>],
+    constant: PhantomData<C>,
 }
 
-impl<P: Pack> Particles<P> for PackParticles<'_, P> {
-    type Constant = f32;
+impl<P: Pack, C: Constant<P>> Particles<P> for PackParticles<'_, P, C> {
+    type Constant = C;
 
     #[inline(always)]
     fn position<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> V3<L> {

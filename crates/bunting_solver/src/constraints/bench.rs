@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::batch::exchange::Entering;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Positions;
 use crate::batch::snapshot::ClothSnapshot;
@@ -22,7 +23,8 @@ pub(in crate::constraints) fn cloth_at(
     positions: &[Vec3],
 ) -> LaneBatch<Pack1> {
     let mut batch = LaneBatch::side_by_side(Arc::new(fabric.clone()));
-    batch.exchange(&[], &[(0, &ClothSnapshot::at_rest(fabric), material)]);
+    let (fabric, snapshot) = (&Arc::clone(&batch.fabric), &ClothSnapshot::at_rest(fabric));
+    batch.exchange(&[], &[Entering { lane: 0, fabric, snapshot, material }]);
     batch.begin_tick(STEP, StepSettings::gauss_seidel(1));
     batch.begin_substep();
     for (pack, &position) in batch.positions.packs_mut().iter_mut().zip(positions) {

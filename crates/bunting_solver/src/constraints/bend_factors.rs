@@ -5,7 +5,7 @@
 //! substeps and factorised as L D Lᵀ, L having ones on its diagonal and two bands below it.
 
 use crate::fabric::BendProfile;
-use crate::simd::constant::Constant;
+use crate::simd::constant::{Constant, PerLane};
 use crate::simd::lane::Pack;
 
 /// The factors of the lines of a profile.
@@ -37,10 +37,7 @@ impl<P: Pack, C: Constant<P>> BendFactors<P, C> {
         let row = BendRow { first_lower: zero, second_lower: zero, inverse_diagonal: zero };
         let first = profiles.iter().flatten().next();
         let mobility = |lane: usize, particle: usize| {
-            profiles[lane].map_or(0.0, |profile| {
-                let per_spacing = profile.inverse_spacing;
-                profile.inverse_areas[particle] * per_spacing * per_spacing
-            })
+            profiles[lane].map_or(0.0, |profile| mobility(profile, particle))
         };
         let particles = first.map_or(0, |profile| profile.inverse_areas.len());
         Self {
@@ -61,8 +58,23 @@ impl<P: Pack, C: Constant<P>> BendFactors<P, C> {
     }
 }
 
-/// Factorises the system of a profile, given the compliance of a row of unit weight, 1/m⁴. Double precision
-/// is affordable, since this is done once for many substeps.
+impl<P: Pack> BendFactors<P, PerLane<P>> {
+    /// Takes over the profile of one lane. Its rows are yet to be computed.
+    pub fn set_profile(&mut self, lane: usize, profile: &BendProfile) {
+        for (particle, pack) in self.mobilities.iter_mut().enumerate() {
+            pack.set_lane(lane, mobility(profile, particle));
+        }
+    }
+}
+
+/// How far a unit moment moves a particle of a line, 1/m⁴.
+fn mobility(profile: &BendProfile, particle: usize) -> f32 {
+    let per_spacing = profile.inverse_spacing;
+    profile.inverse_areas[particle] * per_spacing * per_spacing
+}
+
+/// Factorises the system of a profile, given the compliance of a row of unit weight, 1/m⁴. In double
+/// precision, as it is done once for many substeps.
 pub(crate) fn factorise(profile: &BendProfile, compliance: f32) -> Vec<BendRow<f32>> {
     let per_spacing = f64::from(profile.inverse_spacing);
     let mobilities: Vec<f64> = profile

@@ -14,7 +14,7 @@ mod corrections;
 pub(crate) mod factors;
 mod gauss_seidel;
 mod overlong;
-mod shear;
+pub(crate) mod shear;
 mod solve;
 mod stiff_bending;
 pub(crate) mod stiffness;

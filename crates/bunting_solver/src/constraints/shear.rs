@@ -26,18 +26,20 @@ use crate::simd::vec3::V3;
 pub(super) const SHORTEST_DIAGONAL: f32 = 0.7;
 
 /// Length of a grid's diagonals at rest, m.
-fn length_at_rest(grid: &Grid) -> f32 {
+pub(crate) fn length_at_rest(grid: &Grid) -> f32 {
     libm::hypotf(grid.width / (grid.columns - 1) as f32, grid.height / (grid.rows - 1) as f32)
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Computes the target of each diagonal from positions at which warp and weft are satisfied.
     pub fn find_diagonal_targets(&mut self) {
-        let Some(length) = self.fabric.grid().map(length_at_rest) else { return };
+        if self.fabric.grid().is_none() {
+            return;
+        }
         let (masses, linked) = (&self.masses.inverse, self.layout.linked());
         P::run(DiagonalTargets {
             cells: &self.layout.chains(&self.fabric).cells,
-            length,
+            length: &self.numbers.diagonal_length,
             stretch: &self.parameters.diagonal_stretch,
             target: &mut self.link_target,
             particles: self.positions.particles(Order::RowMajor, masses, linked),
@@ -46,17 +48,20 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Sets the targets of a cloth's diagonals to their length at rest until its next tick.
     pub fn set_diagonals_at_rest(&mut self, lanes: Range<usize>) {
-        let Some(length) = self.fabric.grid().map(length_at_rest) else { return };
+        if self.fabric.grid().is_none() {
+            return;
+        }
+        let lengths = &self.numbers.diagonal_length.lanes()[lanes.clone()];
         for target in &mut self.link_target {
-            target.lanes_mut()[lanes.clone()].fill(length);
+            target.lanes_mut()[lanes.clone()].copy_from_slice(lengths);
         }
     }
 }
 
 struct DiagonalTargets<'a, P: Pack, S: Particles<P>> {
     cells: &'a [Cell],
-    /// Length at rest, m.
-    length: f32,
+    /// At rest, m.
+    length: &'a P,
     /// Greatest length, in units of that at rest.
     stretch: &'a P,
     target: &'a mut [P],
@@ -67,9 +72,9 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for DiagonalTargets<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let Self { cells, target: targets, particles, .. } = self;
-        let length = L::splat(token, self.length);
-        let half = L::splat(token, 0.5 * self.length);
-        let quarter_inverse = L::splat(token, 0.25 / self.length);
+        let length = L::load(token, self.length);
+        let half = L::splat(token, 0.5) * length;
+        let quarter_inverse = L::splat(token, 0.25) / length;
         let longest = length * L::load(token, self.stretch);
         let shortest = length + length - longest;
         for cell in cells {

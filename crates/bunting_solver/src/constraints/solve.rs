@@ -2,6 +2,7 @@
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
+use crate::batch::mixed::Mixed;
 use crate::batch::side_by_side::SideBySide;
 use crate::batch::single_cloth::SingleCloth;
 use crate::simd::lane::Pack;
@@ -50,8 +51,14 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     }
 }
 
-impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
-    /// Projects the predicted positions of a grid onto all constraints, in the scheme of yarns.
+/// A layout of grids that are solved by the scheme of yarns.
+pub(crate) trait GridLayout {}
+
+impl<P: Pack> GridLayout for SingleCloth<P> {}
+impl<P: Pack> GridLayout for Mixed<P> {}
+
+impl<P: Pack, Y: Layout<P> + GridLayout> LaneBatch<P, Y> {
+    /// Projects the predicted positions onto all constraints.
     pub fn solve_constraints(&mut self) {
         self.solve_all_bending();
         self.solve_all_but_bending();

@@ -5,7 +5,7 @@
 //! factorised as L D Lᵀ, L having ones on its diagonal and one band below it.
 
 use crate::fabric::RibbonProfile;
-use crate::simd::constant::Constant;
+use crate::simd::constant::{Constant, PerLane};
 use crate::simd::lane::Pack;
 
 /// The factors of the ribbons of a profile.
@@ -52,8 +52,19 @@ impl<P: Pack, C: Constant<P>> TwistFactors<P, C> {
     }
 }
 
-/// Factorises the system of a profile, given the compliance of a cell of unit weight, 1/m⁴. Double precision
-/// is affordable, since this is done once for many substeps.
+impl<P: Pack> TwistFactors<P, PerLane<P>> {
+    /// Takes over the profile of one lane. Its rows are yet to be computed.
+    pub fn set_profile(&mut self, lane: usize, profile: &RibbonProfile) {
+        for (packs, pair) in self.inverse_masses.iter_mut().zip(&profile.inverse_areas) {
+            for (pack, &inverse_area) in packs.iter_mut().zip(pair) {
+                pack.set_lane(lane, inverse_area);
+            }
+        }
+    }
+}
+
+/// Factorises the system of a profile, given the compliance of a cell of unit weight, 1/m⁴. In double
+/// precision, as it is done once for many substeps.
 pub(crate) fn factorise(profile: &RibbonProfile, compliance: f32) -> Vec<TwistRow<f32>> {
     let pairs: Vec<f64> =
         profile.inverse_areas.iter().map(|[a, b]| f64::from(*a) + f64::from(*b)).collect();

@@ -64,7 +64,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         for past in [&mut self.older_velocity[pack], &mut self.oldest_velocity[pack]] {
             set_lane3(past, lane, lane3(past, lane) + impact);
         }
-        self.pole.map_or(0.0, |pole| {
+        self.fabric_of(cloth).pole.map_or(0.0, |pole| {
             let inertia = self.masses.inertia[pack].lanes()[lane];
             let moment = |at: Vec3| pole.moment(inertia, at, at - predicted);
             moment(after) - moment(before)

@@ -207,6 +207,43 @@ impl<C: Copy> Chains<C> {
     }
 }
 
+impl Chains {
+    /// The class of each link, after the index of its target length.
+    pub fn classes(&self) -> impl Iterator<Item = (u32, u32)> {
+        self.pairs.iter().flat_map(|pair| {
+            let links = pair.links.iter().flat_map(|row| &row[..pair.count]);
+            (pair.targets.start as u32..).zip(links.map(|link| link.class))
+        })
+    }
+
+    /// The same chains, each link being a class of its own, of the index of its target length.
+    pub fn with_a_class_for_each_link<C: Copy>(&self, constant: fn(f32) -> C) -> Chains<C> {
+        let pair = |pair: &ChainPair| {
+            let rows = pair.links.iter().enumerate();
+            let links = rows.map(|(row, links)| {
+                core::array::from_fn(|column| ChainLink {
+                    class: (pair.targets.start + row * pair.count + column.min(pair.count - 1))
+                        as u32,
+                    rest_length: constant(links[column].rest_length),
+                })
+            });
+            ChainPair {
+                count: pair.count,
+                particles: pair.particles.clone(),
+                links: links.collect(),
+                targets: pair.targets.clone(),
+            }
+        };
+        let sweep_link = |link: &SweepLink| SweepLink { class: link.target, ..*link };
+        Chains {
+            pairs: self.pairs.iter().map(pair).collect(),
+            colours: self.colours.clone(),
+            sweep_links: self.sweep_links.iter().map(sweep_link).collect(),
+            cells: self.cells.clone(),
+        }
+    }
+}
+
 impl ChainLink {
     fn of(link: &Link) -> Self {
         Self { class: link.class, rest_length: link.rest_length }

@@ -37,6 +37,7 @@ pub struct Fabric {
     twist: Twist,
     tethers: Tethers,
     tautness: f32,
+    pub(super) topology: Option<u64>,
 }
 
 impl Fabric {
@@ -58,7 +59,7 @@ impl Fabric {
         let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
         let patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
         let cells = grid.filter(|grid| patches::are_cells(&patches, grid));
-        Self {
+        let mut fabric = Self {
             patch_grid_columns: cells.map(|grid| grid.columns as usize),
             tautness: tethers.reach.sqrt() / links.shortest(),
             grid,
@@ -72,7 +73,10 @@ impl Fabric {
             bending,
             twist,
             tethers,
-        }
+            topology: None,
+        };
+        fabric.topology = fabric.hash_topology();
+        fabric
     }
 
     /// Positions at rest in the cloth's frame, m, one per particle.

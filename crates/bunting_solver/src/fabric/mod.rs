@@ -26,6 +26,7 @@ mod material;
 mod mesh;
 mod normals;
 mod patches;
+mod shared_topology;
 mod strip;
 mod tethers;
 mod topology;

@@ -9,15 +9,15 @@ use crate::simd::vec3::{Pack3, V3};
 
 /// Two triangles (a, b, c) and (a, c, d).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Patch {
-    /// The corners a, b, c and d; d = c if a triangle has no partner.
+pub(crate) struct Patch<C = f32> {
+    /// a, b, c and d; d = c where a triangle found no partner.
     pub corners: [u32; 4],
-    /// A third of each triangle's area, m²: the area that belongs to each of its corners.
-    pub corner_areas: [f32; 2],
+    /// A third of each triangle's area, m²: the part of it that belongs to each of its corners.
+    pub corner_areas: [C; 2],
 }
 
-impl Patch {
-    /// Loads the values at the corners from a list with one value for each particle.
+impl<C> Patch<C> {
+    /// The values at the corners, of one per particle.
     #[inline(always)]
     pub fn load<L: Lane>(&self, token: L::Token, values: &[Pack3<L::Pack>]) -> [V3<L>; 4] {
         let [a, b, c, d] = self.corners;

@@ -5,7 +5,8 @@
 //! downwards in one row of packs that stays in the nearest cache, so that each particle's sum is written once
 //! and never read. The order of the terms in a sum is still that of the patches.
 
-use crate::fabric::{Fabric, Patch};
+use crate::fabric::Patch;
+use crate::simd::constant::Constant;
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
@@ -47,7 +48,7 @@ pub(crate) trait CornerSums<P: Pack> {
     );
 }
 
-impl<L: Lane> Corners<L> for &Patch {
+impl<L: Lane, C: Constant<L::Pack>> Corners<L> for &Patch<C> {
     type Field = [Pack3<L::Pack>];
 
     #[inline(always)]
@@ -57,8 +58,8 @@ impl<L: Lane> Corners<L> for &Patch {
 
     #[inline(always)]
     fn areas(&self, token: L::Token) -> [L; 2] {
-        let [first, second] = self.corner_areas;
-        [L::splat(token, first), L::splat(token, second)]
+        let [first, second] = &self.corner_areas;
+        [first.load(token), second.load(token)]
     }
 
     #[inline(always)]
@@ -68,13 +69,15 @@ impl<L: Lane> Corners<L> for &Patch {
 }
 
 /// Sums over the patches of cloths side by side.
-pub(crate) struct PatchSums<'a, P: Pack> {
-    pub fabric: &'a Fabric,
-    /// Scratch row of the contributions of a row of cells to the particles below it.
+pub(crate) struct PatchSums<'a, P: Pack, C> {
+    pub patches: &'a [Patch<C>],
+    /// Number of particles in a row, where the patches are the cells of a grid, row by row; else none.
+    pub grid_columns: Option<usize>,
+    /// Room for the contributions of a row of cells to the particles below it.
     pub below: &'a mut [Pack3<P>],
 }
 
-impl<P: Pack> CornerSums<P> for PatchSums<'_, P> {
+impl<P: Pack, C: Constant<P>> CornerSums<P> for PatchSums<'_, P, C> {
     type Field = [Pack3<P>];
 
     #[inline(always)]
@@ -84,16 +87,16 @@ impl<P: Pack> CornerSums<P> for PatchSums<'_, P> {
         contribution: &T,
         sums: &mut [Pack3<P>],
     ) {
-        let Self { fabric, below } = self;
-        let Some(columns) = fabric.patch_grid_columns() else {
-            sum_patches(token, fabric.patches(), contribution, sums);
+        let Self { patches, grid_columns, below } = self;
+        let Some(columns) = grid_columns else {
+            sum_patches(token, patches, contribution, sums);
             return;
         };
         let below = &mut below[..columns];
         for sum in below.iter_mut() {
             V3::<L>::splat(token, 0.0).store(sum);
         }
-        let mut rows = fabric.patches().chunks_exact(columns - 1);
+        let mut rows = patches.chunks_exact(columns - 1);
         for sums in sums.chunks_exact_mut(columns) {
             match rows.next() {
                 Some(cells) => sum_row(token, cells, contribution, below, sums),
@@ -110,9 +113,9 @@ impl<P: Pack> CornerSums<P> for PatchSums<'_, P> {
 /// Finishes the sums of the particles along the upper border of a row of cells. `below` holds the
 /// contributions of the row above to these particles, and afterwards those of this row to the next.
 #[inline(always)]
-fn sum_row<L: Lane, T: Contribution<L, [Pack3<L::Pack>]>>(
+fn sum_row<L: Lane, C: Constant<L::Pack>, T: Contribution<L, [Pack3<L::Pack>]>>(
     token: L::Token,
-    cells: &[Patch],
+    cells: &[Patch<C>],
     contribution: &T,
     below: &mut [Pack3<L::Pack>],
     sums: &mut [Pack3<L::Pack>],
@@ -143,9 +146,9 @@ fn sum_row<L: Lane, T: Contribution<L, [Pack3<L::Pack>]>>(
 
 /// Sums the contributions of patches in any arrangement.
 #[inline(always)]
-fn sum_patches<L: Lane, T: Contribution<L, [Pack3<L::Pack>]>>(
+fn sum_patches<L: Lane, C: Constant<L::Pack>, T: Contribution<L, [Pack3<L::Pack>]>>(
     token: L::Token,
-    patches: &[Patch],
+    patches: &[Patch<C>],
     contribution: &T,
     sums: &mut [Pack3<L::Pack>],
 ) {

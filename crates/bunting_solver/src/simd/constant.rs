@@ -1,7 +1,8 @@
 //! Numbers of the fabric for a pack of particles: one for all lanes, or one for each lane.
 //!
-//! Side by side, a pack holds the same particle of each cloth, so that its area is one `f32`. In the
-//! single-cloth layout a pack holds several particles, and each lane has its own area.
+//! Where cloths of one fabric lie side by side, a pack holds the same particle of each, so that its area is
+//! one `f32`. Where their fabrics differ, each lane has its own area, [`PerLane`]. Where one cloth lies across the
+//! lanes, a pack holds several of its particles, and each lane has its own area, too.
 
 use core::fmt::Debug;
 
@@ -70,6 +71,49 @@ impl<P: Pack> Constant<P> for f32 {
             total = total + partial;
         }
         total
+    }
+}
+
+/// One number for each lane: cloths of different fabrics side by side. Each lane is computed as by an `f32`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct PerLane<P>(pub P);
+
+impl<P: Pack> PerLane<P> {
+    /// The same number in all lanes.
+    pub fn splat(value: f32) -> Self {
+        Self(P::splat(value))
+    }
+
+    /// Overwrites the number of one lane.
+    pub fn set_lane(&mut self, lane: usize, value: f32) {
+        self.0.lanes_mut()[lane] = value;
+    }
+}
+
+impl<P: Pack> Constant<P> for PerLane<P> {
+    fn of(lanes: impl Fn(usize) -> f32) -> Self {
+        Self(<P as Constant<P>>::of(lanes))
+    }
+
+    /// Zero in one lane is zero in all: only the inverse masses of pins are, and the fabrics have the same pins.
+    #[inline(always)]
+    fn is_zero(self) -> bool {
+        self.0.lanes()[0] == 0.0
+    }
+
+    #[inline(always)]
+    fn load<L: Lane<Pack = P>>(&self, token: L::Token) -> L {
+        L::load(token, &self.0)
+    }
+
+    #[inline(always)]
+    fn select<L: Lane<Pack = P>>(&self, _: L::Token, new: L, _: L) -> L {
+        new
+    }
+
+    #[inline(always)]
+    fn total<L: Lane<Pack = P>>(token: L::Token, partial: [L; PARTIAL_SUMS]) -> L {
+        <f32 as Constant<P>>::total(token, partial)
     }
 }
 

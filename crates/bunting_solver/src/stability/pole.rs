@@ -8,13 +8,15 @@
 //! opposite moment is applied with the next prediction, when all particles are moved anyway. Contacts and
 //! users' constraints do turn a cloth: their moment is left out.
 
+use core::ops::Range;
+
 use glam::Vec3;
 
 use crate::fabric::Fabric;
 use crate::simd::constant::Constant;
-use crate::simd::lane::Lane;
+use crate::simd::lane::{Lane, Pack};
 use crate::simd::sum::Sum;
-use crate::simd::vec3::{V3, splat3};
+use crate::simd::vec3::{Pack3, V3, fill_lanes3, splat3};
 
 /// Greatest distance of pins from the line through them, as a fraction of its length. Smaller: rounding bends
 /// poles. Larger: cloth that its pins hold counts as free to turn.
@@ -77,6 +79,26 @@ pub(crate) struct PoleTurn {
     pub rate: f32,
 }
 
+/// The pole of each lane's cloth.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PolePacks<P> {
+    at: Pack3<P>,
+    along: Pack3<P>,
+}
+
+impl<P: Pack> PolePacks<P> {
+    /// The same pole in all lanes.
+    pub fn splat(pole: Pole) -> Self {
+        Self { at: splat3(pole.at), along: splat3(pole.along) }
+    }
+
+    /// Overwrites the pole of some lanes.
+    pub fn set_lanes(&mut self, lanes: &Range<usize>, pole: Pole) {
+        fill_lanes3(&mut self.at, lanes, pole.at);
+        fill_lanes3(&mut self.along, lanes, pole.along);
+    }
+}
+
 /// A pole in registers.
 #[derive(Clone, Copy)]
 pub(crate) struct Axis<L> {
@@ -87,9 +109,9 @@ pub(crate) struct Axis<L> {
 impl<L: Lane> Axis<L> {
     /// The pole in registers.
     #[inline(always)]
-    pub fn load(token: L::Token, pole: Option<Pole>) -> Option<Self> {
-        let Pole { at, along } = pole?;
-        Some(Self { at: V3::load(token, &splat3(at)), along: V3::load(token, &splat3(along)) })
+    pub fn load(token: L::Token, pole: Option<&PolePacks<L::Pack>>) -> Option<Self> {
+        let PolePacks { at, along } = pole?;
+        Some(Self { at: V3::load(token, at), along: V3::load(token, along) })
     }
 
     /// Displacement of a point, m, by a turn of one radian about the pole.

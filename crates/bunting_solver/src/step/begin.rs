@@ -1,6 +1,7 @@
 //! The beginning of a tick and of a substep: all values that are constant over it are computed.
 
 use crate::batch::lane_batch::LaneBatch;
+use crate::batch::lane_fabric::LaneFabric;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::constraints::stiffness::Stiffness;
@@ -27,7 +28,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         };
         if self.masses.substep != substep {
             self.masses.substep = substep;
-            self.masses.of_substep = InverseMasses::new(&self.fabric, substep);
+            for fabric in &mut self.fabrics {
+                fabric.inverse_masses = InverseMasses::new(&fabric.fabric, substep);
+            }
             self.lanes.iter_mut().flatten().for_each(|cloth| cloth.added_mass = None);
         }
         self.gather_contacts(tick);
@@ -68,10 +71,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         self.set_added_mass(cloth, state);
         self.parameters.set_drive(Y::lanes(cloth), &state.drive, &self.clock);
-        let reach = match self.fabric.grid() {
+        let fabric = &self.fabric_of(cloth).fabric;
+        let reach = match fabric.grid() {
             // A cloth without pins is held by its own inertia.
-            Some(grid) if !self.fabric.has_pins() => grid.width.max(grid.height),
-            _ => self.fabric.reach(),
+            Some(grid) if !fabric.has_pins() => grid.width.max(grid.height),
+            _ => fabric.reach(),
         };
         let stretch =
             LoadStretch::new(&state.material, &state.drive, reach, state.pin_strain.greatest);
@@ -85,25 +89,27 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             step: inputs.effective_step(),
             scheme: inputs.scheme,
         };
-        self.layout.set_stiffness(cloth, &self.fabric, &stiffness);
-        let bends_stiffly = stiffness.bends_stiffly(&self.fabric);
-        self.parameters.set_inputs(Y::lanes(cloth), &self.fabric, inputs, bends_stiffly);
+        let fabric = &self.fabrics[Y::fabric_of(cloth)].fabric;
+        self.layout.set_stiffness(cloth, fabric, &stiffness);
+        let bends_stiffly = stiffness.bends_stiffly(fabric);
+        self.parameters.set_inputs(Y::lanes(cloth), fabric, inputs, bends_stiffly);
     }
 
     /// Computes a cloth's inverse masses if their inputs have changed.
     fn set_added_mass(&mut self, cloth: usize, state: &mut LaneState) {
-        let uprightness = self.pole.map_or(0.0, |pole| pole.uprightness(state.drive.gravity));
+        let LaneFabric { fabric, pole, inverse_masses } = self.fabric_of(cloth);
+        let uprightness = pole.map_or(0.0, |pole| pole.uprightness(state.drive.gravity));
         let added_mass = AddedMass::new(
             uprightness,
             &state.pin_strain,
-            &self.fabric,
+            fabric,
             &state.material,
             self.masses.substep,
         );
         if state.added_mass.replace(added_mass) == Some(added_mass) {
             return;
         }
-        let inverse_masses = self.masses.of_substep.of_cloth(added_mass, &state.pin_strain);
+        let inverse_masses = inverse_masses.of_cloth(added_mass, &state.pin_strain);
         self.layout.write_numbers(&inverse_masses, cloth, &mut self.masses.inverse);
         self.layout.write_numbers(&inertias(&inverse_masses), cloth, &mut self.masses.inertia);
         self.positions.set_inverse_masses(&inverse_masses);

@@ -20,7 +20,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             return;
         }
         P::run(DampInternally {
-            area: self.fabric.area(),
+            area: &self.numbers.area,
             areas: &self.masses.areas,
             partial_sums: &self.partial_sums,
             parameters: &self.parameters,
@@ -31,8 +31,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 }
 
 struct DampInternally<'a, P: Pack, C> {
-    /// Area of the whole cloth, m².
-    area: f32,
+    /// Area of each whole cloth, m².
+    area: &'a P,
     areas: &'a [C],
     partial_sums: &'a [u8],
     parameters: &'a Parameters<P>,
@@ -52,7 +52,7 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for DampInternally<'_, P, C> {
             centre.add_term(partial_sum, V3::load(token, position) * area);
             drift.add_term(partial_sum, V3::load(token, velocity) * area);
         }
-        let per_area = L::splat(token, 1.0) / L::splat(token, self.area);
+        let per_area = L::splat(token, 1.0) / L::load(token, self.area);
         let centre = centre.total::<C>(token) * per_area;
         let drift = drift.total::<C>(token) * per_area;
 

@@ -41,7 +41,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             inverse_areas: &self.masses.inverse_areas,
             inverse_masses: &self.masses.inverse,
             partial_sums: &self.partial_sums,
-            pole: self.pole,
+            pole: self.numbers.pole.as_ref(),
             parameters: &self.parameters,
             frame_rate: -1.0 / self.clock.step,
             position: self.positions.packs(),

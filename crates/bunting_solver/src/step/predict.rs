@@ -8,7 +8,7 @@ use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::sum::Sum;
 use crate::simd::vec3::{Pack3, V3};
-use crate::stability::pole::{Axis, Pole};
+use crate::stability::pole::{Axis, PolePacks};
 use crate::step::air::Response;
 use crate::step::bdf::MotionSums;
 use crate::step::carry::FrameRegisters;
@@ -34,7 +34,7 @@ pub(crate) struct Predict<'a, P: Pack, C> {
     pub inverse_areas: &'a [C],
     pub inverse_masses: &'a [P],
     pub partial_sums: &'a [u8],
-    pub pole: Option<Pole>,
+    pub pole: Option<&'a PolePacks<P>>,
     pub parameters: &'a Parameters<P>,
     /// Negative rate of substeps, −1/h, 1/s.
     pub frame_rate: f32,
@@ -138,7 +138,7 @@ impl<L: Lane> Substep<L> {
     fn load(
         token: L::Token,
         parameters: &Parameters<L::Pack>,
-        pole: Option<Pole>,
+        pole: Option<&PolePacks<L::Pack>>,
         frame_rate: f32,
     ) -> Self {
         let [last, before] = &parameters.extrapolation;

@@ -9,7 +9,7 @@ use crate::batch::layout::{Layout, Positions};
 use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
-use crate::stability::pole::{Axis, Moment, Pole, PoleTurn};
+use crate::stability::pole::{Axis, Moment, PolePacks, PoleTurn};
 use crate::stability::relaxation::UnderRelaxation;
 use crate::step::Scheme;
 use crate::step::parameters::Parameters;
@@ -20,7 +20,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if self.clock.stands_still() {
             return;
         }
-        let pole = self.pole.filter(|_| self.clock.settings.scheme == Scheme::Yarns);
+        let has_chains = self.clock.settings.scheme == Scheme::Yarns;
+        let pole = self.numbers.pole.as_ref().filter(|_| has_chains);
+        let turns = pole.is_some();
         let mut turn = self.external_moments();
         P::run(UpdateVelocities {
             pole,
@@ -37,7 +39,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             velocity: &mut self.velocity,
             past_velocities: [&self.older_velocity, &self.oldest_velocity],
         });
-        if pole.is_some() {
+        if turns {
             self.store_pole_turn(&turn);
         }
         self.damp_internally();
@@ -69,7 +71,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 }
 
 struct UpdateVelocities<'a, P: Pack, C> {
-    pole: Option<Pole>,
+    pole: Option<&'a PolePacks<P>>,
     /// Before: moments about the pole of corrections from outside the cloths, m⁴. After: turns by all other
     /// corrections, rad.
     turn: &'a mut P,

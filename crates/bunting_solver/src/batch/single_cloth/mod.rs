@@ -27,9 +27,10 @@ use self::chains::ChainPacks;
 use self::grid_shape::GridShape;
 use self::position_grids::PositionGrids;
 use self::ribbons::RibbonPacks;
-use self::tethers::{TetherPack, TetherPacks};
+use self::tethers::TetherPacks;
 use self::vector_grid::VectorGrid;
 use crate::batch::layout::{Layout, OfCloth, Order};
+use crate::batch::tether_pack::TetherPack;
 use crate::constraints::bend_factors::BendFactors;
 use crate::constraints::factors::{ClothFactors, Factors};
 use crate::constraints::stiffness::Stiffness;
@@ -223,7 +224,7 @@ impl<P: Pack> Layout<P> for SingleCloth<P> {
         }
     }
 
-    fn set_pins(&mut self, positions: &[Vec3]) {
+    fn set_pins(&mut self, _: usize, _: &Fabric, positions: &[Vec3]) {
         self.tethers.iter_mut().for_each(|tethers| tethers.set_pins(positions));
     }
 

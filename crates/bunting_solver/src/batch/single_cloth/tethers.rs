@@ -3,10 +3,10 @@
 use glam::Vec3;
 
 use super::grid_shape::GridShape;
-use crate::batch::layout::{PackedTether, Particles};
+use crate::batch::tether_pack::TetherPack;
 use crate::fabric::Tether;
-use crate::simd::lane::{Lane, Pack};
-use crate::simd::vec3::{Pack3, V3, set_lane3, splat3};
+use crate::simd::lane::Pack;
+use crate::simd::vec3::set_lane3;
 
 /// Tethers in the order of their packs.
 #[derive(Clone, Debug)]
@@ -16,17 +16,6 @@ pub(super) struct TetherPacks<P: Pack> {
     pins: Vec<(usize, usize, u32)>,
 }
 
-/// The tethers of a pack of particles.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TetherPack<P: Pack> {
-    /// Index of the first particle in row-major order.
-    first: u32,
-    /// Positions of the pins, m.
-    pins: Pack3<P>,
-    /// Lengths at rest, m; infinite in lanes without a tether.
-    lengths: P,
-}
-
 impl<P: Pack> TetherPacks<P> {
     /// Tethers without the positions of their pins. `locate` gives a particle's pack and lane.
     pub fn new(tethers: &[Tether], locate: impl Fn(u32) -> (usize, usize)) -> Self {
@@ -34,11 +23,7 @@ impl<P: Pack> TetherPacks<P> {
             tethers.iter().map(|tether| locate(tether.particle).0).collect();
         occupied.sort_unstable();
         occupied.dedup();
-        let empty = |&pack: &usize| TetherPack {
-            first: GridShape::start_of_pack::<P>(pack),
-            pins: splat3(Vec3::ZERO),
-            lengths: P::splat(f32::INFINITY),
-        };
+        let empty = |&pack: &usize| TetherPack::empty(GridShape::start_of_pack::<P>(pack));
         let mut packs: Vec<TetherPack<P>> = occupied.iter().map(empty).collect();
         let mut pins = Vec::new();
         for tether in tethers {
@@ -56,22 +41,5 @@ impl<P: Pack> TetherPacks<P> {
         for &(index, lane, pin) in &self.pins {
             set_lane3(&mut self.packs[index].pins, lane, positions[pin as usize]);
         }
-    }
-}
-
-impl<P: Pack> PackedTether<P> for TetherPack<P> {
-    #[inline(always)]
-    fn particle(&self) -> u32 {
-        self.first
-    }
-
-    #[inline(always)]
-    fn pin<L: Lane<Pack = P>, S: Particles<P>>(&self, token: L::Token, _: &S) -> V3<L> {
-        V3::load(token, &self.pins)
-    }
-
-    #[inline(always)]
-    fn length<L: Lane<Pack = P>>(&self, token: L::Token) -> L {
-        L::load(token, &self.lengths)
     }
 }
