@@ -12,7 +12,7 @@ use crate::cloth::mesh::ClothMesh;
 use crate::cloth::weights::check_weights;
 use crate::fabric::cut::cut_levels;
 use crate::fabric::levels::ClothLevels;
-use crate::lod::lod_set::LodSet;
+use crate::lod::lod_set::{LodChoice, LodSet};
 use crate::motion::attachment::Attachment;
 
 /// Number of vertices from which levels are built on another thread, where there are threads: building takes
@@ -40,23 +40,26 @@ pub(crate) struct FabricLibrary {
     expected: usize,
     /// Whether a cloth waits for its levels, or for levels that replace its present ones.
     pub awaited: bool,
-    /// Whether levels may be taken later than they are due, so that no tick waits for another thread.
-    pub may_be_late: bool,
+    /// Whether the choice of levels depends on measured times.
+    pub costs_are_measured: bool,
 }
 
-/// Levels that are being cut in the background. They are taken in a tick that follows from the numbers of vertices, or
-/// later where they are not cut yet and may be late.
+/// Levels that are being built in the background. They are taken in a tick that follows from the numbers of vertices, or
+/// later where they are not built yet and may be late.
 #[derive(Debug)]
 struct Cutting {
     /// Tick in which the levels are taken.
     due: u64,
+    /// Whether the levels may be taken after that tick, so that no tick waits for another thread: where all cloths that
+    /// wait for them depend on the machine anyway.
+    may_be_late: bool,
     levels: Background<Result<ClothLevels, FabricError>>,
 }
 
 impl Cutting {
-    /// Whether levels are taken in a tick.
-    fn is_ready(&self, tick: u64, may_be_late: bool) -> bool {
-        let waits = may_be_late && !self.levels.is_done() && tick < self.due + MOST_LATE;
+    /// Whether the levels are taken in a tick.
+    fn is_ready(&self, tick: u64) -> bool {
+        let waits = self.may_be_late && !self.levels.is_done() && tick < self.due + MOST_LATE;
         tick >= self.due && !waits
     }
 }
@@ -86,8 +89,7 @@ impl FabricLibrary {
 
     /// Whether levels are expected in a later tick.
     pub fn is_cutting(&self, key: &ContentKey) -> bool {
-        let is_ready = |cutting: &Cutting| cutting.is_ready(self.tick, self.may_be_late);
-        self.cutting.get(key).is_some_and(|cutting| !is_ready(cutting))
+        self.cutting.get(key).is_some_and(|cutting| !cutting.is_ready(self.tick))
     }
 
     /// Number of ticks until all levels that are being built are ready.
@@ -122,7 +124,7 @@ impl FabricLibrary {
         if let Some(levels) = self.cut.get(&key).and_then(Weak::upgrade) {
             return Ok(Found::Levels(levels));
         }
-        let Some(cut) = self.cut_or_wait(&key, mesh, attached, lods.levels()) else {
+        let Some(cut) = self.cut_or_wait(&key, mesh, attached, lods) else {
             return Ok(Found::Awaited(key));
         };
         let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
@@ -137,15 +139,20 @@ impl FabricLibrary {
         key: &ContentKey,
         mesh: &ClothMesh,
         attached: Vec<u32>,
-        asked: usize,
+        lods: &LodSet,
     ) -> Option<Result<ClothLevels, FabricError>> {
+        let is_automatic = matches!(lods.choice, LodChoice::Automatic { .. });
+        let may_be_late = self.costs_are_measured && is_automatic;
+        if let Some(cutting) = self.cutting.get_mut(key) {
+            cutting.may_be_late &= may_be_late;
+        }
         if self.is_cutting(key) {
             return None;
         }
         if let Some(cutting) = self.cutting.remove(key) {
             return Some(cutting.levels.take());
         }
-        let vertices = mesh.vertex_count();
+        let (vertices, asked) = (mesh.vertex_count(), lods.levels());
         let fits = self.expected == 0 || self.expected + vertices <= VERTICES_PER_TICK;
         // Small cloths are built at once and do not wait for large ones.
         let is_large = vertices >= ASYNC_VERTICES;
@@ -159,7 +166,7 @@ impl FabricLibrary {
         let due = self.tick + expected.div_ceil(VERTICES_PER_TICK) as u64;
         let mesh = mesh.clone();
         let levels = Background::begin(move || cut_levels(&mesh, &attached, asked));
-        self.cutting.insert(key.clone(), Cutting { due, levels });
+        self.cutting.insert(key.clone(), Cutting { due, may_be_late, levels });
         None
     }
 }

@@ -106,7 +106,7 @@ fn cut_cloths(
     mut commands: Commands,
 ) {
     library.begin_tick();
-    library.may_be_late = budget.costs == LodCosts::Measured;
+    library.costs_are_measured = budget.costs == LodCosts::Measured;
     for mut cloth in &mut cloths {
         let target = cloth.target();
         let is_cutting = cloth.instance.cutting.as_ref().is_some_and(|key| library.is_cutting(key));

@@ -94,7 +94,7 @@ impl Governor {
         if reserve > 0.0 {
             self.take_steps(tables, cloths, limits.budget - reserve);
         }
-        self.switch(tables, cloths, limits);
+        self.switch(tables, cloths, limits, reserve);
         &self.choice
     }
 
@@ -232,8 +232,14 @@ impl Governor {
     }
 
     /// Chooses the changes of this tick: to coarser levels in the order of the cloths, then to finer levels
-    /// in the order of the steps, as long as the costs stay within the budget.
-    fn switch(&mut self, tables: &[LevelTable], cloths: &[Candidate], limits: &Limits) {
+    /// in the order of the steps, as long as the costs stay within the budget less `reserve` for changes, µs.
+    fn switch(
+        &mut self,
+        tables: &[LevelTable],
+        cloths: &[Candidate],
+        limits: &Limits,
+        reserve: f32,
+    ) {
         self.choice.switches.clear();
         // Numbers of changes that are left for cloths on no screen, and for cloths on one.
         let mut left = [limits.switches; 2];
@@ -243,6 +249,8 @@ impl Governor {
         let has_fresh = cloths.iter().any(|cloth| cloth.fresh);
         let budget = if has_fresh { (1.0 - MOST_RESERVED) * limits.budget } else { limits.budget };
         cost = self.start_fresh(tables, cloths, budget, cost);
+        // On the way to the chosen levels costs may rise above those of these levels.
+        let most = budget.min(limits.budget - reserve);
         let switches = &mut self.choice.switches;
         for (index, (cloth, &to)) in cloths.iter().zip(&self.chosen).enumerate() {
             if cloth.fresh {
@@ -255,7 +263,7 @@ impl Governor {
             }
             let more = self.counts.difference(tables, cloth.table, cloth.level, to);
             // A coarser level costs more where it needs another batch, and none becomes empty.
-            if exceeds || more <= 0.0 || cost + more <= budget {
+            if exceeds || more <= 0.0 || cost + more <= most {
                 *left -= 1;
                 changes += cloth.cost_of_change(tables, to);
                 cost += more;
@@ -275,7 +283,7 @@ impl Governor {
             let more = self.counts.difference(tables, cloth.table, cloth.level, to);
             let change = cloth.cost_of_change(tables, to);
             let room = budget - (changes + change).min(MOST_RESERVED * limits.budget);
-            if more <= 0.0 || cost + more <= room {
+            if more <= 0.0 || cost + more <= room.min(most) {
                 cost += more;
                 changes += change;
                 *left -= 1;
