@@ -193,7 +193,10 @@ fn content_key(mesh: &ClothMesh, attached: &[u32], levels: usize) -> ContentKey 
 
 #[cfg(test)]
 mod tests {
+    use std::sync::mpsc;
+
     use bevy_math::Vec3;
+    use bevy_tasks::{AsyncComputeTaskPool, TaskPoolBuilder};
     use bunting_solver::{ClothSnapshot, FabricMaterial};
 
     use super::*;
@@ -215,6 +218,29 @@ mod tests {
     ) -> Result<Arc<ClothLevels>, ClothError> {
         let attachment = Attachment::in_place(edge);
         library.levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods).map(at_once)
+    }
+
+    #[test]
+    fn late_levels_are_not_waited_for_where_they_may_be_late() {
+        let pool =
+            AsyncComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
+        let hog = |_| {
+            let (go, busy) = mpsc::channel::<()>();
+            (go, pool.spawn(async move { busy.recv() }))
+        };
+        let hogs: Vec<_> = (0..pool.thread_num()).map(hog).collect();
+        let mut library = FabricLibrary { may_be_late: true, ..FabricLibrary::default() };
+        let mut is_there = |width: f32| {
+            let mesh = ClothMesh::grid(33, 33, width, 1.0);
+            let found = library.levels(Entity::PLACEHOLDER, &mesh, None, &LodSet::default());
+            library.awaited = true;
+            library.begin_tick();
+            matches!(found, Ok(Found::Levels(_)))
+        };
+        assert!(is_there(1.0), "the first is cut at once");
+        assert!((0..8).all(|_| !is_there(1.1)), "no thread has had time for it");
+        hogs.iter().for_each(|(go, _)| go.send(()).expect("it waits"));
+        assert!((0..2 * MOST_LATE).any(|_| is_there(1.1)));
     }
 
     #[test]
