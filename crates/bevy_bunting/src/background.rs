@@ -29,12 +29,13 @@ impl<T: Send + 'static> Background<T> {
         Self { work, task }
     }
 
-    /// Whether the result is there, so that nobody has to wait for it.
+    /// Whether the result is ready, so that [`take`](Self::take) does not wait.
     pub fn is_done(&self) -> bool {
         self.task.as_ref().is_some_and(Task::is_finished)
     }
 
-    /// The result. Work that has not begun is done on this thread: the others may be busy for long.
+    /// Returns the result. Work that no thread has begun is done on this thread, since the others may be busy for
+    /// long.
     pub fn take(self) -> T {
         let done = match take(&self.work) {
             Some(work) => Some(work()),

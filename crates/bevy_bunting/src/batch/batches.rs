@@ -36,14 +36,14 @@ pub(crate) struct BatchTiming {
     pub time: f32,
 }
 
-/// What the cost of a batch depends on.
+/// Properties of a batch on which its cost depends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct CostKind {
     /// Particles in a lane.
     pub particles: usize,
     pub settings: StepSettings,
     pub lanes: LaneCount,
-    /// Whether its cloths may be of different fabrics.
+    /// Whether the cloths may have different fabrics.
     pub mixed: bool,
 }
 

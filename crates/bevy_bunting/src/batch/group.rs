@@ -24,7 +24,7 @@ pub(crate) struct FabricCount {
 #[derive(Debug)]
 pub(crate) struct Group {
     pub settings: StepSettings,
-    /// The first of these tells the topology. One without cloths is replaced by the next that comes.
+    /// Fabrics of one topology, that of the first. A new fabric replaces one without cloths.
     pub fabrics: Vec<FabricCount>,
     pub batches: Vec<OccupiedBatch>,
     /// Empty batches, at most [`MOST_SPARE`] of each kind.

@@ -28,8 +28,8 @@ const FINER_FRACTION: f32 = 0.95;
 /// Greatest fraction of the budget that is reserved for changes of level: dearer changes exceed the budget.
 const MOST_RESERVED: f32 = 0.25;
 
-/// What it takes to give a new cloth a lane, over a change of level. It happens once, so that of many new cloths, as when
-/// a scene is loaded, it counts for each by itself.
+/// Cost of giving a new cloth a lane, over that of a change of level. Each new cloth has this cost once, so that it
+/// counts for every one of the cloths of a scene that is loaded.
 const ENTERING: f32 = 0.5;
 
 /// Number of low bits of a value that are dropped to make its bucket: the exponent and four bits are

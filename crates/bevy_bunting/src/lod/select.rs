@@ -197,7 +197,7 @@ impl LevelSelector {
         }
         let in_batches: f32 = batches.timings().map(|batch| batch.time).sum();
         self.model.learn_batches(table, batches.timings());
-        // What becomes of a new cloth once is no overhead of every tick.
+        // Work that each new cloth needs once is not part of the overhead of every tick.
         if let Some(timings) = timings.filter(|_| !self.has_fresh) {
             let total = timings.total().as_secs_f32() * 1e6;
             self.model.learn_overhead(self.overhead, total - in_batches - in_changes);

@@ -24,7 +24,7 @@ use crate::step::parameters::Parameters;
 /// [`Layout::locate`].
 #[derive(Clone, Debug)]
 pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
-    /// The fabric of the batch. Where cloths have fabrics of their own, it tells their topology.
+    /// The fabric of the batch. Where cloths have different fabrics, this is one with their topology.
     pub fabric: Arc<Fabric>,
     /// The fabric of all cloths, or of each lane's cloth, present or last.
     pub fabrics: Vec<LaneFabric>,

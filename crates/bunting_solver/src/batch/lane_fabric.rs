@@ -1,4 +1,4 @@
-//! What a batch computes from its fabrics: of each one by itself, and in lanes.
+//! Numbers that a batch computes from its fabrics, of each fabric by itself and in lanes.
 
 use core::ops::Range;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use crate::simd::lane::Pack;
 use crate::stability::added_mass::InverseMasses;
 use crate::stability::pole::{Pole, PolePacks};
 
-/// A fabric of a batch: that of all cloths, or that of one lane's.
+/// A fabric of a batch: of all its cloths, or of the cloth in one lane.
 #[derive(Clone, Debug)]
 pub(crate) struct LaneFabric {
     pub fabric: Arc<Fabric>,
@@ -46,7 +46,7 @@ pub(crate) struct FabricNumbers<P: Pack> {
 }
 
 impl<P: Pack> FabricNumbers<P> {
-    /// The same fabric in all lanes.
+    /// Numbers of one fabric in all lanes.
     pub fn new(fabric: &LaneFabric) -> Self {
         let mut numbers = Self {
             area: P::splat(0.0),
@@ -57,7 +57,7 @@ impl<P: Pack> FabricNumbers<P> {
         numbers
     }
 
-    /// Takes over the fabric of some lanes.
+    /// Sets the numbers of some lanes to those of a fabric.
     pub fn set(&mut self, lanes: Range<usize>, LaneFabric { fabric, pole, .. }: &LaneFabric) {
         let diagonal = fabric.grid().map_or(0.0, length_at_rest);
         self.area.lanes_mut()[lanes.clone()].fill(fabric.area());

@@ -1,7 +1,7 @@
 //! The layout of cloths of different fabrics side by side: grids of one topology.
 //!
 //! A pack holds the same particle of each cloth, one cloth a lane, as in [`SideBySide`]. Rest lengths, areas and all
-//! else that differs between the fabrics is each lane's own. Lists of constraints are those of the fabrics, in the
+//! other numbers of the fabrics differ from lane to lane. Lists of constraints are those of the fabrics, in the
 //! same order, so that a lane has the bits that its cloth has among cloths of its own fabric.
 //!
 //! Fabrics of one topology need not have the same classes and profiles, which depend on rounding. So each link is a
@@ -37,11 +37,12 @@ pub(crate) struct Mixed<P: Pack> {
     ribbons: Vec<Ribbon>,
     factors: Factors<P, PerLane<P>>,
     patches: Vec<Patch<PerLane<P>>>,
-    /// To the farthest pins, and to the nearest: a tether of each free particle, though it may be none of any lane's.
+    /// Tethers to the farthest pins and to the nearest, one for each free particle; lanes without a tether have an
+    /// infinite length.
     tethers: [Vec<TetherPack<P>>; 2],
     /// Index among the tethers of each particle that is free.
     tether_indices: Vec<u32>,
-    /// What the cells of a row contribute to the particles below it.
+    /// Scratch row of the contributions of a row of cells to the particles below it.
     below: Vec<Pack3<P>>,
 }
 

@@ -53,14 +53,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 }
 
-/// What the elimination stores of a row for the substitution.
+/// A row after elimination, as the substitution needs it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StripBlock<P: Pack> {
     /// Directions of the link across, of those along both lines, and of both diagonals; zero where there is none.
     directions: [Pack3<P>; 5],
-    /// The part of the next row's unknowns in this row's.
+    /// Coefficients of the next row's unknowns in this row's unknowns.
     next: [[P; UNKNOWNS]; UNKNOWNS],
-    /// This row's unknowns, less their part in the next, m³.
+    /// Unknowns of the row without the contribution of the next row's, m³.
     unknowns: [P; UNKNOWNS],
 }
 

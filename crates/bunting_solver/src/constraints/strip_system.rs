@@ -150,7 +150,7 @@ pub(super) struct Solved<L> {
 }
 
 impl<L: Lane> Solved<L> {
-    /// What comes before the first row: no constraint.
+    /// The row before the first row, without constraints.
     #[inline(always)]
     pub fn first(token: L::Token) -> Self {
         let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));

@@ -216,7 +216,7 @@ impl Chains {
         })
     }
 
-    /// The same chains, each link being a class of its own, of the index of its target length.
+    /// A copy in which each link is a class of its own, whose index is that of the link's target length.
     pub fn with_a_class_for_each_link<C: Copy>(&self, constant: fn(f32) -> C) -> Chains<C> {
         let pair = |pair: &ChainPair| {
             let rows = pair.links.iter().enumerate();

@@ -73,7 +73,7 @@ pub(crate) struct PatchSums<'a, P: Pack, C> {
     pub patches: &'a [Patch<C>],
     /// Number of particles in a row, where the patches are the cells of a grid, row by row; else none.
     pub grid_columns: Option<usize>,
-    /// Room for the contributions of a row of cells to the particles below it.
+    /// Scratch row of the contributions of a row of cells to the particles below it.
     pub below: &'a mut [Pack3<P>],
 }
 
