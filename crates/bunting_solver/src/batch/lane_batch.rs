@@ -65,6 +65,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub pole: Option<Pole>,
     pub parameters: Parameters<P>,
     pub clock: Clock,
+    /// The background grids of the cloths, if the fabric has one.
+    pub background: Option<Box<LaneBatch<P>>>,
 }
 
 impl<P: Pack> LaneBatch<P> {
@@ -108,6 +110,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             pole: Pole::of(&fabric),
             parameters: Parameters::new(),
             clock: Clock::default(),
+            background: fabric
+                .background()
+                .map(|grid| Box::new(LaneBatch::side_by_side(Arc::clone(&grid.fabric)))),
             fabric,
             layout,
         };

@@ -10,7 +10,8 @@ use crate::step::Scheme;
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// Projects the predicted positions onto all constraints.
     ///
-    /// The hinges of a mesh are solved forwards and backwards, and so are its chains. Each solve of a colour is a
+    /// A mesh that is flat at rest is solved on its background grid (`background.rs`). Of others the
+    /// hinges are solved forwards and backwards, and so are its chains. Each solve of a colour is a
     /// projection, self-adjoint in the metric of the masses, with eigenvalues from 0 to 1. So is a sequence of
     /// solves that reads the same backwards, and a product of two such still has real eigenvalues from 0 to 1, as an
     /// implicit step of a stiffer cloth has. A product of three different projections has complex ones:
@@ -27,6 +28,8 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         }
         if self.fabric.grid().is_some() {
             self.solve_bending_before_stretch();
+        } else if self.background.is_some() {
+            self.solve_bending_with_background();
         } else {
             self.solve_dihedral_both_ways();
         }
@@ -39,6 +42,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         }
         match self.clock.settings.scheme {
             Scheme::GaussSeidel => self.solve_gauss_seidel(),
+            Scheme::Yarns if self.background.is_some() => self.solve_stretch_on_background(),
             Scheme::Yarns => self.solve_stretch_and_contacts(),
         }
     }
@@ -84,6 +88,15 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         // Takes the positions back from the constraints.
         self.positions.packs_mut();
         self.solve_contacts();
+    }
+
+    /// Solves stretch and shear of a background grid, which has no tethers and touches nothing.
+    pub(super) fn solve_chains_and_sweeps(&mut self) {
+        let passes = self.clock.settings.passes;
+        self.solve_chains(passes);
+        for _ in 0..passes / 2 {
+            self.sweep_links();
+        }
     }
 }
 

@@ -14,6 +14,10 @@ const LIMP: f32 = 1000.0;
 /// flag has 0.02.
 const STIFF_BENDING: f32 = 1.0;
 
+/// Stiffness of the links of a mesh with a background grid, as a part of that of the material. Smaller: particles move
+/// between nodes of the grid in wind. Larger: the links take part of the load, and the cloth stretches too little.
+const LINKS_ON_BACKGROUND: f32 = 0.02;
+
 /// Whether a cloth is so stiff that its resistance to twist shows.
 pub(crate) fn resists_twist(fabric: &Fabric, material: &FabricMaterial) -> bool {
     let Some(grid) = fabric.grid() else { return false };
@@ -43,6 +47,10 @@ impl Stiffness<'_> {
         let classes = fabric.link_classes().iter();
         let stiffnesses = classes.map(|class| match self.scheme {
             Scheme::Yarns if fabric.has_shear_cells() => class.uncoupled_stiffness(self.material),
+            // Stretch is solved on the background grid; links hold together what it does not see.
+            Scheme::Yarns if fabric.background().is_some() => {
+                LINKS_ON_BACKGROUND * class.stiffness(self.material)
+            }
             _ => class.stiffness(self.material),
         });
         stiffnesses.map(|stiffness| self.compliance(stiffness).max(least)).collect()

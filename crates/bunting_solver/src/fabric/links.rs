@@ -109,14 +109,18 @@ pub(crate) struct Links {
 impl Links {
     /// Links along the edges of a mesh, or along the rows, columns and both diagonals of a grid. A link between
     /// two pinned particles has nothing to move and is left out.
-    pub fn of(mesh: &RestMesh, grid: Option<&Grid>) -> Self {
+    /// Of a grid that is partly cloth, `coverage` says how much of each cell is: it has as much of its stiffness.
+    pub fn of(mesh: &RestMesh, grid: Option<&Grid>, coverage: Option<&[f32]>) -> Self {
         let mut sums = BTreeMap::new();
         match grid {
             // Both ways of cutting a cell, half of each.
             Some(grid) => {
                 for flipped in [false, true] {
-                    for triangle in grid.triangles(flipped) {
-                        add_triangle(&mut sums, mesh, triangle, 0.5);
+                    for (index, triangle) in grid.triangles(flipped).into_iter().enumerate() {
+                        let part = coverage.map_or(1.0, |of_cells| of_cells[index / 2]);
+                        if part > 0.0 {
+                            add_triangle(&mut sums, mesh, triangle, 0.5 * f64::from(part));
+                        }
                     }
                 }
             }
@@ -228,7 +232,7 @@ fn add_triangle(
 }
 
 /// The direction in which u grows, in the triangle's plane; along its first edge if the texture does not say.
-fn warp_direction(mesh: &RestMesh, triangle: [u32; 3]) -> Vec3 {
+pub(super) fn warp_direction(mesh: &RestMesh, triangle: [u32; 3]) -> Vec3 {
     let [a, b, c] = mesh.positions_of(triangle);
     let [uv_a, uv_b, uv_c] = triangle.map(|corner| mesh.uv[corner as usize]);
     let (e1, e2) = (b - a, c - a);
