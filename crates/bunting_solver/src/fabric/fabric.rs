@@ -71,7 +71,7 @@ impl Fabric {
             Some(_) => None,
             None => BackgroundMesh::of(&mesh, surface).map(Background::of),
         };
-        let links = Links::of(&mesh, grid.as_ref(), None);
+        let links = Links::of(&mesh, grid.as_ref(), None, &surface.corner_uv);
         let yarns = Yarns::of(&mesh.positions, &links.list);
         let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref());
         let hinges = Hinges::of(&mesh, &surface.edges);
@@ -101,7 +101,7 @@ impl Fabric {
     /// The constraints of a background grid, whose nodes have no triangles, hinges or tethers.
     fn of_background(background: BackgroundMesh) -> (Self, GridTransfer) {
         let BackgroundMesh { grid, mesh, coverage, transfer, .. } = background;
-        let links = Links::of(&mesh, Some(&grid), Some(&coverage));
+        let links = Links::of(&mesh, Some(&grid), Some(&coverage), &[]);
         let yarns = Yarns::of(&mesh.positions, &links.list);
         let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid));
         let whole = transfer.is_whole.then_some(grid);

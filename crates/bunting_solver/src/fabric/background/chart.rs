@@ -113,14 +113,11 @@ fn plane_normal(mesh: &RestMesh) -> Option<Vec3> {
 
 /// The mean direction of the warp; none if the texture does not say.
 fn mean_warp(mesh: &RestMesh, surface: &Surface) -> Option<Vec3> {
-    let has_texture = |triangle: &[u32; 3]| {
-        let [a, b, c] = triangle.map(|corner| mesh.uv[corner as usize]);
-        (b - a).perp_dot(c - a) != 0.0
-    };
-    let triangles = mesh.triangles.iter().zip(&surface.triangle_areas);
+    let has_texture = |[a, b, c]: &[Vec2; 3]| (*b - *a).perp_dot(*c - *a) != 0.0;
+    let triangles = mesh.triangles.iter().zip(&surface.corner_uv).zip(&surface.triangle_areas);
     let directions = triangles
-        .filter(|(triangle, _)| has_texture(triangle))
-        .map(|(&triangle, &area)| warp_direction(mesh, triangle) * area);
+        .filter(|((_, uv), _)| has_texture(uv))
+        .map(|((&triangle, &uv), &area)| warp_direction(mesh.positions_of(triangle), uv) * area);
     directions.sum::<Vec3>().try_normalize()
 }
 
