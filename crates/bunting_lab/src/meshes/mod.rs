@@ -48,18 +48,25 @@ impl Random {
 }
 
 impl Sheet {
-    /// A sheet with as many vertices as a grid of `columns` × `rows`.
+    /// A sheet with as many vertices as a grid of `columns` × `rows`, whose first columns, as many as are `kept`, and
+    /// whose border are those of the grid.
     #[must_use]
-    pub fn new(triangulation: Triangulation, [columns, rows]: [usize; 2], size: DVec2) -> Self {
+    pub fn new(
+        triangulation: Triangulation,
+        [columns, rows]: [usize; 2],
+        size: DVec2,
+        kept: usize,
+    ) -> Self {
         let mut random = Random(17);
         let cells = DVec2::new((columns - 1) as f64, (rows - 1) as f64);
-        let on_border =
-            |column: usize, row: usize| column % (columns - 1) == 0 || row % (rows - 1) == 0;
+        let is_kept = |column: usize, row: usize| {
+            column < kept || column.is_multiple_of(columns - 1) || row.is_multiple_of(rows - 1)
+        };
         let grid = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
         let place = |(column, row): (usize, usize)| DVec2::new(column as f64, row as f64);
         let (points, triangles) = match triangulation {
             Triangulation::Delaunay => {
-                let border = grid.filter(|&(column, row)| on_border(column, row)).map(place);
+                let border = grid.filter(|&(column, row)| is_kept(column, row)).map(place);
                 let mut points: Vec<DVec2> = border.collect();
                 while points.len() < columns * rows {
                     points.push(farthest_candidate(&points, cells, &mut random));
@@ -70,7 +77,7 @@ impl Sheet {
             Triangulation::Quads => {
                 let points = grid.map(|at| {
                     let shift = random.place() * 2.0 - 1.0;
-                    let moves = !on_border(at.0, at.1);
+                    let moves = !is_kept(at.0, at.1);
                     place(at) + if moves { shift * SHIFT } else { DVec2::ZERO }
                 });
                 (points.collect(), cut_cells(columns, rows, &mut random))

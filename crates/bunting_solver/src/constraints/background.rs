@@ -1,17 +1,14 @@
 //! Stretch, shear and bending of a mesh on its background grid.
 //!
-//! The positions X of the nodes are interpolated from the positions x of the particles. The grid is solved as any other
-//! grid. The particles are moved by the interpolated displacements of the nodes, Δx = P ΔX, and keep what the grid does
-//! not resolve. A node has the mass that its displacement moves, Pᵀ m, so that momentum is kept. At rest the nodes are
-//! in the grid's own equilibrium, whatever the triangles are like: all particles fall by the same length in a substep,
-//! and the nodes bring them back by the same length.
+//! The positions X of the nodes are found from the positions x of the particles, the grid is solved as any other grid,
+//! and the particles follow: x = P X, where P interpolates between nodes. A node has the mass that its displacement
+//! moves, Pᵀ m, so that momentum is kept. At rest the nodes are in the grid's own equilibrium, whatever the triangles
+//! are like: all particles fall by the same length in a substep, and the nodes bring them back by the same length.
 //!
 //! The nodes begin at X = B x, with B the weights in triangles, which keeps straight rows straight. Steps
 //! X ← X + R (x − P X), R = (Pᵀ m)⁻¹ Pᵀ m, lead towards the orthogonal projection onto what the grid can move. An
-//! oblique one feeds motion: see [`PROJECTION_STEPS`].
-//!
-//! What the grid does not see is held by the mesh's own links, much weaker than the material: a sweep before the
-//! grid and a sweep backwards after it, so that the whole is self-adjoint (`mesh_sweep.rs`).
+//! oblique one feeds motion: see [`PROJECTION_STEPS`]. As the projection is orthogonal, taking off what the grid does
+//! not resolve, x − P X, neither moves the nodes nor changes the momentum.
 
 use glam::Vec3;
 
@@ -45,7 +42,6 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         if !is_whole {
             self.solve_dihedral_both_ways();
         }
-        self.sweep_mesh();
         self.read_nodes();
         if let Some(grid) = &mut self.background
             && is_whole
@@ -54,18 +50,19 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         }
     }
 
-    /// Solves stretch and shear on the background grid, then links, tethers and contacts.
+    /// Solves stretch and shear on the background grid; then a sweep over the mesh's links, which corrects what chains
+    /// overshoot as the sweep of a grid does, tethers and contacts.
     pub(super) fn solve_stretch_on_background(&mut self) {
         if let Some(grid) = &mut self.background {
             grid.solve_chains_and_sweeps();
         }
-        self.move_particles();
-        self.sweep_mesh_backwards();
+        self.place_particles();
+        self.sweep_mesh();
         self.solve_tethers();
         self.solve_contacts();
     }
 
-    /// Interpolates the nodes' positions from the particles.
+    /// Finds the nodes' positions from the particles.
     fn read_nodes(&mut self) {
         let (Some(grid), Some(background)) = (&mut self.background, self.fabric.background())
         else {
@@ -75,12 +72,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         let GridTransfer { nodes, particles, means, .. } = &background.transfer;
         let positions = grid.positions.packs_mut();
         positions.fill(splat3(Vec3::ZERO));
-        P::run(AddInterpolated {
-            rows: nodes,
-            sign: 1.0,
-            from: self.positions.packs(),
-            to: positions,
-        });
+        P::run(Interpolate { rows: nodes, from: self.positions.packs(), to: positions });
         // What the grid does not resolve.
         let rest = &mut self.stretch_shift;
         for _ in 0..PROJECTION_STEPS {
@@ -88,23 +80,44 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             P::run(AddInterpolated { rows: particles, sign: -1.0, from: positions, to: rest });
             P::run(AddInterpolated { rows: means, sign: 1.0, from: rest, to: positions });
         }
-        grid.scratch.clone_from(positions);
     }
 
-    /// Moves the particles by the displacements of the nodes.
-    fn move_particles(&mut self) {
+    /// Interpolates the positions of the free particles from the nodes.
+    fn place_particles(&mut self) {
         let (Some(grid), Some(background)) = (&mut self.background, self.fabric.background())
         else {
             return;
         };
-        let displacement = &mut grid.scratch;
-        P::run(Displacement { end: grid.positions.packs_mut(), start: displacement });
-        P::run(AddInterpolated {
+        P::run(Interpolate {
             rows: &background.transfer.particles,
-            sign: 1.0,
-            from: displacement,
+            from: grid.positions.packs_mut(),
             to: self.positions.packs_mut(),
         });
+    }
+}
+
+/// Overwrites the vector of each row that has terms by the interpolated one.
+struct Interpolate<'a, P: Pack> {
+    rows: &'a Interpolation,
+    from: &'a [Pack3<P>],
+    to: &'a mut [Pack3<P>],
+}
+
+impl<P: Pack> Kernel<P> for Interpolate<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let Self { rows, from, to } = self;
+        for (row, to) in rows.rows().zip(to) {
+            if row.is_empty() {
+                continue;
+            }
+            let mut sum = V3::<L>::splat(token, 0.0);
+            for term in row {
+                let from = V3::load(token, &from[term.from as usize]);
+                sum = sum.plus_scaled(from, L::splat(token, term.weight));
+            }
+            sum.store(to);
+        }
     }
 }
 
@@ -127,22 +140,6 @@ impl<P: Pack> Kernel<P> for AddInterpolated<'_, P> {
                 sum = sum.plus_scaled(from, L::splat(token, sign * term.weight));
             }
             sum.store(to);
-        }
-    }
-}
-
-/// Subtracts positions at the start from those at the end.
-struct Displacement<'a, P: Pack> {
-    end: &'a [Pack3<P>],
-    /// Before: positions at the start, m. After: displacements, m.
-    start: &'a mut [Pack3<P>],
-}
-
-impl<P: Pack> Kernel<P> for Displacement<'_, P> {
-    #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        for (start, end) in self.start.iter_mut().zip(self.end) {
-            (V3::<L>::load(token, end) - V3::load(token, start)).store(start);
         }
     }
 }

@@ -1,7 +1,8 @@
 //! A Gauss–Seidel sweep over the links of a mesh with a background grid.
 //!
-//! The links hold particles against displacements that the grid does not see. They have a small part of the material's
-//! stiffness, so that the grid carries the load. The constraint is that of `gauss_seidel/distance.rs`.
+//! Where a flag snaps like a whip, chains overshoot, as their directions are frozen. The sweep corrects single links, as
+//! that of a grid does. The links have a small part of the material's stiffness, so that the grid carries the load. The
+//! constraint is that of `gauss_seidel/distance.rs`.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
@@ -14,16 +15,7 @@ use crate::simd::vec3::{Pack3, V3};
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// Solves each link of the mesh once.
     pub(super) fn sweep_mesh(&mut self) {
-        self.sweep_mesh_in_order::<false>();
-    }
-
-    /// Solves each link of the mesh once, from the last to the first.
-    pub(super) fn sweep_mesh_backwards(&mut self) {
-        self.sweep_mesh_in_order::<true>();
-    }
-
-    fn sweep_mesh_in_order<const BACKWARDS: bool>(&mut self) {
-        P::run(SweepMesh::<_, BACKWARDS> {
+        P::run(SweepMesh {
             links: self.fabric.links(),
             inverse_masses: &self.masses.inverse,
             compliance: &self.layout.factors().link_compliance,
@@ -32,44 +24,31 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     }
 }
 
-struct SweepMesh<'a, P: Pack, const BACKWARDS: bool> {
+struct SweepMesh<'a, P: Pack> {
     links: &'a [Link],
     inverse_masses: &'a [P],
     compliance: &'a [P],
     position: &'a mut [Pack3<P>],
 }
 
-impl<P: Pack, const BACKWARDS: bool> SweepMesh<'_, P, BACKWARDS> {
+impl<P: Pack> Kernel<P> for SweepMesh<'_, P> {
     #[inline(always)]
-    fn solve<L: Lane<Pack = P>>(&mut self, token: L::Token, link: &Link) {
-        let [a, b] = link.particles.map(|particle| particle as usize);
-        let mass_a = L::load(token, &self.inverse_masses[a]);
-        let mass_b = L::load(token, &self.inverse_masses[b]);
-        let compliance = L::load(token, &self.compliance[link.class as usize]);
-        let from: V3<L> = V3::load(token, &self.position[a]);
-        let to: V3<L> = V3::load(token, &self.position[b]);
-        let along = to - from;
-        let length = along.dot(along).sqrt().max(L::splat(token, LEAST_LENGTH));
-        let excess = length - L::splat(token, link.rest_length);
-        // −Δλ/|d| with one division: the length of d is part of the denominator.
-        let pull = excess / ((mass_a + mass_b + compliance) * length);
-        from.plus_scaled(along, pull * mass_a).store(&mut self.position[a]);
-        to.minus_scaled(along, pull * mass_b).store(&mut self.position[b]);
-    }
-}
-
-impl<P: Pack, const BACKWARDS: bool> Kernel<P> for SweepMesh<'_, P, BACKWARDS> {
-    #[inline(always)]
-    fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
-        let links = self.links;
-        if BACKWARDS {
-            for link in links.iter().rev() {
-                self.solve::<L>(token, link);
-            }
-        } else {
-            for link in links {
-                self.solve::<L>(token, link);
-            }
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let least = L::splat(token, LEAST_LENGTH);
+        for link in self.links {
+            let [a, b] = link.particles.map(|particle| particle as usize);
+            let mass_a = L::load(token, &self.inverse_masses[a]);
+            let mass_b = L::load(token, &self.inverse_masses[b]);
+            let compliance = L::load(token, &self.compliance[link.class as usize]);
+            let from: V3<L> = V3::load(token, &self.position[a]);
+            let to: V3<L> = V3::load(token, &self.position[b]);
+            let along = to - from;
+            let length = along.dot(along).sqrt().max(least);
+            let excess = length - L::splat(token, link.rest_length);
+            // −Δλ/|d| with one division: the length of d is part of the denominator.
+            let pull = excess / ((mass_a + mass_b + compliance) * length);
+            from.plus_scaled(along, pull * mass_a).store(&mut self.position[a]);
+            to.minus_scaled(along, pull * mass_b).store(&mut self.position[b]);
         }
     }
 }

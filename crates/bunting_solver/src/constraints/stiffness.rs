@@ -14,8 +14,8 @@ const LIMP: f32 = 1000.0;
 /// flag has 0.02.
 const STIFF_BENDING: f32 = 1.0;
 
-/// Stiffness of the links of a mesh with a background grid, as a part of that of the material. Smaller: particles move
-/// between nodes of the grid in wind. Larger: the links take part of the load, and the cloth stretches too little.
+/// Stiffness of the links of a mesh with a background grid, as a part of that of the material. Smaller: the sweep
+/// over them corrects less of what chains overshoot. Larger: the links take part of the load, and the cloth stretches too little.
 const LINKS_ON_BACKGROUND: f32 = 0.02;
 
 /// Whether a cloth is so stiff that its resistance to twist shows.
@@ -47,7 +47,7 @@ impl Stiffness<'_> {
         let classes = fabric.link_classes().iter();
         let stiffnesses = classes.map(|class| match self.scheme {
             Scheme::Yarns if fabric.has_shear_cells() => class.uncoupled_stiffness(self.material),
-            // Stretch is solved on the background grid; links hold together what it does not see.
+            // The background grid carries the load.
             Scheme::Yarns if fabric.background().is_some() => {
                 LINKS_ON_BACKGROUND * class.stiffness(self.material)
             }

@@ -63,7 +63,7 @@ fn square(
 ) -> Arc<Fabric> {
     match triangulation {
         Some(triangulation) => {
-            Sheet::new(triangulation, [n, n], DVec2::ONE).fabric(warp, is_pinned)
+            Sheet::new(triangulation, [n, n], DVec2::ONE, 1).fabric(warp, is_pinned)
         }
         None => {
             let grid = FabricBuilder::grid(Grid::new(n as u32, n as u32, 1.0, 1.0));
@@ -163,7 +163,7 @@ fn hung(triangulation: Triangulation, n: usize) -> Vec<Case> {
 /// Drop over reach of a strip of 1 m × 0.25 m, clamped by one more cell.
 fn cantilever(triangulation: Triangulation, gamma: f64) -> Case {
     const CELL: f64 = 1.0 / 32.0;
-    let sheet = Sheet::new(triangulation, [34, 9], DVec2::new(1.0 + CELL, 8.0 * CELL));
+    let sheet = Sheet::new(triangulation, [34, 9], DVec2::new(1.0 + CELL, 8.0 * CELL), 2);
     let fabric = sheet.fabric(0.0, |at| f64::from(at.x) < 1.001 * CELL);
     let bend = f64::from(STANDARD.area_density) * GRAVITY / gamma;
     let material = FabricMaterial { bend_stiffness: bend as f32, ..STANDARD };

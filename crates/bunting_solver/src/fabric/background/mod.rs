@@ -3,8 +3,8 @@
 //! Links along the edges of an irregular mesh are no paths along which a load runs: chains of them are short and
 //! zigzag, and what they leave to relaxation converges slowly. So such a mesh gets a regular grid, as particles have
 //! in the material point method. Stretch, shear and bending are solved on the grid, exactly along its lines
-//! (`constraints/background.rs`). The position of a node is interpolated from the particles, and the displacements of
-//! the nodes are interpolated at the particles.
+//! (`constraints/background.rs`). The positions of the nodes are found from those of the
+//! particles, and the particles follow the nodes.
 //!
 //! `chart` lays the mesh into the plane, `coverage` measures how much of each cell is cloth, and `interpolation` finds
 //! the weights.
@@ -44,7 +44,7 @@ const LEAST_FREE: f32 = 0.5;
 pub(crate) struct GridTransfer {
     /// Of each node the particles that its position is interpolated from.
     pub nodes: Interpolation,
-    /// Of each free particle the nodes that its displacement is interpolated from.
+    /// Of each free particle the nodes that its position is interpolated from.
     pub particles: Interpolation,
     /// Of each free node the mean of the particles that its displacement moves.
     pub means: Interpolation,
