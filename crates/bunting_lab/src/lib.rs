@@ -16,6 +16,7 @@ pub mod game;
 pub mod golden;
 pub mod heap;
 pub mod levels;
+pub mod meshes;
 pub mod observation;
 pub mod oracles;
 pub mod output;

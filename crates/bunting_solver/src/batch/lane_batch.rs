@@ -75,6 +75,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub partial_sums: Vec<u8>,
     pub parameters: Parameters<P>,
     pub clock: Clock,
+    /// The background grids of the cloths, if the fabric has one.
+    pub background: Option<Box<LaneBatch<P>>>,
 }
 
 impl<P: Pack> LaneBatch<P> {
@@ -131,6 +133,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             partial_sums: layout.partial_sums(),
             parameters: Parameters::new(),
             clock: Clock::default(),
+            background: fabric
+                .background()
+                .map(|grid| Box::new(LaneBatch::side_by_side(Arc::clone(&grid.fabric)))),
             fabric,
             layout,
         };

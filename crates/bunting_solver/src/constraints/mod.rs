@@ -5,6 +5,7 @@
 //! and 4.14). The inverse mass of a particle is w/σ, with w one over its area and σ the area density, so the
 //! equation is multiplied through by σ: inverse masses are w, 1/m², and compliances σ/(k h²).
 
+pub(crate) mod background;
 #[cfg(test)]
 mod bench;
 pub(crate) mod bend_factors;
@@ -13,6 +14,7 @@ mod chain;
 mod corrections;
 pub(crate) mod factors;
 mod gauss_seidel;
+mod mesh_sweep;
 mod overlong;
 pub(crate) mod shear;
 mod solve;

@@ -11,12 +11,12 @@ use crate::step::Scheme;
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// Projects the predicted positions onto all constraints.
     ///
-    /// The hinges of a mesh are solved forwards and backwards, and so are its chains. Each solve of a colour
-    /// is a projection, self-adjoint in the metric of the masses, with eigenvalues from 0 to 1. A sequence of
-    /// solves that reads the same backwards is self-adjoint, too, and a product of two such sequences still
-    /// has real eigenvalues from 0 to 1, like an implicit step of a stiffer cloth. A product of three
-    /// different projections has complex eigenvalues: circulatory forces, which make a mesh at rest vibrate
-    /// and spin.
+    /// A mesh that is flat at rest is solved on its background grid (`background.rs`). The hinges of other meshes are
+    /// solved forwards and backwards, and so are their chains. Each solve of a colour is a projection, self-adjoint in
+    /// the metric of the masses, with eigenvalues from 0 to 1. A sequence of solves that reads the same backwards is
+    /// self-adjoint, too, and a product of two such sequences still has real eigenvalues from 0 to 1, like an implicit
+    /// step of a stiffer cloth. A product of three different projections has complex eigenvalues: circulatory forces,
+    /// which make a mesh at rest vibrate and spin.
     pub fn solve_constraints(&mut self) {
         self.solve_all_bending();
         self.solve_all_but_bending();
@@ -29,6 +29,8 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         }
         if self.fabric.grid().is_some() {
             self.solve_bending_before_stretch();
+        } else if self.background.is_some() {
+            self.solve_bending_with_background();
         } else {
             self.solve_dihedral_both_ways();
         }
@@ -42,6 +44,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         match self.clock.settings.scheme {
             Scheme::GaussSeidel => self.solve_gauss_seidel(),
             Scheme::Yarns if self.fabric.has_shear_cells() => self.solve_grid_and_contacts(),
+            Scheme::Yarns if self.background.is_some() => self.solve_stretch_on_background(),
             Scheme::Yarns => {
                 self.solve_chains_both_ways(self.clock.settings.passes);
                 self.solve_tethers();
@@ -98,6 +101,15 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         // This call copies the positions back from the constraints' arrays.
         self.positions.packs_mut();
         self.solve_contacts();
+    }
+
+    /// Solves stretch and shear of a background grid, which has no tethers and touches nothing.
+    pub(super) fn solve_chains_and_sweeps(&mut self) {
+        let passes = self.clock.settings.passes;
+        self.solve_chains(passes);
+        for _ in 0..passes / 2 {
+            self.sweep_links();
+        }
     }
 }
 

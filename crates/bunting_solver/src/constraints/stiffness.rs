@@ -14,6 +14,11 @@ const LIMP: f32 = 1000.0;
 /// 33 flag has 0.02.
 const STIFF_BENDING: f32 = 1.0;
 
+/// Stiffness of the links of a mesh with a background grid, as a part of that of the material. Smaller: the sweep
+/// over them corrects less of what chains overshoot. Larger: the links take part of the load, and the cloth stretches
+/// too little.
+const LINKS_ON_BACKGROUND: f32 = 0.02;
+
 /// Whether a cloth is stiff enough for its resistance to twist to be visible.
 pub(crate) fn resists_twist(fabric: &Fabric, material: &FabricMaterial) -> bool {
     let Some(grid) = fabric.grid() else { return false };
@@ -43,6 +48,10 @@ impl Stiffness<'_> {
         let classes = fabric.link_classes().iter();
         let stiffnesses = classes.map(|class| match self.scheme {
             Scheme::Yarns if fabric.has_shear_cells() => class.uncoupled_stiffness(self.material),
+            // The background grid carries the load.
+            Scheme::Yarns if fabric.background().is_some() => {
+                LINKS_ON_BACKGROUND * class.stiffness(self.material)
+            }
             _ => class.stiffness(self.material),
         });
         stiffnesses.map(|stiffness| self.compliance(stiffness).max(least)).collect()

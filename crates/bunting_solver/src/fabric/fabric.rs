@@ -1,7 +1,10 @@
 //! The fabric: a mesh at rest, and everything computed from it before a cloth moves.
 
+use std::sync::Arc;
+
 use glam::{Vec2, Vec3};
 
+use super::background::{BackgroundMesh, GridTransfer};
 use super::bending::{BendLine, BendProfile, Bending};
 use super::chains::Chains;
 use super::colour::Colours;
@@ -38,6 +41,26 @@ pub struct Fabric {
     tethers: Tethers,
     tautness: f32,
     pub(super) topology: Option<u64>,
+    background: Option<Background>,
+}
+
+/// The grid that solves stretch, shear and bending of a mesh that is flat at rest.
+#[derive(Clone, Debug)]
+pub(crate) struct Background {
+    /// The grid, whose particles are called nodes.
+    pub fabric: Arc<Fabric>,
+    /// How it reads the mesh's particles and moves them.
+    pub transfer: GridTransfer,
+    /// cos² of the angle between its rows and the warp.
+    pub warp_cos2: f32,
+}
+
+impl Background {
+    fn of(mesh: BackgroundMesh) -> Self {
+        let warp_cos2 = mesh.warp_cos2;
+        let (fabric, transfer) = Fabric::of_background(mesh);
+        Self { fabric: Arc::new(fabric), transfer, warp_cos2 }
+    }
 }
 
 impl Fabric {
@@ -48,7 +71,11 @@ impl Fabric {
         grid: Option<Grid>,
         tethered: bool,
     ) -> Self {
-        let links = Links::of(&mesh, grid.as_ref());
+        let background = match &grid {
+            Some(_) => None,
+            None => BackgroundMesh::of(&mesh, surface).map(Background::of),
+        };
+        let links = Links::of(&mesh, grid.as_ref(), None, &surface.corner_uv);
         let yarns = Yarns::of(&mesh.positions, &links.list);
         let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref());
         let strip_rows =
@@ -57,11 +84,12 @@ impl Fabric {
         let bending = grid.map(|grid| Bending::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
         let twist = grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
         let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
+        let shortest = background.as_ref().map_or(&links, |grid| &grid.fabric.links).shortest();
         let patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
         let cells = grid.filter(|grid| patches::are_cells(&patches, grid));
         let mut fabric = Self {
             patch_grid_columns: cells.map(|grid| grid.columns as usize),
-            tautness: tethers.reach.sqrt() / links.shortest(),
+            tautness: tethers.reach.sqrt() / shortest,
             grid,
             mesh,
             patches,
@@ -74,9 +102,38 @@ impl Fabric {
             twist,
             tethers,
             topology: None,
+            background,
         };
         fabric.topology = fabric.hash_topology();
         fabric
+    }
+
+    /// The constraints of a background grid, whose nodes have no triangles, hinges or tethers.
+    fn of_background(background: BackgroundMesh) -> (Self, GridTransfer) {
+        let BackgroundMesh { grid, mesh, coverage, transfer, .. } = background;
+        let links = Links::of(&mesh, Some(&grid), Some(&coverage), &[]);
+        let yarns = Yarns::of(&mesh.positions, &links.list);
+        let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid));
+        let whole = transfer.is_whole.then_some(grid);
+        let inverse_areas = &mesh.inverse_areas;
+        let fabric = Self {
+            bending: whole.map(|grid| Bending::of(&grid, inverse_areas)).unwrap_or_default(),
+            twist: whole.map(|grid| Twist::of(&grid, inverse_areas)).unwrap_or_default(),
+            hinges: Hinges::of(&mesh, &[]),
+            tethers: Tethers::of(&mesh, &[], true, false),
+            tautness: 0.0,
+            patches: Vec::new(),
+            patch_grid_columns: None,
+            background: None,
+            strip_rows: Vec::new(),
+            topology: None,
+            grid: Some(grid),
+            mesh,
+            links,
+            yarns,
+            chains,
+        };
+        (fabric, transfer)
     }
 
     /// Positions at rest in the cloth's frame, m, one per particle.
@@ -243,6 +300,17 @@ impl Fabric {
     /// Table of profiles that ribbons refer to.
     pub(crate) fn ribbon_profiles(&self) -> &[RibbonProfile] {
         &self.twist.profiles
+    }
+
+    /// The grid that solves stretch, shear and bending in place of the mesh's own links; none of grids, and of meshes
+    /// that are small, not flat at rest, or overlap themselves.
+    pub(crate) fn background(&self) -> Option<&Background> {
+        self.background.as_ref()
+    }
+
+    /// A material along the directions in which stretch is solved.
+    pub(crate) fn material_of_stretch(&self, material: &FabricMaterial) -> FabricMaterial {
+        self.background.as_ref().map_or(*material, |grid| material.turned(grid.warp_cos2))
     }
 
     /// The pinned particles.

@@ -9,7 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec2, Vec3};
 
 use super::classes::{Classes, rounded_bits};
 use super::colour::colour;
@@ -110,20 +110,32 @@ pub(crate) struct Links {
 impl Links {
     /// Links along the edges of a mesh, or along the rows, columns and both diagonals of a grid. A link
     /// between two pinned particles moves nothing and is left out.
-    pub fn of(mesh: &RestMesh, grid: Option<&Grid>) -> Self {
+    ///
+    /// `corner_uv` are the texture coordinates at the corners of the triangles of a mesh. `coverage` is the part of each
+    /// cell of a grid that is cloth: the cell has this part of the stiffness.
+    pub fn of(
+        mesh: &RestMesh,
+        grid: Option<&Grid>,
+        coverage: Option<&[f32]>,
+        corner_uv: &[[Vec2; 3]],
+    ) -> Self {
         let mut sums = BTreeMap::new();
         match grid {
             // A cell is split both ways, and each way contributes half.
             Some(grid) => {
                 for flipped in [false, true] {
-                    for triangle in grid.triangles(flipped) {
-                        add_triangle(&mut sums, mesh, triangle, 0.5);
+                    for (index, triangle) in grid.triangles(flipped).into_iter().enumerate() {
+                        let part = coverage.map_or(1.0, |of_cells| of_cells[index / 2]);
+                        if part > 0.0 {
+                            let uv = triangle.map(|corner| mesh.uv[corner as usize]);
+                            add_triangle(&mut sums, mesh, triangle, uv, 0.5 * f64::from(part));
+                        }
                     }
                 }
             }
             None => {
-                for &triangle in &mesh.triangles {
-                    add_triangle(&mut sums, mesh, triangle, 1.0);
+                for (&triangle, &uv) in mesh.triangles.iter().zip(corner_uv) {
+                    add_triangle(&mut sums, mesh, triangle, uv, 1.0);
                 }
             }
         }
@@ -196,13 +208,14 @@ fn add_triangle(
     sums: &mut BTreeMap<[u32; 2], LinkSum>,
     mesh: &RestMesh,
     triangle: [u32; 3],
+    uv: [Vec2; 3],
     part: f64,
 ) {
     let [a, b, c] = triangle;
     let corners = mesh.positions_of(triangle);
     let area = 0.5 * f64::from((corners[1] - corners[0]).cross(corners[2] - corners[0]).length());
     let edges = [[a, b], [b, c], [c, a]];
-    let warp = warp_direction(mesh, triangle);
+    let warp = warp_direction(corners, uv);
     // Rows of c⁴, s⁴ and c²s², one for each edge.
     let rows = edges.map(|ends| {
         let [from, to] = mesh.positions_of(ends);
@@ -230,9 +243,7 @@ fn add_triangle(
 
 /// Direction in which u grows, in the triangle's plane; the direction of its first edge if the texture does
 /// not determine it.
-fn warp_direction(mesh: &RestMesh, triangle: [u32; 3]) -> Vec3 {
-    let [a, b, c] = mesh.positions_of(triangle);
-    let [uv_a, uv_b, uv_c] = triangle.map(|corner| mesh.uv[corner as usize]);
+pub(super) fn warp_direction([a, b, c]: [Vec3; 3], [uv_a, uv_b, uv_c]: [Vec2; 3]) -> Vec3 {
     let (e1, e2) = (b - a, c - a);
     let (t1, t2) = (uv_b - uv_a, uv_c - uv_a);
     let along_u = (e1 * t2.y - e2 * t1.y) * t1.perp_dot(t2).signum();
@@ -242,7 +253,7 @@ fn warp_direction(mesh: &RestMesh, triangle: [u32; 3]) -> Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fabric::FabricBuilder;
+    use crate::fabric::{Fabric, FabricBuilder};
 
     #[test]
     fn grid_links_have_the_textbook_stiffness() {
@@ -275,5 +286,38 @@ mod tests {
             assert!((stiffness / expected - 1.0).abs() < 2e-3, "{a}–{b}: {stiffness} {expected}");
         }
         assert!(fabric.link_classes().len() <= 6, "{:?}", fabric.link_classes());
+    }
+
+    /// A strip of four quads. With a seam the texture of the two on the right is shifted, and the vertices on the seam
+    /// are doubled.
+    fn strip(has_seam: bool) -> Fabric {
+        let mut positions = Vec::new();
+        let mut uv = Vec::new();
+        let mut indices = Vec::new();
+        for (columns, shift) in [(0..3, 0.0), (2..5, if has_seam { 1.0 } else { 0.0 })] {
+            for column in columns {
+                for row in 0..2 {
+                    let at = Vec2::new(column as f32, row as f32 + 0.2 * column as f32);
+                    positions.push(Vec3::new(at.x, -at.y, 0.0));
+                    uv.push(at + Vec2::new(0.0, shift));
+                }
+            }
+        }
+        for first in [0, 2, 6, 8] {
+            indices.extend([0, 1, 2, 2, 1, 3].map(|corner| first + corner));
+        }
+        FabricBuilder::new(positions, indices).uv(uv).build().expect("a good fabric")
+    }
+
+    #[test]
+    fn the_warp_is_that_of_each_side_of_a_seam() {
+        let (whole, seamed) = (strip(false), strip(true));
+        assert_eq!(seamed.particle_count(), 10);
+        for (one, other) in whole.links().iter().zip(seamed.links()) {
+            assert_eq!(one.particles, other.particles);
+            let [one, other] = [(&whole, one), (&seamed, other)]
+                .map(|(fabric, link)| fabric.link_stiffness(link, &FabricMaterial::DENIM));
+            assert!((one / other - 1.0).abs() < 1e-4, "{one} {other}");
+        }
     }
 }

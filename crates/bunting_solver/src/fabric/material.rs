@@ -136,6 +136,32 @@ impl FabricMaterial {
         }
     }
 
+    /// The material along two directions at right angles, the first at an angle to the warp of which `cos2` is cos².
+    ///
+    /// Young's moduli and the shear modulus follow the rule for orthotropic sheets (Jones 1999, 2.6), without
+    /// Poisson's ratio, which links at right angles have not. A strip that is cut along either direction is then as
+    /// stiff as the cloth, but does not narrow when it is pulled.
+    #[must_use]
+    pub(crate) fn turned(&self, cos2: f32) -> Self {
+        // Also keeps inextensible materials: ∞ × 0 is not a number.
+        if cos2 == 1.0 {
+            return *self;
+        }
+        let sin2 = 1.0 - cos2;
+        let softness =
+            [self.warp_stiffness, self.weft_stiffness, self.shear_stiffness].map(f32::recip);
+        let [warp, weft, shear] = softness;
+        let along =
+            |cos2: f32, sin2: f32| cos2 * cos2 * warp + sin2 * sin2 * weft + cos2 * sin2 * shear;
+        let sheared = 4.0 * cos2 * sin2 * (warp + weft) + (cos2 - sin2).powi(2) * shear;
+        Self {
+            warp_stiffness: along(cos2, sin2).recip(),
+            weft_stiffness: along(sin2, cos2).recip(),
+            shear_stiffness: sheared.recip(),
+            ..*self
+        }
+    }
+
     /// The stiffnesses `[C₁₁, C₂₂, G]` in N/m with which a lattice of links has the material's measured
     /// stiffnesses, if its diagonals resist stretch as well as shear.
     ///

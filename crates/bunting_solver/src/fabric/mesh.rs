@@ -32,6 +32,9 @@ pub(crate) struct RestMesh {
 pub(super) struct Surface {
     /// Areas of the triangles, m².
     pub triangle_areas: Vec<f32>,
+    /// Texture coordinates at the corners of each triangle. Along a seam they differ from those of the particles, which
+    /// are those of one side.
+    pub corner_uv: Vec<[Vec2; 3]>,
     /// All edges, sorted by their ends.
     pub edges: Vec<Edge>,
 }
@@ -69,15 +72,19 @@ impl RestMesh {
         for vertex in pinned {
             inverse_areas[particle(vertex) as usize] = 0.0;
         }
+        let uv_at = |vertex: usize| uv.get(vertex).copied().unwrap_or_default();
+        let corner_uv =
+            indices.chunks_exact(3).map(|at| [0, 1, 2].map(|corner| uv_at(at[corner] as usize)));
         let mesh = Self {
             positions: rest,
-            uv: vertices().map(|vertex| uv.get(vertex).copied().unwrap_or_default()).collect(),
+            uv: vertices().map(uv_at).collect(),
             triangles,
             areas,
             inverse_areas,
             particle_of_vertex,
         };
-        Ok((mesh, Surface { triangle_areas, edges }))
+        let corner_uv = corner_uv.collect();
+        Ok((mesh, Surface { triangle_areas, corner_uv, edges }))
     }
 
     /// Whether a particle is pinned.

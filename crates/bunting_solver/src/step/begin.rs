@@ -4,6 +4,7 @@ use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_fabric::LaneFabric;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
+use crate::constraints::background::node_inverse_masses;
 use crate::constraints::stiffness::Stiffness;
 use crate::simd::lane::Pack;
 use crate::stability::added_mass::{AddedMass, InverseMasses, inertias};
@@ -46,7 +47,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                     self.begin_substep_of(cloth, &mut state);
                     self.lanes[cloth] = Some(state);
                 }
-                None => self.parameters.set_empty(Y::lanes(cloth)),
+                None => {
+                    self.parameters.set_empty(Y::lanes(cloth));
+                    if let Some(background) = &mut self.background {
+                        background.parameters.set_empty(cloth..cloth + 1);
+                    }
+                }
             }
         }
         // The flag stays set for one substep after the motion, so that the velocities of pins become zero
@@ -77,9 +83,16 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             Some(grid) if !fabric.has_pins() => grid.width.max(grid.height),
             _ => fabric.reach(),
         };
-        let stretch =
-            LoadStretch::new(&state.material, &state.drive, reach, state.pin_strain.greatest);
+        let stretch = LoadStretch::new(
+            &self.fabric.material_of_stretch(&state.material),
+            &state.drive,
+            reach,
+            state.pin_strain.greatest,
+        );
         self.parameters.set_load_stretch(Y::lanes(cloth), &stretch);
+        if let Some(background) = &mut self.background {
+            background.parameters.set_load_stretch(cloth..cloth + 1, &stretch);
+        }
     }
 
     /// Computes all values that depend on a cloth's material and on the formula.
@@ -93,6 +106,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.layout.set_stiffness(cloth, fabric, &stiffness);
         let bends_stiffly = stiffness.bends_stiffly(fabric);
         self.parameters.set_inputs(Y::lanes(cloth), fabric, inputs, bends_stiffly);
+        if let Some(background) = &mut self.background {
+            let along_rows = fabric.material_of_stretch(&inputs.material);
+            background.set_inputs(cloth, &ParameterInputs { material: along_rows, ..*inputs });
+        }
     }
 
     /// Computes a cloth's inverse masses if their inputs have changed.
@@ -113,5 +130,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.layout.write_numbers(&inverse_masses, cloth, &mut self.masses.inverse);
         self.layout.write_numbers(&inertias(&inverse_masses), cloth, &mut self.masses.inertia);
         self.positions.set_inverse_masses(&inverse_masses);
+        if let Some(background) = &mut self.background {
+            let nodes = node_inverse_masses(&self.fabric, &inverse_masses);
+            background.layout.write_numbers(&nodes, cloth, &mut background.masses.inverse);
+        }
     }
 }

@@ -8,6 +8,7 @@ mod cantilever;
 mod catenary;
 mod drag;
 mod fall;
+mod meshes;
 mod modes;
 mod momentum;
 mod pendulum;
@@ -21,7 +22,7 @@ use crate::specimen::Mount;
 pub type Trial = fn(&Mount) -> Vec<Case>;
 
 /// Every trial with its name.
-pub const ALL: [(&str, Trial); 10] = [
+pub const ALL: [(&str, Trial); 11] = [
     ("free fall", fall::cases),
     ("static stretch", stretch::cases),
     ("catenary", catenary::cases),
@@ -32,6 +33,7 @@ pub const ALL: [(&str, Trial); 10] = [
     ("drag", drag::cases),
     ("momentum", momentum::cases),
     ("spin", spin::cases),
+    ("meshes", meshes::cases),
 ];
 
 /// Cases of the trial with the given name.

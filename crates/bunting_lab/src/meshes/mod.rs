@@ -1,0 +1,132 @@
+//! Triangle meshes that are no grids, for trials of what artists model.
+
+mod delaunay;
+
+use std::sync::Arc;
+
+use bunting_solver::{Fabric, FabricBuilder};
+use glam::{DVec2, Vec2, Vec3};
+
+/// How the triangles of a rectangle lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Triangulation {
+    /// Delaunay triangles of points at random, not too close to one another, and of a regular border.
+    Delaunay,
+    /// Cells whose corners are moved at random, each cut along one of its diagonals at random.
+    Quads,
+}
+
+/// A rectangle of triangles from the origin to (width, −height).
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// Positions, m.
+    pub positions: Vec<Vec3>,
+    /// Three vertices per triangle.
+    pub indices: Vec<u32>,
+}
+
+/// Candidates of which the one farthest from all points becomes the next (Mitchell 1991).
+const CANDIDATES: usize = 8;
+/// Greatest shift of a cell's corner along each axis, in cells.
+const SHIFT: f64 = 0.2;
+
+/// Numbers from 0 to 1, one after the other (xorshift, Marsaglia 2003).
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// A place in the unit square.
+    fn place(&mut self) -> DVec2 {
+        DVec2::new(self.next(), self.next())
+    }
+}
+
+impl Sheet {
+    /// A sheet with as many vertices as a grid of `columns` × `rows`, whose first columns, as many as are `kept`, and
+    /// whose border are those of the grid.
+    #[must_use]
+    pub fn new(
+        triangulation: Triangulation,
+        [columns, rows]: [usize; 2],
+        size: DVec2,
+        kept: usize,
+    ) -> Self {
+        let mut random = Random(17);
+        let cells = DVec2::new((columns - 1) as f64, (rows - 1) as f64);
+        let is_kept = |column: usize, row: usize| {
+            column < kept || column.is_multiple_of(columns - 1) || row.is_multiple_of(rows - 1)
+        };
+        let grid = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
+        let place = |(column, row): (usize, usize)| DVec2::new(column as f64, row as f64);
+        let (points, triangles) = match triangulation {
+            Triangulation::Delaunay => {
+                let border = grid.filter(|&(column, row)| is_kept(column, row)).map(place);
+                let mut points: Vec<DVec2> = border.collect();
+                while points.len() < columns * rows {
+                    points.push(farthest_candidate(&points, cells, &mut random));
+                }
+                let triangles = delaunay::triangulate(&points);
+                (points, triangles)
+            }
+            Triangulation::Quads => {
+                let points = grid.map(|at| {
+                    let shift = random.place() * 2.0 - 1.0;
+                    let moves = !is_kept(at.0, at.1);
+                    place(at) + if moves { shift * SHIFT } else { DVec2::ZERO }
+                });
+                (points.collect(), cut_cells(columns, rows, &mut random))
+            }
+        };
+        let in_space = |at: &DVec2| (*at / cells * size).as_vec2();
+        let positions = points.iter().map(in_space).map(|at| Vec3::new(at.x, -at.y, 0.0));
+        // The second axis points down, which turns the triangles over.
+        let front = triangles.into_iter().flat_map(|[a, b, c]| [a, c, b]);
+        Self { positions: positions.collect(), indices: front.map(|at| at as u32).collect() }
+    }
+
+    /// The sheet as a fabric whose warp runs at an angle to its rows, rad, with pins.
+    ///
+    /// # Panics
+    ///
+    /// When it is not a cloth.
+    #[must_use]
+    pub fn fabric(&self, warp: f32, is_pinned: impl Fn(Vec3) -> bool) -> Arc<Fabric> {
+        let (sin, cos) = warp.sin_cos();
+        let turned = |at: &Vec3| Vec2::new(cos * at.x - sin * at.y, sin * at.x + cos * at.y);
+        let uv = self.positions.iter().map(turned).collect();
+        let builder = FabricBuilder::new(self.positions.clone(), self.indices.clone()).uv(uv);
+        Arc::new(builder.pin_where(|at, _| is_pinned(at)).build().expect("a cloth"))
+    }
+}
+
+/// Of several places at random half a cell or more inside the border the one that is farthest from all points.
+fn farthest_candidate(points: &[DVec2], cells: DVec2, random: &mut Random) -> DVec2 {
+    let nearest = |at: DVec2| {
+        points.iter().map(|point| point.distance_squared(at)).fold(f64::INFINITY, f64::min)
+    };
+    let candidates: Vec<DVec2> =
+        (0..CANDIDATES).map(|_| 0.5 + random.place() * (cells - 1.0)).collect();
+    let farthest = candidates.into_iter().max_by(|a, b| nearest(*a).total_cmp(&nearest(*b)));
+    farthest.expect("there are candidates")
+}
+
+/// Two triangles for each cell, counter-clockwise if the second axis points up.
+fn cut_cells(columns: usize, rows: usize, random: &mut Random) -> Vec<[usize; 3]> {
+    let mut triangles = Vec::new();
+    for (row, column) in (0..rows - 1).flat_map(|row| (0..columns - 1).map(move |at| (row, at))) {
+        let corner = |right: usize, up: usize| (row + up) * columns + column + right;
+        let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
+        triangles.extend(if random.next() < 0.5 {
+            [[a, d, c], [a, b, d]]
+        } else {
+            [[a, b, c], [b, d, c]]
+        });
+    }
+    triangles
+}

@@ -1,0 +1,146 @@
+//! A flat mesh laid into the plane, along its warp or along the sides of its bounding rectangle.
+
+use glam::{Vec2, Vec3};
+
+use crate::fabric::grid::Grid;
+use crate::fabric::links::warp_direction;
+use crate::fabric::mesh::{RestMesh, Surface};
+
+/// Greatest distance of a particle from the mean plane, as a part of the mesh's extent. Larger: curved meshes are
+/// flattened.
+const FLAT: f32 = 1e-4;
+
+/// Part of its narrowest bounding rectangle above which a mesh counts as a rectangle, along whose sides it is laid.
+/// Larger: rectangles with rounded corners have rows that end at slanting borders.
+const FILLED: f32 = 0.97;
+
+/// How much more of its narrowest rectangle than of that along the warp a mesh must fill to be laid along the former.
+/// Smaller: rounding turns a mesh.
+const TIGHTER: f32 = 1e-4;
+
+/// cos of the angle to the warp or the weft up to which a row runs along it: 3°.
+const ALONG: f32 = 0.9986;
+
+/// A flat mesh in the plane.
+pub(super) struct Chart {
+    /// Positions of the particles in the plane, m, from the corner of their bounding rectangle.
+    pub positions: Vec<Vec2>,
+    /// cos² of the angle between the first axis and the warp.
+    pub warp_cos2: f32,
+    /// Corner of the bounding rectangle, m, and the axes.
+    origin: Vec3,
+    axes: [Vec3; 2],
+    extent: Vec2,
+    /// Of the mesh, m².
+    area: f32,
+}
+
+impl Chart {
+    /// The chart of a mesh; none if it is not flat, or folded.
+    pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
+        let normal = plane_normal(mesh)?;
+        let warp = mean_warp(mesh, surface);
+        let warp = warp.unwrap_or_else(|| normal.any_orthonormal_vector());
+        let area: f32 = surface.triangle_areas.iter().sum();
+        let mut best = Self::along(mesh, area, normal, warp);
+        let filled = |chart: &Self| area / chart.extent.element_product();
+        let rectangle = narrowest(mesh, surface, area, normal);
+        if filled(&rectangle) > FILLED.max(filled(&best) + TIGHTER) {
+            best = rectangle;
+        }
+        let warp_cos2 = best.axes[0].dot(warp).powi(2).min(1.0);
+        // Rounding does not turn a warp.
+        best.warp_cos2 = if warp_cos2 > ALONG * ALONG { 1.0 } else { warp_cos2 };
+        Some(best)
+    }
+
+    /// The chart with its first axis along a direction in the plane. Its second axis points down the rows of a grid.
+    fn along(mesh: &RestMesh, area: f32, normal: Vec3, direction: Vec3) -> Self {
+        let right = (direction - normal * normal.dot(direction)).normalize();
+        let axes = [right, right.cross(normal)];
+        let flat = |at: Vec3| Vec2::new(at.dot(axes[0]), at.dot(axes[1]));
+        let (low, high) = mesh
+            .positions
+            .iter()
+            .map(|&at| flat(at))
+            .fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), at| {
+                (low.min(at), high.max(at))
+            });
+        let height = normal * normal.dot(mesh.positions[0]);
+        Self {
+            positions: mesh.positions.iter().map(|&at| flat(at) - low).collect(),
+            warp_cos2: 1.0,
+            origin: height + axes[0] * low.x + axes[1] * low.y,
+            axes,
+            extent: high - low,
+            area,
+        }
+    }
+
+    /// The place in space of a place in the plane, m.
+    pub fn in_space(&self, at: Vec2) -> Vec3 {
+        self.origin + self.axes[0] * at.x + self.axes[1] * at.y
+    }
+
+    /// The grid over the bounding rectangle with about as many nodes as there are particles.
+    pub fn grid(&self) -> Grid {
+        let Vec2 { x: width, y: height } = self.extent;
+        // N particles of an area A in rows and columns, of which those on the border stand for half cells.
+        let spacing = (self.area / self.positions.len() as f32).sqrt();
+        let count = |extent: f32| (extent / spacing).round().max(2.0) as u32;
+        Grid::new(count(width), count(height), width, height)
+    }
+}
+
+/// Positions of a grid's nodes in the plane, m.
+pub(super) fn node_positions(grid: &Grid) -> Vec<Vec2> {
+    grid.positions().iter().map(|at| Vec2::new(at.x, -at.y)).collect()
+}
+
+/// The unit normal of the plane that a mesh lies in; none if it lies in none, or a triangle shows its back.
+fn plane_normal(mesh: &RestMesh) -> Option<Vec3> {
+    let scaled = |&triangle: &[u32; 3]| {
+        let [a, b, c] = mesh.positions_of(triangle);
+        (b - a).cross(c - a)
+    };
+    let normal = mesh.triangles.iter().map(scaled).sum::<Vec3>().try_normalize()?;
+    let first = mesh.positions[0];
+    let extent = mesh.positions.iter().map(|at| at.distance(first)).fold(0.0, f32::max);
+    let is_flat = mesh.positions.iter().all(|&at| (at - first).dot(normal).abs() < FLAT * extent);
+    let is_front = mesh.triangles.iter().all(|triangle| scaled(triangle).dot(normal) > 0.0);
+    (is_flat && is_front).then_some(normal)
+}
+
+/// The mean direction of the warp; none if the texture does not say.
+fn mean_warp(mesh: &RestMesh, surface: &Surface) -> Option<Vec3> {
+    let has_texture = |[a, b, c]: &[Vec2; 3]| (*b - *a).perp_dot(*c - *a) != 0.0;
+    let triangles = mesh.triangles.iter().zip(&surface.corner_uv).zip(&surface.triangle_areas);
+    let directions = triangles
+        .filter(|((_, uv), _)| has_texture(uv))
+        .map(|((&triangle, &uv), &area)| warp_direction(mesh.positions_of(triangle), uv) * area);
+    directions.sum::<Vec3>().try_normalize()
+}
+
+/// The chart along that edge of the border whose bounding rectangle is the smallest.
+fn narrowest(mesh: &RestMesh, surface: &Surface, area: f32, normal: Vec3) -> Chart {
+    let border = surface.edges.iter().filter(|edge| edge.other_opposite.is_none());
+    let mut directions: Vec<Vec3> = border
+        .map(|edge| {
+            let [a, b] = mesh.positions_of(edge.ends);
+            (b - a).normalize()
+        })
+        .collect();
+    // Edges of one side, and of opposite sides, are tried once.
+    let mut tried: Vec<Vec3> = Vec::new();
+    directions.retain(|direction| {
+        let is_new = !tried.iter().any(|other| other.dot(*direction).abs() > ALONG);
+        if is_new {
+            tried.push(*direction);
+        }
+        is_new
+    });
+    let charts =
+        directions.into_iter().map(|direction| Chart::along(mesh, area, normal, direction));
+    let rectangle = |chart: &Chart| chart.extent.element_product();
+    charts.min_by(|a, b| rectangle(a).total_cmp(&rectangle(b))).expect("a flat mesh has a border")
+}

@@ -1,0 +1,236 @@
+//! Sparse rows of weights, from particles to the nodes of a grid and back.
+
+use core::ops::Range;
+
+use glam::{Mat3, Vec2, Vec3};
+
+use super::chart::node_positions;
+use crate::fabric::grid::Grid;
+
+/// Weights smaller than this are rounding.
+const LEAST_WEIGHT: f32 = 1e-5;
+
+/// Least barycentric coordinate of a node in the triangle that it is interpolated in. Larger: rounding loses nodes on
+/// the border. Smaller: nodes outside the mesh are extrapolated from a single triangle.
+const INSIDE: f32 = -0.02;
+
+/// Radius around a particle at the border within which nodes count, in cells. Smaller: too few to fit a plane.
+const RADIUS: f32 = 2.2;
+
+/// Least determinant of a fit's normal equations, relative to the cube of their largest term. Smaller: nodes that lie
+/// almost on a line are extrapolated across it.
+const LEAST_DETERMINANT: f32 = 1e-2;
+
+/// One term of an interpolated value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Term {
+    /// Index of the particle, or of the node.
+    pub from: u32,
+    pub weight: f32,
+}
+
+/// For each row the terms of its interpolated value.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Interpolation {
+    terms: Vec<Term>,
+    rows: Vec<Range<u32>>,
+}
+
+impl Interpolation {
+    fn push(&mut self, row: impl IntoIterator<Item = Term>) {
+        let first = self.terms.len() as u32;
+        self.terms.extend(row.into_iter().filter(|term| term.weight.abs() > LEAST_WEIGHT));
+        self.rows.push(first..self.terms.len() as u32);
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Whether a row has terms.
+    pub fn has_row(&self, row: usize) -> bool {
+        !self.rows[row].is_empty()
+    }
+
+    /// The rows, in order.
+    pub fn rows(&self) -> impl Iterator<Item = &[Term]> {
+        self.rows.iter().map(|range| &self.terms[range.start as usize..range.end as usize])
+    }
+
+    /// For each column the mean of the rows' values, weighted by their weights times a mass of the row. `sums` are the
+    /// sums of these weights, and only columns that are `wanted` get a mean.
+    pub fn adjoint(&self, masses: &[f32], sums: &[f32], wanted: impl Fn(usize) -> bool) -> Self {
+        let mut columns = vec![Vec::new(); sums.len()];
+        for (index, (row, mass)) in self.rows().zip(masses).enumerate() {
+            for term in row.iter().filter(|term| wanted(term.from as usize)) {
+                let column = term.from as usize;
+                let weight = term.weight * mass / sums[column];
+                columns[column].push(Term { from: index as u32, weight });
+            }
+        }
+        let mut adjoint = Self::default();
+        columns.into_iter().for_each(|column| adjoint.push(column));
+        adjoint
+    }
+
+    /// For each of `count` columns the sum of weights times a value of the row.
+    pub fn transposed_product(&self, values: &[f32], count: usize) -> Vec<f32> {
+        let mut sums = vec![0.0; count];
+        for (row, value) in self.rows().zip(values) {
+            for term in row {
+                sums[term.from as usize] += term.weight * value;
+            }
+        }
+        sums
+    }
+}
+
+/// Weights of the particles at each node: barycentric in the triangle that the node lies in; none of nodes outside the
+/// mesh.
+pub(super) fn nodes_from_particles(
+    positions: &[Vec2],
+    triangles: &[[u32; 3]],
+    grid: &Grid,
+) -> Interpolation {
+    let mut weights = Interpolation::default();
+    for within in barycentric(positions, triangles, &node_positions(grid), grid) {
+        match within {
+            Some((least, terms)) if least > INSIDE => weights.push(terms),
+            _ => weights.push([]),
+        }
+    }
+    weights
+}
+
+/// Weights of the nodes at each free particle: bilinear in its cell, and near the border those of a plane fitted to the nodes
+/// around it. None if there are too few of these.
+pub(super) fn particles_from_nodes(
+    positions: &[Vec2],
+    inverse_areas: &[f32],
+    nodes: &Interpolation,
+    grid: &Grid,
+) -> Option<Interpolation> {
+    let spacing = Vec2::from(grid.spacing());
+    let last = Vec2::new((grid.columns - 2) as f32, (grid.rows - 2) as f32);
+    let near = Neighbourhood::new(nodes, grid);
+    let mut weights = Interpolation::default();
+    for (&position, &inverse_area) in positions.iter().zip(inverse_areas) {
+        if inverse_area == 0.0 {
+            weights.push([]);
+            continue;
+        }
+        let at = position / spacing;
+        let cell = at.floor().clamp(Vec2::ZERO, last);
+        let Vec2 { x, y } = at - cell;
+        let term = |right, down, weight| Term {
+            from: grid.index(cell.x as u32 + right, cell.y as u32 + down),
+            weight,
+        };
+        let bilinear = [
+            term(0, 0, (1.0 - x) * (1.0 - y)),
+            term(1, 0, x * (1.0 - y)),
+            term(0, 1, (1.0 - x) * y),
+            term(1, 1, x * y),
+        ];
+        let has_node =
+            |term: &Term| term.weight.abs() <= LEAST_WEIGHT || nodes.has_row(term.from as usize);
+        if bilinear.iter().all(has_node) {
+            weights.push(bilinear);
+        } else {
+            weights.push(near.fit(at)?);
+        }
+    }
+    Some(weights)
+}
+
+/// For each node the triangle in which its least barycentric coordinate is greatest, of those near it: that coordinate
+/// and the terms.
+fn barycentric(
+    positions: &[Vec2],
+    triangles: &[[u32; 3]],
+    nodes: &[Vec2],
+    grid: &Grid,
+) -> Vec<Option<(f32, [Term; 3])>> {
+    let spacing = Vec2::from(grid.spacing());
+    let mut best: Vec<Option<(f32, [Term; 3])>> = vec![None; nodes.len()];
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|corner| positions[corner as usize]);
+        let double_area = (b - a).perp_dot(c - a);
+        // A hundredth of a cell wider than the triangle, as nodes on the border are off by rounding.
+        let low = (a.min(b).min(c) / spacing - 0.01).ceil().max(Vec2::ZERO);
+        let high = a.max(b).max(c) / spacing + 0.01;
+        for row in low.y as u32..=(high.y as u32).min(grid.rows - 1) {
+            for column in low.x as u32..=(high.x as u32).min(grid.columns - 1) {
+                let node = grid.index(column, row) as usize;
+                let at = nodes[node];
+                let weights = [
+                    (b - at).perp_dot(c - at) / double_area,
+                    (c - at).perp_dot(a - at) / double_area,
+                    (a - at).perp_dot(b - at) / double_area,
+                ];
+                let least = weights[0].min(weights[1]).min(weights[2]);
+                if best[node].is_none_or(|(greatest, _)| least > greatest) {
+                    let term =
+                        |corner: usize| Term { from: triangle[corner], weight: weights[corner] };
+                    best[node] = Some((least, [term(0), term(1), term(2)]));
+                }
+            }
+        }
+    }
+    best
+}
+
+/// The nodes of a grid that lie in the mesh.
+struct Neighbourhood<'a> {
+    nodes: &'a Interpolation,
+    grid: &'a Grid,
+}
+
+impl<'a> Neighbourhood<'a> {
+    fn new(nodes: &'a Interpolation, grid: &'a Grid) -> Self {
+        Self { nodes, grid }
+    }
+
+    /// The smallest weights that reproduce a plane at a place, given in cells: those of the least squares fit to the
+    /// nodes near it. None if these lie on a line.
+    fn fit(&self, place: Vec2) -> Option<Vec<Term>> {
+        let near: Vec<(u32, Vec3, f32)> = self
+            .around(place)
+            .filter_map(|(node, at)| {
+                let away = at - place;
+                let nearness = 1.0 - away.length_squared() / (RADIUS * RADIUS);
+                (nearness > 0.0).then(|| (node, away.extend(1.0), nearness * nearness))
+            })
+            .collect();
+        let mut system = Mat3::ZERO;
+        for (_, row, nearness) in &near {
+            system += Mat3::from_cols(*row * row.x, *row * row.y, *row * row.z) * *nearness;
+        }
+        let scale = system.z_axis.z;
+        if system.determinant().abs() <= LEAST_DETERMINANT * scale.powi(3) {
+            return None;
+        }
+        let solution = system.inverse() * Vec3::Z;
+        let terms = near.iter().map(|(node, row, nearness)| Term {
+            from: *node,
+            weight: nearness * row.dot(solution),
+        });
+        Some(terms.collect())
+    }
+
+    /// Nodes within the radius along each axis, and their places in cells.
+    fn around(&self, place: Vec2) -> impl Iterator<Item = (u32, Vec2)> {
+        let range = |centre: f32, count: u32| {
+            (centre - RADIUS).ceil().max(0.0) as u32
+                ..((centre + RADIUS).floor() as u32 + 1).min(count)
+        };
+        let columns = range(place.x, self.grid.columns);
+        range(place.y, self.grid.rows)
+            .flat_map(move |row| columns.clone().map(move |column| (column, row)))
+            .map(|(column, row)| {
+                (self.grid.index(column, row), Vec2::new(column as f32, row as f32))
+            })
+            .filter(|(node, _)| self.nodes.has_row(*node as usize))
+    }
+}

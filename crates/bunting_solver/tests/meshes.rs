@@ -1,0 +1,126 @@
+//! Irregular meshes: the material's own strain and the same bits at every width.
+
+use std::sync::Arc;
+
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, LaneCount, StepLimits,
+};
+use glam::{Vec2, Vec3};
+
+const TICK: f32 = 1.0 / 60.0;
+/// Magnitude of gravity, m/s².
+const GRAVITY: f32 = 9.81;
+
+/// A material that hardly stretches and is isotropic but for Poisson's ratio, damped.
+const ISOTROPIC: FabricMaterial = FabricMaterial {
+    area_density: 0.2,
+    warp_stiffness: 1e4,
+    weft_stiffness: 1e4,
+    shear_stiffness: 5e3,
+    damping: 4.0,
+    ..FabricMaterial::FLAG_POLYESTER
+};
+
+/// Numbers from 0 to 1, one after the other (xorshift, Marsaglia 2003).
+struct Noise(u32);
+
+impl Noise {
+    fn next(&mut self) -> f32 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 17;
+        self.0 ^= self.0 << 5;
+        (self.0 >> 8) as f32 / (1 << 24) as f32
+    }
+}
+
+/// A square metre of `n` × `n` vertices, moved by up to a fifth of a cell, in cells that are cut either way, hung from
+/// its top. The warp runs at an angle to the top, rad.
+fn irregular(n: u32, angle: f32) -> Fabric {
+    let mut noise = Noise(7);
+    let spacing = 1.0 / (n - 1) as f32;
+    let inner = |index: u32| index > 0 && index < n - 1;
+    let mut positions = Vec::new();
+    for (row, column) in (0..n).flat_map(|row| (0..n).map(move |column| (row, column))) {
+        let mut jitter = || (noise.next() - 0.5) * 0.4;
+        let (dx, dy) = (jitter(), jitter());
+        let moved = if inner(row) && inner(column) { Vec2::new(dx, dy) } else { Vec2::ZERO };
+        let at = (Vec2::new(column as f32, row as f32) + moved) * spacing;
+        positions.push(Vec3::new(at.x, -at.y, 0.0));
+    }
+    let mut indices = Vec::new();
+    for (row, column) in (0..n - 1).flat_map(|row| (0..n - 1).map(move |column| (row, column))) {
+        let corner = |right, down| (row + down) * n + column + right;
+        let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)];
+        if noise.next() < 0.5 {
+            indices.extend([a, c, d, a, d, b]);
+        } else {
+            indices.extend([a, c, b, b, c, d]);
+        }
+    }
+    let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
+    let turned = |at: &Vec3| Vec2::new(cos * at.x - sin * at.y, sin * at.x + cos * at.y);
+    let uv = positions.iter().map(turned).collect();
+    let builder = FabricBuilder::new(positions, indices).uv(uv);
+    builder.pin_where(|at, _| at.y == 0.0).build().expect("a good fabric")
+}
+
+/// How far the lower edge of a square metre sinks, m, after four seconds.
+fn sinking(fabric: &Arc<Fabric>, material: FabricMaterial) -> f32 {
+    let mut batch = ClothBatch::new(Arc::clone(fabric), LaneCount::One);
+    let cloth = batch.insert(&ClothSnapshot::at_rest(fabric), material).expect("room");
+    let settings = StepLimits::default().of_fabric(fabric, TICK, GRAVITY);
+    for _ in 0..240 {
+        batch.step(TICK, settings);
+    }
+    let mut positions = Vec::new();
+    batch.copy_positions(cloth, &mut positions);
+    let rest = fabric.rest_positions();
+    let lower = rest.iter().zip(&positions).filter(|(rest, _)| rest.y == -1.0);
+    let sunk: Vec<f32> = lower.map(|(rest, at)| rest.y - at.y).collect();
+    sunk.iter().sum::<f32>() / sunk.len() as f32
+}
+
+#[test]
+fn a_hanging_mesh_has_its_materials_strain() {
+    let expected = ISOTROPIC.area_density * GRAVITY / (2.0 * ISOTROPIC.weft_stiffness);
+    for (n, angle) in [(17, 0.0), (17, 1.57), (17, 0.785), (33, 0.0), (33, 0.5)] {
+        let error = sinking(&Arc::new(irregular(n, angle)), ISOTROPIC) / expected - 1.0;
+        assert!(error.abs() < 0.03, "{n} × {n} at {angle} rad: {error}");
+    }
+}
+
+#[test]
+fn a_mesh_that_is_cut_on_the_bias_stretches_by_shear() {
+    let material = FabricMaterial { shear_stiffness: 500.0, ..ISOTROPIC };
+    let fabric = Arc::new(irregular(17, core::f32::consts::FRAC_PI_4));
+    // One over Young's modulus at 45°, without Poisson's ratio.
+    let softness = 0.25 * (2.0 / material.warp_stiffness + 1.0 / material.shear_stiffness);
+    let expected = material.area_density * GRAVITY / 2.0 * softness;
+    let error = sinking(&fabric, material) / expected - 1.0;
+    assert!(error.abs() < 0.05, "{error}");
+}
+
+#[test]
+fn a_mesh_has_the_same_bits_at_every_width() {
+    let fabric = Arc::new(irregular(13, 0.0));
+    let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
+    let drive = |wind: f32| Drive { wind: Vec3::new(wind, 0.0, 4.0), ..Drive::default() };
+    let flown = |lanes: LaneCount, cloths: &[f32]| -> Vec<Vec3> {
+        let mut batch = ClothBatch::new(Arc::clone(&fabric), lanes);
+        for &wind in cloths {
+            let rest = ClothSnapshot::at_rest(&fabric);
+            let lane = batch.insert(&rest, FabricMaterial::FLAG_POLYESTER).expect("room");
+            batch.drive(lane, drive(wind)).expect("a lane");
+        }
+        for _ in 0..30 {
+            batch.step(TICK, settings);
+        }
+        let mut positions = Vec::new();
+        batch.copy_positions(cloths.len() - 1, &mut positions);
+        positions
+    };
+    let alone = flown(LaneCount::One, &[6.0]);
+    assert!(alone.iter().all(|at| at.is_finite()));
+    assert_eq!(alone, flown(LaneCount::Eight, &[3.0, -2.0, 6.0]));
+    assert_eq!(alone, flown(LaneCount::Sixteen, &[9.0, 6.0]));
+}
