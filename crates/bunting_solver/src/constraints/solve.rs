@@ -110,6 +110,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         for _ in 0..passes / 2 {
             self.sweep_links();
         }
+        self.solve_overlong_chains();
     }
 }
 
