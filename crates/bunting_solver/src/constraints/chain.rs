@@ -13,7 +13,6 @@
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
 use crate::constraints::corrections::CorrectedParticles;
-use crate::constraints::shear::SHORTEST_DIAGONAL;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, ChainLink, ChainPair, LinkFamily};
 use crate::simd::constant::Constant;
@@ -44,7 +43,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 
     fn solve_diagonals(&mut self) {
-        self.solve_colours(Pass::Diagonals, |family| family == LinkFamily::Diagonal);
+        self.solve_colours(Pass::Last, |family| family == LinkFamily::Diagonal);
     }
 
     pub(super) fn solve_colours(&mut self, pass: Pass, is_solved: impl Fn(LinkFamily) -> bool) {
@@ -113,8 +112,6 @@ pub(super) enum Pass {
     Again,
     /// From the targets of the pass before; none are stored, as nothing reads them.
     Last,
-    /// The same of diagonals that carry shear alone: short ones do not resist.
-    Diagonals,
 }
 
 /// The chains of one colour, in pairs.
@@ -131,30 +128,29 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         match self.pass {
-            Pass::First => self.solve_all::<L, false, true, false>(token),
-            Pass::Again => self.solve_all::<L, true, true, false>(token),
-            Pass::Last => self.solve_all::<L, true, false, false>(token),
-            Pass::Diagonals => self.solve_all::<L, true, false, true>(token),
+            Pass::First => self.solve_all::<L, false, true>(token),
+            Pass::Again => self.solve_all::<L, true, true>(token),
+            Pass::Last => self.solve_all::<L, true, false>(token),
         }
     }
 }
 
 impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
     /// Solves all pairs: `WARM` starts from stored targets, and not from lengths at rest; `STORE` stores the new
-    /// targets; with `YIELD` links much shorter than their targets do not resist.
+    /// targets.
     #[inline(always)]
-    fn solve_all<L: Lane<Pack = P>, const WARM: bool, const STORE: bool, const YIELD: bool>(
+    fn solve_all<L: Lane<Pack = P>, const WARM: bool, const STORE: bool>(
         &mut self,
         token: L::Token,
     ) {
         for pair in self.pairs {
             match pair.count {
                 CHAINS_PER_PAIR => {
-                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE, YIELD>(token, pair);
+                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE>(token, pair);
                     self.substitute::<L, CHAINS_PER_PAIR, WARM, STORE>(token, pair);
                 }
                 _ => {
-                    self.eliminate::<L, 1, WARM, STORE, YIELD>(token, pair);
+                    self.eliminate::<L, 1, WARM, STORE>(token, pair);
                     self.substitute::<L, 1, WARM, STORE>(token, pair);
                 }
             }
@@ -163,13 +159,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
 
     /// Eliminates the unknowns of `N` chains side by side, from their first links to their last.
     #[inline(always)]
-    fn eliminate<
-        L: Lane<Pack = P>,
-        const N: usize,
-        const WARM: bool,
-        const STORE: bool,
-        const YIELD: bool,
-    >(
+    fn eliminate<L: Lane<Pack = P>, const N: usize, const WARM: bool, const STORE: bool>(
         &mut self,
         token: L::Token,
         pair: &ChainPair<S::Constant>,
@@ -205,13 +195,8 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let coupling = end_mass[at] * last[at].dot(along);
                 let multiplier = coupling * inverse[at];
                 let diagonal = least.plus_product(end_mass[at] + next_mass + compliance, squared);
-                let mut one: L = particles.one_if_linked(token, class);
-                if YIELD {
-                    // An inverse of zero takes the link out of the system.
-                    let shortest = L::splat(token, SHORTEST_DIAGONAL) * target;
-                    one = zero.or_where_not(length.lt(shortest), one);
-                }
-                inverse[at] = one / diagonal.minus_product(coupling, multiplier);
+                inverse[at] = particles.one_if_linked::<L>(token, class)
+                    / diagonal.minus_product(coupling, multiplier);
                 unknown[at] = right.plus_product(coupling, unknown[at]) * inverse[at];
                 along.store(&mut rows[at].along);
                 multiplier.store(&mut rows[at].multiplier);
