@@ -14,7 +14,6 @@
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
 use crate::constraints::corrections::CorrectedParticles;
-use crate::constraints::shear::SHORTEST_DIAGONAL;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, ChainLink, ChainPair, LinkFamily};
 use crate::simd::constant::Constant;
@@ -120,7 +119,7 @@ pub(super) enum Pass {
     /// A further pass, which starts from the stored targets.
     Again,
     /// The pass over diagonals that carry shear alone: it starts from the stored targets and stores none, as nothing
-    /// reads them, and short diagonals do not resist.
+    /// reads them.
     Diagonals,
 }
 
@@ -138,25 +137,25 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         match self.pass {
-            Pass::First => self.solve_all::<L, false, true, false>(token),
-            Pass::Again => self.solve_all::<L, true, true, false>(token),
-            Pass::Diagonals => self.solve_all::<L, true, false, true>(token),
+            Pass::First => self.solve_all::<L, false, true>(token),
+            Pass::Again => self.solve_all::<L, true, true>(token),
+            Pass::Diagonals => self.solve_all::<L, true, false>(token),
         }
     }
 }
 
 impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
     /// Solves all pairs. `WARM` starts from stored targets instead of lengths at rest; `STORE` stores the new
-    /// targets; with `YIELD`, links much shorter than their targets do not resist.
+    /// targets.
     #[inline(always)]
-    fn solve_all<L: Lane<Pack = P>, const WARM: bool, const STORE: bool, const YIELD: bool>(
+    fn solve_all<L: Lane<Pack = P>, const WARM: bool, const STORE: bool>(
         &mut self,
         token: L::Token,
     ) {
         for pair in self.pairs {
             match pair.count {
                 CHAINS_PER_PAIR => {
-                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE, YIELD, false>(
+                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE, false>(
                         token,
                         pair,
                         [L::splat(token, 1.0); _],
@@ -164,7 +163,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                     self.substitute::<L, CHAINS_PER_PAIR, WARM, STORE>(token, pair);
                 }
                 _ => {
-                    self.eliminate::<L, 1, WARM, STORE, YIELD, false>(
+                    self.eliminate::<L, 1, WARM, STORE, false>(
                         token,
                         pair,
                         [L::splat(token, 1.0); _],
@@ -183,7 +182,6 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         const N: usize,
         const WARM: bool,
         const STORE: bool,
-        const YIELD: bool,
         const MASKED: bool,
     >(
         &mut self,
@@ -222,15 +220,8 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let coupling = end_mass[at] * last[at].dot(along);
                 let multiplier = coupling * inverse[at];
                 let diagonal = least.plus_product(end_mass[at] + next_mass + compliance, squared);
-                let mut one: L = particles.one_if_linked(token, class);
-                if MASKED {
-                    one = one * mask[at];
-                }
-                if YIELD {
-                    // An inverse of zero takes the link out of the system.
-                    let shortest = L::splat(token, SHORTEST_DIAGONAL) * target;
-                    one = zero.or_where_not(length.lt(shortest), one);
-                }
+                let one = particles.one_if_linked::<L>(token, class);
+                let one = if MASKED { one * mask[at] } else { one };
                 inverse[at] = one / diagonal.minus_product(coupling, multiplier);
                 unknown[at] = right.plus_product(coupling, unknown[at]) * inverse[at];
                 along.store(&mut rows[at].along);

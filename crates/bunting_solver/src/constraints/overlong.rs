@@ -85,7 +85,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             mask[at] = one.or_where_not(is_overlong, zero);
         }
         if any {
-            self.eliminate::<L, N, true, true, false, true>(token, pair, mask);
+            self.eliminate::<L, N, true, true, true>(token, pair, mask);
             self.substitute::<L, N, true, true>(token, pair);
         }
         any

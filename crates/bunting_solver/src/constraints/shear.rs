@@ -19,12 +19,6 @@ use crate::fabric::{Cell, Grid};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
 
-/// Part of its target below which a diagonal of a grid does not resist: a cell that is sheared by more than 31°.
-/// A diagonal that resisted to the end would keep cells that have turned over, as in a crumpled sheet, from turning
-/// back: creases would stay locked, strained by some percent. The force ends and the energy does not, so none is
-/// created. Smaller: with 0.3 creases stay locked. Larger: cloth in wind resists shear less.
-pub(super) const SHORTEST_DIAGONAL: f32 = 0.7;
-
 /// Length of a grid's diagonals at rest, m.
 pub(crate) fn length_at_rest(grid: &Grid) -> f32 {
     libm::hypotf(grid.width / (grid.columns - 1) as f32, grid.height / (grid.rows - 1) as f32)

@@ -13,7 +13,6 @@ use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Order, Particles, Positions};
 use crate::constants::LEAST_LENGTH;
 use crate::constraints::chain::Pass;
-use crate::constraints::shear::SHORTEST_DIAGONAL;
 use crate::constraints::strip_system::{Linearised, Solved, UNKNOWNS, coupling, diagonal};
 use crate::fabric::{StripLink, StripRow};
 use crate::simd::lane::{Kernel, Lane, Pack};
@@ -112,21 +111,19 @@ impl<P: Pack, S: Particles<P>> SolveStrip<'_, P, S> {
         }
     }
 
-    /// Direction of a link, its length less its target with the opposite sign, m, and whether it is shorter than
-    /// the shortest diagonal that resists.
+    /// Direction of a link, and its target less its length, m.
     #[inline(always)]
     fn stretch<L: Lane<Pack = P>>(
         &self,
         token: L::Token,
         [from, to]: [V3<L>; 2],
         link: &StripLink,
-    ) -> (V3<L>, L, L::Mask) {
+    ) -> (V3<L>, L) {
         let along = to - from;
         let length = along.dot(along).sqrt();
         let target = L::load(token, &self.target[link.target as usize]);
         let direction = along * (L::splat(token, 1.0) / length.max(L::splat(token, LEAST_LENGTH)));
-        let shortest = L::splat(token, SHORTEST_DIAGONAL) * target;
-        (direction, target - length, length.lt(shortest))
+        (direction, target - length)
     }
 
     /// The constraints of a row between the positions of its particles and those of the next row's.
@@ -151,21 +148,17 @@ impl<P: Pack, S: Particles<P>> SolveStrip<'_, P, S> {
         ];
         for (at, (link, ends)) in links.into_iter().enumerate() {
             let Some(link) = link else { continue };
-            let (direction, right, _) = self.stretch::<L>(token, ends, link);
+            let (direction, right) = self.stretch::<L>(token, ends, link);
             constraints.directions[at] = direction;
             constraints.right[at] = right;
             constraints.compliance[at] = L::load(token, &self.compliance[link.class as usize]);
         }
         if let Some([falling, rising]) = &row.diagonals {
-            let none = V3::splat(token, 0.0);
-            let (one_way, right, is_short) =
-                self.stretch::<L>(token, [first, next_second], falling);
-            let (back, right_back, is_short_back) =
-                self.stretch::<L>(token, [second, next_first], rising);
-            let yields = is_short | is_short_back;
-            constraints.directions[3] = none.or_where_not(yields, one_way);
-            constraints.directions[4] = none.or_where_not(yields, back);
-            constraints.right[3] = zero.or_where_not(yields, right - right_back);
+            let (one_way, right) = self.stretch::<L>(token, [first, next_second], falling);
+            let (back, right_back) = self.stretch::<L>(token, [second, next_first], rising);
+            constraints.directions[3] = one_way;
+            constraints.directions[4] = back;
+            constraints.right[3] = right - right_back;
             constraints.compliance[3] = L::load(token, &self.compliance[falling.class as usize])
                 + L::load(token, &self.compliance[rising.class as usize]);
         }
