@@ -12,7 +12,7 @@ use crate::cloth::mesh::ClothMesh;
 use crate::cloth::weights::check_weights;
 use crate::fabric::cut::cut_levels;
 use crate::fabric::levels::ClothLevels;
-use crate::lod::lod_set::LodSet;
+use crate::lod::lod_set::{LodChoice, LodSet};
 use crate::motion::attachment::Attachment;
 
 /// Number of vertices from which levels are cut on another thread, where there are threads: it takes
@@ -40,7 +40,8 @@ pub(crate) struct FabricLibrary {
     expected: usize,
     /// Whether a cloth waits for its levels, or for others than it has.
     pub awaited: bool,
-    /// Whether levels may be taken later than they are due, so that no tick waits for another thread.
+    /// Whether levels of cloths whose choice of levels is automatic may be taken later than they are due, so that no
+    /// tick waits for another thread.
     pub may_be_late: bool,
 }
 
@@ -84,8 +85,9 @@ impl FabricLibrary {
     }
 
     /// Whether levels are expected in a later tick.
-    pub fn is_cutting(&self, key: &ContentKey) -> bool {
-        let is_ready = |cutting: &Cutting| cutting.is_ready(self.tick, self.may_be_late);
+    pub fn is_cutting(&self, key: &ContentKey, lods: &LodSet) -> bool {
+        let may_be_late = self.may_be_late && matches!(lods.choice, LodChoice::Automatic { .. });
+        let is_ready = |cutting: &Cutting| cutting.is_ready(self.tick, may_be_late);
         self.cutting.get(key).is_some_and(|cutting| !is_ready(cutting))
     }
 
@@ -121,7 +123,7 @@ impl FabricLibrary {
         if let Some(levels) = self.cut.get(&key).and_then(Weak::upgrade) {
             return Ok(Found::Levels(levels));
         }
-        let Some(cut) = self.cut_or_wait(&key, mesh, attached, lods.levels()) else {
+        let Some(cut) = self.cut_or_wait(&key, mesh, attached, lods) else {
             return Ok(Found::Awaited(key));
         };
         let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
@@ -136,11 +138,12 @@ impl FabricLibrary {
         key: &ContentKey,
         mesh: &ClothMesh,
         attached: Vec<u32>,
-        asked: usize,
+        lods: &LodSet,
     ) -> Option<Result<ClothLevels, FabricError>> {
-        if self.is_cutting(key) {
+        if self.is_cutting(key, lods) {
             return None;
         }
+        let asked = lods.levels();
         if let Some(cutting) = self.cutting.remove(key) {
             return Some(cutting.levels.take());
         }
@@ -224,7 +227,7 @@ mod tests {
         let mut library = FabricLibrary { may_be_late: true, ..FabricLibrary::default() };
         let mut is_there = |width: f32| {
             let mesh = ClothMesh::grid(33, 33, width, 1.0);
-            let found = library.levels(Entity::PLACEHOLDER, &mesh, None, &LodSet::default());
+            let found = library.levels(Entity::PLACEHOLDER, &mesh, None, &LodSet::automatic(1));
             library.awaited = true;
             library.begin_tick();
             matches!(found, Ok(Found::Levels(_)))
