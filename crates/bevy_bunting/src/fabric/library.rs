@@ -40,8 +40,9 @@ pub(crate) struct FabricLibrary {
     expected: usize,
     /// Whether a cloth waits for its levels, or for levels that replace its present ones.
     pub awaited: bool,
-    /// Whether the choice of levels depends on measured times.
-    pub costs_are_measured: bool,
+    /// Whether levels of cloths whose choice of levels is automatic may be taken later than they are due, so that no
+    /// tick waits for another thread.
+    pub may_be_late: bool,
 }
 
 /// Levels that are being built in the background. They are taken in a tick that follows from the numbers of vertices, or
@@ -50,16 +51,13 @@ pub(crate) struct FabricLibrary {
 struct Cutting {
     /// Tick in which the levels are taken.
     due: u64,
-    /// Whether the levels may be taken after that tick, so that no tick waits for another thread: where all cloths that
-    /// wait for them depend on the machine anyway.
-    may_be_late: bool,
     levels: Background<Result<ClothLevels, FabricError>>,
 }
 
 impl Cutting {
     /// Whether the levels are taken in a tick.
-    fn is_ready(&self, tick: u64) -> bool {
-        let waits = self.may_be_late && !self.levels.is_done() && tick < self.due + MOST_LATE;
+    fn is_ready(&self, tick: u64, may_be_late: bool) -> bool {
+        let waits = may_be_late && !self.levels.is_done() && tick < self.due + MOST_LATE;
         tick >= self.due && !waits
     }
 }
@@ -88,8 +86,10 @@ impl FabricLibrary {
     }
 
     /// Whether levels are expected in a later tick.
-    pub fn is_cutting(&self, key: &ContentKey) -> bool {
-        self.cutting.get(key).is_some_and(|cutting| !cutting.is_ready(self.tick))
+    pub fn is_cutting(&self, key: &ContentKey, lods: &LodSet) -> bool {
+        let may_be_late = self.may_be_late && matches!(lods.choice, LodChoice::Automatic { .. });
+        let is_ready = |cutting: &Cutting| cutting.is_ready(self.tick, may_be_late);
+        self.cutting.get(key).is_some_and(|cutting| !is_ready(cutting))
     }
 
     /// Number of ticks until all levels that are being built are ready.
@@ -141,18 +141,14 @@ impl FabricLibrary {
         attached: Vec<u32>,
         lods: &LodSet,
     ) -> Option<Result<ClothLevels, FabricError>> {
-        let is_automatic = matches!(lods.choice, LodChoice::Automatic { .. });
-        let may_be_late = self.costs_are_measured && is_automatic;
-        if let Some(cutting) = self.cutting.get_mut(key) {
-            cutting.may_be_late &= may_be_late;
-        }
-        if self.is_cutting(key) {
+        if self.is_cutting(key, lods) {
             return None;
         }
+        let asked = lods.levels();
         if let Some(cutting) = self.cutting.remove(key) {
             return Some(cutting.levels.take());
         }
-        let (vertices, asked) = (mesh.vertex_count(), lods.levels());
+        let vertices = mesh.vertex_count();
         let fits = self.expected == 0 || self.expected + vertices <= VERTICES_PER_TICK;
         // Small cloths are built at once and do not wait for large ones.
         let is_large = vertices >= ASYNC_VERTICES;
@@ -166,7 +162,7 @@ impl FabricLibrary {
         let due = self.tick + expected.div_ceil(VERTICES_PER_TICK) as u64;
         let mesh = mesh.clone();
         let levels = Background::begin(move || cut_levels(&mesh, &attached, asked));
-        self.cutting.insert(key.clone(), Cutting { due, may_be_late, levels });
+        self.cutting.insert(key.clone(), Cutting { due, levels });
         None
     }
 }
@@ -232,7 +228,7 @@ mod tests {
         let mut library = FabricLibrary { may_be_late: true, ..FabricLibrary::default() };
         let mut is_there = |width: f32| {
             let mesh = ClothMesh::grid(33, 33, width, 1.0);
-            let found = library.levels(Entity::PLACEHOLDER, &mesh, None, &LodSet::default());
+            let found = library.levels(Entity::PLACEHOLDER, &mesh, None, &LodSet::automatic(1));
             library.awaited = true;
             library.begin_tick();
             matches!(found, Ok(Found::Levels(_)))

@@ -106,10 +106,11 @@ fn cut_cloths(
     mut commands: Commands,
 ) {
     library.begin_tick();
-    library.costs_are_measured = budget.costs == LodCosts::Measured;
+    library.may_be_late = budget.costs == LodCosts::Measured;
     for mut cloth in &mut cloths {
         let target = cloth.target();
-        let is_cutting = cloth.instance.cutting.as_ref().is_some_and(|key| library.is_cutting(key));
+        let is_cutting =
+            cloth.instance.cutting.as_ref().is_some_and(|key| library.is_cutting(key, &cloth.lods));
         if is_cutting && !cloth.is_edited() {
             library.awaited = true;
             continue;
