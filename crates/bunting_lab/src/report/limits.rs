@@ -16,5 +16,6 @@ pub const LIMITS: [&str; 14] = [
     "Curved rest shapes with their own bending on grids; they are flat.",
     "Local wind: a field is the same everywhere but for its gusts, and nothing shelters a cloth from it.",
     "Air that cloth moves: the wind knows nothing of the cloth.",
-    "Exact stretch on irregular meshes: the chains cut from their edges need more substeps than a grid's.",
+    "Exact stretch on irregular meshes that are curved at rest: their chains are short and need more substeps than a \
+     grid's.",
 ];
