@@ -48,7 +48,7 @@ fn different_flags_are_built_over_several_ticks() {
 #[test]
 fn different_flags_share_batches() {
     let mut app = app();
-    furnish(&mut app);
+    spawn_flags(&mut app);
     run(&mut app, 2 * FLAGS);
     let batches = app.world().resource::<ClothBatches>().batch_count();
     assert!(batches <= FLAGS / 4, "{batches} batches");
