@@ -152,13 +152,18 @@ mod tests {
         let folded: Vec<Vec3> = (fabric.rest_positions().iter())
             .map(|at| if at.x > 0.8 && at.y < -0.8 { Vec3::new(0.7, -0.3, 0.2) } else { *at })
             .collect();
-        let mut batch = cloth_at(&fabric, FabricMaterial::FLAG_POLYESTER, &folded);
+        // Stiff, as a link's target is longer than at rest by the strain of its tension.
+        let stiff = FabricMaterial {
+            warp_stiffness: 1e6,
+            weft_stiffness: 1e6,
+            ..FabricMaterial::FLAG_POLYESTER
+        };
+        let mut batch = cloth_at(&fabric, stiff, &folded);
         batch.solve_chains(2);
         let before = greatest_strain(&fabric, &positions(&batch));
         batch.solve_overlong_chains();
         let after = greatest_strain(&fabric, &positions(&batch));
-        // A link's target is longer than at rest by the strain of its tension.
-        assert!(before > 2.0 * TOLERANCE && after < 1.2 * TOLERANCE, "{before}, then {after}");
+        assert!(before > 2.0 * TOLERANCE && after < 1.01 * TOLERANCE, "{before}, then {after}");
     }
 
     #[test]
