@@ -128,7 +128,7 @@ pub(super) struct SolveChains<'a, P: Pack, S: Particles<P>> {
     pub(super) pairs: &'a [ChainPair<S::Constant>],
     pass: Pass,
     compliance: &'a [P],
-    rows: &'a mut [TridiagonalRow<P>],
+    pub(super) rows: &'a mut [TridiagonalRow<P>],
     pub(super) target: &'a mut [P],
     pub(super) particles: S,
 }
@@ -155,19 +155,11 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         for pair in self.pairs {
             match pair.count {
                 CHAINS_PER_PAIR => {
-                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE, false>(
-                        token,
-                        pair,
-                        [L::splat(token, 1.0); _],
-                    );
+                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE, false>(token, pair);
                     self.substitute::<L, CHAINS_PER_PAIR, WARM, STORE>(token, pair);
                 }
                 _ => {
-                    self.eliminate::<L, 1, WARM, STORE, false>(
-                        token,
-                        pair,
-                        [L::splat(token, 1.0); _],
-                    );
+                    self.eliminate::<L, 1, WARM, STORE, false>(token, pair);
                     self.substitute::<L, 1, WARM, STORE>(token, pair);
                 }
             }
@@ -175,7 +167,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
     }
 
     /// Eliminates the unknowns of `N` chains side by side, from their first links to their last. `MASKED` leaves
-    /// chains without tension where `mask` is zero, and not one.
+    /// rows without tension whose unknown is zero, and not one, before.
     #[inline(always)]
     pub(super) fn eliminate<
         L: Lane<Pack = P>,
@@ -187,7 +179,6 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         &mut self,
         token: L::Token,
         pair: &ChainPair<S::Constant>,
-        mask: [L; N],
     ) {
         let particles = &self.particles;
         let (rows, _) = self.rows.as_chunks_mut::<N>();
@@ -221,7 +212,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let multiplier = coupling * inverse[at];
                 let diagonal = least.plus_product(end_mass[at] + next_mass + compliance, squared);
                 let one = particles.one_if_linked::<L>(token, class);
-                let one = if MASKED { one * mask[at] } else { one };
+                let one = if MASKED { one * L::load(token, &rows[at].unknown) } else { one };
                 inverse[at] = one / diagonal.minus_product(coupling, multiplier);
                 unknown[at] = right.plus_product(coupling, unknown[at]) * inverse[at];
                 along.store(&mut rows[at].along);

@@ -75,51 +75,78 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         token: L::Token,
         pair: &ChainPair<S::Constant>,
     ) -> bool {
-        let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
-        let excess = self.excess::<L, N>(token, pair);
-        let mut mask = [zero; N];
+        let excess = self.excess::<L, N, false>(token, pair);
+        let zero = L::splat(token, 0.0);
         let mut any = false;
-        for at in 0..N {
-            let is_overlong = zero.lt(excess[at]);
-            any |= is_overlong.any();
-            mask[at] = one.or_where_not(is_overlong, zero);
+        for excess in excess {
+            any |= zero.lt(excess).any();
         }
         if any {
-            self.eliminate::<L, N, true, true, true>(token, pair, mask);
+            self.excess::<L, N, true>(token, pair);
+            self.mark::<L, N>(token, pair);
+            self.eliminate::<L, N, true, true, true>(token, pair);
             self.substitute::<L, N, true, true>(token, pair);
         }
         any
     }
 
     /// Greatest difference of a squared length and the square of the longest that is within tolerance, in each of `N`
-    /// chains, m²; zero where all links are within tolerance.
+    /// chains, m²; zero where all links are within tolerance. With `STORE`, each row gets the greatest so far of its
+    /// yarn: in the single-cloth layout a chain has several yarns one after the other, with no link between them.
     #[inline(always)]
-    fn excess<L: Lane<Pack = P>, const N: usize>(
-        &self,
+    fn excess<L: Lane<Pack = P>, const N: usize, const STORE: bool>(
+        &mut self,
         token: L::Token,
         pair: &ChainPair<S::Constant>,
     ) -> [L; N] {
         let particles = &self.particles;
+        let (rows, _) = self.rows.as_chunks_mut::<N>();
         let (targets, _) = self.target[pair.targets.clone()].as_chunks::<N>();
         let longest = L::splat(token, LONGEST);
-        let mut excess = [L::splat(token, 0.0); N];
+        let mut greatest = [L::splat(token, 0.0); N];
         let mut end = [V3::<L>::splat(token, 0.0); N];
         for (at, &particle) in first_of::<N>(&pair.particles[0]).iter().enumerate() {
             end[at] = particles.position(token, particle);
         }
         let links = pair.links.iter().zip(&pair.particles[1..]);
-        for ((links, ends), targets) in links.zip(targets) {
+        for (((links, ends), targets), rows) in links.zip(targets).zip(rows) {
             for (at, &particle) in first_of::<N>(ends).iter().enumerate() {
                 let target = L::load(token, &targets[at]);
                 let next: V3<L> = particles.position(token, particle);
                 let along = next - end[at];
                 let over = along.dot(along).minus_product(longest, target * target);
                 let one = particles.one_if_linked::<L>(token, links[at].class);
-                excess[at] = excess[at].max(one * over);
+                if STORE {
+                    greatest[at] = one * greatest[at].max(over);
+                    greatest[at].store(&mut rows[at].unknown);
+                } else {
+                    greatest[at] = greatest[at].max(one * over);
+                }
                 end[at] = next;
             }
         }
-        excess
+        greatest
+    }
+
+    /// Marks the rows of yarns with overlong links by one and all others by zero, given the excess of each row's yarn
+    /// up to the row.
+    #[inline(always)]
+    fn mark<L: Lane<Pack = P>, const N: usize>(
+        &mut self,
+        token: L::Token,
+        pair: &ChainPair<S::Constant>,
+    ) {
+        let (rows, _) = self.rows.as_chunks_mut::<N>();
+        let (zero, one) = (L::splat(token, 0.0), L::splat(token, 1.0));
+        let mut greatest = [zero; N];
+        for (links, rows) in pair.links.iter().zip(rows).rev() {
+            for at in 0..N {
+                let linked = self.particles.one_if_linked::<L>(token, links[at].class);
+                let excess = L::load(token, &rows[at].unknown);
+                greatest[at] = linked * greatest[at].max(excess);
+                one.or_where_not(zero.lt(greatest[at]), zero).store(&mut rows[at].unknown);
+            }
+        }
     }
 }
 

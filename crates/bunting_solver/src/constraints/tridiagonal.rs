@@ -11,7 +11,8 @@ pub(crate) struct TridiagonalRow<P: Pack> {
     pub along: Pack3<P>,
     /// Thomas coefficient: the factor of this row's unknown in the unknown of the row before.
     pub multiplier: P,
-    /// Unknown of this row, λ/|d|, without its term in the next unknown.
+    /// Unknown of this row, λ/|d|, without its term in the next unknown. Before a masked elimination, one where the row
+    /// is solved and zero elsewhere.
     pub unknown: P,
     /// Change of the link's target for a unit change of the unknown, α̃ |d|, m.
     pub target_change: P,
