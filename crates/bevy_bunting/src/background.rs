@@ -58,16 +58,20 @@ impl<T> fmt::Debug for Background<T> {
 #[cfg(test)]
 mod tests {
     use std::sync::mpsc;
+    use std::time::Duration;
 
     use bevy_tasks::TaskPoolBuilder;
 
     use super::*;
 
+    /// Time after which the long work gives up waiting, so that the test fails and does not hang.
+    const LONGEST: Duration = Duration::from_secs(10);
+
     #[test]
     fn queued_work_runs_on_the_thread_that_takes_its_result() {
         AsyncComputeTaskPool::get_or_init(|| TaskPoolBuilder::new().num_threads(1).build());
         let (go, long) = mpsc::channel::<u32>();
-        let long = Background::begin(move || long.recv());
+        let long = Background::begin(move || long.recv_timeout(LONGEST));
         let short = Background::begin(|| 2);
         assert_eq!(short.take(), 2);
         go.send(1).expect("it waits");

@@ -96,6 +96,13 @@ fn read(text: &str, types: &TypeRegistry) -> Box<dyn PartialReflect> {
         .unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
+fn assert_saves(saved: &[String], components: &[&str]) {
+    for name in components {
+        let is_saved = saved.iter().any(|text| text.contains(&format!("::{name}\":")));
+        assert!(is_saved, "{name} is not saved");
+    }
+}
+
 fn weighted() -> ClothMesh {
     let weights = (0..45).map(|vertex| if vertex % 9 < 3 { 0.0 } else { 1.0 }).collect();
     ClothMesh::grid(9, 5, 1.0, 0.6).with_weights(weights)
@@ -122,6 +129,8 @@ fn cloths_make_the_round_trip() {
         let cloth = first.world_mut().spawn(cloth).id();
         run(&mut first, 5);
         let saved = save(first.world(), cloth);
+        let components = ["ClothMesh", "ClothMaterial", "LodSet", "Attachment", "ClothPaused"];
+        assert_saves(&saved, &components);
         let mut second = app();
         let loaded = load(second.world_mut(), &[(cloth, saved.clone())])[0];
         assert_eq!(save(second.world(), loaded), saved);
@@ -166,6 +175,7 @@ fn colliders_winds_and_viewers_make_the_round_trip() {
         let all = first.world_mut().spawn((collider, wind, LodViewer::default())).id();
         run(&mut first, 2);
         let saved = save(first.world(), all);
+        assert_saves(&saved, &["ClothCollider", "WindField", "LodViewer"]);
         let mut second = app();
         let loaded = load(second.world_mut(), &[(all, saved.clone())])[0];
         assert_eq!(save(second.world(), loaded), saved);
