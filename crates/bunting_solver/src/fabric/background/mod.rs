@@ -250,9 +250,19 @@ mod tests {
             [true, false].map(|held| (0..60).any(|at| has_grid(disk(8).pin([at])) == held));
         assert_eq!(pinned, [true; 2]);
         assert!(!has_grid(FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0))), "a grid");
-        let turned = disk(8).positions().iter().map(|at| Vec2::new(at.y, -at.x)).collect();
-        let turned = disk(8).uv(turned).build().expect("a good fabric");
-        let background = turned.background().expect("a flat mesh has a grid");
-        assert!((background.warp_cos2 - 1.0).abs() < 1e-3, "rows along the warp");
+    }
+
+    #[test]
+    fn rows_run_along_the_warp() {
+        for warp in [Vec2::X, Vec2::Y] {
+            let uv = |at: &Vec3| Vec2::new(warp.dot(at.truncate()), warp.perp_dot(at.truncate()));
+            let uv = disk(8).positions().iter().map(uv).collect();
+            let fabric = disk(8).uv(uv).build().expect("a good fabric");
+            let background = fabric.background().expect("a flat mesh has a grid");
+            assert!((background.warp_cos2 - 1.0).abs() < 1e-3, "{}", background.warp_cos2);
+            let nodes = background.fabric.rest_positions();
+            let row = (nodes[1] - nodes[0]).normalize();
+            assert!(row.dot(warp.extend(0.0)).abs() > 0.999, "{row} for a warp along {warp}");
+        }
     }
 }
