@@ -1,6 +1,8 @@
 //! Tests that the bits of a lane depend only on the lane's own history: not on the other lanes, the batch's
 //! width or the instruction set.
 
+mod common;
+
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
@@ -11,6 +13,8 @@ use bunting_solver::{
 };
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
+
+use common::{drive, material};
 
 const TICK: f32 = 1.0 / 60.0;
 
@@ -24,29 +28,6 @@ const EVERY_SCHEME: [StepSettings; 4] = [
 fn flag() -> Arc<Fabric> {
     let builder = FabricBuilder::grid(Grid::new(9, 7, 1.2, 0.8)).pin_where(|_, uv| uv.x == 0.0);
     Arc::new(builder.build().expect("a good fabric"))
-}
-
-/// Materials that differ in every property that may differ within a batch.
-fn material(seed: usize) -> FabricMaterial {
-    match seed % 3 {
-        0 => FabricMaterial { friction_coefficient: 0.0, ..FabricMaterial::SILK },
-        // This cloth is so stiff that bending is solved at positions with the displacement by stretch.
-        1 => FabricMaterial { bend_stiffness: 10.0, ..FabricMaterial::DENIM },
-        _ => FabricMaterial { internal_damping: 1.0, ..FabricMaterial::COTTON },
-    }
-}
-
-fn drive(seed: usize, tick: usize) -> Drive {
-    let seed = seed as f32;
-    let motion = if seed as usize % 2 == 1 && tick < 20 {
-        FrameMotion {
-            rotation: Quat::from_rotation_y(0.01 * seed),
-            translation: Vec3::new(0.02 * seed, 0.0, -0.01),
-        }
-    } else {
-        FrameMotion::NONE
-    };
-    Drive { motion, wind: Vec3::new(5.0, 0.2 * seed, 1.0), ..Drive::default() }
 }
 
 fn colliders(seed: usize) -> Vec<Collider> {

@@ -1,13 +1,17 @@
 //! Cloths of different fabrics in one batch have the bits that each has among cloths of its own fabric.
 
+mod common;
+
 use std::sync::Arc;
 
 use bunting_solver::{
-    BatchError, ClothBatch, ClothSnapshot, Collider, Drive, Entering, Fabric, FabricBuilder,
-    FabricMaterial, FrameMotion, Grid, LaneCount, StepSettings,
+    BatchError, ClothBatch, ClothSnapshot, Collider, Entering, Fabric, FabricBuilder, Grid,
+    LaneCount, StepSettings,
 };
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
+
+use common::{drive, material};
 
 const TICK: f32 = 1.0 / 60.0;
 const SETTINGS: [StepSettings; 2] =
@@ -34,26 +38,6 @@ fn fabric(seed: usize, pins: Pins) -> Arc<Fabric> {
         Pins::None => builder,
     };
     Arc::new(builder.build().expect("a good fabric"))
-}
-
-fn material(seed: usize) -> FabricMaterial {
-    match seed % 3 {
-        0 => FabricMaterial { friction_coefficient: 0.0, ..FabricMaterial::SILK },
-        // So stiff that bending is solved where stretch leads to, and twist too.
-        1 => FabricMaterial { bend_stiffness: 10.0, ..FabricMaterial::DENIM },
-        _ => FabricMaterial { internal_damping: 1.0, ..FabricMaterial::COTTON },
-    }
-}
-
-fn drive(seed: usize, tick: usize) -> Drive {
-    let moves = seed % 2 == 1 && tick < 20;
-    let seed = seed as f32;
-    let motion = FrameMotion {
-        rotation: Quat::from_rotation_y(0.01 * seed),
-        translation: Vec3::new(0.02 * seed, 0.0, -0.01),
-    };
-    let motion = if moves { motion } else { FrameMotion::NONE };
-    Drive { motion, wind: Vec3::new(5.0, 0.2 * seed, 1.0), ..Drive::default() }
 }
 
 /// Sets what acts on a cloth in a tick.
