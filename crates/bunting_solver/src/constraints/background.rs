@@ -54,7 +54,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// overshoot as the sweep of a grid does, tethers and contacts.
     pub(super) fn solve_stretch_on_background(&mut self) {
         if let Some(grid) = &mut self.background {
-            grid.solve_chains_and_sweeps();
+            grid.solve_stretch_of_grid();
         }
         self.place_particles();
         self.sweep_mesh();

@@ -80,10 +80,11 @@ impl<P: Pack> Particles<P> for CorrectedParticles<'_, P> {
 
 struct ApplyCorrections<'a, P: Pack> {
     parameters: &'a Parameters<P>,
-    /// m.
+    /// Sums of the corrections, m.
     correction: &'a [Pack3<P>],
     position: &'a mut [Pack3<P>],
-    /// As predicted, m/s. Afterwards with what the rounding of positions has left out of the corrections.
+    /// Predicted velocities, m/s. The part of the corrections that the rounding of positions leaves out is added to
+    /// them.
     velocity: &'a mut [Pack3<P>],
 }
 

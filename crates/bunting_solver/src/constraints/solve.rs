@@ -83,10 +83,18 @@ impl<P: Pack, Y: Layout<P> + GridLayout> LaneBatch<P, Y> {
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves chains, tethers and contacts of a grid after bending, since stretch is stiffer. For every second pass a
-    /// sweep over warp and weft corrects the overshoot of the chains' frozen directions, and chains that still have
-    /// overlong links are solved again.
+    /// Solves stretch and contacts of a grid after bending, since stretch is stiffer.
     fn solve_grid_and_contacts(&mut self) {
+        self.solve_stretch_of_grid();
+        // This call copies the positions back from the constraints' arrays.
+        self.positions.packs_mut();
+        self.solve_contacts();
+    }
+
+    /// Solves chains and tethers of a grid, of which a background grid has none. For every second pass a sweep over warp
+    /// and weft corrects the overshoot of the chains' frozen directions, and chains that still have overlong links are
+    /// solved again.
+    pub(super) fn solve_stretch_of_grid(&mut self) {
         let passes = self.clock.settings.passes;
         if self.is_strip() {
             self.solve_strip(passes);
@@ -94,19 +102,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.solve_chains(passes);
         }
         self.solve_tethers();
-        for _ in 0..passes / 2 {
-            self.sweep_links();
-        }
-        self.solve_overlong_chains();
-        // This call copies the positions back from the constraints' arrays.
-        self.positions.packs_mut();
-        self.solve_contacts();
-    }
-
-    /// Solves stretch and shear of a background grid, which has no tethers and touches nothing.
-    pub(super) fn solve_chains_and_sweeps(&mut self) {
-        let passes = self.clock.settings.passes;
-        self.solve_chains(passes);
         for _ in 0..passes / 2 {
             self.sweep_links();
         }
