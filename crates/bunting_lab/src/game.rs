@@ -7,7 +7,10 @@ use bevy_bunting::{
     Attachment, ClothEdge, ClothMaterial, ClothMesh, ClothPlugins, ClothSettings, LodSet,
     WindField, bunting_solver::StepSettings,
 };
-use bevy_ecs::entity::Entity;
+use bevy_ecs::{
+    entity::Entity,
+    schedule::{Schedules, SingleThreadedExecutor},
+};
 use bevy_tasks::{ComputeTaskPool, TaskPoolBuilder};
 use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::{TransformPlugin, components::Transform};
@@ -47,6 +50,11 @@ pub fn app_in_still_air(settings: impl IntoIterator<Item = StepSettings>) -> App
         steps: settings.into_iter().map(Into::into).collect(),
         ..ClothSettings::default()
     });
+    // Another package of the workspace may have turned on Bevy's multi-threaded executor, which moves systems
+    // to the pool's thread and so from core to core.
+    for (_, schedule) in app.world_mut().resource_mut::<Schedules>().iter_mut() {
+        schedule.set_executor(SingleThreadedExecutor::new());
+    }
     app
 }
 

@@ -9,7 +9,7 @@ use crate::batch::group::FabricCount;
 /// A kind of batch of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct BatchKind {
-    /// Index in the group of the fabric of all its cloths; none for cloths of different fabrics.
+    /// Index in the group of the fabric of all its cloths; none for cloths of different fabrics, in eight lanes.
     pub fabric: Option<usize>,
     /// Its lanes.
     pub width: LaneCount,
@@ -49,7 +49,10 @@ pub(crate) fn wanted_batches<'a>(
     let mut rest: usize = left.iter().sum();
     let mut lone = 0;
     while rest > 0 {
-        let width = first_of(rest);
+        let width = match (only, first_of(rest)) {
+            (None, LaneCount::Sixteen) => LaneCount::Eight,
+            (_, width) => width,
+        };
         match (only, width) {
             (None, LaneCount::One) => lone += 1,
             _ => wanted.push(BatchKind { fabric: only, width }),
@@ -134,5 +137,6 @@ mod tests {
         assert_eq!(batches(33, &[1; 3]), [[3, 0], [0, 0]]);
         assert_eq!(batches(33, &[1; 4]), [[0, 0], [0, 1]]);
         assert_eq!(batches(33, &[1; 10]), [[2, 0], [0, 1]]);
+        assert_eq!(batches(5, &[1; 18]), [[0, 0], [0, 3]]);
     }
 }

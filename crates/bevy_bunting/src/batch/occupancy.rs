@@ -56,7 +56,7 @@ impl OccupiedBatch {
         let fabric_at = |index: usize| &fabrics[index].fabric;
         let batch = match fabric {
             Some(fabric) => ClothBatch::new(Arc::clone(fabric_at(fabric)), width),
-            None => ClothBatch::mixed(fabric_at(0), width).expect("groups of fabrics are of grids"),
+            None => ClothBatch::mixed(fabric_at(0)).expect("groups of fabrics are of grids"),
         };
         Self {
             batch,

@@ -26,9 +26,8 @@ pub(crate) struct BatchCosts {
 pub(crate) struct Pool {
     /// Number of the pool.
     pub index: u32,
-    /// Costs of mixed batches of eight lanes and of sixteen; the latter none where batches are at most eight wide.
+    /// Cost of a mixed batch, which has eight lanes, µs.
     pub eight: f32,
-    pub sixteen: Option<f32>,
 }
 
 impl BatchCosts {
@@ -46,8 +45,8 @@ impl BatchCosts {
 
     /// Cost of the batches of a pool of so many cloths, µs.
     pub fn of_pool(&self, cloths: u32) -> f32 {
-        let Some(Pool { eight, sixteen, .. }) = self.pool else { return 0.0 };
-        let mixed = Self { eight, sixteen, pool: None, ..*self };
+        let Some(Pool { eight, .. }) = self.pool else { return 0.0 };
+        let mixed = Self { eight, sixteen: None, pool: None, ..*self };
         let (in_batches, rest) = mixed.own(cloths);
         in_batches + mixed.rest(rest)
     }
@@ -107,11 +106,11 @@ mod tests {
         let each = counts.map(|count| single.of(count));
         assert_eq!(each, [1.5, 3.0, 4.5, 5.0, 7.0, 8.5, 10.0, 10.5, 13.0, 14.5, 17.5]);
         // Of several fabrics, cloths that do not fill half a batch are in the pool.
-        let pool = Some(Pool { index: 0, eight: 3.5, sixteen: Some(6.0) });
+        let pool = Some(Pool { index: 0, eight: 3.5 });
         let pooled = BatchCosts { pool, ..costs };
         assert_eq!([1, 3, 4, 9, 17, 19].map(|count| pooled.pooled(count)), [1, 3, 0, 0, 1, 3]);
         assert_eq!([1, 3, 4, 19].map(|count| pooled.of(count)), [0.5, 1.5, 5.0, 14.5]);
         let each = [0, 1, 2, 8, 9, 16, 17, 26].map(|count| pooled.of_pool(count));
-        assert_eq!(each, [0.0, 1.0, 3.5, 3.5, 6.0, 6.0, 7.0, 12.0]);
+        assert_eq!(each, [0.0, 1.0, 3.5, 3.5, 4.5, 7.0, 8.0, 14.0]);
     }
 }

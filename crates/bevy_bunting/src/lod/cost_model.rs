@@ -162,23 +162,17 @@ impl CostModel {
             factor.value * table.batch(kind)
         };
         let one = cost(LaneCount::One, false);
-        let costs_of = |mixed: bool| match widest {
-            LaneCount::One => (8.0 * one, None),
-            LaneCount::Eight => (cost(LaneCount::Eight, mixed), None),
-            LaneCount::Sixteen => {
-                (cost(LaneCount::Eight, mixed), Some(cost(LaneCount::Sixteen, mixed)))
-            }
+        let eight = |mixed: bool| match widest {
+            LaneCount::One => 8.0 * one,
+            _ => cost(LaneCount::Eight, mixed),
         };
-        let (eight, sixteen) = costs_of(false);
+        let is_wide = widest == LaneCount::Sixteen;
         BatchCosts {
             one,
-            eight,
-            sixteen,
+            eight: eight(false),
+            sixteen: is_wide.then(|| cost(LaneCount::Sixteen, false)),
             most_single: if widest == LaneCount::One { 8 } else { most_single },
-            pool: pool.map(|index| {
-                let (eight, sixteen) = costs_of(true);
-                Pool { index, eight, sixteen }
-            }),
+            pool: pool.map(|index| Pool { index, eight: eight(true) }),
             per_cloth: self.overhead_factor.value * table.per_cloth(particles),
             change: self.change_factor() * table.change(particles),
         }

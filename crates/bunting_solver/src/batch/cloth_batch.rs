@@ -36,8 +36,7 @@ enum Lanes {
     One(Box<LaneBatch<Pack1>>),
     Eight(Box<LaneBatch<Pack8>>),
     Sixteen(Box<LaneBatch<Pack16>>),
-    MixedEight(Box<LaneBatch<Pack8, Mixed<Pack8>>>),
-    MixedSixteen(Box<LaneBatch<Pack16, Mixed<Pack16>>>),
+    Mixed(Box<LaneBatch<Pack8, Mixed<Pack8>>>),
 }
 
 /// Evaluates an expression with the batch of any width and layout.
@@ -48,8 +47,7 @@ macro_rules! with_batch {
             Lanes::One($batch) => $body,
             Lanes::Eight($batch) => $body,
             Lanes::Sixteen($batch) => $body,
-            Lanes::MixedEight($batch) => $body,
-            Lanes::MixedSixteen($batch) => $body,
+            Lanes::Mixed($batch) => $body,
         }
     };
 }
@@ -68,22 +66,18 @@ impl ClothBatch {
         })
     }
 
-    /// An empty batch of cloths of different fabrics, which all have the topology of this one, for
-    /// [`Scheme::Yarns`]. A cloth has the same bits as among cloths of its own fabric, and the batch takes longer than
-    /// one of a single fabric. None where the fabric has no [`topology`](Fabric::topology), and for one lane.
+    /// An empty batch of [`LaneCount::Eight`] for cloths of different fabrics, which all have the topology of this
+    /// one, for [`Scheme::Yarns`]. A cloth has the same bits as among cloths of its own fabric, and the batch takes
+    /// longer than one of a single fabric. None where the fabric has no [`topology`](Fabric::topology).
     #[must_use]
-    pub fn mixed(fabric: &Arc<Fabric>, lanes: LaneCount) -> Option<Self> {
-        Some(Self(match lanes {
-            LaneCount::One => return None,
-            LaneCount::Eight => Lanes::MixedEight(Box::new(LaneBatch::mixed(fabric)?)),
-            LaneCount::Sixteen => Lanes::MixedSixteen(Box::new(LaneBatch::mixed(fabric)?)),
-        }))
+    pub fn mixed(fabric: &Arc<Fabric>) -> Option<Self> {
+        Some(Self(Lanes::Mixed(Box::new(LaneBatch::mixed(fabric)?))))
     }
 
     /// Whether cloths of different fabrics can be put into the batch.
     #[must_use]
     pub fn is_mixed(&self) -> bool {
-        matches!(self.0, Lanes::MixedEight(_) | Lanes::MixedSixteen(_))
+        matches!(self.0, Lanes::Mixed(_))
     }
 
     /// The fabric that all cloths of the batch are cut from, or whose topology they have where the batch is
