@@ -15,6 +15,11 @@ pub(crate) struct BatchKind {
     pub width: LaneCount,
 }
 
+impl BatchKind {
+    /// Cloths of different fabrics.
+    pub const MIXED: Self = Self { fabric: None, width: LaneCount::Eight };
+}
+
 /// The batches that hold the cloths of each fabric, and in what is left the cloths of several fabrics.
 ///
 /// Cloths that fill half of a batch or more lie in batches of their own fabric. What is left of each fabric is put
@@ -49,15 +54,17 @@ pub(crate) fn wanted_batches<'a>(
     let mut rest: usize = left.iter().sum();
     let mut lone = 0;
     while rest > 0 {
-        let width = match (only, first_of(rest)) {
-            (None, LaneCount::Sixteen) => LaneCount::Eight,
-            (_, width) => width,
+        let kind = match (only, first_of(rest)) {
+            (None, LaneCount::One) => {
+                lone += 1;
+                rest -= 1;
+                continue;
+            }
+            (None, _) => BatchKind::MIXED,
+            (Some(_), width) => BatchKind { fabric: only, width },
         };
-        match (only, width) {
-            (None, LaneCount::One) => lone += 1,
-            _ => wanted.push(BatchKind { fabric: only, width }),
-        }
-        rest = rest.saturating_sub(width.get());
+        wanted.push(kind);
+        rest = rest.saturating_sub(kind.width.get());
     }
     wanted.extend(lone_cloths(fabrics, left, lone, singles));
     wanted

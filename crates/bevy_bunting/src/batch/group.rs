@@ -5,12 +5,17 @@ use std::sync::Arc;
 use bevy_ecs::prelude::*;
 use bunting_solver::{ClothBatch, Fabric, LaneCount, Scheme, StepSettings};
 
+use crate::background::Background;
 use crate::batch::batch_kind::{BatchKind, wanted_batches};
 use crate::batch::occupancy::{OccupiedBatch, PendingCloth};
 
 /// Number of empty batches of each width that are kept as spares, since making a batch takes longer than a
 /// tick. It equals the greatest number of cloths in batches of one lane.
 const MOST_SPARE: usize = 3;
+
+/// Number of free lanes of mixed batches below which another thread builds the next such batch. Fewer: a tick in
+/// which several cloths arrive waits for it. More: groups have a batch too many more often.
+const FEW_FREE: usize = 3;
 
 /// A fabric of a group, and the number of its cloths.
 #[derive(Debug)]
@@ -29,6 +34,8 @@ pub(crate) struct Group {
     pub batches: Vec<OccupiedBatch>,
     /// Empty batches, at most [`MOST_SPARE`] of each kind.
     spare: Vec<OccupiedBatch>,
+    /// The next mixed batch, which another thread builds. The bits of a cloth do not depend on its batch.
+    next_mixed: Option<Background<OccupiedBatch>>,
     /// Cloths that wait for a lane.
     pub pending: Vec<PendingCloth>,
     /// Whether cloths have entered or left since the last assignment of lanes.
@@ -43,6 +50,7 @@ impl Group {
             fabrics: vec![FabricCount { fabric: Arc::clone(fabric), cloths: 0 }],
             batches: Vec::new(),
             spare: Vec::new(),
+            next_mixed: None,
             pending: Vec::new(),
             changed: true,
         }
@@ -115,11 +123,8 @@ impl Group {
         let superfluous = self.superfluous(fullest_first, &mut missing);
         self.dissolve(superfluous, &mut assigned);
         for kind in missing {
-            let spare = self.spare.iter().position(|spare| spare.is_of(kind, &self.fabrics));
-            self.batches.push(match spare {
-                Some(index) => self.spare.swap_remove(index),
-                None => OccupiedBatch::new(kind, &self.fabrics),
-            });
+            let batch = self.new_batch(kind);
+            self.batches.push(batch);
         }
         self.move_out_of_mixed();
         // Batches of one fabric first: mixed ones hold what is left.
@@ -134,6 +139,36 @@ impl Group {
         }
         debug_assert!(self.pending.is_empty(), "the batches hold all cloths");
         self.changed = false;
+        if width.is_none() {
+            self.build_ahead();
+        }
+    }
+
+    /// A batch without cloths: a spare one, the one that was built ahead, or a new one.
+    fn new_batch(&mut self, kind: BatchKind) -> OccupiedBatch {
+        let spare = self.spare.iter().position(|spare| spare.is_of(kind, &self.fabrics));
+        if let Some(index) = spare {
+            return self.spare.swap_remove(index);
+        }
+        let ahead = if kind.fabric.is_none() { self.next_mixed.take() } else { None };
+        ahead.map_or_else(|| OccupiedBatch::new(kind, &self.fabrics), Background::take)
+    }
+
+    /// Begins to build the next mixed batch in the background if the next few cloths may need it. Building one takes
+    /// as long as many of its ticks.
+    fn build_ahead(&mut self) {
+        let in_use = self.fabrics.iter().filter(|it| it.cloths > 0).count();
+        let mixed = || self.batches.iter().filter(|batch| batch.batch.is_mixed());
+        let free: usize = mixed().map(|it| it.occupants.len() - it.occupied_count()).sum();
+        let is_shared = |it: &OccupiedBatch| it.batch.is_mixed() || it.width == LaneCount::One;
+        let has_rest = self.batches.iter().any(is_shared);
+        let has_spare = self.spare.iter().any(|spare| spare.batch.is_mixed());
+        if in_use < 2 || !has_rest || free >= FEW_FREE || has_spare || self.next_mixed.is_some() {
+            return;
+        }
+        let fabric = FabricCount { fabric: Arc::clone(&self.fabrics[0].fabric), cloths: 0 };
+        self.next_mixed =
+            Some(Background::begin(move || OccupiedBatch::new(BatchKind::MIXED, &[fabric])));
     }
 
     /// Indices of the batches, the fullest first.

@@ -14,6 +14,7 @@ use crate::cloth::activity::ClothActivity;
 use crate::cloth::imperfection::{ClothSeed, almost_at_rest};
 use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
+use crate::fabric::library::AwaitedLevels;
 use crate::motion::take_up::TakingUp;
 
 /// Storage of a cloth's state.
@@ -34,13 +35,16 @@ pub(crate) enum StateStorage {
 pub(crate) struct ClothInstance {
     pub levels: Option<Arc<ClothLevels>>,
     pub level: usize,
+    /// Position at rest of the middle particle of the finest level in the cloth's frame, m. Each tick reads it here,
+    /// since fabrics of many different cloths are not in the cache.
+    pub rest_middle: Vec3,
     pub storage: StateStorage,
     /// Seed of the cloth's imperfection.
     pub seed: ClothSeed,
     /// Whether the state is still the initial one, at rest with the imperfection, and has been in no lane.
     pub unmoved: bool,
-    /// Content key of the fabrics that another thread is building for this cloth, see `FabricLibrary`.
-    pub cutting: Option<Vec<u32>>,
+    /// Fabrics that another thread is building for this cloth.
+    pub cutting: Option<AwaitedLevels>,
     pub activity: ClothActivity,
     /// The last valid material.
     pub material: FabricMaterial,
@@ -90,12 +94,6 @@ impl ClothInstance {
             StateStorage::Snapshot(snapshot) => Some(snapshot),
             _ => None,
         }
-    }
-
-    /// Position at rest of the middle particle in the cloth's frame, m.
-    pub fn rest_middle(&self) -> Vec3 {
-        let rest = self.fabric().map_or(&[][..], |fabric| fabric.rest_positions());
-        rest.get(rest.len() / 2).copied().unwrap_or_default()
     }
 
     /// The fabric of the cloth at its level.
@@ -165,6 +163,8 @@ impl ClothInstance {
                 .fabric()
                 .is_some_and(|old| old.rest_positions() == levels.fabric(level).rest_positions());
         self.level = level;
+        let rest = levels.fabric(0).rest_positions();
+        self.rest_middle = rest.get(rest.len() / 2).copied().unwrap_or_default();
         self.levels = Some(levels);
         let keeps = fits && self.snapshot().is_some();
         if !keeps {

@@ -180,7 +180,7 @@ fn begin_prerolls(
             drive: Drive {
                 motion: FrameMotion::NONE,
                 gravity: inverse * settings.gravity,
-                wind: inverse * wind.at(frame * instance.rest_middle()),
+                wind: inverse * wind.at(frame * instance.rest_middle),
                 air_density: settings.air_density,
             },
             tick,

@@ -38,7 +38,7 @@ pub(crate) fn drive_cloths(
         let gravity = inverse * gravity;
         // Gravity is written in every tick, which must not mark the cloth as changed.
         instance.bypass_change_detection().gravity = gravity;
-        let middle = end * instance.rest_middle();
+        let middle = end * instance.rest_middle;
         batches.lane(lane).drive(Drive {
             motion: FrameMotion::between(pose_parts(start), pose_parts(end)),
             gravity,

@@ -21,7 +21,7 @@ use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::library::{FabricLibrary, Found};
 use crate::lod::budget::{ClothBudget, LodCosts};
-use crate::lod::lod_set::LodSet;
+use crate::lod::lod_set::{LodChoice, LodSet};
 use crate::motion::attachment::Attachment;
 use crate::motion::frame::{frame_of, is_finite};
 use crate::motion::lost_target::handle_lost_targets;
@@ -110,7 +110,7 @@ fn cut_cloths(
     for mut cloth in &mut cloths {
         let target = cloth.target();
         let is_cutting =
-            cloth.instance.cutting.as_ref().is_some_and(|key| library.is_cutting(key, &cloth.lods));
+            cloth.instance.cutting.as_ref().is_some_and(|it| library.is_cutting(it, &cloth.lods));
         if is_cutting && !cloth.is_edited() {
             library.awaited = true;
             continue;
@@ -119,8 +119,8 @@ fn cut_cloths(
             continue;
         }
         match cloth.find_levels(target, &targets, &mut library) {
-            Ok(Found::Awaited(key)) => {
-                cloth.instance.cutting = Some(key);
+            Ok(Found::Awaited(awaited)) => {
+                cloth.instance.cutting = Some(awaited);
                 library.awaited = true;
             }
             Ok(Found::Levels(levels)) => {
@@ -207,6 +207,10 @@ impl CutClothItem<'_, '_> {
             instance.material = self.material.0;
             let of_frame = || frame.as_ref().map(ClothSeed::of_frame).unwrap_or_default();
             instance.seed = self.seed.copied().unwrap_or_else(of_frame);
+            if matches!(self.lods.choice, LodChoice::Automatic { .. }) {
+                // Most cloths of a large scene stay there, and finer states take longer to make.
+                instance.level = levels.count() - 1;
+            }
         }
         if let Some(shortage) = levels.shortage(self.entity, self.mesh.as_grid()) {
             ClothFailed::report(commands, self.entity, shortage);

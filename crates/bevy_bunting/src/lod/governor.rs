@@ -90,7 +90,11 @@ impl Governor {
         self.collect_steps(tables, cloths, limits);
         self.sort_steps();
         self.take_steps(tables, cloths, limits.budget);
-        let reserve = self.dearest_change(tables, cloths).min(MOST_RESERVED * limits.budget);
+        let most = MOST_RESERVED * limits.budget;
+        // The next tick may bring more new cloths, and changes of these. Levels that leave no room for them would be
+        // given up again.
+        let has_fresh = cloths.iter().any(|cloth| cloth.fresh);
+        let reserve = if has_fresh { most } else { self.dearest_change(tables, cloths).min(most) };
         if reserve > 0.0 {
             self.take_steps(tables, cloths, limits.budget - reserve);
         }
@@ -245,9 +249,8 @@ impl Governor {
         let mut left = [limits.switches; 2];
         let mut changes = 0.0;
         let mut cost = self.counts.count(tables, cloths, cloths.iter().map(|cloth| cloth.level));
-        // The next tick may bring more new cloths than others have become coarser for.
         let has_fresh = cloths.iter().any(|cloth| cloth.fresh);
-        let budget = if has_fresh { (1.0 - MOST_RESERVED) * limits.budget } else { limits.budget };
+        let budget = if has_fresh { limits.budget - reserve } else { limits.budget };
         cost = self.start_fresh(tables, cloths, budget, cost);
         // On the way to the chosen levels costs may rise above those of these levels.
         let most = budget.min(limits.budget - reserve);
