@@ -2,6 +2,7 @@
 
 mod any_order;
 mod attachment;
+mod broad_phase;
 mod determinism;
 mod environment;
 mod errors;

@@ -269,3 +269,35 @@ fn a_sheet_that_falls_on_a_floor_stays_there() {
         assert!((lowest + 0.3 - THICKNESS).abs() < 1e-3, "{lowest} m");
     }
 }
+
+/// The box of [`ClothBatch::swept_bounds`] contains all particles at the end of the tick, in every layout, and is not
+/// much larger than the cloth.
+#[test]
+fn a_swept_box_contains_the_cloth() {
+    let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0));
+    let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build().expect("a good fabric"));
+    for lanes in [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen] {
+        let mut batch = ClothBatch::new(fabric.clone(), lanes);
+        let lane = lanes.get() - 1;
+        let mut thrown = ClothSnapshot::at_rest(&fabric);
+        (0..thrown.velocities.len())
+            .filter(|&particle| !fabric.is_pinned(particle))
+            .for_each(|particle| thrown.velocities[particle] = Vec3::new(0.0, 1.0, 4.0));
+        batch.replace(lane, &thrown, material()).expect("a lane");
+        let mut least_room = f32::INFINITY;
+        for _ in 0..60 {
+            batch.drive(lane, fall()).expect("a good drive");
+            let bounds = batch.swept_bounds(TICK);
+            assert!(bounds.iter().enumerate().all(|(at, bounds)| bounds.is_some() == (at == lane)));
+            let bounds = bounds[lane].expect("a cloth");
+            batch.step(TICK, StepSettings::yarns(2));
+            for &at in &batch.snapshot(lane).positions {
+                let room = (at - bounds.mins).min(bounds.maxs - at).min_element();
+                least_room = least_room.min(room);
+            }
+            assert!(bounds.extents().max_element() < 3.0);
+        }
+        assert!(least_room >= 0.0, "{lanes:?}: {least_room} m");
+        assert!(least_room < 0.2, "{lanes:?}: {least_room} m");
+    }
+}

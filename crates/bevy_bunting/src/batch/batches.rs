@@ -9,6 +9,7 @@ use bevy_tasks::ComputeTaskPool;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Fabric, LaneCount, LaneSurface, ParticlesMut, StepSettings,
 };
+use parry3d::bounding_volume::Aabb;
 
 use crate::batch::group::Group;
 use crate::batch::lane_handle::LaneHandle;
@@ -89,6 +90,17 @@ impl ClothBatches {
         let batch = self.groups.get(lane.group)?.batches.get(lane.batch)?;
         let occupant = batch.occupants.get(lane.lane)?.as_ref()?;
         (occupant.entity != cloth).then(|| batch.batch.snapshot(lane.lane))
+    }
+
+    /// Computes the boxes around all cloths in a tick of `tick` seconds.
+    pub(crate) fn update_bounds(&mut self, tick: f32) {
+        self.spread(|_| true, |batch| batch.bounds = batch.batch.swept_bounds(tick));
+    }
+
+    /// The box around all positions that the particles of a cloth reach in this tick, relative to its frame at the
+    /// start of the tick, m.
+    pub(crate) fn bounds(&self, lane: LaneHandle) -> Option<Aabb> {
+        self.groups[lane.group].batches[lane.batch].bounds[lane.lane]
     }
 
     /// Colliders that the cloth in a lane could touch in the last tick.

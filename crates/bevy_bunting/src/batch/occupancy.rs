@@ -8,6 +8,8 @@ use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, LaneCount, LaneSurface,
 };
 
+use parry3d::bounding_volume::Aabb;
+
 use crate::batch::batch_kind::BatchKind;
 use crate::batch::group::FabricCount;
 
@@ -38,6 +40,8 @@ pub(crate) struct OccupiedBatch {
     pub occupants: Vec<Option<Occupant>>,
     /// Buffers in which surfaces are copied from the lanes to the cloths' states.
     pub surfaces: Vec<LaneSurface>,
+    /// Box around the cloth in each lane in this tick, if there are colliders; see `ClothBatch::swept_bounds`.
+    pub bounds: Vec<Option<Aabb>>,
     pub width: LaneCount,
     /// Number of substeps in this tick.
     pub substeps: u32,
@@ -62,6 +66,7 @@ impl OccupiedBatch {
             batch,
             occupants: vec![None; width.get()],
             surfaces: vec![LaneSurface::default(); width.get()],
+            bounds: Vec::new(),
             width,
             substeps: 0,
             joins: true,

@@ -1,6 +1,8 @@
 //! Wind, gravity and colliders: everything that acts on a cloth besides its attachment.
 
 pub mod collider;
+mod collider_tree;
 pub mod drive;
+pub mod drive_colliders;
 pub mod gusts;
 pub mod wind;

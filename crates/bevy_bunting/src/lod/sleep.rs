@@ -1,7 +1,6 @@
 //! Sleep at rest: cloths at rest fall asleep, and wake when anything that acts on them changes.
 
 use bevy_app::{App, Plugin};
-use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_time::Time;
@@ -75,7 +74,6 @@ pub(crate) struct Changes {
     /// Number of cloths asleep at rest; some may have been woken since.
     asleep: usize,
     wind: TickWind,
-    collider_poses: EntityHashMap<Isometry3d>,
 }
 
 impl Changes {
@@ -103,7 +101,7 @@ fn wake(request: On<WakeCloth>, mut cloths: Query<(&mut ClothInstance, &mut Rest
 }
 
 fn note_changes(
-    colliders: Query<(Entity, Ref<ClothCollider>, &PoseHistory)>,
+    colliders: Query<(Ref<ClothCollider>, Ref<PoseHistory>)>,
     mut removed: RemovedComponents<ClothCollider>,
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
@@ -112,17 +110,14 @@ fn note_changes(
     let changes = &mut *changes;
     changes.everywhere = settings.is_changed() || *wind != changes.wind;
     changes.wind.clone_from(&wind);
-    for entity in removed.read() {
-        changes.collider_poses.remove(&entity);
-        changes.everywhere = true;
-    }
+    changes.everywhere |= removed.read().count() > 0;
     changes.moving_colliders.clear();
-    for (entity, collider, history) in &colliders {
+    for (collider, history) in &colliders {
         changes.everywhere |= collider.is_changed();
-        let pose = history.end();
-        if changes.collider_poses.insert(entity, pose) != Some(pose) {
+        if !history.rests() || history.is_changed() {
             let ball = collider.shape.compute_local_bounding_sphere();
-            changes.moving_colliders.push((pose * ball.center, ball.radius + collider.margin));
+            let centre = history.end() * ball.center;
+            changes.moving_colliders.push((centre, ball.radius + collider.margin));
         }
     }
     changes.unchanged_ticks =

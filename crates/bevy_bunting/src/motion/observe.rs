@@ -45,7 +45,7 @@ impl Observer<'_, '_> {
         let mut histories = self.histories.p1();
         for &entity in moved {
             let Ok((mut history, attachment)) = histories.get_mut(entity) else { continue };
-            let rested = history.rests();
+            let (rested, pose) = (history.rests(), history.end());
             observe(entity, history.bypass_change_detection(), attachment);
             if !history.rests() {
                 self.restless.push(entity);
@@ -54,6 +54,9 @@ impl Observer<'_, '_> {
                 if rested {
                     history.set_changed();
                 }
+            } else if rested && history.end() != pose {
+                // A teleport leads from rest to rest.
+                history.set_changed();
             }
         }
     }

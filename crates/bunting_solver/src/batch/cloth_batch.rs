@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use glam::Vec3;
+use parry3d::bounding_volume::Aabb;
 
 use crate::batch::error::BatchError;
 use crate::batch::exchange::Entering;
@@ -291,6 +292,15 @@ impl ClothBatch {
             }
         });
         refused.map_or(Ok(()), |index| Err(BatchError::Collider { index }))
+    }
+
+    /// For each lane, the box around all positions that its cloth's particles reach in a tick of `tick` seconds under
+    /// the present [`Drive`], as far as they touch nothing, with the cloth's thickness; in m, relative to the cloth's
+    /// frame at the start of the tick. None for a lane without a cloth. By this box a host finds the colliders that a
+    /// cloth may touch.
+    #[must_use]
+    pub fn swept_bounds(&self, tick: f32) -> Vec<Option<Aabb>> {
+        with_batch!(&self.0, batch => batch.swept_bounds(tick))
     }
 
     /// The colliders that a lane's cloth could touch in the last tick.

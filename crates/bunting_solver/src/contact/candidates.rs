@@ -5,6 +5,7 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
+use crate::contact::bounds::moved_by_forces;
 use crate::contact::near::swept_box;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::lane3;
@@ -16,14 +17,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn gather_contacts(&mut self, tick: f32) {
         let positions = self.positions.packs();
         for (cloth, state) in self.lanes.iter_mut().enumerate() {
-            let Some(LaneState { material, drive, colliders, contacts, .. }) = state else {
-                continue;
-            };
+            let Some(state) = state else { continue };
+            let by_forces = moved_by_forces(state, tick);
+            let LaneState { material, drive, colliders, contacts, .. } = state;
             contacts.resize_with(colliders.len(), Vec::new);
             // Velocities are relative to the world. The frame's motion is added, and the greatest speed that
             // gravity and wind can give to a particle within the tick.
             let by_frame = drive.motion.translation.length();
-            let by_forces = drive.gravity.length() * tick * tick + drive.wind.length() * tick;
             for (collider, candidates) in colliders.iter().zip(contacts) {
                 candidates.clear();
                 // Particles that the collider hits pull others along.

@@ -1,5 +1,6 @@
 //! Contacts between cloth and colliders.
 
+mod bounds;
 mod candidates;
 pub(crate) mod collider;
 mod ground;

@@ -1,0 +1,160 @@
+//! The broad phase: a bounding volume hierarchy of the boxes that colliders sweep in a tick, in the world.
+//!
+//! Colliders at rest keep their boxes. So a collider costs something only where it moves or where a cloth is near it.
+
+use bevy_ecs::entity::EntityHashMap;
+use bevy_ecs::prelude::*;
+use bevy_math::Isometry3d;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::math::Pose;
+use parry3d::partitioning::{Bvh, BvhWorkspace};
+
+use crate::environment::collider::ClothCollider;
+use crate::environment::drive::pose_parts;
+use crate::motion::pose::PoseHistory;
+
+/// Greatest coordinate of a box in the tree, m: half spaces have larger ones. Larger: they make all other boxes
+/// useless. Smaller: colliders far from the origin are near every cloth.
+const FARTHEST: f32 = 1e9;
+
+/// Poses between the start and the end of a tick at which the box of a turning collider is computed, as fractions of
+/// the tick.
+const BETWEEN: [f32; 3] = [0.25, 0.5, 0.75];
+
+/// The boxes of all colliders in this tick.
+#[derive(Resource, Default)]
+pub(super) struct ColliderTree {
+    tree: Bvh,
+    workspace: BvhWorkspace,
+    /// The entity of each leaf; none for a leaf that is free.
+    entities: Vec<Option<Entity>>,
+    leaves: EntityHashMap<u32>,
+    free: Vec<u32>,
+    /// Leaves of colliders without end: half spaces, and heightfields, which are solid downwards. Also colliders whose
+    /// numbers are not finite.
+    endless: Vec<u32>,
+    /// Colliders that moved in the last tick.
+    moving: Vec<Entity>,
+}
+
+impl ColliderTree {
+    /// Whether there are no colliders.
+    pub fn is_empty(&self) -> bool {
+        self.leaves.is_empty()
+    }
+
+    /// Finds the colliders whose boxes intersect a box (m, in the world), in the order of their leaves, which follows
+    /// from the order in which colliders came and went.
+    pub fn near(&self, cloth: &Aabb, found: &mut Vec<Entity>) {
+        let mut leaves: Vec<u32> =
+            self.tree.intersect_aabb(cloth).chain(self.endless.iter().copied()).collect();
+        leaves.sort_unstable();
+        found.clear();
+        found.extend(leaves.into_iter().filter_map(|leaf| self.entities[leaf as usize]));
+    }
+
+    /// Stores the box that a collider sweeps in this tick.
+    fn set(&mut self, entity: Entity, collider: &ClothCollider, history: &PoseHistory) {
+        let leaf = self.leaf_of(entity);
+        match swept_box(collider, history) {
+            Some(swept) => {
+                self.endless.retain(|&endless| endless != leaf);
+                self.tree.insert_or_update_partially(swept, leaf, 0.0);
+            }
+            None => {
+                self.tree.remove(leaf);
+                if !self.endless.contains(&leaf) {
+                    self.endless.push(leaf);
+                }
+            }
+        }
+    }
+
+    fn leaf_of(&mut self, entity: Entity) -> u32 {
+        *self.leaves.entry(entity).or_insert_with(|| {
+            let leaf = self.free.pop().unwrap_or_else(|| {
+                self.entities.push(None);
+                self.entities.len() as u32 - 1
+            });
+            self.entities[leaf as usize] = Some(entity);
+            leaf
+        })
+    }
+
+    fn remove(&mut self, entity: Entity) {
+        if let Some(leaf) = self.leaves.remove(&entity) {
+            self.tree.remove(leaf);
+            self.endless.retain(|&endless| endless != leaf);
+            self.entities[leaf as usize] = None;
+            self.free.push(leaf);
+        }
+    }
+}
+
+/// Box around a collider during a tick, in the world, m; none where the collider has no end. The box includes the
+/// margin and the way that particles which the collider pushes may pull others.
+fn swept_box(collider: &ClothCollider, history: &PoseHistory) -> Option<Aabb> {
+    if collider.shape.as_heightfield().is_some() {
+        return None;
+    }
+    let (from, to) = history.extrapolated();
+    let ends = [from, to].map(|pose| collider.shape.compute_aabb(&pose_of(pose)));
+    let mut swept = ends[0].merged(&ends[1]);
+    if from.rotation != to.rotation {
+        for part in BETWEEN {
+            let rotation = from.rotation.slerp(to.rotation, part);
+            let pose = Isometry3d::new(from.translation.lerp(to.translation, part), rotation);
+            swept.merge(&collider.shape.compute_aabb(&pose_of(pose)));
+        }
+    }
+    let reach = collider.margin.max(0.0) + from.translation.distance(to.translation);
+    let swept = Aabb::new(swept.mins - reach, swept.maxs + reach);
+    let farthest = swept.mins.abs().max(swept.maxs.abs()).max_element();
+    // False where a number is NaN.
+    (farthest <= FARTHEST).then_some(swept)
+}
+
+/// A pose as parry has it.
+fn pose_of(pose: Isometry3d) -> Pose {
+    let (translation, rotation) = pose_parts(pose);
+    Pose::from_parts(translation, rotation)
+}
+
+/// The box in the world around a box in a frame, at the start and at the end of a tick.
+pub(super) fn in_world(bounds: &Aabb, frame: (Isometry3d, Isometry3d)) -> Aabb {
+    let at = |pose: Isometry3d| bounds.transform_by(&pose_of(pose));
+    at(frame.0).merged(&at(frame.1))
+}
+
+/// Forgets a collider that is removed or despawned.
+pub(super) fn forget_collider(removed: On<Remove, ClothCollider>, mut tree: ResMut<ColliderTree>) {
+    tree.remove(removed.entity);
+}
+
+/// Updates the boxes of colliders that are new, changed or in motion, or moved in the last tick.
+pub(super) fn update_tree(
+    colliders: Query<(Entity, Ref<ClothCollider>, Ref<PoseHistory>)>,
+    mut tree: ResMut<ColliderTree>,
+) {
+    if colliders.is_empty() {
+        return;
+    }
+    let tree = &mut *tree;
+    let mut is_changed = !tree.moving.is_empty();
+    for entity in core::mem::take(&mut tree.moving) {
+        if let Ok((entity, collider, history)) = colliders.get(entity) {
+            tree.set(entity, &collider, &history);
+        }
+    }
+    for (entity, collider, history) in &colliders {
+        // A teleport leads from rest to rest.
+        if !history.rests() || history.is_changed() || collider.is_changed() {
+            tree.set(entity, &collider, &history);
+            tree.moving.push(entity);
+            is_changed = true;
+        }
+    }
+    if is_changed {
+        tree.tree.refit(&mut tree.workspace);
+    }
+}

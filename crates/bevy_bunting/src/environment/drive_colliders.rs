@@ -1,0 +1,99 @@
+//! Sets the colliders that each cloth may touch in a tick.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Quat, Vec3};
+use bevy_time::Time;
+use bunting_solver::Collider;
+
+use crate::batch::batches::ClothBatches;
+use crate::cloth::instance::ClothInstance;
+use crate::cloth::reflect::SharedShapeReflect;
+use crate::environment::collider::ClothCollider;
+use crate::environment::collider_tree::{ColliderTree, forget_collider, in_world, update_tree};
+use crate::environment::drive::{drive_cloths, pose_parts};
+use crate::motion::pose::PoseHistory;
+use crate::schedule::{ClothSystems, ClothTick};
+
+/// Gives each cloth the [`ClothCollider`]s that it may touch.
+#[derive(Debug, Default)]
+pub struct ColliderPlugin;
+
+impl Plugin for ColliderPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<ClothCollider>()
+            .register_type::<SharedShapeReflect>()
+            .init_resource::<ColliderTree>()
+            .add_observer(forget_collider)
+            .add_systems(
+                ClothTick,
+                (
+                    report_bad_colliders.in_set(ClothSystems::Prepare),
+                    (update_tree, drive_colliders)
+                        .chain()
+                        .in_set(ClothSystems::Drive)
+                        .after(drive_cloths),
+                ),
+            );
+    }
+}
+
+/// Reports new and changed colliders with numbers that the solver refuses.
+fn report_bad_colliders(colliders: Query<(Entity, &ClothCollider), Changed<ClothCollider>>) {
+    for (entity, collider) in &colliders {
+        let ClothCollider { margin, friction, .. } = *collider;
+        if !margin.is_finite() || !friction.is_finite() {
+            log::error!(
+                "the ClothCollider of {entity} has a margin of {margin} m and a friction of {friction}: no cloth \
+                 feels it until both are finite"
+            );
+        }
+    }
+}
+
+/// Sets the colliders near each cloth, relative to the cloth's frame: their poses at the start of the tick
+/// relative to the frame at that time, and their poses at its end likewise. Poses of entities that move in
+/// frames are extrapolated to the time of the tick, of cloths and colliders alike, so that a collider that
+/// moves with a cloth rests in its frame.
+fn drive_colliders(
+    colliders: Query<(&ClothCollider, &PoseHistory)>,
+    cloths: Query<(&ClothInstance, &PoseHistory)>,
+    tree: Res<ColliderTree>,
+    time: Res<Time>,
+    mut batches: ResMut<ClothBatches>,
+    mut had_any: Local<bool>,
+    mut near: Local<Vec<Entity>>,
+) {
+    let has_any = !tree.is_empty();
+    if !has_any && !*had_any {
+        return;
+    }
+    *had_any = has_any;
+    batches.update_bounds(time.delta_secs());
+    for (instance, frame) in &cloths {
+        let Some(lane) = instance.lane() else { continue };
+        let (start, end) = frame.extrapolated();
+        near.clear();
+        if let Some(bounds) = batches.bounds(lane) {
+            tree.near(&in_world(&bounds, (start, end)), &mut near);
+        }
+        let (start, end) = (start.inverse(), end.inverse());
+        let colliders = colliders.iter_many(&*near).map(|(collider, pose)| {
+            let (from, to) = pose.extrapolated();
+            Collider {
+                shape: collider.shape.clone(),
+                from: relative_pose(start, from),
+                to: relative_pose(end, to),
+                margin: collider.margin,
+                friction: collider.friction,
+            }
+        });
+        batches.lane(lane).set_colliders(colliders);
+    }
+}
+
+/// A pose relative to a frame, given the inverse of the frame's pose.
+fn relative_pose(inverse_frame: Isometry3d, pose: Isometry3d) -> (Vec3, Quat) {
+    let (translation, rotation) = pose_parts(inverse_frame * pose);
+    (translation, rotation.normalize())
+}
