@@ -66,7 +66,7 @@ impl Background {
 impl Fabric {
     /// The constraints of a mesh, or of the grid that the mesh was made from.
     pub(super) fn new(
-        mesh: RestMesh,
+        mut mesh: RestMesh,
         surface: &Surface,
         grid: Option<Grid>,
         tethered: bool,
@@ -75,6 +75,12 @@ impl Fabric {
             Some(_) => None,
             None => BackgroundMesh::of(&mesh, surface).map(Background::of),
         };
+        let mut patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
+        let cells = grid.filter(|grid| patches::are_cells(&patches, grid));
+        if let Some(grid) = &cells {
+            mesh.set_areas(grid.particle_areas());
+            patches::quarter(&mut patches, grid);
+        }
         let links = Links::of(&mesh, grid.as_ref(), None, &surface.corner_uv);
         let yarns = Yarns::of(&mesh.positions, &links.list);
         let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref());
@@ -85,8 +91,6 @@ impl Fabric {
         let twist = grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
         let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
         let shortest = background.as_ref().map_or(&links, |grid| &grid.fabric.links).shortest();
-        let patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
-        let cells = grid.filter(|grid| patches::are_cells(&patches, grid));
         let mut fabric = Self {
             patch_grid_columns: cells.map(|grid| grid.columns as usize),
             tautness: tethers.reach.sqrt() / shortest,
@@ -166,8 +170,9 @@ impl Fabric {
         self.mesh.positions.len()
     }
 
-    /// Area of each particle, m²: a third of each triangle that it borders (thesis, 5.1.3). Multiplied by the
-    /// material's area density it is the mass of the particle, pinned or not.
+    /// Area of each particle, m²: a quarter of each cell that it borders on a grid, elsewhere a third of each
+    /// triangle (thesis, 5.1.3). Multiplied by the material's area density it is the mass of the particle, pinned
+    /// or not.
     #[must_use]
     pub fn particle_areas(&self) -> &[f32] {
         &self.mesh.areas
