@@ -81,8 +81,8 @@ fn accelerate_by(particles: &mut ParticlesMut, acceleration: Vec3) {
 fn an_acceleration_equals_gravity() {
     let fabric = sheet([]);
     for (lanes, settings) in everywhere() {
-        let mut distances = [1.0, 0.8, 0.6, 0.4, 0.2, 0.0, -0.2].map(|z| {
-            let acceleration = ACCELERATION.with_z(z);
+        let mut distances = [0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.4].map(|turn| {
+            let acceleration = Quat::from_rotation_y(turn) * ACCELERATION;
             let gravity = Drive { gravity: acceleration, ..Drive::NONE };
             let (mut batch, lane) = batch_of(&fabric, lanes, gravity);
             let expected = run((&mut batch, lane), settings, 20, |_| {}, |_| {});
