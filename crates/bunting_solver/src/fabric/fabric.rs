@@ -34,7 +34,7 @@ pub struct Fabric {
     links: Links,
     yarns: Yarns,
     chains: Chains,
-    strip_rows: Vec<StripRow>,
+    strips: Vec<Vec<StripRow>>,
     hinges: Hinges,
     bending: Bending,
     twist: Twist,
@@ -84,8 +84,8 @@ impl Fabric {
         let links = Links::of(&mesh, grid.as_ref(), None, &surface.corner_uv);
         let yarns = Yarns::of(&mesh.positions, &links.list);
         let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref());
-        let strip_rows =
-            grid.map(|grid| strip::rows(&grid, &links.list, &chains)).unwrap_or_default();
+        let strips =
+            grid.map(|grid| strip::strips(&grid, &links.list, &chains)).unwrap_or_default();
         let hinges = Hinges::of(&mesh, &surface.edges);
         let bending = grid.map(|grid| Bending::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
         let twist = grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
@@ -100,7 +100,7 @@ impl Fabric {
             links,
             yarns,
             chains,
-            strip_rows,
+            strips,
             hinges,
             bending,
             twist,
@@ -129,7 +129,7 @@ impl Fabric {
             patches: Vec::new(),
             patch_grid_columns: None,
             background: None,
-            strip_rows: Vec::new(),
+            strips: Vec::new(),
             topology: None,
             grid: Some(grid),
             mesh,
@@ -272,9 +272,9 @@ impl Fabric {
         !self.chains.cells.is_empty()
     }
 
-    /// Rows of a strip, a grid of two lines of particles; none of other fabrics.
-    pub(crate) fn strip_rows(&self) -> &[StripRow] {
-        &self.strip_rows
+    /// Strips of a narrow grid, each row by row; none of other fabrics.
+    pub(crate) fn strips(&self) -> &[Vec<StripRow>] {
+        &self.strips
     }
 
     /// Bending constraints of the Gauss–Seidel scheme and of triangle meshes, colour by colour.
