@@ -49,8 +49,7 @@ pub fn row(scene: &Scene, specimen: &dyn Specimen, j: usize) -> DVec3 {
     row.iter().map(|x| x.as_dvec3()).sum::<DVec3>() / scene.columns as f64
 }
 
-/// Masses of the first column of a strip from row 1 on, kg. They alternate, since triangles contribute thirds
-/// of their mass and alternate in direction; each column is therefore a chain of its own.
+/// Masses of the first column of a strip from row 1 on, kg.
 #[must_use]
 pub fn column_masses(scene: &Scene) -> Vec<f64> {
     Grid::new(scene).masses.into_iter().step_by(scene.columns).skip(1).collect()

@@ -34,7 +34,7 @@ impl Grid {
 
     /// Adds the forces of the air on every triangle, N: pressure ½ρC_n A|u·n|(u·n)n (thesis, equations 5.1
     /// and 5.2) and skin friction ½ρC_t A|u|(u − (u·n)n), with u the velocity of the air relative to the
-    /// triangle.
+    /// triangle. A quarter of each acts on each corner of the triangle's cell, as masses are quarters of cells.
     pub fn add_air_forces(
         &self,
         air: &Air,
@@ -43,7 +43,7 @@ impl Grid {
         velocities: &[DVec3],
         forces: &mut [DVec3],
     ) {
-        for triangle in &self.triangles {
+        for (index, triangle) in self.triangles.iter().enumerate() {
             let [a, b, c] = triangle.to_array().map(|v| v as usize);
             let cross = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
             let double_area = cross.length_squared().sqrt();
@@ -55,9 +55,9 @@ impl Grid {
             let through = u.dot(normal);
             let pressure = normal * (air.pressure * through.abs() * through);
             let friction = (u - normal * through) * (air.friction * u.length_squared().sqrt());
-            let third = (pressure + friction) * (double_area / 12.0);
-            for vertex in [a, b, c] {
-                forces[vertex] += third;
+            let quarter = (pressure + friction) * (double_area / 16.0);
+            for vertex in self.cells[index / 2] {
+                forces[vertex] += quarter;
             }
         }
     }

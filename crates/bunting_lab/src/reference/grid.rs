@@ -58,7 +58,7 @@ pub struct Twist {
 /// The grid cloth of a scene.
 #[derive(Clone, Debug)]
 pub struct Grid {
-    /// Lumped masses, kg: a third of each bordering triangle.
+    /// Lumped masses, kg: a quarter of each bordering cell.
     pub masses: Vec<f64>,
     /// Reciprocal masses, 1/kg; zero where pinned.
     pub inverse_masses: Vec<f64>,
@@ -68,16 +68,18 @@ pub struct Grid {
     pub bends: Vec<Bend>,
     /// Twist of the cells.
     pub twists: Vec<Twist>,
-    /// Triangles; the diagonal alternates from cell to cell.
+    /// Triangles, two a cell; the diagonal alternates from cell to cell.
     pub triangles: Vec<UVec3>,
+    /// Corners of the cells.
+    pub cells: Vec<[usize; 4]>,
 }
 
 impl Grid {
     /// The grid of a scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let triangles = triangles(scene);
-        let masses = lumped_masses(scene, &triangles);
+        let cells: Vec<[usize; 4]> = cells(scene).map(|(_, corners)| corners).collect();
+        let masses = lumped_masses(scene, &cells);
         let inverse_masses = masses
             .iter()
             .enumerate()
@@ -89,7 +91,8 @@ impl Grid {
             links: links(scene),
             bends: bends(scene),
             twists: twists(scene),
-            triangles,
+            triangles: triangles(scene),
+            cells,
         }
     }
 
@@ -239,14 +242,12 @@ fn cells(scene: &Scene) -> impl Iterator<Item = (bool, [usize; 4])> {
     })
 }
 
-fn lumped_masses(scene: &Scene, triangles: &[UVec3]) -> Vec<f64> {
+fn lumped_masses(scene: &Scene, cells: &[[usize; 4]]) -> Vec<f64> {
     let [dx, dy] = scene.spacing();
-    let corner_mass = scene.fabric.density * dx * dy / 6.0;
+    let corner_mass = scene.fabric.density * dx * dy / 4.0;
     let mut masses = vec![0.0; scene.vertices()];
-    for triangle in triangles {
-        for vertex in triangle.to_array() {
-            masses[vertex as usize] += corner_mass;
-        }
+    for &vertex in cells.as_flattened() {
+        masses[vertex] += corner_mass;
     }
     masses
 }

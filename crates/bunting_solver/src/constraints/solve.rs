@@ -96,8 +96,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// solved again.
     pub(super) fn solve_stretch_of_grid(&mut self) {
         let passes = self.clock.settings.passes;
-        if self.is_strip() {
-            self.solve_strip(passes);
+        if self.is_narrow() {
+            self.solve_strips(passes);
         } else {
             self.solve_chains(passes);
         }

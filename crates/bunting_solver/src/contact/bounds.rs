@@ -24,11 +24,10 @@ impl<P: Pack> Extent<P> {
             squared_speed: P::splat(0.0),
         };
         for (position, [x, y, z]) in positions.iter().zip(velocities) {
-            for axis in 0..3 {
-                let at = position[axis].lanes().iter();
-                let least = extent.least[axis].lanes_mut().iter_mut();
-                let greatest = extent.greatest[axis].lanes_mut().iter_mut();
-                for ((&at, least), greatest) in at.zip(least).zip(greatest) {
+            let extremes = extent.least.iter_mut().zip(&mut extent.greatest);
+            for (at, (least, greatest)) in position.iter().zip(extremes) {
+                let extremes = least.lanes_mut().iter_mut().zip(greatest.lanes_mut());
+                for (&at, (least, greatest)) in at.lanes().iter().zip(extremes) {
                     *least = least.min(at);
                     *greatest = greatest.max(at);
                 }

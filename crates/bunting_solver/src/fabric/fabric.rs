@@ -34,7 +34,7 @@ pub struct Fabric {
     links: Links,
     yarns: Yarns,
     chains: Chains,
-    strip_rows: Vec<StripRow>,
+    strips: Vec<Vec<StripRow>>,
     hinges: Hinges,
     bending: Bending,
     twist: Twist,
@@ -66,7 +66,7 @@ impl Background {
 impl Fabric {
     /// The constraints of a mesh, or of the grid that the mesh was made from.
     pub(super) fn new(
-        mesh: RestMesh,
+        mut mesh: RestMesh,
         surface: &Surface,
         grid: Option<Grid>,
         tethered: bool,
@@ -75,18 +75,22 @@ impl Fabric {
             Some(_) => None,
             None => BackgroundMesh::of(&mesh, surface).map(Background::of),
         };
+        let mut patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
+        let cells = grid.filter(|grid| patches::are_cells(&patches, grid));
+        if let Some(grid) = &cells {
+            mesh.set_areas(grid.particle_areas());
+            patches::quarter(&mut patches, grid);
+        }
         let links = Links::of(&mesh, grid.as_ref(), None, &surface.corner_uv);
         let yarns = Yarns::of(&mesh.positions, &links.list);
         let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref());
-        let strip_rows =
-            grid.map(|grid| strip::rows(&grid, &links.list, &chains)).unwrap_or_default();
+        let strips =
+            grid.map(|grid| strip::strips(&grid, &links.list, &chains)).unwrap_or_default();
         let hinges = Hinges::of(&mesh, &surface.edges);
         let bending = grid.map(|grid| Bending::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
         let twist = grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
         let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
         let shortest = background.as_ref().map_or(&links, |grid| &grid.fabric.links).shortest();
-        let patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
-        let cells = grid.filter(|grid| patches::are_cells(&patches, grid));
         let mut fabric = Self {
             patch_grid_columns: cells.map(|grid| grid.columns as usize),
             tautness: tethers.reach.sqrt() / shortest,
@@ -96,7 +100,7 @@ impl Fabric {
             links,
             yarns,
             chains,
-            strip_rows,
+            strips,
             hinges,
             bending,
             twist,
@@ -125,7 +129,7 @@ impl Fabric {
             patches: Vec::new(),
             patch_grid_columns: None,
             background: None,
-            strip_rows: Vec::new(),
+            strips: Vec::new(),
             topology: None,
             grid: Some(grid),
             mesh,
@@ -166,8 +170,9 @@ impl Fabric {
         self.mesh.positions.len()
     }
 
-    /// Area of each particle, m²: a third of each triangle that it borders (thesis, 5.1.3). Multiplied by the
-    /// material's area density it is the mass of the particle, pinned or not.
+    /// Area of each particle, m²: a quarter of each cell that it borders on a grid, elsewhere a third of each
+    /// triangle (thesis, 5.1.3). Multiplied by the material's area density it is the mass of the particle, pinned
+    /// or not.
     #[must_use]
     pub fn particle_areas(&self) -> &[f32] {
         &self.mesh.areas
@@ -267,9 +272,9 @@ impl Fabric {
         !self.chains.cells.is_empty()
     }
 
-    /// Rows of a strip, a grid of two lines of particles; none of other fabrics.
-    pub(crate) fn strip_rows(&self) -> &[StripRow] {
-        &self.strip_rows
+    /// Strips of a narrow grid, each row by row; none of other fabrics.
+    pub(crate) fn strips(&self) -> &[Vec<StripRow>] {
+        &self.strips
     }
 
     /// Bending constraints of the Gauss–Seidel scheme and of triangle meshes, colour by colour.

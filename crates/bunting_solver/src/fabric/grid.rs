@@ -56,6 +56,18 @@ impl Grid {
         Ok(())
     }
 
+    /// Area of each particle, m²: a quarter of each cell that it borders. Thirds of triangles would alternate 1 : 2
+    /// along the border, and the two lines of a strip would swing with different periods.
+    pub(super) fn particle_areas(&self) -> Vec<f32> {
+        let [dx, dy] = self.spacing();
+        let neighbours = |at: u32, count: u32| if at == 0 || at + 1 == count { 1.0 } else { 2.0 };
+        let of_row = |row: u32| {
+            let across = neighbours(row, self.rows);
+            (0..self.columns).map(move |column| neighbours(column, self.columns) * across)
+        };
+        (0..self.rows).flat_map(of_row).map(|cells| 0.25 * dx * dy * cells).collect()
+    }
+
     /// Positions at rest, m, one per particle.
     pub(crate) fn positions(&self) -> Vec<Vec3> {
         self.nodes(|u, v| Vec3::new(u * self.width, -v * self.height, 0.0))

@@ -21,7 +21,7 @@ pub(crate) struct RestMesh {
     pub triangles: Vec<[u32; 3]>,
     /// The particle that each vertex of the source mesh was merged into.
     pub particle_of_vertex: Vec<u32>,
-    /// A third of the areas of a particle's triangles, m² (thesis, 5.1.3).
+    /// A third of the areas of a particle's triangles, m² (thesis, 5.1.3); on a grid a quarter of those of its cells.
     pub areas: Vec<f32>,
     /// One over the areas, 1/m²; zero if the particle is pinned (thesis, 5.1.4).
     pub inverse_areas: Vec<f32>,
@@ -87,6 +87,16 @@ impl RestMesh {
         Ok((mesh, Surface { triangle_areas, corner_uv, edges }))
     }
 
+    /// Takes over the area of each particle, m².
+    pub fn set_areas(&mut self, areas: Vec<f32>) {
+        for (inverse_area, area) in self.inverse_areas.iter_mut().zip(&areas) {
+            if *inverse_area != 0.0 {
+                *inverse_area = 1.0 / area;
+            }
+        }
+        self.areas = areas;
+    }
+
     /// Whether a particle is pinned.
     pub fn is_pinned(&self, particle: u32) -> bool {
         self.inverse_areas[particle as usize] == 0.0
@@ -124,14 +134,24 @@ fn particle_areas(count: usize, triangles: &[[u32; 3]], triangle_areas: &[f32]) 
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use crate::fabric::{FabricBuilder, Grid};
 
     #[test]
     fn mass_is_a_third_of_each_bordering_triangle() {
+        let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 2.0, 0.0)];
+        let fabric = FabricBuilder::new(corners, vec![0, 1, 2, 1, 3, 2]).build().expect("good");
+        for (found, expected) in fabric.particle_areas().iter().zip([0.5, 1.5, 1.5, 1.0]) {
+            assert!((3.0 * found - expected).abs() < 1e-5, "{found}");
+        }
+    }
+
+    #[test]
+    fn mass_of_a_grid_is_a_quarter_of_each_bordering_cell() {
         let fabric = FabricBuilder::grid(Grid::new(5, 4, 2.0, 1.5)).build().expect("a good fabric");
         assert!((fabric.area() - 3.0).abs() < 1e-5);
-        // A row has half of the area of the cells above and below it.
-        let row: f32 = fabric.particle_areas()[5..10].iter().sum();
-        assert!((row - 1.0).abs() < 1e-5, "{row}");
+        let quarters = [0, 1, 5, 6].map(|particle| 16.0 * fabric.particle_areas()[particle]);
+        assert_eq!(quarters, [1.0, 2.0, 2.0, 4.0]);
     }
 }

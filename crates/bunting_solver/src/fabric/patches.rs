@@ -12,7 +12,8 @@ use crate::simd::vec3::{Pack3, V3};
 pub(crate) struct Patch<C = f32> {
     /// a, b, c and d; d = c where a triangle found no partner.
     pub corners: [u32; 4],
-    /// A third of each triangle's area, m²: the part of it that belongs to each of its corners.
+    /// The part of each triangle's area that belongs to a corner, m²: a third to each of its own corners, or, in a
+    /// cell of a grid, a quarter to each corner of the cell.
     pub corner_areas: [C; 2],
 }
 
@@ -40,6 +41,13 @@ pub(super) fn are_cells(patches: &[Patch], grid: &Grid) -> bool {
         }
     });
     cells.eq(patches.iter().map(|patch| patch.corners))
+}
+
+/// Makes the corner areas of a grid's cells quarters.
+pub(super) fn quarter(patches: &mut [Patch], grid: &Grid) {
+    let cells = (grid.columns - 1) as f32 * (grid.rows - 1) as f32;
+    let quarter = grid.width * grid.height / (8.0 * cells);
+    patches.iter_mut().for_each(|patch| patch.corner_areas = [quarter; 2]);
 }
 
 /// Pairs each triangle with the first neighbour that has no partner yet and faces the same way, given the
@@ -100,14 +108,14 @@ mod tests {
         faces
     }
 
-    fn covers_each_triangle_once(fabric: &Fabric) {
+    fn covers_each_triangle_once(fabric: &Fabric, corners: f32) {
         let of_patches = fabric.patches().iter().flat_map(|patch| {
             let [a, b, c, d] = patch.corners;
             [Some([a, b, c]), (d != c).then_some([a, c, d])].into_iter().flatten()
         });
         assert_eq!(faces(of_patches), faces(fabric.triangles().iter().copied()));
         let area: f32 =
-            fabric.patches().iter().flat_map(|patch| patch.corner_areas).sum::<f32>() * 3.0;
+            fabric.patches().iter().flat_map(|patch| patch.corner_areas).sum::<f32>() * corners;
         assert!((area / fabric.area() - 1.0).abs() < 1e-5);
     }
 
@@ -115,7 +123,7 @@ mod tests {
     fn a_grid_falls_into_its_cells() {
         let fabric = FabricBuilder::grid(Grid::new(6, 5, 1.0, 1.0)).build().expect("good");
         assert_eq!(fabric.patches().len(), 20);
-        covers_each_triangle_once(&fabric);
+        covers_each_triangle_once(&fabric, 4.0);
     }
 
     #[test]
@@ -124,7 +132,7 @@ mod tests {
         let positions = core::iter::once(Vec3::ZERO).chain(fan).collect();
         let indices = vec![0, 1, 2, 0, 2, 3, 0, 3, 4];
         let fabric = FabricBuilder::new(positions, [indices, vec![0, 4, 5]].concat()).build();
-        covers_each_triangle_once(&fabric.expect("good"));
+        covers_each_triangle_once(&fabric.expect("good"), 3.0);
         let lone = patches(&[[0, 1, 2]], &[3.0]);
         assert_eq!(lone, [Patch { corners: [0, 1, 2, 2], corner_areas: [1.0, 0.0] }]);
     }

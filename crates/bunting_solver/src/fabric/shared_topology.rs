@@ -9,7 +9,7 @@ use crate::stability::pole::Pole;
 impl Fabric {
     /// A hash of the topology of a grid: of its particles and pins, of the links between them, and of the order in
     /// which they are solved. Cloths of fabrics of one topology can lie in one
-    /// [`ClothBatch::mixed`](crate::ClothBatch::mixed). None for meshes that are not grids, for strips, and for grids
+    /// [`ClothBatch::mixed`](crate::ClothBatch::mixed). None for meshes that are not grids, for narrow grids, and for grids
     /// of very long cells.
     #[must_use]
     pub fn topology(&self) -> Option<u64> {
@@ -34,8 +34,8 @@ impl Fabric {
 
     /// The hash of [`topology`](Self::topology).
     pub(super) fn hash_topology(&self) -> Option<u64> {
-        let is_strip = !self.strip_rows().is_empty();
-        let grid = self.grid().filter(|_| self.has_shear_cells() && !is_strip)?;
+        let has_strips = !self.strips().is_empty();
+        let grid = self.grid().filter(|_| self.has_shear_cells() && !has_strips)?;
         self.patch_grid_columns()?;
         let mut hash = DefaultHasher::new();
         [grid.columns, grid.rows].hash(&mut hash);

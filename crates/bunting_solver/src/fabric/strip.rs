@@ -1,10 +1,19 @@
-//! A grid of two lines of particles: a strip, whose links are solved all at once (`constraints/strip.rs`).
+//! Strips of a narrow grid: its pairs of neighbouring lines of particles. The links of a strip are solved all at once
+//! (`constraints/strip.rs`).
 
 use std::collections::HashMap;
 
 use super::chains::Chains;
 use super::grid::Grid;
 use super::links::Link;
+
+/// Most lines of a grid that is solved by strips. Fewer: wider grids sag in their own plane. More: wide grids, which
+/// chains hold well enough, take twice as long.
+const MOST_LINES: u32 = 5;
+
+/// Least length of a narrow grid, in units of its width. Shorter: small grids that chains hold, as coarse levels are,
+/// take twice as long. Longer: grids sag in their own plane.
+const LEAST_ASPECT: u32 = 4;
 
 /// A link of a strip.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,27 +37,30 @@ pub(crate) struct StripRow {
     pub diagonals: Option<[StripLink; 2]>,
 }
 
-/// The rows of a strip, from one end to the other; none of wider grids, or where diagonals are not links.
-pub(super) fn rows(grid: &Grid, links: &[Link], chains: &Chains) -> Vec<StripRow> {
-    let length = grid.rows.max(grid.columns);
-    if grid.rows.min(grid.columns) != 2 || length == 2 || chains.cells.is_empty() {
+/// The strips of a narrow grid, those that begin at even lines first; none of wider grids, or where diagonals are not
+/// links. Strips that begin at even lines share no particles, nor do those at odd lines.
+pub(super) fn strips(grid: &Grid, links: &[Link], chains: &Chains) -> Vec<Vec<StripRow>> {
+    let (lines, length) = (grid.rows.min(grid.columns), grid.rows.max(grid.columns));
+    let is_narrow = lines <= MOST_LINES && length > LEAST_ASPECT * (lines - 1);
+    if !is_narrow || chains.cells.is_empty() {
         return Vec::new();
     }
-    let classes: HashMap<[u32; 2], u32> =
-        links.iter().map(|link| (sorted(link.particles), link.class)).collect();
-    let of_sweep = chains.sweep_links.iter().map(|link| (link.particles, link.target));
-    let targets: HashMap<[u32; 2], u32> = of_sweep
-        .chain(chains.diagonals())
-        .filter(|(ends, _)| ends[0] != ends[1])
-        .map(|(ends, target)| (sorted(ends), target))
-        .collect();
-    let link = |a: u32, b: u32| {
-        let ends = sorted([a, b]);
-        Some(StripLink { class: *classes.get(&ends)?, target: *targets.get(&ends)? })
-    };
+    let link = finder(links, chains);
+    let firsts = (0..lines - 1).step_by(2).chain((1..lines - 1).step_by(2));
+    let strip = |first| rows(grid, length, first, &link);
+    firsts.map(strip).collect()
+}
+
+/// The rows of the strip that begins at the line `first`, from one end to the other.
+fn rows(
+    grid: &Grid,
+    length: u32,
+    first: u32,
+    link: impl Fn(u32, u32) -> Option<StripLink>,
+) -> Vec<StripRow> {
     let pair = |place: u32| {
-        [0, 1].map(|line| {
-            if grid.columns == 2 { grid.index(line, place) } else { grid.index(place, line) }
+        [first, first + 1].map(|line| {
+            if grid.columns < grid.rows { grid.index(line, place) } else { grid.index(place, line) }
         })
     };
     let row = |place: u32| {
@@ -67,6 +79,22 @@ pub(super) fn rows(grid: &Grid, links: &[Link], chains: &Chains) -> Vec<StripRow
         }
     };
     (0..length).map(row).collect()
+}
+
+/// The link between two particles, if there is one.
+fn finder(links: &[Link], chains: &Chains) -> impl Fn(u32, u32) -> Option<StripLink> {
+    let classes: HashMap<[u32; 2], u32> =
+        links.iter().map(|link| (sorted(link.particles), link.class)).collect();
+    let of_sweep = chains.sweep_links.iter().map(|link| (link.particles, link.target));
+    let targets: HashMap<[u32; 2], u32> = of_sweep
+        .chain(chains.diagonals())
+        .filter(|(ends, _)| ends[0] != ends[1])
+        .map(|(ends, target)| (sorted(ends), target))
+        .collect();
+    move |a, b| {
+        let ends = sorted([a, b]);
+        Some(StripLink { class: *classes.get(&ends)?, target: *targets.get(&ends)? })
+    }
 }
 
 /// The ends of a link, the lower first.

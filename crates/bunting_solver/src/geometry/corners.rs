@@ -1,9 +1,10 @@
 //! Sums over the triangles at each particle, for normals and air.
 //!
 //! Triangles are summed in pairs, the patches of the fabric. If patches are the cells of a grid, a row of
-//! cells is passed from left to right: contributions to the right are carried in registers, and contributions
-//! downwards in one row of packs that stays in the nearest cache, so that each particle's sum is written once
-//! and never read. The order of the terms in a sum is still that of the patches.
+//! cells is passed from left to right: a cell contributes the same to each of its corners; contributions to the
+//! right are carried in a register, and contributions downwards in one row of packs that stays in the nearest
+//! cache, so that each particle's sum is written once and never read. The order of the terms in a sum is still
+//! that of the patches.
 
 use crate::fabric::Patch;
 use crate::simd::constant::Constant;
@@ -18,7 +19,7 @@ pub(crate) trait Corners<L: Lane> {
     /// The vectors at the corners.
     fn load(&self, token: L::Token, field: &Self::Field) -> [V3<L>; 4];
 
-    /// A third of each triangle's area, m²; zero in lanes without triangles.
+    /// The part of each triangle's area that belongs to a corner, m²; zero in lanes without triangles.
     fn areas(&self, token: L::Token) -> [L; 2];
 
     /// `vector` in lanes that have triangles, zero in others.
@@ -121,27 +122,18 @@ fn sum_row<L: Lane, C: Constant<L::Pack>, T: Contribution<L, [Pack3<L::Pack>]>>(
     sums: &mut [Pack3<L::Pack>],
 ) {
     let zero = V3::<L>::splat(token, 0.0);
-    // Contributions of the cell on the left to its two corners on the right.
-    let (mut top, mut bottom) = (zero, zero);
+    // Contribution of the cell on the left.
+    let mut left = zero;
     let ([sums @ .., last_sum], [below @ .., last_below]) = (sums, below) else { return };
     for ((cell, sum), below) in cells.iter().zip(sums).zip(below) {
         let [first, second] = contribution.of(token, &cell);
         let both = first + second;
-        let above = V3::load(token, below) + top;
-        // The diagonal runs to the bottom right from the top left corner, which is then a, or to the bottom
-        // left from the top right.
-        if cell.corners[1] > cell.corners[3] {
-            contribution.finish(token, above + both).store(sum);
-            (bottom + first).store(below);
-            (top, bottom) = (second, both);
-        } else {
-            contribution.finish(token, above + first).store(sum);
-            (bottom + both).store(below);
-            (top, bottom) = (both, second);
-        }
+        contribution.finish(token, V3::load(token, below) + left + both).store(sum);
+        (left + both).store(below);
+        left = both;
     }
-    contribution.finish(token, V3::load(token, last_below) + top).store(last_sum);
-    bottom.store(last_below);
+    contribution.finish(token, V3::load(token, last_below) + left).store(last_sum);
+    left.store(last_below);
 }
 
 /// Sums the contributions of patches in any arrangement.

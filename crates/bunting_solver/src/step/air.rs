@@ -1,7 +1,8 @@
 //! Air: pressure and skin friction on each triangle (thesis, eq. 5.1 and 5.2 in one).
 //!
 //! With u the air's velocity relative to a triangle of area A and normal n, the pressure force is ½ρ C_n A
-//! |u·n| (u·n) n and the friction ½ρ C_t A |u| (u − (u·n) n). Each corner receives a third of the impulse.
+//! |u·n| (u·n) n and the friction ½ρ C_t A |u| (u − (u·n) n). Each corner receives a third of the impulse, or each
+//! corner of a grid's cell a quarter, as of the mass.
 //!
 //! Explicitly, a substep of h seconds changes a particle's velocity by J = a u, a = ½ρ C_n |u·n| h/σ, which
 //! reverses the relative motion if a > 1 (the thesis then sets it to zero). Implicitly the change is the

@@ -94,8 +94,7 @@ pub fn cases(mount: &Mount) -> Vec<Case> {
     cases
 }
 
-/// The expected load is that of the discrete column. Masses of a third of each triangle alternate between the
-/// two lines of vertices; without the twist that couples the lines, the weaker line would buckle first.
+/// The expected load is that of the discrete column.
 fn column(mount: &Mount, segments: usize) -> Case {
     let masses = Grid::new(&scene(&COLUMN, segments)).masses;
     // The masses are in units of a whole row's mass.
@@ -110,10 +109,6 @@ fn column(mount: &Mount, segments: usize) -> Case {
     )
 }
 
-/// The product fails this with 32 links: masses of a third of each triangle alternate between the two lines, so that
-/// bending and twist, solved in turn, do not commute, and an undamped strip gains energy. With a quarter of each cell
-/// in place of thirds it buckles at 18.81.
-///
 /// The expected load is that of a strip which sags in its plane before it buckles: q₀/√((1 − EI/EI′)(1 − C/EI′)) with
 /// the stiffness EI′ in its plane (Hodges and Peters 1975). Two lines of links of half the width b each have
 /// EI′ = Y b³/4; EI is B b and C twice that.

@@ -16,16 +16,14 @@ use crate::simd::vec3::{Pack3, V3};
 pub(crate) struct Cells<P: Pack> {
     /// Number of elements from one row of particles to the next.
     stride: usize,
-    /// A third of the area, m², of the first and of the second triangle of each cell, in packs of cells, row
+    /// A quarter of the area, m², of the first and of the second triangle of each cell, in packs of cells, row
     /// by row; zero in lanes without a cell.
     corner_areas: Vec<[P; 2]>,
     /// One in lanes whose cells have their diagonal from the top left to the bottom right, zero in others:
     /// for even rows of cells, and for odd ones.
     falling: [P; 2],
-    /// Contributions of a row of cells to their top left and top right corners.
-    top: [VectorGrid; 2],
-    /// Contributions to the bottom left and bottom right corners: of the row above, and of this row.
-    bottom: [[VectorGrid; 2]; 2],
+    /// Contributions of the cells to each of their corners: of the row above, and of this row.
+    contributions: [VectorGrid; 2],
 }
 
 impl<P: Pack> Cells<P> {
@@ -48,8 +46,7 @@ impl<P: Pack> Cells<P> {
             stride,
             corner_areas: corner_areas.collect(),
             falling: [1, 0].map(|even| P::of(|lane| ((lane + even) % 2) as f32)),
-            top: [row(), row()],
-            bottom: [[row(), row()], [row(), row()]],
+            contributions: [row(), row()],
         })
     }
 }
@@ -102,15 +99,14 @@ impl<P: Pack> CornerSums<P> for &mut Cells<P> {
         contribution: &T,
         sums: &mut [Pack3<P>],
     ) {
-        let Cells { stride, corner_areas, falling, top, bottom } = self;
+        let Cells { stride, corner_areas, falling, contributions } = self;
         let blocks = *stride / P::WIDTH;
         let rows = corner_areas.len() / blocks;
         let zero = V3::<L>::splat(token, 0.0);
         let half = L::splat(token, 0.5);
-        let [above, below] = bottom;
+        let [above, below] = contributions;
         for block in 0..blocks {
-            above[0].store(MARGIN + block * P::WIDTH, zero);
-            above[1].store(MARGIN + block * P::WIDTH, zero);
+            above.store(MARGIN + block * P::WIDTH, zero);
         }
         // Rows of particles are summed one by one, each with the cells below it; the last row has none below.
         for row in 0..=rows {
@@ -119,8 +115,7 @@ impl<P: Pack> CornerSums<P> for &mut Cells<P> {
             for block in 0..blocks {
                 let at = MARGIN + block * P::WIDTH;
                 let Some(areas) = areas else {
-                    top[0].store(at, zero);
-                    top[1].store(at, zero);
+                    below.store(at, zero);
                     continue;
                 };
                 let [first, second] = &areas[block];
@@ -131,19 +126,15 @@ impl<P: Pack> CornerSums<P> for &mut Cells<P> {
                     areas: [L::load(token, first), L::load(token, second)],
                 };
                 let [first, second] = contribution.of(token, &corners);
-                let both = first + second;
-                top[0].store(at, both.or_where_not(falling, first));
-                top[1].store(at, second.or_where_not(falling, both));
-                below[0].store(at, first.or_where_not(falling, both));
-                below[1].store(at, both.or_where_not(falling, second));
+                below.store(at, first + second);
             }
             for block in 0..blocks {
                 let at = MARGIN + block * P::WIDTH;
                 let sum = zero
-                    + above[1].load(token, at - 1)
-                    + above[0].load(token, at)
-                    + top[1].load(token, at - 1)
-                    + top[0].load(token, at);
+                    + above.load(token, at - 1)
+                    + above.load(token, at)
+                    + below.load(token, at - 1)
+                    + below.load(token, at);
                 contribution.finish(token, sum).store(&mut sums[row * blocks + block]);
             }
             core::mem::swap(above, below);
