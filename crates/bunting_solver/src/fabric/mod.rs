@@ -45,7 +45,7 @@ pub(crate) use tethers::Tether;
 pub(crate) use twist::{Ribbon, RibbonProfile};
 pub(crate) use yarns::Yarn;
 
-pub use builder::{CoarserMesh, FabricBuilder};
+pub use builder::{CoarserMesh, FabricBuilder, MeshRepair};
 pub use error::FabricError;
 pub use fabric::Fabric;
 pub use grid::Grid;
