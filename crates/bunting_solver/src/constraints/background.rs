@@ -12,6 +12,7 @@
 
 use glam::Vec3;
 
+use crate::batch::background_grid::BackgroundGrid;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Positions;
 use crate::batch::side_by_side::SideBySide;
@@ -21,7 +22,7 @@ use crate::simd::vec3::{Pack3, V3, splat3};
 
 /// Steps towards the orthogonal projection. Fewer: a cloth that hangs by two corners does not rest (160 mm/s without a
 /// step, 12 mm/s with one, 0.1 mm/s with two).
-const PROJECTION_STEPS: usize = 2;
+pub(super) const PROJECTION_STEPS: usize = 2;
 
 /// The inverse mass of each node, 1/m², from those of the particles; zero where the node is pinned.
 pub(crate) fn node_inverse_masses(fabric: &Fabric, of_particles: &[f32]) -> Vec<f32> {
@@ -46,7 +47,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         if let Some(grid) = &mut self.background
             && is_whole
         {
-            grid.solve_bending_before_stretch();
+            grid.solve_bending();
         }
     }
 
@@ -54,7 +55,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// overshoot as the sweep of a grid does, tethers and contacts.
     pub(super) fn solve_stretch_on_background(&mut self) {
         if let Some(grid) = &mut self.background {
-            grid.solve_stretch_of_grid();
+            grid.solve_stretch();
         }
         self.place_particles();
         self.sweep_mesh();
@@ -68,8 +69,15 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         else {
             return;
         };
-        grid.clock = self.clock;
+        grid.set_clock(self.clock);
         let GridTransfer { nodes, particles, means, .. } = &background.transfer;
+        let grid = match grid {
+            BackgroundGrid::SideBySide(grid) => grid,
+            BackgroundGrid::Single(grid) => {
+                grid.take_particles(self.positions.packs());
+                return grid.project(&background.transfer);
+            }
+        };
         let positions = grid.positions.packs_mut();
         positions.fill(splat3(Vec3::ZERO));
         P::run(Interpolate { rows: nodes, from: self.positions.packs(), to: positions });
@@ -88,11 +96,14 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         else {
             return;
         };
-        P::run(Interpolate {
-            rows: &background.transfer.particles,
-            from: grid.positions.packs_mut(),
-            to: self.positions.packs_mut(),
-        });
+        let rows = &background.transfer.particles;
+        let to = self.positions.packs_mut();
+        match grid {
+            BackgroundGrid::SideBySide(grid) => {
+                P::run(Interpolate { rows, from: grid.positions.packs_mut(), to });
+            }
+            BackgroundGrid::Single(grid) => grid.place_particles(rows, to),
+        }
     }
 }
 
