@@ -19,7 +19,7 @@ use crate::step::parameters::ParameterInputs;
 pub(crate) enum BackgroundGrid<P: Pack> {
     /// One in each lane.
     SideBySide(Box<LaneBatch<P>>),
-    /// That of the only cloth of a batch of one lane.
+    /// That of the only cloth of a batch of one lane, whose mesh is flat at rest.
     Single(Box<SingleGrid>),
 }
 
@@ -54,8 +54,10 @@ macro_rules! with_grid {
 impl<P: Pack> BackgroundGrid<P> {
     /// The background grids of a batch of cloths of a fabric; none if it has none.
     pub fn of(fabric: &Fabric) -> Option<Self> {
-        let grid = &fabric.background()?.fabric;
-        let single = if P::WIDTH == 1 { LaneBatch::single_cloth(grid) } else { None };
+        let background = fabric.background()?;
+        let grid = &background.fabric;
+        let is_single = P::WIDTH == 1 && background.transfer.heights.is_empty();
+        let single = if is_single { LaneBatch::single_cloth(grid) } else { None };
         Some(match single {
             Some(batch) => Self::Single(Box::new(SingleGrid::new(batch, fabric))),
             None => Self::SideBySide(Box::new(LaneBatch::side_by_side(grid.clone()))),

@@ -16,7 +16,8 @@ use crate::batch::background_grid::BackgroundGrid;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Positions;
 use crate::batch::side_by_side::SideBySide;
-use crate::fabric::{Fabric, GridTransfer, Interpolation};
+use crate::constants::LEAST_LENGTH;
+use crate::fabric::{Fabric, GridTransfer, Height, Interpolation};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3, splat3};
 
@@ -70,7 +71,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             return;
         };
         grid.set_clock(self.clock);
-        let GridTransfer { nodes, particles, means, .. } = &background.transfer;
+        let GridTransfer { nodes, particles, means, heights, .. } = &background.transfer;
         let grid = match grid {
             BackgroundGrid::SideBySide(grid) => grid,
             BackgroundGrid::Single(grid) => {
@@ -86,6 +87,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         for _ in 0..PROJECTION_STEPS {
             rest.clone_from(self.positions.packs_mut());
             P::run(AddInterpolated { rows: particles, sign: -1.0, from: positions, to: rest });
+            P::run(AddHeights { heights, sign: -1.0, nodes: positions, to: rest });
             P::run(AddInterpolated { rows: means, sign: 1.0, from: rest, to: positions });
         }
     }
@@ -100,7 +102,10 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         let to = self.positions.packs_mut();
         match grid {
             BackgroundGrid::SideBySide(grid) => {
-                P::run(Interpolate { rows, from: grid.positions.packs_mut(), to });
+                let nodes = grid.positions.packs_mut();
+                P::run(Interpolate { rows, from: nodes, to });
+                let heights = &background.transfer.heights;
+                P::run(AddHeights { heights, sign: 1.0, nodes, to });
             }
             BackgroundGrid::Single(grid) => grid.place_particles(rows, to),
         }
@@ -151,6 +156,37 @@ impl<P: Pack> Kernel<P> for AddInterpolated<'_, P> {
                 sum = sum.plus_scaled(from, L::splat(token, sign * term.weight));
             }
             sum.store(to);
+        }
+    }
+}
+
+/// Raises particles by their heights above the surface between the nodes, or lowers them.
+struct AddHeights<'a, P: Pack> {
+    heights: &'a [Height],
+    sign: f32,
+    nodes: &'a [Pack3<P>],
+    to: &'a mut [Pack3<P>],
+}
+
+impl<P: Pack> Kernel<P> for AddHeights<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let Self { heights, sign, nodes, to } = self;
+        let least = L::splat(token, LEAST_LENGTH * LEAST_LENGTH);
+        for Height { particle, nodes: [a, b, c, d], along: [x, y], height } in heights {
+            let along: V3<L> =
+                V3::load(token, &nodes[*b as usize]) - V3::load(token, &nodes[*a as usize]);
+            let across: V3<L> =
+                V3::load(token, &nodes[*d as usize]) - V3::load(token, &nodes[*c as usize]);
+            let normal = along.cross(across);
+            let length = normal.dot(normal).max(least).sqrt();
+            let factor = L::splat(token, sign * height) / length;
+            let to = &mut to[*particle as usize];
+            V3::<L>::load(token, to)
+                .plus_scaled(along, L::splat(token, sign * x))
+                .plus_scaled(across, L::splat(token, sign * y))
+                .plus_scaled(normal, factor)
+                .store(to);
         }
     }
 }
