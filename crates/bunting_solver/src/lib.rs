@@ -80,6 +80,7 @@ pub use contact::collider::Collider;
 pub use contact::lift::SurfaceLift;
 pub use fabric::{
     CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link, LinkFamily,
+    MeshRepair,
 };
 pub use simd::level::{instruction_set, with_every_instruction_set};
 pub use step::frame::FrameMotion;

@@ -2,7 +2,7 @@
 
 mod delaunay;
 
-use std::sync::Arc;
+use std::{f32::consts::TAU, sync::Arc};
 
 use bunting_solver::{Fabric, FabricBuilder};
 use glam::{DVec2, Vec2, Vec3};
@@ -102,6 +102,28 @@ impl Sheet {
         let uv = self.positions.iter().map(turned).collect();
         let builder = FabricBuilder::new(self.positions.clone(), self.indices.clone()).uv(uv);
         Arc::new(builder.pin_where(|at, _| is_pinned(at)).build().expect("a cloth"))
+    }
+}
+
+impl Sheet {
+    /// The sheet rolled up about a vertical axis until its sides meet, where its texture has a seam; with pins.
+    ///
+    /// # Panics
+    ///
+    /// When it is not a cloth.
+    #[must_use]
+    pub fn rolled_up(&self, is_pinned: impl Fn(Vec3) -> bool) -> Arc<Fabric> {
+        let width = self.positions.iter().map(|at| at.x).fold(0.0, f32::max);
+        let radius = width / TAU;
+        let around = |at: &Vec3| {
+            let (sin, cos) = (at.x / radius).sin_cos();
+            Vec3::new(radius * sin, at.y, radius * cos)
+        };
+        let positions = self.positions.iter().map(around).collect();
+        let uv = self.positions.iter().map(|at| Vec2::new(at.x, -at.y)).collect();
+        let builder = FabricBuilder::new(positions, self.indices.clone()).uv(uv);
+        let builder = builder.weld_distance(1e-5 * width).pin_where(|at, _| is_pinned(at));
+        Arc::new(builder.build().expect("a cloth"))
     }
 }
 

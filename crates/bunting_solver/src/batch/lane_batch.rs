@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use crate::batch::background_grid::BackgroundGrid;
 use crate::batch::lane_fabric::{FabricNumbers, LaneFabric};
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
@@ -76,7 +77,7 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub parameters: Parameters<P>,
     pub clock: Clock,
     /// The background grids of the cloths, if the fabric has one.
-    pub background: Option<Box<LaneBatch<P>>>,
+    pub background: Option<BackgroundGrid<P>>,
 }
 
 impl<P: Pack> LaneBatch<P> {
@@ -133,9 +134,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             partial_sums: layout.partial_sums(),
             parameters: Parameters::new(),
             clock: Clock::default(),
-            background: fabric
-                .background()
-                .map(|grid| Box::new(LaneBatch::side_by_side(Arc::clone(&grid.fabric)))),
+            background: BackgroundGrid::of(&fabric),
             fabric,
             layout,
         };

@@ -11,8 +11,8 @@ const MOST_IN_SIXTEEN: usize = 65 * 65;
 /// Number of cloths that a batch can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum LaneCount {
-    /// One cloth. A cloth on a grid is spread across the lanes of a vector; other meshes are solved in scalar
-    /// code.
+    /// One cloth. A cloth on a grid is spread across the lanes of a vector, and so is the background grid of a mesh
+    /// that is flat at rest; all else of meshes is solved in scalar code.
     One,
     /// Eight cloths: full speed with AVX2.
     #[default]

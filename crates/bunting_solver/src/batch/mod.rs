@@ -1,5 +1,6 @@
 //! Batches: the state of cloths of one fabric, or of one topology, in the lanes of vectors.
 
+pub(crate) mod background_grid;
 mod cloth_batch;
 mod error;
 pub(crate) mod exchange;

@@ -12,16 +12,18 @@
 
 use glam::Vec3;
 
+use crate::batch::background_grid::BackgroundGrid;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Positions;
 use crate::batch::side_by_side::SideBySide;
-use crate::fabric::{Fabric, GridTransfer, Interpolation};
+use crate::constants::LEAST_LENGTH;
+use crate::fabric::{Fabric, GridTransfer, Height, Interpolation};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3, splat3};
 
 /// Steps towards the orthogonal projection. Fewer: a cloth that hangs by two corners does not rest (160 mm/s without a
 /// step, 12 mm/s with one, 0.1 mm/s with two).
-const PROJECTION_STEPS: usize = 2;
+pub(super) const PROJECTION_STEPS: usize = 2;
 
 /// The inverse mass of each node, 1/m², from those of the particles; zero where the node is pinned.
 pub(crate) fn node_inverse_masses(fabric: &Fabric, of_particles: &[f32]) -> Vec<f32> {
@@ -46,7 +48,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         if let Some(grid) = &mut self.background
             && is_whole
         {
-            grid.solve_bending_before_stretch();
+            grid.solve_bending();
         }
     }
 
@@ -54,7 +56,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// overshoot as the sweep of a grid does, tethers and contacts.
     pub(super) fn solve_stretch_on_background(&mut self) {
         if let Some(grid) = &mut self.background {
-            grid.solve_stretch_of_grid();
+            grid.solve_stretch();
         }
         self.place_particles();
         self.sweep_mesh();
@@ -68,8 +70,15 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         else {
             return;
         };
-        grid.clock = self.clock;
-        let GridTransfer { nodes, particles, means, .. } = &background.transfer;
+        grid.set_clock(self.clock);
+        let GridTransfer { nodes, particles, means, heights, .. } = &background.transfer;
+        let grid = match grid {
+            BackgroundGrid::SideBySide(grid) => grid,
+            BackgroundGrid::Single(grid) => {
+                grid.take_particles(self.positions.packs());
+                return grid.project(&background.transfer);
+            }
+        };
         let positions = grid.positions.packs_mut();
         positions.fill(splat3(Vec3::ZERO));
         P::run(Interpolate { rows: nodes, from: self.positions.packs(), to: positions });
@@ -78,6 +87,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         for _ in 0..PROJECTION_STEPS {
             rest.clone_from(self.positions.packs_mut());
             P::run(AddInterpolated { rows: particles, sign: -1.0, from: positions, to: rest });
+            P::run(AddHeights { heights, sign: -1.0, nodes: positions, to: rest });
             P::run(AddInterpolated { rows: means, sign: 1.0, from: rest, to: positions });
         }
     }
@@ -88,11 +98,17 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         else {
             return;
         };
-        P::run(Interpolate {
-            rows: &background.transfer.particles,
-            from: grid.positions.packs_mut(),
-            to: self.positions.packs_mut(),
-        });
+        let rows = &background.transfer.particles;
+        let to = self.positions.packs_mut();
+        match grid {
+            BackgroundGrid::SideBySide(grid) => {
+                let nodes = grid.positions.packs_mut();
+                P::run(Interpolate { rows, from: nodes, to });
+                let heights = &background.transfer.heights;
+                P::run(AddHeights { heights, sign: 1.0, nodes, to });
+            }
+            BackgroundGrid::Single(grid) => grid.place_particles(rows, to),
+        }
     }
 }
 
@@ -140,6 +156,37 @@ impl<P: Pack> Kernel<P> for AddInterpolated<'_, P> {
                 sum = sum.plus_scaled(from, L::splat(token, sign * term.weight));
             }
             sum.store(to);
+        }
+    }
+}
+
+/// Raises particles by their heights above the surface between the nodes, or lowers them.
+struct AddHeights<'a, P: Pack> {
+    heights: &'a [Height],
+    sign: f32,
+    nodes: &'a [Pack3<P>],
+    to: &'a mut [Pack3<P>],
+}
+
+impl<P: Pack> Kernel<P> for AddHeights<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let Self { heights, sign, nodes, to } = self;
+        let least = L::splat(token, LEAST_LENGTH * LEAST_LENGTH);
+        for Height { particle, nodes: [a, b, c, d], along: [x, y], height } in heights {
+            let along: V3<L> =
+                V3::load(token, &nodes[*b as usize]) - V3::load(token, &nodes[*a as usize]);
+            let across: V3<L> =
+                V3::load(token, &nodes[*d as usize]) - V3::load(token, &nodes[*c as usize]);
+            let normal = along.cross(across);
+            let length = normal.dot(normal).max(least).sqrt();
+            let factor = L::splat(token, sign * height) / length;
+            let to = &mut to[*particle as usize];
+            V3::<L>::load(token, to)
+                .plus_scaled(along, L::splat(token, sign * x))
+                .plus_scaled(across, L::splat(token, sign * y))
+                .plus_scaled(normal, factor)
+                .store(to);
         }
     }
 }

@@ -6,6 +6,7 @@
 //! equation is multiplied through by σ: inverse masses are w, 1/m², and compliances σ/(k h²).
 
 pub(crate) mod background;
+mod background_single;
 #[cfg(test)]
 mod bench;
 pub(crate) mod bend_factors;

@@ -94,7 +94,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Solves chains and tethers of a grid, of which a background grid has none. For every second pass a sweep over warp
     /// and weft corrects the overshoot of the chains' frozen directions, and chains that still have overlong links are
     /// solved again.
-    pub(super) fn solve_stretch_of_grid(&mut self) {
+    pub fn solve_stretch_of_grid(&mut self) {
         let passes = self.clock.settings.passes;
         if self.is_narrow() {
             self.solve_strips(passes);

@@ -77,6 +77,21 @@ pub enum FabricError {
         /// The other end.
         b: u32,
     },
+    /// A piece of the mesh is one-sided, as a Möbius strip is: its triangles have no consistent winding.
+    #[error(
+        "the triangles around the edge from vertex {a} to {b} have no consistent winding, as on a Möbius strip: cut the mesh open there"
+    )]
+    OneSided {
+        /// One end of an edge whose triangles disagree.
+        a: u32,
+        /// The other end.
+        b: u32,
+    },
+    /// Vertices were pinned by a predicate on texture coordinates before there were any.
+    #[error(
+        "vertices were pinned by a predicate before the texture coordinates were set: set them first"
+    )]
+    PinnedBeforeUv,
     /// A grid needs at least two particles and a positive length along both sides.
     #[error(
         "a grid of {columns} × {rows} particles over {width} m × {height} m is not a cloth: give at least 2 × 2 and a positive size"

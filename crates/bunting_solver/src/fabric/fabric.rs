@@ -44,7 +44,7 @@ pub struct Fabric {
     background: Option<Background>,
 }
 
-/// The grid that solves stretch, shear and bending of a mesh that is flat at rest.
+/// The grid that solves stretch and shear of a mesh, and bending where the mesh is flat at rest.
 #[derive(Clone, Debug)]
 pub(crate) struct Background {
     /// The grid, whose particles are called nodes.
@@ -308,7 +308,7 @@ impl Fabric {
     }
 
     /// The grid that solves stretch, shear and bending in place of the mesh's own links; none of grids, and of meshes
-    /// that are small, not flat at rest, or overlap themselves.
+    /// that are small, curved without a texture like their shape, or overlap themselves.
     pub(crate) fn background(&self) -> Option<&Background> {
         self.background.as_ref()
     }

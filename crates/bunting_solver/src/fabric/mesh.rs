@@ -110,15 +110,19 @@ impl RestMesh {
 
 /// Areas of the triangles, m².
 fn triangle_areas(rest: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<f32>, FabricError> {
-    let area = |(index, triangle): (usize, &[u32; 3])| {
-        let [a, b, c] = triangle.map(|corner| rest[corner as usize]);
-        let longest =
-            (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
-        let area = 0.5 * (b - a).cross(c - a).length();
-        let has_area = area > LEAST_ASPECT * longest;
-        has_area.then_some(area).ok_or(FabricError::ZeroArea { triangle: index })
+    let of_triangle = |(index, triangle): (usize, &[u32; 3])| {
+        let corners = triangle.map(|corner| rest[corner as usize]);
+        area(corners).ok_or(FabricError::ZeroArea { triangle: index })
     };
-    triangles.iter().enumerate().map(area).collect()
+    triangles.iter().enumerate().map(of_triangle).collect()
+}
+
+/// Area of a triangle, m²; none if its corners lie on a line.
+pub(super) fn area([a, b, c]: [Vec3; 3]) -> Option<f32> {
+    let longest =
+        (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
+    let area = 0.5 * (b - a).cross(c - a).length();
+    (area > LEAST_ASPECT * longest).then_some(area)
 }
 
 /// Area of each particle, m²: a third of the area of each of its triangles.

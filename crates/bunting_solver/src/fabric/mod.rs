@@ -7,7 +7,8 @@
 //! From a mesh to a fabric, a file a step: [`FabricBuilder`] checks the mesh and merges its seams
 //! (`builder/`, `weld`); `mesh` finds areas, edges and pins; `links` joins particles along warp, weft and
 //! diagonals; `yarns` cuts the links into straight paths and `chains` arranges these for solving; `bending` and
-//! `twist` (grids) or `hinges` (other meshes) resist bending; `background` lays a grid under meshes that are flat at rest; `tethers` bounds the distances from the pins;
+//! `twist` (grids) or `hinges` (other meshes) resist bending; `background` lays a grid under meshes that are
+//! flat at rest or textured like their shape; `tethers` bounds the distances from the pins;
 //! `patches` pairs triangles for sums over them.
 
 mod background;
@@ -35,7 +36,7 @@ mod twist;
 mod weld;
 mod yarns;
 
-pub(crate) use background::{GridTransfer, Interpolation};
+pub(crate) use background::{GridTransfer, Height, Interpolation};
 pub(crate) use bending::{BendLine, BendProfile};
 pub(crate) use chains::{CHAINS_PER_PAIR, Cell, Chain, ChainLink, ChainPair, Chains, SweepLink};
 pub(crate) use hinges::{Hinge, angle as hinge_angle};
@@ -45,7 +46,7 @@ pub(crate) use tethers::Tether;
 pub(crate) use twist::{Ribbon, RibbonProfile};
 pub(crate) use yarns::Yarn;
 
-pub use builder::{CoarserMesh, FabricBuilder};
+pub use builder::{CoarserMesh, FabricBuilder, MeshRepair};
 pub use error::FabricError;
 pub use fabric::Fabric;
 pub use grid::Grid;

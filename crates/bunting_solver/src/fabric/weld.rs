@@ -16,6 +16,21 @@ pub(super) struct Weld {
     pub vertex_of_particle: Vec<u32>,
 }
 
+impl Weld {
+    /// Merges vertices that have the same number.
+    pub fn by_number(numbers: &[u32]) -> Self {
+        let mut particle_of = HashMap::new();
+        let mut vertex_of_particle = Vec::new();
+        let particle_of_vertex = (0..).zip(numbers).map(|(vertex, number)| {
+            *particle_of.entry(number).or_insert_with(|| {
+                vertex_of_particle.push(vertex);
+                vertex_of_particle.len() as u32 - 1
+            })
+        });
+        Self { particle_of_vertex: particle_of_vertex.collect(), vertex_of_particle }
+    }
+}
+
 /// Default distance within which vertices of a mesh are merged, m.
 pub(super) fn default_distance(positions: &[Vec3]) -> f32 {
     let first = positions.first().copied().unwrap_or_default();

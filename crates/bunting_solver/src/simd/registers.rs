@@ -1,4 +1,4 @@
-//! The widths: one, eight and sixteen floats, in memory and in registers. This is the only file that knows
+//! The widths: one, four, eight and sixteen floats, in memory and in registers. This is the only file that knows
 //! the widths.
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -12,6 +12,18 @@ use crate::simd::level::dispatch;
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
 pub(crate) struct Pack1([f32; 1]);
+
+/// The coordinates of a vector, and a fourth number: one SSE or NEON register.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(16))]
+pub(crate) struct Pack4([f32; 4]);
+
+impl Pack4 {
+    /// The four numbers.
+    pub fn vector(&self) -> [f32; 4] {
+        self.0
+    }
+}
 
 /// Eight lanes: one AVX register, or two of SSE or NEON.
 #[derive(Clone, Copy, Debug)]
@@ -157,8 +169,16 @@ macro_rules! wide {
     };
 }
 
+wide!(Pack4, f32x4, 4);
 wide!(Pack8, f32x8, 8);
 wide!(Pack16, f32x16, 16);
+
+impl<S: Simd> Mask for fearless_simd::mask32x4<S> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        fearless_simd::SimdMask::any_true(self)
+    }
+}
 
 impl<S: Simd> Mask for fearless_simd::mask32x8<S> {
     #[inline(always)]

@@ -50,7 +50,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 None => {
                     self.parameters.set_empty(Y::lanes(cloth));
                     if let Some(background) = &mut self.background {
-                        background.parameters.set_empty(cloth..cloth + 1);
+                        background.set_empty(cloth);
                     }
                 }
             }
@@ -91,12 +91,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         );
         self.parameters.set_load_stretch(Y::lanes(cloth), &stretch);
         if let Some(background) = &mut self.background {
-            background.parameters.set_load_stretch(cloth..cloth + 1, &stretch);
+            background.set_load_stretch(cloth, &stretch);
         }
     }
 
     /// Computes all values that depend on a cloth's material and on the formula.
-    fn set_inputs(&mut self, cloth: usize, inputs: &ParameterInputs) {
+    pub fn set_inputs(&mut self, cloth: usize, inputs: &ParameterInputs) {
         let stiffness = Stiffness {
             material: &inputs.material,
             step: inputs.effective_step(),
@@ -132,7 +132,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.positions.set_inverse_masses(&inverse_masses);
         if let Some(background) = &mut self.background {
             let nodes = node_inverse_masses(&self.fabric, &inverse_masses);
-            background.layout.write_numbers(&nodes, cloth, &mut background.masses.inverse);
+            background.set_inverse_masses(cloth, &nodes);
         }
     }
 }

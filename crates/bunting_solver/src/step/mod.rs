@@ -9,7 +9,7 @@ mod damping;
 pub(crate) mod frame;
 mod integrate;
 pub(crate) mod limits;
-mod load_stretch;
+pub(crate) mod load_stretch;
 pub(crate) mod parameters;
 mod predict;
 mod settings;

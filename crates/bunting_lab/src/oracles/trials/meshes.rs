@@ -50,6 +50,7 @@ pub fn cases(_: &Mount) -> Vec<Case> {
         cases.extend([1.0, 10.0, 50.0].map(|gamma| cantilever(triangulation, gamma)));
         cases.extend([swing(triangulation), flag(triangulation)]);
         cases.extend(two_corners(triangulation));
+        cases.extend(cylinder(triangulation));
     }
     cases
 }
@@ -118,6 +119,16 @@ impl Cloth {
         sum / area
     }
 
+    /// Speed over a tick, m/s RMS.
+    fn speed(&mut self) -> f64 {
+        let before = self.positions.clone();
+        self.tick();
+        let moved =
+            self.positions.iter().zip(&before).map(|(now, then)| now.distance_squared(*then));
+        let squared: Vec<f64> = moved.map(f64::from).collect();
+        mean(&squared).sqrt() * f64::from(TICK_RATE)
+    }
+
     /// Mean change of length of the edges, relative.
     fn strain(&self) -> f64 {
         let sides = self.fabric.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
@@ -158,6 +169,21 @@ fn hung(triangulation: Triangulation, n: usize) -> Vec<Case> {
             )
         };
     trials.map(case).to_vec()
+}
+
+/// δ/L of a cylinder of a square metre with a seam of its texture that hangs from its rim, and its speed at rest.
+fn cylinder(triangulation: Triangulation) -> [Case; 2] {
+    let sheet = Sheet::new(triangulation, [33, 33], DVec2::ONE, 1);
+    let mut cloth = Cloth::new(sheet.rolled_up(at_top), ISOTROPIC, |at| at);
+    cloth.run(4.0);
+    let stretch = -1.0 - cloth.mean(|at| at.y == -1.0).y;
+    let expected = hung_strip(f64::from(ISOTROPIC.area_density), GRAVITY, 1.0, 1e4);
+    let name = format!("cylinder with a seam, hung from its rim, {triangulation:?}");
+    let speed = cloth.speed();
+    [
+        Case::new(name.clone(), expected, stretch, STRETCH[0]),
+        bound(format!("{name}, speed at rest, m/s"), REST[0], speed),
+    ]
 }
 
 /// Drop over reach of a strip of 1 m × 0.25 m, clamped by one more cell.
@@ -217,12 +243,7 @@ fn two_corners(triangulation: Triangulation) -> [Case; 2] {
         let ripple = |at: Vec3| at + Vec3::Z * 1e-3 * (5.0 * at.x + 3.0 * at.y).sin();
         let mut cloth = Cloth::new(square(triangulation, 33, 0.0, corners), STANDARD, ripple);
         cloth.run(10.0);
-        let before = cloth.positions.clone();
-        cloth.tick();
-        let moved =
-            cloth.positions.iter().zip(&before).map(|(now, then)| now.distance_squared(*then));
-        let squared: Vec<f64> = moved.map(f64::from).collect();
-        (mean(&squared).sqrt() * f64::from(TICK_RATE), cloth.mean(|_| true))
+        (cloth.speed(), cloth.mean(|_| true))
     };
     let (speed, at) = hang(Some(triangulation));
     let (_, of_grid) = hang(None);

@@ -24,9 +24,12 @@ impl RibbonPacks {
     pub fn new<P: Pack>(fabric: &Fabric, shape: GridShape) -> Self {
         let mut sorted: Vec<&Ribbon> = fabric.ribbons().iter().collect();
         sorted.sort_by_key(|ribbon| ribbon.pairs[0][0]);
-        let [first, second] = sorted[0].pairs[0];
+        let Some(pairs) = sorted.first().map(|ribbon| &ribbon.pairs) else {
+            return Self { order: Order::RowMajor, ribbons: Vec::new(), profiles: Vec::new() };
+        };
+        let [first, second] = pairs[0];
         let order = if second == first + 1 { Order::RowMajor } else { Order::ColumnMajor };
-        let pairs = sorted[0].pairs.len();
+        let pairs = pairs.len();
         let (mut ribbons, mut profiles) = (Vec::new(), Vec::new());
         for parity in 0..2 {
             for (pack, side_by_side) in sorted.chunks(P::WIDTH).enumerate() {

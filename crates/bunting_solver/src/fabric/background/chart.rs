@@ -1,4 +1,5 @@
-//! A flat mesh laid into the plane, along its warp or along the sides of its bounding rectangle.
+//! A mesh laid into the plane: a flat one along its warp or along the sides of its bounding rectangle, a curved one by
+//! its texture.
 
 use glam::{Vec2, Vec3};
 
@@ -21,24 +22,34 @@ const TIGHTER: f32 = 1e-4;
 /// cos of the angle to the warp or the weft up to which a row runs along it: 3°.
 const ALONG: f32 = 0.9986;
 
-/// A flat mesh in the plane.
+/// A mesh in the plane.
 pub(super) struct Chart {
-    /// Positions of the particles in the plane, m, from the corner of their bounding rectangle.
+    /// Places in the plane, m, from the corner of their bounding rectangle.
     pub positions: Vec<Vec2>,
+    /// The particle at each place. A particle on a seam of the texture has two.
+    pub particles: Vec<u32>,
+    /// Three places for each triangle.
+    pub triangles: Vec<[u32; 3]>,
     /// cos² of the angle between the first axis and the warp.
     pub warp_cos2: f32,
-    /// Corner of the bounding rectangle, m, and the axes.
+    /// The plane of a flat mesh.
+    pub plane: Option<Plane>,
+    pub extent: Vec2,
+    /// Of the mesh, m².
+    pub area: f32,
+}
+
+/// The plane of a flat mesh.
+pub(super) struct Plane {
+    /// Corner of the bounding rectangle, m.
     origin: Vec3,
     axes: [Vec3; 2],
-    extent: Vec2,
-    /// Of the mesh, m².
-    area: f32,
 }
 
 impl Chart {
-    /// The chart of a mesh; none if it is not flat, or folded.
+    /// The chart of a mesh; none if it is folded, or curved and without a texture that is like it.
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
-        let normal = plane_normal(mesh)?;
+        let Some(normal) = plane_normal(mesh) else { return Self::by_texture(mesh, surface) };
         let warp = mean_warp(mesh, surface);
         let warp = warp.unwrap_or_else(|| normal.any_orthonormal_vector());
         let area: f32 = surface.triangle_areas.iter().sum();
@@ -48,7 +59,8 @@ impl Chart {
         if filled(&rectangle) > FILLED.max(filled(&best) + TIGHTER) {
             best = rectangle;
         }
-        let warp_cos2 = best.axes[0].dot(warp).powi(2).min(1.0);
+        let along = best.plane.as_ref().map_or(warp, |plane| plane.axes[0]);
+        let warp_cos2 = along.dot(warp).powi(2).min(1.0);
         // Rounding does not turn a warp.
         best.warp_cos2 = if warp_cos2 > ALONG * ALONG { 1.0 } else { warp_cos2 };
         Some(best)
@@ -69,17 +81,13 @@ impl Chart {
         let height = normal * normal.dot(mesh.positions[0]);
         Self {
             positions: mesh.positions.iter().map(|&at| flat(at) - low).collect(),
+            particles: (0..mesh.positions.len() as u32).collect(),
+            triangles: mesh.triangles.clone(),
             warp_cos2: 1.0,
-            origin: height + axes[0] * low.x + axes[1] * low.y,
-            axes,
+            plane: Some(Plane { origin: height + axes[0] * low.x + axes[1] * low.y, axes }),
             extent: high - low,
             area,
         }
-    }
-
-    /// The place in space of a place in the plane, m.
-    pub fn in_space(&self, at: Vec2) -> Vec3 {
-        self.origin + self.axes[0] * at.x + self.axes[1] * at.y
     }
 
     /// The grid over the bounding rectangle with about as many nodes as there are particles.
@@ -89,6 +97,13 @@ impl Chart {
         let spacing = (self.area / self.positions.len() as f32).sqrt();
         let count = |extent: f32| (extent / spacing).round().max(2.0) as u32;
         Grid::new(count(width), count(height), width, height)
+    }
+}
+
+impl Plane {
+    /// The place in space of a place in the plane, m.
+    pub fn in_space(&self, at: Vec2) -> Vec3 {
+        self.origin + self.axes[0] * at.x + self.axes[1] * at.y
     }
 }
 

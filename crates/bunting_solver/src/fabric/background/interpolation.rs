@@ -37,7 +37,7 @@ pub(crate) struct Interpolation {
 }
 
 impl Interpolation {
-    fn push(&mut self, row: impl IntoIterator<Item = Term>) {
+    pub(super) fn push(&mut self, row: impl IntoIterator<Item = Term>) {
         let first = self.terms.len() as u32;
         self.terms.extend(row.into_iter().filter(|term| term.weight.abs() > LEAST_WEIGHT));
         self.rows.push(first..self.terms.len() as u32);
@@ -56,6 +56,27 @@ impl Interpolation {
     /// The rows, in order.
     pub fn rows(&self) -> impl Iterator<Item = &[Term]> {
         self.rows.iter().map(|range| &self.terms[range.start as usize..range.end as usize])
+    }
+
+    /// The same rows, with columns numbered anew.
+    pub fn with_columns(mut self, numbers: &[u32]) -> Self {
+        self.terms.iter_mut().for_each(|term| term.from = numbers[term.from as usize]);
+        self
+    }
+
+    /// One row for each of `count` numbers: the mean of the rows that have this number.
+    pub fn mean_rows(&self, numbers: &[u32], count: usize) -> Self {
+        let mut rows = vec![Vec::new(); count];
+        for (row, &number) in self.rows().zip(numbers) {
+            rows[number as usize].push(row);
+        }
+        let mut means = Self::default();
+        for rows in rows {
+            let part = 1.0 / rows.len() as f32;
+            let terms = rows.into_iter().flatten();
+            means.push(terms.map(|term| Term { weight: term.weight * part, ..*term }));
+        }
+        means
     }
 
     /// For each column the mean of the rows' values, weighted by their weights times a mass of the row. `sums` are the
@@ -103,11 +124,11 @@ pub(super) fn nodes_from_particles(
     weights
 }
 
-/// Weights of the nodes at each free particle: bilinear in its cell, and near the border those of a plane fitted to the nodes
+/// Weights of the nodes at each place of a free particle: bilinear in its cell, and near the border those of a plane fitted to the nodes
 /// around it. None if there are too few of these.
 pub(super) fn particles_from_nodes(
     positions: &[Vec2],
-    inverse_areas: &[f32],
+    is_free: &[bool],
     nodes: &Interpolation,
     grid: &Grid,
 ) -> Option<Interpolation> {
@@ -115,8 +136,8 @@ pub(super) fn particles_from_nodes(
     let last = Vec2::new((grid.columns - 2) as f32, (grid.rows - 2) as f32);
     let near = Neighbourhood::new(nodes, grid);
     let mut weights = Interpolation::default();
-    for (&position, &inverse_area) in positions.iter().zip(inverse_areas) {
-        if inverse_area == 0.0 {
+    for (&position, &is_free) in positions.iter().zip(is_free) {
+        if !is_free {
             weights.push([]);
             continue;
         }

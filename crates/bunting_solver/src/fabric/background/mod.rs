@@ -1,4 +1,4 @@
-//! The background grid of a triangle mesh that is flat at rest.
+//! The background grid of a triangle mesh that is flat at rest, or whose texture is like it.
 //!
 //! Links along the edges of an irregular mesh are no paths along which a load runs: chains of them are short and
 //! zigzag, and what they leave to relaxation converges slowly. So such a mesh gets a regular grid, as particles have
@@ -6,14 +6,16 @@
 //! (`constraints/background.rs`). The positions of the nodes are found from those of the
 //! particles, and the particles follow the nodes.
 //!
-//! `chart` lays the mesh into the plane, `coverage` measures how much of each cell is cloth, and `interpolation` finds
-//! the weights.
+//! `chart` lays a flat mesh into the plane, `texture` a curved one, `coverage` measures how much of each cell is cloth,
+//! `interpolation` finds the weights, and `smooth` those of nodes on curved meshes.
 
 mod chart;
 mod coverage;
 mod interpolation;
+mod smooth;
+mod texture;
 
-use glam::Vec2;
+use glam::{Mat3, Vec2, Vec3};
 
 use self::chart::Chart;
 use self::interpolation::{nodes_from_particles, particles_from_nodes};
@@ -48,8 +50,25 @@ pub(crate) struct GridTransfer {
     pub particles: Interpolation,
     /// Of each free node the mean of the particles that its displacement moves.
     pub means: Interpolation,
+    /// How far each free particle of a mesh that is curved at rest lies above the surface between nodes; empty for flat
+    /// meshes. Without them each substep would flatten the mesh, as a particle between nodes lies below the arc through
+    /// them.
+    pub heights: Vec<Height>,
     /// Whether the mesh fills the whole grid.
     pub is_whole: bool,
+}
+
+/// The distance of a particle from the surface between nodes at rest.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Height {
+    /// The particle.
+    pub particle: u32,
+    /// Four nodes around the particle, two opposite ones first. The vectors between opposite ones are tangents.
+    pub nodes: [u32; 4],
+    /// Coordinates along the two tangents, in units of these.
+    pub along: [f32; 2],
+    /// Coordinate along the unit vector product of the tangents, m.
+    pub height: f32,
 }
 
 /// A background grid before its constraints are found.
@@ -65,25 +84,38 @@ pub(super) struct BackgroundMesh {
 }
 
 impl BackgroundMesh {
-    /// The grid of a mesh; none of a mesh that is small or narrow, not flat at rest, or overlaps itself.
+    /// The grid of a mesh; none of a mesh that is small or narrow, neither flat at rest nor textured in one piece like
+    /// its shape, or overlaps itself.
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
         }
         let chart = Chart::of(mesh, surface)?;
         let grid = chart.grid();
-        let nodes = nodes_from_particles(&chart.positions, &mesh.triangles, &grid);
-        let particles = particles_from_nodes(&chart.positions, &mesh.inverse_areas, &nodes, &grid)?;
-        let covered = coverage::covered_once(&chart.positions, &mesh.triangles, &grid)?;
+        let nodes = nodes_from_particles(&chart.positions, &chart.triangles, &grid);
+        let is_free: Vec<bool> = chart.particles.iter().map(|&at| !mesh.is_pinned(at)).collect();
+        let places = particles_from_nodes(&chart.positions, &is_free, &nodes, &grid)?;
+        let particles = places.mean_rows(&chart.particles, mesh.positions.len());
+        let nodes = match chart.plane {
+            Some(_) => nodes,
+            None => smooth::smoothed(nodes, &chart.positions, &grid, &is_free),
+        };
+        let nodes = nodes.with_columns(&chart.particles);
+        let covered = coverage::covered_once(&chart.positions, &chart.triangles, &grid)?;
         let in_mesh = |node: u32| nodes.has_row(node as usize);
         let coverage = coverage::given_to_whole_cells(&covered, &grid, in_mesh);
-        let is_whole = (0..nodes.len() as u32).all(in_mesh)
+        // Lines of nodes bend from straight ones.
+        let is_whole = chart.plane.is_some()
+            && (0..nodes.len() as u32).all(in_mesh)
             && covered.iter().sum::<f32>() > WHOLE * covered.len() as f32;
         let means = Interpolation::default();
-        let mut transfer = GridTransfer { nodes, particles, means, is_whole };
+        let mut transfer = GridTransfer { nodes, particles, means, heights: Vec::new(), is_whole };
         let nodes = node_mesh(mesh, &chart, &grid, &transfer);
         let is_free = |node: usize| !nodes.is_pinned(node as u32);
         transfer.means = transfer.particles.adjoint(&mesh.areas, &nodes.areas, is_free);
+        if chart.plane.is_none() {
+            transfer.heights = heights(mesh, &chart, &grid, &nodes, &transfer);
+        }
         let is_held = is_held(mesh, &chart, &grid, &nodes, &transfer.nodes);
         is_held.then_some(Self {
             mesh: nodes,
@@ -102,6 +134,44 @@ impl GridTransfer {
         let least = LEAST_MASS * of_particles.iter().sum::<f32>() / of_particles.len() as f32;
         moved.into_iter().map(|mass| mass.max(least)).collect()
     }
+}
+
+/// The heights of the free particles whose cells have all of their nodes.
+fn heights(
+    mesh: &RestMesh,
+    chart: &Chart,
+    grid: &Grid,
+    nodes: &RestMesh,
+    transfer: &GridTransfer,
+) -> Vec<Height> {
+    let spacing = Vec2::from(grid.spacing());
+    let last = Vec2::new((grid.columns - 2) as f32, (grid.rows - 2) as f32);
+    let mut is_done = vec![false; mesh.positions.len()];
+    let rows: Vec<&[Term]> = transfer.particles.rows().collect();
+    let mut heights = Vec::new();
+    for (&at, &particle) in chart.positions.iter().zip(&chart.particles) {
+        let cell = (at / spacing).floor().clamp(Vec2::ZERO, last);
+        let corner =
+            |right: u32, down: u32| grid.index(cell.x as u32 + right, cell.y as u32 + down);
+        let corners = [corner(0, 0), corner(1, 1), corner(1, 0), corner(0, 1)];
+        let has_nodes = corners.iter().all(|&node| transfer.nodes.has_row(node as usize));
+        // A particle on a seam has the height of one side.
+        if mesh.is_pinned(particle) || is_done[particle as usize] || !has_nodes {
+            continue;
+        }
+        is_done[particle as usize] = true;
+        let row = rows[particle as usize];
+        let below: Vec3 =
+            row.iter().map(|term| nodes.positions[term.from as usize] * term.weight).sum();
+        let [a, b, c, d] = nodes.positions_of(corners);
+        let frame = Mat3::from_cols(b - a, d - c, (b - a).cross(d - c).normalize_or_zero());
+        let away = mesh.positions[particle as usize] - below;
+        let Vec3 { x, y, z } = frame.inverse() * away;
+        if x.is_finite() && y.is_finite() && z.is_finite() {
+            heights.push(Height { particle, nodes: corners, along: [x, y], height: z });
+        }
+    }
+    heights
 }
 
 /// Whether the grid is held where the mesh is: near each pinned particle a node is pinned.
@@ -123,7 +193,8 @@ fn is_held(
             is_near && nodes.is_pinned(index) && in_mesh.has_row(index as usize)
         })
     };
-    let mut pinned = (0..).zip(&chart.positions).filter(|(particle, _)| mesh.is_pinned(*particle));
+    let places = chart.particles.iter().zip(&chart.positions);
+    let mut pinned = places.filter(|(particle, _)| mesh.is_pinned(**particle));
     pinned.all(|(_, &at)| is_near_pinned_node(at))
 }
 
@@ -139,8 +210,13 @@ fn node_mesh(mesh: &RestMesh, chart: &Chart, grid: &Grid, transfer: &GridTransfe
     };
     let rows = transfer.nodes.rows().zip(&areas);
     let in_chart = chart::node_positions(grid);
+    let in_space = |(&at, row): (&Vec2, &[Term])| match &chart.plane {
+        Some(plane) => plane.in_space(at),
+        None => row.iter().map(|term| mesh.positions[term.from as usize] * term.weight).sum(),
+    };
+    let positions = in_chart.iter().zip(transfer.nodes.rows()).map(in_space).collect();
     RestMesh {
-        positions: in_chart.iter().map(|&at| chart.in_space(at)).collect(),
+        positions,
         inverse_areas: rows
             .map(|(row, area)| if is_free(row) { 1.0 / area } else { 0.0 })
             .collect(),
@@ -237,7 +313,18 @@ mod tests {
         let curved: Vec<Vec3> =
             disk(8).positions().iter().map(|at| *at + Vec3::Z * at.x * at.x).collect();
         let indices = disk(8).indices().to_vec();
-        assert!(!has_grid(FabricBuilder::new(curved, indices.clone())), "not flat");
+        let curved = FabricBuilder::new(curved, indices.clone());
+        assert!(!has_grid(curved.clone()), "not flat, without texture");
+        let from_above: Vec<Vec2> = disk(8).positions().iter().map(|at| at.truncate()).collect();
+        assert!(has_grid(curved.clone().uv(from_above.clone())), "a texture like the shape");
+        let bent_by = |steepness: f32| {
+            let up = |at: &Vec3| *at + Vec3::Z * steepness * at.x * at.x;
+            let bent = disk(8).positions().iter().map(up).collect();
+            FabricBuilder::new(bent, indices.clone()).uv(from_above.clone())
+        };
+        assert!(has_grid(bent_by(0.5)) && !has_grid(bent_by(2.0)), "a distorted texture");
+        let turned_over = from_above.iter().map(|uv| Vec2::new(uv.x.abs(), uv.y)).collect();
+        assert!(!has_grid(curved.uv(turned_over)), "a texture that shows a back");
         let doubled: Vec<Vec3> =
             disk(8).positions().iter().chain(disk(8).positions()).copied().collect();
         let count = doubled.len() as u32 / 2;

@@ -4,7 +4,6 @@ use super::source::FabricBuilder;
 use crate::fabric::error::FabricError;
 use crate::fabric::fabric::Fabric;
 use crate::fabric::mesh::RestMesh;
-use crate::fabric::weld::weld;
 
 impl FabricBuilder {
     /// Builds the fabric.
@@ -14,7 +13,7 @@ impl FabricBuilder {
     /// A [`FabricError`] names the defect of the mesh and its location.
     pub fn build(self) -> Result<Fabric, FabricError> {
         self.validate()?;
-        let welded = weld(&self.positions, self.effective_weld_distance());
+        let welded = self.weld();
         let (mesh, surface) =
             RestMesh::new(&self.positions, &self.uv, &self.indices, self.pinned, welded)?;
         Ok(Fabric::new(mesh, &surface, self.grid, self.tethered))
@@ -57,6 +56,8 @@ mod tests {
             error(&fan, &[1, 2, 0, 1, 2, 3, 1, 2, 4]),
             FabricError::NonManifoldEdge { a: 1, b: 2 }
         );
+        let late = quad().pin_where(|_, uv| uv.x == 0.0).uv(vec![Vec2::ONE; 4]).build();
+        assert_eq!(late.expect_err("pins by no uv"), FabricError::PinnedBeforeUv);
         let pinned = FabricBuilder::new(QUAD.to_vec(), vec![0, 1, 2, 1, 3, 2]).pin([4]).build();
         assert_eq!(
             pinned.expect_err("a bad pin"),

@@ -64,6 +64,11 @@ impl FabricBuilder {
             uv: finer().filter_map(|vertex| self.uv.get(vertex).copied()).collect(),
             pinned: self.pins_among(&vertices).collect(),
             weld_distance: Some(self.effective_weld_distance()),
+            merged: self
+                .merged
+                .as_ref()
+                .map(|merged| finer().map(|vertex| merged[vertex]).collect()),
+            pinned_before_uv: false,
             tethered: self.tethered,
             grid: None,
         };

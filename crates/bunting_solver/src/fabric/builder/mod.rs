@@ -1,11 +1,13 @@
-//! Building of fabrics from triangle meshes, and of coarser meshes.
+//! Building of fabrics from triangle meshes, and of coarser meshes; repair of meshes.
 
 mod build;
 mod coarser;
+mod repair;
 mod rest_normals;
 mod slivers;
 mod source;
 mod validate;
 
 pub use coarser::CoarserMesh;
+pub use repair::MeshRepair;
 pub use source::FabricBuilder;

@@ -5,7 +5,6 @@ use glam::Vec3;
 use super::source::FabricBuilder;
 use crate::fabric::error::FabricError;
 use crate::fabric::normals::vertex_normals;
-use crate::fabric::weld::weld;
 
 impl FabricBuilder {
     /// Unit normals at rest, one for each vertex, on the front side. Vertices that a fabric would merge have
@@ -16,7 +15,7 @@ impl FabricBuilder {
     /// The lists do not fit one another, or a position is not finite.
     pub fn rest_normals(&self) -> Result<Vec<Vec3>, FabricError> {
         self.validate()?;
-        let welded = weld(&self.positions, self.effective_weld_distance());
+        let welded = self.weld();
         let triangles = self.indices.chunks_exact(3).map(|corners| {
             let vertices = [corners[0], corners[1], corners[2]].map(|vertex| vertex as usize);
             let particles = vertices.map(|vertex| welded.particle_of_vertex[vertex]);

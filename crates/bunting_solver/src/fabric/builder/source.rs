@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::{Vec2, Vec3};
 
 use crate::fabric::grid::Grid;
-use crate::fabric::weld::default_distance;
+use crate::fabric::weld::{Weld, default_distance, weld};
 
 /// Collects a mesh and its pins, checks them, and builds a [`Fabric`](crate::Fabric) from them.
 ///
@@ -27,6 +27,11 @@ pub struct FabricBuilder {
     pub(super) pinned: BTreeSet<u32>,
     /// Welding distance, m; by default a fraction of the mesh's extent.
     pub(super) weld_distance: Option<f32>,
+    /// For each vertex a number that it shares with those that are merged with it; without it vertices are merged by
+    /// their distance.
+    pub(super) merged: Option<Vec<u32>>,
+    /// Whether vertices were pinned by a predicate before there were texture coordinates.
+    pub(super) pinned_before_uv: bool,
     pub(super) tethered: bool,
     /// The grid that the mesh was made from.
     pub(super) grid: Option<Grid>,
@@ -43,6 +48,8 @@ impl FabricBuilder {
             uv: Vec::new(),
             pinned: BTreeSet::new(),
             weld_distance: None,
+            merged: None,
+            pinned_before_uv: false,
             tethered: true,
             grid: None,
         }
@@ -79,9 +86,11 @@ impl FabricBuilder {
         self
     }
 
-    /// Pins the vertices for which a predicate on position (m) and texture coordinate holds.
+    /// Pins the vertices for which a predicate on position (m) and texture coordinate holds; the latter is zero for
+    /// meshes without. Set texture coordinates before: [`build`](Self::build) refuses to guess which were meant.
     #[must_use]
     pub fn pin_where(mut self, predicate: impl Fn(Vec3, Vec2) -> bool) -> Self {
+        self.pinned_before_uv |= self.uv.is_empty();
         let uv = |vertex: usize| self.uv.get(vertex).copied().unwrap_or_default();
         let chosen = (0..self.positions.len())
             .filter(|&vertex| predicate(self.positions[vertex], uv(vertex)));
@@ -90,7 +99,7 @@ impl FabricBuilder {
     }
 
     /// Sets the distance in metres at which vertices are merged into one particle; zero merges none. The
-    /// default is a millionth of the mesh's extent.
+    /// default is a millionth of the mesh's extent. After [`repair`](Self::repair) it has no effect.
     #[must_use]
     pub fn weld_distance(mut self, distance: f32) -> Self {
         self.weld_distance = Some(distance);
@@ -121,5 +130,13 @@ impl FabricBuilder {
     /// Distance in metres at which vertices are merged.
     pub(super) fn effective_weld_distance(&self) -> f32 {
         self.weld_distance.unwrap_or_else(|| default_distance(&self.positions))
+    }
+
+    /// Merges vertices into particles.
+    pub(super) fn weld(&self) -> Weld {
+        match &self.merged {
+            Some(merged) => Weld::by_number(merged),
+            None => weld(&self.positions, self.effective_weld_distance()),
+        }
     }
 }

@@ -33,6 +33,9 @@ impl FabricBuilder {
         if !self.uv.is_empty() && self.uv.len() != vertices {
             return Err(FabricError::UvCount { uvs: self.uv.len(), vertices });
         }
+        if self.pinned_before_uv && !self.uv.is_empty() {
+            return Err(FabricError::PinnedBeforeUv);
+        }
         if let Some(vertex) = self.uv.iter().position(|uv| !uv.is_finite()) {
             return Err(FabricError::UvNotFinite { vertex });
         }

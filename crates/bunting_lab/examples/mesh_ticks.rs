@@ -1,0 +1,91 @@
+//! Time of a tick of an irregular mesh beside that of the grid of as many particles, in turn: a lone cloth, and eight.
+//!
+//! ```sh
+//! cargo run --release -p bunting_lab --example mesh_ticks -- COLUMNS TICKS grid|mesh|both one|eight
+//! ```
+
+use std::{sync::Arc, time::Instant};
+
+use anyhow::{Context, Result, bail};
+use bunting_lab::{
+    meshes::{Sheet, Triangulation},
+    product::TICK,
+    scenes::GRAVITY,
+};
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, Grid, LaneCount,
+    StepLimits, StepSettings, instruction_set,
+};
+use glam::{DVec2, Vec3};
+
+/// Ticks that are timed together, so that grid and mesh meet the same load of the machine.
+const BLOCK: usize = 10;
+
+/// Cloths of one fabric in a wind, and the times of their ticks, s.
+struct Timed {
+    name: &'static str,
+    batch: ClothBatch,
+    settings: StepSettings,
+    particles: usize,
+    times: Vec<f64>,
+}
+
+impl Timed {
+    fn new(name: &'static str, fabric: Fabric, lanes: LaneCount) -> Result<Self> {
+        let fabric = Arc::new(fabric);
+        let mut batch = ClothBatch::new(Arc::clone(&fabric), lanes);
+        for cloth in 0..lanes.get() {
+            let wind = Vec3::new(6.0, 0.0, 0.9 + 0.1 * cloth as f32);
+            let lane =
+                batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::FLAG_POLYESTER)?;
+            batch.drive(lane, Drive { wind, ..Drive::default() })?;
+        }
+        let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY as f32);
+        let particles = fabric.particle_count() * lanes.get();
+        Ok(Self { name, batch, settings, particles, times: Vec::new() })
+    }
+
+    fn run_block(&mut self) {
+        let start = Instant::now();
+        (0..BLOCK).for_each(|_| self.batch.step(TICK, self.settings));
+        self.times.push(start.elapsed().as_secs_f64() / BLOCK as f64);
+    }
+
+    /// Prints the least time of a tick in any block: what else runs on the machine only adds to it.
+    fn print(&self) {
+        let least = self.times.iter().copied().fold(f64::INFINITY, f64::min);
+        println!(
+            "{}: {:.1} µs, {:.1} ns a particle at {} × {}",
+            self.name,
+            least * 1e6,
+            least * 1e9 / self.particles as f64,
+            self.settings.substeps,
+            self.settings.passes,
+        );
+    }
+}
+
+fn main() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [columns, ticks, kinds, lanes] = &arguments[..] else {
+        bail!("COLUMNS TICKS grid|mesh|both one|eight")
+    };
+    let n: usize = columns.parse().context("COLUMNS")?;
+    let lanes = if lanes == "one" { LaneCount::One } else { LaneCount::Eight };
+    let mut timed = Vec::new();
+    if kinds != "mesh" {
+        let grid = FabricBuilder::grid(Grid::new(n as u32, n as u32, 1.0, 1.0));
+        timed.push(Timed::new("grid", grid.pin_where(|at, _| at.x == 0.0).build()?, lanes)?);
+    }
+    if kinds != "grid" {
+        let sheet = Sheet::new(Triangulation::Delaunay, [n, n], DVec2::ONE, 1);
+        let mesh = FabricBuilder::new(sheet.positions, sheet.indices);
+        timed.push(Timed::new("mesh", mesh.pin_where(|at, _| at.x == 0.0).build()?, lanes)?);
+    }
+    for _ in 0..ticks.parse::<usize>().context("TICKS")?.div_ceil(BLOCK) {
+        timed.iter_mut().for_each(Timed::run_block);
+    }
+    println!("{}", instruction_set());
+    timed.iter().for_each(Timed::print);
+    Ok(())
+}
