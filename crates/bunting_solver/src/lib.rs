@@ -82,6 +82,7 @@ pub use fabric::{
     CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link, LinkFamily,
 };
 pub use simd::level::{instruction_set, with_every_instruction_set};
+pub use step::effort::{Effort, EffortCause, EffortClass, Loads};
 pub use step::frame::FrameMotion;
 pub use step::limits::StepLimits;
 pub use step::{Drive, Scheme, StepSettings};
