@@ -3,6 +3,7 @@
 mod any_order;
 mod attachment;
 mod determinism;
+mod effort;
 mod environment;
 mod errors;
 mod first_hour;
