@@ -42,6 +42,9 @@ pub(crate) struct Probe {
 /// tick takes longer.
 const MOST_PROBES: usize = 128;
 
+/// Least distance of two [`Probe`]s in the list of links: of small cloths, which are many, every third link is enough.
+const LEAST_PROBE_DISTANCE: usize = 3;
+
 /// The direction of a link in the cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LinkFamily {
@@ -184,7 +187,7 @@ impl Links {
         let straight: Vec<&Link> =
             self.list.iter().filter(|link| link.family != LinkFamily::Diagonal).collect();
         // An odd distance, so that rows of an even number of links are not met at the same column.
-        let distance = straight.len().div_ceil(MOST_PROBES) | 1;
+        let distance = straight.len().div_ceil(MOST_PROBES).max(LEAST_PROBE_DISTANCE) | 1;
         let probe = |link: &&Link| Probe {
             particles: link.particles,
             inverse_length_squared: 1.0 / (link.rest_length * link.rest_length),
