@@ -4,6 +4,7 @@ mod any_order;
 mod attachment;
 mod broad_phase;
 mod determinism;
+mod effort;
 mod environment;
 mod errors;
 mod first_hour;

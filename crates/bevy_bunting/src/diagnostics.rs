@@ -46,6 +46,9 @@ impl ClothDiagnosticsPlugin {
     /// Number of cloths that are coarser than their error demands because the budget is spent.
     pub const HELD_BACK: DiagnosticPath = DiagnosticPath::const_new("cloth/held_back");
 
+    /// Number of cloths that take more substeps than their weight needs.
+    pub const RAISED: DiagnosticPath = DiagnosticPath::const_new("cloth/raised_effort");
+
     /// Number of cloths that sleep.
     pub const ASLEEP: DiagnosticPath = DiagnosticPath::const_new("cloth/asleep");
 }
@@ -57,6 +60,7 @@ impl Plugin for ClothDiagnosticsPlugin {
             .register_diagnostic(Diagnostic::new(Self::EXPECTED).with_suffix("ms"))
             .register_diagnostic(Diagnostic::new(Self::SWITCHES))
             .register_diagnostic(Diagnostic::new(Self::HELD_BACK))
+            .register_diagnostic(Diagnostic::new(Self::RAISED))
             .register_diagnostic(Diagnostic::new(Self::ASLEEP));
         for path in Self::SETS {
             app.register_diagnostic(Diagnostic::new(path).with_suffix("ms"));
@@ -88,5 +92,6 @@ fn report_choice(mut diagnostics: Diagnostics, report: Res<LodReport>) {
     diagnostics.add_measurement(&Paths::EXPECTED, || report.expected.as_secs_f64() * 1e3);
     diagnostics.add_measurement(&Paths::SWITCHES, || report.switches as f64);
     diagnostics.add_measurement(&Paths::HELD_BACK, || report.held_back as f64);
+    diagnostics.add_measurement(&Paths::RAISED, || report.raised() as f64);
     diagnostics.add_measurement(&Paths::ASLEEP, || report.asleep() as f64);
 }

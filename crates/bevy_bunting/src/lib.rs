@@ -137,6 +137,7 @@ pub use environment::wind::{GustTravel, TickWind, WindField, WindPlugin};
 pub use fabric::prepare::PreparePlugin;
 pub use lod::budget::{ClothBudget, LodCosts};
 pub use lod::cost_table::CostTable;
+pub use lod::effort::ClothEffort;
 pub use lod::lod_set::{LodChoice, LodSet};
 pub use lod::report::{ClothCounts, LodReport};
 pub use lod::select::LodPlugin;

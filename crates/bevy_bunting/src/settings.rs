@@ -15,8 +15,8 @@ pub struct ClothSettings {
     /// Density of the air, kg/m³; 1.225 at sea level.
     pub air_density: f32,
     /// Limits of substeps and passes at each level of detail, the finest level first; the last entry also
-    /// holds for all coarser levels. Within these limits each fabric's number of substeps follows from
-    /// gravity, its length and its spacing.
+    /// holds for all coarser levels. Within these limits each cloth's number of substeps follows from
+    /// gravity, its length and its spacing, and from what acts on it, see [`ClothEffort`](crate::ClothEffort).
     #[reflect(ignore)]
     pub steps: Vec<StepLimits>,
     /// Number of lanes in each batch. By default it follows from the number of cloths and the instruction

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-use crate::commands::{budget, gate, lod, memory, oracles, pareto, report, schedule, stability};
+use crate::commands::{
+    budget, effort, gate, lod, memory, oracles, pareto, report, schedule, stability,
+};
 use crate::output::Outcome;
 
 /// Measures the cloth against references.
@@ -36,6 +38,8 @@ enum Command {
     Budget,
     /// Agreement of the levels of detail, and the jumps between them.
     Lod,
+    /// Substeps by need beside fixed ones, in winds from light to storm.
+    Effort,
     /// Bytes of a chain of levels and of batches.
     Memory,
     /// The hard cases.
@@ -63,6 +67,7 @@ impl Arguments {
             Command::Peers => peers(self.quick)?,
             Command::Schedule => schedule::run(self.quick),
             Command::Budget => budget::run(self.quick),
+            Command::Effort => effort::run(self.quick),
             Command::Memory => memory::run(),
             Command::Oracles => oracles::run(),
             Command::Stability => stability::run(self.quick),

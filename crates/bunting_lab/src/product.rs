@@ -7,12 +7,13 @@ use std::{fmt, sync::Arc};
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, Grid,
-    LaneCount, Scheme, StepSettings,
+    LaneCount, Scheme, StepLimits, StepSettings,
 };
 use glam::{DVec3, Vec3};
 
 use crate::{
     contender::Contender,
+    need::Need,
     scenes::{self, Scene, TICK_RATE},
     simulation::Simulation,
     specimen::Specimen,
@@ -154,6 +155,8 @@ pub struct Cloth {
     pub drive: Drive,
     /// Whether normals are computed at the end of a tick.
     pub normals: bool,
+    /// Chooses the substeps of each tick for the cloth that is measured; none where the settings hold.
+    pub need: Option<Need>,
     scene: Scene,
     seconds: f64,
     positions: Vec<Vec3>,
@@ -172,7 +175,17 @@ impl Cloth {
         let gravity = Vec3::new(0.0, -scene.gravity as f32, 0.0);
         let drive = Drive { gravity, air_density: AIR_DENSITY, ..Drive::NONE };
         let scene = scene.clone();
-        Self { batch, settings, drive, normals: true, scene, seconds: 0.0, positions, velocities }
+        Self {
+            batch,
+            settings,
+            drive,
+            normals: true,
+            need: None,
+            scene,
+            seconds: 0.0,
+            positions,
+            velocities,
+        }
     }
 
     /// Advances by some seconds, in one tick of that length.
@@ -181,6 +194,9 @@ impl Cloth {
         let drive = Drive { wind: self.scene.air.wind_at(middle).as_vec3(), ..self.drive };
         for lane in 0..self.batch.lane_count() {
             self.batch.drive(lane, drive).expect("a good drive");
+        }
+        if let Some(need) = &mut self.need {
+            self.settings = need.settings(self.batch.fabric(), &drive, tick);
         }
         self.batch.begin_tick(tick, self.settings);
         for _ in 0..self.settings.substeps {
@@ -192,7 +208,18 @@ impl Cloth {
             self.batch.compute_normals();
         }
         self.seconds += f64::from(tick);
+        let before = self.need.is_some().then(|| self.positions.clone());
         self.look();
+        if let (Some(need), Some(before)) = (&mut self.need, &before) {
+            let moved = [before, self.positions.as_slice()];
+            need.note(self.batch.fabric(), &material(&self.scene), &drive, moved, tick);
+        }
+    }
+
+    /// The cloth with substeps by need.
+    #[must_use]
+    pub fn by_need(self, limits: StepLimits) -> Self {
+        Self { need: Some(Need::within(limits)), ..self }
     }
 
     /// Overwrites the state of every lane.

@@ -83,6 +83,7 @@ pub use fabric::{
     MeshRepair,
 };
 pub use simd::level::{instruction_set, with_every_instruction_set};
+pub use step::effort::{Effort, EffortCause, EffortClass, Loads};
 pub use step::frame::FrameMotion;
 pub use step::limits::StepLimits;
 pub use step::{Drive, Scheme, StepSettings};

@@ -83,6 +83,9 @@ fn a_flag_among_different_ones_flies_as_it_does_alone() {
 #[test]
 fn cloths_begin_within_the_budget() {
     let mut app = app();
+    // Substeps by need rise at once, and levels give way in the ticks after: `effort.rs`.
+    let fixed = [2, 1].map(|substeps| StepSettings { passes: 2, ..StepSettings::yarns(substeps) });
+    app.world_mut().resource_mut::<ClothSettings>().steps = fixed.map(StepLimits::from).into();
     let flags = spawn_flags(&mut app);
     let budget = app.world().resource::<ClothBudget>().tick;
     for tick in 0..2 * FLAGS {

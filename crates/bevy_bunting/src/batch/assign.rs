@@ -5,9 +5,11 @@ use bevy_ecs::prelude::*;
 use bevy_time::Time;
 
 use crate::batch::batches::ClothBatches;
+use crate::batch::lane_handle::LaneHandle;
 use crate::batch::occupancy::PendingCloth;
 use crate::cloth::activity::{ClothActivity, ClothPaused};
 use crate::cloth::instance::{ClothInstance, StateStorage};
+use crate::lod::effort::ClothEffort;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
 
@@ -40,10 +42,10 @@ fn mark_resumed(resumed: On<Remove, ClothPaused>, mut cloths: Query<&mut ClothIn
 }
 
 /// Moves snapshots of simulated cloths into lanes, and states of paused and sleeping cloths out of lanes.
-/// When the settings or the length of a tick change, all cloths are assigned again, as their numbers of
-/// substeps may differ.
+/// A cloth whose class of effort has changed moves to a batch of other substeps. When the settings or the length of a
+/// tick change, all cloths are assigned again, as their numbers of substeps may differ.
 pub(crate) fn assign_lanes(
-    mut cloths: Query<(Entity, &mut ClothInstance, Has<ClothPaused>)>,
+    mut cloths: Query<(Entity, &mut ClothInstance, &mut ClothEffort, Has<ClothPaused>)>,
     settings: Res<ClothSettings>,
     time: Res<Time>,
     mut last_tick: Local<f32>,
@@ -53,27 +55,29 @@ pub(crate) fn assign_lanes(
     let reassign_all = settings.is_changed() || tick != *last_tick;
     *last_tick = tick;
     let gravity = settings.gravity.length();
-    for (entity, mut instance, paused) in &mut cloths {
+    for (entity, mut instance, mut effort, paused) in &mut cloths {
         if !instance.is_changed() && !reassign_all {
             continue;
         }
         let is_still = paused || instance.activity != ClothActivity::Ticking;
-        if instance.lane().is_some() && (is_still || reassign_all) {
+        let Some(fabric) = instance.fabric().cloned() else { continue };
+        let limits = settings.limits(instance.level);
+        let steps = limits.of_fabric(&fabric, tick, effort.class().acceleration(gravity));
+        let moves = |lane: LaneHandle| is_still || reassign_all || batches.settings(lane) != steps;
+        if instance.lane().is_some_and(moves) {
             instance.leave_lane(&mut batches);
         }
         if is_still || instance.snapshot().is_none() {
             continue;
         }
-        if let (Some(fabric), StateStorage::Snapshot(snapshot)) =
-            (instance.fabric().cloned(), core::mem::take(&mut instance.storage))
-        {
+        if let StateStorage::Snapshot(snapshot) = core::mem::take(&mut instance.storage) {
             let pending = PendingCloth { entity, fabric: 0, snapshot, material: instance.material };
-            let limits = settings.limits(instance.level);
-            batches.add(&fabric, limits.of_fabric(&fabric, tick, gravity), pending);
+            effort.settings = steps;
+            batches.add(&fabric, steps, pending);
         }
     }
     batches.assign_lanes(settings.lanes, |entity, lane| {
-        if let Ok((_, mut instance, _)) = cloths.get_mut(entity) {
+        if let Ok((_, mut instance, ..)) = cloths.get_mut(entity) {
             // A new lane must not mark the cloth as changed, since it depends on other cloths.
             let instance = instance.bypass_change_detection();
             instance.storage = StateStorage::Lane(lane);

@@ -85,6 +85,11 @@ impl ClothBatches {
         self.groups[index].add(fabric, cloth);
     }
 
+    /// Settings of the cloth in a lane.
+    pub(crate) fn settings(&self, lane: LaneHandle) -> StepSettings {
+        self.groups[lane.group].settings
+    }
+
     /// State in a lane, if the lane holds another cloth than `cloth`.
     pub(crate) fn state_of_other(&self, lane: LaneHandle, cloth: Entity) -> Option<ClothSnapshot> {
         let batch = self.groups.get(lane.group)?.batches.get(lane.batch)?;

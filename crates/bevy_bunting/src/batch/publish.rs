@@ -2,12 +2,14 @@
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
+use bevy_time::Time;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
+use crate::lod::effort::ClothEffort;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// Publishes the state of cloths.
@@ -45,19 +47,20 @@ fn stop_states(mut cloths: Query<(&ClothInstance, &mut ClothState), Changed<Clot
 /// Copies surfaces batch by batch, as the lanes of a batch lie side by side in memory. Each surface
 /// overwrites the one before the last tick, so that nothing is allocated.
 fn publish_states(
-    mut cloths: Query<&mut ClothState>,
+    mut cloths: Query<(&mut ClothState, &mut ClothEffort)>,
     mut batches: ResMut<ClothBatches>,
     mut diverged: ResMut<Diverged>,
+    time: Res<Time>,
 ) {
     for (entity, surface) in batches.surfaces() {
-        if let Ok(mut state) = cloths.get_mut(entity) {
+        if let Ok((mut state, _)) = cloths.get_mut(entity) {
             surface.positions = core::mem::take(&mut state.previous_positions);
             surface.normals = core::mem::take(&mut state.previous_normals);
         }
     }
     batches.copy_surfaces();
     for (entity, surface) in batches.surfaces() {
-        if let Ok(mut state) = cloths.get_mut(entity) {
+        if let Ok((mut state, mut effort)) = cloths.get_mut(entity) {
             let state = &mut *state;
             let positions = core::mem::take(&mut surface.positions);
             let normals = core::mem::take(&mut surface.normals);
@@ -65,6 +68,7 @@ fn publish_states(
             state.previous_normals = core::mem::replace(&mut state.normals, normals);
             state.blend();
             state.moved = true;
+            effort.note_motion(state.turning_load(time.delta_secs()));
             if !surface.is_finite {
                 diverged.0.push(entity);
             }

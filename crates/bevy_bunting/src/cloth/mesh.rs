@@ -9,6 +9,7 @@ use bunting_solver::{FabricBuilder, Grid};
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::material::ClothMaterial;
 use crate::cloth::state::ClothState;
+use crate::lod::effort::ClothEffort;
 use crate::lod::lod_set::LodSet;
 use crate::lod::record::{LodRecord, RestTimer};
 use crate::motion::pose::PoseHistory;
@@ -29,6 +30,7 @@ use crate::motion::pose::PoseHistory;
     LodSet,
     ClothState,
     ClothInstance,
+    ClothEffort,
     LodRecord,
     RestTimer,
     PoseHistory

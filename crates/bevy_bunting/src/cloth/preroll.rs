@@ -9,7 +9,8 @@ use bevy_reflect::std_traits::ReflectDefault;
 use bevy_time::Time;
 use bevy_transform::helper::TransformHelper;
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, FrameMotion, LaneCount, StepSettings,
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, FrameMotion, LaneCount, Loads,
+    StepSettings,
 };
 
 use crate::background::Background;
@@ -171,18 +172,21 @@ fn begin_prerolls(
         let frame = frame_of(entity, attachment, &transforms).unwrap_or_default();
         let inverse = frame.rotation.inverse();
         let seconds = if preroll.seconds.is_finite() { preroll.seconds } else { 0.0 };
-        let limits = settings.limits(instance.level);
+        let drive = Drive {
+            motion: FrameMotion::NONE,
+            gravity: inverse * settings.gravity,
+            wind: inverse * wind.at(frame * instance.rest_middle),
+            air_density: settings.air_density,
+        };
+        let air = Loads::of_air(&drive, &instance.material, tick);
+        let (class, _) = Loads { air, ..Loads::default() }.class();
+        let acceleration = class.acceleration(settings.gravity.length());
         let preroll = Preroll {
-            settings: limits.of_fabric(&fabric, tick, settings.gravity.length()),
+            settings: settings.limits(instance.level).of_fabric(&fabric, tick, acceleration),
             fabric,
             state: snapshot,
             material: instance.material,
-            drive: Drive {
-                motion: FrameMotion::NONE,
-                gravity: inverse * settings.gravity,
-                wind: inverse * wind.at(frame * instance.rest_middle),
-                air_density: settings.air_density,
-            },
+            drive,
             tick,
             ticks: (seconds.clamp(0.0, LONGEST) / tick) as u32,
         };

@@ -3,11 +3,13 @@
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
-use bunting_solver::{Drive, FrameMotion};
+use bevy_time::Time;
+use bunting_solver::{Drive, FrameMotion, Loads};
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::environment::wind::TickWind;
+use crate::lod::effort::ClothEffort;
 use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
@@ -25,27 +27,36 @@ impl Plugin for DrivePlugin {
 /// Sets frame motion, gravity and wind. Gravity and wind are rotated from the world's axes to those of the
 /// cloth's frame at the end of the tick.
 pub(crate) fn drive_cloths(
-    mut cloths: Query<(&mut ClothInstance, &PoseHistory)>,
+    mut cloths: Query<(&mut ClothInstance, &PoseHistory, &mut ClothEffort)>,
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
+    time: Res<Time>,
     mut batches: ResMut<ClothBatches>,
 ) {
     let (gravity, air_density) = gravity_and_air(&settings);
-    for (mut instance, frame) in &mut cloths {
+    for (mut instance, frame, mut effort) in &mut cloths {
         let Some(lane) = instance.lane() else { continue };
-        let (start, end) = (frame.start(), frame.end());
+        let end = frame.end();
         let inverse = end.rotation.inverse();
         let gravity = inverse * gravity;
         // Gravity is written in every tick, which must not mark the cloth as changed.
         instance.bypass_change_detection().gravity = gravity;
         let middle = end * instance.rest_middle;
-        batches.lane(lane).drive(Drive {
-            motion: FrameMotion::between(pose_parts(start), pose_parts(end)),
+        let drive = Drive {
+            motion: frame_motion(frame),
             gravity,
             wind: inverse * wind.at(middle),
             air_density,
-        });
+        };
+        let air = Loads::of_air(&drive, &instance.material, time.delta_secs());
+        effort.note_drive(drive.motion, air);
+        batches.lane(lane).drive(drive);
     }
+}
+
+/// Motion of a frame in this tick.
+pub(crate) fn frame_motion(frame: &PoseHistory) -> FrameMotion {
+    FrameMotion::between(pose_parts(frame.start()), pose_parts(frame.end()))
 }
 
 /// Gravity (m/s²) and the density of the air (kg/m³). A value that is not finite, or a negative density,

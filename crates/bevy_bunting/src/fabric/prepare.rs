@@ -254,7 +254,7 @@ impl CutClothItem<'_, '_> {
 }
 
 /// Changes materials from this tick on. An invalid material is reported, and the last valid one is kept.
-fn change_materials(
+pub(crate) fn change_materials(
     mut cloths: Query<(Entity, &ClothMaterial, &mut ClothInstance), Changed<ClothMaterial>>,
     mut batches: ResMut<ClothBatches>,
     mut commands: Commands,

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Weak};
 
-use bunting_solver::{Fabric, LaneCount, Scheme, StepSettings, instruction_set};
+use bunting_solver::{EffortClass, Fabric, LaneCount, Scheme, StepSettings, instruction_set};
 
 use crate::fabric::levels::ClothLevels;
 use crate::lod::batch_costs::BatchCosts;
@@ -28,7 +28,7 @@ struct Work {
     pool: Option<u32>,
 }
 
-/// One table for each [`ClothLevels`] in use.
+/// One table for each [`ClothLevels`] in use and each class of effort of its cloths.
 #[derive(Debug, Default)]
 pub(crate) struct LevelTables {
     /// Work of each level; empty while it is unknown.
@@ -37,7 +37,7 @@ pub(crate) struct LevelTables {
     tick: f32,
     /// Costs of each kind of work in this tick.
     costs: Vec<(Work, BatchCosts)>,
-    levels: Vec<Weak<ClothLevels>>,
+    levels: Vec<(Weak<ClothLevels>, EffortClass)>,
     /// Number of particles at each level.
     particles: Vec<Vec<usize>>,
     /// Greatest distance of any particle from the middle one, m.
@@ -47,24 +47,25 @@ pub(crate) struct LevelTables {
 }
 
 impl LevelTables {
-    /// Index of the table of a cloth with these levels. A missing table is added.
-    pub fn index_of(&mut self, levels: &Arc<ClothLevels>) -> usize {
-        let is_same =
-            |known: &Weak<ClothLevels>| core::ptr::eq(known.as_ptr(), Arc::as_ptr(levels));
+    /// Index of the table of a cloth with these levels in a class of effort. A missing table is added.
+    pub fn index_of(&mut self, levels: &Arc<ClothLevels>, class: EffortClass) -> usize {
+        let is_same = |known: &(Weak<ClothLevels>, EffortClass)| {
+            core::ptr::eq(known.0.as_ptr(), Arc::as_ptr(levels)) && known.1 == class
+        };
         if let Some(known) = self.levels.iter().position(is_same) {
             return known;
         }
         let fabrics = || (0..levels.count()).map(|level| levels.fabric(level));
-        let unused = self.levels.iter().position(|known| known.strong_count() == 0);
+        let unused = self.levels.iter().position(|known| known.0.strong_count() == 0);
         let index = unused.unwrap_or(self.tables.len());
         if unused.is_none() {
-            self.levels.push(Weak::new());
+            self.levels.push((Weak::new(), class));
             self.work.push(Vec::new());
             self.particles.push(Vec::new());
             self.radii.push(0.0);
             self.tables.push(LevelTable::default());
         }
-        self.levels[index] = Arc::downgrade(levels);
+        self.levels[index] = (Arc::downgrade(levels), class);
         self.work[index].clear();
         self.particles[index] = fabrics().map(|fabric| fabric.particle_count()).collect();
         // The middle particle may differ from level to level.
@@ -124,14 +125,15 @@ impl LevelTables {
         }
         let gravity = settings.gravity.length();
         let mut is_new = false;
-        for (levels, work) in self.levels.iter().zip(&mut self.work) {
+        for ((levels, class), work) in self.levels.iter().zip(&mut self.work) {
             if !work.is_empty() {
                 continue;
             }
             let Some(levels) = levels.upgrade() else { continue };
             let work_of = |level: usize| {
                 let fabric = levels.fabric(level);
-                let step = settings.limits(level).of_fabric(fabric, tick, gravity);
+                let step =
+                    settings.limits(level).of_fabric(fabric, tick, class.acceleration(gravity));
                 let most_single = match settings.lanes {
                     None => LaneCount::most_alone(fabric, step.scheme) as u32,
                     Some(_) => 0,
@@ -152,7 +154,7 @@ impl LevelTables {
         let mut pools: Vec<(u64, StepSettings, u32)> = Vec::new();
         for numbers in [false, true] {
             let in_use = self.levels.iter().zip(&mut self.work);
-            let in_use = in_use.filter(|(levels, _)| levels.strong_count() > 0);
+            let in_use = in_use.filter(|((levels, _), _)| levels.strong_count() > 0);
             for work in in_use.flat_map(|(_, work)| work) {
                 let Some(topology) = work.topology else { continue };
                 let is_of =

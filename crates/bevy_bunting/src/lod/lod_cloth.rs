@@ -9,6 +9,7 @@ use crate::cloth::activity::{ClothActivity, ClothPaused};
 use crate::cloth::events::ClothLevelChanged;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
+use crate::lod::effort::ClothEffort;
 use crate::lod::lod_set::LodSet;
 use crate::lod::record::LodRecord;
 use crate::lod::view::{Sight, Sighting, View};
@@ -30,11 +31,20 @@ pub(crate) struct LodCloth {
     pub frame: &'static PoseHistory,
     pub instance: &'static mut ClothInstance,
     pub state: &'static mut ClothState,
+    pub effort: &'static mut ClothEffort,
     pub record: &'static mut LodRecord,
     pub paused: Has<ClothPaused>,
 }
 
 impl LodClothItem<'_, '_> {
+    /// Chooses the class of effort for a tick of `tick` seconds. A change of class marks the cloth as changed.
+    pub fn update_effort(&mut self, tick: f32) {
+        let is_simulated = self.instance.activity == ClothActivity::Ticking && !self.paused;
+        if is_simulated && self.effort.update(&self.instance, self.frame, tick) {
+            self.instance.set_changed();
+        }
+    }
+
     /// Changes the level in tick `now`. A cloth on no screen becomes coarser without conserving momentum and
     /// energy, which is faster.
     pub fn change_level(

@@ -5,6 +5,7 @@ pub mod budget;
 pub mod candidate;
 pub mod cost_model;
 pub mod cost_table;
+pub mod effort;
 pub mod error;
 pub mod governor;
 pub mod level_counts;

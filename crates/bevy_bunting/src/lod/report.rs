@@ -5,6 +5,7 @@ use core::time::Duration;
 use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
+use bunting_solver::EffortClass;
 
 use crate::cloth::activity::ClothActivity;
 
@@ -20,6 +21,8 @@ pub struct LodReport {
     pub switches: usize,
     /// Number of cloths that are coarser than their error demands because the budget is spent.
     pub held_back: usize,
+    /// Number of simulated cloths by class of effort, see [`ClothEffort`](crate::ClothEffort), the least first.
+    pub efforts: [usize; EffortClass::COUNT],
     /// Number of cloths that sleep because they are outside of every viewer's picture.
     pub off_screen: usize,
     /// Number of cloths that sleep because they are out of every viewer's range.
@@ -35,6 +38,12 @@ impl LodReport {
     #[must_use]
     pub fn asleep(&self) -> usize {
         self.off_screen + self.out_of_range + self.hidden + self.at_rest
+    }
+
+    /// Number of cloths that take more substeps than their weight needs.
+    #[must_use]
+    pub fn raised(&self) -> usize {
+        self.efforts.iter().skip(1).sum()
     }
 
     pub(crate) fn count(&mut self, activity: ClothActivity) {

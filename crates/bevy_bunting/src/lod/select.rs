@@ -117,7 +117,9 @@ pub(crate) fn select_levels(
     selector.begin_tick();
     *report = LodReport::default();
     counts.0.fill(0);
+    let tick = conditions.time.delta_secs();
     for mut cloth in &mut cloths {
+        cloth.update_effort(tick);
         if selector.is_due(&cloth, &examination.views) {
             selector.examine(&mut cloth, &examination, &mut batches, &mut commands);
         }
@@ -231,7 +233,7 @@ impl LevelSelector {
     ) {
         cloth.record.candidate = None;
         let Some(levels) = &cloth.instance.levels else { return };
-        let table = self.tables.index_of(levels);
+        let table = self.tables.index_of(levels, cloth.effort.class());
         if !cloth.record.is_of(levels) {
             let radius = self.tables.radius(table);
             // The record starts so that the first change need not wait.
@@ -335,6 +337,7 @@ impl LevelSelector {
             self.candidates.push(Candidate { ready, fresh, ..candidate });
             self.entities.push(cloth.entity);
             counts.add(candidate.level as usize);
+            report.efforts[cloth.effort.class().index()] += 1;
         } else if cloth.record.activity != ClothActivity::Ticking {
             report.count(cloth.record.activity);
         } else if cloth.paused && cloth.instance.levels.is_some() {

@@ -7,6 +7,7 @@ use bevy_transform::TransformSystems;
 use bevy_transform::systems::{propagate_parent_transforms, sync_simple_transforms};
 
 use crate::environment::drive::drive_cloths;
+use crate::fabric::prepare::change_materials;
 use crate::motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
 use crate::motion::follow::{follow_targets, stop_following};
 use crate::motion::lead::lead_pins;
@@ -36,9 +37,10 @@ impl Plugin for AttachmentPlugin {
             .add_systems(
                 ClothTick,
                 (
-                    follow_targets.in_set(ClothSystems::Prepare),
-                    observe_ticks.in_set(ClothSystems::Drive).before(drive_cloths),
-                    lead_pins.in_set(ClothSystems::Drive).after(observe_ticks).before(drive_cloths),
+                    (follow_targets.after(change_materials), observe_ticks)
+                        .chain()
+                        .in_set(ClothSystems::Prepare),
+                    lead_pins.in_set(ClothSystems::Drive).before(drive_cloths),
                     place_cloths.in_set(ClothSystems::Publish),
                 ),
             )

@@ -8,16 +8,17 @@ use bevy_ecs::prelude::*;
 use bevy_gizmos::AppGizmoBuilder;
 use bevy_gizmos::config::GizmoConfigGroup;
 use bevy_gizmos::gizmos::Gizmos;
-use bevy_math::Isometry3d;
+use bevy_math::{Isometry3d, Vec3};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::TransformSystems;
 use bevy_transform::components::GlobalTransform;
-use bunting_solver::LinkFamily;
+use bunting_solver::{EffortCause, LinkFamily};
 
 use crate::cloth::state::ClothState;
 use crate::display::surface::ClothSurface;
 use crate::environment::wind::TickWind;
+use crate::lod::effort::ClothEffort;
 
 /// Half the size of the cross on an attached particle, m.
 const CROSS: f32 = 0.02;
@@ -27,6 +28,9 @@ const FULL_STRAIN: f32 = 0.01;
 
 /// Time that the air takes to move by the length of its arrow, s.
 const ARROW_TIME: f32 = 0.1;
+
+/// Length of a stroke for each pass, and distance of two strokes, m.
+const STROKE: [f32; 2] = [0.05, 0.02];
 
 /// Colours of the levels of detail, the finest first; the last holds for all coarser ones.
 const LEVEL_COLOURS: [Srgba; 4] = [LIME, YELLOW, ORANGE, RED];
@@ -46,11 +50,15 @@ pub struct ClothGizmos {
     /// Warp and weft links in the colour of the level of detail: green is the finest, then yellow, orange and
     /// red.
     pub levels: bool,
+    /// A stroke for each substep of a tick, above the cloth's first particle, as many times 5 cm long as there are passes.
+    /// The colour tells what needs them: white for weight, aqua for air, orange for the frame, red for motion.
+    pub effort: bool,
 }
 
 impl ClothGizmos {
     /// All gizmos are drawn.
-    pub const ALL: Self = Self { attachments: true, strain: true, wind: true, levels: true };
+    pub const ALL: Self =
+        Self { attachments: true, strain: true, wind: true, levels: true, effort: true };
 }
 
 /// Draws [`ClothGizmos`] of visible cloths. Needs Bevy's `GizmoPlugin`, and
@@ -72,6 +80,7 @@ impl Plugin for ClothDebugPlugin {
 type DrawnCloth = (
     &'static ClothState,
     &'static ClothSurface,
+    &'static ClothEffort,
     &'static GlobalTransform,
     &'static ViewVisibility,
     Option<&'static ClothGizmos>,
@@ -82,7 +91,7 @@ fn draw_cloths(
     wind: Option<Res<TickWind>>,
     mut gizmos: Gizmos<ClothGizmos>,
 ) {
-    for (state, surface, frame, visibility, own) in &cloths {
+    for (state, surface, effort, frame, visibility, own) in &cloths {
         let drawn = *own.unwrap_or(gizmos.config_ext);
         let Some(fabric) = state.fabric() else { continue };
         if !visibility.get() || surface.positions.len() != fabric.particle_count() {
@@ -108,10 +117,29 @@ fn draw_cloths(
                 gizmos.cross(Isometry3d::from_translation(position(particle)), CROSS, MAGENTA);
             }
         }
+        if drawn.effort {
+            draw_effort(effort, position(0), &mut gizmos);
+        }
         if let (true, Some(wind)) = (drawn.wind, &wind) {
             let middle = position(fabric.particle_count() / 2);
             gizmos.arrow(middle, middle + ARROW_TIME * wind.at(middle), AQUA);
         }
+    }
+}
+
+/// Draws a stroke for each substep above a position, m.
+fn draw_effort(effort: &ClothEffort, at: Vec3, gizmos: &mut Gizmos<ClothGizmos>) {
+    let colour = match effort.cause() {
+        EffortCause::Weight => WHITE,
+        EffortCause::Air => AQUA,
+        EffortCause::Frame => ORANGE,
+        EffortCause::Motion => RED,
+    };
+    let [of_pass, apart] = STROKE;
+    let settings = effort.settings();
+    for substep in 1..=settings.substeps {
+        let from = at + Vec3::Y * (apart * substep as f32);
+        gizmos.line(from, from + Vec3::X * (of_pass * settings.passes as f32), colour);
     }
 }
 

@@ -3,6 +3,7 @@
 pub mod ablation;
 pub mod budget;
 pub mod differences;
+pub mod effort;
 pub mod families;
 pub mod gate;
 pub mod lod;

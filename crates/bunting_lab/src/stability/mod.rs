@@ -10,6 +10,7 @@ mod motion;
 mod rig;
 mod sleep;
 mod soundness;
+mod storms;
 mod sweeps;
 mod touch;
 mod weather;
@@ -20,10 +21,11 @@ pub use case::{HardCase, Status};
 pub type Family = fn(quick: bool) -> Vec<HardCase>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 8] = [
+pub const ALL: [(&str, Family); 9] = [
     ("sweeps of size, passes and rate", sweeps::cases),
     ("motion of pins and frames", motion::cases),
     ("wind and weight", weather::cases),
+    ("storms and fast vehicles", storms::cases),
     ("crumpled and degenerate", crumple::cases),
     ("levels, lanes and input", levels::cases),
     ("colliders", touch::cases),

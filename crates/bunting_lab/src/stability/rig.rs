@@ -1,5 +1,7 @@
 //! Settings and measurements that the hard cases share.
 
+use bunting_solver::StepLimits;
+
 use crate::{
     product::{Cloth, DEFAULT, Product},
     reference::grid::Grid,
@@ -14,9 +16,14 @@ pub const REACH: f64 = 1.6;
 /// Largest 95th percentile of strain of a cloth that has recovered, %.
 pub const RECOVERED: f64 = 1.0;
 
-/// One cloth of the product on a scene.
+/// One cloth of the product on a scene, with default limits, substeps by need.
 pub fn start(scene: &Scene) -> Cloth {
-    Product::lone(DEFAULT).start(scene)
+    start_within(scene, StepLimits::default())
+}
+
+/// One cloth of the product on a scene, with substeps by need within limits.
+pub fn start_within(scene: &Scene, limits: StepLimits) -> Cloth {
+    Product::lone(DEFAULT).start(scene).by_need(limits)
 }
 
 /// Strain of warp and weft.

@@ -10,7 +10,7 @@ use super::chains::Chains;
 use super::colour::Colours;
 use super::grid::Grid;
 use super::hinges::{Hinge, HingeClass, Hinges};
-use super::links::{Link, LinkClass, Links};
+use super::links::{Link, LinkClass, Links, Probe};
 use super::material::FabricMaterial;
 use super::mesh::{RestMesh, Surface};
 use super::normals::vertex_normals;
@@ -40,6 +40,8 @@ pub struct Fabric {
     twist: Twist,
     tethers: Tethers,
     tautness: f32,
+    shortest: f32,
+    probes: Vec<Probe>,
     pub(super) topology: Option<u64>,
     background: Option<Background>,
 }
@@ -94,6 +96,8 @@ impl Fabric {
         let mut fabric = Self {
             patch_grid_columns: cells.map(|grid| grid.columns as usize),
             tautness: tethers.reach.sqrt() / shortest,
+            shortest,
+            probes: links.probes(),
             grid,
             mesh,
             patches,
@@ -126,6 +130,8 @@ impl Fabric {
             hinges: Hinges::of(&mesh, &[]),
             tethers: Tethers::of(&mesh, &[], true, false),
             tautness: 0.0,
+            shortest: 0.0,
+            probes: Vec::new(),
             patches: Vec::new(),
             patch_grid_columns: None,
             background: None,
@@ -344,6 +350,16 @@ impl Fabric {
     /// this value, rad/s.
     pub(crate) fn tautness(&self) -> f32 {
         self.tautness
+    }
+
+    /// Length of the shortest link of warp and weft, m.
+    pub(crate) fn shortest_link(&self) -> f32 {
+        self.shortest
+    }
+
+    /// Some links of warp and weft, spread over the cloth.
+    pub(crate) fn probes(&self) -> &[Probe] {
+        &self.probes
     }
 
     /// Distance of each particle from a pin at rest, along the cloth, m; infinite if they are not connected.

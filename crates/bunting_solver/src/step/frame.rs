@@ -31,6 +31,16 @@ impl FrameMotion {
         *self == Self::NONE
     }
 
+    /// Axis times angle of the rotation in the tick, rad; the same along the axes of the old and the new frame.
+    pub(crate) fn turn(&self) -> Vec3 {
+        let rotation = if self.rotation.w < 0.0 { -self.rotation } else { self.rotation };
+        let sine = rotation.xyz().length();
+        if sine == 0.0 {
+            return Vec3::ZERO;
+        }
+        rotation.xyz() * (2.0 * libm::atan2f(sine, rotation.w) / sine)
+    }
+
     /// The orientation after a fraction of the tick, turning at a constant rate about a fixed axis.
     pub(crate) fn rotation_at(&self, part: f32) -> Quat {
         let rotation = if self.rotation.w < 0.0 { -self.rotation } else { self.rotation };

@@ -1,4 +1,4 @@
-//! The number of substeps that a fabric needs, from its geometry, the tick and gravity.
+//! The number of substeps that a fabric needs, from its geometry, the tick and the acceleration that it bears.
 
 use core::ops::RangeInclusive;
 
@@ -14,14 +14,13 @@ const FASTEST_VIBRATION: f32 = 0.75;
 /// than two of 1/120 s. Larger: substeps are longer than they should be.
 const TOO_LONG: f32 = 1e-3;
 
-/// Limits within which the number of substeps is chosen. It depends on the fabric, the tick and gravity only,
-/// so that it is the same for all cloths of a fabric, however they move.
+/// Limits within which the number of substeps is chosen, from the fabric, the tick and the acceleration that the cloth
+/// bears: gravity, or that of its [`EffortClass`](crate::EffortClass).
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct StepLimits {
     /// Constraint solver and integrator.
     pub scheme: Scheme,
-    /// Least and greatest number of substeps in a tick. Strong wind needs more substeps than weight does, and
-    /// is not taken into account: at 25 m/s five for 33 × 33 particles a square metre.
+    /// Least and greatest number of substeps in a tick.
     pub substeps: RangeInclusive<u32>,
     /// Least number of substeps in a second: longer ticks are divided into more. Faster motion than the
     /// substeps resolve is damped.
@@ -31,16 +30,17 @@ pub struct StepLimits {
 }
 
 impl StepLimits {
-    /// Settings for a fabric in ticks of `tick` seconds under a gravity of `gravity` m/s².
+    /// Settings for a fabric in ticks of `tick` seconds under an acceleration in m/s²: gravity for calm cloth, otherwise
+    /// that of the cloth's [`EffortClass`](crate::EffortClass).
     ///
     /// A link of length l under the tension T of the cloth below it vibrates at ω² = 4 T/(m l). At the top of a
-    /// cloth of length L that is 4 g L/l², whatever it weighs.
+    /// cloth of length L that is 4 a L/l² under the acceleration a, whatever it weighs.
     #[must_use]
-    pub fn of_fabric(&self, fabric: &Fabric, tick: f32, gravity: f32) -> StepSettings {
-        let by_weight = tick * fabric.tautness() * (gravity / FASTEST_VIBRATION).sqrt();
+    pub fn of_fabric(&self, fabric: &Fabric, tick: f32, acceleration: f32) -> StepSettings {
+        let by_load = tick * fabric.tautness() * (acceleration / FASTEST_VIBRATION).sqrt();
         let by_rate = tick * self.rate as f32 - TOO_LONG;
         // NaN becomes zero.
-        let wanted = by_weight.max(by_rate).ceil() as u32;
+        let wanted = by_load.max(by_rate).ceil() as u32;
         let (fewest, most) = (*self.substeps.start(), *self.substeps.end());
         StepSettings {
             scheme: self.scheme,
@@ -58,10 +58,10 @@ impl From<StepSettings> for StepLimits {
 }
 
 impl Default for StepLimits {
-    /// The scheme of yarns with one to eight substeps of two passes, at least 120 a second.
+    /// The scheme of yarns with one to sixteen substeps of two passes, at least 120 a second.
     fn default() -> Self {
         let StepSettings { scheme, passes, .. } = StepSettings::default();
-        Self { scheme, substeps: 1..=8, rate: 120, passes }
+        Self { scheme, substeps: 1..=16, rate: 120, passes }
     }
 }
 
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn long_ticks_are_divided() {
-        for (rate, expected) in [(240, 1), (120, 1), (119, 2), (64, 2), (60, 2), (30, 4), (4, 8)] {
+        for (rate, expected) in [(240, 1), (120, 1), (119, 2), (64, 2), (60, 2), (30, 4), (4, 16)] {
             let tick = 1.0 / rate as f32;
             assert_eq!(substeps(&StepLimits::default(), 9, tick, 9.81), expected, "{rate}");
         }

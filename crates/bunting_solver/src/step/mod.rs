@@ -6,6 +6,7 @@ mod begin;
 mod carry;
 pub(crate) mod clock;
 mod damping;
+pub(crate) mod effort;
 pub(crate) mod frame;
 mod integrate;
 pub(crate) mod limits;

@@ -1,0 +1,77 @@
+//! The effort of each cloth: its substeps follow from the loads that act on it now.
+
+use bevy_ecs::prelude::*;
+use bunting_solver::{Effort, EffortCause, EffortClass, FrameMotion, Loads, StepSettings};
+
+use crate::cloth::instance::ClothInstance;
+use crate::environment::drive::frame_motion;
+use crate::motion::pose::PoseHistory;
+
+/// The substeps of a cloth, and the reason for them; read only.
+///
+/// A cloth takes more substeps than its weight needs while strong wind, an acceleration of its frame or its own motion
+/// needs them, within [`ClothSettings::steps`](crate::ClothSettings::steps). It gets more at once, and fewer after half
+/// a second.
+#[derive(Component, Clone, Debug, Default)]
+pub struct ClothEffort {
+    effort: Effort,
+    loads: Loads,
+    /// Motion of the frame in the last tick.
+    motion: FrameMotion,
+    pub(crate) settings: StepSettings,
+}
+
+impl ClothEffort {
+    /// Substeps and passes of the cloth in a tick, as of the last tick in which it was simulated.
+    #[must_use]
+    pub fn settings(&self) -> StepSettings {
+        self.settings
+    }
+
+    /// The reason for the number of substeps.
+    #[must_use]
+    pub fn cause(&self) -> EffortCause {
+        self.effort.cause()
+    }
+
+    /// The class of effort.
+    #[must_use]
+    pub fn class(&self) -> EffortClass {
+        self.effort.class()
+    }
+
+    /// Accelerations from which the class follows.
+    #[must_use]
+    pub fn loads(&self) -> Loads {
+        self.loads
+    }
+
+    /// Chooses the class for a tick of `tick` seconds, from the frame's motion in this tick and from air and motion in
+    /// the last. Returns whether the class has changed.
+    pub(crate) fn update(
+        &mut self,
+        instance: &ClothInstance,
+        frame: &PoseHistory,
+        tick: f32,
+    ) -> bool {
+        let Some(fabric) = instance.fabric() else { return false };
+        self.loads.frame = if frame.rests() && self.motion.is_none() {
+            0.0
+        } else {
+            Loads::of_frame(&self.motion, &frame_motion(frame), fabric, tick)
+        };
+        let before = self.effort.class();
+        self.effort.update(&self.loads, tick) != before
+    }
+
+    /// Notes the motion of the frame in this tick, and the acceleration by air, m/s².
+    pub(crate) fn note_drive(&mut self, motion: FrameMotion, air: f32) {
+        self.motion = motion;
+        self.loads.air = air;
+    }
+
+    /// Notes the acceleration of turning links in this tick, m/s².
+    pub(crate) fn note_motion(&mut self, motion: f32) {
+        self.loads.motion = motion;
+    }
+}

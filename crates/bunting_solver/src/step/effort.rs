@@ -1,0 +1,341 @@
+//! The effort that a cloth needs: its substeps, from the loads that act on it now.
+//!
+//! A link of length l at the pins of a cloth of length L under an acceleration a vibrates at ω² = 4 a L/l², which
+//! substeps must resolve: N = T √(L/l² · a/¾) in a tick of T seconds ([`StepLimits::of_fabric`]). Weight is one such
+//! acceleration. The others that a cloth meets are turned into accelerations here, so that one formula holds for all, at
+//! every size and level of detail:
+//!
+//! - *Air and frame*: (½ρ C_t u²/σ + |a| + (Ω² + |dΩ/dt|) L)/3, with u the wind relative to the frame, a the
+//!   acceleration of the frame's origin and Ω its angular velocity. Along a streaming cloth tension is that of skin
+//!   friction. One third, since vibration is seen on cloth that hangs still only.
+//! - *Motion*: ¾ ω² l, with ω the rate at which links turn (root mean square). Directions of links are frozen in a
+//!   pass, and what a turn leaves unsolved is carried along the L/l links of a chain: N = T ω √(L/l).
+//! - *Flung cloth* moves fast on a wide path, v ω > 22 m/s² and v/ω > 0.2 L, and cracks like a whip where it turns back.
+//!   It takes 300 substeps a second at any size, as an acceleration ¾ (300/s)² l²/L.
+//!
+//! [`StepLimits::of_fabric`]: crate::StepLimits::of_fabric
+
+use glam::Vec3;
+
+use crate::fabric::{Fabric, FabricMaterial};
+use crate::step::Drive;
+use crate::step::frame::FrameMotion;
+
+/// Greatest acceleration of the class of least effort, m/s²: a calm flag turns its links by less. Smaller: flags in a
+/// light wind take more substeps without need. Larger: heavy flags in 25 m/s have a 99.9 % strain of 5 %.
+const LEAST: f32 = 10.0;
+
+/// Ratio of the accelerations of two classes: substeps grow by its root. Smaller: more batches. Larger: more substeps
+/// than needed.
+const RATIO: f32 = 2.0;
+
+/// Part of the accelerations by air and frame that counts. Smaller: light flags in 25 m/s have a 99.9 % strain of 4 %.
+/// Larger: flags in 10 m/s take more substeps without need.
+const PART_OF_AIR_AND_FRAME: f32 = 1.0 / 3.0;
+
+/// Acceleration of a link that turns, over ω² l.
+const OF_TURN: f32 = 0.75;
+
+/// Speed times turn rate of links (root mean squares) above which cloth may be flung, m/s². Smaller: sheets that swing
+/// without a whip take more substeps. Larger: whips gain energy before they have more.
+const FLUNG: f32 = 22.0;
+
+/// Speed over turn rate, in units of the cloth's reach, above which cloth is flung and does not flutter. Smaller: flags
+/// that fall or fly in wind count as flung. Larger: whips do not.
+const FLUNG_RADIUS: f32 = 0.2;
+
+/// Substeps in a second of cloth that is flung, 1/s. Fewer: whips gain energy. More: the change itself does.
+const FLUNG_RATE: f32 = 300.0;
+
+/// Time for which a cloth must need less before it gets less, s. Shorter: cloths that flutter change batches all the
+/// time. Longer: a jerk is paid for longer.
+const HELD: f32 = 0.5;
+
+/// Number of classes of effort.
+const CLASSES: usize = 7;
+
+/// The reason for which a cloth takes the substeps that it takes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum EffortCause {
+    /// Its weight or the length of the tick.
+    #[default]
+    Weight,
+    /// The speed of the air.
+    Air,
+    /// The acceleration or the turn of its frame.
+    Frame,
+    /// Its own motion.
+    Motion,
+}
+
+/// Accelerations that act on a cloth besides gravity, as far as its substeps follow from them, m/s².
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Loads {
+    /// Skin friction of the air, see [`of_air`](Self::of_air).
+    pub air: f32,
+    /// Acceleration of the frame, see [`of_frame`](Self::of_frame).
+    pub frame: f32,
+    /// Turn of the links, see [`of_motion`](Self::of_motion).
+    pub motion: f32,
+}
+
+impl Loads {
+    /// Acceleration of a cloth along the wind by skin friction, ½ρ C_t u²/σ, m/s², with u relative to the frame in a
+    /// tick of `tick` seconds.
+    #[must_use]
+    pub fn of_air(drive: &Drive, material: &FabricMaterial, tick: f32) -> f32 {
+        let wind = drive.wind - drive.motion.translation / tick;
+        let friction = drive.air_density * material.friction_coefficient;
+        0.5 * friction * wind.length_squared() / material.area_density
+    }
+
+    /// Acceleration of the frame between two ticks of `tick` seconds, at the farthest particle of a fabric, m/s².
+    #[must_use]
+    pub fn of_frame(before: &FrameMotion, now: &FrameMotion, fabric: &Fabric, tick: f32) -> f32 {
+        if before.is_none() && now.is_none() {
+            return 0.0;
+        }
+        let velocity = before.rotation.inverse() * before.translation;
+        let acceleration = (now.translation - velocity).length() / (tick * tick);
+        let [earlier, rate] = [before, now].map(|motion| motion.turn() / tick);
+        let turn = rate.length_squared() + (rate - earlier).length() / tick;
+        acceleration + turn * fabric.reach()
+    }
+
+    /// Acceleration ¾ ω² l of links of length l that turn at a rate ω (root mean square), or that of flung cloth, m/s²,
+    /// from the positions of a fabric's particles before and after a tick of `tick` seconds.
+    #[must_use]
+    pub fn of_motion(fabric: &Fabric, before: &[Vec3], after: &[Vec3], tick: f32) -> f32 {
+        let probes = fabric.probes();
+        if probes.is_empty() || before.len() != after.len() {
+            return 0.0;
+        }
+        let (mut turns, mut ways) = (0.0, 0.0);
+        for probe in probes {
+            let [from, to] = probe
+                .particles
+                .map(|particle| after[particle as usize] - before[particle as usize]);
+            turns += (to - from).length_squared() * probe.inverse_length_squared;
+            ways += from.length_squared();
+        }
+        let to_mean = 1.0 / (probes.len() as f32 * tick * tick);
+        let (squared_rate, squared_speed) = (turns * to_mean, ways * to_mean);
+        let link = fabric.shortest_link();
+        let turning = OF_TURN * squared_rate * link;
+        let is_wide = squared_speed > squared_rate * (FLUNG_RADIUS * fabric.reach()).powi(2);
+        let is_flung = is_wide && squared_rate * squared_speed > FLUNG * FLUNG;
+        let flung = OF_TURN * (FLUNG_RATE * link).powi(2) / fabric.reach();
+        if is_flung { turning.max(flung) } else { turning }
+    }
+
+    /// The class of effort that these loads need, and the reason.
+    #[must_use]
+    pub fn class(&self) -> (EffortClass, EffortCause) {
+        let steady = PART_OF_AIR_AND_FRAME * (self.air + self.frame);
+        let class = EffortClass::of(steady.max(self.motion));
+        let cause = if class == EffortClass::default() {
+            EffortCause::Weight
+        } else if self.motion >= steady {
+            EffortCause::Motion
+        } else if self.air >= self.frame {
+            EffortCause::Air
+        } else {
+            EffortCause::Frame
+        };
+        (class, cause)
+    }
+}
+
+/// A class of effort: cloths of one class and fabric take the same number of substeps. Classes are few, so that
+/// batches are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct EffortClass(u8);
+
+impl EffortClass {
+    /// Number of classes.
+    pub const COUNT: usize = CLASSES;
+
+    /// The least class whose cloths bear an acceleration, m/s².
+    fn of(acceleration: f32) -> Self {
+        let mut class = 0;
+        let mut most = LEAST;
+        while acceleration > most && class + 1 < CLASSES as u8 {
+            most *= RATIO;
+            class += 1;
+        }
+        Self(class)
+    }
+
+    /// Number of the class, zero for the least effort.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self.0 as usize
+    }
+
+    /// Acceleration for which the substeps of the class are chosen under a gravity, m/s²: the argument of
+    /// [`StepLimits::of_fabric`](crate::StepLimits::of_fabric).
+    #[must_use]
+    pub fn acceleration(self, gravity: f32) -> f32 {
+        match self.0 {
+            0 => gravity,
+            class => gravity.max(LEAST * RATIO.powi(class.into())),
+        }
+    }
+}
+
+/// The class of a cloth over time: it rises at once, and falls to what the last half second has needed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Effort {
+    class: EffortClass,
+    cause: EffortCause,
+    /// Time for which a lower class has been enough, s.
+    held: f32,
+    /// The highest class, and its reason, that was needed in this time.
+    highest: (EffortClass, EffortCause),
+}
+
+impl Effort {
+    /// The class chosen last.
+    #[must_use]
+    pub const fn class(&self) -> EffortClass {
+        self.class
+    }
+
+    /// The reason for the class.
+    #[must_use]
+    pub const fn cause(&self) -> EffortCause {
+        self.cause
+    }
+
+    /// Chooses the class for a tick of `tick` seconds under these loads, and returns it.
+    pub fn update(&mut self, loads: &Loads, tick: f32) -> EffortClass {
+        let needed = loads.class();
+        if needed.0 >= self.class {
+            *self = Self { class: needed.0, cause: needed.1, ..Self::default() };
+            return self.class;
+        }
+        if needed.0 >= self.highest.0 {
+            self.highest = needed;
+        }
+        self.held += tick;
+        if self.held > HELD {
+            let (class, cause) = self.highest;
+            *self = Self { class, cause, ..Self::default() };
+        }
+        self.class
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Quat;
+
+    use super::*;
+    use crate::fabric::{FabricBuilder, Grid};
+    use crate::step::limits::StepLimits;
+
+    const TICK: f32 = 1.0 / 60.0;
+
+    fn flag(n: u32) -> Fabric {
+        let grid = FabricBuilder::grid(Grid::new(n, n, 1.0, 1.0));
+        grid.pin_where(|_, uv| uv.x == 0.0).build().expect("a good fabric")
+    }
+
+    fn substeps(n: u32, loads: &Loads) -> u32 {
+        let acceleration = loads.class().0.acceleration(9.81);
+        StepLimits::default().of_fabric(&flag(n), TICK, acceleration).substeps
+    }
+
+    fn streaming(wind: f32, area_density: f32) -> Loads {
+        let material = FabricMaterial { area_density, ..FabricMaterial::FLAG_POLYESTER };
+        let drive = Drive { wind: Vec3::X * wind, ..Drive::default() };
+        Loads { air: Loads::of_air(&drive, &material, TICK), ..Loads::default() }
+    }
+
+    #[test]
+    fn light_cloth_in_strong_wind_needs_more_substeps() {
+        let of_winds =
+            |density: f32| [6.0, 10.0, 25.0].map(|wind| substeps(33, &streaming(wind, density)));
+        assert_eq!(of_winds(1.5), [2, 2, 2]);
+        assert_eq!(of_winds(0.113), [2, 2, 4]);
+        assert_eq!(of_winds(0.03), [2, 3, 8]);
+        assert_eq!([17, 65].map(|n| substeps(n, &streaming(25.0, 0.113))), [2, 8]);
+    }
+
+    #[test]
+    fn wind_counts_relative_to_the_frame() {
+        let motion = FrameMotion { translation: Vec3::X * 25.0 * TICK, ..FrameMotion::NONE };
+        let drive = Drive { wind: Vec3::X * 25.0, motion, ..Drive::default() };
+        assert!(Loads::of_air(&drive, &FabricMaterial::NYLON, TICK) < 1e-6);
+    }
+
+    #[test]
+    fn frames_load_by_jerks_and_turns_but_not_by_steady_speed() {
+        let fabric = flag(33);
+        let moving =
+            |speed: f32| FrameMotion { translation: Vec3::X * speed * TICK, ..FrameMotion::NONE };
+        let turning = |rate: f32| FrameMotion {
+            rotation: Quat::from_rotation_y(rate * TICK),
+            ..FrameMotion::NONE
+        };
+        let load = |before, now| Loads::of_frame(&before, &now, &fabric, TICK);
+        assert!(load(moving(20.0), moving(20.0)) < 0.01);
+        assert!((load(moving(20.0), FrameMotion::NONE) / 1200.0 - 1.0).abs() < 1e-3);
+        let centripetal = 400.0 * fabric.reach();
+        assert!((load(turning(20.0), turning(20.0)) / centripetal - 1.0).abs() < 1e-3);
+        // On a circle the origin's velocity stays the same along the frame's axes, and turns in the world.
+        let round = FrameMotion { translation: moving(2.0).translation, ..turning(3.0) };
+        let expected = 6.0 + 9.0 * fabric.reach();
+        assert!((load(round, round) / expected - 1.0).abs() < 0.01, "{}", load(round, round));
+    }
+
+    #[test]
+    fn links_that_turn_load_the_cloth_and_shifted_links_do_not() {
+        let fabric = flag(33);
+        let before = fabric.rest_positions();
+        let load = |turn: f32, shift: f32| {
+            let turn = Quat::from_rotation_y(turn * TICK);
+            let after: Vec<Vec3> = before.iter().map(|at| turn * *at + Vec3::Z * shift).collect();
+            // Warp turns about the weft, which does not turn: half of all links.
+            Loads::of_motion(&fabric, before, &after, TICK)
+        };
+        assert!(load(0.0, 1.0) < 1e-3);
+        let expected = 0.75 * 0.5 * 25.0 / 32.0;
+        assert!((load(5.0, 0.0) / expected - 1.0).abs() < 0.1, "{}", load(5.0, 0.0));
+    }
+
+    #[test]
+    fn cloth_is_flung_where_it_is_fast_and_turns() {
+        let substeps_of = |n: u32, speed: f32, turn: f32| {
+            let fabric = flag(n);
+            let before = fabric.rest_positions();
+            // A wave along the warp, whose links are half of all.
+            let wave = |at: &Vec3| 2.0 * turn / 12.0 * libm::sinf(12.0 * at.x);
+            let moved = |at: &Vec3| *at + Vec3::Z * (speed + wave(at)) * TICK;
+            let after: Vec<Vec3> = before.iter().map(moved).collect();
+            let motion = Loads::of_motion(&fabric, before, &after, TICK);
+            substeps(n, &Loads { motion, ..Loads::default() })
+        };
+        for (n, calm) in [(17, 2), (33, 2), (65, 4)] {
+            assert_eq!(substeps_of(n, 2.5, 5.0), calm, "slow turn");
+            assert_eq!(substeps_of(n, 0.0, 17.0), calm, "flutter");
+            assert_eq!(substeps_of(n, 2.7, 10.0), 6, "whip");
+        }
+    }
+
+    #[test]
+    fn effort_rises_at_once_and_falls_after_a_while() {
+        let loads = |frame: f32| Loads { frame, ..Loads::default() };
+        let mut effort = Effort::default();
+        let mut after = |load: f32| effort.update(&loads(load), 1.0 / 64.0).index();
+        assert_eq!(after(1200.0), 6);
+        for tick in 0..32 {
+            let load = if tick == 10 { 100.0 } else { 0.0 };
+            assert_eq!(after(load), 6, "{tick}");
+        }
+        assert_eq!(after(0.0), 2);
+        assert!((0..32).all(|_| after(f32::NAN) == 2));
+        assert_eq!(after(0.0), 0);
+        assert_eq!(effort, Effort::default());
+    }
+}

@@ -1,0 +1,155 @@
+//! Tests of substeps by need.
+
+use std::time::Duration;
+
+use bevy_app::prelude::*;
+use bevy_bunting::bunting_solver::EffortCause;
+use bevy_bunting::prelude::*;
+use bevy_bunting::{ClothEffort, CostTable, LodCosts, LodReport};
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_time::{Fixed, Time};
+use bevy_transform::prelude::*;
+use bunting_tests::{TICK, app, assert_finite, bits, run, state, stretches};
+
+/// Ticks after which a cloth that has become calm has got fewer substeps.
+const A_WHILE: usize = 40;
+
+fn spawn(app: &mut App, material: FabricMaterial, at: Vec3) -> Entity {
+    let held = Attachment::in_place(ClothEdge::Left);
+    let place = Transform::from_translation(at);
+    let cloth = (ClothMesh::grid(33, 33, 1.0, 1.0), ClothMaterial(material), held, place);
+    app.world_mut().spawn(cloth).id()
+}
+
+/// Silk, and cloth that no wind moves fast.
+fn light_and_heavy() -> [FabricMaterial; 2] {
+    let light = FabricMaterial { area_density: 0.03, ..FabricMaterial::FLAG_POLYESTER };
+    [light, FabricMaterial { area_density: 30.0, ..light }]
+}
+
+fn effort(app: &App, cloth: Entity) -> &ClothEffort {
+    app.world().get(cloth).expect("a cloth has an effort")
+}
+
+fn substeps(app: &App, cloth: Entity) -> u32 {
+    effort(app, cloth).settings().substeps
+}
+
+#[test]
+fn storms_are_solved_finer_as_long_as_they_last() {
+    let [light, _] = light_and_heavy();
+    let mut app = app();
+    let wind = app.world_mut().spawn(WindField::steady(Vec3::new(25.0, 0.0, 3.0))).id();
+    let cloth = spawn(&mut app, light, Vec3::ZERO);
+    run(&mut app, 4);
+    assert_eq!(substeps(&app, cloth), 8);
+    assert_eq!(effort(&app, cloth).cause(), EffortCause::Air);
+    let class = effort(&app, cloth).class().index();
+    assert_eq!(app.world().resource::<LodReport>().efforts[class], 1);
+    for _ in 0..100 {
+        run(&mut app, 1);
+        assert!(stretches(&app, cloth).all(|stretch| stretch < 1.5));
+    }
+    app.world_mut().get_mut::<WindField>(wind).expect("a wind").velocity = Vec3::ZERO;
+    run(&mut app, 5 * A_WHILE);
+    assert_finite(&app, cloth);
+    assert_eq!(substeps(&app, cloth), 2);
+    assert_eq!(effort(&app, cloth).cause(), EffortCause::Weight);
+}
+
+#[test]
+fn only_the_cloth_that_needs_more_pays() {
+    let [light, heavy] = light_and_heavy();
+    let fly = |both: bool| {
+        let mut app = app();
+        app.world_mut().spawn(WindField::steady(Vec3::new(25.0, 0.0, 3.0)));
+        let calm = spawn(&mut app, heavy, Vec3::ZERO);
+        let stormy = both.then(|| spawn(&mut app, light, Vec3::Y * 3.0));
+        run(&mut app, 60);
+        assert_eq!(substeps(&app, calm), 2);
+        assert!(stormy.is_none_or(|cloth| substeps(&app, cloth) >= 8));
+        bits(&app, calm)
+    };
+    assert_eq!(fly(true), fly(false));
+}
+
+#[test]
+fn limits_of_the_user_hold() {
+    let [light, _] = light_and_heavy();
+    let mut app = app();
+    app.world_mut().resource_mut::<ClothSettings>().steps = vec![StepSettings::default().into()];
+    app.world_mut().spawn(WindField::steady(Vec3::X * 25.0));
+    let cloth = spawn(&mut app, light, Vec3::ZERO);
+    run(&mut app, 60);
+    assert!(effort(&app, cloth).class().index() > 0);
+    assert_eq!(substeps(&app, cloth), 2);
+}
+
+#[test]
+fn levels_become_coarser_where_a_storm_needs_more_substeps() {
+    let [light, _] = light_and_heavy();
+    let mut app = app();
+    let budget = Duration::from_micros(1000);
+    *app.world_mut().resource_mut::<ClothBudget>() = ClothBudget {
+        tick: budget,
+        costs: LodCosts::Fixed(CostTable::default()),
+        ..ClothBudget::default()
+    };
+    app.world_mut().spawn((LodViewer::default(), Transform::from_xyz(0.0, 0.0, 6.0)));
+    let wind = app.world_mut().spawn(WindField::steady(Vec3::new(4.0, 0.0, 1.0))).id();
+    let cloths: Vec<Entity> = (0..20)
+        .map(|index| {
+            let cloth = spawn(&mut app, light, Vec3::X * (0.2 * index as f32 - 2.0));
+            app.world_mut().entity_mut(cloth).insert(LodSet::automatic(4));
+            cloth
+        })
+        .collect();
+    let particles = |app: &App| -> usize {
+        cloths.iter().map(|&cloth| state(app, cloth).positions().len()).sum()
+    };
+    run(&mut app, 4 * A_WHILE);
+    let calm = particles(&app);
+    app.world_mut().get_mut::<WindField>(wind).expect("a wind").velocity = Vec3::X * 25.0;
+    run(&mut app, 2 * A_WHILE);
+    let report = app.world().resource::<LodReport>();
+    assert!(report.expected <= budget, "{:?}", report.expected);
+    assert_eq!(report.raised(), cloths.len());
+    assert!(particles(&app) < calm, "{} particles after {calm}", particles(&app));
+}
+
+/// Velocity of the pole, m/s.
+#[derive(Resource)]
+struct Speed(f32);
+
+#[test]
+fn a_jerk_is_solved_finer_in_the_same_tick() {
+    let mut app = app();
+    app.insert_resource(Speed(0.0)).add_systems(
+        FixedUpdate,
+        |speed: Res<Speed>,
+         time: Res<Time<Fixed>>,
+         mut poles: Query<&mut Transform, Without<ClothMesh>>| {
+            for mut pole in &mut poles {
+                pole.translation.x += speed.0 * time.delta_secs();
+            }
+        },
+    );
+    let pole = app.world_mut().spawn(Transform::default()).id();
+    let held = Attachment { teleport_speed: 1000.0, ..Attachment::new(pole, ClothEdge::Left) };
+    let cloth = app.world_mut().spawn((ClothMesh::grid(33, 33, 1.0, 1.0), held)).id();
+    run(&mut app, 10);
+    assert_eq!(substeps(&app, cloth), 2);
+    app.world_mut().resource_mut::<Speed>().0 = 20.0;
+    let before = app.world().get::<Transform>(pole).expect("a pole").translation.x;
+    run(&mut app, 1);
+    let moved = app.world().get::<Transform>(pole).expect("a pole").translation.x - before;
+    assert!((moved / (20.0 * TICK) - 1.0).abs() < 1e-3, "{moved}");
+    assert_eq!(effort(&app, cloth).cause(), EffortCause::Frame);
+    assert!(substeps(&app, cloth) >= 12, "{}", substeps(&app, cloth));
+    for _ in 0..30 {
+        run(&mut app, 1);
+        assert!(stretches(&app, cloth).all(|stretch| stretch < 1.5));
+    }
+    assert!(!state(&app, cloth).positions().is_empty());
+}
