@@ -69,6 +69,18 @@ fn cloth_is_attached_gently_from_metres_away() {
 }
 
 #[test]
+fn falling_cloth_is_caught_gently() {
+    for ticks in [80, 128] {
+        let (mut app, flag) = hung();
+        let held = app.world().get::<Attachment>(flag).expect("attached").clone();
+        app.world_mut().entity_mut(flag).remove::<Attachment>();
+        run(&mut app, ticks);
+        app.world_mut().entity_mut(flag).insert(held);
+        assert_no_whip(&mut app, flag);
+    }
+}
+
+#[test]
 fn another_target_carries_the_cloth_along() {
     let (mut app, flag) = hung();
     let pole = app.world_mut().spawn(Transform::from_xyz(7.0, 2.0, 0.0)).id();

@@ -215,10 +215,11 @@ impl CutClothItem<'_, '_> {
         if let Some(shortage) = levels.shortage(self.entity, self.mesh.as_grid()) {
             ClothFailed::report(commands, self.entity, shortage);
         }
+        let was_free = instance.fabric().is_some_and(|fabric| !fabric.has_pins());
         let keeps_state = instance.replace_levels(levels, batches);
         instance.taking_up = match (instance.fabric().cloned(), &mut instance.storage) {
             (Some(fabric), StateStorage::Snapshot(state)) if keeps_state => {
-                TakingUp::begin(state, &fabric, change)
+                TakingUp::begin(state, &fabric, change, was_free)
             }
             _ => None,
         };
