@@ -9,7 +9,7 @@ use crate::fabric::mesh::{RestMesh, Surface};
 
 /// Greatest square of a length in the cloth over that in the texture, and one over the least, both in units of the
 /// mesh's mean. Larger: cells that are no rectangles at rest are sheared to rectangles.
-const DISTORTION: f32 = 100.0;
+const DISTORTION: f32 = 1.6;
 
 /// Places in the texture that triangles use, in one connected piece.
 struct Places {
