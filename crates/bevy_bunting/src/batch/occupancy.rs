@@ -7,7 +7,6 @@ use bevy_ecs::prelude::*;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, LaneCount, LaneSurface,
 };
-
 use parry3d::bounding_volume::Aabb;
 
 use crate::batch::batch_kind::BatchKind;

@@ -1,9 +1,10 @@
 //! Colliders: shapes that cloth does not enter.
 
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{Quat, Vec3};
 use bevy_reflect::Reflect;
 use bevy_transform::components::Transform;
+use bunting_solver::Collider;
 use parry3d::math::Vector;
 use parry3d::shape::SharedShape;
 
@@ -55,5 +56,11 @@ impl ClothCollider {
     #[must_use]
     pub fn ground() -> Self {
         Self::new(SharedShape::halfspace(Vector::Y))
+    }
+
+    /// The collider in a tick, at whose start and end it has these poses (positions in m).
+    pub(super) fn between(&self, from: (Vec3, Quat), to: (Vec3, Quat)) -> Collider {
+        let Self { shape, margin, friction } = self.clone();
+        Collider { shape, from, to, margin, friction }
     }
 }

@@ -17,10 +17,6 @@ use crate::motion::pose::PoseHistory;
 /// useless. Smaller: colliders far from the origin are near every cloth.
 const FARTHEST: f32 = 1e9;
 
-/// Poses between the start and the end of a tick at which the box of a turning collider is computed, as fractions of
-/// the tick.
-const BETWEEN: [f32; 3] = [0.25, 0.5, 0.75];
-
 /// The boxes of all colliders in this tick.
 #[derive(Resource, Default)]
 pub(super) struct ColliderTree {
@@ -43,14 +39,13 @@ impl ColliderTree {
         self.leaves.is_empty()
     }
 
-    /// Finds the colliders whose boxes intersect a box (m, in the world), in the order of their leaves, which follows
-    /// from the order in which colliders came and went.
-    pub fn near(&self, cloth: &Aabb, found: &mut Vec<Entity>) {
-        let mut leaves: Vec<u32> =
-            self.tree.intersect_aabb(cloth).chain(self.endless.iter().copied()).collect();
+    /// The colliders whose boxes intersect a box (m, in the world), in the order of their leaves, which follows from
+    /// the order in which colliders came and went.
+    pub fn near(&self, cloth: &Aabb) -> impl Iterator<Item = Entity> {
+        let endless = self.endless.iter().copied();
+        let mut leaves: Vec<u32> = self.tree.intersect_aabb(cloth).chain(endless).collect();
         leaves.sort_unstable();
-        found.clear();
-        found.extend(leaves.into_iter().filter_map(|leaf| self.entities[leaf as usize]));
+        leaves.into_iter().filter_map(|leaf| self.entities[leaf as usize])
     }
 
     /// Stores the box that a collider sweeps in this tick.
@@ -98,15 +93,7 @@ fn swept_box(collider: &ClothCollider, history: &PoseHistory) -> Option<Aabb> {
         return None;
     }
     let (from, to) = history.extrapolated();
-    let ends = [from, to].map(|pose| collider.shape.compute_aabb(&pose_of(pose)));
-    let mut swept = ends[0].merged(&ends[1]);
-    if from.rotation != to.rotation {
-        for part in BETWEEN {
-            let rotation = from.rotation.slerp(to.rotation, part);
-            let pose = Isometry3d::new(from.translation.lerp(to.translation, part), rotation);
-            swept.merge(&collider.shape.compute_aabb(&pose_of(pose)));
-        }
-    }
+    let swept = collider.between(pose_parts(from), pose_parts(to)).swept_box();
     let reach = collider.margin.max(0.0) + from.translation.distance(to.translation);
     let swept = Aabb::new(swept.mins - reach, swept.maxs + reach);
     let farthest = swept.mins.abs().max(swept.maxs.abs()).max_element();
@@ -140,17 +127,19 @@ pub(super) fn update_tree(
         return;
     }
     let tree = &mut *tree;
-    let mut is_changed = !tree.moving.is_empty();
-    for entity in core::mem::take(&mut tree.moving) {
-        if let Ok((entity, collider, history)) = colliders.get(entity) {
-            tree.set(entity, &collider, &history);
-        }
-    }
+    let moved = core::mem::take(&mut tree.moving);
     for (entity, collider, history) in &colliders {
-        // A teleport leads from rest to rest.
-        if !history.rests() || history.is_changed() || collider.is_changed() {
+        if PoseHistory::may_have_moved(&history) || collider.is_changed() {
             tree.set(entity, &collider, &history);
             tree.moving.push(entity);
+        }
+    }
+    let mut is_changed = !tree.moving.is_empty();
+    for entity in moved {
+        if let Ok((entity, collider, history)) = colliders.get(entity)
+            && !PoseHistory::may_have_moved(&history)
+        {
+            tree.set(entity, &collider, &history);
             is_changed = true;
         }
     }

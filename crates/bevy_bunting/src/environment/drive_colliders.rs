@@ -4,7 +4,6 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
 use bevy_time::Time;
-use bunting_solver::Collider;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
@@ -62,7 +61,6 @@ fn drive_colliders(
     time: Res<Time>,
     mut batches: ResMut<ClothBatches>,
     mut had_any: Local<bool>,
-    mut near: Local<Vec<Entity>>,
 ) {
     let has_any = !tree.is_empty();
     if !has_any && !*had_any {
@@ -73,20 +71,12 @@ fn drive_colliders(
     for (instance, frame) in &cloths {
         let Some(lane) = instance.lane() else { continue };
         let (start, end) = frame.extrapolated();
-        near.clear();
-        if let Some(bounds) = batches.bounds(lane) {
-            tree.near(&in_world(&bounds, (start, end)), &mut near);
-        }
+        let bounds = batches.bounds(lane).map(|bounds| in_world(&bounds, (start, end)));
+        let near = bounds.iter().flat_map(|bounds| tree.near(bounds));
         let (start, end) = (start.inverse(), end.inverse());
-        let colliders = colliders.iter_many(&*near).map(|(collider, pose)| {
+        let colliders = colliders.iter_many(near).map(|(collider, pose)| {
             let (from, to) = pose.extrapolated();
-            Collider {
-                shape: collider.shape.clone(),
-                from: relative_pose(start, from),
-                to: relative_pose(end, to),
-                margin: collider.margin,
-                friction: collider.friction,
-            }
+            collider.between(relative_pose(start, from), relative_pose(end, to))
         });
         batches.lane(lane).set_colliders(colliders);
     }

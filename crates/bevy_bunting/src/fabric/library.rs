@@ -65,19 +65,11 @@ impl Cutting {
 /// Everything that the levels of a cloth depend on, bit for bit; each list after its length.
 type ContentKey = Vec<u32>;
 
-/// Levels that are being built for a cloth.
-#[derive(Clone, Debug)]
-pub(crate) struct AwaitedLevels {
-    key: ContentKey,
-    /// Tick in which the levels are expected.
-    due: u64,
-}
-
 /// Result of a request for a cloth's levels.
 pub(crate) enum Found {
     Levels(Arc<ClothLevels>),
-    /// The levels are being built.
-    Awaited(AwaitedLevels),
+    /// The levels are being built; the key identifies them in later requests.
+    Awaited(ContentKey),
 }
 
 impl FabricLibrary {
@@ -94,12 +86,7 @@ impl FabricLibrary {
     }
 
     /// Whether levels are expected in a later tick.
-    pub fn is_cutting(&self, awaited: &AwaitedLevels, lods: &LodSet) -> bool {
-        // Most cloths of a large scene wait for many ticks, in which no key is looked up.
-        self.tick < awaited.due || self.is_being_built(&awaited.key, lods)
-    }
-
-    fn is_being_built(&self, key: &ContentKey, lods: &LodSet) -> bool {
+    pub fn is_cutting(&self, key: &ContentKey, lods: &LodSet) -> bool {
         let may_be_late = self.may_be_late && matches!(lods.choice, LodChoice::Automatic { .. });
         let is_ready = |cutting: &Cutting| cutting.is_ready(self.tick, may_be_late);
         self.cutting.get(key).is_some_and(|cutting| !is_ready(cutting))
@@ -111,8 +98,8 @@ impl FabricLibrary {
         self.cutting.values().map(left).max().unwrap_or(0)
     }
 
-    /// Returns the levels of a cloth, built now or before. While another thread builds them, ask again in a later
-    /// tick.
+    /// Returns the levels of a cloth, built now or before. While another thread builds them it returns their
+    /// key: ask again in a later tick.
     ///
     /// # Errors
     ///
@@ -138,8 +125,7 @@ impl FabricLibrary {
             return Ok(Found::Levels(levels));
         }
         let Some(cut) = self.cut_or_wait(&key, mesh, attached, lods) else {
-            let due = self.cutting.get(&key).map_or(0, |cutting| cutting.due);
-            return Ok(Found::Awaited(AwaitedLevels { key, due }));
+            return Ok(Found::Awaited(key));
         };
         let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
         self.cut.retain(|_, levels| levels.strong_count() > 0);
@@ -155,7 +141,7 @@ impl FabricLibrary {
         attached: Vec<u32>,
         lods: &LodSet,
     ) -> Option<Result<ClothLevels, FabricError>> {
-        if self.is_being_built(key, lods) {
+        if self.is_cutting(key, lods) {
             return None;
         }
         let asked = lods.levels();

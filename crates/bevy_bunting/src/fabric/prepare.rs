@@ -110,7 +110,7 @@ fn cut_cloths(
     for mut cloth in &mut cloths {
         let target = cloth.target();
         let is_cutting =
-            cloth.instance.cutting.as_ref().is_some_and(|it| library.is_cutting(it, &cloth.lods));
+            cloth.instance.cutting.as_ref().is_some_and(|key| library.is_cutting(key, &cloth.lods));
         if is_cutting && !cloth.is_edited() {
             library.awaited = true;
             continue;
@@ -119,8 +119,8 @@ fn cut_cloths(
             continue;
         }
         match cloth.find_levels(target, &targets, &mut library) {
-            Ok(Found::Awaited(awaited)) => {
-                cloth.instance.cutting = Some(awaited);
+            Ok(Found::Awaited(key)) => {
+                cloth.instance.cutting = Some(key);
                 library.awaited = true;
             }
             Ok(Found::Levels(levels)) => {

@@ -250,10 +250,10 @@ impl Governor {
         let mut changes = 0.0;
         let mut cost = self.counts.count(tables, cloths, cloths.iter().map(|cloth| cloth.level));
         let has_fresh = cloths.iter().any(|cloth| cloth.fresh);
-        let budget = if has_fresh { limits.budget - reserve } else { limits.budget };
-        cost = self.start_fresh(tables, cloths, budget, cost);
         // On the way to the chosen levels costs may rise above those of these levels.
-        let most = budget.min(limits.budget - reserve);
+        let most = limits.budget - reserve;
+        let budget = if has_fresh { most } else { limits.budget };
+        cost = self.start_fresh(tables, cloths, budget, cost);
         let switches = &mut self.choice.switches;
         for (index, (cloth, &to)) in cloths.iter().zip(&self.chosen).enumerate() {
             if cloth.fresh {

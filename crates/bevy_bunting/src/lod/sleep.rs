@@ -114,7 +114,7 @@ fn note_changes(
     changes.moving_colliders.clear();
     for (collider, history) in &colliders {
         changes.everywhere |= collider.is_changed();
-        if !history.rests() || history.is_changed() {
+        if PoseHistory::may_have_moved(&history) {
             let ball = collider.shape.compute_local_bounding_sphere();
             let centre = history.end() * ball.center;
             changes.moving_colliders.push((centre, ball.radius + collider.margin));

@@ -24,8 +24,8 @@ const EDGE_TOLERANCE: f32 = 1e-4;
 /// overwritten with the frame, whether the cloth is a child of its target or not.
 ///
 /// A change of target, offset or held vertices does not whip the cloth: the cloth moves rigidly with its
-/// frame, and newly held vertices move to their places within one and a half seconds. A cloth more than 2 m away is first
-/// put in place, as by a teleport.
+/// frame, and newly held vertices move to their places within one and a half seconds. A cloth more than 2 m away
+/// is first put in place, as by a teleport.
 ///
 /// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. The target's scale scales
 /// the offset's translation and is otherwise ignored.

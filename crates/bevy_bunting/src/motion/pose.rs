@@ -128,6 +128,12 @@ impl PoseHistory {
         self.rest.is_some()
     }
 
+    /// Whether the entity may have moved since the system last ran that asks. An entity that was teleported may rest
+    /// again already.
+    pub fn may_have_moved(history: &Ref<Self>) -> bool {
+        !history.rests() || history.is_changed()
+    }
+
     /// Makes the next change of the pose a teleport.
     pub fn teleport_next(&mut self, last: &ObservationTimes) {
         self.end_rest(last);

@@ -1,10 +1,14 @@
 //! Shapes that a cloth cannot enter.
 
 use glam::{Quat, Vec3};
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Pose;
 use parry3d::shape::SharedShape;
 
 use crate::step::frame::FrameMotion;
+
+/// Fractions of the tick at which the box around a moving collider is computed.
+const SAMPLES: [f32; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// A shape that a cloth cannot enter. During a tick it moves along a straight line and turns at a constant
 /// rate. Cloth does not push it.
@@ -52,6 +56,18 @@ impl Collider {
             && is_pose(self.to)
             && self.margin.is_finite()
             && self.friction.is_finite()
+    }
+
+    /// Box around the shape in all its poses of the tick, without the margin, m.
+    #[must_use]
+    pub fn swept_box(&self) -> Aabb {
+        let boxes = self.sampled_poses().map(|pose| self.shape.compute_aabb(&pose));
+        boxes.iter().fold(boxes[0], |all, other| all.merged(other))
+    }
+
+    /// Poses at the [`SAMPLES`] of the tick.
+    pub(super) fn sampled_poses(&self) -> [Pose; SAMPLES.len()] {
+        SAMPLES.map(|part| self.pose_at(part))
     }
 
     /// Pose after a fraction of the tick, in the cloth's frame.

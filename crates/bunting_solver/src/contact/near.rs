@@ -7,22 +7,18 @@ use parry3d::shape::{HeightField, Shape};
 
 use crate::contact::collider::Collider;
 
-/// Fractions of the tick at which the box around a moving collider is computed.
-const SAMPLES: [f32; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-
 /// Box around all parts of a collider that come near `cloth` in the tick, in the cloth's frame; none if no
 /// part does. `cloth` is the box around all positions that the particles can reach in the tick.
 pub(crate) fn swept_box(collider: &Collider, cloth: impl FnOnce() -> Option<Aabb>) -> Option<Aabb> {
     let shape = &*collider.shape.0;
-    let poses = SAMPLES.map(|part| collider.pose_at(part));
+    if !has_parts(shape) {
+        return Some(collider.swept_box());
+    }
+    let poses = collider.sampled_poses();
     let swept = |local: Aabb| {
         let boxes = poses.iter().map(|pose| local.transform_by(pose));
         boxes.reduce(|one, other| one.merged(&other))
     };
-    if !has_parts(shape) {
-        let boxes = poses.iter().map(|pose| shape.compute_aabb(pose));
-        return boxes.reduce(|one, other| one.merged(&other));
-    }
     let cloth = cloth()?;
     let seen = poses.iter().map(|pose| cloth.transform_by(&pose.inverse()));
     let seen = seen.reduce(|one, other| one.merged(&other))?;
