@@ -54,7 +54,7 @@ impl Product {
         for (scheme, substeps) in schemes {
             for &substeps in substeps {
                 for passes in [1, 2] {
-                    for lanes in [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen] {
+                    for &lanes in LaneCount::available() {
                         let settings = StepSettings { passes, ..scheme(substeps) };
                         products.push(Self { settings, lanes });
                     }

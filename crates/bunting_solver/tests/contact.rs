@@ -276,7 +276,7 @@ fn a_sheet_that_falls_on_a_floor_stays_there() {
 fn a_swept_box_contains_the_cloth() {
     let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0));
     let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build().expect("a good fabric"));
-    for lanes in [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen] {
+    for &lanes in LaneCount::available() {
         let mut batch = ClothBatch::new(fabric.clone(), lanes);
         let lane = lanes.get() - 1;
         let mut thrown = ClothSnapshot::at_rest(&fabric);

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Weak};
 
-use bunting_solver::{EffortClass, Fabric, LaneCount, Scheme, StepSettings, instruction_set};
+use bunting_solver::{EffortClass, Fabric, LaneCount, Scheme, StepSettings};
 
 use crate::fabric::levels::ClothLevels;
 use crate::lod::batch_costs::BatchCosts;
@@ -97,11 +97,7 @@ impl LevelTables {
         widest: Option<LaneCount>,
         fixed: bool,
     ) {
-        let machine = if fixed || instruction_set() == "AVX-512" {
-            LaneCount::Sixteen
-        } else {
-            LaneCount::Eight
-        };
+        let machine = if fixed { LaneCount::Sixteen } else { LaneCount::widest() };
         let widest = widest.unwrap_or(machine);
         self.costs.clear();
         for (levels, table_of_costs) in self.work.iter().zip(&mut self.tables) {

@@ -60,11 +60,12 @@ pub fn run() -> Outcome {
             TransferMemory { from: sizes[0], to: sizes[1], bytes }
         })
         .collect();
-    let widths = [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen];
     let batches: Vec<BatchMemory> = LEVELS
         .iter()
         .zip(&cut)
-        .flat_map(|(&n, (fabric, _))| widths.map(|lanes| batch_memory(n, fabric, lanes)))
+        .flat_map(|(&n, (fabric, _))| {
+            LaneCount::available().iter().map(move |&lanes| batch_memory(n, fabric, lanes))
+        })
         .collect();
     Outcome {
         tables: vec![chain_table(&fabrics, &transfers), batch_table(&batches)],

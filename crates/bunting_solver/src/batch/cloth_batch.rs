@@ -54,10 +54,10 @@ macro_rules! with_batch {
 }
 
 impl ClothBatch {
-    /// An empty batch.
+    /// An empty batch of the given width, or of the [widest](LaneCount::widest) that this machine has.
     #[must_use]
     pub fn new(fabric: Arc<Fabric>, lanes: LaneCount) -> Self {
-        Self(match lanes {
+        Self(match lanes.min(LaneCount::widest()) {
             LaneCount::One => match LaneBatch::single_cloth(&fabric) {
                 Some(batch) => Lanes::Single(Box::new(batch)),
                 None => Lanes::One(Box::new(LaneBatch::side_by_side(fabric))),

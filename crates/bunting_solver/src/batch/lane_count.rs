@@ -1,7 +1,7 @@
 //! The width of a batch.
 
 use crate::fabric::Fabric;
-use crate::simd::level::instruction_set;
+use crate::simd::level::has_avx512;
 use crate::step::Scheme;
 
 /// Most particles of a fabric of which sixteen cloths are put into one batch. Larger: the state no longer fits into the
@@ -9,7 +9,7 @@ use crate::step::Scheme;
 const MOST_IN_SIXTEEN: usize = 65 * 65;
 
 /// Number of cloths that a batch can hold.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum LaneCount {
     /// One cloth. A cloth on a grid is spread across the lanes of a vector, and so is the background grid of a mesh
     /// that is flat at rest; all else of meshes is solved in scalar code.
@@ -17,7 +17,8 @@ pub enum LaneCount {
     /// Eight cloths: full speed with AVX2.
     #[default]
     Eight,
-    /// Sixteen cloths: full speed with AVX-512.
+    /// Sixteen cloths, on machines with AVX-512. Elsewhere batches of sixteen have eight lanes, since two registers of
+    /// eight lanes are no faster together than one after the other.
     Sixteen,
 }
 
@@ -32,19 +33,31 @@ impl LaneCount {
         }
     }
 
-    /// The narrowest width that holds `cloths`, at most the widest that pays on this machine.
+    /// The widths that this machine has, the narrowest first.
+    #[must_use]
+    pub fn available() -> &'static [Self] {
+        let all = &[Self::One, Self::Eight, Self::Sixteen];
+        if has_avx512() { all } else { &all[..2] }
+    }
+
+    /// The greatest width that this machine has.
+    #[must_use]
+    pub fn widest() -> Self {
+        if has_avx512() { Self::Sixteen } else { Self::Eight }
+    }
+
+    /// The narrowest width that holds `cloths`, at most the widest that this machine has.
     #[must_use]
     pub fn holding(cloths: usize) -> Self {
         match cloths {
             0 | 1 => Self::One,
             2..=8 => Self::Eight,
-            _ if instruction_set() == "AVX-512" => Self::Sixteen,
-            _ => Self::Eight,
+            _ => Self::widest(),
         }
     }
 
     /// Width of the first batch if `cloths` cloths of a fabric are divided among batches such that they take
-    /// the least time: full batches of the widest width that pays on this machine, and narrower ones for the
+    /// the least time: full batches of the widest width, and narrower ones for the
     /// rest.
     #[must_use]
     pub fn first_of(cloths: usize, fabric: &Fabric, scheme: Scheme) -> Self {

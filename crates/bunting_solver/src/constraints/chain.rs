@@ -36,45 +36,44 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
-    /// Solves warp and weft once.
-    pub(super) fn solve_warp_and_weft(&mut self, pass: Pass) {
-        self.solve_colours(pass, |family| family != LinkFamily::Diagonal);
+    /// Solves warp and weft once, and returns whether [`Pass::Overlong`] solved any chain.
+    pub(super) fn solve_warp_and_weft(&mut self, pass: Pass) -> bool {
+        self.solve_colours(pass, |family| family != LinkFamily::Diagonal)
     }
 
     fn solve_diagonals(&mut self) {
         self.solve_colours(Pass::Diagonals, |family| family == LinkFamily::Diagonal);
     }
 
-    pub(super) fn solve_colours(&mut self, pass: Pass, is_solved: impl Fn(LinkFamily) -> bool) {
+    /// Solves the colours of some families, and returns whether [`Pass::Overlong`] solved any chain.
+    pub(super) fn solve_colours(
+        &mut self,
+        pass: Pass,
+        is_solved: impl Fn(LinkFamily) -> bool,
+    ) -> bool {
+        let mut is_any_overlong = false;
         for colour in 0..self.layout.chains(&self.fabric).colours.len() {
             if is_solved(self.layout.chains(&self.fabric).colours[colour].family) {
-                self.solve_colour(colour, pass);
+                self.solve_colour(colour, pass, &mut is_any_overlong);
             }
         }
+        is_any_overlong
     }
 
     /// Solves the chains of one colour, which share no particle.
-    fn solve_colour(&mut self, colour: usize, pass: Pass) {
-        P::run(self.chains_of_colour(colour, pass));
-    }
-
-    /// A pass over the chains of one colour.
-    pub(super) fn chains_of_colour(
-        &mut self,
-        colour: usize,
-        pass: Pass,
-    ) -> SolveChains<'_, P, <Y::Positions as Positions<P>>::Particles<'_>> {
+    fn solve_colour(&mut self, colour: usize, pass: Pass, is_any_overlong: &mut bool) {
         let chains = self.layout.chains(&self.fabric);
         let order = self.layout.order_of_chains(colour);
         let (masses, linked) = (&self.masses.inverse, self.layout.linked());
-        SolveChains {
+        P::run(SolveChains {
             pairs: &chains.pairs[chains.colours[colour].pairs.clone()],
             pass,
+            is_any_overlong,
             compliance: &self.layout.factors().link_compliance,
             rows: &mut self.rows,
             target: &mut self.link_target,
             particles: self.positions.particles(order, masses, linked),
-        }
+        });
     }
 }
 
@@ -96,9 +95,10 @@ impl<P: Pack> LaneBatch<P> {
     /// Solves the chains of one colour, and adds to the sums of corrections.
     pub(super) fn correct_by_colour(&mut self, colour: usize, pass: Pass) {
         let chains = self.fabric.chains();
-        P::run(SolveChains {
+        P::run(SolveChainsOfMesh(SolveChains {
             pairs: &chains.pairs[chains.colours[colour].pairs.clone()],
             pass,
+            is_any_overlong: &mut false,
             compliance: &self.layout.factors().link_compliance,
             rows: &mut self.rows,
             target: &mut self.link_target,
@@ -107,7 +107,7 @@ impl<P: Pack> LaneBatch<P> {
                 predicted: self.positions.packs(),
                 correction: &mut self.correction,
             },
-        });
+        }));
     }
 }
 
@@ -121,12 +121,30 @@ pub(super) enum Pass {
     /// The pass over diagonals that carry shear alone: it starts from the stored targets and stores none, as nothing
     /// reads them.
     Diagonals,
+    /// A further pass over the chains that have overlong links: only their rows are solved.
+    Overlong,
+}
+
+impl Pass {
+    /// Whether the pass starts from the stored targets.
+    #[inline(always)]
+    fn is_warm(self) -> bool {
+        self != Self::First
+    }
+
+    /// Whether the pass stores the new targets.
+    #[inline(always)]
+    fn stores_targets(self) -> bool {
+        self != Self::Diagonals
+    }
 }
 
 /// The chains of one colour, in pairs.
 pub(super) struct SolveChains<'a, P: Pack, S: Particles<P>> {
-    pub(super) pairs: &'a [ChainPair<S::Constant>],
+    pairs: &'a [ChainPair<S::Constant>],
     pass: Pass,
+    /// Set by [`Pass::Overlong`] where any link is overlong.
+    pub(super) is_any_overlong: &'a mut bool,
     compliance: &'a [P],
     pub(super) rows: &'a mut [TridiagonalRow<P>],
     pub(super) target: &'a mut [P],
@@ -134,52 +152,61 @@ pub(super) struct SolveChains<'a, P: Pack, S: Particles<P>> {
 }
 
 impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
+    /// Each arm is compiled by itself, with its pass as a constant; the few chains without a second one have one arm.
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
-        match self.pass {
-            Pass::First => self.solve_all::<L, false, true>(token),
-            Pass::Again => self.solve_all::<L, true, true>(token),
-            Pass::Diagonals => self.solve_all::<L, true, false>(token),
+        const TWO: usize = CHAINS_PER_PAIR;
+        for pair in self.pairs {
+            match (pair.count, self.pass) {
+                (TWO, Pass::First) => self.solve::<L, TWO>(token, pair, Pass::First),
+                (TWO, Pass::Again) => self.solve::<L, TWO>(token, pair, Pass::Again),
+                (TWO, Pass::Diagonals) => self.solve::<L, TWO>(token, pair, Pass::Diagonals),
+                (TWO, Pass::Overlong) => self.solve_overlong::<L, TWO>(token, pair),
+                (_, Pass::Overlong) => self.solve_overlong::<L, 1>(token, pair),
+                (_, pass) => self.solve::<L, 1>(token, pair, pass),
+            }
+        }
+    }
+}
+
+/// The chains of one colour of a mesh, without [`Pass::Diagonals`] and [`Pass::Overlong`].
+struct SolveChainsOfMesh<'a, P: Pack>(SolveChains<'a, P, CorrectedParticles<'a, P>>);
+
+impl<P: Pack> Kernel<P> for SolveChainsOfMesh<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
+        let (pairs, pass) = (self.0.pairs, self.0.pass);
+        for pair in pairs {
+            match pair.count {
+                CHAINS_PER_PAIR => self.0.solve::<L, CHAINS_PER_PAIR>(token, pair, pass),
+                _ => self.0.solve::<L, 1>(token, pair, pass),
+            }
         }
     }
 }
 
 impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
-    /// Solves all pairs. `WARM` starts from stored targets instead of lengths at rest; `STORE` stores the new
-    /// targets.
+    /// Solves `N` chains side by side.
     #[inline(always)]
-    fn solve_all<L: Lane<Pack = P>, const WARM: bool, const STORE: bool>(
-        &mut self,
-        token: L::Token,
-    ) {
-        for pair in self.pairs {
-            match pair.count {
-                CHAINS_PER_PAIR => {
-                    self.eliminate::<L, CHAINS_PER_PAIR, WARM, STORE, false>(token, pair);
-                    self.substitute::<L, CHAINS_PER_PAIR, WARM, STORE>(token, pair);
-                }
-                _ => {
-                    self.eliminate::<L, 1, WARM, STORE, false>(token, pair);
-                    self.substitute::<L, 1, WARM, STORE>(token, pair);
-                }
-            }
-        }
-    }
-
-    /// Eliminates the unknowns of `N` chains side by side, from their first links to their last. `MASKED` leaves
-    /// rows without tension whose unknown is zero, and not one, before.
-    #[inline(always)]
-    pub(super) fn eliminate<
-        L: Lane<Pack = P>,
-        const N: usize,
-        const WARM: bool,
-        const STORE: bool,
-        const MASKED: bool,
-    >(
+    pub(super) fn solve<L: Lane<Pack = P>, const N: usize>(
         &mut self,
         token: L::Token,
         pair: &ChainPair<S::Constant>,
+        pass: Pass,
     ) {
+        self.eliminate::<L, N>(token, pair, pass);
+        self.substitute::<L, N>(token, pair, pass);
+    }
+
+    /// Eliminates the unknowns of `N` chains side by side, from their first links to their last.
+    #[inline(always)]
+    fn eliminate<L: Lane<Pack = P>, const N: usize>(
+        &mut self,
+        token: L::Token,
+        pair: &ChainPair<S::Constant>,
+        pass: Pass,
+    ) {
+        let (is_warm, stores) = (pass.is_warm(), pass.stores_targets());
         let particles = &self.particles;
         let (rows, _) = self.rows.as_chunks_mut::<N>();
         let (targets, _) = self.target[pair.targets.clone()].as_chunks::<N>();
@@ -200,7 +227,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let ChainLink { class, rest_length } = links[at];
                 let compliance = L::load(token, &self.compliance[class as usize]);
                 let target =
-                    if WARM { L::load(token, &targets[at]) } else { rest_length.load(token) };
+                    if is_warm { L::load(token, &targets[at]) } else { rest_length.load(token) };
                 let next: V3<L> = particles.position(token, particle);
                 let next_mass = particles.inverse_mass(token, particle);
                 let along = next - end[at];
@@ -212,13 +239,17 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let multiplier = coupling * inverse[at];
                 let diagonal = least.plus_product(end_mass[at] + next_mass + compliance, squared);
                 let one = particles.one_if_linked::<L>(token, class);
-                let one = if MASKED { one * L::load(token, &rows[at].unknown) } else { one };
+                let one = if pass == Pass::Overlong {
+                    one * L::load(token, &rows[at].unknown)
+                } else {
+                    one
+                };
                 inverse[at] = one / diagonal.minus_product(coupling, multiplier);
                 unknown[at] = right.plus_product(coupling, unknown[at]) * inverse[at];
                 along.store(&mut rows[at].along);
                 multiplier.store(&mut rows[at].multiplier);
                 unknown[at].store(&mut rows[at].unknown);
-                if STORE {
+                if stores {
                     (compliance * length).store(&mut rows[at].target_change);
                 }
                 (last[at], end[at], end_mass[at]) = (along, next, next_mass);
@@ -229,16 +260,13 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
     /// Substitutes from the last links to the first, and moves each particle by the tensions of its two links
     /// at once.
     #[inline(always)]
-    pub(super) fn substitute<
-        L: Lane<Pack = P>,
-        const N: usize,
-        const WARM: bool,
-        const STORE: bool,
-    >(
+    fn substitute<L: Lane<Pack = P>, const N: usize>(
         &mut self,
         token: L::Token,
         pair: &ChainPair<S::Constant>,
+        pass: Pass,
     ) {
+        let (is_warm, stores) = (pass.is_warm(), pass.stores_targets());
         let particles = &mut self.particles;
         let (rows, _) = self.rows.as_chunks::<N>();
         let (targets, _) = self.target[pair.targets.clone()].as_chunks_mut::<N>();
@@ -252,9 +280,9 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 unknown[at] =
                     L::load(token, &row.unknown).plus_product(multiplier[at], unknown[at]);
                 multiplier[at] = L::load(token, &row.multiplier);
-                if STORE {
+                if stores {
                     let target_change = L::load(token, &row.target_change);
-                    let target = if WARM {
+                    let target = if is_warm {
                         L::load(token, &targets[at])
                     } else {
                         links[at].rest_length.load(token)

@@ -9,8 +9,8 @@
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles};
 use crate::constraints::chain::{Pass, SolveChains, first_of};
-use crate::fabric::{CHAINS_PER_PAIR, ChainPair, LinkFamily};
-use crate::simd::lane::{Kernel, Lane, Mask, Pack};
+use crate::fabric::ChainPair;
+use crate::simd::lane::{Lane, Mask, Pack};
 use crate::simd::vec3::V3;
 
 /// Part of its target by which a link may be longer. Smaller: flags in a light wind are solved again, too. Larger: the
@@ -28,82 +28,52 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Solves the chains of warp and weft that have overlong links, until there are none.
     pub(super) fn solve_overlong_chains(&mut self) {
         for _ in 0..MOST_ROUNDS {
-            if !self.solve_overlong_chains_once() {
+            if !self.solve_warp_and_weft(Pass::Overlong) {
                 break;
             }
-        }
-    }
-
-    /// Returns whether any chain had overlong links.
-    fn solve_overlong_chains_once(&mut self) -> bool {
-        let mut any = false;
-        for colour in 0..self.layout.chains(&self.fabric).colours.len() {
-            if self.layout.chains(&self.fabric).colours[colour].family != LinkFamily::Diagonal {
-                let chains = self.chains_of_colour(colour, Pass::Again);
-                P::run(SolveOverlong { chains, any: &mut any });
-            }
-        }
-        any
-    }
-}
-
-/// Chains of one colour, of which those with overlong links are solved.
-struct SolveOverlong<'a, 'b, P: Pack, S: Particles<P>> {
-    chains: SolveChains<'a, P, S>,
-    /// Set where a chain has overlong links.
-    any: &'b mut bool,
-}
-
-impl<P: Pack, S: Particles<P>> Kernel<P> for SolveOverlong<'_, '_, P, S> {
-    #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let Self { mut chains, any } = self;
-        for pair in chains.pairs {
-            *any |= match pair.count {
-                CHAINS_PER_PAIR => chains.solve_if_overlong::<L, CHAINS_PER_PAIR>(token, pair),
-                _ => chains.solve_if_overlong::<L, 1>(token, pair),
-            };
         }
     }
 }
 
 impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
-    /// Solves those of `N` chains side by side that have overlong links, and returns whether there are any.
+    /// Solves those of `N` chains side by side that have overlong links.
     #[inline(always)]
-    fn solve_if_overlong<L: Lane<Pack = P>, const N: usize>(
+    pub(super) fn solve_overlong<L: Lane<Pack = P>, const N: usize>(
         &mut self,
         token: L::Token,
         pair: &ChainPair<S::Constant>,
-    ) -> bool {
-        let excess = self.excess::<L, N, false>(token, pair);
-        let zero = L::splat(token, 0.0);
-        let mut any = false;
-        for excess in excess {
-            any |= zero.lt(excess).any();
+    ) {
+        // Mostly no link is overlong, and the first comparison, which stores nothing, is the last.
+        for stores in [false, true] {
+            let mut is_any_overlong = false;
+            for excess in self.excess::<L, N>(token, pair, stores) {
+                is_any_overlong |= L::splat(token, 0.0).lt(excess).any();
+            }
+            if !is_any_overlong {
+                return;
+            }
         }
-        if any {
-            self.excess::<L, N, true>(token, pair);
-            self.mark::<L, N>(token, pair);
-            self.eliminate::<L, N, true, true, true>(token, pair);
-            self.substitute::<L, N, true, true>(token, pair);
-        }
-        any
+        *self.is_any_overlong = true;
+        self.mark::<L, N>(token, pair);
+        self.solve::<L, N>(token, pair, Pass::Overlong);
     }
 
     /// Greatest difference of a squared length and the square of the longest that is within tolerance, in each of `N`
-    /// chains, m²; zero where all links are within tolerance. With `STORE`, each row gets the greatest so far of its
+    /// chains, m²; zero where all links are within tolerance. With `stores`, each row gets the greatest so far of its
     /// yarn: in the single-cloth layout a chain has several yarns one after the other, with no link between them.
     #[inline(always)]
-    fn excess<L: Lane<Pack = P>, const N: usize, const STORE: bool>(
+    fn excess<L: Lane<Pack = P>, const N: usize>(
         &mut self,
         token: L::Token,
         pair: &ChainPair<S::Constant>,
+        stores: bool,
     ) -> [L; N] {
         let particles = &self.particles;
         let (rows, _) = self.rows.as_chunks_mut::<N>();
         let (targets, _) = self.target[pair.targets.clone()].as_chunks::<N>();
         let longest = L::splat(token, LONGEST);
         let mut greatest = [L::splat(token, 0.0); N];
+        let mut greatest_of_yarn = greatest;
         let mut end = [V3::<L>::splat(token, 0.0); N];
         for (at, &particle) in first_of::<N>(&pair.particles[0]).iter().enumerate() {
             end[at] = particles.position(token, particle);
@@ -116,11 +86,10 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let along = next - end[at];
                 let over = along.dot(along).minus_product(longest, target * target);
                 let one = particles.one_if_linked::<L>(token, links[at].class);
-                if STORE {
-                    greatest[at] = one * greatest[at].max(over);
-                    greatest[at].store(&mut rows[at].unknown);
-                } else {
-                    greatest[at] = greatest[at].max(one * over);
+                greatest[at] = greatest[at].max(one * over);
+                if stores {
+                    greatest_of_yarn[at] = one * greatest_of_yarn[at].max(over);
+                    greatest_of_yarn[at].store(&mut rows[at].unknown);
                 }
                 end[at] = next;
             }

@@ -180,7 +180,9 @@ mod tests {
         let one_way = asymmetry(|batch| batch.solve_dihedral(false));
         assert!(bending < 2e-3 && one_way > 1e-2, "bending {bending}, one way {one_way}");
         let chains = asymmetry(|batch| batch.solve_chains_both_ways(2));
-        let one_way = asymmetry(|batch| batch.solve_colours(Pass::First, |_| true));
+        let one_way = asymmetry(|batch| {
+            batch.solve_colours(Pass::First, |_| true);
+        });
         assert!(chains < 2e-3 && one_way > 1e-2, "chains {chains}, one way {one_way}");
     }
 }

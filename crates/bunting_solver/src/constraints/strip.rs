@@ -14,7 +14,7 @@
 //! The two diagonals of a cell of compliance α̃ are one constraint of compliance 2 α̃.
 
 use crate::batch::lane_batch::LaneBatch;
-use crate::batch::layout::{Layout, Order, Particles, Positions};
+use crate::batch::layout::{Layout, Positions};
 use crate::constants::LEAST_LENGTH;
 use crate::constraints::chain::Pass;
 use crate::constraints::strip_system::{Linearised, Solved, UNKNOWNS, coupling, diagonal};
@@ -46,14 +46,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if self.strip_blocks.is_empty() {
             self.strip_blocks.resize(rows.len(), StripBlock::new());
         }
-        let (masses, linked) = (&self.masses.inverse, self.layout.linked());
         P::run(SolveStrip {
             rows,
             compliance: &self.layout.factors().link_compliance,
             blocks: &mut self.strip_blocks,
             target: &mut self.link_target,
             is_first,
-            particles: self.positions.particles(Order::RowMajor, masses, linked),
+            inverse_masses: &self.masses.inverse,
+            position: self.positions.packs_mut(),
         });
     }
 }
@@ -81,17 +81,18 @@ impl<P: Pack> StripBlock<P> {
     }
 }
 
-struct SolveStrip<'a, P: Pack, S: Particles<P>> {
+struct SolveStrip<'a, P: Pack> {
     rows: &'a [StripRow],
     compliance: &'a [P],
     blocks: &'a mut [StripBlock<P>],
     target: &'a mut [P],
     /// Whether diagonals have no tension yet.
     is_first: bool,
-    particles: S,
+    inverse_masses: &'a [P],
+    position: &'a mut [Pack3<P>],
 }
 
-impl<P: Pack, S: Particles<P>> Kernel<P> for SolveStrip<'_, P, S> {
+impl<P: Pack> Kernel<P> for SolveStrip<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         if self.is_first {
@@ -102,7 +103,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for SolveStrip<'_, P, S> {
     }
 }
 
-impl<P: Pack, S: Particles<P>> SolveStrip<'_, P, S> {
+impl<P: Pack> SolveStrip<'_, P> {
     /// Makes the targets of the two diagonals of each cell equal, as they are without tension. Tension takes as much
     /// from one as it adds to the other.
     #[inline(always)]
@@ -254,9 +255,9 @@ impl<P: Pack, S: Particles<P>> SolveStrip<'_, P, S> {
                 .minus_scaled(b, along_second)
                 .plus_scaled(rising, shear);
             for (pull, particle) in [first, second].into_iter().zip(self.rows[index].particles) {
-                let position = self.particles.position(token, particle);
-                let mass = self.particles.inverse_mass(token, particle);
-                self.particles.correct(token, particle, position, (pull, mass));
+                let mass = L::load(token, &self.inverse_masses[particle as usize]);
+                let position = &mut self.position[particle as usize];
+                V3::<L>::load(token, position).plus_scaled(pull, mass).store(position);
             }
             pulls = [
                 (a * along_first).minus_scaled(rising, shear),
@@ -297,13 +298,19 @@ impl<P: Pack, S: Particles<P>> SolveStrip<'_, P, S> {
     #[inline(always)]
     fn positions_of<L: Lane<Pack = P>>(&self, token: L::Token, row: usize) -> [V3<L>; 2] {
         let [first, second] = self.rows[row].particles;
-        [self.particles.position(token, first), self.particles.position(token, second)]
+        [
+            V3::load(token, &self.position[first as usize]),
+            V3::load(token, &self.position[second as usize]),
+        ]
     }
 
     #[inline(always)]
     fn masses_of<L: Lane<Pack = P>>(&self, token: L::Token, row: usize) -> [L; 2] {
         let [first, second] = self.rows[row].particles;
-        [self.particles.inverse_mass(token, first), self.particles.inverse_mass(token, second)]
+        [
+            L::load(token, &self.inverse_masses[first as usize]),
+            L::load(token, &self.inverse_masses[second as usize]),
+        ]
     }
 }
 

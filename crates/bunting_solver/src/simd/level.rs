@@ -14,6 +14,18 @@ pub(crate) fn level() -> Level {
     CHOSEN.get().unwrap_or_else(Level::new)
 }
 
+/// Whether this thread's kernels use AVX-512.
+pub(crate) fn has_avx512() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    {
+        matches!(level(), Level::Avx512(_))
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    {
+        false
+    }
+}
+
 /// Evaluates an expression with the token of this thread's instruction set, compiled for that set.
 ///
 /// Code for SSE2 also runs on SSE4.2 machines: both compute fused multiply-adds in software, which takes most

@@ -6,7 +6,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, f32x4, f32x8, f32x16};
 
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
-use crate::simd::level::dispatch;
+use crate::simd::level::{dispatch, level};
 
 /// A single lane: the scalar solver, with which the wide ones are compared in tests.
 #[derive(Clone, Copy, Debug)]
@@ -30,7 +30,8 @@ impl Pack4 {
 #[repr(C, align(32))]
 pub(crate) struct Pack8([f32; 8]);
 
-/// Sixteen lanes: one AVX-512 register, or two of AVX.
+/// Sixteen lanes: one AVX-512 register. No machine without AVX-512 has batches of it: two registers of eight lanes are
+/// no faster together, and each further instruction set adds to this crate's compile time.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct Pack16([f32; 16]);
@@ -83,7 +84,7 @@ fn fuses<S: Simd>(token: S) -> bool {
     }
 }
 
-macro_rules! wide {
+macro_rules! pack_of_every_set {
     ($pack:ident, $vector:ident, $width:literal) => {
         impl Pack for $pack {
             pack_memory!($width);
@@ -96,7 +97,29 @@ macro_rules! wide {
                 dispatch!(token => with_token(token, kernel));
             }
         }
+    };
+}
 
+pack_of_every_set!(Pack4, f32x4, 4);
+pack_of_every_set!(Pack8, f32x8, 8);
+
+impl Pack for Pack16 {
+    pack_memory!(16);
+
+    fn run<K: Kernel<Self>>(kernel: K) {
+        #[cfg(target_arch = "x86_64")]
+        if let Level::Avx512(set) = level() {
+            return set.vectorize(
+                #[inline(always)]
+                || kernel.run::<f32x16<_>>(set),
+            );
+        }
+        unreachable!("batches of sixteen lanes are made on machines with AVX-512 only")
+    }
+}
+
+macro_rules! lanes_of {
+    ($pack:ident, $vector:ident, $width:literal) => {
         impl<S: Simd> Lane for $vector<S> {
             type Pack = $pack;
             type Token = S;
@@ -146,14 +169,14 @@ macro_rules! wide {
             fn plus_product(self, a: Self, b: Self) -> Self {
                 #[cold]
                 #[inline(never)]
-                fn in_software<S: Simd>(sum: $vector<S>, a: $vector<S>, b: $vector<S>) -> $vector<S> {
+                fn in_software<S: Simd>(
+                    sum: $vector<S>,
+                    a: $vector<S>,
+                    b: $vector<S>,
+                ) -> $vector<S> {
                     a.mul_add_precise(b, sum)
                 }
-                if fuses(self.simd) {
-                    a.mul_add_precise(b, self)
-                } else {
-                    in_software(self, a, b)
-                }
+                if fuses(self.simd) { a.mul_add_precise(b, self) } else { in_software(self, a, b) }
             }
 
             #[inline(always)]
@@ -169,9 +192,9 @@ macro_rules! wide {
     };
 }
 
-wide!(Pack4, f32x4, 4);
-wide!(Pack8, f32x8, 8);
-wide!(Pack16, f32x16, 16);
+lanes_of!(Pack4, f32x4, 4);
+lanes_of!(Pack8, f32x8, 8);
+lanes_of!(Pack16, f32x16, 16);
 
 impl<S: Simd> Mask for fearless_simd::mask32x4<S> {
     #[inline(always)]

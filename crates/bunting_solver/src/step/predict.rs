@@ -61,7 +61,7 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
         let substep = Substep::<L>::load(token, self.parameters, self.pole, self.frame_rate);
         let response = Response::<L>::load(token, self.parameters);
         let gravity: V3<L> = V3::load(token, &self.parameters.gravity_step);
-        let [rounding, air_rounding] = [ROUNDING, AIR_ROUNDING].map(|by| V3::splat(token, by));
+        let (rounding, air_rounding) = (V3::splat(token, ROUNDING), V3::splat(token, AIR_ROUNDING));
         let mut sums = Sums::new(token);
         let positions = self.position.iter().zip(self.next);
         let displacements = self.displacement.iter().zip(self.older_displacement);
