@@ -1,5 +1,7 @@
 //! Bend lines of a single cloth, in packs of neighbouring lines.
 
+use core::array;
+
 use super::LaneIndices;
 use super::grid_shape::GridShape;
 use crate::batch::layout::Order;
@@ -27,7 +29,7 @@ impl BendLinePacks {
                 .filter(|line| is_row(line) == (order == Order::ColumnMajor))
                 .collect();
             let packs = parallel.chunks(P::WIDTH).enumerate().map(|(pack, lines)| {
-                profiles.push((0..P::WIDTH).map(|lane| Some(lines.get(lane)?.profile)).collect());
+                profiles.push(array::from_fn(|lane| Some(lines.get(lane)?.profile)));
                 let first = (pack * P::WIDTH) as isize;
                 BendLine {
                     particles: (0..lines[0].particles.len())

@@ -3,10 +3,11 @@
 //! A pack of chains has one yarn in each lane. Its links lie between consecutive lines of the arrays. If the
 //! yarns are diagonals, each line begins one particle further on than the line before.
 
+use core::array;
 use std::collections::BTreeMap;
 
-use super::LaneIndices;
 use super::grid_shape::GridShape;
+use super::{LaneIndices, MOST_LANES};
 use crate::batch::layout::Order;
 use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Grid, Link, LinkFamily, Yarn};
 use crate::simd::constant::Constant;
@@ -183,22 +184,27 @@ impl Packer {
         let is_linked = |&line: &usize| yarns.clone().any(|yarn| links.get(line, yarn).is_some());
         let begin = (0..links.lines()).find(is_linked)?;
         let end = (0..links.lines()).rfind(is_linked)? + 1;
-        let mut chain_links = Vec::new();
+        let mut chain_links = Vec::with_capacity(end - begin);
         let mut sweep = [Vec::new(), Vec::new()];
         for line in begin..end {
-            let lanes: Vec<Option<OnYarn>> =
-                yarns.clone().map(|yarn| links.get(line, yarn)).collect();
-            let of_link = |(link, _): (&Link, usize)| link.class;
+            let lanes: [Option<OnYarn>; MOST_LANES] =
+                array::from_fn(
+                    |lane| {
+                        if lane < P::WIDTH { links.get(line, first + lane) } else { None }
+                    },
+                );
+            let classes = lanes.map(|link| Some(link?.0.class));
+            let class = self.class(classes);
             chain_links.push(ChainLink {
-                class: self.class(lanes.iter().map(|link| link.map(of_link)).collect()),
+                class,
                 rest_length: P::of(|lane| lanes[lane].map_or(0.0, |(link, _)| link.rest_length)),
             });
             // Even and odd links are counted from the beginning of each yarn, which pins may shift.
             for (parity, sweep) in sweep.iter_mut().enumerate() {
-                let of_parity = lanes.iter().map(|link| link.filter(|(_, at)| at % 2 == parity));
-                let of_lanes: LaneIndices = of_parity.map(|link| link.map(of_link)).collect();
-                if of_lanes.iter().any(Option::is_some) {
-                    sweep.push((line - begin, self.class(of_lanes)));
+                let is_of = |lane: usize| lanes[lane].is_some_and(|(_, at)| at % 2 == parity);
+                let of_parity = array::from_fn(|lane| classes[lane].filter(|_| is_of(lane)));
+                if of_parity.iter().any(Option::is_some) {
+                    sweep.push((line - begin, self.class(of_parity)));
                 }
             }
         }

@@ -41,7 +41,10 @@ use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
 
 /// For each lane of a pack an index into a list of the fabric; none in lanes without a constraint.
-type LaneIndices = Vec<Option<u32>>;
+type LaneIndices = [Option<u32>; MOST_LANES];
+
+/// Number of lanes of the widest pack.
+const MOST_LANES: usize = 16;
 
 /// One cloth across the lanes, with the constraints of its grid in packs.
 #[derive(Clone, Debug)]
@@ -73,14 +76,12 @@ impl<P: Pack> SingleCloth<P> {
         let bend_lines = BendLinePacks::new::<P>(fabric, shape);
         let ribbons = RibbonPacks::new::<P>(fabric, shape);
         let linked = |of_lanes: &LaneIndices| P::of(|lane| f32::from(of_lanes[lane].is_some()));
-        let bending = bend_lines
-            .profiles
-            .iter()
-            .map(|of_lanes| BendFactors::new(&of_lanes_in(of_lanes, fabric.bend_profiles())));
-        let twist = ribbons
-            .profiles
-            .iter()
-            .map(|of_lanes| TwistFactors::new(&of_lanes_in(of_lanes, fabric.ribbon_profiles())));
+        let bending = bend_lines.profiles.iter().map(|of_lanes| {
+            BendFactors::new(&of_lanes_in::<P, _>(of_lanes, fabric.bend_profiles()))
+        });
+        let twist = ribbons.profiles.iter().map(|of_lanes| {
+            TwistFactors::new(&of_lanes_in::<P, _>(of_lanes, fabric.ribbon_profiles()))
+        });
         let locate = |particle: u32| locate::<P>(shape, particle as usize);
         Some(Self {
             factors: Factors {
@@ -102,8 +103,9 @@ impl<P: Pack> SingleCloth<P> {
 }
 
 /// The elements of a list of the fabric that the lanes' indices refer to.
-fn of_lanes_in<'a, T>(of_lanes: &LaneIndices, list: &'a [T]) -> Vec<Option<&'a T>> {
-    of_lanes.iter().map(|index| index.map(|index| &list[index as usize])).collect()
+fn of_lanes_in<'a, P: Pack, T>(of_lanes: &LaneIndices, list: &'a [T]) -> Vec<Option<&'a T>> {
+    let lanes = of_lanes[..P::WIDTH].iter();
+    lanes.map(|index| index.map(|index| &list[index as usize])).collect()
 }
 
 /// The pack and the lane of a particle.
@@ -213,12 +215,13 @@ impl<P: Pack> Layout<P> for SingleCloth<P> {
             *pack = P::of(|lane| classes[lane].map_or(0.0, of_class));
         }
         for (factors, profiles) in bending.iter_mut().zip(&self.bend_lines.profiles) {
-            for (lane, rows) in of_lanes_in(profiles, &of_cloth.bending).iter().enumerate() {
+            for (lane, rows) in of_lanes_in::<P, _>(profiles, &of_cloth.bending).iter().enumerate()
+            {
                 rows.iter().for_each(|rows| factors.set_lane(lane, rows));
             }
         }
         for (factors, profiles) in twist.iter_mut().zip(&self.ribbons.profiles) {
-            for (lane, rows) in of_lanes_in(profiles, &of_cloth.twist).iter().enumerate() {
+            for (lane, rows) in of_lanes_in::<P, _>(profiles, &of_cloth.twist).iter().enumerate() {
                 rows.iter().for_each(|rows| factors.set_lane(lane, rows));
             }
         }

@@ -3,6 +3,8 @@
 //! Neighbouring ribbons share particles. Therefore the even lanes of all packs are solved first, and then the
 //! odd ones; the factors of the other lanes are zero, which makes their moments zero.
 
+use core::array;
+
 use super::LaneIndices;
 use super::grid_shape::GridShape;
 use crate::batch::layout::Order;
@@ -37,7 +39,7 @@ impl RibbonPacks {
                     let ribbon = side_by_side.get(lane).filter(|_| lane % 2 == parity);
                     ribbon.map(|ribbon| ribbon.profile)
                 };
-                let of_lanes: LaneIndices = (0..P::WIDTH).map(of_lane).collect();
+                let of_lanes: LaneIndices = array::from_fn(of_lane);
                 if of_lanes.iter().all(Option::is_none) {
                     continue;
                 }
