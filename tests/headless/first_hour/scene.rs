@@ -1,7 +1,6 @@
 //! Item 9: all components of a cloth reflect fully, and survive a round trip through a scene file.
 
 use bevy_bunting::bunting_solver::FabricMaterial;
-use bevy_bunting::parry3d::shape::SharedShape;
 use bevy_bunting::prelude::*;
 use bevy_ecs::entity::{EntityHashMap, SceneEntityMapper};
 use bevy_ecs::prelude::*;
@@ -160,8 +159,11 @@ fn a_flag_is_loaded_with_its_pole() {
     assert!(!state(&second, flag).positions().is_empty());
 }
 
+#[cfg(feature = "serialize")]
 #[test]
 fn colliders_winds_and_viewers_make_the_round_trip() {
+    use bevy_bunting::parry3d::shape::SharedShape;
+
     let mut first = app();
     let shapes = [
         SharedShape::ball(0.5),

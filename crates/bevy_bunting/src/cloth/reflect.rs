@@ -1,9 +1,8 @@
 //! Reflected forms of other crates' types that components contain, for inspectors and scene files.
 
-use bevy_reflect::{ReflectDeserialize, ReflectSerialize, reflect_remote};
+use bevy_reflect::reflect_remote;
 use bunting_solver::FabricMaterial;
 use parry3d::shape::SharedShape;
-use serde::{Deserialize, Serialize};
 
 /// Reflected form of [`FabricMaterial`], field by field.
 #[reflect_remote(FabricMaterial)]
@@ -23,9 +22,10 @@ pub struct FabricMaterialReflect {
     pub surface_friction: f32,
 }
 
-/// Reflected form of [`SharedShape`]: an opaque value, which parry serialises.
+/// Reflected form of [`SharedShape`]: an opaque value, which parry serialises with the feature `serialize`.
 #[reflect_remote(SharedShape)]
-#[derive(Clone, Serialize, Deserialize)]
+#[derive(Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 #[reflect(opaque)]
-#[reflect(Clone, Serialize, Deserialize)]
+#[reflect(Clone)]
 pub struct SharedShapeReflect;

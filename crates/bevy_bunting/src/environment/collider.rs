@@ -12,7 +12,7 @@ use crate::cloth::reflect::SharedShapeReflect;
 use crate::motion::pose::PoseHistory;
 
 /// A shape that no cloth enters. It moves with its entity and pushes cloth; cloth does not push it. A
-/// heightfield is solid below its surface.
+/// heightfield is solid below its surface. Scene files can contain it with the feature `serialize`.
 #[derive(Component, Clone, Reflect)]
 #[reflect(Component, Clone)]
 #[require(Transform, PoseHistory)]

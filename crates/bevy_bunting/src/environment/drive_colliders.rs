@@ -34,6 +34,9 @@ impl Plugin for ColliderPlugin {
                         .after(drive_cloths),
                 ),
             );
+        #[cfg(feature = "serialize")]
+        app.register_type_data::<SharedShapeReflect, bevy_reflect::ReflectSerialize>()
+            .register_type_data::<SharedShapeReflect, bevy_reflect::ReflectDeserialize>();
     }
 }
 
