@@ -14,6 +14,7 @@ use crate::cloth::activity::ClothActivity;
 use crate::cloth::imperfection::{ClothSeed, almost_at_rest};
 use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
+use crate::fabric::library::AwaitedLevels;
 use crate::motion::take_up::TakingUp;
 
 /// Storage of a cloth's state.
@@ -42,8 +43,8 @@ pub(crate) struct ClothInstance {
     pub seed: ClothSeed,
     /// Whether the state is still the initial one, at rest with the imperfection, and has been in no lane.
     pub unmoved: bool,
-    /// Content key of the fabrics that another thread is building for this cloth, see `FabricLibrary`.
-    pub cutting: Option<Vec<u32>>,
+    /// Levels that another thread is building for this cloth.
+    pub cutting: Option<AwaitedLevels>,
     pub activity: ClothActivity,
     /// The last valid material.
     pub material: FabricMaterial,

@@ -65,11 +65,19 @@ impl Cutting {
 /// Everything that the levels of a cloth depend on, bit for bit; each list after its length.
 type ContentKey = Vec<u32>;
 
+/// Levels that a cloth waits for.
+#[derive(Clone, Debug)]
+pub(crate) struct AwaitedLevels {
+    key: ContentKey,
+    /// Tick before which the levels are not taken.
+    due: u64,
+}
+
 /// Result of a request for a cloth's levels.
 pub(crate) enum Found {
     Levels(Arc<ClothLevels>),
-    /// The levels are being built; the key identifies them in later requests.
-    Awaited(ContentKey),
+    /// The levels are being built: ask again in a later tick.
+    Awaited(AwaitedLevels),
 }
 
 impl FabricLibrary {
@@ -85,8 +93,12 @@ impl FabricLibrary {
         self.expected = self.expected.saturating_sub(VERTICES_PER_TICK);
     }
 
-    /// Whether levels are expected in a later tick.
-    pub fn is_cutting(&self, key: &ContentKey, lods: &LodSet) -> bool {
+    /// Whether levels are expected in a later tick. Most are not due yet, so that no key is hashed.
+    pub fn is_cutting(&self, awaited: &AwaitedLevels, lods: &LodSet) -> bool {
+        self.tick < awaited.due || self.is_cutting_key(&awaited.key, lods)
+    }
+
+    fn is_cutting_key(&self, key: &ContentKey, lods: &LodSet) -> bool {
         let may_be_late = self.may_be_late && matches!(lods.choice, LodChoice::Automatic { .. });
         let is_ready = |cutting: &Cutting| cutting.is_ready(self.tick, may_be_late);
         self.cutting.get(key).is_some_and(|cutting| !is_ready(cutting))
@@ -98,8 +110,8 @@ impl FabricLibrary {
         self.cutting.values().map(left).max().unwrap_or(0)
     }
 
-    /// Returns the levels of a cloth, built now or before. While another thread builds them it returns their
-    /// key: ask again in a later tick.
+    /// Returns the levels of a cloth, built now or before. While another thread builds them it returns what the cloth
+    /// waits for: ask again in a later tick.
     ///
     /// # Errors
     ///
@@ -125,7 +137,8 @@ impl FabricLibrary {
             return Ok(Found::Levels(levels));
         }
         let Some(cut) = self.cut_or_wait(&key, mesh, attached, lods) else {
-            return Ok(Found::Awaited(key));
+            let due = self.cutting[&key].due;
+            return Ok(Found::Awaited(AwaitedLevels { key, due }));
         };
         let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
         self.cut.retain(|_, levels| levels.strong_count() > 0);
@@ -141,7 +154,7 @@ impl FabricLibrary {
         attached: Vec<u32>,
         lods: &LodSet,
     ) -> Option<Result<ClothLevels, FabricError>> {
-        if self.is_cutting(key, lods) {
+        if self.is_cutting_key(key, lods) {
             return None;
         }
         let asked = lods.levels();

@@ -109,8 +109,8 @@ fn cut_cloths(
     library.may_be_late = budget.costs == LodCosts::Measured;
     for mut cloth in &mut cloths {
         let target = cloth.target();
-        let is_cutting =
-            cloth.instance.cutting.as_ref().is_some_and(|key| library.is_cutting(key, &cloth.lods));
+        let awaited = cloth.instance.cutting.as_ref();
+        let is_cutting = awaited.is_some_and(|awaited| library.is_cutting(awaited, &cloth.lods));
         if is_cutting && !cloth.is_edited() {
             library.awaited = true;
             continue;
@@ -119,8 +119,8 @@ fn cut_cloths(
             continue;
         }
         match cloth.find_levels(target, &targets, &mut library) {
-            Ok(Found::Awaited(key)) => {
-                cloth.instance.cutting = Some(key);
+            Ok(Found::Awaited(awaited)) => {
+                cloth.instance.cutting = Some(awaited);
                 library.awaited = true;
             }
             Ok(Found::Levels(levels)) => {

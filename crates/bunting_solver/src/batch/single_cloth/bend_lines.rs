@@ -2,8 +2,8 @@
 
 use core::array;
 
-use super::LaneIndices;
 use super::grid_shape::GridShape;
+use super::{LaneIndices, NO_INDEX};
 use crate::batch::layout::Order;
 use crate::fabric::{BendLine, Fabric};
 use crate::simd::lane::Pack;
@@ -29,7 +29,9 @@ impl BendLinePacks {
                 .filter(|line| is_row(line) == (order == Order::ColumnMajor))
                 .collect();
             let packs = parallel.chunks(P::WIDTH).enumerate().map(|(pack, lines)| {
-                profiles.push(array::from_fn(|lane| Some(lines.get(lane)?.profile)));
+                let profile =
+                    |lane| lines.get(lane).map_or(NO_INDEX, |line: &&BendLine| line.profile);
+                profiles.push(array::from_fn(profile));
                 let first = (pack * P::WIDTH) as isize;
                 BendLine {
                     particles: (0..lines[0].particles.len())

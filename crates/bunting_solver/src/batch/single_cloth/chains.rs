@@ -3,51 +3,77 @@
 //! A pack of chains has one yarn in each lane. Its links lie between consecutive lines of the arrays. If the
 //! yarns are diagonals, each line begins one particle further on than the line before.
 
-use core::array;
+use core::ops::Range;
 use std::collections::BTreeMap;
 
 use super::grid_shape::GridShape;
-use super::{LaneIndices, MOST_LANES};
+use super::{LaneIndices, MOST_LANES, NO_INDEX};
 use crate::batch::layout::Order;
 use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Grid, Link, LinkFamily, Yarn};
 use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;
 
-/// A link, and its index along its yarn.
-type OnYarn<'a> = (&'a Link, usize);
-
-/// Links of yarns in one direction: by the line of the arrays on which the link begins, and by the yarn.
-struct Links<'a> {
-    /// Number of the first yarn.
-    first: isize,
-    /// Line after line, one of each yarn.
-    table: Vec<Option<OnYarn<'a>>>,
-    /// Number of yarns.
-    yarns: usize,
+/// A link in a lane.
+#[derive(Clone, Copy, Debug)]
+struct LaneLink {
+    /// The fabric's class; [`NO_INDEX`] if there is no link.
+    class: u32,
+    /// Length at rest, m.
+    rest_length: f32,
+    /// Whether the link's index along its yarn is odd.
+    is_odd: bool,
 }
 
-impl<'a> Links<'a> {
-    /// Links with their lines and yarns; none where there are no links.
-    fn of(links: &[((usize, isize), OnYarn<'a>)]) -> Option<Self> {
-        let numbers = || links.iter().map(|&((_, yarn), _)| yarn);
-        let (first, last) = (numbers().min()?, numbers().max()?);
-        let lines = links.iter().map(|&((line, _), _)| line).max()? + 1;
-        let yarns = (last - first) as usize + 1;
-        let mut table = vec![None; lines * yarns];
-        for &((line, yarn), link) in links {
-            table[line * yarns + (yarn - first) as usize] = Some(link);
-        }
-        Some(Self { first, table, yarns })
+impl LaneLink {
+    const NONE: Self = Self { class: NO_INDEX, rest_length: 0.0, is_odd: false };
+
+    fn exists(&self) -> bool {
+        self.class != NO_INDEX
+    }
+}
+
+/// Links of yarns in one direction: by the line of the arrays on which the link begins, and by the yarn.
+struct Links {
+    /// Number of the first yarn that the table has room for.
+    first: isize,
+    /// Line after line, one of each yarn.
+    table: Vec<LaneLink>,
+    /// Number of yarns that the table has room for.
+    room: usize,
+    /// The yarns that have links, counted from the first one of the table.
+    yarns: Range<usize>,
+}
+
+impl Links {
+    /// No links yet, with room for all yarns of a direction.
+    fn new(grid: &Grid, direction: Direction) -> Self {
+        let (columns, rows) = (grid.columns as usize, grid.rows as usize);
+        let (lines, across) = match direction.order() {
+            Order::ColumnMajor => (columns, rows),
+            Order::RowMajor => (rows, columns),
+        };
+        // Skewed yarns are counted by the place at which they would cross the first line.
+        let beyond = (lines - 1) * direction.skew().unsigned_abs();
+        let room = across + beyond;
+        let first = if direction.skew() > 0 { -(beyond as isize) } else { 0 };
+        Self { first, table: vec![LaneLink::NONE; lines * room], room, yarns: room..0 }
+    }
+
+    /// Adds a link that begins on a line.
+    fn push(&mut self, line: usize, yarn: isize, link: LaneLink) {
+        let yarn = (yarn - self.first) as usize;
+        self.table[line * self.room + yarn] = link;
+        self.yarns = self.yarns.start.min(yarn)..self.yarns.end.max(yarn + 1);
+    }
+
+    /// Links of consecutive yarns that begin on a line.
+    fn on_line(&self, line: usize, yarns: Range<usize>) -> &[LaneLink] {
+        &self.table[line * self.room..][yarns]
     }
 
     /// Number of lines.
     fn lines(&self) -> usize {
-        self.table.len() / self.yarns
-    }
-
-    /// The link that begins on a line, of a yarn counted from the first one.
-    fn get(&self, line: usize, yarn: usize) -> Option<OnYarn<'a>> {
-        if yarn < self.yarns { self.table[line * self.yarns + yarn] } else { None }
+        self.table.len() / self.room
     }
 }
 
@@ -128,22 +154,22 @@ impl<P: Pack> ChainPacks<P> {
 
 /// The links of yarns of one colour, by direction; diagonals that cross between particles may share a colour.
 /// None if a yarn does not run straight.
-fn by_direction<'a>(
-    fabric: &'a Fabric,
+fn by_direction(
+    fabric: &Fabric,
     grid: &Grid,
     yarns: &[Yarn],
-) -> Option<BTreeMap<Direction, Links<'a>>> {
-    let mut directions: BTreeMap<Direction, Vec<_>> = BTreeMap::new();
+) -> Option<BTreeMap<Direction, Links>> {
+    let mut directions = BTreeMap::new();
     for yarn in yarns {
         let direction = Direction::of(grid, yarn)?;
-        let links = directions.entry(direction).or_default();
+        let links = directions.entry(direction).or_insert_with(|| Links::new(grid, direction));
         for (index, (&particle, &link)) in yarn.particles.iter().zip(&yarn.links).enumerate() {
-            let at = direction.line_and_yarn(grid, particle);
-            links.push((at, (&fabric.links()[link as usize], index)));
+            let (line, yarn) = direction.line_and_yarn(grid, particle);
+            let Link { class, rest_length, .. } = fabric.links()[link as usize];
+            links.push(line, yarn, LaneLink { class, rest_length, is_odd: index % 2 == 1 });
         }
     }
-    let links_of = |(direction, links): (Direction, Vec<_>)| Some((direction, Links::of(&links)?));
-    directions.into_iter().map(links_of).collect()
+    Some(directions)
 }
 
 /// The cells whose diagonals are links, one for each link of a pack of diagonals.
@@ -165,50 +191,44 @@ struct Packer {
 impl Packer {
     /// Packs the yarns of one direction, the longest first.
     fn pack<P: Pack>(&mut self, direction: Direction, links: &Links) -> Vec<Chain<P>> {
-        let mut chains: Vec<Chain<P>> = (0..links.yarns)
-            .step_by(<P as Pack>::WIDTH)
-            .filter_map(|first| self.chain(direction, first, links))
-            .collect();
+        let yarns = links.yarns.clone().step_by(P::WIDTH);
+        let of_pack = |first: usize| first..(first + P::WIDTH).min(links.yarns.end);
+        let mut chains: Vec<Chain<P>> =
+            yarns.filter_map(|first| self.chain(direction, of_pack(first), links)).collect();
         chains.sort_by_key(|chain| core::cmp::Reverse(chain.links.len()));
         chains
     }
 
-    /// Packs neighbouring yarns from number `first` on; none if there are no links.
+    /// Packs neighbouring yarns, at most one for each lane; none if there are no links.
     fn chain<P: Pack>(
         &mut self,
         direction: Direction,
-        first: usize,
+        yarns: Range<usize>,
         links: &Links,
     ) -> Option<Chain<P>> {
-        let yarns = first..first + P::WIDTH;
-        let is_linked = |&line: &usize| yarns.clone().any(|yarn| links.get(line, yarn).is_some());
+        let on_line = |line| links.on_line(line, yarns.clone());
+        let is_linked = |&line: &usize| on_line(line).iter().any(LaneLink::exists);
         let begin = (0..links.lines()).find(is_linked)?;
         let end = (0..links.lines()).rfind(is_linked)? + 1;
         let mut chain_links = Vec::with_capacity(end - begin);
         let mut sweep = [Vec::new(), Vec::new()];
         for line in begin..end {
-            let lanes: [Option<OnYarn>; MOST_LANES] =
-                array::from_fn(
-                    |lane| {
-                        if lane < P::WIDTH { links.get(line, first + lane) } else { None }
-                    },
-                );
-            let classes = lanes.map(|link| Some(link?.0.class));
-            let class = self.class(classes);
+            let mut lanes = [LaneLink::NONE; MOST_LANES];
+            lanes[..yarns.len()].copy_from_slice(on_line(line));
             chain_links.push(ChainLink {
-                class,
-                rest_length: P::of(|lane| lanes[lane].map_or(0.0, |(link, _)| link.rest_length)),
+                class: self.class(lanes.map(|link| link.class)),
+                rest_length: P::of(|lane| lanes[lane].rest_length),
             });
             // Even and odd links are counted from the beginning of each yarn, which pins may shift.
-            for (parity, sweep) in sweep.iter_mut().enumerate() {
-                let is_of = |lane: usize| lanes[lane].is_some_and(|(_, at)| at % 2 == parity);
-                let of_parity = array::from_fn(|lane| classes[lane].filter(|_| is_of(lane)));
-                if of_parity.iter().any(Option::is_some) {
+            for (is_odd, sweep) in [false, true].into_iter().zip(&mut sweep) {
+                let of_parity =
+                    lanes.map(|link| if link.is_odd == is_odd { link.class } else { NO_INDEX });
+                if of_parity != [NO_INDEX; MOST_LANES] {
                     sweep.push((line - begin, self.class(of_parity)));
                 }
             }
         }
-        let first = links.first + first as isize;
+        let first = links.first + yarns.start as isize;
         let skewed = |line| first + direction.skew() * line as isize;
         let at = |line| self.shape.index(direction.order(), line, skewed(line));
         Some(Chain {

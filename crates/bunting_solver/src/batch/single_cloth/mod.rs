@@ -40,8 +40,11 @@ use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
 
-/// For each lane of a pack an index into a list of the fabric; none in lanes without a constraint.
-type LaneIndices = [Option<u32>; MOST_LANES];
+/// For each lane of a pack an index into a list of the fabric; [`NO_INDEX`] in lanes without a constraint.
+type LaneIndices = [u32; MOST_LANES];
+
+/// Index of no element.
+const NO_INDEX: u32 = u32::MAX;
 
 /// Number of lanes of the widest pack.
 const MOST_LANES: usize = 16;
@@ -75,7 +78,7 @@ impl<P: Pack> SingleCloth<P> {
         let cells = Cells::new(fabric, shape)?;
         let bend_lines = BendLinePacks::new::<P>(fabric, shape);
         let ribbons = RibbonPacks::new::<P>(fabric, shape);
-        let linked = |of_lanes: &LaneIndices| P::of(|lane| f32::from(of_lanes[lane].is_some()));
+        let linked = |of_lanes: &LaneIndices| P::of(|lane| f32::from(of_lanes[lane] != NO_INDEX));
         let bending = bend_lines.profiles.iter().map(|of_lanes| {
             BendFactors::new(&of_lanes_in::<P, _>(of_lanes, fabric.bend_profiles()))
         });
@@ -104,8 +107,7 @@ impl<P: Pack> SingleCloth<P> {
 
 /// The elements of a list of the fabric that the lanes' indices refer to.
 fn of_lanes_in<'a, P: Pack, T>(of_lanes: &LaneIndices, list: &'a [T]) -> Vec<Option<&'a T>> {
-    let lanes = of_lanes[..P::WIDTH].iter();
-    lanes.map(|index| index.map(|index| &list[index as usize])).collect()
+    of_lanes[..P::WIDTH].iter().map(|&index| list.get(index as usize)).collect()
 }
 
 /// The pack and the lane of a particle.
@@ -211,8 +213,8 @@ impl<P: Pack> Layout<P> for SingleCloth<P> {
         let of_cloth = ClothFactors::new(fabric, stiffness);
         let Factors { link_compliance, bending, twist } = &mut self.factors;
         for (pack, classes) in link_compliance.iter_mut().zip(&self.chains.classes) {
-            let of_class = |class: u32| of_cloth.link_compliance[class as usize];
-            *pack = P::of(|lane| classes[lane].map_or(0.0, of_class));
+            let of_class = |class: u32| of_cloth.link_compliance.get(class as usize);
+            *pack = P::of(|lane| of_class(classes[lane]).copied().unwrap_or(0.0));
         }
         for (factors, profiles) in bending.iter_mut().zip(&self.bend_lines.profiles) {
             for (lane, rows) in of_lanes_in::<P, _>(profiles, &of_cloth.bending).iter().enumerate()

@@ -5,8 +5,8 @@
 
 use core::array;
 
-use super::LaneIndices;
 use super::grid_shape::GridShape;
+use super::{LaneIndices, NO_INDEX};
 use crate::batch::layout::Order;
 use crate::fabric::{Fabric, Ribbon};
 use crate::simd::lane::Pack;
@@ -37,10 +37,10 @@ impl RibbonPacks {
             for (pack, side_by_side) in sorted.chunks(P::WIDTH).enumerate() {
                 let of_lane = |lane: usize| {
                     let ribbon = side_by_side.get(lane).filter(|_| lane % 2 == parity);
-                    ribbon.map(|ribbon| ribbon.profile)
+                    ribbon.map_or(NO_INDEX, |ribbon| ribbon.profile)
                 };
                 let of_lanes: LaneIndices = array::from_fn(of_lane);
-                if of_lanes.iter().all(Option::is_none) {
+                if of_lanes.iter().all(|&index| index == NO_INDEX) {
                     continue;
                 }
                 let first = (pack * P::WIDTH) as isize;
