@@ -50,5 +50,6 @@ pub use builder::{CoarserMesh, FabricBuilder, MeshRepair};
 pub use error::FabricError;
 pub use fabric::Fabric;
 pub use grid::Grid;
+pub(crate) use links::Probe;
 pub use links::{Link, LinkFamily};
 pub use material::FabricMaterial;
