@@ -50,6 +50,5 @@ pub use builder::{CoarserMesh, FabricBuilder, MeshRepair};
 pub use error::FabricError;
 pub use fabric::Fabric;
 pub use grid::Grid;
-pub(crate) use links::Probe;
 pub use links::{Link, LinkFamily};
 pub use material::FabricMaterial;
