@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 use bunting_solver::{
     BatchError, ClothBatch, ClothSnapshot, Collider, Drive, Entering, Fabric, FabricBuilder,
-    FabricMaterial, FrameMotion, Grid, LaneCount, LaneSurface, StepSettings, instruction_set,
-    with_every_instruction_set,
+    FabricMaterial, FrameMotion, Grid, LaneCount, LaneSurface, Loads, StepSettings,
+    instruction_set, with_every_instruction_set,
 };
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
@@ -266,6 +266,9 @@ fn surfaces_are_copies_of_the_lanes() {
             batch.drive(lane.expect("a free lane"), drive(seed, 0)).expect("a good drive");
         }
         batch.step(TICK, EVERY_SCHEME[3]);
+        let before: Vec<Vec<Vec3>> =
+            (0..lanes.get()).map(|lane| batch.snapshot(lane).positions).collect();
+        batch.step(TICK, EVERY_SCHEME[3]);
         let empty = lanes.get() / 2;
         let untouched = vec![Vec3::ONE; 3];
         if empty > 0 {
@@ -284,6 +287,8 @@ fn surfaces_are_copies_of_the_lanes() {
             batch.copy_normals(lane, &mut normals);
             assert!(surface.is_finite);
             assert_eq!((&surface.positions, &surface.normals), (&positions, &normals), "{lane}");
+            let motion = Loads::of_motion(&fabric, &before[lane], &positions, TICK);
+            assert!(motion > 0.0 && surface.motion == motion, "{motion} {}", surface.motion);
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use bunting_solver::{
     BatchError, ClothBatch, ClothSnapshot, Collider, Entering, Fabric, FabricBuilder, Grid,
-    LaneCount, StepSettings,
+    LaneCount, LaneSurface, Loads, StepSettings,
 };
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
@@ -134,4 +134,27 @@ fn other_topologies_are_refused() {
     let triangles = vec![0, 1, 2];
     let mesh = FabricBuilder::new(vec![Vec3::ZERO, Vec3::X, Vec3::Y], triangles).build();
     assert!(ClothBatch::mixed(&Arc::new(mesh.expect("good"))).is_none());
+}
+
+#[test]
+fn motion_is_measured_by_the_links_of_each_cloth() {
+    let fabrics: Vec<_> = (0..8).map(|seed| fabric(seed, Pins::Edge)).collect();
+    let mut batch = ClothBatch::mixed(&fabrics[2]).expect("grids");
+    let states: Vec<_> = fabrics.iter().map(|it| ClothSnapshot::at_rest(it)).collect();
+    let entering = |lane: usize| Entering {
+        lane,
+        fabric: &fabrics[lane],
+        snapshot: &states[lane],
+        material: material(lane),
+    };
+    batch.exchange(&[], &[0, 1, 2, 3, 4, 5, 6, 7].map(entering)).expect("one topology");
+    (0..8).for_each(|lane| set(&mut batch, lane, lane, 0));
+    batch.step(TICK, SETTINGS[0]);
+    let mut surfaces = vec![LaneSurface::default(); 8];
+    batch.copy_surfaces(&mut surfaces);
+    for (lane, surface) in surfaces.iter().enumerate() {
+        let before = &states[lane].positions;
+        let motion = Loads::of_motion(&fabrics[lane], before, &surface.positions, TICK);
+        assert!(motion > 0.0 && surface.motion == motion, "{motion} {}", surface.motion);
+    }
 }

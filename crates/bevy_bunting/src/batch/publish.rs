@@ -2,7 +2,6 @@
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
-use bevy_time::Time;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::error::ClothError;
@@ -44,34 +43,26 @@ fn stop_states(mut cloths: Query<(&ClothInstance, &mut ClothState), Changed<Clot
     }
 }
 
-/// Copies surfaces batch by batch, as the lanes of a batch lie side by side in memory. Each surface
-/// overwrites the one before the last tick, so that nothing is allocated.
+/// Copies surfaces batch by batch, as the lanes of a batch lie side by side in memory. The buffers of each lane and of
+/// the cloth's two surfaces are exchanged in turn, so that nothing is allocated.
 fn publish_states(
     mut cloths: Query<(&mut ClothState, &mut ClothEffort)>,
     mut batches: ResMut<ClothBatches>,
     mut diverged: ResMut<Diverged>,
-    time: Res<Time>,
 ) {
-    for (entity, surface) in batches.surfaces() {
-        if let Ok((mut state, _)) = cloths.get_mut(entity) {
-            surface.positions = core::mem::take(&mut state.previous_positions);
-            surface.normals = core::mem::take(&mut state.previous_normals);
-        }
-    }
     batches.copy_surfaces();
     for (entity, surface) in batches.surfaces() {
-        if let Ok((mut state, mut effort)) = cloths.get_mut(entity) {
-            let state = &mut *state;
-            let positions = core::mem::take(&mut surface.positions);
-            let normals = core::mem::take(&mut surface.normals);
-            state.previous_positions = core::mem::replace(&mut state.positions, positions);
-            state.previous_normals = core::mem::replace(&mut state.normals, normals);
-            state.blend();
-            state.moved = true;
-            effort.note_motion(state.turning_load(time.delta_secs()));
-            if !surface.is_finite {
-                diverged.0.push(entity);
-            }
+        let Ok((mut state, mut effort)) = cloths.get_mut(entity) else { continue };
+        let state = &mut *state;
+        core::mem::swap(&mut state.previous_positions, &mut state.positions);
+        core::mem::swap(&mut state.positions, &mut surface.positions);
+        core::mem::swap(&mut state.previous_normals, &mut state.normals);
+        core::mem::swap(&mut state.normals, &mut surface.normals);
+        state.blend();
+        state.moved = true;
+        effort.note_motion(surface.motion);
+        if !surface.is_finite {
+            diverged.0.push(entity);
         }
     }
 }

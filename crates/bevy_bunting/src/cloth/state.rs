@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bunting_solver::{Fabric, Loads};
+use bunting_solver::Fabric;
 
 use crate::cloth::activity::ClothActivity;
 use crate::fabric::levels::ClothLevels;
@@ -99,13 +99,6 @@ impl ClothState {
     #[must_use]
     pub fn particle_of_vertex(&self, vertex: u32) -> Option<usize> {
         self.levels.as_ref()?.particle(self.level, vertex)
-    }
-
-    /// Acceleration of links that turned in the last tick of `tick` seconds, see [`Loads::of_motion`], m/s².
-    pub(crate) fn turning_load(&self, tick: f32) -> f32 {
-        self.fabric().map_or(0.0, |fabric| {
-            Loads::of_motion(fabric, &self.previous_positions, &self.positions, tick)
-        })
     }
 
     /// Sets the surface from simulated positions (m) of a level's particles, without easing from the surface

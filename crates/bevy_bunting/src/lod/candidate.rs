@@ -2,13 +2,16 @@
 
 use crate::lod::batch_costs::BatchCosts;
 
-/// Errors and costs of the levels of cloths that share their fabrics, the finest first.
+/// Errors and costs of the levels of cloths that share their fabrics and their class of effort, the finest first.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LevelTable {
     /// Error of each level, m.
     pub errors: Vec<f32>,
     /// Costs of each level.
     pub costs: Vec<BatchCosts>,
+    /// Index of the table that counts the cloths at each level: tables of the same fabrics share the batches of a
+    /// level at which their classes of effort take the same substeps.
+    pub owners: Vec<u32>,
 }
 
 /// A simulated cloth.

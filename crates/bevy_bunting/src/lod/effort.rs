@@ -54,10 +54,10 @@ impl ClothEffort {
         frame: &PoseHistory,
         tick: f32,
     ) -> bool {
-        let Some(fabric) = instance.fabric() else { return false };
         self.loads.frame = if frame.rests() && self.motion.is_none() {
             0.0
         } else {
+            let Some(fabric) = instance.fabric() else { return false };
             Loads::of_frame(&self.motion, &frame_motion(frame), fabric, tick)
         };
         let before = self.effort.class();

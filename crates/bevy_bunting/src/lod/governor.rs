@@ -181,7 +181,7 @@ impl Governor {
             }
             let cloth = &cloths[index];
             let fraction = if cloth.level <= step.to { 1.0 } else { FINER_FRACTION };
-            let more = self.counts.difference(tables, cloth.table, step.to + 1, step.to);
+            let more = self.counts.step(tables, cloth.table, step.to);
             if more <= 0.0 || cost + more <= fraction * budget {
                 cost += more;
                 self.counts.shift(tables, cloth.table, step.to + 1, step.to);

@@ -17,7 +17,7 @@ fn table() -> LevelTable {
         per_cloth: 0.0,
         change: 0.0,
     });
-    LevelTable { errors: vec![0.001, 0.01, 0.02, 0.04], costs: costs.to_vec() }
+    LevelTable { errors: vec![0.001, 0.01, 0.02, 0.04], costs: costs.to_vec(), owners: vec![0; 4] }
 }
 
 fn cloth(level: u32, pixels_per_metre: f32) -> Candidate {

@@ -9,6 +9,11 @@ pub(super) struct LevelCounts {
     counts: Vec<u32>,
     /// Number of cloths in each pool of several fabrics.
     pools: Vec<u32>,
+    /// Number of changes since all cloths were counted.
+    shifts: u32,
+    /// Additional cost if one cloth changes to each level from the next coarser one, µs, and the number of changes
+    /// after which it was computed. Most cloths ask for the same few steps.
+    steps: Vec<(u32, f32)>,
     /// Number of levels in the table that has most.
     stride: usize,
 }
@@ -24,8 +29,11 @@ impl LevelCounts {
         self.stride = tables.iter().map(|table| table.errors.len()).max().unwrap_or(0);
         self.counts.clear();
         self.counts.resize(tables.len() * self.stride, 0);
+        self.shifts = 0;
+        self.steps.clear();
+        self.steps.resize(self.counts.len(), (u32::MAX, 0.0));
         for (cloth, level) in cloths.iter().zip(levels) {
-            *self.at(cloth.table, level) += 1;
+            *self.at(tables, cloth.table, level) += 1;
         }
         self.pools.clear();
         let counts = self.counts.chunks(self.stride.max(1));
@@ -45,11 +53,20 @@ impl LevelCounts {
         sum
     }
 
+    /// Additional cost if one cloth changes to a level from the next coarser one, µs.
+    pub fn step(&mut self, tables: &[LevelTable], table: u32, to: u32) -> f32 {
+        let index = table as usize * self.stride + to as usize;
+        if self.steps[index].0 != self.shifts {
+            self.steps[index] = (self.shifts, self.difference(tables, table, to + 1, to));
+        }
+        self.steps[index].1
+    }
+
     /// Additional cost if one cloth changes from one level to another, µs.
     pub fn difference(&mut self, tables: &[LevelTable], table: u32, from: u32, to: u32) -> f32 {
         let costs = &tables[table as usize].costs;
         let (leaves, enters) = (&costs[from as usize], &costs[to as usize]);
-        let (old, new) = (*self.at(table, from), *self.at(table, to));
+        let [old, new] = [from, to].map(|level| *self.at(tables, table, level));
         let of_fabric = leaves.of(old - 1) - leaves.of(old) + enters.of(new + 1) - enters.of(new);
         let of_pools =
             self.pool_difference(leaves, old, old - 1) + self.pool_difference(enters, new, new + 1);
@@ -65,11 +82,13 @@ impl LevelCounts {
 
     /// Counts one cloth at another level.
     pub fn shift(&mut self, tables: &[LevelTable], table: u32, from: u32, to: u32) {
+        self.shifts += 1;
         for (level, change) in [(from, -1), (to, 1)] {
             let costs = &tables[table as usize].costs[level as usize];
-            let before = *self.at(table, level);
+            let count = self.at(tables, table, level);
+            let before = *count;
             let after = before.saturating_add_signed(change);
-            *self.at(table, level) = after;
+            *count = after;
             if let Some(pool) = self.pool_of(costs) {
                 *pool = *pool + costs.pooled(after) - costs.pooled(before);
             }
@@ -83,7 +102,70 @@ impl LevelCounts {
         Some(&mut self.pools[index])
     }
 
-    fn at(&mut self, table: u32, level: u32) -> &mut u32 {
-        &mut self.counts[table as usize * self.stride + level as usize]
+    /// Number of cloths in the batches that a table's cloths at a level share.
+    fn at(&mut self, tables: &[LevelTable], table: u32, level: u32) -> &mut u32 {
+        let owner = tables[table as usize].owners[level as usize];
+        &mut self.counts[owner as usize * self.stride + level as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Costs of batches of two levels of one fabric.
+    fn table(owner: u32) -> LevelTable {
+        let costs = [10.0, 1.0].map(|one| BatchCosts {
+            one,
+            eight: 3.0 * one,
+            sixteen: Some(5.0 * one),
+            most_single: 1,
+            pool: None,
+            per_cloth: 0.0,
+            change: 0.0,
+        });
+        LevelTable { errors: vec![0.01, 0.02], costs: costs.to_vec(), owners: vec![owner; 2] }
+    }
+
+    fn cloths(tables: [u32; 6]) -> Vec<Candidate> {
+        let cloth = |table| Candidate {
+            table,
+            level: 1,
+            pixels_per_metre: 1.0,
+            importance: 1.0,
+            ready: true,
+            fresh: false,
+            fixed: false,
+            on_screen: true,
+        };
+        tables.map(cloth).to_vec()
+    }
+
+    #[test]
+    fn tables_of_one_fabric_and_as_many_substeps_share_batches() {
+        let cloths = cloths([0, 0, 0, 1, 1, 1]);
+        let cost = |owner: u32| {
+            let tables = [table(0), table(owner)];
+            LevelCounts::default().count(&tables, &cloths, [1; 6].into_iter())
+        };
+        assert_eq!(cost(1), 6.0, "two batches of eight lanes");
+        assert_eq!(cost(0), 3.0, "one");
+    }
+
+    #[test]
+    fn a_step_costs_what_a_change_costs_after_every_shift() {
+        let cloths = cloths([0, 1, 0, 1, 0, 1]);
+        for owner in [0, 1] {
+            let tables = [table(0), table(owner)];
+            let mut counts = LevelCounts::default();
+            counts.count(&tables, &cloths, [1; 6].into_iter());
+            for shifted in [0, 1, 0, 1, 0] {
+                for table in [0, 1, 0] {
+                    let expected = counts.clone().difference(&tables, table, 1, 0);
+                    assert_eq!(counts.step(&tables, table, 0), expected);
+                }
+                counts.shift(&tables, shifted, 1, 0);
+            }
+        }
     }
 }

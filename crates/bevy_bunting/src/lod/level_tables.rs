@@ -74,6 +74,7 @@ impl LevelTables {
         self.tables[index] = LevelTable {
             errors: fabrics().map(|fabric| level_error(fabric)).collect(),
             costs: vec![Default::default(); levels.count()],
+            owners: vec![index as u32; levels.count()],
         };
         index
     }
@@ -141,7 +142,25 @@ impl LevelTables {
             is_new = true;
         }
         if is_new {
+            self.find_owners();
             self.number_pools();
+        }
+    }
+
+    /// Finds the tables that count the cloths of each level: the first of the same fabrics with the same substeps.
+    fn find_owners(&mut self) {
+        for index in 0..self.tables.len() {
+            let levels = self.levels[index].0.as_ptr();
+            let same =
+                (0..index).filter(|&other| core::ptr::eq(self.levels[other].0.as_ptr(), levels));
+            let same: Vec<usize> = same.collect();
+            for (level, work) in self.work[index].iter().enumerate() {
+                let shares = |other: &&usize| {
+                    self.work[**other].get(level).is_some_and(|other| other.step == work.step)
+                };
+                let owner = same.iter().find(shares).copied().unwrap_or(index);
+                self.tables[index].owners[level] = owner as u32;
+            }
         }
     }
 
@@ -149,19 +168,19 @@ impl LevelTables {
     fn number_pools(&mut self) {
         let mut pools: Vec<(u64, StepSettings, u32)> = Vec::new();
         for numbers in [false, true] {
-            let in_use = self.levels.iter().zip(&mut self.work);
-            let in_use = in_use.filter(|((levels, _), _)| levels.strong_count() > 0);
-            for work in in_use.flat_map(|(_, work)| work) {
-                let Some(topology) = work.topology else { continue };
-                let is_of =
-                    |pool: &(u64, StepSettings, u32)| (pool.0, pool.1) == (topology, work.step);
-                let known = pools.iter().position(is_of);
-                match known {
-                    Some(index) if numbers => {
-                        work.pool = (pools[index].2 > 1).then_some(index as u32);
+            let in_use = (0..self.tables.len()).filter(|&it| self.levels[it].0.strong_count() > 0);
+            for index in in_use {
+                for (work, &owner) in self.work[index].iter_mut().zip(&self.tables[index].owners) {
+                    let Some(topology) = work.topology else { continue };
+                    let is_of =
+                        |pool: &(u64, StepSettings, u32)| (pool.0, pool.1) == (topology, work.step);
+                    match pools.iter().position(is_of) {
+                        Some(pool) if numbers => {
+                            work.pool = (pools[pool].2 > 1).then_some(pool as u32);
+                        }
+                        Some(pool) => pools[pool].2 += u32::from(owner as usize == index),
+                        None => pools.push((topology, work.step, 1)),
                     }
-                    Some(index) => pools[index].2 += 1,
-                    None => pools.push((topology, work.step, 1)),
                 }
             }
         }

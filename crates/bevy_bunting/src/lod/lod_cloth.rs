@@ -28,7 +28,7 @@ const ASLEEP_AFTER: u32 = 2 * EXAMINED_EVERY;
 pub(crate) struct LodCloth {
     pub entity: Entity,
     pub lods: Ref<'static, LodSet>,
-    pub frame: &'static PoseHistory,
+    pub frame: Ref<'static, PoseHistory>,
     pub instance: &'static mut ClothInstance,
     pub state: &'static mut ClothState,
     pub effort: &'static mut ClothEffort,
@@ -39,8 +39,13 @@ pub(crate) struct LodCloth {
 impl LodClothItem<'_, '_> {
     /// Chooses the class of effort for a tick of `tick` seconds. A change of class marks the cloth as changed.
     pub fn update_effort(&mut self, tick: f32) {
-        let is_simulated = self.instance.activity == ClothActivity::Ticking && !self.paused;
-        if is_simulated && self.effort.update(&self.instance, self.frame, tick) {
+        let is_simulated = if self.instance.is_changed() {
+            self.instance.activity == ClothActivity::Ticking && !self.paused
+        } else {
+            // The record tells the same, and lies in the cache.
+            self.record.candidate.is_some()
+        };
+        if is_simulated && self.effort.update(&self.instance, &self.frame, tick) {
             self.instance.set_changed();
         }
     }
@@ -84,14 +89,24 @@ impl LodClothItem<'_, '_> {
     pub fn update_middle(&mut self) -> Vec3 {
         let positions = self.state.positions();
         self.record.middle = positions.get(positions.len() / 2).copied().unwrap_or_default();
-        self.frame.end() * self.record.middle
+        self.place_middle()
+    }
+
+    /// Returns the position in the world of the middle particle when the cloth was last examined, m, and stores it in
+    /// the record.
+    fn place_middle(&mut self) -> Vec3 {
+        self.record.centre = self.frame.end() * self.record.middle;
+        self.record.placed = self.frame.last_changed();
+        self.record.centre
     }
 
     /// Whether the cloth sleeps off the screen and still is off the screen, so that it need not be examined.
-    pub fn stays_off_screen(&self, views: &[View]) -> bool {
+    pub fn stays_off_screen(&mut self, views: &[View]) -> bool {
         self.record.activity == ClothActivity::OffScreen && {
-            let middle = self.frame.end() * self.record.middle;
-            Sighting::of(views, middle, self.record.radius).sight == Sight::OffScreen
+            // Poses of many sleeping cloths are not in the cache.
+            let has_moved = self.record.placed != self.frame.last_changed();
+            let centre = if has_moved { self.place_middle() } else { self.record.centre };
+            Sighting::of(views, centre, self.record.radius).sight == Sight::OffScreen
         }
     }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use bevy_ecs::change_detection::Tick;
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 
@@ -20,6 +21,10 @@ pub(crate) struct LodRecord {
     pub activity: ClothActivity,
     /// Position of the middle particle at that time, in the cloth's frame, m.
     pub middle: Vec3,
+    /// The same position in the world, m.
+    pub centre: Vec3,
+    /// Change of the cloth's pose for which `centre` was computed.
+    pub placed: Tick,
     /// Greatest distance of any particle from the middle one, m.
     pub radius: f32,
     /// Number that decides in which ticks the cloth is examined.

@@ -120,7 +120,7 @@ pub(crate) fn select_levels(
     let tick = conditions.time.delta_secs();
     for mut cloth in &mut cloths {
         cloth.update_effort(tick);
-        if selector.is_due(&cloth, &examination.views) {
+        if selector.is_due(&mut cloth, &examination.views) {
             selector.examine(&mut cloth, &examination, &mut batches, &mut commands);
         }
         selector.collect(&cloth, examination.budget.dwell, &mut report, &mut counts);
@@ -215,7 +215,7 @@ impl LevelSelector {
     }
 
     /// Whether a cloth is to be examined: if it changed, or in its turn unless it stays off the screen.
-    fn is_due(&self, cloth: &LodClothItem, views: &[View]) -> bool {
+    fn is_due(&self, cloth: &mut LodClothItem, views: &[View]) -> bool {
         let is_its_turn = cloth.record.phase.wrapping_add(self.tick).is_multiple_of(EXAMINED_EVERY);
         cloth.instance.is_changed()
             || cloth.lods.is_changed()
@@ -263,7 +263,7 @@ impl LevelSelector {
             pixels_per_metre: sighting.map_or(0.0, |it| it.pixels_per_metre * cloth.lods.bias),
             importance: sighting.map_or(0.0, |it| importance(&it, cloth.record.radius)),
             ready: false,
-            fresh: false,
+            fresh: cloth.instance.unmoved,
             fixed: sighting.is_none() || cloth.lods.pinned.is_some() || is_taking_up,
             on_screen,
         };
@@ -333,7 +333,8 @@ impl LevelSelector {
     ) {
         if let Some(candidate) = cloth.record.candidate {
             let ready = self.tick.wrapping_sub(cloth.record.changed) > dwell;
-            let fresh = cloth.instance.unmoved;
+            // A cloth that has been simulated since counts as changed when it begins anew.
+            let fresh = candidate.fresh && cloth.instance.unmoved;
             self.candidates.push(Candidate { ready, fresh, ..candidate });
             self.entities.push(cloth.entity);
             counts.add(candidate.level as usize);

@@ -3,7 +3,9 @@
 use std::f32::consts::TAU;
 
 use bevy_app::App;
-use bevy_bunting::{ClothCounts, ClothSystems, ClothTimings, LodReport, LodSet, LodViewer};
+use bevy_bunting::{
+    ClothBudget, ClothCounts, ClothSystems, ClothTimings, LodCosts, LodReport, LodSet, LodViewer,
+};
 use bevy_ecs::entity::Entity;
 use bevy_transform::components::Transform;
 use bunting_solver::StepSettings;
@@ -96,31 +98,66 @@ pub struct Thousand {
     pub changes_per_tick: f64,
 }
 
+/// A thousand flags in an app, and the camera among them.
+pub struct Field {
+    app: App,
+    camera: Entity,
+    places: Vec<Vec3>,
+    ticks: usize,
+}
+
+impl Field {
+    /// Flags that have not begun to fly, with substeps and passes of each level.
+    #[must_use]
+    pub fn new(steps: &[StepSettings], costs: LodCosts) -> Self {
+        let mut app = game::app_in_wind(steps.iter().copied());
+        app.world_mut().resource_mut::<ClothBudget>().costs = costs;
+        let places: Vec<Vec3> = (0..FLAGS).map(place).collect();
+        for &at in &places {
+            game::spawn_flag(&mut app, LEVELS[0], at, LodSet::automatic(LEVELS.len()));
+        }
+        let camera = app.world_mut().spawn((LodViewer::default(), Transform::default())).id();
+        Self { app, camera, places, ticks: 0 }
+    }
+
+    /// Moves the camera on, and returns its pose.
+    fn fly(&mut self) -> Transform {
+        let pose = camera_pose(self.ticks);
+        self.ticks += 1;
+        *self.app.world_mut().get_mut::<Transform>(self.camera).expect("the camera stays") = pose;
+        pose
+    }
+
+    /// Flies for some ticks.
+    pub fn advance(&mut self, ticks: usize) {
+        for _ in 0..ticks {
+            self.fly();
+            self.app.update();
+        }
+    }
+
+    /// Flies for some ticks, and sums up what was measured in them.
+    #[must_use]
+    pub fn measure(&mut self, ticks: usize, steps: &[StepSettings]) -> Thousand {
+        let mut log = Log::default();
+        for _ in 0..ticks {
+            let pose = self.fly();
+            log.update.time(|| self.app.update());
+            log.take(&self.app, &pose, &self.places);
+        }
+        log.sum_up(steps)
+    }
+}
+
 /// Flies the camera once round.
 #[must_use]
 pub fn measure(quick: bool) -> Thousand {
     let steps = steps_of_levels();
-    let mut app = game::app_in_wind(steps.clone());
-    let places: Vec<Vec3> = (0..FLAGS).map(place).collect();
-    for &at in &places {
-        game::spawn_flag(&mut app, LEVELS[0], at, LodSet::automatic(LEVELS.len()));
-    }
-    let camera = app.world_mut().spawn((LodViewer::default(), Transform::default())).id();
-    let seconds = if quick { QUICK_SECONDS } else { SECONDS };
+    let mut field = Field::new(&steps, LodCosts::Measured);
     let rate = TICK_RATE as usize;
-    let mut log = Log::default();
-    for tick in 0..(WARM_UP + seconds) * rate {
-        let pose = camera_pose(tick);
-        if tick < WARM_UP * rate {
-            fly(&mut app, camera, pose);
-            app.update();
-        } else {
-            fly(&mut app, camera, pose);
-            log.update.time(|| app.update());
-            log.take(&app, &pose, &places);
-        }
-    }
-    log.sum_up(&steps)
+    field.advance(WARM_UP * rate);
+    let seconds = if quick { QUICK_SECONDS } else { SECONDS };
+    field.measure(seconds * rate, &steps)
 }
 
 fn place(flag: usize) -> Vec3 {
@@ -134,10 +171,6 @@ fn camera_pose(tick: usize) -> Transform {
     let at = Vec3::new(PATH * angle.cos(), HEIGHT, PATH * angle.sin());
     let course = Vec3::new(-angle.sin(), 0.0, angle.cos());
     Transform::from_translation(at).looking_to(Quat::from_rotation_y(-INWARDS) * course, Vec3::Y)
-}
-
-fn fly(app: &mut App, camera: Entity, pose: Transform) {
-    *app.world_mut().get_mut::<Transform>(camera).expect("the camera stays") = pose;
 }
 
 /// Whether the middle of a flag is in the picture.

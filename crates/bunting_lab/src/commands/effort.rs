@@ -1,12 +1,12 @@
 //! Substeps by need beside fixed ones, in winds from light to storm.
 
-use bunting_solver::StepSettings;
+use bunting_solver::{StepLimits, StepSettings};
 use glam::DVec3;
 use serde::Serialize;
 use serde_json::json;
 
 use crate::{
-    flight::{Flag, Flights, Substeps},
+    flight::{Flag, Flights, Substeps, fly, fly_or_recall, time_of_tick},
     output::{
         Outcome,
         table::{Table, figure},
@@ -59,29 +59,61 @@ struct Row {
     by_need: Flights,
     converged: Flights,
     fixed: Vec<Flights>,
+    /// Time of a substep of a lone flag, with as many passes as by need, µs.
+    us_per_substep: f64,
 }
 
-/// Flies all flags.
+/// Flies all flags. Those of one material and size fly together in fixed substeps.
 #[must_use]
 pub fn run(quick: bool) -> Outcome {
-    let seconds =
-        |flag: &Flag| if quick { 3.0 } else { 10.0 * (33.0 / f64::from(flag.n)).min(1.0) };
     let sizes = if quick { &SIZES[..1] } else { &SIZES };
-    let flags = sizes.iter().flat_map(|&n| {
-        MATERIALS.iter().flat_map(move |&(material, density, stiffness)| {
-            WINDS.map(|wind| Flag { n, material, density, stiffness, wind })
+    // The largest flags take longest, and are begun first.
+    let groups: Vec<(u32, [Flag; WINDS.len()])> = sizes
+        .iter()
+        .rev()
+        .flat_map(|&n| {
+            MATERIALS.map(|(material, density, stiffness)| {
+                (n, WINDS.map(|wind| Flag { n, material, density, stiffness, wind }))
+            })
         })
+        .collect();
+    let times: Vec<f64> = groups.iter().map(|(n, _)| microseconds_of_substep(*n)).collect();
+    let rows = parallel::map(&groups, |(n, flags)| rows_of(flags, seconds(*n, quick)));
+    let rows = rows.into_iter().zip(times).flat_map(|(rows, us_per_substep)| {
+        rows.into_iter().map(move |row| Row { us_per_substep, ..row })
     });
-    let flags: Vec<Flag> = flags.collect();
-    let rows = parallel::map(&flags, |flag| row(flag, seconds(flag)));
+    let rows: Vec<Row> = rows.collect();
     Outcome { json: json!({ "rows": rows }), tables: vec![table(&rows)], plots: Vec::new() }
 }
 
-fn row(flag: &Flag, seconds: f64) -> Row {
-    let fly = |substeps| flag.fly(substeps, seconds);
-    let by_need = fly(Substeps::ByNeed);
-    let converged = fly(Substeps::Fixed(CONVERGED));
-    let fixed = FIXED.map(|substeps| StepSettings { passes: 2, ..StepSettings::yarns(substeps) });
+/// Length of a flight of a flag of n × n, s.
+fn seconds(n: u32, quick: bool) -> f64 {
+    if quick { 3.0 } else { 10.0 * (33.0 / f64::from(n)).min(1.0) }
+}
+
+fn microseconds_of_substep(n: u32) -> f64 {
+    let substeps = FIXED[1];
+    time_of_tick(n, fixed(substeps)) / f64::from(substeps)
+}
+
+/// A number of substeps with as many passes as by need.
+fn fixed(substeps: u32) -> StepSettings {
+    StepSettings { passes: StepLimits::default().passes, ..StepSettings::yarns(substeps) }
+}
+
+fn rows_of(flags: &[Flag], seconds: f64) -> Vec<Row> {
+    let by_need = fly(flags, Substeps::ByNeed, seconds);
+    let converged = fly_or_recall(flags, CONVERGED, seconds);
+    let fixed = FIXED.map(|substeps| fly_or_recall(flags, fixed(substeps), seconds));
+    let rows = flags.iter().zip(by_need).zip(converged).enumerate();
+    rows.map(|(index, ((flag, by_need), converged))| {
+        let fixed = fixed.iter().map(|flights| flights[index].clone()).collect();
+        row(flag, by_need, converged, fixed)
+    })
+    .collect()
+}
+
+fn row(flag: &Flag, by_need: Flights, converged: Flights, fixed: Vec<Flights>) -> Row {
     let tip_error = DVec3::from(by_need.tip).distance(converged.tip.into());
     let speed_error = by_need.speed / converged.speed - 1.0;
     let greatest = GREATEST[usize::from(flag.wind > MODERATE)];
@@ -98,14 +130,16 @@ fn row(flag: &Flag, seconds: f64) -> Row {
         missed: missed.map(|(name, _)| *name).collect(),
         tip_error,
         speed_error,
-        fixed: fixed.map(|settings| fly(Substeps::Fixed(settings))).into(),
         by_need,
         converged,
+        fixed,
+        us_per_substep: 0.0,
     }
 }
 
 fn table(rows: &[Row]) -> Table {
     let passed = rows.iter().filter(|row| row.pass).count();
+    let us = |row: &Row, flights: &Flights| row.us_per_substep * flights.substeps;
     let strain = |flights: &Flights| {
         format!(
             "{} / {} / {}",
@@ -119,13 +153,13 @@ fn table(rows: &[Row]) -> Table {
             row.name.clone(),
             format!("{:.1} ({})", row.by_need.substeps, row.by_need.most_substeps),
             strain(&row.by_need),
-            figure(row.by_need.us),
+            figure(us(row, &row.by_need)),
             strain(&row.converged),
             figure(100.0 * row.tip_error),
             figure(100.0 * row.speed_error),
             row.missed.join(", "),
         ];
-        cells.extend(row.fixed.iter().map(|it| format!("{}; {}", strain(it), figure(it.us))));
+        cells.extend(row.fixed.iter().map(|it| format!("{}; {}", strain(it), figure(us(row, it)))));
         cells
     };
     Table {

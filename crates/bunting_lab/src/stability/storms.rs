@@ -31,6 +31,14 @@ const HITCH: f64 = 60.0;
 /// Time after which a jerk has passed, s.
 const PASSED: f64 = 0.3;
 
+/// Greatest departure from the extrapolated motion by a change of effort, beyond the cloth's own, px. Larger: a change is
+/// seen.
+const SEEN: f64 = 0.5;
+/// Pixels of a metre at a distance of 10 m, with 1,080 lines over 60°.
+const PIXELS: f64 = 93.5;
+/// Ticks between two changes of effort whose shift is measured.
+const CHANGED_EVERY: usize = 10;
+
 /// All cases.
 pub fn cases(quick: bool) -> Vec<HardCase> {
     let sizes: &[usize] = if quick { &[17] } else { &[17, 33, 65] };
@@ -74,6 +82,9 @@ fn of_size(n: usize, seconds: f64) -> Vec<HardCase> {
         }
     }));
     cases.push(changed(n));
+    cases.extend(
+        [("by a class", 1.5), ("twofold", 2.0)].map(|(change, ratio)| seen(n, change, ratio)),
+    );
     cases
 }
 
@@ -202,4 +213,41 @@ fn changed(n: usize) -> HardCase {
         last = now;
     }
     HardCase::new("change of effort: energy gained", n, "of the fall in a tick, %", worst, 0.5)
+}
+
+/// Case of how much farther a flag in 10 m/s departs from its extrapolated motion in a tick whose effort changes, to
+/// `ratio` times the usual substeps or back, than in the same tick without a change.
+fn seen(n: usize, change: &str, ratio: f32) -> HardCase {
+    let mut flag = Flag::new(n, USUAL, 10.0);
+    flag.fly(1.0);
+    flag.cloth.need = None;
+    let usual = flag.cloth.settings.substeps;
+    let more = (ratio * usual as f32) as u32;
+    let mut worst = 0.0_f64;
+    for [before, after] in [[usual, more], [more, usual]] {
+        flag.cloth.settings.substeps = before;
+        for _ in 0..ticks(2.0) / CHANGED_EVERY {
+            (1..CHANGED_EVERY).for_each(|_| flag.cloth.tick());
+            let earlier = flag.cloth.positions().to_vec();
+            flag.cloth.tick();
+            let last = flag.cloth.positions().to_vec();
+            let mut changed = flag.cloth.clone();
+            changed.settings.substeps = after;
+            flag.cloth.tick();
+            changed.tick();
+            let [with, without] =
+                [&changed, &flag.cloth].map(|it| departure(&earlier, &last, it.positions()));
+            worst = worse(worst, PIXELS * (with - without));
+        }
+    }
+    let name = format!("change of effort {change}: departure beyond its own");
+    HardCase::new(name, n, "px at 10 m", worst, SEEN)
+}
+
+/// Greatest distance of any particle from the position extrapolated linearly from two ticks, m.
+fn departure(earlier: &[Vec3], last: &[Vec3], now: &[Vec3]) -> f64 {
+    let triples = earlier.iter().zip(last).zip(now);
+    let distances =
+        triples.map(|((earlier, last), now)| f64::from(now.distance(2.0 * *last - *earlier)));
+    distances.fold(0.0, worse)
 }

@@ -10,6 +10,7 @@ use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::masses::Masses;
 use crate::batch::mixed::Mixed;
+use crate::batch::probe_motion::ProbeMotion;
 use crate::batch::side_by_side::SideBySide;
 use crate::constraints::strip::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
@@ -76,6 +77,7 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub partial_sums: Vec<u8>,
     pub parameters: Parameters<P>,
     pub clock: Clock,
+    pub probe_motion: ProbeMotion<P>,
     /// The background grids of the cloths, if the fabric has one.
     pub background: Option<BackgroundGrid<P>>,
 }
@@ -134,6 +136,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             partial_sums: layout.partial_sums(),
             parameters: Parameters::new(),
             clock: Clock::default(),
+            probe_motion: ProbeMotion::default(),
             background: BackgroundGrid::of(&fabric),
             fabric,
             layout,

@@ -12,6 +12,7 @@ pub(crate) mod layout;
 mod masses;
 pub(crate) mod mixed;
 mod particles_mut;
+pub(crate) mod probe_motion;
 mod readout;
 pub(crate) mod side_by_side;
 pub(crate) mod single_cloth;

@@ -22,6 +22,8 @@ pub struct LaneSurface {
     pub normals: Vec<Vec3>,
     /// Whether all positions and their sum are finite.
     pub is_finite: bool,
+    /// Acceleration of links that turned in the last tick, see [`Loads::of_motion`](crate::Loads::of_motion), m/s².
+    pub motion: f32,
 }
 
 /// Number of particles whose positions and normals in all lanes fit into the nearest cache, at 384 bytes
@@ -36,8 +38,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn copy_surfaces(&self, into: &mut [LaneSurface]) {
         let particles = self.fabric.particle_count();
         let surfaces = &mut into[..self.lanes.len()];
-        for (cloth, surface) in surfaces.iter_mut().enumerate() {
+        for ((cloth, surface), motion) in surfaces.iter_mut().enumerate().zip(self.motion_loads()) {
             if self.lanes[cloth].is_some() {
+                surface.motion = motion;
                 surface.is_finite = true;
                 surface.positions.resize(particles, Vec3::ZERO);
                 surface.normals.resize(particles, Vec3::ZERO);
@@ -46,7 +49,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if surfaces.len().is_multiple_of(QUAD) {
             dispatch!(token => self.copy_by_quads(token, surfaces));
         } else if self.lanes[0].is_some() {
-            let LaneSurface { positions, normals, is_finite } = &mut surfaces[0];
+            let LaneSurface { positions, normals, is_finite, .. } = &mut surfaces[0];
             self.copy_positions(0, positions);
             self.copy_normals(0, normals);
             *is_finite = positions.iter().sum::<Vec3>().is_finite();

@@ -20,6 +20,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
         let step = tick / settings.substeps as f32;
         self.clock = Clock { settings, step, begun: 0, predicted: false };
+        self.note_probes(tick);
         if self.clock.stands_still() {
             return;
         }

@@ -106,19 +106,28 @@ impl Loads {
     /// from the positions of a fabric's particles before and after a tick of `tick` seconds.
     #[must_use]
     pub fn of_motion(fabric: &Fabric, before: &[Vec3], after: &[Vec3], tick: f32) -> f32 {
-        let probes = fabric.probes();
-        if probes.is_empty() || before.len() != after.len() {
+        if before.len() != after.len() {
             return 0.0;
         }
         let (mut turns, mut ways) = (0.0, 0.0);
-        for probe in probes {
+        for probe in fabric.probes() {
             let [from, to] = probe
                 .particles
                 .map(|particle| after[particle as usize] - before[particle as usize]);
             turns += (to - from).length_squared() * probe.inverse_length_squared;
             ways += from.length_squared();
         }
-        let to_mean = 1.0 / (probes.len() as f32 * tick * tick);
+        Self::of_probes(fabric, turns, ways, tick)
+    }
+
+    /// The same from sums over the probes of a fabric: of the squared angles by which they turn in the tick, rad², and of
+    /// the squared ways of their first ends, m².
+    pub(crate) fn of_probes(fabric: &Fabric, turns: f32, ways: f32, tick: f32) -> f32 {
+        let probes = fabric.probes().len();
+        if probes == 0 || tick <= 0.0 {
+            return 0.0;
+        }
+        let to_mean = 1.0 / (probes as f32 * tick * tick);
         let (squared_rate, squared_speed) = (turns * to_mean, ways * to_mean);
         let link = fabric.shortest_link();
         let turning = OF_TURN * squared_rate * link;
