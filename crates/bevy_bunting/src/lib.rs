@@ -133,6 +133,10 @@ pub use display::surface::{ClothSurface, SurfacePlugin};
 pub use environment::collider::ClothCollider;
 pub use environment::drive::DrivePlugin;
 pub use environment::drive_colliders::ColliderPlugin;
+pub use environment::layers::{ClothFeatures, ClothLayers};
+pub use environment::reactions::{
+    ClothParted, ClothReaction, ClothReactions, ClothTouched, ReactionPlugin,
+};
 pub use environment::wind::{GustTravel, TickWind, WindField, WindPlugin};
 pub use fabric::prepare::PreparePlugin;
 pub use lod::budget::{ClothBudget, LodCosts};
@@ -161,9 +165,10 @@ pub use timings::ClothTimings;
 pub mod prelude {
     pub use crate::{
         AttachedVertices, Attachment, ClothActivity, ClothBudget, ClothCollider, ClothCorner,
-        ClothEdge, ClothError, ClothFailed, ClothLevelChanged, ClothMaterial, ClothMesh,
-        ClothPaused, ClothPlugins, ClothPreroll, ClothSeed, ClothSettings, ClothState,
-        ClothSurface, ClothSystems, ClothTargetLost, ClothTick, LodSet, LodViewer, TargetLost,
+        ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothLayers, ClothLevelChanged,
+        ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
+        ClothReactions, ClothSeed, ClothSettings, ClothState, ClothSurface, ClothSystems,
+        ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, TargetLost,
         TeleportCloth, TeleportMode, WeightsError, WindField,
     };
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
@@ -206,6 +211,7 @@ impl PluginGroup for ClothPlugins {
             .add(TeleportPlugin)
             .add(DrivePlugin)
             .add(ColliderPlugin)
+            .add(ReactionPlugin)
             .add(SolverPlugin)
             .add(PublishPlugin)
             .add(EasingPlugin)

@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    budget, effort, gate, lod, memory, oracles, pareto, report, schedule, stability,
+    budget, contacts, effort, gate, lod, memory, oracles, pareto, report, schedule, stability,
 };
 use crate::output::Outcome;
 
@@ -40,6 +40,8 @@ enum Command {
     Lod,
     /// Substeps by need beside fixed ones, in winds from light to storm.
     Effort,
+    /// Contacts compared with closed forms, and shapes that must not pass through cloth.
+    Contacts,
     /// Bytes of a chain of levels and of batches.
     Memory,
     /// The hard cases.
@@ -68,6 +70,7 @@ impl Arguments {
             Command::Schedule => schedule::run(self.quick),
             Command::Budget => budget::run(self.quick),
             Command::Effort => effort::run(self.quick),
+            Command::Contacts => contacts::run(self.quick),
             Command::Memory => memory::run(),
             Command::Oracles => oracles::run(),
             Command::Stability => stability::run(self.quick),

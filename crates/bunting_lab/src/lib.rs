@@ -9,6 +9,7 @@ pub mod budget;
 pub mod cli;
 pub mod commands;
 pub mod comparison;
+pub mod contacts;
 pub mod contender;
 pub mod effort;
 pub mod fleet;

@@ -78,6 +78,7 @@ pub use batch::snapshot::ClothSnapshot;
 pub use batch::{BatchError, ClothBatch, Entering, LaneSurface, ParticlesMut};
 pub use contact::collider::Collider;
 pub use contact::lift::SurfaceLift;
+pub use contact::reaction::ContactReaction;
 pub use fabric::{
     CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link, LinkFamily,
     MeshRepair,

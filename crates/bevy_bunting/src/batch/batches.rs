@@ -7,7 +7,7 @@ use bevy_ecs::prelude::*;
 use bevy_platform::time::Instant;
 use bevy_tasks::ComputeTaskPool;
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Collider, Fabric, LaneCount, LaneSurface, ParticlesMut, StepSettings,
+    ClothBatch, ClothSnapshot, Collider, ContactReaction, Fabric, LaneCount, LaneSurface, ParticlesMut, StepSettings,
 };
 use parry3d::bounding_volume::Aabb;
 
@@ -111,6 +111,11 @@ impl ClothBatches {
     /// Colliders that the cloth in a lane could touch in the last tick.
     pub(crate) fn near_colliders(&self, lane: LaneHandle) -> impl Iterator<Item = &Collider> {
         self.groups[lane.group].batches[lane.batch].batch.near_colliders(lane.lane)
+    }
+
+    /// What the cloth in a lane did in the last tick to colliders that asked for it.
+    pub(crate) fn reactions(&self, lane: LaneHandle) -> impl Iterator<Item = ContactReaction> {
+        self.groups[lane.group].batches[lane.batch].batch.reactions(lane.lane)
     }
 
     /// Removes a cloth from its lane.

@@ -61,6 +61,6 @@ impl ClothCollider {
     /// The collider in a tick, at whose start and end it has these poses (positions in m).
     pub(super) fn between(&self, from: (Vec3, Quat), to: (Vec3, Quat)) -> Collider {
         let Self { shape, margin, friction } = self.clone();
-        Collider { shape, from, to, margin, friction }
+        Collider { from, to, margin, friction, ..Collider::fixed(shape, from.0, from.1) }
     }
 }

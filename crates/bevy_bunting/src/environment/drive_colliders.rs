@@ -4,6 +4,7 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
 use bevy_time::Time;
+use bunting_solver::Collider;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
@@ -11,6 +12,8 @@ use crate::cloth::reflect::SharedShapeReflect;
 use crate::environment::collider::ClothCollider;
 use crate::environment::collider_tree::{ColliderTree, forget_collider, in_world, update_tree};
 use crate::environment::drive::{drive_cloths, pose_parts};
+use crate::environment::layers::{ClothFeatures, ClothLayers};
+use crate::environment::reactions::ClothReactions;
 use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 
@@ -21,6 +24,8 @@ pub struct ColliderPlugin;
 impl Plugin for ColliderPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<ClothCollider>()
+            .register_type::<ClothLayers>()
+            .register_type::<ClothFeatures>()
             .register_type::<SharedShapeReflect>()
             .init_resource::<ColliderTree>()
             .add_observer(forget_collider)
@@ -53,13 +58,22 @@ fn report_bad_colliders(colliders: Query<(Entity, &ClothCollider), Changed<Cloth
     }
 }
 
+/// A collider that a cloth may touch; the last item is whether it has [`ClothReactions`].
+type NearCollider = (
+    Entity,
+    &'static ClothCollider,
+    &'static PoseHistory,
+    Option<&'static ClothLayers>,
+    Has<ClothReactions>,
+);
+
 /// Sets the colliders near each cloth, relative to the cloth's frame: their poses at the start of the tick
 /// relative to the frame at that time, and their poses at its end likewise. Poses of entities that move in
 /// frames are extrapolated to the time of the tick, of cloths and colliders alike, so that a collider that
 /// moves with a cloth rests in its frame.
 fn drive_colliders(
-    colliders: Query<(&ClothCollider, &PoseHistory)>,
-    cloths: Query<(&ClothInstance, &PoseHistory)>,
+    colliders: Query<NearCollider>,
+    cloths: Query<(&ClothInstance, &PoseHistory, Option<&ClothLayers>, Option<&ClothFeatures>)>,
     tree: Res<ColliderTree>,
     time: Res<Time>,
     mut batches: ResMut<ClothBatches>,
@@ -71,15 +85,24 @@ fn drive_colliders(
     }
     *had_any = has_any;
     batches.update_bounds(time.delta_secs());
-    for (instance, frame) in &cloths {
+    for (instance, frame, layers, features) in &cloths {
         let Some(lane) = instance.lane() else { continue };
         let (start, end) = frame.extrapolated();
         let bounds = batches.bounds(lane).map(|bounds| in_world(&bounds, (start, end)));
         let near = bounds.iter().flat_map(|bounds| tree.near(bounds));
         let (start, end) = (start.inverse(), end.inverse());
-        let colliders = colliders.iter_many(near).map(|(collider, pose)| {
-            let (from, to) = pose.extrapolated();
-            collider.between(relative_pose(start, from), relative_pose(end, to))
+        let layers = layers.copied().unwrap_or_default();
+        let has_features = instance.level < features.copied().unwrap_or_default().levels;
+        let colliders = colliders.iter_many(near).filter_map(|near| {
+            let (entity, collider, pose, of_collider, reacts) = near;
+            let touch = layers.touch(of_collider.copied().unwrap_or_default());
+            let (from, to) = touch.then(|| pose.extrapolated())?;
+            let collider = collider.between(relative_pose(start, from), relative_pose(end, to));
+            Some(Collider {
+                features: collider.features && has_features,
+                reports_as: reacts.then(|| entity.to_bits()),
+                ..collider
+            })
         });
         batches.lane(lane).set_colliders(colliders);
     }

@@ -5,4 +5,6 @@ mod collider_tree;
 pub mod drive;
 pub mod drive_colliders;
 pub mod gusts;
+pub(crate) mod layers;
+pub(crate) mod reactions;
 pub mod wind;

@@ -11,6 +11,7 @@ use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
 use crate::display::lift::lift_surfaces;
 use crate::environment::collider::ClothCollider;
+use crate::environment::layers::{ClothFeatures, ClothLayers};
 use crate::environment::wind::TickWind;
 use crate::lod::record::{LodRecord, RestTimer};
 use crate::lod::select::select_levels;
@@ -103,6 +104,7 @@ fn wake(request: On<WakeCloth>, mut cloths: Query<(&mut ClothInstance, &mut Rest
 fn note_changes(
     colliders: Query<(Ref<ClothCollider>, Ref<PoseHistory>)>,
     mut removed: RemovedComponents<ClothCollider>,
+    layers: Query<(), Or<(Changed<ClothLayers>, Changed<ClothFeatures>)>>,
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
     mut changes: ResMut<Changes>,
@@ -110,7 +112,7 @@ fn note_changes(
     let changes = &mut *changes;
     changes.everywhere = settings.is_changed() || *wind != changes.wind;
     changes.wind.clone_from(&wind);
-    changes.everywhere |= removed.read().count() > 0;
+    changes.everywhere |= removed.read().count() > 0 || !layers.is_empty();
     changes.moving_colliders.clear();
     for (collider, history) in &colliders {
         changes.everywhere |= collider.is_changed();

@@ -7,6 +7,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::{
+    contacts,
     differences::{Differences, GateCase},
     families, oracles, stability,
 };
@@ -62,12 +63,18 @@ pub fn run(options: Options, present: impl FnOnce(&Outcome) -> Result<()>) -> Re
     Ok(())
 }
 
-/// Runs every case of the oracles and of the quick hard cases that this machine can run, and tabulates the
+/// Runs every case of the oracles, and of the quick hard cases and contacts that this machine can run, and tabulates the
 /// times that they took.
 fn measure_cases(times: &mut Vec<Table>) -> Vec<GateCase> {
     let oracles = oracles::families();
     let stability = stability::families(true);
-    times.extend([families::times("oracles", &oracles), families::times("stability", &stability)]);
+    let contacts = contacts::families(true);
+    times.extend([
+        families::times("oracles", &oracles),
+        families::times("stability", &stability),
+        families::times("contacts", &contacts),
+    ]);
+    let contacts = contacts.into_iter().flat_map(|family| family.cases);
     let oracles = oracles.into_iter().flat_map(|family| family.cases);
     let stability = stability.into_iter().flat_map(|family| family.cases);
     let built = stability.filter(|case| case.status == Status::Built);
@@ -76,6 +83,10 @@ fn measure_cases(times: &mut Vec<Table>) -> Vec<GateCase> {
         .chain(built.map(|case| GateCase {
             identity: format!("stability: {}, n = {}", case.name, case.n),
             fails: !case.pass,
+        }))
+        .chain(contacts.map(|row| GateCase {
+            identity: format!("contacts: {}", row.name),
+            fails: !row.pass,
         }))
         .collect()
 }

@@ -2,6 +2,7 @@
 
 pub mod ablation;
 pub mod budget;
+pub mod contacts;
 pub mod differences;
 pub mod effort;
 pub mod families;

@@ -16,6 +16,7 @@ use crate::batch::snapshot::ClothSnapshot;
 use crate::batch::surfaces::LaneSurface;
 use crate::constants::GRAVITY;
 use crate::contact::collider::Collider;
+use crate::contact::reaction::ContactReaction;
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::simd::registers::{Pack1, Pack8, Pack16};
 use crate::step::bdf::IntegratorHistory;
@@ -308,6 +309,17 @@ impl ClothBatch {
         let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
         let near = cloth.into_iter().flat_map(|cloth| cloth.colliders.iter().zip(&cloth.contacts));
         near.filter(|(_, candidates)| !candidates.is_empty()).map(|(collider, _)| collider)
+    }
+
+    /// What a lane's cloth did in the last tick to each collider that [`reports_as`](Collider::reports_as) a number, in
+    /// the order of the colliders.
+    pub fn reactions(&self, lane: usize) -> impl Iterator<Item = ContactReaction> {
+        let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
+        let areas = self.fabric().particle_areas();
+        let sums = cloth.into_iter().flat_map(|cloth| cloth.colliders.iter().zip(&cloth.reactions));
+        sums.filter_map(|(collider, sum)| {
+            Some(sum.total(collider.reports_as?, collider.to.1, areas))
+        })
     }
 
     /// Begins a tick of `tick` seconds: sets the length of its substeps, and finds the particles that may touch

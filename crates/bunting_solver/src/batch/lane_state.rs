@@ -1,6 +1,8 @@
 //! The state of a cloth in a batch besides its particles.
 
+use crate::contact::candidates::Candidates;
 use crate::contact::collider::Collider;
+use crate::contact::reaction::ReactionSum;
 use crate::fabric::FabricMaterial;
 use crate::stability::added_mass::AddedMass;
 use crate::stability::pin_strain::PinStrain;
@@ -14,8 +16,10 @@ pub(crate) struct LaneState {
     pub material: FabricMaterial,
     pub drive: Drive,
     pub colliders: Vec<Collider>,
-    /// Particles that may touch each collider in this tick.
-    pub contacts: Vec<Vec<u32>>,
+    /// What may touch each collider in this tick.
+    pub contacts: Vec<Candidates>,
+    /// What the cloth has done to each collider in this tick; empty if none reports it.
+    pub reactions: Vec<ReactionSum>,
     /// Moment about the pole of this substep's corrections from outside the cloth, by contacts and by users, in
     /// units of the density, m⁴.
     pub external_moment: f32,
@@ -35,6 +39,7 @@ impl LaneState {
             drive: Drive::default(),
             colliders: Vec::new(),
             contacts: Vec::new(),
+            reactions: Vec::new(),
             external_moment: 0.0,
             history: IntegratorHistory::default(),
             pin_strain: PinStrain::default(),

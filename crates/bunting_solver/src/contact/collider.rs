@@ -25,6 +25,12 @@ pub struct Collider {
     /// Coulomb friction coefficient of the shape. A contact uses the geometric mean of this and the cloth's
     /// coefficient.
     pub friction: f32,
+    /// Whether edges, corners and small shapes are felt between the cloth's particles, by its triangles. Without, only
+    /// particles touch, which costs less.
+    pub features: bool,
+    /// A number by which the host finds what the cloth does to this collider in
+    /// [`ClothBatch::reactions`](crate::ClothBatch::reactions); none: it is not summed.
+    pub reports_as: Option<u64>,
 }
 
 impl core::fmt::Debug for Collider {
@@ -36,6 +42,8 @@ impl core::fmt::Debug for Collider {
             .field("to", &self.to)
             .field("margin", &self.margin)
             .field("friction", &self.friction)
+            .field("features", &self.features)
+            .field("reports_as", &self.reports_as)
             .finish()
     }
 }
@@ -45,7 +53,15 @@ impl Collider {
     #[must_use]
     pub fn fixed(shape: SharedShape, position: Vec3, rotation: Quat) -> Self {
         let pose = (position, rotation);
-        Self { shape, from: pose, to: pose, margin: 0.0, friction: 1.0 }
+        Self {
+            shape,
+            from: pose,
+            to: pose,
+            margin: 0.0,
+            friction: 1.0,
+            features: true,
+            reports_as: None,
+        }
     }
 
     /// Whether poses, margin and friction are finite.

@@ -1,10 +1,13 @@
 //! Contacts between cloth and colliders.
 
 mod bounds;
-mod candidates;
+pub(crate) mod candidates;
 pub(crate) mod collider;
 mod ground;
 pub(crate) mod lift;
 mod near;
+mod obstacle;
+pub(crate) mod reaction;
 mod solve;
 mod surface;
+mod sweep;

@@ -1,4 +1,4 @@
-//! Contacts: particles keep their clearance from colliders, and slide along them with friction.
+//! Contacts: particles and triangles keep their clearance from colliders, and slide along them with friction.
 
 use glam::Vec3;
 use parry3d::math::Pose;
@@ -7,48 +7,125 @@ use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::constants::LEAST_CLEARANCE;
+use crate::contact::candidates::Candidates;
 use crate::contact::collider::Collider;
 use crate::contact::ground::RISE_SPEED;
+use crate::contact::obstacle::Obstacle;
+use crate::contact::reaction::ReactionSum;
 use crate::contact::surface::{Projection, Surface};
+use crate::contact::sweep::{Corner, Touch, solve_triangles};
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
 use crate::step::clock::Clock;
 use crate::step::frame::FrameStep;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Projects every contact candidate once.
+    /// Projects every contact candidate once: particles, then triangles.
     pub fn solve_contacts(&mut self) {
         for cloth in 0..self.lanes.len() {
             // The lane's state is taken out, so that the particles of the batch can be written.
             let touches = |state: &mut LaneState| !state.colliders.is_empty();
             if let Some(mut state) = self.lanes[cloth].take_if(touches) {
+                let mut reactions = core::mem::take(&mut state.reactions);
+                let mut sums = reactions.iter_mut();
                 for (collider, candidates) in state.colliders.iter().zip(&state.contacts) {
-                    let contact = Contact::new(&state, collider, &self.clock);
-                    for &particle in candidates {
-                        state.external_moment +=
-                            self.solve_contact(cloth, particle as usize, &contact);
-                    }
+                    let reaction = sums.next().filter(|_| collider.reports_as.is_some());
+                    let mut outcome = Outcome { moment: 0.0, reaction };
+                    self.solve_candidates(cloth, &state, (collider, candidates), &mut outcome);
+                    state.external_moment += outcome.moment;
                 }
+                state.reactions = reactions;
                 self.lanes[cloth] = Some(state);
             }
         }
     }
 
-    /// Projects one particle. Returns the moment of the correction about the pole, m⁴.
-    fn solve_contact(&mut self, cloth: usize, particle: usize, contact: &Contact) -> f32 {
+    /// Projects everything that may touch one collider.
+    fn solve_candidates(
+        &mut self,
+        cloth: usize,
+        state: &LaneState,
+        (collider, candidates): (&Collider, &Candidates),
+        outcome: &mut Outcome,
+    ) {
+        if let Some(reaction) = &mut outcome.reaction {
+            reaction.begin_substep();
+        }
+        if candidates.is_empty() {
+            return;
+        }
+        let contact = Contact::new(state, collider, &self.clock);
+        for &particle in &candidates.particles {
+            self.solve_contact(cloth, particle as usize, &contact, outcome);
+        }
+        if !candidates.triangles.is_empty() {
+            self.solve_triangle_contacts(cloth, candidates, &contact, outcome);
+        }
+    }
+
+    /// Projects one particle.
+    fn solve_contact(
+        &mut self,
+        cloth: usize,
+        particle: usize,
+        contact: &Contact,
+        outcome: &mut Outcome,
+    ) {
+        let (pack, lane) = self.layout.locate(particle, cloth);
+        let start = lane3(&self.scratch[pack], lane);
+        let before = lane3(&self.positions.packs_mut()[pack], lane);
+        if let Some(Projection { to, normal }) = contact.project(start, before) {
+            self.push(cloth, particle, contact, &Push { to, normal, touched: to }, outcome);
+        }
+    }
+
+    /// Projects triangles.
+    fn solve_triangle_contacts(
+        &mut self,
+        cloth: usize,
+        candidates: &Candidates,
+        contact: &Contact,
+        outcome: &mut Outcome,
+    ) {
+        let positions = self.positions.packs_mut();
+        let corner_of = |&particle: &u32| {
+            let (pack, lane) = self.layout.locate(particle as usize, cloth);
+            let (from, to) =
+                contact.path(lane3(&self.scratch[pack], lane), lane3(&positions[pack], lane));
+            let inverse_mass = self.masses.inverse[pack].lanes()[lane];
+            Corner::new(inverse_mass, from, to)
+        };
+        let mut corners: Vec<Corner> = candidates.corners.iter().map(corner_of).collect();
+        contact.solve_triangles(&candidates.triangles, &mut corners);
+        for (&particle, corner) in candidates.corners.iter().zip(&corners) {
+            if let Some(Touch { normal, at }) = corner.touch {
+                let push = Push { to: corner.to, normal, touched: at };
+                self.push(cloth, particle as usize, contact, &push, outcome);
+            }
+        }
+    }
+
+    /// Moves a particle that a contact pushes.
+    fn push(
+        &mut self,
+        cloth: usize,
+        particle: usize,
+        contact: &Contact,
+        push: &Push,
+        outcome: &mut Outcome,
+    ) {
         let (pack, lane) = self.layout.locate(particle, cloth);
         let effective_step = self.parameters.step.lanes()[lane];
         let position = &mut self.positions.packs_mut()[pack];
         let start = lane3(&self.scratch[pack], lane);
         let before = lane3(position, lane);
-        let Some(Projection { to, normal }) = contact.project(start, before) else { return 0.0 };
-        let after = contact.pose.transform_point(to);
-        let normal = contact.pose.rotation * normal;
+        let after = contact.pose.transform_point(push.to);
+        let normal = contact.pose.rotation * push.normal;
         set_lane3(position, lane, after);
 
         // A surface pushes a particle but does not throw it off: the velocity away from the surface that the
         // contact gave to it is removed.
-        let of_surface = (after - contact.surface_point_before(to)) / self.clock.step;
+        let of_surface = contact.surface_motion(push.touched) / self.clock.step;
         let predicted = start + lane3(&self.displacement[pack], lane);
         let velocity = lane3(&self.velocity[pack], lane);
         let given = (after - before) / effective_step;
@@ -64,16 +141,47 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         for past in [&mut self.older_velocity[pack], &mut self.oldest_velocity[pack]] {
             set_lane3(past, lane, lane3(past, lane) + impact);
         }
-        self.fabric_of(cloth).pole.map_or(0.0, |pole| {
-            let inertia = self.masses.inertia[pack].lanes()[lane];
+        let inertia = self.masses.inertia[pack].lanes()[lane];
+        if let Some(pole) = &self.fabric_of(cloth).pole {
             let moment = |at: Vec3| pole.moment(inertia, at, at - predicted);
-            moment(after) - moment(before)
-        })
+            outcome.moment += moment(after) - moment(before);
+        }
+        if let Some(reaction) = &mut outcome.reaction {
+            // A steady force acts for the whole substep, of which the formula takes β; an impact changes the velocity
+            // once.
+            let steady = (given - thrown - impact) * (self.clock.step / effective_step);
+            let gained = contact.density * inertia * (steady + impact);
+            let on_collider = contact.pose.rotation.inverse() * -gained;
+            reaction.add(particle, push.touched, on_collider);
+        }
     }
+}
+
+/// The effects of a substep's contacts with one collider besides those on particles.
+struct Outcome<'a> {
+    /// Moment of the corrections about the pole, m⁴.
+    moment: f32,
+    /// Reactions of the collider, if it reports them.
+    reaction: Option<&'a mut ReactionSum>,
+}
+
+/// The push of a contact to a particle, in the collider's frame.
+struct Push {
+    /// New position of the particle, m.
+    to: Vec3,
+    /// Unit normal of the surface, out of the shape.
+    normal: Vec3,
+    /// The point of the collider that pushes, m.
+    touched: Vec3,
 }
 
 /// A collider and a cloth in a substep.
 struct Contact<'a> {
+    collider: &'a Collider,
+    /// Thickness of the cloth, m.
+    thickness: f32,
+    /// Area density of the cloth, kg/m².
+    density: f32,
     surface: Surface<'a>,
     /// The collider's poses at the beginning and at the end of the substep, each in the cloth's frame as it
     /// was then.
@@ -91,6 +199,9 @@ impl<'a> Contact<'a> {
         let pose_after =
             |substeps: u32| collider.pose_at(substeps as f32 / settings.substeps as f32);
         Self {
+            collider,
+            thickness: cloth.material.thickness,
+            density: cloth.material.area_density,
             surface: Surface {
                 shape: &*collider.shape.0,
                 ground: collider.shape.as_heightfield(),
@@ -104,17 +215,28 @@ impl<'a> Contact<'a> {
         }
     }
 
-    /// Projects a particle that moves between two points in the cloth's frame, m. Both ends of its path are
-    /// transformed to the collider's frame, so that the path is relative to the surface; the first end is
-    /// taken before the cloth's frame moved.
-    fn project(&self, start: Vec3, end: Vec3) -> Option<Projection> {
+    /// Both ends of the way of a particle between two points in the cloth's frame, in the collider's frame, m, so that
+    /// the way is relative to the surface; the first end is taken before the cloth's frame moved.
+    fn path(&self, start: Vec3, end: Vec3) -> (Vec3, Vec3) {
         let from = self.old_pose.inverse_transform_point(self.frame.to_old(start));
-        let to = self.pose.inverse_transform_point(end);
+        (from, self.pose.inverse_transform_point(end))
+    }
+
+    /// Projects a particle that moves between two points in the cloth's frame, m.
+    fn project(&self, start: Vec3, end: Vec3) -> Option<Projection> {
+        let (from, to) = self.path(start, end);
         self.surface.project(from, to)
     }
 
-    /// Position of a point of the collider at the beginning of the substep, in the cloth's present frame, m.
-    fn surface_point_before(&self, point: Vec3) -> Vec3 {
-        self.frame.to_new(self.old_pose.transform_point(point))
+    /// Projects triangles, given as indices of corners.
+    fn solve_triangles(&self, triangles: &[[u32; 3]], corners: &mut [Corner]) {
+        let obstacle = Obstacle::new(self.collider, self.thickness);
+        solve_triangles(&obstacle, self.surface.friction, triangles, corners);
+    }
+
+    /// Motion of a point of the collider in the substep, m, in the cloth's present frame.
+    fn surface_motion(&self, point: Vec3) -> Vec3 {
+        let before = self.frame.to_new(self.old_pose.transform_point(point));
+        self.pose.transform_point(point) - before
     }
 }

@@ -1,0 +1,28 @@
+//! Contacts compared with closed forms, and with the shapes that must not pass through cloth.
+//!
+//! Every row is one figure of the product with default passes, and one limit.
+
+mod capstan;
+mod drape;
+mod fast;
+mod rest;
+mod rig;
+mod row;
+mod shapes;
+mod slope;
+mod turntable;
+
+pub use row::Row;
+
+/// Runs one family of rows; fewer and smaller where `quick`.
+pub type Family = fn(quick: bool) -> Vec<Row>;
+
+/// Every family with its name.
+pub const ALL: [(&str, Family); 6] = [
+    ("slope", slope::rows),
+    ("capstan", capstan::rows),
+    ("turntable", turntable::rows),
+    ("rest", rest::rows),
+    ("fast", fast::rows),
+    ("drape", drape::rows),
+];

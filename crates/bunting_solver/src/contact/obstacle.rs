@@ -1,0 +1,157 @@
+//! A shape that triangles of cloth do not cut: the shape's surface near a triangle.
+
+use glam::Vec3;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::query::{PointQuery, PointQueryWithLocation};
+use parry3d::shape::{HeightField, Shape, Triangle, TriMeshFlags};
+
+use crate::constants::{LEAST_CLEARANCE, LEAST_LENGTH};
+use crate::contact::collider::Collider;
+use crate::contact::ground;
+
+/// Fraction of the particles' clearance that triangles keep. Smaller: cuts that the search misses are
+/// visible. Larger: triangles close to an edge are lifted without need.
+const KEPT: f32 = 0.5;
+
+/// Search for the deepest point of a triangle: number of steps; length of the first step, as a fraction of
+/// the triangle's longest side; and ratio of each step to the one before. Fewer or shorter steps miss the
+/// corners of boxes.
+const STEPS: usize = 10;
+const FIRST_STEP: f32 = 0.5;
+const STEP_FACTOR: f32 = 0.7;
+
+/// Distance above ground below which a triangle is examined, m. Smaller: ridges between particles are missed.
+/// Larger: each query visits more cells.
+const GROUND_REACH: f32 = 0.1;
+
+/// The plane of a shape's surface that is nearest to a point, in the shape's frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane {
+    /// Unit normal, out of the shape.
+    pub normal: Vec3,
+    /// Distance of the plane from the origin along its normal, m.
+    pub offset: f32,
+    /// Distance of the point from the surface, m; negative inside.
+    pub distance: f32,
+}
+
+impl Plane {
+    /// Least height of a triangle's corners above the plane, m.
+    pub fn below(&self, corners: &[Vec3; 3]) -> f32 {
+        let height = |corner: &Vec3| self.normal.dot(*corner) - self.offset;
+        corners.iter().map(height).fold(f32::INFINITY, f32::min)
+    }
+}
+
+/// A point of a triangle that is nearer to a shape than permitted, and must move.
+pub(super) struct Cut {
+    /// Barycentric coordinates in the triangle.
+    pub weights: [f32; 3],
+    /// Unit normal, out of the shape.
+    pub normal: Vec3,
+    /// Distance by which the point must move out, m.
+    pub depth: f32,
+}
+
+/// A shape that triangles do not cut.
+pub(super) struct Obstacle<'a> {
+    shape: &'a dyn Shape,
+    /// The shape as ground, if it is a heightfield.
+    ground: Option<&'a HeightField>,
+    /// Whether a plane of the surface is taken to have the whole shape below it. This is exact for convex shapes. Ground
+    /// and compounds have parts that are large compared with a cloth's triangles; meshes may have smaller ones.
+    pub planes_separate: bool,
+    /// Box of all points nearer than [`kept`](Self::kept) to the shape, in the shape's frame.
+    bounds: Aabb,
+    /// Distance that triangles keep, m.
+    pub kept: f32,
+}
+
+impl<'a> Obstacle<'a> {
+    /// The collider's shape, which cloth of a given thickness (m) does not cut.
+    pub fn new(collider: &'a Collider, thickness: f32) -> Self {
+        let shape = &*collider.shape.0;
+        let kept = KEPT * (thickness + collider.margin).max(LEAST_CLEARANCE);
+        Self {
+            shape,
+            ground: collider.shape.as_heightfield(),
+            planes_separate: shape.as_trimesh().is_none(),
+            bounds: shape.compute_local_aabb().loosened(kept),
+            kept,
+        }
+    }
+
+    /// Whether a shape has an inside, and can cut a triangle whose corners are outside.
+    pub fn can_cut(shape: &dyn Shape) -> bool {
+        let is_open = |flags: TriMeshFlags| !flags.contains(TriMeshFlags::ORIENTED);
+        shape.as_halfspace().is_none()
+            && shape.as_polyline().is_none()
+            && !shape.as_trimesh().is_some_and(|mesh| is_open(mesh.flags()))
+    }
+
+    /// Whether points are all beside or above the whole shape.
+    pub fn is_beside(&self, points: &[Vec3]) -> bool {
+        let low = points.iter().fold(Vec3::INFINITY, |low, at| low.min(*at));
+        let high = points.iter().fold(Vec3::NEG_INFINITY, |high, at| high.max(*at));
+        low.cmpgt(self.bounds.maxs).any() || high.cmplt(self.bounds.mins).any()
+    }
+
+    /// The plane of the surface nearest to a point; none on the surface itself, and far above ground.
+    pub fn nearest_plane(&self, at: Vec3) -> Option<Plane> {
+        let nearest = match self.ground {
+            Some(field) => ground::project(field, at, GROUND_REACH)?,
+            None => self.shape.project_local_point(at, false),
+        };
+        let away = if nearest.is_inside { nearest.point - at } else { at - nearest.point };
+        let length = away.length();
+        let normal = (length > LEAST_LENGTH).then(|| away / length)?;
+        let distance = if nearest.is_inside { -length } else { length };
+        Some(Plane { normal, offset: normal.dot(nearest.point), distance })
+    }
+
+    /// A lower bound of the distance of a triangle from the shape, m, given the plane nearest to one of the triangle's
+    /// points: the distance changes by at most a metre a metre, and a plane of a convex shape has the shape below it.
+    pub fn least_distance(&self, at: Vec3, plane: &Plane, corners: &[Vec3; 3]) -> f32 {
+        let farthest = corners.iter().map(|corner| corner.distance(at)).fold(0.0, f32::max);
+        let by_reach = plane.distance - farthest;
+        if self.planes_separate { by_reach.max(plane.below(corners)) } else { by_reach }
+    }
+
+    /// The point of a triangle that is nearest to the shape or deepest inside, found by steps along the triangle
+    /// against the normal of the nearest plane, which is the gradient of the distance (Macklin et al. 2020); none if the
+    /// whole triangle is farther away than `within` (m), or if a plane is missing.
+    pub fn deepest(&self, corners: &[Vec3; 3], within: f32) -> Option<(Vec3, Plane)> {
+        let [a, b, c] = *corners;
+        let triangle = Triangle::new(a, b, c);
+        let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+        let mut at = (a + b + c) / 3.0;
+        let mut step = FIRST_STEP * longest;
+        let mut deepest: Option<(Vec3, Plane)> = None;
+        for _ in 0..STEPS {
+            let plane = self.nearest_plane(at)?;
+            if self.least_distance(at, &plane, corners) >= within {
+                return None;
+            }
+            if deepest.is_none_or(|(_, deepest)| plane.distance < deepest.distance) {
+                deepest = Some((at, plane));
+            }
+            at = triangle.project_local_point(at - step * plane.normal, true).point;
+            step *= STEP_FACTOR;
+        }
+        deepest
+    }
+
+    /// The deepest point of a triangle that is nearer than permitted.
+    pub fn deepest_cut(&self, corners: &[Vec3; 3]) -> Option<Cut> {
+        let deepest = self.deepest(corners, self.kept);
+        let (at, plane) = deepest.filter(|(_, plane)| plane.distance < self.kept)?;
+        let weights = barycentric(corners, at)?;
+        Some(Cut { weights, normal: plane.normal, depth: self.kept - plane.distance })
+    }
+}
+
+/// Barycentric coordinates of a point of a triangle.
+pub(super) fn barycentric([a, b, c]: &[Vec3; 3], at: Vec3) -> Option<[f32; 3]> {
+    let triangle = Triangle::new(*a, *b, *c);
+    triangle.project_local_point_and_get_location(at, true).1.barycentric_coordinates()
+}

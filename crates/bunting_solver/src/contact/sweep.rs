@@ -1,0 +1,256 @@
+//! Contacts between triangles of cloth and a shape: features of the shape that pass between particles.
+//!
+//! All vectors are in the shape's frame, at the beginning or at the end of the substep, so the shape rests.
+
+use glam::Vec3;
+
+use crate::constants::LEAST_LENGTH;
+use crate::contact::obstacle::{Cut, Obstacle, Plane, barycentric};
+
+/// Number of sweeps over the triangles in each solve. Fewer: triangles that several features cut are left cut.
+const SWEEPS: usize = 3;
+
+/// Greatest number of steps in the search for the time at which a triangle meets a shape. Fewer: fast shapes that
+/// graze a triangle go through.
+const ADVANCES: usize = 16;
+
+/// Part of the estimated distance by which the search advances; the estimate is too large where the deepest point was
+/// missed. Larger: edges of fast boxes go through.
+const ADVANCE: f32 = 0.7;
+
+/// Greatest way of a triangle's corner in a substep, relative to the shape, at which the end alone is examined, m.
+/// Larger: shapes thinner than this go through. Smaller: cloth at rest costs more.
+const SLOW: f32 = 2e-3;
+
+/// Depth at the end of a substep from which on a triangle that a shape has met counts as overtaken, and moves with the
+/// shape, m. Smaller: cloth that falls on a shape sticks. Larger: the corners beside a fast small ball are thrown ahead
+/// of it.
+const OVERTAKEN: f32 = 5e-3;
+
+/// Least inverse mass of a point of a triangle, compared with its corners'. Smaller: a contact beside a pin moves the
+/// other corners far away.
+const LEAST_RESPONSE: f32 = 0.1;
+
+/// A corner of triangles near a shape.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    /// Inverse mass, zero if pinned.
+    pub inverse_mass: f32,
+    /// Position at the start of the substep, m.
+    pub from: Vec3,
+    /// Present position, m.
+    pub to: Vec3,
+    /// The last contact that has moved the corner.
+    pub touch: Option<Touch>,
+    /// The plane nearest to the present position, if it has been computed.
+    plane: Option<Plane>,
+}
+
+/// Where a shape touches a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    /// Unit normal, out of the shape.
+    pub normal: Vec3,
+    /// Point of the shape, m.
+    pub at: Vec3,
+}
+
+impl Corner {
+    pub fn new(inverse_mass: f32, from: Vec3, to: Vec3) -> Self {
+        Self { inverse_mass, from, to, touch: None, plane: None }
+    }
+
+    fn shift(&mut self, by: Vec3, touch: Touch) {
+        self.to += by;
+        self.touch = Some(touch);
+        self.plane = None;
+    }
+}
+
+/// Moves corners until no triangle is nearer to the obstacle than permitted. `triangles` have indices of corners.
+pub(super) fn solve_triangles(
+    obstacle: &Obstacle,
+    friction: f32,
+    triangles: &[[u32; 3]],
+    corners: &mut [Corner],
+) {
+    let mut cut: Vec<[u32; 3]> = Vec::new();
+    let solve = |triangle: &[u32; 3], corners: &mut [Corner]| {
+        let particles = triangle.map(|corner| corner as usize);
+        solve_triangle(obstacle, friction, particles, corners)
+    };
+    cut.extend(triangles.iter().filter(|triangle| solve(triangle, corners)));
+    for _ in 1..SWEEPS {
+        cut.retain(|triangle| solve(triangle, corners));
+    }
+}
+
+/// Moves the corners of one triangle. Returns whether they had to move.
+fn solve_triangle(
+    obstacle: &Obstacle,
+    friction: f32,
+    particles: [usize; 3],
+    corners: &mut [Corner],
+) -> bool {
+    let (from, to) = (particles.map(|at| corners[at].from), particles.map(|at| corners[at].to));
+    if obstacle.is_beside(&[from[0], from[1], from[2], to[0], to[1], to[2]]) {
+        return false;
+    }
+    let way = from.iter().zip(&to).map(|(from, to)| from.distance(*to)).fold(0.0, f32::max);
+    let hit = if way > SLOW { first_hit(obstacle, &from, &to, way) } else { None };
+    if let Some((at, cut)) = &hit
+        && cut.depth > OVERTAKEN
+    {
+        let touch = Touch { normal: cut.normal, at: weighted(&cut.weights, &between(&from, &to, *at)) };
+        particles.into_iter().for_each(|corner| stop(&mut corners[corner], *at, touch));
+        return true;
+    }
+    let cut = match hit {
+        Some((_, cut)) => Some(cut),
+        None if is_above(obstacle, particles, &to, corners) => None,
+        None => obstacle.deepest_cut(&to),
+    };
+    cut.is_some_and(|cut| push_out(&cut, friction, particles, corners))
+}
+
+/// Moves a corner of an overtaken triangle to where it was when the shape met the triangle, in the shape's frame, unless
+/// it has gone farther out since.
+fn stop(corner: &mut Corner, at: f32, touch: Touch) {
+    let met = corner.from.lerp(corner.to, at);
+    if corner.inverse_mass > 0.0 && (met - corner.to).dot(touch.normal) > 0.0 {
+        corner.shift(met - corner.to, touch);
+    }
+}
+
+/// Moves a point of a triangle out of the shape, with friction. Corners move in proportion to their inverse masses and
+/// weights. Returns whether they can.
+fn push_out(cut: &Cut, friction: f32, particles: [usize; 3], corners: &mut [Corner]) -> bool {
+    let Cut { weights, normal, depth } = *cut;
+    let (from, to) = (particles.map(|at| corners[at].from), particles.map(|at| corners[at].to));
+    let point = weighted(&weights, &to);
+    let moved = point - weighted(&weights, &from);
+    let slide = moved - normal * moved.dot(normal);
+    // Friction shortens the slide by at most its coefficient times the depth (Coulomb's cone).
+    let held = (friction * depth / slide.length().max(LEAST_LENGTH)).min(1.0);
+    let shift = normal * depth - slide * held;
+    let inverse = particles.map(|corner| corners[corner].inverse_mass);
+    let responses = weights.iter().zip(inverse).map(|(weight, inverse)| weight * weight * inverse);
+    let response: f32 = responses.sum();
+    if response <= LEAST_RESPONSE * inverse.into_iter().fold(0.0, f32::max) {
+        return false;
+    }
+    let touch = Touch { normal, at: point + shift };
+    for ((corner, weight), inverse) in particles.into_iter().zip(weights).zip(inverse) {
+        if weight * inverse > 0.0 {
+            corners[corner].shift(shift * (weight * inverse / response), touch);
+        }
+    }
+    true
+}
+
+/// Whether the planes nearest to the corners, and to the middle where parts of the shape may be smaller than the
+/// triangle, show that nothing cuts.
+fn is_above(
+    obstacle: &Obstacle,
+    particles: [usize; 3],
+    to: &[Vec3; 3],
+    corners: &mut [Corner],
+) -> bool {
+    let mut clear = |corner: usize| {
+        let corner = &mut corners[corner];
+        let plane = corner.plane.or_else(|| obstacle.nearest_plane(corner.to));
+        corner.plane = plane;
+        plane.is_some_and(|plane| plane.below(to) >= obstacle.kept)
+    };
+    if obstacle.planes_separate {
+        return particles.into_iter().any(clear);
+    }
+    particles.into_iter().all(&mut clear) && {
+        let plane = obstacle.nearest_plane((to[0] + to[1] + to[2]) / 3.0);
+        plane.is_some_and(|plane| plane.below(to) >= obstacle.kept)
+    }
+}
+
+/// The fraction of the substep after which a triangle first comes too close to the obstacle, and how far it then goes
+/// beyond the plane that it met. Found by conservative advancement (Mirtich 1996).
+fn first_hit(
+    obstacle: &Obstacle,
+    from: &[Vec3; 3],
+    to: &[Vec3; 3],
+    way: f32,
+) -> Option<(f32, Cut)> {
+    let mut at = 0.0;
+    for _ in 0..ADVANCES {
+        let now = between(from, to, at);
+        let middle = (now[0] + now[1] + now[2]) / 3.0;
+        let plane = obstacle.nearest_plane(middle)?;
+        let mut distance = obstacle.least_distance(middle, &plane, &now) - obstacle.kept;
+        if distance <= 0.0 {
+            let (point, plane) = obstacle.deepest(&now, f32::INFINITY)?;
+            distance = ADVANCE * (plane.distance - obstacle.kept);
+            // Cloth that lies on the shape keeps exactly this distance.
+            if distance <= 0.5 * obstacle.kept {
+                let weights = barycentric(&now, point)?;
+                let end = plane.normal.dot(weighted(&weights, to)) - plane.offset;
+                let depth = obstacle.kept - end;
+                return (depth > 0.0).then_some((at, Cut { weights, normal: plane.normal, depth }));
+            }
+        }
+        at += distance.max(0.1 * obstacle.kept) / way;
+        if at >= 1.0 {
+            return None;
+        }
+    }
+    None
+}
+
+/// The point of a triangle that has these barycentric coordinates.
+fn weighted(weights: &[f32; 3], corners: &[Vec3; 3]) -> Vec3 {
+    weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2]
+}
+
+/// The triangle after a fraction of its way.
+fn between(from: &[Vec3; 3], to: &[Vec3; 3], at: f32) -> [Vec3; 3] {
+    core::array::from_fn(|corner| from[corner].lerp(to[corner], at))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Quat, Vec3};
+    use parry3d::shape::SharedShape;
+
+    use super::{Corner, solve_triangles};
+    use crate::contact::collider::Collider;
+    use crate::contact::obstacle::Obstacle;
+
+    /// Corners of a triangle that is large compared with the shape, around the origin.
+    const LARGE: [Vec3; 3] =
+        [Vec3::new(-0.3, -0.2, 0.0), Vec3::new(0.3, -0.2, 0.0), Vec3::new(0.0, 0.4, 0.0)];
+
+    /// The corners after a substep in which they move from one height above the origin to another, m.
+    fn pass(shape: SharedShape, from: f32, to: f32, friction: f32) -> [Vec3; 3] {
+        let collider = Collider::fixed(shape, Vec3::ZERO, Quat::IDENTITY);
+        let mut corners =
+            LARGE.map(|at| Corner::new(1.0, at + from * Vec3::Z, at + to * Vec3::Z));
+        solve_triangles(&Obstacle::new(&collider, 2e-3), friction, &[[0, 1, 2]], &mut corners);
+        corners.map(|corner| corner.to)
+    }
+
+    #[test]
+    fn a_shape_between_the_corners_does_not_pass() {
+        let plate = SharedShape::cuboid(0.05, 0.05, 1e-3);
+        for (shape, top) in [(SharedShape::ball(0.02), 0.02), (plate, 1e-3)] {
+            for to in [0.01, -0.01, -1.0] {
+                let moved = pass(shape.clone(), 0.3, to, 0.0);
+                let lowest = moved.iter().map(|at| at.z).fold(f32::MAX, f32::min);
+                assert!(lowest > top && lowest < top + 3e-3, "{lowest} m after {to}");
+            }
+        }
+    }
+
+    #[test]
+    fn triangles_beside_a_shape_stay() {
+        let moved = pass(SharedShape::ball(0.02), 0.3, 0.05, 1.0);
+        assert_eq!(moved, LARGE.map(|at| at + 0.05 * Vec3::Z));
+    }
+}
