@@ -3,6 +3,7 @@
 mod any_order;
 mod attachment;
 mod broad_phase;
+mod contacts;
 mod determinism;
 mod effort;
 mod environment;

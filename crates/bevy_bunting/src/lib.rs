@@ -130,7 +130,7 @@ pub use diagnostics::ClothDiagnosticsPlugin;
 pub use display::ease::EasingPlugin;
 pub use display::lift::LiftPlugin;
 pub use display::surface::{ClothSurface, SurfacePlugin};
-pub use environment::collider::ClothCollider;
+pub use environment::collider::{ClothCollider, ColliderError};
 pub use environment::drive::DrivePlugin;
 pub use environment::drive_colliders::ColliderPlugin;
 pub use environment::layers::{ClothFeatures, ClothLayers};
@@ -168,8 +168,8 @@ pub mod prelude {
         ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothLayers, ClothLevelChanged,
         ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
         ClothReactions, ClothSeed, ClothSettings, ClothState, ClothSurface, ClothSystems,
-        ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, TargetLost,
-        TeleportCloth, TeleportMode, WeightsError, WindField,
+        ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, TargetLost, TeleportCloth,
+        TeleportMode, WeightsError, WindField,
     };
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }

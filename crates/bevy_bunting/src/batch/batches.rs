@@ -7,7 +7,8 @@ use bevy_ecs::prelude::*;
 use bevy_platform::time::Instant;
 use bevy_tasks::ComputeTaskPool;
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Collider, ContactReaction, Fabric, LaneCount, LaneSurface, ParticlesMut, StepSettings,
+    ClothBatch, ClothSnapshot, Collider, ContactReaction, Fabric, LaneCount, LaneSurface,
+    ParticlesMut, StepSettings,
 };
 use parry3d::bounding_volume::Aabb;
 

@@ -12,6 +12,7 @@ use crate::batch::batches::ClothBatches;
 use crate::batch::publish::reset_diverged;
 use crate::cloth::activity::ClothActivity;
 use crate::cloth::instance::ClothInstance;
+use crate::lod::sleep::send_to_sleep;
 use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 
@@ -86,7 +87,7 @@ impl Plugin for ReactionPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<ClothReactions>().add_systems(
             ClothTick,
-            sum_reactions.in_set(ClothSystems::Publish).after(reset_diverged),
+            sum_reactions.in_set(ClothSystems::Publish).after(reset_diverged).before(send_to_sleep),
         );
     }
 }

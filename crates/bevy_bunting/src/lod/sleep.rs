@@ -151,7 +151,11 @@ pub(crate) fn wake_cloths(mut cloths: Query<RestingCloth>, mut changes: ResMut<C
     }
 }
 
-fn send_to_sleep(mut cloths: Query<RestingCloth>, mut changes: ResMut<Changes>, time: Res<Time>) {
+pub(crate) fn send_to_sleep(
+    mut cloths: Query<RestingCloth>,
+    mut changes: ResMut<Changes>,
+    time: Res<Time>,
+) {
     // Gusts change in every tick, so no cloth comes to rest in them.
     if changes.everywhere {
         return;

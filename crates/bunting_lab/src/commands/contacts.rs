@@ -17,11 +17,7 @@ pub fn run(quick: bool) -> Outcome {
     let families = families(quick);
     let times = families::times("contacts", &families);
     let rows: Vec<Row> = families.into_iter().flat_map(|family| family.cases).collect();
-    Outcome {
-        json: json!({ "rows": rows }),
-        tables: vec![table(&rows), times],
-        plots: Vec::new(),
-    }
+    Outcome { json: json!({ "rows": rows }), tables: vec![table(&rows), times], plots: Vec::new() }
 }
 
 /// Every family with its rows.

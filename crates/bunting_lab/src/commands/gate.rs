@@ -84,10 +84,12 @@ fn measure_cases(times: &mut Vec<Table>) -> Vec<GateCase> {
             identity: format!("stability: {}, n = {}", case.name, case.n),
             fails: !case.pass,
         }))
-        .chain(contacts.map(|row| GateCase {
-            identity: format!("contacts: {}", row.name),
-            fails: !row.pass,
-        }))
+        .chain(
+            contacts.map(|row| GateCase {
+                identity: format!("contacts: {}", row.name),
+                fails: !row.pass,
+            }),
+        )
         .collect()
 }
 

@@ -54,16 +54,13 @@ pub(super) fn rows(quick: bool) -> Vec<Row> {
     let cuboid = SharedShape::cuboid(0.15, 0.15, 0.15);
     let upright = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
     let on_corner = Quat::from_rotation_arc(Vec3::ONE.normalize(), Vec3::Z);
-    let outline = |shape: &SharedShape| match (
-        shape.as_cylinder(),
-        shape.as_cone(),
-        shape.as_cuboid(),
-    ) {
-        (Some(shape), _, _) => shape.to_trimesh(24),
-        (_, Some(shape), _) => shape.to_trimesh(24),
-        (_, _, Some(shape)) => shape.to_trimesh(),
-        _ => unreachable!("a peg, a cone or a box"),
-    };
+    let outline =
+        |shape: &SharedShape| match (shape.as_cylinder(), shape.as_cone(), shape.as_cuboid()) {
+            (Some(shape), _, _) => shape.to_trimesh(24),
+            (_, Some(shape), _) => shape.to_trimesh(24),
+            (_, _, Some(shape)) => shape.to_trimesh(),
+            _ => unreachable!("a peg, a cone or a box"),
+        };
     let (corners, triangles) = blob();
     let closed = TriMeshFlags::ORIENTED;
     let mesh = SharedShape::trimesh_with_flags(corners.clone(), triangles.clone(), closed);
@@ -121,6 +118,9 @@ fn row(feature: &Feature, speed: f32, seconds: f32) -> Row {
 /// Side of a cell of the plane, m, in which triangles are looked up.
 const CELL: f32 = 0.02;
 
+/// Longest side of a triangle that is looked up, m.
+const LONGEST: f32 = 1.0;
+
 /// The displayed triangles, and those over each cell of the plane.
 struct Surface {
     triangles: Vec<[Vec3; 3]>,
@@ -135,6 +135,10 @@ impl Surface {
             corners.map(|it| it.map(|corner| positions[corner as usize])).collect();
         let mut over = HashMap::<_, Vec<usize>>::new();
         for (index, [a, b, c]) in triangles.iter().enumerate() {
+            // Exploded cloth covers nothing.
+            if a.distance(*b).max(a.distance(*c)) > LONGEST {
+                continue;
+            }
             let [low, high] = [a.min(*b).min(*c), a.max(*b).max(*c)].map(|at| cell(at.truncate()));
             for (x, y) in (low[0]..=high[0]).flat_map(|x| (low[1]..=high[1]).map(move |y| (x, y))) {
                 over.entry([x, y]).or_default().push(index);

@@ -110,8 +110,7 @@ fn thrown(name: String, n: u32, steps: u32) -> Row {
     let fabric = sheet(n, n, SIDE, SIDE);
     let middle = Vec3::new(0.5 * SIDE, -0.5 * SIDE, -0.4);
     let velocity = |_| -SPEED * Vec3::Z;
-    let mut cloth =
-        Trial::moving(&fabric, cotton(0.4), Vec3::ZERO, velocity).with(substeps(steps));
+    let mut cloth = Trial::moving(&fabric, cotton(0.4), Vec3::ZERO, velocity).with(substeps(steps));
     cloth.touch([Collider::fixed(wavy_mesh(HALF, 0.01), middle, Quat::IDENTITY)]);
     let points = points(&fabric, |_| true);
     let mut deepest = 0.0;

@@ -32,8 +32,7 @@ fn reaction(cloth: &Trial) -> (Vec3, f32) {
 fn at_rest(steps: u32) -> Row {
     let material = cotton(0.5);
     let gravity = -GRAVITY * Vec3::Z;
-    let mut cloth =
-        Trial::new(&sheet(17, 17, 1.0, 1.0), material, gravity).with(substeps(steps));
+    let mut cloth = Trial::new(&sheet(17, 17, 1.0, 1.0), material, gravity).with(substeps(steps));
     cloth.touch([reporting(floor(0.5))]);
     cloth.run(1.0);
     let weight = material.area_density * gravity;

@@ -40,7 +40,8 @@ impl SurfaceLift {
         into: &mut Vec<(u32, Vec3)>,
     ) {
         into.clear();
-        let cutting = colliders.into_iter().filter(|collider| Obstacle::can_cut(&*collider.shape.0));
+        let cutting =
+            colliders.into_iter().filter(|collider| Obstacle::can_cut(&*collider.shape.0));
         let mut cutting = cutting.peekable();
         if cutting.peek().is_none() {
             return;

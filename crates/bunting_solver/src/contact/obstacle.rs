@@ -3,7 +3,7 @@
 use glam::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::query::{PointQuery, PointQueryWithLocation};
-use parry3d::shape::{HeightField, Shape, Triangle, TriMeshFlags};
+use parry3d::shape::{HeightField, Shape, TriMeshFlags, Triangle};
 
 use crate::constants::{LEAST_CLEARANCE, LEAST_LENGTH};
 use crate::contact::collider::Collider;

@@ -74,8 +74,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let (pack, lane) = self.layout.locate(particle, cloth);
         let start = lane3(&self.scratch[pack], lane);
         let before = lane3(&self.positions.packs_mut()[pack], lane);
-        if let Some(Projection { to, normal }) = contact.project(start, before) {
-            self.push(cloth, particle, contact, &Push { to, normal, touched: to }, outcome);
+        if let Some(Projection { to, normal, sticks }) = contact.project(start, before) {
+            let push = Push { to, normal, touched: to, sticks };
+            self.push(cloth, particle, contact, &push, outcome);
         }
     }
 
@@ -98,8 +99,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let mut corners: Vec<Corner> = candidates.corners.iter().map(corner_of).collect();
         contact.solve_triangles(&candidates.triangles, &mut corners);
         for (&particle, corner) in candidates.corners.iter().zip(&corners) {
-            if let Some(Touch { normal, at }) = corner.touch {
-                let push = Push { to: corner.to, normal, touched: at };
+            if let Some(Touch { normal, at, sticks }) = corner.touch {
+                let push = Push { to: corner.to, normal, touched: at, sticks };
                 self.push(cloth, particle as usize, contact, &push, outcome);
             }
         }
@@ -124,22 +125,28 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         set_lane3(position, lane, after);
 
         // A surface pushes a particle but does not throw it off: the velocity away from the surface that the
-        // contact gave to it is removed.
+        // contact gave to it is removed. A particle that sticks has the velocity of the surface.
         let of_surface = contact.surface_motion(push.touched) / self.clock.step;
         let predicted = start + lane3(&self.displacement[pack], lane);
         let velocity = lane3(&self.velocity[pack], lane);
         let given = (after - before) / effective_step;
         let leaving = velocity + (after - predicted) / effective_step - of_surface;
-        let thrown = leaving.dot(normal).min(given.dot(normal)).max(0.0) * normal;
+        let thrown = match push.sticks {
+            true => leaving,
+            false => leaving.dot(normal).min(given.dot(normal)).max(0.0) * normal,
+        };
         set_lane3(&mut self.velocity[pack], lane, velocity - thrown);
 
         // An impact must not be extrapolated, so the velocities of the last substeps change by the same
         // amount. A steady pressure is extrapolated, since it continues.
-        let arrived = lane3(&self.older_velocity[pack], lane);
-        let approach = (of_surface - arrived).dot(normal);
-        let impact = approach.min((given - thrown).dot(normal)).max(0.0) * normal;
+        let approach = of_surface - lane3(&self.older_velocity[pack], lane);
+        let impact = match push.sticks {
+            true => approach,
+            false => approach.dot(normal).min((given - thrown).dot(normal)).max(0.0) * normal,
+        };
         for past in [&mut self.older_velocity[pack], &mut self.oldest_velocity[pack]] {
-            set_lane3(past, lane, lane3(past, lane) + impact);
+            let changed = lane3(past, lane) + impact;
+            set_lane3(past, lane, changed);
         }
         let inertia = self.masses.inertia[pack].lanes()[lane];
         if let Some(pole) = &self.fabric_of(cloth).pole {
@@ -149,7 +156,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if let Some(reaction) = &mut outcome.reaction {
             // A steady force acts for the whole substep, of which the formula takes β; an impact changes the velocity
             // once.
-            let steady = (given - thrown - impact) * (self.clock.step / effective_step);
+            let steady = match push.sticks {
+                true => Vec3::ZERO,
+                false => (given - thrown - impact) * (self.clock.step / effective_step),
+            };
             let gained = contact.density * inertia * (steady + impact);
             let on_collider = contact.pose.rotation.inverse() * -gained;
             reaction.add(particle, push.touched, on_collider);
@@ -173,6 +183,8 @@ struct Push {
     normal: Vec3,
     /// The point of the collider that pushes, m.
     touched: Vec3,
+    /// Whether the particle moves with the collider in this substep.
+    sticks: bool,
 }
 
 /// A collider and a cloth in a substep.

@@ -34,6 +34,8 @@ pub(super) struct Projection {
     pub to: Vec3,
     /// Unit normal of the surface, out of the shape.
     pub normal: Vec3,
+    /// Whether the particle moves with the shape in this substep.
+    pub sticks: bool,
 }
 
 impl Surface<'_> {
@@ -64,7 +66,7 @@ impl Surface<'_> {
         // estimates.
         let overlap = self.overlap(from, at);
         let to = overlap.map_or(at, |Overlap { normal, depth }| at + normal * depth);
-        Some(Projection { to, normal: hit.normal })
+        Some(Projection { to, normal: hit.normal, sticks: true })
     }
 
     /// Projects a particle that comes closer than the clearance, with friction.
@@ -74,7 +76,7 @@ impl Surface<'_> {
         let slide = moved - normal * moved.dot(normal);
         // Friction shortens the slide by at most its coefficient times the depth (Coulomb's cone).
         let held = (self.friction * depth / slide.length().max(LEAST_LENGTH)).min(1.0);
-        Some(Projection { to: to + normal * depth - slide * held, normal })
+        Some(Projection { to: to + normal * depth - slide * held, normal, sticks: false })
     }
 
     /// The plane of the surface nearest to `to`, if it is closer than the clearance.

@@ -7,8 +7,9 @@ use glam::Vec3;
 use crate::constants::LEAST_LENGTH;
 use crate::contact::obstacle::{Cut, Obstacle, Plane, barycentric};
 
-/// Number of sweeps over the triangles in each solve. Fewer: triangles that several features cut are left cut.
-const SWEEPS: usize = 3;
+/// Number of sweeps in each solve: the first over all triangles, the others over those of which a corner has moved since.
+/// Fewer: triangles that several features cut are left cut, and those beside an overtaken one are lost.
+const SWEEPS: usize = 4;
 
 /// Greatest number of steps in the search for the time at which a triangle meets a shape. Fewer: fast shapes that
 /// graze a triangle go through.
@@ -44,6 +45,8 @@ pub(super) struct Corner {
     pub touch: Option<Touch>,
     /// The plane nearest to the present position, if it has been computed.
     plane: Option<Plane>,
+    /// The last sweep that may have moved the corner, counted from one; zero if none has.
+    moved: usize,
 }
 
 /// Where a shape touches a triangle.
@@ -53,11 +56,13 @@ pub(super) struct Touch {
     pub normal: Vec3,
     /// Point of the shape, m.
     pub at: Vec3,
+    /// Whether the corner moves with the shape in this substep.
+    pub sticks: bool,
 }
 
 impl Corner {
     pub fn new(inverse_mass: f32, from: Vec3, to: Vec3) -> Self {
-        Self { inverse_mass, from, to, touch: None, plane: None }
+        Self { inverse_mass, from, to, touch: None, plane: None, moved: 0 }
     }
 
     fn shift(&mut self, by: Vec3, touch: Touch) {
@@ -74,14 +79,19 @@ pub(super) fn solve_triangles(
     triangles: &[[u32; 3]],
     corners: &mut [Corner],
 ) {
-    let mut cut: Vec<[u32; 3]> = Vec::new();
-    let solve = |triangle: &[u32; 3], corners: &mut [Corner]| {
-        let particles = triangle.map(|corner| corner as usize);
-        solve_triangle(obstacle, friction, particles, corners)
-    };
-    cut.extend(triangles.iter().filter(|triangle| solve(triangle, corners)));
-    for _ in 1..SWEEPS {
-        cut.retain(|triangle| solve(triangle, corners));
+    for sweep in 0..SWEEPS {
+        let mut any = false;
+        for triangle in triangles {
+            let particles = triangle.map(|corner| corner as usize);
+            let is_due = sweep == 0 || particles.iter().any(|&at| corners[at].moved + 1 >= sweep);
+            if is_due && solve_triangle(obstacle, friction, particles, corners) {
+                any = true;
+                particles.into_iter().for_each(|at| corners[at].moved = sweep + 1);
+            }
+        }
+        if !any {
+            return;
+        }
     }
 }
 
@@ -101,7 +111,8 @@ fn solve_triangle(
     if let Some((at, cut)) = &hit
         && cut.depth > OVERTAKEN
     {
-        let touch = Touch { normal: cut.normal, at: weighted(&cut.weights, &between(&from, &to, *at)) };
+        let met = weighted(&cut.weights, &between(&from, &to, *at));
+        let touch = Touch { normal: cut.normal, at: met, sticks: true };
         particles.into_iter().for_each(|corner| stop(&mut corners[corner], *at, touch));
         return true;
     }
@@ -139,7 +150,7 @@ fn push_out(cut: &Cut, friction: f32, particles: [usize; 3], corners: &mut [Corn
     if response <= LEAST_RESPONSE * inverse.into_iter().fold(0.0, f32::max) {
         return false;
     }
-    let touch = Touch { normal, at: point + shift };
+    let touch = Touch { normal, at: point + shift, sticks: false };
     for ((corner, weight), inverse) in particles.into_iter().zip(weights).zip(inverse) {
         if weight * inverse > 0.0 {
             corners[corner].shift(shift * (weight * inverse / response), touch);
@@ -148,27 +159,38 @@ fn push_out(cut: &Cut, friction: f32, particles: [usize; 3], corners: &mut [Corn
     true
 }
 
-/// Whether the planes nearest to the corners, and to the middle where parts of the shape may be smaller than the
-/// triangle, show that nothing cuts.
+/// Whether a plane nearest to one of the corners shows that nothing cuts. Where parts of the shape may be smaller than the
+/// triangle, the points of the surface nearest to all corners and to the middle must lie below that plane, as they do
+/// where the surface is convex.
 fn is_above(
     obstacle: &Obstacle,
     particles: [usize; 3],
     to: &[Vec3; 3],
     corners: &mut [Corner],
 ) -> bool {
-    let mut clear = |corner: usize| {
+    let mut plane_of = |corner: usize| {
         let corner = &mut corners[corner];
-        let plane = corner.plane.or_else(|| obstacle.nearest_plane(corner.to));
-        corner.plane = plane;
-        plane.is_some_and(|plane| plane.below(to) >= obstacle.kept)
+        corner.plane = corner.plane.or_else(|| obstacle.nearest_plane(corner.to));
+        corner.plane
     };
+    let separates = |plane: &Plane| plane.below(to) >= obstacle.kept;
     if obstacle.planes_separate {
-        return particles.into_iter().any(clear);
+        return particles.into_iter().any(|at| plane_of(at).is_some_and(|plane| separates(&plane)));
     }
-    particles.into_iter().all(&mut clear) && {
-        let plane = obstacle.nearest_plane((to[0] + to[1] + to[2]) / 3.0);
-        plane.is_some_and(|plane| plane.below(to) >= obstacle.kept)
-    }
+    let middle = (to[0] + to[1] + to[2]) / 3.0;
+    let points = [to[0], to[1], to[2], middle];
+    let [a, b, c] = particles.map(plane_of);
+    let planes = [a, b, c, obstacle.nearest_plane(middle)];
+    let near = |plane: &Plane| {
+        let below = |(at, other): (&Vec3, &Option<Plane>)| {
+            other.is_some_and(|other| {
+                let foot = *at - other.normal * other.distance;
+                plane.normal.dot(foot) - plane.offset < 0.5 * obstacle.kept
+            })
+        };
+        points.iter().zip(&planes).all(below)
+    };
+    planes.iter().flatten().any(|plane| separates(plane) && near(plane))
 }
 
 /// The fraction of the substep after which a triangle first comes too close to the obstacle, and how far it then goes
@@ -230,8 +252,7 @@ mod tests {
     /// The corners after a substep in which they move from one height above the origin to another, m.
     fn pass(shape: SharedShape, from: f32, to: f32, friction: f32) -> [Vec3; 3] {
         let collider = Collider::fixed(shape, Vec3::ZERO, Quat::IDENTITY);
-        let mut corners =
-            LARGE.map(|at| Corner::new(1.0, at + from * Vec3::Z, at + to * Vec3::Z));
+        let mut corners = LARGE.map(|at| Corner::new(1.0, at + from * Vec3::Z, at + to * Vec3::Z));
         solve_triangles(&Obstacle::new(&collider, 2e-3), friction, &[[0, 1, 2]], &mut corners);
         corners.map(|corner| corner.to)
     }
