@@ -38,8 +38,12 @@ pub(super) struct Plane {
 impl Plane {
     /// Least height of a triangle's corners above the plane, m.
     pub fn below(&self, corners: &[Vec3; 3]) -> f32 {
-        let height = |corner: &Vec3| self.normal.dot(*corner) - self.offset;
-        corners.iter().map(height).fold(f32::INFINITY, f32::min)
+        corners.iter().map(|corner| self.height(*corner)).fold(f32::INFINITY, f32::min)
+    }
+
+    /// Height of a point above the plane, m.
+    pub fn height(&self, at: Vec3) -> f32 {
+        self.normal.dot(at) - self.offset
     }
 }
 
@@ -61,6 +65,8 @@ pub(super) struct Obstacle<'a> {
     /// Whether a plane of the surface is taken to have the whole shape below it. This is exact for convex shapes. Ground
     /// and compounds have parts that are large compared with a cloth's triangles; meshes may have smaller ones.
     pub planes_separate: bool,
+    /// Whether the shape is convex.
+    pub is_convex: bool,
     /// Box of all points nearer than [`kept`](Self::kept) to the shape, in the shape's frame.
     bounds: Aabb,
     /// Distance that triangles keep, m.
@@ -76,6 +82,7 @@ impl<'a> Obstacle<'a> {
             shape,
             ground: collider.shape.as_heightfield(),
             planes_separate: shape.as_trimesh().is_none(),
+            is_convex: shape.is_convex(),
             bounds: shape.compute_local_aabb().loosened(kept),
             kept,
         }

@@ -61,7 +61,7 @@ impl Surface<'_> {
         if above(to) >= 0.0 {
             return None;
         }
-        let at = from - hit.normal * above(from);
+        let at = entry + hit.normal * self.clearance;
         // Beside an edge this point may lie within another face, and normals of rays against round shapes are
         // estimates.
         let overlap = self.overlap(from, at);

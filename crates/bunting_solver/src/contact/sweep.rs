@@ -65,8 +65,8 @@ impl Corner {
         Self { inverse_mass, from, to, touch: None, plane: None, moved: 0 }
     }
 
-    fn shift(&mut self, by: Vec3, touch: Touch) {
-        self.to += by;
+    fn put(&mut self, to: Vec3, touch: Touch) {
+        self.to = to;
         self.touch = Some(touch);
         self.plane = None;
     }
@@ -93,6 +93,63 @@ pub(super) fn solve_triangles(
             return;
         }
     }
+    hold_back(obstacle, triangles, corners);
+}
+
+/// Returns the corners of triangles that would still pass through the shape to where they began the substep, until no
+/// triangle does. Each corner returns at most once, so this ends.
+fn hold_back(obstacle: &Obstacle, triangles: &[[u32; 3]], corners: &mut [Corner]) {
+    for round in SWEEPS.. {
+        let mut any = false;
+        for triangle in triangles {
+            let particles = triangle.map(|corner| corner as usize);
+            if round > SWEEPS && !particles.iter().any(|&at| corners[at].moved >= round) {
+                continue;
+            }
+            let Some(Meeting::Overtaken { touch, .. }) = meet(obstacle, particles, corners) else {
+                continue;
+            };
+            for at in particles {
+                let corner = &mut corners[at];
+                if corner.inverse_mass > 0.0 && corner.to != corner.from {
+                    corner.put(corner.from, touch);
+                    corner.moved = round + 1;
+                    any = true;
+                }
+            }
+        }
+        if !any {
+            return;
+        }
+    }
+}
+
+/// How a triangle meets a shape in a substep.
+enum Meeting {
+    /// The shape overtakes the triangle after a fraction `at` of the substep.
+    Overtaken { at: f32, touch: Touch },
+    /// A point of the triangle is too close at the end.
+    Cut(Cut),
+}
+
+/// Finds how a triangle meets a shape; none if it does not.
+fn meet(obstacle: &Obstacle, particles: [usize; 3], corners: &mut [Corner]) -> Option<Meeting> {
+    let (from, to) = (particles.map(|at| corners[at].from), particles.map(|at| corners[at].to));
+    if obstacle.is_beside(&[from[0], from[1], from[2], to[0], to[1], to[2]]) {
+        return None;
+    }
+    let way = from.iter().zip(&to).map(|(from, to)| from.distance(*to)).fold(0.0, f32::max);
+    let hit = if way > SLOW { first_hit(obstacle, &from, &to, way) } else { None };
+    let is_above = is_above(obstacle, particles, &to, corners);
+    let end = if is_above { None } else { obstacle.deepest_cut(&to) };
+    if let Some((at, hit)) = &hit
+        && hit.depth.max(end.as_ref().map_or(0.0, |end| end.depth)) > OVERTAKEN
+    {
+        let met = weighted(&hit.weights, &between(&from, &to, *at));
+        let touch = Touch { normal: hit.normal, at: met, sticks: true };
+        return Some(Meeting::Overtaken { at: *at, touch });
+    }
+    end.or(hit.map(|(_, hit)| hit)).map(Meeting::Cut)
 }
 
 /// Moves the corners of one triangle. Returns whether they had to move.
@@ -102,26 +159,14 @@ fn solve_triangle(
     particles: [usize; 3],
     corners: &mut [Corner],
 ) -> bool {
-    let (from, to) = (particles.map(|at| corners[at].from), particles.map(|at| corners[at].to));
-    if obstacle.is_beside(&[from[0], from[1], from[2], to[0], to[1], to[2]]) {
-        return false;
+    match meet(obstacle, particles, corners) {
+        None => false,
+        Some(Meeting::Cut(cut)) => push_out(&cut, friction, particles, corners),
+        Some(Meeting::Overtaken { at, touch }) => {
+            particles.into_iter().for_each(|corner| stop(&mut corners[corner], at, touch));
+            true
+        }
     }
-    let way = from.iter().zip(&to).map(|(from, to)| from.distance(*to)).fold(0.0, f32::max);
-    let hit = if way > SLOW { first_hit(obstacle, &from, &to, way) } else { None };
-    if let Some((at, cut)) = &hit
-        && cut.depth > OVERTAKEN
-    {
-        let met = weighted(&cut.weights, &between(&from, &to, *at));
-        let touch = Touch { normal: cut.normal, at: met, sticks: true };
-        particles.into_iter().for_each(|corner| stop(&mut corners[corner], *at, touch));
-        return true;
-    }
-    let cut = match hit {
-        Some((_, cut)) => Some(cut),
-        None if is_above(obstacle, particles, &to, corners) => None,
-        None => obstacle.deepest_cut(&to),
-    };
-    cut.is_some_and(|cut| push_out(&cut, friction, particles, corners))
 }
 
 /// Moves a corner of an overtaken triangle to where it was when the shape met the triangle, in the shape's frame, unless
@@ -129,7 +174,7 @@ fn solve_triangle(
 fn stop(corner: &mut Corner, at: f32, touch: Touch) {
     let met = corner.from.lerp(corner.to, at);
     if corner.inverse_mass > 0.0 && (met - corner.to).dot(touch.normal) > 0.0 {
-        corner.shift(met - corner.to, touch);
+        corner.put(met, touch);
     }
 }
 
@@ -153,7 +198,8 @@ fn push_out(cut: &Cut, friction: f32, particles: [usize; 3], corners: &mut [Corn
     let touch = Touch { normal, at: point + shift, sticks: false };
     for ((corner, weight), inverse) in particles.into_iter().zip(weights).zip(inverse) {
         if weight * inverse > 0.0 {
-            corners[corner].shift(shift * (weight * inverse / response), touch);
+            let to = corners[corner].to + shift * (weight * inverse / response);
+            corners[corner].put(to, touch);
         }
     }
     true
@@ -202,28 +248,49 @@ fn first_hit(
     way: f32,
 ) -> Option<(f32, Cut)> {
     let mut at = 0.0;
-    for _ in 0..ADVANCES {
+    for advance in 1..=ADVANCES {
         let now = between(from, to, at);
         let middle = (now[0] + now[1] + now[2]) / 3.0;
         let plane = obstacle.nearest_plane(middle)?;
-        let mut distance = obstacle.least_distance(middle, &plane, &now) - obstacle.kept;
-        if distance <= 0.0 {
+        let mut free = free_way(obstacle, (middle, &plane), &now, (from, to), way);
+        if free * way <= obstacle.kept || advance == ADVANCES {
             let (point, plane) = obstacle.deepest(&now, f32::INFINITY)?;
-            distance = ADVANCE * (plane.distance - obstacle.kept);
+            let nearer = free_way(obstacle, (point, &plane), &now, (from, to), way);
+            free = free.max(ADVANCE * nearer);
             // Cloth that lies on the shape keeps exactly this distance.
-            if distance <= 0.5 * obstacle.kept {
+            if free * way <= 0.5 * obstacle.kept || advance == ADVANCES {
                 let weights = barycentric(&now, point)?;
-                let end = plane.normal.dot(weighted(&weights, to)) - plane.offset;
-                let depth = obstacle.kept - end;
+                let depth = obstacle.kept - plane.height(weighted(&weights, to));
                 return (depth > 0.0).then_some((at, Cut { weights, normal: plane.normal, depth }));
             }
         }
-        at += distance.max(0.1 * obstacle.kept) / way;
+        at += free;
         if at >= 1.0 {
             return None;
         }
     }
     None
+}
+
+/// A lower bound of the fraction of its whole way that a triangle can go on before it comes too close to the obstacle,
+/// given the plane nearest to a point of it. The way is at most the distance; where the plane separates the triangle
+/// from a convex shape, each corner's way along the plane's normal is at most its height.
+fn free_way(
+    obstacle: &Obstacle,
+    (point, plane): (Vec3, &Plane),
+    now: &[Vec3; 3],
+    (from, to): (&[Vec3; 3], &[Vec3; 3]),
+    way: f32,
+) -> f32 {
+    let free = (obstacle.least_distance(point, plane, now) - obstacle.kept) / way;
+    if !obstacle.is_convex {
+        return free;
+    }
+    let until = now.iter().zip(from.iter().zip(to)).map(|(now, (from, to))| {
+        let approach = plane.normal.dot(from - to);
+        (plane.height(*now) - obstacle.kept) / approach.max(f32::MIN_POSITIVE)
+    });
+    free.max(until.fold(f32::INFINITY, f32::min))
 }
 
 /// The point of a triangle that has these barycentric coordinates.
