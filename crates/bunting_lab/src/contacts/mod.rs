@@ -8,7 +8,7 @@ mod fast;
 mod rest;
 mod rig;
 mod row;
-mod shapes;
+pub mod shapes;
 mod slope;
 mod turntable;
 

@@ -6,6 +6,7 @@ pub(crate) mod collider;
 mod ground;
 pub(crate) mod lift;
 mod near;
+mod nearest;
 mod obstacle;
 pub(crate) mod reaction;
 mod solve;

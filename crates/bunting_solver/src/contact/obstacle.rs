@@ -8,6 +8,7 @@ use parry3d::shape::{HeightField, Shape, TriMeshFlags, Triangle};
 use crate::constants::{LEAST_CLEARANCE, LEAST_LENGTH};
 use crate::contact::collider::Collider;
 use crate::contact::ground;
+use crate::contact::nearest::nearest_point;
 
 /// Fraction of the particles' clearance that triangles keep. Smaller: cuts that the search misses are
 /// visible. Larger: triangles close to an edge are lifted without need.
@@ -19,6 +20,13 @@ const KEPT: f32 = 0.5;
 const STEPS: usize = 10;
 const FIRST_STEP: f32 = 0.5;
 const STEP_FACTOR: f32 = 0.7;
+
+/// Greatest way of a triangle's corner in a substep, relative to the shape, at which the triangle's end alone is examined:
+/// as a fraction of half the least side of the shape's box, and its least and greatest value, m. Larger: shapes thinner
+/// than this go through. Smaller: cloth that moves slowly costs more.
+const SLOW: f32 = 0.2;
+const LEAST_SLOW: f32 = 2e-3;
+const GREATEST_SLOW: f32 = 1e-2;
 
 /// Distance above ground below which a triangle is examined, m. Smaller: ridges between particles are missed.
 /// Larger: each query visits more cells.
@@ -67,6 +75,8 @@ pub(super) struct Obstacle<'a> {
     pub planes_separate: bool,
     /// Whether the shape is convex.
     pub is_convex: bool,
+    /// Greatest way of a triangle's corner in a substep, relative to the shape, at which the end alone is examined, m.
+    pub slow: f32,
     /// Box of all points nearer than [`kept`](Self::kept) to the shape, in the shape's frame.
     bounds: Aabb,
     /// Distance that triangles keep, m.
@@ -77,13 +87,17 @@ impl<'a> Obstacle<'a> {
     /// The collider's shape, which cloth of a given thickness (m) does not cut.
     pub fn new(collider: &'a Collider, thickness: f32) -> Self {
         let shape = &*collider.shape.0;
+        let bounds = shape.compute_local_aabb();
+        let is_one = shape.as_compound().is_none() && shape.as_heightfield().is_none();
+        let slow = if is_one { SLOW * bounds.half_extents().min_element() } else { LEAST_SLOW };
         let kept = KEPT * (thickness + collider.margin).max(LEAST_CLEARANCE);
         Self {
             shape,
             ground: collider.shape.as_heightfield(),
             planes_separate: shape.as_trimesh().is_none(),
             is_convex: shape.is_convex(),
-            bounds: shape.compute_local_aabb().loosened(kept),
+            slow: slow.clamp(LEAST_SLOW, GREATEST_SLOW),
+            bounds: bounds.loosened(kept),
             kept,
         }
     }
@@ -107,7 +121,7 @@ impl<'a> Obstacle<'a> {
     pub fn nearest_plane(&self, at: Vec3) -> Option<Plane> {
         let nearest = match self.ground {
             Some(field) => ground::project(field, at, GROUND_REACH)?,
-            None => self.shape.project_local_point(at, false),
+            None => nearest_point(self.shape, at),
         };
         let away = if nearest.is_inside { nearest.point - at } else { at - nearest.point };
         let length = away.length();

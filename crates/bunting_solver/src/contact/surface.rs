@@ -6,6 +6,7 @@ use parry3d::shape::{HeightField, Shape};
 
 use crate::constants::LEAST_LENGTH;
 use crate::contact::ground;
+use crate::contact::nearest::nearest_point;
 
 /// The surface of a shape, in the shape's frame.
 pub(super) struct Surface<'a> {
@@ -83,7 +84,7 @@ impl Surface<'_> {
     fn overlap(&self, from: Vec3, to: Vec3) -> Option<Overlap> {
         let nearest = match self.ground {
             Some(field) => ground::project(field, to, self.clearance)?,
-            None => self.shape.project_local_point(to, false),
+            None => nearest_point(self.shape, to),
         };
         let away = if nearest.is_inside { nearest.point - to } else { to - nearest.point };
         let distance = away.length();

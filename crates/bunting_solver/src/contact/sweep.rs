@@ -19,10 +19,6 @@ const ADVANCES: usize = 16;
 /// missed. Larger: edges of fast boxes go through.
 const ADVANCE: f32 = 0.7;
 
-/// Greatest way of a triangle's corner in a substep, relative to the shape, at which the end alone is examined, m.
-/// Larger: shapes thinner than this go through. Smaller: cloth at rest costs more.
-const SLOW: f32 = 2e-3;
-
 /// Depth at the end of a substep from which on a triangle that a shape has met counts as overtaken, and moves with the
 /// shape, m. Smaller: cloth that falls on a shape sticks. Larger: the corners beside a fast small ball are thrown ahead
 /// of it.
@@ -139,7 +135,7 @@ fn meet(obstacle: &Obstacle, particles: [usize; 3], corners: &mut [Corner]) -> O
         return None;
     }
     let way = from.iter().zip(&to).map(|(from, to)| from.distance(*to)).fold(0.0, f32::max);
-    let hit = if way > SLOW { first_hit(obstacle, &from, &to, way) } else { None };
+    let hit = if way > obstacle.slow { first_hit(obstacle, &from, &to, way) } else { None };
     let is_above = is_above(obstacle, particles, &to, corners);
     let end = if is_above { None } else { obstacle.deepest_cut(&to) };
     if let Some((at, hit)) = &hit
