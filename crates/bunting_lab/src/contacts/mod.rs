@@ -8,7 +8,7 @@ mod fast;
 mod rest;
 mod rig;
 mod row;
-pub mod shapes;
+mod shapes;
 mod slope;
 mod turntable;
 

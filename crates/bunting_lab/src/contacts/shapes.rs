@@ -39,7 +39,7 @@ fn blob_point(ring: u32, sector: u32) -> Vec3 {
 }
 
 /// A closed mesh of 224 triangles, like a ball of 20 cm with bumps.
-pub fn blob() -> (Vec<Vec3>, Vec<[u32; 3]>) {
+pub(super) fn blob() -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let mut corners = vec![blob_point(0, 0)];
     for ring in 1..RINGS {
         corners.extend((0..SECTORS).map(|sector| blob_point(ring, sector)));

@@ -79,7 +79,7 @@ pub(super) fn solve_triangles(
         let mut any = false;
         for triangle in triangles {
             let particles = triangle.map(|corner| corner as usize);
-            let is_due = sweep == 0 || particles.iter().any(|&at| corners[at].moved + 1 >= sweep);
+            let is_due = particles.iter().any(|&at| corners[at].moved >= sweep);
             if is_due && solve_triangle(obstacle, friction, particles, corners) {
                 any = true;
                 particles.into_iter().for_each(|at| corners[at].moved = sweep + 1);
@@ -99,7 +99,7 @@ fn hold_back(obstacle: &Obstacle, triangles: &[[u32; 3]], corners: &mut [Corner]
         let mut any = false;
         for triangle in triangles {
             let particles = triangle.map(|corner| corner as usize);
-            if round > SWEEPS && !particles.iter().any(|&at| corners[at].moved >= round) {
+            if !particles.iter().any(|&at| corners[at].moved >= round) {
                 continue;
             }
             let Some(Meeting::Overtaken { touch, .. }) = meet(obstacle, particles, corners) else {
@@ -159,19 +159,20 @@ fn solve_triangle(
         None => false,
         Some(Meeting::Cut(cut)) => push_out(&cut, friction, particles, corners),
         Some(Meeting::Overtaken { at, touch }) => {
-            particles.into_iter().for_each(|corner| stop(&mut corners[corner], at, touch));
-            true
+            particles.map(|corner| stop(&mut corners[corner], at, touch)).contains(&true)
         }
     }
 }
 
 /// Moves a corner of an overtaken triangle to where it was when the shape met the triangle, in the shape's frame, unless
-/// it has gone farther out since.
-fn stop(corner: &mut Corner, at: f32, touch: Touch) {
+/// it has gone farther out since. Returns whether it had to move.
+fn stop(corner: &mut Corner, at: f32, touch: Touch) -> bool {
     let met = corner.from.lerp(corner.to, at);
-    if corner.inverse_mass > 0.0 && (met - corner.to).dot(touch.normal) > 0.0 {
+    let goes_in = corner.inverse_mass > 0.0 && (met - corner.to).dot(touch.normal) > 0.0;
+    if goes_in {
         corner.put(met, touch);
     }
+    goes_in
 }
 
 /// Moves a point of a triangle out of the shape, with friction. Corners move in proportion to their inverse masses and
@@ -219,9 +220,15 @@ fn is_above(
     if obstacle.planes_separate {
         return particles.into_iter().any(|at| plane_of(at).is_some_and(|plane| separates(&plane)));
     }
+    let [a, b, c] = particles.map(plane_of);
+    let is_far = |(corner, plane): (&Vec3, &Option<Plane>)| {
+        plane.is_some_and(|plane| obstacle.least_distance(*corner, &plane, to) >= obstacle.kept)
+    };
+    if to.iter().zip(&[a, b, c]).any(is_far) {
+        return true;
+    }
     let middle = (to[0] + to[1] + to[2]) / 3.0;
     let points = [to[0], to[1], to[2], middle];
-    let [a, b, c] = particles.map(plane_of);
     let planes = [a, b, c, obstacle.nearest_plane(middle)];
     let near = |plane: &Plane| {
         let below = |(at, other): (&Vec3, &Option<Plane>)| {
