@@ -67,13 +67,21 @@ type NearCollider = (
     Has<ClothReactions>,
 );
 
+/// A cloth that may touch colliders.
+type TouchingCloth = (
+    &'static ClothInstance,
+    &'static PoseHistory,
+    Option<&'static ClothLayers>,
+    Option<&'static ClothFeatures>,
+);
+
 /// Sets the colliders near each cloth, relative to the cloth's frame: their poses at the start of the tick
 /// relative to the frame at that time, and their poses at its end likewise. Poses of entities that move in
 /// frames are extrapolated to the time of the tick, of cloths and colliders alike, so that a collider that
 /// moves with a cloth rests in its frame.
 fn drive_colliders(
     colliders: Query<NearCollider>,
-    cloths: Query<(&ClothInstance, &PoseHistory, Option<&ClothLayers>, Option<&ClothFeatures>)>,
+    cloths: Query<TouchingCloth>,
     tree: Res<ColliderTree>,
     time: Res<Time>,
     mut batches: ResMut<ClothBatches>,

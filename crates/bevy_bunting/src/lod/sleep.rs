@@ -101,10 +101,13 @@ fn wake(request: On<WakeCloth>, mut cloths: Query<(&mut ClothInstance, &mut Rest
     }
 }
 
+/// Filter of cloths and colliders that touch others than before.
+type HasNewLayers = Or<(Changed<ClothLayers>, Changed<ClothFeatures>)>;
+
 fn note_changes(
     colliders: Query<(Ref<ClothCollider>, Ref<PoseHistory>)>,
     mut removed: RemovedComponents<ClothCollider>,
-    layers: Query<(), Or<(Changed<ClothLayers>, Changed<ClothFeatures>)>>,
+    layers: Query<(), HasNewLayers>,
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
     mut changes: ResMut<Changes>,
