@@ -94,8 +94,8 @@ impl ClothCollider {
     }
 
     /// A mesh of triangles, given by corners (m) and indices. A closed mesh whose triangles all have their counterclockwise
-    /// side outside is solid: its corners are felt between the cloth's particles. Any other mesh is a surface that cloth
-    /// touches from both sides, with its particles alone.
+    /// side outside is solid. Any other mesh is a surface that cloth touches from both sides. Only particles touch either;
+    /// with [`features`](Self::features) a solid mesh is felt between them, which takes some milliseconds a tick.
     ///
     /// # Errors
     ///
@@ -117,7 +117,7 @@ impl ClothCollider {
             mesh.set_flags(flags | TriMeshFlags::ORIENTED)
                 .map_err(|_| ColliderError::NoTriangle)?;
         }
-        Ok(Self::new(SharedShape::new(mesh)))
+        Ok(Self { features: false, ..Self::new(SharedShape::new(mesh)) })
     }
 
     /// A mesh of triangles from a Bevy mesh, as [`triangles`](Self::triangles), with its positions multiplied by a
