@@ -78,7 +78,7 @@ pub struct Flights {
     pub speed: f64,
 }
 
-/// Flies flags of one size for some seconds, [`FLIGHTS`] times each: side by side where their substeps are fixed.
+/// Flies flags of one size for some seconds, several times each: side by side where their substeps are fixed.
 #[must_use]
 pub fn fly(flags: &[Flag], substeps: Substeps, seconds: f64) -> Vec<Flights> {
     let Some(fabric) = flags.first().map(Flag::fabric) else { return Vec::new() };

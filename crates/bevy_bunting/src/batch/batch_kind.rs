@@ -4,7 +4,13 @@ use std::sync::Arc;
 
 use bunting_solver::{Fabric, LaneCount, Scheme};
 
-use crate::batch::group::FabricCount;
+/// A fabric of a group, and the number of its cloths.
+#[derive(Debug)]
+pub(crate) struct FabricCount {
+    pub fabric: Arc<Fabric>,
+    /// Cloths in lanes, and cloths that wait for one.
+    pub cloths: usize,
+}
 
 /// A kind of batch of a group.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

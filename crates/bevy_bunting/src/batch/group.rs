@@ -6,7 +6,7 @@ use bevy_ecs::prelude::*;
 use bunting_solver::{ClothBatch, Fabric, LaneCount, Scheme, StepSettings};
 
 use crate::background::Background;
-use crate::batch::batch_kind::{BatchKind, wanted_batches};
+use crate::batch::batch_kind::{BatchKind, FabricCount, wanted_batches};
 use crate::batch::occupancy::{OccupiedBatch, PendingCloth};
 
 /// Number of empty batches of each width that are kept as spares, since making a batch takes longer than a
@@ -16,14 +16,6 @@ const MOST_SPARE: usize = 3;
 /// Number of free lanes of mixed batches below which another thread builds the next such batch. Fewer: a tick in
 /// which several cloths arrive waits for it. More: groups have a batch too many more often.
 const FEW_FREE: usize = 3;
-
-/// A fabric of a group, and the number of its cloths.
-#[derive(Debug)]
-pub(crate) struct FabricCount {
-    pub fabric: Arc<Fabric>,
-    /// Cloths in lanes, and cloths that wait for one.
-    pub cloths: usize,
-}
 
 /// Cloths of fabrics of one topology with the same settings, which are stepped alike.
 #[derive(Debug)]

@@ -9,8 +9,7 @@ use bunting_solver::{
 };
 use parry3d::bounding_volume::Aabb;
 
-use crate::batch::batch_kind::BatchKind;
-use crate::batch::group::FabricCount;
+use crate::batch::batch_kind::{BatchKind, FabricCount};
 
 /// A cloth that waits for a lane.
 #[derive(Debug)]

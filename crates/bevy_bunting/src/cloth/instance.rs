@@ -13,8 +13,8 @@ use crate::batch::lane_handle::LaneHandle;
 use crate::cloth::activity::ClothActivity;
 use crate::cloth::imperfection::{ClothSeed, almost_at_rest};
 use crate::cloth::state::ClothState;
+use crate::fabric::awaited::AwaitedLevels;
 use crate::fabric::levels::ClothLevels;
-use crate::fabric::library::AwaitedLevels;
 use crate::motion::take_up::TakingUp;
 
 /// Storage of a cloth's state.

@@ -2,7 +2,6 @@
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
 use bunting_solver::SurfaceLift;
 
 use crate::batch::batches::ClothBatches;
@@ -10,35 +9,8 @@ use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
 use crate::display::ease::ease_surfaces;
 use crate::display::easing::ClothEasing;
+use crate::display::lifting::ClothLift;
 use crate::schedule::{ClothSystems, ClothTick};
-
-/// Displacements (m) that lift the triangles of a displayed surface out of colliders, with the indices of the
-/// displaced particles.
-#[derive(Component, Debug, Default)]
-pub(crate) struct ClothLift {
-    /// The level whose particles are displaced.
-    level: usize,
-    /// Displacements before the last tick.
-    previous: Vec<(u32, Vec3)>,
-    /// Displacements after the last tick.
-    current: Vec<(u32, Vec3)>,
-}
-
-impl ClothLift {
-    /// Displaces the particles of a level's surface, interpolated between two ticks.
-    pub fn apply(&self, level: usize, fraction: f32, positions: &mut [Vec3]) {
-        if level != self.level {
-            return;
-        }
-        for (lifts, part) in [(&self.previous, 1.0 - fraction), (&self.current, fraction)] {
-            for &(particle, lift) in lifts {
-                if let Some(position) = positions.get_mut(particle as usize) {
-                    *position += lift * part;
-                }
-            }
-        }
-    }
-}
 
 /// Lifts displayed surfaces out of colliders.
 #[derive(Debug, Default)]

@@ -4,4 +4,5 @@ pub mod decay;
 pub mod ease;
 pub mod easing;
 pub mod lift;
+pub mod lifting;
 pub mod surface;

@@ -9,7 +9,7 @@ use bevy_time::{Time, Virtual};
 
 use crate::cloth::state::ClothState;
 use crate::display::easing::ClothEasing;
-use crate::display::lift::ClothLift;
+use crate::display::lifting::ClothLift;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// The displayed surface of a cloth, in the cloth's frame: [`ClothState`] interpolated between its last two

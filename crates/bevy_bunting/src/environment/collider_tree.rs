@@ -10,8 +10,7 @@ use parry3d::math::Pose;
 use parry3d::partitioning::{Bvh, BvhWorkspace};
 
 use crate::environment::collider::ClothCollider;
-use crate::environment::drive::pose_parts;
-use crate::motion::pose::PoseHistory;
+use crate::motion::pose::{PoseHistory, pose_parts};
 
 /// Greatest coordinate of a box in the tree, m: half spaces have larger ones. Larger: they make all other boxes
 /// useless. Smaller: colliders far from the origin are near every cloth.

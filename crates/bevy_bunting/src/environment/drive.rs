@@ -2,9 +2,9 @@
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
-use bevy_math::{Isometry3d, Quat, Vec3};
+use bevy_math::Vec3;
 use bevy_time::Time;
-use bunting_solver::{Drive, FrameMotion, Loads};
+use bunting_solver::{Drive, Loads};
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
@@ -42,21 +42,12 @@ pub(crate) fn drive_cloths(
         // Gravity is written in every tick, which must not mark the cloth as changed.
         instance.bypass_change_detection().gravity = gravity;
         let middle = end * instance.rest_middle;
-        let drive = Drive {
-            motion: frame_motion(frame),
-            gravity,
-            wind: inverse * wind.at(middle),
-            air_density,
-        };
+        let drive =
+            Drive { motion: frame.motion(), gravity, wind: inverse * wind.at(middle), air_density };
         let air = Loads::of_air(&drive, &instance.material, time.delta_secs());
         effort.note_drive(drive.motion, air);
         batches.lane(lane).drive(drive);
     }
-}
-
-/// Motion of a frame in this tick.
-pub(crate) fn frame_motion(frame: &PoseHistory) -> FrameMotion {
-    FrameMotion::between(pose_parts(frame.start()), pose_parts(frame.end()))
 }
 
 /// Gravity (m/s²) and the density of the air (kg/m³). A value that is not finite, or a negative density,
@@ -71,9 +62,4 @@ fn gravity_and_air(settings: &Res<ClothSettings>) -> (Vec3, f32) {
         );
     }
     (if is_gravity { gravity } else { Vec3::ZERO }, if is_density { air_density } else { 0.0 })
-}
-
-/// Translation (m) and rotation of a pose.
-pub(super) fn pose_parts(pose: Isometry3d) -> (Vec3, Quat) {
-    (pose.translation.into(), pose.rotation)
 }

@@ -11,10 +11,10 @@ use crate::cloth::instance::ClothInstance;
 use crate::cloth::reflect::SharedShapeReflect;
 use crate::environment::collider::ClothCollider;
 use crate::environment::collider_tree::{ColliderTree, forget_collider, in_world, update_tree};
-use crate::environment::drive::{drive_cloths, pose_parts};
+use crate::environment::drive::drive_cloths;
 use crate::environment::layers::{ClothFeatures, ClothLayers};
 use crate::environment::reactions::ClothReactions;
-use crate::motion::pose::PoseHistory;
+use crate::motion::pose::{PoseHistory, pose_parts};
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// Gives each cloth the [`ClothCollider`]s that it may touch.

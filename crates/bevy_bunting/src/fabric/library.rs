@@ -10,6 +10,7 @@ use crate::background::Background;
 use crate::cloth::error::ClothError;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::weights::check_weights;
+use crate::fabric::awaited::{AwaitedLevels, ContentKey};
 use crate::fabric::cut::cut_levels;
 use crate::fabric::levels::ClothLevels;
 use crate::lod::lod_set::{LodChoice, LodSet};
@@ -60,17 +61,6 @@ impl Cutting {
         let waits = may_be_late && !self.levels.is_done() && tick < self.due + MOST_LATE;
         tick >= self.due && !waits
     }
-}
-
-/// Everything that the levels of a cloth depend on, bit for bit; each list after its length.
-type ContentKey = Vec<u32>;
-
-/// Levels that a cloth waits for.
-#[derive(Clone, Debug)]
-pub(crate) struct AwaitedLevels {
-    key: ContentKey,
-    /// Tick before which the levels are not taken.
-    due: u64,
 }
 
 /// Result of a request for a cloth's levels.

@@ -1,5 +1,6 @@
 //! Fabrics: built from meshes, one for each level of detail, and shared by cloths of equal content.
 
+pub mod awaited;
 pub mod cut;
 #[cfg(feature = "render")]
 pub mod level_topology;

@@ -4,7 +4,6 @@ use bevy_ecs::prelude::*;
 use bunting_solver::{Effort, EffortCause, EffortClass, FrameMotion, Loads, StepSettings};
 
 use crate::cloth::instance::ClothInstance;
-use crate::environment::drive::frame_motion;
 use crate::motion::pose::PoseHistory;
 
 /// The substeps of a cloth, and the reason for them; read only.
@@ -58,7 +57,7 @@ impl ClothEffort {
             0.0
         } else {
             let Some(fabric) = instance.fabric() else { return false };
-            Loads::of_frame(&self.motion, &frame_motion(frame), fabric, tick)
+            Loads::of_frame(&self.motion, &frame.motion(), fabric, tick)
         };
         let before = self.effort.class();
         self.effort.update(&self.loads, tick) != before

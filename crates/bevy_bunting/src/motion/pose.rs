@@ -2,7 +2,8 @@
 //! steps or in frames.
 
 use bevy_ecs::prelude::*;
-use bevy_math::{Isometry3d, Quat};
+use bevy_math::{Isometry3d, Quat, Vec3};
+use bunting_solver::FrameMotion;
 
 use crate::motion::track::Track;
 
@@ -101,10 +102,20 @@ impl ObservationTimes {
     }
 }
 
+/// Translation (m) and rotation of a pose.
+pub(crate) fn pose_parts(pose: Isometry3d) -> (Vec3, Quat) {
+    (pose.translation.into(), pose.rotation)
+}
+
 impl PoseHistory {
     /// Whether a tick was observed.
     pub fn is_observed(&self) -> bool {
         self.span.is_some()
+    }
+
+    /// The motion in the tick.
+    pub fn motion(&self) -> FrameMotion {
+        FrameMotion::between(pose_parts(self.start()), pose_parts(self.end()))
     }
 
     /// The pose at the start of the tick.

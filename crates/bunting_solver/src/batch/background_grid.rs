@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 
-use crate::batch::lane_batch::LaneBatch;
+use crate::batch::lane_batch::{BackgroundGrid, LaneBatch, SingleGrid};
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::single_cloth::SingleCloth;
 use crate::fabric::Fabric;
@@ -13,30 +13,6 @@ use crate::simd::vec3::{Pack3, lane3};
 use crate::step::clock::Clock;
 use crate::step::load_stretch::LoadStretch;
 use crate::step::parameters::ParameterInputs;
-
-/// The background grids of a batch.
-#[derive(Clone, Debug)]
-pub(crate) enum BackgroundGrid<P: Pack> {
-    /// One in each lane.
-    SideBySide(Box<LaneBatch<P>>),
-    /// That of the only cloth of a batch of one lane, whose mesh is flat at rest.
-    Single(Box<SingleGrid>),
-}
-
-/// The background grid of a lone cloth. Its particles and nodes are interpolated from one another as vectors whose
-/// lanes are x, y, z and zero.
-#[derive(Clone, Debug)]
-pub(crate) struct SingleGrid {
-    pub batch: LaneBatch<Pack8, SingleCloth<Pack8>>,
-    /// Positions of the nodes, m.
-    pub nodes: Vec<Pack4>,
-    /// Positions of the particles, m.
-    pub particles: Vec<Pack4>,
-    /// What the grid does not resolve of the particles' positions, m.
-    pub unresolved: Vec<Pack4>,
-    /// Number of nodes in a row.
-    columns: usize,
-}
 
 /// Evaluates an expression with the batch of grids in any layout.
 macro_rules! with_grid {

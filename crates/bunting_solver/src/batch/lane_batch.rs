@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
-use crate::batch::background_grid::BackgroundGrid;
 use crate::batch::lane_fabric::{FabricNumbers, LaneFabric};
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
@@ -12,10 +11,12 @@ use crate::batch::masses::Masses;
 use crate::batch::mixed::Mixed;
 use crate::batch::probe_motion::ProbeMotion;
 use crate::batch::side_by_side::SideBySide;
-use crate::constraints::strip::StripBlock;
+use crate::batch::single_cloth::SingleCloth;
+use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, Fabric};
 use crate::simd::lane::Pack;
+use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::{Pack3, set_lane3, splat3};
 use crate::step::clock::Clock;
 use crate::step::parameters::Parameters;
@@ -82,6 +83,30 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub background: Option<BackgroundGrid<P>>,
 }
 
+/// The background grids of a batch.
+#[derive(Clone, Debug)]
+pub(crate) enum BackgroundGrid<P: Pack> {
+    /// One in each lane.
+    SideBySide(Box<LaneBatch<P>>),
+    /// That of the only cloth of a batch of one lane, whose mesh is flat at rest.
+    Single(Box<SingleGrid>),
+}
+
+/// The background grid of a lone cloth. Its particles and nodes are interpolated from one another as vectors whose
+/// lanes are x, y, z and zero.
+#[derive(Clone, Debug)]
+pub(crate) struct SingleGrid {
+    pub batch: LaneBatch<Pack8, SingleCloth<Pack8>>,
+    /// Positions of the nodes, m.
+    pub nodes: Vec<Pack4>,
+    /// Positions of the particles, m.
+    pub particles: Vec<Pack4>,
+    /// What the grid does not resolve of the particles' positions, m.
+    pub unresolved: Vec<Pack4>,
+    /// Number of nodes in a row.
+    pub columns: usize,
+}
+
 impl<P: Pack> LaneBatch<P> {
     /// An empty batch of cloths side by side.
     pub fn side_by_side(fabric: Arc<Fabric>) -> Self {
@@ -132,7 +157,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
             strip_blocks: Vec::new(),
             moments: vec![splat3(Vec3::ZERO); longest_line],
-            masses: Masses::new(&layout, &fabric),
+            masses: Masses::new(
+                layout.constants(fabric.particle_areas()),
+                layout.constants(fabric.inverse_areas()),
+                layout.pack_count(),
+            ),
             partial_sums: layout.partial_sums(),
             parameters: Parameters::new(),
             clock: Clock::default(),

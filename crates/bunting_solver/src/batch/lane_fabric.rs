@@ -3,8 +3,7 @@
 use core::ops::Range;
 use std::sync::Arc;
 
-use crate::constraints::shear::length_at_rest;
-use crate::fabric::Fabric;
+use crate::fabric::{Fabric, Grid};
 use crate::simd::lane::Pack;
 use crate::stability::added_mass::InverseMasses;
 use crate::stability::pole::{Pole, PolePacks};
@@ -59,7 +58,7 @@ impl<P: Pack> FabricNumbers<P> {
 
     /// Sets the numbers of some lanes to those of a fabric.
     pub fn set(&mut self, lanes: Range<usize>, LaneFabric { fabric, pole, .. }: &LaneFabric) {
-        let diagonal = fabric.grid().map_or(0.0, length_at_rest);
+        let diagonal = fabric.grid().map_or(0.0, Grid::diagonal);
         self.area.lanes_mut()[lanes.clone()].fill(fabric.area());
         self.diagonal_length.lanes_mut()[lanes.clone()].fill(diagonal);
         if let (Some(packs), Some(pole)) = (&mut self.pole, pole) {

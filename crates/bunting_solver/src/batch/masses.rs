@@ -1,7 +1,5 @@
 //! Areas and inverse masses of a batch's particles.
 
-use crate::batch::layout::Layout;
-use crate::fabric::Fabric;
 use crate::simd::lane::Pack;
 
 /// Areas and inverse masses of all particles. Masses are in units of the area density, so that a particle
@@ -22,15 +20,10 @@ pub(crate) struct Masses<P: Pack, C> {
 }
 
 impl<P: Pack, C> Masses<P, C> {
-    /// Masses without added mass. The inverse masses in lanes are zero until a substep begins.
-    pub fn new<Y: Layout<P, Constant = C>>(layout: &Y, fabric: &Fabric) -> Self {
-        let zero = vec![P::splat(0.0); layout.pack_count()];
-        Self {
-            areas: layout.constants(fabric.particle_areas()),
-            inverse_areas: layout.constants(fabric.inverse_areas()),
-            inverse: zero.clone(),
-            inertia: zero,
-            substep: 0.0,
-        }
+    /// Masses without added mass, given areas and inverse areas, and the number of packs of a batch. The inverse masses
+    /// in lanes are zero until a substep begins.
+    pub fn new(areas: Vec<C>, inverse_areas: Vec<C>, packs: usize) -> Self {
+        let zero = vec![P::splat(0.0); packs];
+        Self { areas, inverse_areas, inverse: zero.clone(), inertia: zero, substep: 0.0 }
     }
 }

@@ -11,6 +11,7 @@ pub(crate) mod lane_state;
 pub(crate) mod layout;
 mod masses;
 pub(crate) mod mixed;
+mod motion_loads;
 mod particles_mut;
 pub(crate) mod probe_motion;
 mod readout;

@@ -12,8 +12,7 @@
 
 use glam::Vec3;
 
-use crate::batch::background_grid::BackgroundGrid;
-use crate::batch::lane_batch::LaneBatch;
+use crate::batch::lane_batch::{BackgroundGrid, LaneBatch};
 use crate::batch::layout::Positions;
 use crate::batch::side_by_side::SideBySide;
 use crate::constants::LEAST_LENGTH;

@@ -3,7 +3,7 @@
 //! memory.
 
 use super::background::PROJECTION_STEPS;
-use crate::batch::background_grid::SingleGrid;
+use crate::batch::lane_batch::SingleGrid;
 use crate::fabric::{GridTransfer, Interpolation};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::registers::Pack4;

@@ -15,14 +15,9 @@ use core::ops::Range;
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Order, Particles, Positions};
-use crate::fabric::{Cell, Grid};
+use crate::fabric::Cell;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
-
-/// Length of a grid's diagonals at rest, m.
-pub(crate) fn length_at_rest(grid: &Grid) -> f32 {
-    libm::hypotf(grid.width / (grid.columns - 1) as f32, grid.height / (grid.rows - 1) as f32)
-}
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Computes the target of each diagonal from positions at which warp and weft are satisfied.

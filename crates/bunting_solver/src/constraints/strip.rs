@@ -17,6 +17,7 @@ use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
 use crate::constants::LEAST_LENGTH;
 use crate::constraints::chain::Pass;
+use crate::constraints::strip_block::StripBlock;
 use crate::constraints::strip_system::{Linearised, Solved, UNKNOWNS, coupling, diagonal};
 use crate::fabric::{StripLink, StripRow};
 use crate::simd::lane::{Kernel, Lane, Pack};
@@ -55,29 +56,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             inverse_masses: &self.masses.inverse,
             position: self.positions.packs_mut(),
         });
-    }
-}
-
-/// A row after elimination, as the substitution needs it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct StripBlock<P: Pack> {
-    /// Directions of the link across, of those along both lines, and of both diagonals; zero where there is none.
-    directions: [Pack3<P>; 5],
-    /// Coefficients of the next row's unknowns in this row's unknowns.
-    next: [[P; UNKNOWNS]; UNKNOWNS],
-    /// Unknowns of the row without the contribution of the next row's, m³.
-    unknowns: [P; UNKNOWNS],
-}
-
-impl<P: Pack> StripBlock<P> {
-    /// A block of zeros.
-    fn new() -> Self {
-        let zero = P::splat(0.0);
-        Self {
-            directions: [[zero; 3]; 5],
-            next: [[zero; UNKNOWNS]; UNKNOWNS],
-            unknowns: [zero; UNKNOWNS],
-        }
     }
 }
 

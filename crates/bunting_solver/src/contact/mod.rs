@@ -3,6 +3,7 @@
 mod bounds;
 pub(crate) mod candidates;
 pub(crate) mod collider;
+mod gather;
 mod ground;
 pub(crate) mod lift;
 mod near;

@@ -27,6 +27,11 @@ impl Grid {
         Self { columns, rows, width, height }
     }
 
+    /// Length of the diagonals of cells at rest, m.
+    pub(crate) fn diagonal(&self) -> f32 {
+        libm::hypotf(self.width / (self.columns - 1) as f32, self.height / (self.rows - 1) as f32)
+    }
+
     /// Index of the particle in a column and row.
     #[must_use]
     pub const fn index(&self, column: u32, row: u32) -> u32 {
