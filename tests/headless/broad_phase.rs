@@ -106,9 +106,10 @@ fn a_fast_ball_is_met() {
 
 #[test]
 fn a_ball_that_is_teleported_is_met() {
-    // Its velocity changes by more than the teleport speed in the first frame, and from there it goes on from rest.
+    // Its velocity changes by more than the teleport speed in the first frame, and from there it goes on from rest. It comes
+    // to lie 5 cm before the curtain: with its middle in the curtain, chance would decide to which side it pushes.
     let fly = Moving(|transform| transform.translation.z -= 40.0 / 60.0);
-    let way = displaced(ClothCollider::ball(0.2), Transform::from_xyz(0.0, 0.0, 10.0), fly);
+    let way = displaced(ClothCollider::ball(0.2), Transform::from_xyz(0.0, 0.0, 10.05), fly);
     assert!(way > 0.05, "{way} m");
 }
 

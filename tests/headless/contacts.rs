@@ -5,7 +5,7 @@ use std::f32::consts::PI;
 use bevy_app::App;
 use bevy_bunting::{
     ClothCollider, ClothFeatures, ClothLayers, ClothMaterial, ClothMesh, ClothParted,
-    ClothReactions, ClothTouched, ColliderError,
+    ClothReactions, ClothTouched, ColliderError, SelfCollision,
 };
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
@@ -198,4 +198,52 @@ fn cloth_lies_on_every_shape() {
         let highest = heights.iter().copied().fold(f32::MIN, f32::max);
         assert!((-0.02..0.02).contains(&highest), "{name}: {highest} m");
     }
+}
+
+/// Mean height of a strip of half a metre above the floor on which it has fallen on its edge, m: of cloth that passes
+/// through itself, the thickness of its material.
+fn height_of_heap(self_collision: Option<SelfCollision>) -> f32 {
+    let mut app = app();
+    app.world_mut().spawn(floor());
+    let mesh = ClothMesh::grid(9, 17, 0.25, SIDE);
+    let strip = app.world_mut().spawn((mesh, Transform::from_xyz(0.0, SIDE, 0.0))).id();
+    if let Some(self_collision) = self_collision {
+        app.world_mut().entity_mut(strip).insert(self_collision);
+    }
+    run(&mut app, 180);
+    let positions = state(&app, strip).positions().to_vec();
+    positions.iter().map(|at| SIDE + at.y).sum::<f32>() / positions.len() as f32
+}
+
+#[test]
+fn cloth_lies_on_itself_where_it_has_the_component() {
+    let apart = |thickness| Some(SelfCollision { thickness, ..Default::default() });
+    let [free, unlevelled, thin, thick] =
+        [None, Some(SelfCollision { levels: 0, ..Default::default() }), apart(4e-3), apart(12e-3)]
+            .map(height_of_heap);
+    assert_eq!(free, unlevelled);
+    assert!(thin > free + 2e-3 && thick > free + 2e-3, "{free}, {thin}, {thick}");
+    assert_ne!(thin, thick, "the thickness counts");
+}
+
+#[test]
+fn cloth_passes_through_itself_again_without_the_component() {
+    let mut app = app();
+    let strip = app.world_mut().spawn((
+        ClothMesh::grid(9, 17, 0.25, SIDE),
+        Transform::from_xyz(0.0, SIDE, 0.0),
+        SelfCollision::default(),
+    ));
+    let strip = strip.id();
+    app.world_mut().spawn(floor());
+    run(&mut app, 120);
+    let height = |app: &App| {
+        let positions = state(app, strip).positions().to_vec();
+        positions.iter().map(|at| SIDE + at.y).sum::<f32>() / positions.len() as f32
+    };
+    let before = height(&app);
+    app.world_mut().entity_mut(strip).remove::<SelfCollision>();
+    run(&mut app, 120);
+    let after = height(&app);
+    assert!(after < before - 2e-3, "{before} m before, {after} m after");
 }

@@ -137,6 +137,7 @@ pub use environment::layers::{ClothFeatures, ClothLayers};
 pub use environment::reactions::{
     ClothParted, ClothReaction, ClothReactions, ClothTouched, ReactionPlugin,
 };
+pub use environment::self_collision::{SelfCollision, SelfCollisionPlugin};
 pub use environment::wind::{GustTravel, TickWind, WindField, WindPlugin};
 pub use fabric::prepare::PreparePlugin;
 pub use lod::budget::{ClothBudget, LodCosts};
@@ -168,8 +169,8 @@ pub mod prelude {
         ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothLayers, ClothLevelChanged,
         ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
         ClothReactions, ClothSeed, ClothSettings, ClothState, ClothSurface, ClothSystems,
-        ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, TargetLost, TeleportCloth,
-        TeleportMode, WeightsError, WindField,
+        ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, SelfCollision, TargetLost,
+        TeleportCloth, TeleportMode, WeightsError, WindField,
     };
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
@@ -212,6 +213,7 @@ impl PluginGroup for ClothPlugins {
             .add(DrivePlugin)
             .add(ColliderPlugin)
             .add(ReactionPlugin)
+            .add(SelfCollisionPlugin)
             .add(SolverPlugin)
             .add(PublishPlugin)
             .add(EasingPlugin)

@@ -88,7 +88,7 @@ pub fn fly(flags: &[Flag], substeps: Substeps, seconds: f64) -> Vec<Flights> {
         .flat_map(|(index, flag)| (0..FLIGHTS).map(move |number| Flight { flag, index, number }))
         .collect();
     let together = match substeps {
-        Substeps::Fixed(_) => LaneCount::Sixteen.get(),
+        Substeps::Fixed(_) => LaneCount::widest().get(),
         Substeps::ByNeed => 1,
     };
     let mut sums: Vec<Sums> = flags.iter().map(|_| Sums::default()).collect();

@@ -77,6 +77,7 @@ pub use batch::lane_count::LaneCount;
 pub use batch::snapshot::ClothSnapshot;
 pub use batch::{BatchError, ClothBatch, Entering, LaneSurface, ParticlesMut};
 pub use contact::collider::Collider;
+pub use contact::itself::settings::SelfCollision;
 pub use contact::lift::SurfaceLift;
 pub use contact::reaction::ContactReaction;
 pub use fabric::{

@@ -60,6 +60,21 @@ fn alone(seed: usize, pins: Pins, settings: StepSettings, ticks: usize) -> Cloth
     batch.snapshot(3)
 }
 
+/// A batch with a cloth at rest of each fabric, in their order.
+fn at_rest(fabrics: &[Arc<Fabric>]) -> ClothBatch {
+    let mut batch = ClothBatch::mixed(&fabrics[2]).expect("grids");
+    let states: Vec<_> = fabrics.iter().map(|it| ClothSnapshot::at_rest(it)).collect();
+    let entering = |lane: usize| Entering {
+        lane,
+        fabric: &fabrics[lane],
+        snapshot: &states[lane],
+        material: material(lane),
+    };
+    let cloths: Vec<Entering> = (0..fabrics.len()).map(entering).collect();
+    batch.exchange(&[], &cloths).expect("one topology");
+    batch
+}
+
 #[test]
 fn a_cloth_among_others_has_the_bits_of_one_alone() {
     const TICKS: usize = 40;
@@ -67,16 +82,7 @@ fn a_cloth_among_others_has_the_bits_of_one_alone() {
         for count in [5, 8] {
             for settings in SETTINGS {
                 let fabrics: Vec<_> = (0..count).map(|seed| fabric(seed, pins)).collect();
-                let mut batch = ClothBatch::mixed(&fabrics[2]).expect("grids");
-                let states: Vec<_> = fabrics.iter().map(|it| ClothSnapshot::at_rest(it)).collect();
-                let entering = |lane: usize| Entering {
-                    lane,
-                    fabric: &fabrics[lane],
-                    snapshot: &states[lane],
-                    material: material(lane),
-                };
-                let come: Vec<Entering> = (0..count).map(entering).collect();
-                batch.exchange(&[], &come).expect("one topology");
+                let mut batch = at_rest(&fabrics);
                 for at in 0..TICKS {
                     (0..count).for_each(|lane| set(&mut batch, lane, lane, at));
                     batch.step(TICK, settings);
@@ -139,21 +145,13 @@ fn other_topologies_are_refused() {
 #[test]
 fn motion_is_measured_by_the_links_of_each_cloth() {
     let fabrics: Vec<_> = (0..8).map(|seed| fabric(seed, Pins::Edge)).collect();
-    let mut batch = ClothBatch::mixed(&fabrics[2]).expect("grids");
-    let states: Vec<_> = fabrics.iter().map(|it| ClothSnapshot::at_rest(it)).collect();
-    let entering = |lane: usize| Entering {
-        lane,
-        fabric: &fabrics[lane],
-        snapshot: &states[lane],
-        material: material(lane),
-    };
-    batch.exchange(&[], &[0, 1, 2, 3, 4, 5, 6, 7].map(entering)).expect("one topology");
+    let mut batch = at_rest(&fabrics);
     (0..8).for_each(|lane| set(&mut batch, lane, lane, 0));
     batch.step(TICK, SETTINGS[0]);
     let mut surfaces = vec![LaneSurface::default(); 8];
     batch.copy_surfaces(&mut surfaces);
     for (lane, surface) in surfaces.iter().enumerate() {
-        let before = &states[lane].positions;
+        let before = fabrics[lane].rest_positions();
         let motion = Loads::of_motion(&fabrics[lane], before, &surface.positions, TICK);
         assert!(motion > 0.0 && surface.motion == motion, "{motion} {}", surface.motion);
     }

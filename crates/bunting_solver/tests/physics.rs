@@ -184,6 +184,31 @@ fn a_pinned_sheet_feels_all_of_the_wind() {
 
 /// Drag is implicit: a light sheet in a storm speeds up to the wind within a tick, and never beyond it.
 #[test]
+fn wind_pushes_a_turning_plate_as_it_lies_in_the_middle_of_a_substep() {
+    const SPIN: f32 = 20.0;
+    let grid = FabricBuilder::grid(Grid::new(2, 2, 0.1, 0.1));
+    let fabric = Arc::new(grid.build().expect("a good fabric"));
+    let areas = fabric.particle_areas();
+    let centre =
+        fabric.rest_positions().iter().zip(areas).map(|(at, &area)| *at * area).sum::<Vec3>()
+            / fabric.area();
+    let mut batch = ClothBatch::new(fabric.clone(), LaneCount::One);
+    let positions: Vec<Vec3> = fabric.rest_positions().iter().map(|at| *at - centre).collect();
+    let velocities: Vec<Vec3> = positions.iter().map(|at| (SPIN * Vec3::X).cross(*at)).collect();
+    let weak = FabricMaterial { pressure_coefficient: 0.01, ..STANDARD };
+    let lane = batch.insert(&ClothSnapshot::new(positions, velocities), weak).expect("good");
+    let wind = Vec3::new(0.0, 0.0, 20.0);
+    batch.drive(lane, Drive { wind, air_density: 1.2, ..Drive::NONE }).expect("a good drive");
+    batch.step(TICK, StepSettings { substeps: 1, ..StepSettings::default() });
+    let mut velocities = Vec::new();
+    batch.copy_velocities(lane, &mut velocities);
+    let drift: Vec3 = velocities.iter().zip(areas).map(|(speed, &area)| *speed * area).sum();
+    // The plate turns from z towards −y.
+    let angle = libm::atan2f(-drift.y, drift.z);
+    assert!((angle - 0.5 * SPIN * TICK).abs() < 0.01, "pushed at {angle} rad");
+}
+
+#[test]
 fn strong_wind_never_overshoots() {
     const WIND: f32 = 40.0;
     let material = FabricMaterial { area_density: 0.02, pressure_coefficient: 1.2, ..STANDARD };

@@ -38,7 +38,8 @@ pub(crate) fn wanted_batches<'a>(
     singles: impl Iterator<Item = &'a Arc<Fabric>>,
 ) -> Vec<BatchKind> {
     let first_of = |cloths: usize| {
-        width.unwrap_or_else(|| LaneCount::first_of(cloths, &fabrics[0].fabric, scheme))
+        let best = || LaneCount::first_of(cloths, &fabrics[0].fabric, scheme);
+        width.map_or_else(best, |width| width.min(LaneCount::widest()))
     };
     let mut wanted = Vec::new();
     let mut left: Vec<usize> = fabrics.iter().map(|it| it.cloths).collect();
@@ -103,7 +104,7 @@ fn lone_cloths<'a>(
 
 #[cfg(test)]
 mod tests {
-    use bunting_solver::{FabricBuilder, Grid};
+    use bunting_solver::{ClothBatch, FabricBuilder, Grid, with_every_instruction_set};
 
     use super::*;
 
@@ -132,6 +133,22 @@ mod tests {
                 of_kind.filter(|kind| (kind.width.get() > 1) == (least > 1)).count()
             })
         })
+    }
+
+    #[test]
+    fn sixteen_lanes_are_eight_on_machines_that_have_no_more() {
+        let grid = FabricBuilder::grid(Grid::new(5, 5, 1.0, 1.0));
+        let fabric = Arc::new(grid.build().expect("a good fabric"));
+        let fabrics = [FabricCount { fabric, cloths: 16 }];
+        let lanes = with_every_instruction_set(|| {
+            let none = core::iter::empty();
+            let wanted = wanted_batches(&fabrics, Some(LaneCount::Sixteen), Scheme::Yarns, none);
+            let lanes_of = |kind: &BatchKind| {
+                ClothBatch::new(fabrics[0].fabric.clone(), kind.width).lane_count()
+            };
+            wanted.iter().map(lanes_of).sum::<usize>()
+        });
+        assert!(lanes.iter().all(|&lanes| lanes == 16), "{lanes:?}");
     }
 
     #[test]

@@ -6,6 +6,7 @@ use std::time::Duration;
 use bevy_ecs::prelude::*;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, LaneCount, LaneSurface,
+    SelfCollision,
 };
 use parry3d::bounding_volume::Aabb;
 
@@ -187,6 +188,14 @@ impl LaneMut<'_> {
     /// ignored.
     pub fn set_colliders(&mut self, colliders: impl IntoIterator<Item = Collider>) {
         let _ = self.occupied.batch.set_colliders(self.lane, colliders);
+    }
+
+    /// Keeps the cloth from passing through itself, or lets it. Settings that are not valid let it.
+    pub fn set_self_collision(&mut self, settings: Option<SelfCollision>) {
+        let batch = &mut self.occupied.batch;
+        if batch.set_self_collision(self.lane, settings).is_err() {
+            batch.set_self_collision(self.lane, None).expect("an occupied lane");
+        }
     }
 
     /// Changes the material, which must be valid.

@@ -111,7 +111,7 @@ impl ClothCollider {
         let flags = TriMeshFlags::MERGE_DUPLICATE_VERTICES
             | TriMeshFlags::DELETE_DEGENERATE_TRIANGLES
             | TriMeshFlags::DELETE_DUPLICATE_TRIANGLES;
-        let mesh = TriMesh::with_flags(corners.clone(), triangles.clone(), flags);
+        let mesh = TriMesh::with_flags(corners, triangles, flags);
         let mut mesh = mesh.map_err(|_| ColliderError::NoTriangle)?;
         if is_closed(mesh.indices()) {
             mesh.set_flags(flags | TriMeshFlags::ORIENTED)

@@ -79,7 +79,7 @@ type TouchingCloth = (
 /// relative to the frame at that time, and their poses at its end likewise. Poses of entities that move in
 /// frames are extrapolated to the time of the tick, of cloths and colliders alike, so that a collider that
 /// moves with a cloth rests in its frame.
-fn drive_colliders(
+pub(super) fn drive_colliders(
     colliders: Query<NearCollider>,
     cloths: Query<TouchingCloth>,
     tree: Res<ColliderTree>,

@@ -7,4 +7,5 @@ pub mod drive_colliders;
 pub mod gusts;
 pub(crate) mod layers;
 pub(crate) mod reactions;
+pub(crate) mod self_collision;
 pub mod wind;

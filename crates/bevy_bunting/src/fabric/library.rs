@@ -88,6 +88,7 @@ impl FabricLibrary {
         self.tick < awaited.due || self.is_cutting_key(&awaited.key, lods)
     }
 
+    /// Whether the levels with this key are being built, and expected in a later tick.
     fn is_cutting_key(&self, key: &ContentKey, lods: &LodSet) -> bool {
         let may_be_late = self.may_be_late && matches!(lods.choice, LodChoice::Automatic { .. });
         let is_ready = |cutting: &Cutting| cutting.is_ready(self.tick, may_be_late);

@@ -99,7 +99,7 @@ impl LevelTables {
         fixed: bool,
     ) {
         let machine = if fixed { LaneCount::Sixteen } else { LaneCount::widest() };
-        let widest = widest.unwrap_or(machine);
+        let widest = widest.map_or(machine, |widest| widest.min(machine));
         self.costs.clear();
         for (levels, table_of_costs) in self.work.iter().zip(&mut self.tables) {
             for (work, cost) in levels.iter().zip(&mut table_of_costs.costs) {

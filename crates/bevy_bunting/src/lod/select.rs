@@ -333,7 +333,7 @@ impl LevelSelector {
     ) {
         if let Some(candidate) = cloth.record.candidate {
             let ready = self.tick.wrapping_sub(cloth.record.changed) > dwell;
-            // A cloth that has been simulated since counts as changed when it begins anew.
+            // A cloth that has been simulated since counts as changed when it is at rest again.
             let fresh = candidate.fresh && cloth.instance.unmoved;
             self.candidates.push(Candidate { ready, fresh, ..candidate });
             self.entities.push(cloth.entity);

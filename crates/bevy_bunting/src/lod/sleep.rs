@@ -12,6 +12,7 @@ use crate::cloth::state::ClothState;
 use crate::display::lift::lift_surfaces;
 use crate::environment::collider::ClothCollider;
 use crate::environment::layers::{ClothFeatures, ClothLayers};
+use crate::environment::self_collision::SelfCollision;
 use crate::environment::wind::TickWind;
 use crate::lod::record::{LodRecord, RestTimer};
 use crate::lod::select::select_levels;
@@ -102,7 +103,7 @@ fn wake(request: On<WakeCloth>, mut cloths: Query<(&mut ClothInstance, &mut Rest
 }
 
 /// Filter of cloths and colliders that touch others than before.
-type HasNewLayers = Or<(Changed<ClothLayers>, Changed<ClothFeatures>)>;
+type HasNewLayers = Or<(Changed<ClothLayers>, Changed<ClothFeatures>, Changed<SelfCollision>)>;
 
 fn note_changes(
     colliders: Query<(Ref<ClothCollider>, Ref<PoseHistory>)>,

@@ -17,16 +17,14 @@ struct MovingPin {
     particle: usize,
     /// Position when the motion began, m.
     from: Vec3,
-    /// Velocity when the motion began, m/s.
-    velocity: Vec3,
 }
 
 impl MovingPin {
-    /// Position after a part of [`TIME`]: a cubic that ends at `rest` without velocity.
-    fn at(&self, part: f32, rest: Vec3) -> Vec3 {
+    /// Position after a part of [`TIME`]: a cubic that begins with a velocity (m/s) and ends at `rest` without one.
+    fn at(&self, part: f32, velocity: Vec3, rest: Vec3) -> Vec3 {
         let eased = part * part * (3.0 - 2.0 * part);
         let coasting = part * (1.0 - part) * (1.0 - part) * TIME;
-        self.from.lerp(rest, eased) + coasting * self.velocity
+        self.from.lerp(rest, eased) + coasting * velocity
     }
 }
 
@@ -34,13 +32,16 @@ impl MovingPin {
 #[derive(Clone, Debug)]
 pub(crate) struct TakingUp {
     pins: Vec<MovingPin>,
+    /// Velocity when the motion began, m/s: the mean of the pins'. With a velocity of its own, each pin would draw away
+    /// from its neighbours, and stretch the edge between them.
+    velocity: Vec3,
     /// Time since the motion began, s.
     passed: f32,
 }
 
 impl TakingUp {
     /// Transforms a kept state into the new frame by `change`, with its pins left where they are, and begins
-    /// their motion; that of cloth that `was_free` with the velocity that it has, as if it were caught. None if all pins
+    /// their motion; that of cloth that `was_free` with the mean velocity of its pins, as if it were caught. None if all pins
     /// are in their places.
     pub fn begin(
         snapshot: &mut ClothSnapshot,
@@ -63,16 +64,17 @@ impl TakingUp {
             let shift = sum / pins.len() as f32;
             snapshot.positions.iter_mut().for_each(|at| *at += shift);
         }
-        let moving = |&particle: &usize| MovingPin {
-            particle,
-            from: snapshot.positions[particle],
-            velocity: if was_free { snapshot.velocities[particle] } else { Vec3::ZERO },
-        };
-        let moving: Vec<MovingPin> = pins.iter().map(moving).collect();
+        let mut velocity = Vec3::ZERO;
+        if was_free {
+            let sum: Vec3 = pins.iter().map(|&pin| snapshot.velocities[pin]).sum();
+            velocity = sum / pins.len().max(1) as f32;
+        }
         pins.iter().for_each(|&pin| snapshot.velocities[pin] = Vec3::ZERO);
+        let moving = |&particle: &usize| MovingPin { particle, from: snapshot.positions[particle] };
+        let pins: Vec<MovingPin> = pins.iter().map(moving).collect();
         let in_place =
-            |pin: &MovingPin| pin.from == rest[pin.particle] && pin.velocity == Vec3::ZERO;
-        (!moving.iter().all(in_place)).then_some(Self { pins: moving, passed: 0.0 })
+            velocity == Vec3::ZERO && pins.iter().all(|pin| pin.from == rest[pin.particle]);
+        (!in_place).then_some(Self { pins, velocity, passed: 0.0 })
     }
 
     /// Moves the pins for `tick` seconds. Returns whether all are in their places.
@@ -81,7 +83,8 @@ impl TakingUp {
         let part = (self.passed / TIME).min(1.0);
         for pin in &self.pins {
             let rest = fabric.rest_positions()[pin.particle];
-            positions[pin.particle] = if part < 1.0 { pin.at(part, rest) } else { rest };
+            positions[pin.particle] =
+                if part < 1.0 { pin.at(part, self.velocity, rest) } else { rest };
         }
         part == 1.0
     }

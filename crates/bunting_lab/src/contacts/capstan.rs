@@ -35,12 +35,7 @@ pub(super) fn rows(quick: bool) -> Vec<Row> {
 /// Row of the ratio of forces from which on the strip slips.
 fn ratio(friction: f32, degrees: f32) -> Row {
     let exact = (friction * degrees.to_radians()).exp();
-    let mut us = 0.0;
-    let relative = threshold(0.7, 1.3, |relative| {
-        let (slipped, time) = slips(friction, degrees, relative * exact);
-        us = time;
-        slipped
-    });
+    let (relative, us) = threshold(0.7, 1.3, |relative| slips(friction, degrees, relative * exact));
     Row::new(
         format!("capstan, μ = {friction}, θ = {degrees}°"),
         "error of T₂/T₁, of one",

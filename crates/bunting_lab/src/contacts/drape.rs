@@ -73,7 +73,7 @@ pub(super) fn rows(quick: bool) -> Vec<Row> {
         of("peg of 2 cm", peg, upright),
         of("corner of a box", cuboid, on_corner),
         of("tip of a cone", cone, upright),
-        Feature::new("blob of 252 triangles", mesh, Quat::IDENTITY, (corners, triangles)),
+        Feature::new("blob of 224 triangles", mesh, Quat::IDENTITY, (corners, triangles)),
     ];
     let speeds = [0.0, 2.0];
     let seconds = if quick { 0.5 } else { 2.0 };

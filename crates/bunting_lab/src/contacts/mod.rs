@@ -5,6 +5,8 @@
 mod capstan;
 mod drape;
 mod fast;
+mod intersections;
+mod itself;
 mod rest;
 mod rig;
 mod row;
@@ -18,11 +20,12 @@ pub use row::Row;
 pub type Family = fn(quick: bool) -> Vec<Row>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 6] = [
+pub const ALL: [(&str, Family); 7] = [
     ("slope", slope::rows),
     ("capstan", capstan::rows),
     ("turntable", turntable::rows),
     ("rest", rest::rows),
     ("fast", fast::rows),
     ("drape", drape::rows),
+    ("itself", itself::rows),
 ];

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, Grid,
-    LaneCount, ParticlesMut, StepSettings, SurfaceLift,
+    LaneCount, ParticlesMut, SelfCollision, StepSettings, SurfaceLift,
 };
 use glam::{Quat, Vec3};
 
@@ -103,6 +103,12 @@ impl Trial {
         self.batch.set_colliders(0, self.colliders.iter().cloned()).expect("good colliders");
     }
 
+    /// Keeps layers of the cloth at a distance from one another, m; none: they may pass through one another.
+    pub fn keep_layers_apart(&mut self, distance: Option<f32>) {
+        let settings = distance.map(|thickness| SelfCollision { thickness });
+        self.batch.set_self_collision(0, settings).expect("a good thickness");
+    }
+
     /// Advances by a tick.
     pub fn tick(&mut self) {
         self.tick_with(|_| ());
@@ -174,17 +180,25 @@ pub(super) fn floor(friction: f32) -> Collider {
     Collider { friction, ..Collider::fixed(shape, -THICKNESS * Vec3::Z, Quat::IDENTITY) }
 }
 
-/// The threshold between `low`, where `slips` is false, and `high`, where it is true.
-pub(super) fn threshold(mut low: f32, mut high: f32, mut slips: impl FnMut(f32) -> bool) -> f32 {
+/// The threshold between `low`, where a cloth does not slip, and `high`, where it does, and the time of a tick in the last
+/// trial, µs. `slips` tells whether the cloth slips, and that time.
+pub(super) fn threshold(
+    mut low: f32,
+    mut high: f32,
+    slips: impl Fn(f32) -> (bool, f64),
+) -> (f32, f64) {
     /// Halvings: 2⁻¹⁰ of the interval remains.
     const HALVINGS: usize = 10;
+    let mut us = 0.0;
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        if slips(middle) {
+        let (has_slipped, time) = slips(middle);
+        if has_slipped {
             high = middle;
         } else {
             low = middle;
         }
+        us = time;
     }
-    0.5 * (low + high)
+    (0.5 * (low + high), us)
 }

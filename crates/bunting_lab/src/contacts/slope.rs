@@ -27,13 +27,11 @@ pub(super) fn rows(quick: bool) -> Vec<Row> {
 
 /// Row of the slope from which on a sheet slips.
 fn slip(friction: f32) -> Row {
-    let mut us = 0.0;
-    let tangent = threshold(0.8 * friction, 1.2 * friction, |tangent| {
+    let (tangent, us) = threshold(0.8 * friction, 1.2 * friction, |tangent| {
         let mut sheet = on_slope(friction, tangent);
         let start = sheet.centre();
         sheet.run(1.0);
-        us = sheet.us();
-        (sheet.centre() - start).x > SLIPPED
+        ((sheet.centre() - start).x > SLIPPED, sheet.us())
     });
     let error = (tangent / friction - 1.0).abs();
     Row::new(

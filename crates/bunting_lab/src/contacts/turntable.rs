@@ -23,13 +23,8 @@ pub(super) fn rows(quick: bool) -> Vec<Row> {
 
 /// Row of the rate from which on the sheet slips.
 fn slip(friction: f32) -> Row {
-    let mut us = 0.0;
-    let ratio = threshold(0.8, 1.2, |ratio| {
-        let rate = (ratio * friction * GRAVITY / RADIUS).sqrt();
-        let (slipped, time) = slips(friction, rate);
-        us = time;
-        slipped
-    });
+    let (ratio, us) =
+        threshold(0.8, 1.2, |ratio| slips(friction, (ratio * friction * GRAVITY / RADIUS).sqrt()));
     Row::new(
         format!("slip on a turntable, μ = {friction}"),
         "error of ω² r/μg, of one",

@@ -62,10 +62,12 @@ struct Run {
 fn run_at_width(run: scenes::Run, lanes: LaneCount) -> Vec<Run> {
     let runs = with_every_instruction_set(|| {
         let set = instruction_set();
-        let lengths = match LaneCount::available().contains(&lanes) {
-            false => 0..0,
-            true if FUSED.contains(&set) => 0..TICKS.len(),
-            true => 0..1,
+        let lengths = if !LaneCount::available().contains(&lanes) {
+            0..0
+        } else if FUSED.contains(&set) {
+            0..TICKS.len()
+        } else {
+            0..1
         };
         let setup = format!("{} lanes, {set}", lanes.get());
         lengths

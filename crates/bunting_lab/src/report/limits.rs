@@ -1,8 +1,7 @@
 //! Limitations of the project, listed beside its figures.
 
 /// Limitations that a reader of the figures should know.
-pub const LIMITS: [&str; 14] = [
-    "Self-collision: a cloth passes through itself.",
+pub const LIMITS: [&str; 13] = [
     "Collision of cloths with one another.",
     "Two-way coupling: cloth does not push back on what it touches or hangs from.",
     "Features of shapes: particles are tested, not the triangles between them, so sharp edges and corners \

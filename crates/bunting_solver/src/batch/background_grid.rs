@@ -1,16 +1,13 @@
-//! The background grids of the cloths of a batch: side by side, as the cloths are, or that of a lone cloth across the
+//! The background grids of the cloths of a batch: side by side, as the cloths are, or that of a single mesh across the
 //! lanes of a vector. Both have the same bits.
-
-use glam::Vec3;
 
 use crate::batch::lane_batch::{BackgroundGrid, LaneBatch, SingleGrid};
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::single_cloth::SingleCloth;
-use crate::fabric::Fabric;
+use crate::batch::single_mesh::pack_count;
+use crate::fabric::{Background, Fabric, GridTransfer};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
-use crate::simd::vec3::{Pack3, lane3};
-use crate::step::clock::Clock;
 use crate::step::load_stretch::LoadStretch;
 use crate::step::parameters::ParameterInputs;
 
@@ -28,14 +25,14 @@ macro_rules! with_grid {
 }
 
 impl<P: Pack> BackgroundGrid<P> {
-    /// The background grids of a batch of cloths of a fabric; none if it has none.
-    pub fn of(fabric: &Fabric) -> Option<Self> {
+    /// The background grids of a batch of cloths of a fabric, across the lanes if it is that of a single mesh; none if
+    /// the fabric has none.
+    pub fn of(fabric: &Fabric, is_single: bool) -> Option<Self> {
         let background = fabric.background()?;
         let grid = &background.fabric;
-        let is_single = P::WIDTH == 1 && background.transfer.heights.is_empty();
         let single = if is_single { LaneBatch::single_cloth(grid) } else { None };
         Some(match single {
-            Some(batch) => Self::Single(Box::new(SingleGrid::new(batch, fabric))),
+            Some(batch) => Self::Single(Box::new(SingleGrid::new(batch, fabric, background))),
             None => Self::SideBySide(Box::new(LaneBatch::side_by_side(grid.clone()))),
         })
     }
@@ -62,21 +59,6 @@ impl<P: Pack> BackgroundGrid<P> {
             batch.positions.set_inverse_masses(of_nodes);
         });
     }
-
-    /// Takes over the time of the cloths' batch.
-    pub fn set_clock(&mut self, clock: Clock) {
-        with_grid!(self, batch => batch.clock = clock);
-    }
-
-    /// Solves bending along the grids' lines.
-    pub fn solve_bending(&mut self) {
-        with_grid!(self, batch => batch.solve_bending_before_stretch());
-    }
-
-    /// Solves stretch and shear.
-    pub fn solve_stretch(&mut self) {
-        with_grid!(self, batch => batch.solve_stretch_of_grid());
-    }
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
@@ -90,81 +72,62 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 }
 
 impl SingleGrid {
-    fn new(batch: LaneBatch<Pack8, SingleCloth<Pack8>>, fabric: &Fabric) -> Self {
+    fn new(
+        batch: LaneBatch<Pack8, SingleCloth<Pack8>>,
+        fabric: &Fabric,
+        background: &Background,
+    ) -> Self {
         let zero = Pack4::splat(0.0);
-        let particles = vec![zero; fabric.particle_count()];
+        let count = batch.layout.pack_count() * Pack8::WIDTH;
+        let place = |node: usize| {
+            let (pack, lane) = batch.layout.locate(node, 0);
+            (pack * Pack8::WIDTH + lane) as u32
+        };
+        let places: Vec<u32> = (0..batch.fabric.particle_count()).map(place).collect();
+        let GridTransfer { nodes, particles, means, heights, is_whole } =
+            background.transfer.clone();
         Self {
-            nodes: vec![zero; batch.fabric.particle_count()],
-            unresolved: particles.clone(),
-            particles,
-            columns: batch.fabric.grid().map_or(1, |grid| grid.columns as usize),
+            nodes: vec![zero; count],
+            unresolved: vec![zero; pack_count(fabric.particle_count()) * Pack8::WIDTH],
+            transfer: GridTransfer {
+                nodes: nodes.with_rows_at(&places, count),
+                particles: particles.with_columns(&places),
+                means: means.with_rows_at(&places, count),
+                heights,
+                is_whole,
+            },
             batch,
-        }
-    }
-
-    /// Takes over the particles' positions from those of a batch of one lane.
-    pub fn take_particles<P: Pack>(&mut self, positions: &[Pack3<P>]) {
-        for (particle, position) in self.particles.iter_mut().zip(positions) {
-            let Vec3 { x, y, z } = lane3(position, 0);
-            particle.lanes_mut().copy_from_slice(&[x, y, z, 0.0]);
-        }
-    }
-
-    /// Writes the nodes' positions to the batch.
-    pub fn write_nodes(&mut self) {
-        let packs = self.batch.positions.packs_mut();
-        let in_row = self.columns.div_ceil(Pack8::WIDTH);
-        for (nodes, packs) in self.nodes.chunks(self.columns).zip(packs.chunks_mut(in_row)) {
-            for (nodes, [x, y, z]) in nodes.chunks(Pack8::WIDTH).zip(packs) {
-                let lanes = x.lanes_mut().iter_mut().zip(y.lanes_mut()).zip(z.lanes_mut());
-                for (node, ((x, y), z)) in nodes.iter().zip(lanes) {
-                    [*x, *y, *z, _] = node.vector();
-                }
-            }
-        }
-    }
-
-    /// Reads the nodes' positions from the batch.
-    pub fn read_nodes(&mut self) {
-        let packs = self.batch.positions.packs_mut();
-        let in_row = self.columns.div_ceil(Pack8::WIDTH);
-        for (nodes, packs) in self.nodes.chunks_mut(self.columns).zip(packs.chunks(in_row)) {
-            for (nodes, [x, y, z]) in nodes.chunks_mut(Pack8::WIDTH).zip(packs) {
-                let lanes = x.lanes().iter().zip(y.lanes()).zip(z.lanes());
-                for (node, ((&x, &y), &z)) in nodes.iter_mut().zip(lanes) {
-                    node.lanes_mut().copy_from_slice(&[x, y, z, 0.0]);
-                }
-            }
         }
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use glam::Vec3;
 
     use super::BackgroundGrid;
+    use crate::batch::lane_batch::LaneBatch;
     use crate::fabric::{FabricBuilder, Grid};
     use crate::simd::registers::{Pack1, Pack8};
 
     #[test]
-    fn the_grid_of_a_lone_mesh_lies_across_the_lanes() {
+    fn the_grid_of_a_single_mesh_lies_across_the_lanes() {
         let grid = Grid::new(12, 9, 1.0, 0.8);
-        let all = grid.triangles(false);
-        let holed = all.iter().enumerate().filter(|(index, _)| !(80..84).contains(index));
-        let holed: Vec<[u32; 3]> = holed.map(|(_, corners)| *corners).collect();
-        for triangles in [all, holed] {
-            let mesh = FabricBuilder::new(grid.positions(), triangles.into_flattened());
-            let fabric = mesh.pin_where(|at, _| at.x == 0.0).build().expect("a good fabric");
-            assert!(matches!(
-                BackgroundGrid::<Pack1>::of(&fabric),
-                Some(BackgroundGrid::Single(_))
-            ));
-            let eight = BackgroundGrid::<Pack8>::of(&fabric);
-            assert!(matches!(eight, Some(BackgroundGrid::SideBySide(_))));
+        let triangles = grid.triangles(false).into_flattened();
+        let flat = FabricBuilder::new(grid.positions(), triangles.clone());
+        let flat = Arc::new(flat.pin_where(|at, _| at.x == 0.0).build().expect("a good fabric"));
+        let single = LaneBatch::single_mesh(&flat).expect("a flat mesh that fills its grid");
+        assert!(matches!(single.background, Some(BackgroundGrid::Single(_))));
+        for lanes in [LaneBatch::<Pack1>::side_by_side, |fabric| {
+            LaneBatch::<Pack8>::side_by_side(fabric).to_one_lane()
+        }] {
+            let batch = lanes(Arc::clone(&flat));
+            assert!(matches!(batch.background, Some(BackgroundGrid::SideBySide(_))));
         }
         let curved = grid.positions().iter().map(|at| *at + Vec3::Z * at.x * at.x).collect();
-        let curved = FabricBuilder::new(curved, grid.triangles(false).into_flattened());
-        assert!(BackgroundGrid::<Pack1>::of(&curved.build().expect("a good fabric")).is_none());
+        let curved = Arc::new(FabricBuilder::new(curved, triangles).build().expect("a cloth"));
+        assert!(LaneBatch::single_mesh(&curved).is_none());
     }
 }

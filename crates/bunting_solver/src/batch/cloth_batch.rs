@@ -12,10 +12,12 @@ use crate::batch::lane_count::LaneCount;
 use crate::batch::mixed::Mixed;
 use crate::batch::particles_mut::ParticlesMut;
 use crate::batch::single_cloth::SingleCloth;
+use crate::batch::single_mesh::SingleMesh;
 use crate::batch::snapshot::ClothSnapshot;
 use crate::batch::surfaces::LaneSurface;
 use crate::constants::GRAVITY;
 use crate::contact::collider::Collider;
+use crate::contact::itself::settings::SelfCollision;
 use crate::contact::reaction::ContactReaction;
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::simd::registers::{Pack1, Pack8, Pack16};
@@ -35,10 +37,25 @@ pub struct ClothBatch(Lanes);
 enum Lanes {
     /// One cloth across all lanes of a vector.
     Single(Box<LaneBatch<Pack8, SingleCloth<Pack8>>>),
+    /// One mesh across all lanes of a vector.
+    SingleMesh(Box<LaneBatch<Pack8, SingleMesh>>),
     One(Box<LaneBatch<Pack1>>),
     Eight(Box<LaneBatch<Pack8>>),
     Sixteen(Box<LaneBatch<Pack16>>),
     Mixed(Box<LaneBatch<Pack8, Mixed<Pack8>>>),
+}
+
+impl Lanes {
+    /// A batch of one cloth, across all lanes of a vector if it can lie there.
+    fn of_one_cloth(fabric: Arc<Fabric>) -> Self {
+        if let Some(batch) = LaneBatch::single_cloth(&fabric) {
+            Self::Single(Box::new(batch))
+        } else if let Some(batch) = LaneBatch::single_mesh(&fabric) {
+            Self::SingleMesh(Box::new(batch))
+        } else {
+            Self::One(Box::new(LaneBatch::side_by_side(fabric)))
+        }
+    }
 }
 
 /// Evaluates an expression with the batch of any width and layout.
@@ -46,6 +63,7 @@ macro_rules! with_batch {
     ($lanes:expr, $batch:ident => $body:expr) => {
         match $lanes {
             Lanes::Single($batch) => $body,
+            Lanes::SingleMesh($batch) => $body,
             Lanes::One($batch) => $body,
             Lanes::Eight($batch) => $body,
             Lanes::Sixteen($batch) => $body,
@@ -59,10 +77,7 @@ impl ClothBatch {
     #[must_use]
     pub fn new(fabric: Arc<Fabric>, lanes: LaneCount) -> Self {
         Self(match lanes.min(LaneCount::widest()) {
-            LaneCount::One => match LaneBatch::single_cloth(&fabric) {
-                Some(batch) => Lanes::Single(Box::new(batch)),
-                None => Lanes::One(Box::new(LaneBatch::side_by_side(fabric))),
-            },
+            LaneCount::One => Lanes::of_one_cloth(fabric),
             LaneCount::Eight => Lanes::Eight(Box::new(LaneBatch::side_by_side(fabric))),
             LaneCount::Sixteen => Lanes::Sixteen(Box::new(LaneBatch::side_by_side(fabric))),
         })
@@ -295,6 +310,26 @@ impl ClothBatch {
         refused.map_or(Ok(()), |index| Err(BatchError::Collider { index }))
     }
 
+    /// Keeps a lane's cloth from passing through itself from the next substep on, or lets it; at first it does. An empty
+    /// lane stays empty. The first call for a lane computes the features of its fabric that may touch, which takes
+    /// longer than a tick.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane, or the thickness is not finite and greater than zero. The lane keeps its settings.
+    pub fn set_self_collision(
+        &mut self,
+        lane: usize,
+        settings: Option<SelfCollision>,
+    ) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        if settings.is_some_and(|settings| !settings.is_valid()) {
+            return Err(BatchError::SelfCollision);
+        }
+        with_batch!(&mut self.0, batch => batch.set_self_collision(lane, settings));
+        Ok(())
+    }
+
     /// For each lane, the box around all positions that its cloth's particles reach in a tick of `tick` seconds under
     /// the present [`Drive`], as far as they touch nothing, with the cloth's thickness; in m, relative to the cloth's
     /// frame at the start of the tick. None for a lane without a cloth. By this box a host finds the colliders that a
@@ -329,10 +364,15 @@ impl ClothBatch {
     ///
     /// When the batch is [`mixed`](Self::mixed) and the scheme is not [`Scheme::Yarns`].
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
-        if let Lanes::Single(single) = &self.0
-            && settings.scheme != Scheme::Yarns
-        {
-            self.0 = Lanes::One(Box::new(single.to_one_lane()));
+        if settings.scheme != Scheme::Yarns {
+            let one_lane = match &self.0 {
+                Lanes::Single(single) => Some(single.to_one_lane()),
+                Lanes::SingleMesh(single) => Some(single.to_one_lane()),
+                _ => None,
+            };
+            if let Some(batch) = one_lane {
+                self.0 = Lanes::One(Box::new(batch));
+            }
         }
         assert!(!self.is_mixed() || settings.scheme == Scheme::Yarns, "a mixed batch has yarns");
         with_batch!(&mut self.0, batch => batch.begin_tick(tick, settings));

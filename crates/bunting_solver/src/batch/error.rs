@@ -46,6 +46,9 @@ pub enum BatchError {
         /// Index of the collider in the given list.
         index: usize,
     },
+    /// The thickness of a self-collision is not finite, or not greater than zero.
+    #[error("the thickness of the self-collision must be finite and greater than zero")]
+    SelfCollision,
     /// The material cannot be simulated.
     #[error(transparent)]
     Material(#[from] FabricError),

@@ -8,10 +8,11 @@ use crate::batch::lane_batch::{LaneBatch, without_minus_zero};
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, OfCloth, Positions};
 use crate::batch::single_cloth::SingleCloth;
+use crate::batch::single_mesh::SingleMesh;
 use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::simd::lane::Pack;
-use crate::simd::registers::Pack1;
+use crate::simd::registers::{Pack1, Pack8};
 use crate::simd::vec3::set_lane3;
 use crate::stability::pin_strain::PinStrain;
 use crate::step::bdf::IntegratorHistory;
@@ -131,15 +132,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 }
 
-impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
-    /// An empty batch of one cloth across the lanes; none unless the fabric is a grid whose yarns run
-    /// straight.
-    pub fn single_cloth(fabric: &Arc<Fabric>) -> Option<Self> {
-        let layout = SingleCloth::of(fabric)?;
-        Some(Self::new(Arc::clone(fabric), layout))
-    }
-
-    /// The batch of one lane for the same cloth, for a scheme without chains.
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// The batch of one lane for the only cloth of this one, for a scheme without chains.
     pub fn to_one_lane(&self) -> LaneBatch<Pack1> {
         let mut batch = LaneBatch::side_by_side(Arc::clone(&self.fabric));
         if let Some(cloth) = &self.lanes[0] {
@@ -152,5 +146,22 @@ impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
             set_lane3(pack, 0, normal);
         }
         batch
+    }
+}
+
+impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
+    /// An empty batch of one cloth across the lanes; none unless the fabric is a grid whose yarns run
+    /// straight.
+    pub fn single_cloth(fabric: &Arc<Fabric>) -> Option<Self> {
+        let layout = SingleCloth::of(fabric)?;
+        Some(Self::new(Arc::clone(fabric), layout))
+    }
+}
+
+impl LaneBatch<Pack8, SingleMesh> {
+    /// An empty batch of one mesh across the lanes; none unless its background grid can lie across them, too.
+    pub fn single_mesh(fabric: &Arc<Fabric>) -> Option<Self> {
+        let layout = SingleMesh::of(fabric)?;
+        Some(Self::new(Arc::clone(fabric), layout))
     }
 }

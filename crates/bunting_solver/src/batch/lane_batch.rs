@@ -14,7 +14,7 @@ use crate::batch::side_by_side::SideBySide;
 use crate::batch::single_cloth::SingleCloth;
 use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
-use crate::fabric::{CHAINS_PER_PAIR, Fabric};
+use crate::fabric::{CHAINS_PER_PAIR, Fabric, GridTransfer};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::{Pack3, set_lane3, splat3};
@@ -88,23 +88,21 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
 pub(crate) enum BackgroundGrid<P: Pack> {
     /// One in each lane.
     SideBySide(Box<LaneBatch<P>>),
-    /// That of the only cloth of a batch of one lane, whose mesh is flat at rest.
+    /// That of a single mesh, across the lanes.
     Single(Box<SingleGrid>),
 }
 
-/// The background grid of a lone cloth. Its particles and nodes are interpolated from one another as vectors whose
+/// The background grid of a single mesh. Its particles and nodes are interpolated from one another as vectors whose
 /// lanes are x, y, z and zero.
 #[derive(Clone, Debug)]
 pub(crate) struct SingleGrid {
     pub batch: LaneBatch<Pack8, SingleCloth<Pack8>>,
-    /// Positions of the nodes, m.
+    /// Positions of the nodes, m, row by row, each row filled up to whole packs.
     pub nodes: Vec<Pack4>,
-    /// Positions of the particles, m.
-    pub particles: Vec<Pack4>,
     /// What the grid does not resolve of the particles' positions, m.
     pub unresolved: Vec<Pack4>,
-    /// Number of nodes in a row.
-    pub columns: usize,
+    /// How nodes and particles are interpolated from one another, with nodes numbered as they are stored.
+    pub transfer: GridTransfer,
 }
 
 impl<P: Pack> LaneBatch<P> {
@@ -166,7 +164,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             parameters: Parameters::new(),
             clock: Clock::default(),
             probe_motion: ProbeMotion::default(),
-            background: BackgroundGrid::of(&fabric),
+            background: BackgroundGrid::of(&fabric, P::WIDTH > 1 && Y::CLOTHS == 1),
             fabric,
             layout,
         };

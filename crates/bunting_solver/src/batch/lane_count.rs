@@ -11,8 +11,8 @@ const MOST_IN_SIXTEEN: usize = 65 * 65;
 /// Number of cloths that a batch can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 pub enum LaneCount {
-    /// One cloth. A cloth on a grid is spread across the lanes of a vector, and so is the background grid of a mesh
-    /// that is flat at rest; all else of meshes is solved in scalar code.
+    /// One cloth. A cloth on a grid is spread across the lanes of a vector, and so is a mesh that is flat at rest and fills
+    /// a rectangle; other meshes are solved in scalar code.
     One,
     /// Eight cloths: full speed with AVX2.
     #[default]
@@ -57,8 +57,7 @@ impl LaneCount {
     }
 
     /// Width of the first batch if `cloths` cloths of a fabric are divided among batches such that they take
-    /// the least time: full batches of the widest width, and narrower ones for the
-    /// rest.
+    /// the least time: full batches of the widest width, and narrower ones for the rest.
     #[must_use]
     pub fn first_of(cloths: usize, fabric: &Fabric, scheme: Scheme) -> Self {
         let alone = Self::most_alone(fabric, scheme);

@@ -3,6 +3,7 @@
 use core::ops::Range;
 use std::sync::Arc;
 
+use crate::contact::itself::mesh::ContactMesh;
 use crate::fabric::{Fabric, Grid};
 use crate::simd::lane::Pack;
 use crate::stability::added_mass::InverseMasses;
@@ -16,6 +17,8 @@ pub(crate) struct LaneFabric {
     pub pole: Option<Pole>,
     /// Inverse masses for a substep, from which those of each cloth are computed.
     pub inverse_masses: InverseMasses,
+    /// Features that may touch; none until a cloth of the batch keeps its layers apart.
+    pub contact_mesh: Option<Arc<ContactMesh>>,
 }
 
 impl LaneFabric {
@@ -28,6 +31,7 @@ impl LaneFabric {
             } else {
                 InverseMasses::new(&fabric, substep)
             },
+            contact_mesh: None,
             fabric,
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::contact::candidates::Candidates;
 use crate::contact::collider::Collider;
+use crate::contact::itself::state::SelfContacts;
 use crate::contact::reaction::ReactionSum;
 use crate::fabric::FabricMaterial;
 use crate::stability::added_mass::AddedMass;
@@ -18,6 +19,8 @@ pub(crate) struct LaneState {
     pub colliders: Vec<Collider>,
     /// What may touch each collider in this tick.
     pub contacts: Vec<Candidates>,
+    /// Contacts of the cloth with itself, if it has any.
+    pub self_contacts: Option<Box<SelfContacts>>,
     /// What the cloth has done to each collider in this tick; empty if none reports it.
     pub reactions: Vec<ReactionSum>,
     /// Moment about the pole of this substep's corrections from outside the cloth, by contacts and by users, in
@@ -39,6 +42,7 @@ impl LaneState {
             drive: Drive::default(),
             colliders: Vec::new(),
             contacts: Vec::new(),
+            self_contacts: None,
             reactions: Vec::new(),
             external_moment: 0.0,
             history: IntegratorHistory::default(),

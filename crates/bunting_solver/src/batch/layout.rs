@@ -1,11 +1,13 @@
 //! The layouts of a batch: the pack and lane of each particle, and the order in which constraints are solved.
 //!
-//! There are three. [`SideBySide`](crate::batch::side_by_side::SideBySide) holds up to as many cloths of one
+//! There are four. [`SideBySide`](crate::batch::side_by_side::SideBySide) holds up to as many cloths of one
 //! fabric as there are lanes: a pack holds the same particle of each cloth, and numbers of the fabric are
 //! the same in all lanes. [`Mixed`](crate::batch::mixed::Mixed) does so with cloths of different fabrics of one
 //! topology: numbers of the fabric are each lane's own. [`SingleCloth`](crate::batch::single_cloth::SingleCloth) spreads one cloth across
 //! the lanes: a pack holds consecutive particles of a row of its grid, constraints that share no particle
 //! are solved in one pack, and numbers of the fabric are each lane's own, too.
+//! [`SingleMesh`](crate::batch::single_mesh::SingleMesh) does so with a mesh, whose constraints are those of its background
+//! grid.
 //!
 //! Kernels are written once for all, over [`Constant`] and [`Particles`].
 

@@ -17,6 +17,8 @@ pub(crate) mod probe_motion;
 mod readout;
 pub(crate) mod side_by_side;
 pub(crate) mod single_cloth;
+pub(crate) mod single_mesh;
+mod single_tethers;
 pub(crate) mod snapshot;
 mod surfaces;
 mod tether_pack;

@@ -48,12 +48,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Acceleration of the links of each lane's cloth that have turned since the tick began, m/s². The sums have the
     /// order and the operations of [`Loads::of_motion`], so that the bits are the same.
     pub fn motion_loads(&self) -> impl Iterator<Item = f32> + '_ {
-        let (mut turns, mut ways) = (P::splat(0.0), P::splat(0.0));
-        P::run(SumMotion { batch: self, turns: &mut turns, ways: &mut ways });
+        let (mut turns, mut displacements) = (P::splat(0.0), P::splat(0.0));
+        P::run(SumMotion { batch: self, turns: &mut turns, displacements: &mut displacements });
         (0..self.lanes.len()).map(move |cloth| {
             let fabric = &self.fabric_of(cloth).fabric;
             let tick = self.probe_motion.tick;
-            Loads::of_probes(fabric, turns.lanes()[cloth], ways.lanes()[cloth], tick)
+            Loads::of_probes(fabric, turns.lanes()[cloth], displacements.lanes()[cloth], tick)
         })
     }
 }
@@ -76,17 +76,17 @@ impl<P: Pack, Y: Layout<P>> Kernel<P> for NoteProbes<'_, P, Y> {
 }
 
 /// Kernel that sums, in each lane, the squared turns of all probes times their inverse squared lengths, and the squared
-/// ways of their first ends. Products are not fused with sums, as they are not in [`Loads::of_motion`].
+/// displacements of their first ends. Products are not fused with sums, as they are not in [`Loads::of_motion`].
 struct SumMotion<'a, P: Pack, Y: Layout<P>> {
     batch: &'a LaneBatch<P, Y>,
     turns: &'a mut P,
-    ways: &'a mut P,
+    displacements: &'a mut P,
 }
 
 impl<P: Pack, Y: Layout<P>> Kernel<P> for SumMotion<'_, P, Y> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let (mut turns, mut ways) = (L::splat(token, 0.0), L::splat(token, 0.0));
+        let (mut turns, mut displacements) = (L::splat(token, 0.0), L::splat(token, 0.0));
         let starts = &self.batch.probe_motion.starts;
         for (index, (probe, start)) in self.batch.fabric.probes().iter().zip(starts).enumerate() {
             let [first, second] = probe.particles;
@@ -94,11 +94,11 @@ impl<P: Pack, Y: Layout<P>> Kernel<P> for SumMotion<'_, P, Y> {
             let to = self.batch.end::<L>(token, second) - V3::load(token, &start[1]);
             let turn = to - from;
             let squared_turn = turn.x * turn.x + turn.y * turn.y + turn.z * turn.z;
-            let squared_way = from.x * from.x + from.y * from.y + from.z * from.z;
+            let squared_displacement = from.x * from.x + from.y * from.y + from.z * from.z;
             turns = turns + squared_turn * self.batch.inverse_squared_length::<L>(token, index);
-            ways = ways + squared_way;
+            displacements = displacements + squared_displacement;
         }
         turns.store(self.turns);
-        ways.store(self.ways);
+        displacements.store(self.displacements);
     }
 }

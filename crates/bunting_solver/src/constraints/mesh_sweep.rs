@@ -1,8 +1,8 @@
-//! A Gauss–Seidel sweep over the links of a mesh with a background grid.
+//! A Gauss–Seidel sweep over the links of a mesh that is curved, or does not fill its background grid.
 //!
-//! Where a flag snaps like a whip, chains overshoot, as their directions are frozen. The sweep corrects single links, as
-//! that of a grid does. The links have a small part of the material's stiffness, so that the grid carries the load. The
-//! constraint is that of `gauss_seidel/distance.rs`.
+//! Where cloth snaps like a whip, such links may be far longer than the grid's, as their particles are raised above the
+//! nodes, or extrapolated from them. The links have a small part of the material's stiffness, so that the grid carries
+//! the load. The constraint is that of `gauss_seidel/distance.rs`.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};

@@ -24,7 +24,7 @@ impl Candidates {
         self.triangles.clear();
     }
 
-    /// Gathers the triangles of which a selected box reaches the collider.
+    /// Adds the selected triangles, given as their particles, unless all of these are pinned.
     pub fn gather_triangles(&mut self, fabric: &Fabric, is_near: impl Fn([usize; 3]) -> bool) {
         /// No index of a corner yet.
         const NONE: u32 = u32::MAX;

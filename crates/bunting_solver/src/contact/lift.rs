@@ -10,10 +10,6 @@ use crate::fabric::Fabric;
 /// Number of sweeps over the triangles. Fewer: a triangle that is cut in two places remains cut in one.
 const SWEEPS: usize = 3;
 
-/// Least sum of squared weights of the corners that a cut may move. Smaller: a cut beside a pin moves the
-/// other corners far away.
-const LEAST_WEIGHT: f32 = 0.1;
-
 /// Computes displacements of a displayed cloth's particles that lift its triangles out of colliders. Its
 /// buffers are kept from one cloth to the next.
 ///
@@ -76,19 +72,11 @@ impl SurfaceLift {
                 continue;
             }
             let Some(cut) = obstacle.deepest_cut(&corners) else { continue };
-            let mut weights = cut.weights;
-            for (weight, particle) in weights.iter_mut().zip(particles) {
-                if fabric.is_pinned(particle) {
-                    *weight = 0.0;
-                }
-            }
-            let sum: f32 = weights.iter().map(|weight| weight * weight).sum();
-            if sum < LEAST_WEIGHT {
-                continue;
-            }
+            let inverse_masses = particles.map(|at| f32::from(!fabric.is_pinned(at)));
+            let Some(parts) = cut.corner_shifts(inverse_masses) else { continue };
             any = true;
-            for (weight, particle) in weights.into_iter().zip(particles) {
-                let lift = cut.normal * (cut.depth * weight / sum);
+            for (part, particle) in parts.into_iter().zip(particles) {
+                let lift = cut.normal * (cut.depth * part);
                 self.positions[particle] += lift;
                 self.lifts[particle] += rotation * lift;
                 self.planes[particle] = None;

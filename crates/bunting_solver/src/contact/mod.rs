@@ -5,6 +5,7 @@ pub(crate) mod candidates;
 pub(crate) mod collider;
 mod gather;
 mod ground;
+pub(crate) mod itself;
 pub(crate) mod lift;
 mod near;
 mod nearest;

@@ -1,5 +1,7 @@
 //! A shape that triangles of cloth do not cut: the shape's surface near a triangle.
 
+use core::array;
+
 use glam::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::query::{PointQuery, PointQueryWithLocation};
@@ -21,12 +23,16 @@ const STEPS: usize = 10;
 const FIRST_STEP: f32 = 0.5;
 const STEP_FACTOR: f32 = 0.7;
 
-/// Greatest way of a triangle's corner in a substep, relative to the shape, at which the triangle's end alone is examined:
-/// as a fraction of half the least side of the shape's box, and its least and greatest value, m. Larger: shapes thinner
-/// than this go through. Smaller: cloth that moves slowly costs more.
-const SLOW: f32 = 0.2;
-const LEAST_SLOW: f32 = 2e-3;
-const GREATEST_SLOW: f32 = 1e-2;
+/// Displacement of a triangle's corner in a substep, relative to the shape, above which collision detection is
+/// continuous: as a fraction of half the least side of the shape's box, and its least and greatest value, m. Larger: shapes
+/// thinner than this go through. Smaller: cloth that moves slowly costs more.
+const CCD_THRESHOLD: f32 = 0.2;
+const LEAST_CCD_THRESHOLD: f32 = 2e-3;
+const GREATEST_CCD_THRESHOLD: f32 = 1e-2;
+
+/// Least inverse mass of a point of a triangle, compared with its corners'. Smaller: a cut beside a pin moves the other
+/// corners far away.
+const LEAST_RESPONSE: f32 = 0.1;
 
 /// Distance above ground below which a triangle is examined, m. Smaller: ridges between particles are missed.
 /// Larger: each query visits more cells.
@@ -45,7 +51,7 @@ pub(super) struct Plane {
 
 impl Plane {
     /// Least height of a triangle's corners above the plane, m.
-    pub fn below(&self, corners: &[Vec3; 3]) -> f32 {
+    pub fn least_height(&self, corners: &[Vec3; 3]) -> f32 {
         corners.iter().map(|corner| self.height(*corner)).fold(f32::INFINITY, f32::min)
     }
 
@@ -65,6 +71,19 @@ pub(super) struct Cut {
     pub depth: f32,
 }
 
+impl Cut {
+    /// Parts of the point's shift by which the corners move, in proportion to their inverse masses and weights; none if
+    /// the point is almost pinned.
+    pub fn corner_shifts(&self, inverse_masses: [f32; 3]) -> Option<[f32; 3]> {
+        let weights = self.weights.iter().zip(inverse_masses);
+        let response: f32 = weights.map(|(weight, inverse)| weight * weight * inverse).sum();
+        if response <= LEAST_RESPONSE * inverse_masses.into_iter().fold(0.0, f32::max) {
+            return None;
+        }
+        Some(array::from_fn(|corner| self.weights[corner] * inverse_masses[corner] / response))
+    }
+}
+
 /// A shape that triangles do not cut.
 pub(super) struct Obstacle<'a> {
     shape: &'a dyn Shape,
@@ -75,8 +94,9 @@ pub(super) struct Obstacle<'a> {
     pub planes_separate: bool,
     /// Whether the shape is convex.
     pub is_convex: bool,
-    /// Greatest way of a triangle's corner in a substep, relative to the shape, at which the end alone is examined, m.
-    pub slow: f32,
+    /// Displacement of a triangle's corner in a substep, relative to the shape, above which collision detection is
+    /// continuous, m.
+    pub ccd_threshold: f32,
     /// Box of all points nearer than [`kept`](Self::kept) to the shape, in the shape's frame.
     bounds: Aabb,
     /// Distance that triangles keep, m.
@@ -89,14 +109,19 @@ impl<'a> Obstacle<'a> {
         let shape = &*collider.shape.0;
         let bounds = shape.compute_local_aabb();
         let is_one = shape.as_compound().is_none() && shape.as_heightfield().is_none();
-        let slow = if is_one { SLOW * bounds.half_extents().min_element() } else { LEAST_SLOW };
+        let ccd_threshold = if is_one {
+            let by_size = CCD_THRESHOLD * bounds.half_extents().min_element();
+            by_size.clamp(LEAST_CCD_THRESHOLD, GREATEST_CCD_THRESHOLD)
+        } else {
+            LEAST_CCD_THRESHOLD
+        };
         let kept = KEPT * (thickness + collider.margin).max(LEAST_CLEARANCE);
         Self {
             shape,
             ground: collider.shape.as_heightfield(),
             planes_separate: shape.as_trimesh().is_none(),
             is_convex: shape.is_convex(),
-            slow: slow.clamp(LEAST_SLOW, GREATEST_SLOW),
+            ccd_threshold,
             bounds: bounds.loosened(kept),
             kept,
         }
@@ -135,7 +160,7 @@ impl<'a> Obstacle<'a> {
     pub fn least_distance(&self, at: Vec3, plane: &Plane, corners: &[Vec3; 3]) -> f32 {
         let farthest = corners.iter().map(|corner| corner.distance(at)).fold(0.0, f32::max);
         let by_reach = plane.distance - farthest;
-        if self.planes_separate { by_reach.max(plane.below(corners)) } else { by_reach }
+        if self.planes_separate { by_reach.max(plane.least_height(corners)) } else { by_reach }
     }
 
     /// The point of a triangle that is nearest to the shape or deepest inside, found by steps along the triangle

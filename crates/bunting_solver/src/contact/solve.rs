@@ -20,12 +20,16 @@ use crate::step::clock::Clock;
 use crate::step::frame::FrameStep;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Projects every contact candidate once: particles, then triangles.
+    /// Moves layers of each cloth apart, projects every candidate of contacts with colliders once (particles, then
+    /// triangles), and returns layers that these pushed through one another.
     pub fn solve_contacts(&mut self) {
         for cloth in 0..self.lanes.len() {
             // The lane's state is taken out, so that the particles of the batch can be written.
-            let touches = |state: &mut LaneState| !state.colliders.is_empty();
+            let touches = |state: &mut LaneState| {
+                !state.colliders.is_empty() || state.self_contacts.is_some()
+            };
             if let Some(mut state) = self.lanes[cloth].take_if(touches) {
+                self.separate_layers(cloth, &mut state);
                 let mut reactions = core::mem::take(&mut state.reactions);
                 let mut sums = reactions.iter_mut();
                 for (collider, candidates) in state.colliders.iter().zip(&state.contacts) {
@@ -35,6 +39,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                     state.external_moment += outcome.moment;
                 }
                 state.reactions = reactions;
+                self.return_layers(cloth, &mut state);
                 self.lanes[cloth] = Some(state);
             }
         }
@@ -131,18 +136,20 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let velocity = lane3(&self.velocity[pack], lane);
         let given = (after - before) / effective_step;
         let leaving = velocity + (after - predicted) / effective_step - of_surface;
-        let thrown = match push.sticks {
-            true => leaving,
-            false => leaving.dot(normal).min(given.dot(normal)).max(0.0) * normal,
+        let thrown = if push.sticks {
+            leaving
+        } else {
+            leaving.dot(normal).min(given.dot(normal)).max(0.0) * normal
         };
         set_lane3(&mut self.velocity[pack], lane, velocity - thrown);
 
         // An impact must not be extrapolated, so the velocities of the last substeps change by the same
         // amount. A steady pressure is extrapolated, since it continues.
         let approach = of_surface - lane3(&self.older_velocity[pack], lane);
-        let impact = match push.sticks {
-            true => approach,
-            false => approach.dot(normal).min((given - thrown).dot(normal)).max(0.0) * normal,
+        let impact = if push.sticks {
+            approach
+        } else {
+            approach.dot(normal).min((given - thrown).dot(normal)).max(0.0) * normal
         };
         for past in [&mut self.older_velocity[pack], &mut self.oldest_velocity[pack]] {
             let changed = lane3(past, lane) + impact;
@@ -156,9 +163,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if let Some(reaction) = &mut outcome.reaction {
             // A steady force acts for the whole substep, of which the formula takes β; an impact changes the velocity
             // once.
-            let steady = match push.sticks {
-                true => Vec3::ZERO,
-                false => (given - thrown - impact) * (self.clock.step / effective_step),
+            let steady = if push.sticks {
+                Vec3::ZERO
+            } else {
+                (given - thrown - impact) * (self.clock.step / effective_step)
             };
             let gained = contact.density * inertia * (steady + impact);
             let on_collider = contact.pose.rotation.inverse() * -gained;
@@ -227,8 +235,8 @@ impl<'a> Contact<'a> {
         }
     }
 
-    /// Both ends of the way of a particle between two points in the cloth's frame, in the collider's frame, m, so that
-    /// the way is relative to the surface; the first end is taken before the cloth's frame moved.
+    /// Both ends of a particle's path between two points in the cloth's frame, in the collider's frame, m, so that the
+    /// path is relative to the surface; the first end is taken before the cloth's frame moved.
     fn path(&self, start: Vec3, end: Vec3) -> (Vec3, Vec3) {
         let from = self.old_pose.inverse_transform_point(self.frame.to_old(start));
         (from, self.pose.inverse_transform_point(end))

@@ -24,10 +24,6 @@ const ADVANCE: f32 = 0.7;
 /// of it.
 const OVERTAKEN: f32 = 5e-3;
 
-/// Least inverse mass of a point of a triangle, compared with its corners'. Smaller: a contact beside a pin moves the
-/// other corners far away.
-const LEAST_RESPONSE: f32 = 0.1;
-
 /// A corner of triangles near a shape.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corner {
@@ -134,8 +130,10 @@ fn meet(obstacle: &Obstacle, particles: [usize; 3], corners: &mut [Corner]) -> O
     if obstacle.is_beside(&[from[0], from[1], from[2], to[0], to[1], to[2]]) {
         return None;
     }
-    let way = from.iter().zip(&to).map(|(from, to)| from.distance(*to)).fold(0.0, f32::max);
-    let hit = if way > obstacle.slow { first_hit(obstacle, &from, &to, way) } else { None };
+    let displacements = from.iter().zip(&to).map(|(from, to)| from.distance(*to));
+    let greatest = displacements.fold(0.0, f32::max);
+    let is_fast = greatest > obstacle.ccd_threshold;
+    let hit = if is_fast { first_hit(obstacle, &from, &to, greatest) } else { None };
     let is_above = is_above(obstacle, particles, &to, corners);
     let end = if is_above { None } else { obstacle.deepest_cut(&to) };
     if let Some((at, hit)) = &hit
@@ -175,8 +173,7 @@ fn stop(corner: &mut Corner, at: f32, touch: Touch) -> bool {
     goes_in
 }
 
-/// Moves a point of a triangle out of the shape, with friction. Corners move in proportion to their inverse masses and
-/// weights. Returns whether they can.
+/// Moves a point of a triangle out of the shape, with friction. Returns whether its corners can move.
 fn push_out(cut: &Cut, friction: f32, particles: [usize; 3], corners: &mut [Corner]) -> bool {
     let Cut { weights, normal, depth } = *cut;
     let (from, to) = (particles.map(|at| corners[at].from), particles.map(|at| corners[at].to));
@@ -186,16 +183,12 @@ fn push_out(cut: &Cut, friction: f32, particles: [usize; 3], corners: &mut [Corn
     // Friction shortens the slide by at most its coefficient times the depth (Coulomb's cone).
     let held = (friction * depth / slide.length().max(LEAST_LENGTH)).min(1.0);
     let shift = normal * depth - slide * held;
-    let inverse = particles.map(|corner| corners[corner].inverse_mass);
-    let responses = weights.iter().zip(inverse).map(|(weight, inverse)| weight * weight * inverse);
-    let response: f32 = responses.sum();
-    if response <= LEAST_RESPONSE * inverse.into_iter().fold(0.0, f32::max) {
-        return false;
-    }
+    let inverse_masses = particles.map(|corner| corners[corner].inverse_mass);
+    let Some(parts) = cut.corner_shifts(inverse_masses) else { return false };
     let touch = Touch { normal, at: point + shift, sticks: false };
-    for ((corner, weight), inverse) in particles.into_iter().zip(weights).zip(inverse) {
-        if weight * inverse > 0.0 {
-            let to = corners[corner].to + shift * (weight * inverse / response);
+    for (corner, part) in particles.into_iter().zip(parts) {
+        if part > 0.0 {
+            let to = corners[corner].to + shift * part;
             corners[corner].put(to, touch);
         }
     }
@@ -216,7 +209,7 @@ fn is_above(
         corner.plane = corner.plane.or_else(|| obstacle.nearest_plane(corner.to));
         corner.plane
     };
-    let separates = |plane: &Plane| plane.below(to) >= obstacle.kept;
+    let separates = |plane: &Plane| plane.least_height(to) >= obstacle.kept;
     if obstacle.planes_separate {
         return particles.into_iter().any(|at| plane_of(at).is_some_and(|plane| separates(&plane)));
     }
@@ -234,7 +227,7 @@ fn is_above(
         let below = |(at, other): (&Vec3, &Option<Plane>)| {
             other.is_some_and(|other| {
                 let foot = *at - other.normal * other.distance;
-                plane.normal.dot(foot) - plane.offset < 0.5 * obstacle.kept
+                plane.height(foot) < 0.5 * obstacle.kept
             })
         };
         points.iter().zip(&planes).all(below)
@@ -243,25 +236,26 @@ fn is_above(
 }
 
 /// The fraction of the substep after which a triangle first comes too close to the obstacle, and how far it then goes
-/// beyond the plane that it met. Found by conservative advancement (Mirtich 1996).
+/// beyond the plane that it met. Found by conservative advancement (Mirtich 1996), given the greatest displacement of a
+/// corner, m.
 fn first_hit(
     obstacle: &Obstacle,
     from: &[Vec3; 3],
     to: &[Vec3; 3],
-    way: f32,
+    greatest: f32,
 ) -> Option<(f32, Cut)> {
     let mut at = 0.0;
     for advance in 1..=ADVANCES {
         let now = between(from, to, at);
         let middle = (now[0] + now[1] + now[2]) / 3.0;
         let plane = obstacle.nearest_plane(middle)?;
-        let mut free = free_way(obstacle, (middle, &plane), &now, (from, to), way);
-        if free * way <= obstacle.kept || advance == ADVANCES {
+        let mut free = free_fraction(obstacle, (middle, &plane), &now, (from, to), greatest);
+        if free * greatest <= obstacle.kept || advance == ADVANCES {
             let (point, plane) = obstacle.deepest(&now, f32::INFINITY)?;
-            let nearer = free_way(obstacle, (point, &plane), &now, (from, to), way);
+            let nearer = free_fraction(obstacle, (point, &plane), &now, (from, to), greatest);
             free = free.max(ADVANCE * nearer);
             // Cloth that lies on the shape keeps exactly this distance.
-            if free * way <= 0.5 * obstacle.kept || advance == ADVANCES {
+            if free * greatest <= 0.5 * obstacle.kept || advance == ADVANCES {
                 let weights = barycentric(&now, point)?;
                 let depth = obstacle.kept - plane.height(weighted(&weights, to));
                 return (depth > 0.0).then_some((at, Cut { weights, normal: plane.normal, depth }));
@@ -275,17 +269,17 @@ fn first_hit(
     None
 }
 
-/// A lower bound of the fraction of its whole way that a triangle can go on before it comes too close to the obstacle,
-/// given the plane nearest to a point of it. The way is at most the distance; where the plane separates the triangle
-/// from a convex shape, each corner's way along the plane's normal is at most its height.
-fn free_way(
+/// A lower bound of the fraction of the substep for which a triangle can go on before it comes too close to the obstacle,
+/// given the plane nearest to a point of it. The greatest displacement of a corner is at most the distance; where the plane
+/// separates the triangle from a convex shape, each corner's displacement along the plane's normal is at most its height.
+fn free_fraction(
     obstacle: &Obstacle,
     (point, plane): (Vec3, &Plane),
     now: &[Vec3; 3],
     (from, to): (&[Vec3; 3], &[Vec3; 3]),
-    way: f32,
+    greatest: f32,
 ) -> f32 {
-    let free = (obstacle.least_distance(point, plane, now) - obstacle.kept) / way;
+    let free = (obstacle.least_distance(point, plane, now) - obstacle.kept) / greatest;
     if !obstacle.is_convex {
         return free;
     }
@@ -301,7 +295,7 @@ fn weighted(weights: &[f32; 3], corners: &[Vec3; 3]) -> Vec3 {
     weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2]
 }
 
-/// The triangle after a fraction of its way.
+/// The triangle after a fraction of the substep.
 fn between(from: &[Vec3; 3], to: &[Vec3; 3], at: f32) -> [Vec3; 3] {
     core::array::from_fn(|corner| from[corner].lerp(to[corner], at))
 }

@@ -80,9 +80,10 @@ pub(crate) struct SweepLink {
 /// A cell of a grid, or a pack of cells, with its diagonals.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Cell {
-    /// Top left, top right, bottom left and bottom right.
+    /// The first diagonal joins the first and the last corner, the second one the other two.
     pub corners: [u32; 4],
-    /// Indices of the diagonals' target lengths; twice the same if there is only one diagonal.
+    /// Indices of the diagonals' target lengths; twice that of the first if the second one is no link, or is listed
+    /// with another pack.
     pub targets: [u32; 2],
 }
 
@@ -132,18 +133,29 @@ impl Chains {
     fn cells_of(&self, grid: &Grid) -> Vec<Cell> {
         let targets: HashMap<[u32; 2], u32> =
             self.diagonals().map(|([a, b], target)| ([a.min(b), a.max(b)], target)).collect();
-        let cell = |corners| {
-            let [top_left, top_right, bottom_left, bottom_right] = corners;
+        let cell = |[top_left, top_right, bottom_left, bottom_right]: [u32; 4]| {
             let falling = targets.get(&[top_left, bottom_right]);
             let rising = targets.get(&[top_right, bottom_left]);
-            let targets = [*falling.or(rising)?, *rising.or(falling)?];
-            Some(Cell { corners, targets })
+            let corners = [top_left, top_right, bottom_left, bottom_right];
+            let mirrored = [top_right, top_left, bottom_right, bottom_left];
+            match (falling, rising) {
+                (Some(&falling), rising) => {
+                    Some(Cell { corners, targets: [falling, *rising.unwrap_or(&falling)] })
+                }
+                (None, Some(&rising)) => Some(Cell { corners: mirrored, targets: [rising; 2] }),
+                (None, None) => None,
+            }
         };
         grid.cells().filter_map(|(corners, _)| cell(corners)).collect()
     }
 }
 
 impl<C: Copy> Chains<C> {
+    /// No chains.
+    pub fn none() -> Self {
+        Self::of_colours(core::iter::empty())
+    }
+
     /// Arranges chains, given colour by colour, in pairs. There are no cells.
     pub fn of_colours(colours: impl Iterator<Item = (LinkFamily, Vec<Chain<C>>)>) -> Self {
         let mut chains = Self {

@@ -84,7 +84,11 @@ impl Fabric {
             patches::quarter(&mut patches, grid);
         }
         let links = Links::of(&mesh, grid.as_ref(), None, &surface.corner_uv);
-        let yarns = Yarns::of(&mesh.positions, &links.list);
+        // A mesh with a background grid is not solved along its own links.
+        let yarns = match &background {
+            Some(_) => Yarns::default(),
+            None => Yarns::of(&mesh.positions, &links.list),
+        };
         let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref());
         let strips =
             grid.map(|grid| strip::strips(&grid, &links.list, &chains)).unwrap_or_default();

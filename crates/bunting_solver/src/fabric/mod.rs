@@ -36,9 +36,10 @@ mod twist;
 mod weld;
 mod yarns;
 
-pub(crate) use background::{GridTransfer, Height, Interpolation};
+pub(crate) use background::{GridTransfer, Height, Interpolation, RowGroup, Term};
 pub(crate) use bending::{BendLine, BendProfile};
 pub(crate) use chains::{CHAINS_PER_PAIR, Cell, Chain, ChainLink, ChainPair, Chains, SweepLink};
+pub(crate) use fabric::Background;
 pub(crate) use hinges::{Hinge, angle as hinge_angle};
 pub(crate) use patches::Patch;
 pub(crate) use strip::{StripLink, StripRow};

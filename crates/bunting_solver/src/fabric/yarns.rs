@@ -19,7 +19,7 @@ pub(crate) struct Yarn {
 }
 
 /// The yarns of a fabric.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Yarns {
     /// Yarns, colour by colour, warp first; in each colour the longer yarns first, so that neighbours in the
     /// list have similar lengths.

@@ -12,6 +12,9 @@
 //! of a particle follows from its J, |J| = a² σ/(½ρ C_n h). Backward Euler has no c, and uses a/(1 + a min(a,
 //! 1)): exact to second order for held particles in weak air, implicit in strong air.
 //!
+//! Normals are those in the middle of the substep, extrapolated with the velocities: a change of velocity by normals of the
+//! start lags behind the motion by half a substep, which fed the flutter of flags with energy, and strained them.
+//!
 //! With c limited to u, j is at most 2u, and so never adds energy in still air.
 
 use crate::batch::lane_batch::LaneBatch;
@@ -34,6 +37,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             position: self.positions.field(),
             velocity,
             sums: &mut self.scratch,
+            half_step: 0.5 * self.clock.step,
         });
     }
 }
@@ -46,19 +50,23 @@ struct Air<'a, P: Pack, S: CornerSums<P>> {
     /// Velocities, m/s.
     velocity: &'a S::Field,
     sums: &'a mut [Pack3<P>],
+    /// Half of the substep, s.
+    half_step: f32,
 }
 
 impl<P: Pack, S: CornerSums<P>> Kernel<P> for Air<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let Self { triangles, parameters, position, velocity, sums } = self;
+        let Self { triangles, parameters, position, velocity, sums, .. } = self;
         let airflow = Airflow::<L>::load(token, parameters);
-        triangles.sum(token, &AirImpulse { airflow, position, velocity }, sums);
+        let half_step = L::splat(token, self.half_step);
+        triangles.sum(token, &AirImpulse { airflow, half_step, position, velocity }, sums);
     }
 }
 
 struct AirImpulse<'a, L: Lane, F: ?Sized> {
     airflow: Airflow<L>,
+    half_step: L,
     position: &'a F,
     velocity: &'a F,
 }
@@ -66,8 +74,13 @@ struct AirImpulse<'a, L: Lane, F: ?Sized> {
 impl<L: Lane, F: ?Sized> Contribution<L, F> for AirImpulse<'_, L, F> {
     #[inline(always)]
     fn of<C: Corners<L, Field = F>>(&self, token: L::Token, corners: &C) -> [V3<L>; 2] {
-        let [first, second] = face(corners.load(token, self.position));
-        let [a, b, c, d] = corners.load(token, self.velocity);
+        let velocities = corners.load(token, self.velocity);
+        let mut middle = corners.load(token, self.position);
+        for (position, velocity) in middle.iter_mut().zip(velocities) {
+            *position = position.plus_scaled(velocity, self.half_step);
+        }
+        let [first, second] = face(middle);
+        let [a, b, c, d] = velocities;
         let [first_area, second_area] = corners.areas(token);
         let shared = a + c;
         [

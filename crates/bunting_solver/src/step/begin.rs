@@ -115,7 +115,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Computes a cloth's inverse masses if their inputs have changed.
     fn set_added_mass(&mut self, cloth: usize, state: &mut LaneState) {
-        let LaneFabric { fabric, pole, inverse_masses } = self.fabric_of(cloth);
+        let LaneFabric { fabric, pole, inverse_masses, .. } = self.fabric_of(cloth);
         let uprightness = pole.map_or(0.0, |pole| pole.uprightness(state.drive.gravity));
         let added_mass = AddedMass::new(
             uprightness,

@@ -109,26 +109,26 @@ impl Loads {
         if before.len() != after.len() {
             return 0.0;
         }
-        let (mut turns, mut ways) = (0.0, 0.0);
+        let (mut turns, mut displacements) = (0.0, 0.0);
         for probe in fabric.probes() {
             let [from, to] = probe
                 .particles
                 .map(|particle| after[particle as usize] - before[particle as usize]);
             turns += (to - from).length_squared() * probe.inverse_length_squared;
-            ways += from.length_squared();
+            displacements += from.length_squared();
         }
-        Self::of_probes(fabric, turns, ways, tick)
+        Self::of_probes(fabric, turns, displacements, tick)
     }
 
     /// The same from sums over the probes of a fabric: of the squared angles by which they turn in the tick, rad², and of
-    /// the squared ways of their first ends, m².
-    pub(crate) fn of_probes(fabric: &Fabric, turns: f32, ways: f32, tick: f32) -> f32 {
+    /// the squared displacements of their first ends, m².
+    pub(crate) fn of_probes(fabric: &Fabric, turns: f32, displacements: f32, tick: f32) -> f32 {
         let probes = fabric.probes().len();
         if probes == 0 || tick <= 0.0 {
             return 0.0;
         }
         let to_mean = 1.0 / (probes as f32 * tick * tick);
-        let (squared_rate, squared_speed) = (turns * to_mean, ways * to_mean);
+        let (squared_rate, squared_speed) = (turns * to_mean, displacements * to_mean);
         let link = fabric.shortest_link();
         let turning = OF_TURN * squared_rate * link;
         let is_wide = squared_speed > squared_rate * (FLUNG_RADIUS * fabric.reach()).powi(2);

@@ -176,8 +176,9 @@ fn by_direction(
 fn cells<P: Pack>(chains: &Chains<P>, shape: GridShape) -> Vec<Cell> {
     let stride = shape.row_stride as u32;
     let of_diagonal = |([above, below], target): ([u32; 2], u32)| {
-        let left = if below > above + stride { above } else { above - 1 };
-        Cell { corners: [left, left + 1, left + stride, left + stride + 1], targets: [target; 2] }
+        let others =
+            if below > above + stride { [above + 1, below - 1] } else { [above - 1, below + 1] };
+        Cell { corners: [above, others[0], others[1], below], targets: [target; 2] }
     };
     chains.diagonals().map(of_diagonal).collect()
 }

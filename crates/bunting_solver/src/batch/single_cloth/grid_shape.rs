@@ -1,12 +1,13 @@
 //! The arrangement of a grid's arrays in memory, in row-major and in column-major order.
 
+use super::MOST_LANES;
 use crate::batch::layout::Order;
 use crate::fabric::Grid;
 use crate::simd::lane::Pack;
 
 /// Number of elements before the first line of an array and after the last: a pack of diagonals may extend
 /// beyond a line by up to all lanes but one.
-pub(super) const MARGIN: usize = 16;
+pub(super) const MARGIN: usize = MOST_LANES;
 
 /// Extent of a grid, and of the arrays with one number for each particle.
 ///

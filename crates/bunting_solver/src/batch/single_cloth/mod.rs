@@ -14,7 +14,6 @@ mod chains;
 mod grid_shape;
 mod position_grids;
 mod ribbons;
-mod tethers;
 mod vector_grid;
 
 use core::ops::Range;
@@ -27,9 +26,9 @@ use self::chains::ChainPacks;
 use self::grid_shape::GridShape;
 use self::position_grids::PositionGrids;
 use self::ribbons::RibbonPacks;
-use self::tethers::TetherPacks;
 use self::vector_grid::VectorGrid;
 use crate::batch::layout::{Layout, OfCloth, Order};
+use crate::batch::single_tethers::TetherPacks;
 use crate::batch::tether_pack::TetherPack;
 use crate::constraints::bend_factors::BendFactors;
 use crate::constraints::factors::{ClothFactors, Factors};
@@ -94,7 +93,7 @@ impl<P: Pack> SingleCloth<P> {
             },
             linked: chains.classes.iter().map(linked).collect(),
             tethers: [fabric.far_tethers(), fabric.tethers()]
-                .map(|tethers| TetherPacks::new(tethers, locate)),
+                .map(|tethers| TetherPacks::new(tethers, locate, GridShape::start_of_pack::<P>)),
             velocity: VectorGrid::new(shape.column_stride, shape.row_stride),
             shape,
             chains,

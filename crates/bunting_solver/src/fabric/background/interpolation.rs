@@ -34,13 +34,40 @@ pub(crate) struct Term {
 pub(crate) struct Interpolation {
     terms: Vec<Term>,
     rows: Vec<Range<u32>>,
+    /// Empty until the rows are [grouped](Self::grouped).
+    groups: Vec<RowGroup>,
+}
+
+/// Rows with the same number of terms: loops over their terms have a length that processors predict.
+#[derive(Clone, Debug)]
+pub(crate) struct RowGroup {
+    /// Number of terms of each row.
+    pub length: usize,
+    /// The rows, in ascending order.
+    pub rows: Vec<u32>,
+    /// Indices of their terms, row by row.
+    terms: Range<usize>,
 }
 
 impl Interpolation {
+    /// Adds a row. Terms that are rounding are left out, and the others keep the sum of the weights: a sum that is 10⁻⁶
+    /// too small moves particles a metre from the origin by 10⁻⁶ m, 4 % of the stretch of a stiff cloth.
     pub(super) fn push(&mut self, row: impl IntoIterator<Item = Term>) {
-        let first = self.terms.len() as u32;
-        self.terms.extend(row.into_iter().filter(|term| term.weight.abs() > LEAST_WEIGHT));
-        self.rows.push(first..self.terms.len() as u32);
+        let first = self.terms.len();
+        let mut left_out = 0.0;
+        for term in row {
+            if term.weight.abs() > LEAST_WEIGHT {
+                self.terms.push(term);
+            } else {
+                left_out += term.weight;
+            }
+        }
+        let heaviest =
+            self.terms[first..].iter_mut().max_by(|a, b| a.weight.abs().total_cmp(&b.weight.abs()));
+        if let Some(heaviest) = heaviest {
+            heaviest.weight += left_out;
+        }
+        self.rows.push(first as u32..self.terms.len() as u32);
     }
 
     /// Number of rows.
@@ -58,10 +85,53 @@ impl Interpolation {
         self.rows.iter().map(|range| &self.terms[range.start as usize..range.end as usize])
     }
 
+    /// The same rows, with those of equal length grouped. Rows without terms are in no group.
+    pub fn grouped(self) -> Self {
+        let longest = self.rows.iter().map(|row| row.len()).max().unwrap_or(0);
+        let mut grouped = Self { rows: vec![0..0; self.rows.len()], ..Self::default() };
+        for length in 1..=longest {
+            let rows = (0..).zip(&self.rows).filter(|(_, terms)| terms.len() == length);
+            let rows: Vec<u32> = rows.map(|(row, _)| row).collect();
+            if rows.is_empty() {
+                continue;
+            }
+            let first = grouped.terms.len();
+            for &row in &rows {
+                let start = grouped.terms.len() as u32;
+                let Range { start: from, end } = self.rows[row as usize].clone();
+                grouped.terms.extend(&self.terms[from as usize..end as usize]);
+                grouped.rows[row as usize] = start..grouped.terms.len() as u32;
+            }
+            grouped.groups.push(RowGroup { length, rows, terms: first..grouped.terms.len() });
+        }
+        grouped
+    }
+
+    /// Groups of rows of equal length.
+    #[inline]
+    pub fn groups(&self) -> &[RowGroup] {
+        &self.groups
+    }
+
+    /// The terms of a group, row by row.
+    #[inline]
+    pub fn terms_of(&self, group: &RowGroup) -> &[Term] {
+        &self.terms[group.terms.clone()]
+    }
+
     /// The same rows, with columns numbered anew.
     pub fn with_columns(mut self, numbers: &[u32]) -> Self {
         self.terms.iter_mut().for_each(|term| term.from = numbers[term.from as usize]);
         self
+    }
+
+    /// The same rows, each at its number among `count`, and grouped. The others are empty.
+    pub fn with_rows_at(mut self, numbers: &[u32], count: usize) -> Self {
+        let rows = core::mem::replace(&mut self.rows, vec![0..0; count]);
+        for (row, &number) in rows.into_iter().zip(numbers) {
+            self.rows[number as usize] = row;
+        }
+        self.grouped()
     }
 
     /// One row for each of `count` numbers: the mean of the rows that have this number.
@@ -253,5 +323,40 @@ impl<'a> Neighbourhood<'a> {
                 (self.grid.index(column, row), Vec2::new(column as f32, row as f32))
             })
             .filter(|(node, _)| self.nodes.has_row(*node as usize))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Interpolation, Term};
+
+    fn row(weights: &[f32]) -> Vec<Term> {
+        (0..).zip(weights).map(|(from, &weight)| Term { from, weight }).collect()
+    }
+
+    #[test]
+    fn a_row_keeps_the_sum_of_its_weights() {
+        let mut rows = Interpolation::default();
+        rows.push(row(&[4e-6, 0.5, 0.499_996]));
+        let [kept] = &rows.rows().collect::<Vec<_>>()[..] else { panic!("one row") };
+        assert_eq!(kept.len(), 2, "a weight of 4 · 10⁻⁶ is rounding");
+        let sum: f32 = kept.iter().map(|term| term.weight).sum();
+        assert!((sum - 1.0).abs() < 2.0 * f32::EPSILON, "{sum}");
+    }
+
+    #[test]
+    fn grouped_rows_are_the_same_rows() {
+        let mut rows = Interpolation::default();
+        for weights in [&[0.5, 0.5][..], &[], &[1.0], &[0.25, 0.75], &[0.2, 0.3, 0.5]] {
+            rows.push(row(weights));
+        }
+        let grouped = rows.clone().grouped();
+        assert!(rows.rows().eq(grouped.rows()));
+        let groups: Vec<(usize, &[u32], usize)> = grouped
+            .groups()
+            .iter()
+            .map(|group| (group.length, &group.rows[..], grouped.terms_of(group).len()))
+            .collect();
+        assert_eq!(groups, [(1, &[2][..], 1), (2, &[0, 3], 4), (3, &[4], 3)]);
     }
 }

@@ -22,7 +22,7 @@ use self::interpolation::{nodes_from_particles, particles_from_nodes};
 use super::grid::Grid;
 use super::mesh::{RestMesh, Surface};
 
-pub(crate) use self::interpolation::{Interpolation, Term};
+pub(crate) use self::interpolation::{Interpolation, RowGroup, Term};
 
 /// Fewest particles of a mesh with a background grid. Smaller meshes have no paths that are long.
 const FEWEST_PARTICLES: usize = 30;
@@ -117,6 +117,10 @@ impl BackgroundMesh {
             transfer.heights = heights(mesh, &chart, &grid, &nodes, &transfer);
         }
         let is_held = is_held(mesh, &chart, &grid, &nodes, &transfer.nodes);
+        let GridTransfer { nodes: first, particles, means, .. } = &mut transfer;
+        for rows in [first, particles, means] {
+            *rows = core::mem::take(rows).grouped();
+        }
         is_held.then_some(Self {
             mesh: nodes,
             coverage,

@@ -1,0 +1,20 @@
+//! One family of contacts, without the others.
+//!
+//! ```sh
+//! cargo run --release -p bunting_lab --example family -- itself quick|full
+//! ```
+
+use anyhow::{Context, Result, bail};
+use bunting_lab::contacts;
+
+fn main() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [name, size] = &arguments[..] else { bail!("FAMILY quick|full") };
+    let family = contacts::ALL.iter().find(|(known, _)| known == name);
+    let (_, rows) = family.context("no such family")?;
+    for row in rows(size == "quick") {
+        let figure = row.figure.unwrap_or(f64::NAN);
+        println!("{}: {figure} of {}, {:.0} µs a tick", row.name, row.limit, row.us);
+    }
+    Ok(())
+}

@@ -1,0 +1,18 @@
+//! Cloth that touches itself: pairs of triangles that intersect.
+
+mod cape;
+mod flag;
+mod fold;
+mod watch;
+
+use super::row::Row;
+
+/// Distance that layers of cloth keep from one another, m.
+const LAYERS: f32 = 5e-3;
+
+pub(super) fn rows(quick: bool) -> Vec<Row> {
+    let mut rows = fold::rows();
+    rows.push(flag::row(quick));
+    rows.push(cape::row(quick));
+    rows
+}

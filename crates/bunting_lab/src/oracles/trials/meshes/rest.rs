@@ -1,0 +1,144 @@
+//! Meshes at rest: hung from an edge, from a rim and by two corners, and clamped level.
+
+use std::{
+    f32::consts::{FRAC_PI_4, PI},
+    f64::consts::FRAC_PI_2,
+};
+
+use bunting_solver::{Drive, FabricMaterial};
+use glam::{DVec2, Vec3};
+
+use super::{Cloth, ISOTROPIC, REST, STANDARD, at_top, bound, square};
+use crate::{
+    meshes::{Sheet, Triangulation},
+    oracles::{Case, bending::Cantilever, stretch::hung_strip},
+    scenes::GRAVITY,
+};
+
+/// Error of a stretch that passes: of isotropic materials, and of others.
+const STRETCH: [f64; 2] = [0.03, 0.05];
+/// Error of a cantilever that passes.
+const DROOP: f64 = 0.05;
+/// Γ = σgL³/B of the strips whose warp is turned.
+const TURNED_GAMMA: f64 = 10.0;
+
+/// All that is at rest.
+pub(super) fn cases(triangulation: Triangulation) -> Vec<Case> {
+    let mut cases = Vec::new();
+    for n in [17, 33] {
+        cases.extend(hung(triangulation, n));
+    }
+    // Delaunay triangulation of as many points takes seconds.
+    if triangulation == Triangulation::Quads {
+        cases.extend(hung(triangulation, 65));
+    }
+    cases.extend([1.0, 10.0, 50.0].map(|gamma| cantilever(triangulation, gamma)));
+    cases.push(turned_cantilever(triangulation));
+    cases.extend(two_corners(triangulation));
+    cases.extend(cylinder(triangulation));
+    cases
+}
+
+/// δ/L of a square that hangs from an edge along its weft, its warp, and at 45° to both.
+fn hung(triangulation: Triangulation, n: usize) -> Vec<Case> {
+    let stiff_warp = FabricMaterial { weft_stiffness: 1e3, shear_stiffness: 200.0, ..ISOTROPIC };
+    let stiff_weft = FabricMaterial { warp_stiffness: 1e3, shear_stiffness: 200.0, ..ISOTROPIC };
+    let quarter = FRAC_PI_2 as f32;
+    let trials = [
+        ("isotropic, weft", 0.0, ISOTROPIC, 1e4, STRETCH[0]),
+        ("isotropic, warp", quarter, ISOTROPIC, 1e4, STRETCH[0]),
+        ("isotropic, 45°", FRAC_PI_4, ISOTROPIC, 1e4, STRETCH[0]),
+        ("10 : 1, soft", 0.0, stiff_warp, 1e3, STRETCH[1]),
+        ("1 : 10, stiff", 0.0, stiff_weft, 1e4, STRETCH[1]),
+        // One over Young's modulus at 45° is ¼ (1/Y₁ + 1/Y₂ + 1/G).
+        ("G = Y/50, 45°", FRAC_PI_4, STANDARD, 4.0 / (2e-4 + 5e-3), STRETCH[1]),
+    ];
+    let case =
+        |(name, warp, material, stiffness, tolerance): (_, f32, FabricMaterial, f64, f64)| {
+            let mut cloth =
+                Cloth::new(square(Some(triangulation), n, warp, at_top), material, |at| at);
+            cloth.run(4.0);
+            Case::new(
+                format!("mesh hung from an edge, {triangulation:?}, {name}, n = {}", n * n),
+                hung_strip(f64::from(material.area_density), GRAVITY, 1.0, stiffness),
+                -1.0 - cloth.mean(|at| at.y == -1.0).y,
+                tolerance,
+            )
+        };
+    trials.map(case).to_vec()
+}
+
+/// δ/L of a cylinder of a square metre with a seam of its texture that hangs from its rim, and its speed at rest.
+fn cylinder(triangulation: Triangulation) -> [Case; 2] {
+    let sheet = Sheet::new(triangulation, [33, 33], DVec2::ONE, 1);
+    let mut cloth = Cloth::new(sheet.rolled_up(at_top), ISOTROPIC, |at| at);
+    cloth.run(4.0);
+    let stretch = -1.0 - cloth.mean(|at| at.y == -1.0).y;
+    let expected = hung_strip(f64::from(ISOTROPIC.area_density), GRAVITY, 1.0, 1e4);
+    let name = format!("cylinder with a seam, hung from its rim, {triangulation:?}");
+    let speed = cloth.speed();
+    [
+        Case::new(name.clone(), expected, stretch, STRETCH[0]),
+        bound(format!("{name}, speed at rest, m/s"), REST[0], speed),
+    ]
+}
+
+/// Drop over reach of a strip of 1 m × 0.25 m, clamped by one more cell, whose warp runs at an angle to it, rad.
+fn droop(triangulation: Triangulation, gamma: f64, warp: f32) -> f64 {
+    const CELL: f64 = 1.0 / 32.0;
+    let sheet = Sheet::new(triangulation, [34, 9], DVec2::new(1.0 + CELL, 8.0 * CELL), 2);
+    let fabric = sheet.fabric(warp, |at| f64::from(at.x) < 1.001 * CELL);
+    let bend = f64::from(STANDARD.area_density) * GRAVITY / gamma;
+    let material = FabricMaterial { bend_stiffness: bend as f32, ..STANDARD };
+    let mut cloth = Cloth::new(fabric, material, |at| Vec3::new(at.x, 0.0, at.y));
+    // Gravity is raised from nothing, as other equilibria exist.
+    for tick in 1..=600 {
+        let gravity = Vec3::NEG_Y * (GRAVITY * f64::from(tick) / 600.0) as f32;
+        cloth.drive(Drive { gravity, air_density: 0.0, ..Drive::default() });
+        cloth.tick();
+    }
+    cloth.run(5.0);
+    let last = (1.0 + CELL) as f32;
+    let tip = cloth.mean(|at| at.x > last - 1e-5);
+    -tip.y / (tip.x - CELL)
+}
+
+/// Drop over reach of a strip whose warp runs along it.
+fn cantilever(triangulation: Triangulation, gamma: f64) -> Case {
+    Case::new(
+        format!("mesh clamped level, {triangulation:?}, Γ = {gamma}"),
+        Cantilever::new(gamma).aspect(),
+        droop(triangulation, gamma, 0.0),
+        DROOP,
+    )
+}
+
+/// Drop over reach of that strip whose warp, of eight directions, makes it droop most wrongly.
+fn turned_cantilever(triangulation: Triangulation) -> Case {
+    let expected = Cantilever::new(TURNED_GAMMA).aspect();
+    let directions = (0..8_u8).map(|eighth| f32::from(eighth) * PI / 8.0);
+    let droops = directions.map(|warp| droop(triangulation, TURNED_GAMMA, warp));
+    let error = |droop: &f64| (droop - expected).abs();
+    let worst = droops.max_by(|a, b| error(a).total_cmp(&error(b))).expect("eight directions");
+    let name = format!("mesh clamped level, {triangulation:?}, worst of eight directions of warp");
+    Case::new(format!("{name}, Γ = {TURNED_GAMMA}"), expected, worst, DROOP)
+}
+
+/// How fast a cloth is that has hung by two corners for ten seconds, and where, beside the grid.
+fn two_corners(triangulation: Triangulation) -> [Case; 2] {
+    let hang = |triangulation| {
+        let corners = |at: Vec3| at.y == 0.0 && (at.x == 0.0 || at.x == 1.0);
+        let ripple = |at: Vec3| at + Vec3::Z * 1e-3 * (5.0 * at.x + 3.0 * at.y).sin();
+        let mut cloth = Cloth::new(square(triangulation, 33, 0.0, corners), STANDARD, ripple);
+        cloth.run(10.0);
+        (cloth.speed(), cloth.mean(|_| true))
+    };
+    let (speed, at) = hang(Some(triangulation));
+    let (_, of_grid) = hang(None);
+    let name = format!("mesh hung by two corners, {triangulation:?}");
+    let height = (at.y - of_grid.y).abs();
+    [
+        bound(format!("{name}, speed at rest, m/s"), REST[0], speed),
+        bound(format!("{name}, height against the grid's, m"), REST[1], height),
+    ]
+}

@@ -1,0 +1,117 @@
+//! Vectors of x, y, z and zero, and the packs of eight vectors each.
+
+use fearless_simd::{Simd, SimdBase, f32x4};
+
+use crate::simd::lane::{Lane, Pack};
+use crate::simd::level::dispatch;
+use crate::simd::registers::{Pack4, Pack8};
+use crate::simd::vec3::{Pack3, V3, splat3};
+
+/// Number of vectors that are transposed at once.
+const QUAD: usize = 4;
+
+/// Number of packs that hold `count` vectors.
+pub(crate) fn pack_count(count: usize) -> usize {
+    count.div_ceil(Pack8::WIDTH)
+}
+
+/// Reads the vectors of packs.
+pub(crate) fn read_vectors(packs: &[Pack3<Pack8>], into: &mut [Pack4]) {
+    dispatch!(token => read_all(token, packs, into));
+}
+
+/// Overwrites packs by vectors.
+pub(crate) fn write_vectors(vectors: &[Pack4], into: &mut [Pack3<Pack8>]) {
+    dispatch!(token => write_all(token, vectors, into));
+}
+
+#[inline(always)]
+fn read_all<S: Simd>(token: S, packs: &[Pack3<Pack8>], into: &mut [Pack4]) {
+    let zero = <f32x4<S> as SimdBase<S>>::splat(token, 0.0);
+    let (into, _) = into.as_chunks_mut::<{ Pack8::WIDTH }>();
+    for ([x, y, z], into) in packs.iter().zip(into) {
+        let (into, _) = into.as_chunks_mut::<QUAD>();
+        for (quad, [a, b, c, d]) in into.iter_mut().enumerate() {
+            let first = quad * QUAD;
+            let x = f32x4::from_slice(token, &x.lanes()[first..first + QUAD]);
+            let y = f32x4::from_slice(token, &y.lanes()[first..first + QUAD]);
+            let z = f32x4::from_slice(token, &z.lanes()[first..first + QUAD]);
+            let (xz_low, xz_high) = (x.zip_low(z), x.zip_high(z));
+            let (yw_low, yw_high) = (y.zip_low(zero), y.zip_high(zero));
+            xz_low.zip_low(yw_low).store_slice(a.lanes_mut());
+            xz_low.zip_high(yw_low).store_slice(b.lanes_mut());
+            xz_high.zip_low(yw_high).store_slice(c.lanes_mut());
+            xz_high.zip_high(yw_high).store_slice(d.lanes_mut());
+        }
+    }
+}
+
+#[inline(always)]
+fn write_all<S: Simd>(token: S, vectors: &[Pack4], into: &mut [Pack3<Pack8>]) {
+    let (vectors, _) = vectors.as_chunks::<{ Pack8::WIDTH }>();
+    for (vectors, [x, y, z]) in vectors.iter().zip(into) {
+        let (quads, _) = vectors.as_chunks::<QUAD>();
+        for (quad, [a, b, c, d]) in quads.iter().enumerate() {
+            let first = quad * QUAD;
+            let a = f32x4::from_slice(token, a.lanes());
+            let b = f32x4::from_slice(token, b.lanes());
+            let c = f32x4::from_slice(token, c.lanes());
+            let d = f32x4::from_slice(token, d.lanes());
+            let (ac_low, ac_high) = (a.zip_low(c), a.zip_high(c));
+            let (bd_low, bd_high) = (b.zip_low(d), b.zip_high(d));
+            ac_low.zip_low(bd_low).store_slice(&mut x.lanes_mut()[first..first + QUAD]);
+            ac_low.zip_high(bd_low).store_slice(&mut y.lanes_mut()[first..first + QUAD]);
+            ac_high.zip_low(bd_high).store_slice(&mut z.lanes_mut()[first..first + QUAD]);
+        }
+    }
+}
+
+/// The vectors with given indices, one in each lane.
+#[inline(always)]
+pub(super) fn gather<L: Lane<Pack = Pack8>>(
+    token: L::Token,
+    vectors: &[Pack4],
+    at: &[u32; Pack8::WIDTH],
+) -> V3<L> {
+    let mut packs = splat3(glam::Vec3::ZERO);
+    let [to_x, to_y, to_z]: &mut Pack3<Pack8> = &mut packs;
+    for (lane, &at) in at.iter().enumerate() {
+        let [x, y, z, _] = vectors[at as usize].vector();
+        to_x.lanes_mut()[lane] = x;
+        to_y.lanes_mut()[lane] = y;
+        to_z.lanes_mut()[lane] = z;
+    }
+    V3::load(token, &packs)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::{pack_count, read_vectors, write_vectors};
+    use crate::simd::lane::Pack;
+    use crate::simd::registers::{Pack4, Pack8};
+    use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
+
+    #[test]
+    fn vectors_come_back_from_packs() {
+        let mut packs: Vec<Pack3<Pack8>> = vec![splat3(Vec3::ZERO); pack_count(13)];
+        assert_eq!(packs.len(), 2);
+        for at in 0..16_u8 {
+            let vector = Vec3::new(1.0, 100.0, 10_000.0) + f32::from(at);
+            set_lane3(&mut packs[usize::from(at) / 8], usize::from(at) % 8, vector);
+        }
+        let mut vectors = vec![Pack4::splat(7.0); 16];
+        read_vectors(&packs, &mut vectors);
+        for (at, vector) in vectors.iter().enumerate() {
+            let Vec3 { x, y, z } = lane3(&packs[at / 8], at % 8);
+            assert_eq!(vector.vector(), [x, y, z, 0.0]);
+        }
+        let mut written = vec![splat3(Vec3::ZERO); 2];
+        write_vectors(&vectors, &mut written);
+        let same = |(a, b): (&Pack3<Pack8>, &Pack3<Pack8>)| {
+            (0..8).all(|lane| lane3(a, lane) == lane3(b, lane))
+        };
+        assert!(packs.iter().zip(&written).all(same));
+    }
+}

@@ -1,0 +1,44 @@
+//! Pairs of features whose paths come near one another in a substep.
+
+/// A particle and a triangle: the particle, then the corners.
+pub(super) type ParticleTriangle = [u32; 4];
+/// Two edges: the ends of one, then those of the other.
+pub(super) type EdgeEdge = [u32; 4];
+
+/// An edge and a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EdgeTriangle {
+    /// Index of the edge.
+    pub index: u32,
+    pub edge: [u32; 2],
+    pub triangle: [u32; 3],
+}
+
+impl EdgeTriangle {
+    pub fn particles(&self) -> [u32; 5] {
+        let ([a, b], [c, d, e]) = (self.edge, self.triangle);
+        [a, b, c, d, e]
+    }
+}
+
+/// Pairs of features whose paths come near one another in a substep.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pairs {
+    pub particles_triangles: Vec<ParticleTriangle>,
+    pub edges_edges: Vec<EdgeEdge>,
+    pub edges_triangles: Vec<EdgeTriangle>,
+}
+
+impl Pairs {
+    pub fn is_empty(&self) -> bool {
+        self.particles_triangles.is_empty()
+            && self.edges_edges.is_empty()
+            && self.edges_triangles.is_empty()
+    }
+
+    pub fn clear(&mut self) {
+        self.particles_triangles.clear();
+        self.edges_edges.clear();
+        self.edges_triangles.clear();
+    }
+}

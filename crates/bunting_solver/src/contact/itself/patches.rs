@@ -1,0 +1,171 @@
+//! Patches of neighbouring triangles, and the cells of which each consists.
+
+use core::ops::Range;
+
+use glam::Vec3;
+
+use crate::fabric::Fabric;
+
+/// Most triangles of a patch. Fewer: more patches are compared in each substep. More: boxes of patches are large, and
+/// patches bend more, so that more cells are compared.
+const LARGEST_PATCH: usize = 32;
+
+/// Most triangles of a cell. Fewer: more cells are compared. More: more triangles are compared.
+const LARGEST_CELL: usize = 8;
+
+/// Neighbouring triangles, in cells.
+#[derive(Clone, Debug)]
+pub(super) struct Patch {
+    pub particles: Vec<u32>,
+    pub neighbours: Vec<Neighbour>,
+    /// Indices of its cells and of its triangles.
+    pub cells: Range<u32>,
+    pub triangles: Range<u32>,
+}
+
+/// A few neighbouring triangles of a patch.
+#[derive(Clone, Debug)]
+pub(super) struct Cell {
+    pub triangles: Range<u32>,
+    pub neighbours: Vec<Neighbour>,
+}
+
+/// The patches of a fabric, their cells, and the triangles in the order of these.
+pub(super) fn patches_of(fabric: &Fabric) -> (Vec<Patch>, Vec<Cell>, Vec<[u32; 3]>) {
+    let (mut patches, mut cells) = (Vec::new(), Vec::new());
+    for triangles in split(fabric, (0..fabric.triangles().len() as u32).collect(), LARGEST_PATCH) {
+        let particles = particles_of(fabric, &triangles);
+        let first = cells.len() as u32;
+        cells.extend(split(fabric, triangles, LARGEST_CELL));
+        patches.push((particles, first..cells.len() as u32));
+    }
+    // Bridges are in the patches of the two cells, so that their regions are known when the two are compared.
+    let patch_of = |cell: u32| patches.partition_point(|(_, range)| range.end <= cell);
+    let may_bridge =
+        |bridge: u32, cells: [u32; 2]| cells.iter().any(|&cell| patch_of(cell) == patch_of(bridge));
+    let of_cells = cells.iter().map(|it| particles_of(fabric, it));
+    let neighbours = self::neighbours(of_cells, fabric, may_bridge);
+    let order = cells.iter().flatten();
+    let triangles = order.map(|&triangle| fabric.triangles()[triangle as usize]).collect();
+    let mut begin = 0;
+    let cells = cells.iter().zip(neighbours).map(|(triangles, neighbours)| {
+        let end = begin + triangles.len() as u32;
+        Cell { triangles: core::mem::replace(&mut begin, end)..end, neighbours }
+    });
+    let cells: Vec<Cell> = cells.collect();
+    let of_patches = patches.iter().map(|(particles, _)| particles.clone());
+    let neighbours = self::neighbours(of_patches, fabric, |_, _| true);
+    let patches = patches.into_iter().zip(neighbours).map(|((particles, range), neighbours)| {
+        let of_patch = &cells[range.start as usize..range.end as usize];
+        let triangles = of_patch[0].triangles.start..of_patch[of_patch.len() - 1].triangles.end;
+        Patch { particles, neighbours, cells: range, triangles }
+    });
+    (patches.collect(), cells, triangles)
+}
+
+/// A neighbour of a patch or a cell.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Neighbour {
+    pub index: u32,
+    /// A neighbour of both along edges if they have a single particle in common. About a single particle they can turn.
+    pub bridge: Option<u32>,
+}
+
+/// For each set of particles, its neighbours in the order of their indices: those with several common particles, and
+/// those with one that have a bridge, which `may_bridge` the two.
+fn neighbours(
+    sets: impl Iterator<Item = Vec<u32>> + Clone,
+    fabric: &Fabric,
+    may_bridge: impl Fn(u32, [u32; 2]) -> bool,
+) -> Vec<Vec<Neighbour>> {
+    let mut sets_at: Vec<Vec<u32>> = vec![Vec::new(); fabric.particle_count()];
+    for (index, set) in sets.clone().enumerate() {
+        set.iter().for_each(|&particle| sets_at[particle as usize].push(index as u32));
+    }
+    // For each set, the others with several common particles, and those with one.
+    let touching: Vec<[Vec<u32>; 2]> = sets
+        .enumerate()
+        .map(|(index, set)| {
+            let at = set.iter().flat_map(|&particle| &sets_at[particle as usize]);
+            let mut all: Vec<u32> = at.copied().filter(|&it| it != index as u32).collect();
+            all.sort_unstable();
+            let (several, one): (Vec<&[u32]>, _) =
+                all.chunk_by(|one, other| one == other).partition(|same| same.len() > 1);
+            [several, one].map(|sets| sets.into_iter().map(|same| same[0]).collect())
+        })
+        .collect();
+    touching
+        .iter()
+        .enumerate()
+        .map(|(from, [several, one])| {
+            let along_edges = several.iter().map(|&index| Neighbour { index, bridge: None });
+            let bridged = one.iter().filter_map(|&index| {
+                let of_other = &touching[index as usize][0];
+                let bridge = several.iter().copied().find(|bridge| {
+                    of_other.contains(bridge) && may_bridge(*bridge, [from as u32, index])
+                });
+                Some(Neighbour { index, bridge: Some(bridge?) })
+            });
+            let mut neighbours: Vec<Neighbour> = along_edges.chain(bridged).collect();
+            neighbours.sort_unstable_by_key(|neighbour| neighbour.index);
+            neighbours
+        })
+        .collect()
+}
+
+/// Particles of some triangles, in order.
+fn particles_of(fabric: &Fabric, triangles: &[u32]) -> Vec<u32> {
+    sorted(triangles.iter().flat_map(|&it| fabric.triangles()[it as usize]).collect())
+}
+
+fn sorted(mut values: Vec<u32>) -> Vec<u32> {
+    values.sort_unstable();
+    values.dedup();
+    values
+}
+
+/// Splits triangles into connected parts of at most `largest` triangles, each across the longest side of the box of the
+/// triangles' middles at rest.
+fn split(fabric: &Fabric, triangles: Vec<u32>, largest: usize) -> Vec<Vec<u32>> {
+    let rest = fabric.rest_positions();
+    let middle = |triangle: u32| -> Vec3 {
+        fabric.triangles()[triangle as usize].iter().map(|&corner| rest[corner as usize]).sum()
+    };
+    let mut parts = Vec::new();
+    let mut waiting = vec![triangles];
+    while let Some(mut triangles) = waiting.pop() {
+        if triangles.len() <= largest {
+            parts.extend(connected(fabric, triangles));
+            continue;
+        }
+        let middles = || triangles.iter().map(|&triangle| middle(triangle));
+        let low = middles().fold(Vec3::INFINITY, Vec3::min);
+        let high = middles().fold(Vec3::NEG_INFINITY, Vec3::max);
+        let axis = (high - low).max_position();
+        triangles.sort_by(|&one, &other| middle(one)[axis].total_cmp(&middle(other)[axis]));
+        let half = triangles.split_off(triangles.len() / 2);
+        waiting.extend([half, triangles]);
+    }
+    parts
+}
+
+/// The parts of a few triangles that are connected by particles.
+fn connected(fabric: &Fabric, mut triangles: Vec<u32>) -> Vec<Vec<u32>> {
+    let mut parts = Vec::new();
+    while let Some(first) = triangles.pop() {
+        let mut part = vec![first];
+        let mut particles = fabric.triangles()[first as usize].to_vec();
+        loop {
+            let joins = |triangle: &mut u32| {
+                let corners = fabric.triangles()[*triangle as usize];
+                corners.iter().any(|corner| particles.contains(corner))
+            };
+            let Some(next) = triangles.extract_if(.., joins).next() else { break };
+            part.push(next);
+            particles.extend(fabric.triangles()[next as usize]);
+        }
+        part.sort_unstable();
+        parts.push(part);
+    }
+    parts
+}

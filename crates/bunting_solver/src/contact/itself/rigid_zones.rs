@@ -1,0 +1,150 @@
+//! Features that still pass through one another at the end of a substep return to where they began, moved by their mean
+//! displacement (Provot 1997, "Collision and self-collision handling in cloth model dedicated to design garments").
+//!
+//! Particles of features that pass through one another are one zone. A zone that meets further features when it has
+//! returned takes them in, until nothing passes through anything. A zone as large as the cloth would be the cloth as it
+//! began, shifted, so that this ends.
+
+use glam::Vec3;
+
+use crate::contact::itself::crossing::crossing;
+use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
+use crate::contact::itself::particles::Particles;
+use crate::contact::itself::untangle::Tangles;
+
+/// Most times that zones grow. Fewer: features of large piles pass through one another. More: costs more in piles.
+const GROWTHS: usize = 24;
+
+/// Zones of particles, as a forest: each particle has a parent in its zone, the root itself.
+struct Zones(Vec<u32>);
+
+impl Zones {
+    fn root(&mut self, mut particle: u32) -> u32 {
+        while self.0[particle as usize] != particle {
+            let grandparent = self.0[self.0[particle as usize] as usize];
+            self.0[particle as usize] = grandparent;
+            particle = grandparent;
+        }
+        particle
+    }
+
+    /// Unites the zones of a pair's particles; returns whether they were several.
+    fn unite(&mut self, pair: &EdgeTriangle) -> bool {
+        let roots = pair.particles().map(|particle| self.root(particle));
+        let least = roots.into_iter().min().unwrap_or_default();
+        roots.iter().for_each(|&root| self.0[root as usize] = least);
+        roots.iter().any(|&root| root != least)
+    }
+}
+
+/// The zones of a cloth in a substep.
+pub(super) struct RigidZones {
+    zones: Zones,
+    /// Positions before any zone returned, m.
+    corrected: Vec<Vec3>,
+    growths: usize,
+}
+
+impl RigidZones {
+    /// No zones yet.
+    pub fn new(particles: &Particles) -> Self {
+        Self {
+            zones: Zones((0..particles.start.len() as u32).collect()),
+            corrected: particles.end.clone(),
+            growths: 0,
+        }
+    }
+
+    /// Returns zones to where they began, moved by their mean displacement, until no pair passes through one another.
+    /// Returns whether any zone grew. Tangled features are left alone.
+    pub fn grow(&mut self, pairs: &Pairs, tangles: &Tangles, particles: &mut Particles) -> bool {
+        let before = self.growths;
+        while self.growths < GROWTHS {
+            let mut grew = false;
+            for pair in &pairs.edges_triangles {
+                let is_tangled =
+                    || tangles.contain_any(&pair.edge) && tangles.contain_any(&pair.triangle);
+                if crossing(pair, &particles.end).is_some() && !is_tangled() {
+                    grew |= self.zones.unite(pair);
+                }
+            }
+            if !grew {
+                break;
+            }
+            self.growths += 1;
+            self.move_zones(particles);
+        }
+        self.growths > before
+    }
+
+    /// Moves the particles of each zone to their starts, moved by the mean of their displacements.
+    fn move_zones(&mut self, particles: &mut Particles) {
+        let displacement = |particle: usize| self.corrected[particle] - particles.start[particle];
+        let sums = Sums::of(&mut self.zones, particles, displacement);
+        for particle in 0..self.corrected.len() {
+            let root = self.zones.root(particle as u32) as usize;
+            if let Some(mean) = sums.mean(root)
+                && particles.inverse_mass[particle] != 0.0
+            {
+                particles.end[particle] = particles.start[particle] + mean;
+                particles.touched[particle] = true;
+            }
+        }
+    }
+
+    /// Gives the particles of each zone their mean velocity.
+    pub fn stop(&mut self, particles: &mut Particles) {
+        let sums = Sums::of(&mut self.zones, particles, |particle| particles.velocity[particle]);
+        for particle in 0..particles.start.len() {
+            let root = self.zones.root(particle as u32) as usize;
+            if let Some(mean) = sums.mean(root)
+                && particles.inverse_mass[particle] != 0.0
+            {
+                let change = mean - particles.velocity[particle];
+                particles.velocity[particle] += change;
+                particles.impact[particle] += change;
+            }
+        }
+    }
+}
+
+/// Sums over the particles of each zone, by its root.
+struct Sums {
+    mass: Vec<f32>,
+    vector: Vec<Vec3>,
+    members: Vec<u32>,
+    holds_pin: Vec<bool>,
+}
+
+impl Sums {
+    /// Sums masses and, times them, the vectors of particles.
+    fn of(zones: &mut Zones, particles: &Particles, vector: impl Fn(usize) -> Vec3) -> Self {
+        let count = zones.0.len();
+        let mut sums = Self {
+            mass: vec![0.0; count],
+            vector: vec![Vec3::ZERO; count],
+            members: vec![0; count],
+            holds_pin: vec![false; count],
+        };
+        for particle in 0..count {
+            let root = zones.root(particle as u32) as usize;
+            let inverse_mass = particles.inverse_mass[particle];
+            sums.members[root] += 1;
+            if inverse_mass == 0.0 {
+                sums.holds_pin[root] = true;
+            } else {
+                sums.mass[root] += 1.0 / inverse_mass;
+                sums.vector[root] += vector(particle) / inverse_mass;
+            }
+        }
+        sums
+    }
+
+    /// The mean vector of a zone; zero if it holds a pin, and none of a single particle.
+    fn mean(&self, root: usize) -> Option<Vec3> {
+        if self.members[root] < 2 {
+            return None;
+        }
+        Some(if self.holds_pin[root] { Vec3::ZERO } else { self.vector[root] / self.mass[root] })
+    }
+}
