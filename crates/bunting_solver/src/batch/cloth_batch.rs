@@ -144,10 +144,10 @@ impl ClothBatch {
 
     /// Puts a cloth into the first free lane and returns the lane.
     ///
+    /// # Errors
+    ///
     /// No lane is free, the material is invalid, or the state is not finite or of another fabric. The batch
     /// is then unchanged.
-    /// No lane is free, the material is bad, or the state is not finite or of another fabric. The
-    /// batch is then as it was.
     pub fn insert(
         &mut self,
         snapshot: &ClothSnapshot,

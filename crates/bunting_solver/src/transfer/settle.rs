@@ -69,8 +69,7 @@ impl Settler {
         if insert(&mut batch, &begin, damped).is_err() {
             return elastic(&self.fabric, material, positions);
         }
-        let settings = StepSettings { passes: 2, ..StepSettings::yarns(MOST_STEPS) };
-        batch.begin_tick(STEP * MOST_STEPS as f32, settings);
+        let settings = StepSettings { passes: 2, ..StepSettings::yarns(1) };
         for step in 0..MOST_STEPS {
             // Computing the energy takes half as long as a substep, so it is computed only after 0, 1, 2, 4,
             // … substeps.
@@ -81,6 +80,7 @@ impl Settler {
                 }
             }
             // Every substep is of first order, which extrapolates no correction of the one before.
+            batch.begin_tick(STEP, settings);
             batch.restart_integrator(0);
             batch.integrate();
             batch.solve_constraints();
