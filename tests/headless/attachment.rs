@@ -151,6 +151,35 @@ fn a_teleport_carries_the_cloth_along_without_a_velocity() {
     assert!(error(&app, vehicle, cloth) < TOLERANCE);
 }
 
+/// A flag on a vehicle that is at 40 m/s from its first frame: the first change of place is a teleport, and after it the
+/// flag has the vehicle's velocity and flies in the wind of travel.
+#[test]
+fn a_flag_on_a_vehicle_faster_than_a_teleport_flies_in_the_wind_of_travel() {
+    fn ride(mut vehicles: Query<&mut Transform, With<Vehicle>>) {
+        vehicles.iter_mut().for_each(|mut transform| transform.translation.x -= 40.0 * TICK);
+    }
+    for in_update in [true, false] {
+        let mut app = app();
+        if in_update {
+            app.add_systems(Update, ride);
+        } else {
+            app.add_systems(FixedUpdate, ride);
+        }
+        let (_, flag) = attached(&mut app, false);
+        let mut longest = 0.0_f32;
+        for _ in 0..120 {
+            run(&mut app, 1);
+            if let [corner, .., tip] = state(&app, flag).positions().get(..17).unwrap_or(&[]) {
+                longest = longest.max(tip.distance(*corner));
+            }
+        }
+        let positions = state(&app, flag).positions();
+        let way = positions[16] - positions[0];
+        assert!(way.x > 0.5, "it trails: {way}, in update: {in_update}");
+        assert!(longest < 1.7, "it is not torn along: {longest} m, in update: {in_update}");
+    }
+}
+
 #[test]
 fn a_small_jump_is_a_teleport_only_on_request() {
     // The jump is 19 m/s in one tick.

@@ -7,6 +7,7 @@ use bevy_time::Time;
 use bunting_solver::{Drive, Loads};
 
 use crate::batch::batches::ClothBatches;
+use crate::batch::occupancy::LaneMut;
 use crate::cloth::instance::ClothInstance;
 use crate::environment::wind::TickWind;
 use crate::lod::effort::ClothEffort;
@@ -46,8 +47,20 @@ pub(crate) fn drive_cloths(
             Drive { motion: frame.motion(), gravity, wind: inverse * wind.at(middle), air_density };
         let air = Loads::of_air(&drive, &instance.material, time.delta_secs());
         effort.note_drive(drive.motion, air);
-        batches.lane(lane).drive(drive);
+        let mut lane = batches.lane(lane);
+        if let Some(velocity) = frame.launch() {
+            launch(&mut lane, inverse * velocity);
+        }
+        lane.drive(drive);
     }
+}
+
+/// Adds a velocity (m/s) to a cloth as a whole, so that its frame does not tear it along when it is fast from one tick to
+/// the next.
+fn launch(lane: &mut LaneMut, velocity: Vec3) {
+    let mut state = lane.snapshot().without_history();
+    state.velocities.iter_mut().for_each(|speed| *speed += velocity);
+    lane.restore(&state);
 }
 
 /// Gravity (m/s²) and the density of the air (kg/m³). A value that is not finite, or a negative density,

@@ -44,7 +44,8 @@ pub struct Attachment {
     pub on_lost: TargetLost,
     /// Change of the target's velocity between two frames or ticks, in m/s, above which the target was
     /// teleported: the cloth then moves with it rigidly, without being accelerated. At 60 frames a second, 25
-    /// m/s is a departure of 0.4 m from the extrapolated motion. A turn counts by the change of velocity of a
+    /// m/s is a departure of 0.4 m from the extrapolated motion. Where the next change has the same velocity, the target
+    /// is not teleported but fast: the cloth gets its velocity (up to 100 m/s) and flies on with it. A turn counts by the change of velocity of a
     /// point 1 m away, and any turn of more than 90° is a teleport.
     pub teleport_speed: f32,
 }

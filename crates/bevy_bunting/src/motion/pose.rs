@@ -5,7 +5,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
 use bunting_solver::FrameMotion;
 
-use crate::motion::track::Track;
+use crate::motion::track::{Departure, Track};
 
 /// Greatest rate of change of the delay, s/s; it makes the motion faster or slower by this fraction. Smaller:
 /// the delay lags behind the frame rate. Larger: changes of the frame rate shake the cloth.
@@ -56,6 +56,11 @@ pub(crate) struct PoseHistory {
     span: Option<(Isometry3d, Isometry3d)>,
     /// Poses at the start and the end of the tick without a delay, extrapolated from the last frame.
     extrapolated: Option<(Isometry3d, Isometry3d)>,
+    /// Change of velocity, m/s, at the beginning of a motion that was taken for a teleport then, until a tick in which the
+    /// entity moves.
+    launching: Option<Vec3>,
+    /// That change of velocity, in this tick.
+    launched: Option<Vec3>,
     /// Set while all samples have one pose: the entity is then not observed until it moves.
     rest: Option<Rest>,
 }
@@ -171,7 +176,7 @@ impl PoseHistory {
         if early && !changed {
             return;
         }
-        let teleport = self.frames.push(time, pose, limit);
+        let departure = self.frames.push(time, pose, limit);
         if changed && self.moved_in == MovedIn::Ticks && self.ticks_to_quiet == 0 {
             self.moved_in = MovedIn::Frames;
             // The entity has not moved for some ticks, so any delay gives the same pose: the final delay can
@@ -179,7 +184,7 @@ impl PoseHistory {
             self.delay = f64::INFINITY;
         }
         if self.moved_in == MovedIn::Frames {
-            self.teleport_end(teleport);
+            self.depart(departure);
         }
         self.last = Some(pose);
     }
@@ -198,12 +203,13 @@ impl PoseHistory {
             return;
         }
         self.end_rest(last);
+        self.launched = None;
         let time = now.tick;
         if self.frames.is_empty() {
             // The entity had this pose in the last frame; a motion later in this frame starts from it.
             self.frames.push(now.frame, pose, limit);
         }
-        let teleport = self.ticks.push(time, pose, limit);
+        let departure = self.ticks.push(time, pose, limit);
         if self.last.is_some_and(|last| last != pose) {
             self.moved_in = MovedIn::Ticks;
             self.ticks_to_quiet = QUIET_TICKS;
@@ -214,7 +220,7 @@ impl PoseHistory {
         self.change_delay(tick, now.longest_frame);
         let track = match self.moved_in {
             MovedIn::Ticks => {
-                self.teleport_end(teleport);
+                self.depart(departure);
                 &self.ticks
             }
             MovedIn::Frames => &self.frames,
@@ -222,6 +228,9 @@ impl PoseHistory {
         let sampled = time - self.delay;
         let end = track.pose_at(sampled).unwrap_or(pose);
         self.span = Some((self.end_or(end), end));
+        if self.start() != end {
+            self.launched = self.launching.take();
+        }
         let end = track.pose_at(time).unwrap_or(pose);
         self.extrapolated = Some((self.extrapolated.map_or(end, |(_, end)| end), end));
         self.ticks.drop_before(sampled);
@@ -238,6 +247,7 @@ impl PoseHistory {
     pub fn hold(&mut self) {
         self.span = self.span.map(|(_, end)| (end, end));
         self.extrapolated = self.extrapolated.map(|(_, end)| (end, end));
+        self.launched = None;
     }
 
     /// Moves the delay during `tick` seconds towards zero for an entity that is moved in ticks, or towards
@@ -269,13 +279,25 @@ impl PoseHistory {
         self.span.map_or(other, |(_, end)| end)
     }
 
-    /// Applies a teleport to the pose at the end of the last tick, which is the start of the next tick.
-    fn teleport_end(&mut self, teleport: Option<Isometry3d>) {
-        let Some(teleport) = teleport else { return };
-        for (_, end) in [&mut self.span, &mut self.extrapolated].into_iter().flatten() {
-            *end = teleport * *end;
-            end.rotation = Quat::normalize(end.rotation);
+    /// Applies a teleport to the pose at the end of the last tick, which is the start of the next tick; or notes the
+    /// beginning of a motion.
+    fn depart(&mut self, departure: Option<Departure>) {
+        match departure {
+            None => {}
+            Some(Departure::Launch(velocity)) => self.launching = Some(velocity),
+            Some(Departure::Teleport(by)) => {
+                self.launching = None;
+                for (_, end) in [&mut self.span, &mut self.extrapolated].into_iter().flatten() {
+                    *end = by * *end;
+                    end.rotation = Quat::normalize(end.rotation);
+                }
+            }
         }
+    }
+
+    /// Change of the entity's velocity, m/s, if a motion begins in this tick whose beginning was taken for a teleport.
+    pub fn launch(&self) -> Option<Vec3> {
+        self.launched
     }
 }
 

@@ -107,6 +107,43 @@ fn a_motion_in_fixed_update_is_taken_as_it_is() {
 }
 
 #[test]
+fn a_motion_faster_than_a_teleport_is_followed_after_its_first_change() {
+    const FAST: f32 = 40.0;
+    // It rests for a second, and is fast from one frame to the next.
+    let flies = |time: f64| Some(at(FAST * (time - 1.0).max(0.0) as f32));
+    for in_update in [false, true] {
+        let mut clocks = Clocks::new();
+        let mut launches = Vec::new();
+        let mut motions = Vec::new();
+        for _ in 0..128 {
+            motions.extend(if in_update {
+                clocks.frame(TICK, flies, rests)
+            } else {
+                clocks.frame(TICK, rests, flies)
+            });
+            launches.extend(clocks.history.launch());
+        }
+        let way = FAST * TICK as f32;
+        let moving = motions.iter().filter(|&&motion| motion != 0.0);
+        assert!(moving.clone().count() > 60, "followed: {in_update}");
+        assert!(moving.clone().all(|motion| (motion - way).abs() < 1e-4), "{motions:?}");
+        assert!(matches!(launches[..], [by] if by.distance(FAST * Vec3::X) < 1e-2), "{launches:?}");
+    }
+}
+
+#[test]
+fn two_teleports_by_different_ways_are_no_motion() {
+    let jumps = |time: f64| Some(at([0.0, 1.0, -3.0, -1.0][((time * 4.0) as usize).min(3)]));
+    let mut clocks = Clocks::new();
+    for _ in 0..64 {
+        for motion in clocks.frame(TICK, rests, jumps) {
+            assert_eq!(motion, 0.0);
+        }
+        assert_eq!(clocks.history.launch(), None);
+    }
+}
+
+#[test]
 fn uneven_frames_make_an_almost_steady_motion() {
     let mut clocks = Clocks::new();
     let mut motions = Vec::new();

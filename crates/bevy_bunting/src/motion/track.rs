@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use bevy_math::Isometry3d;
+use bevy_math::{Isometry3d, Vec3};
 
 /// Greatest number of stored poses: it covers the longest delay that Bevy's clock allows at 250 frames a
 /// second.
@@ -20,6 +20,10 @@ const TELEPORT_ANGLE: f32 = core::f32::consts::FRAC_PI_2;
 /// moves at the rate of ticks, observed in shorter frames, is teleported with each step.
 const LEAST_INTERVAL: f64 = 1.0 / 64.0;
 
+/// Greatest speed, m/s, of a motion that is recognised by two like changes of pose, the first of which is a teleport by its
+/// change of velocity: that of a light aircraft. Larger: an entity that is put elsewhere twice, by the same way, throws its cloth.
+const FASTEST: f32 = 100.0;
+
 /// Time past the last observed pose up to which the motion is extrapolated, s: Bevy's clock allows no
 /// longer frame.
 const LONGEST_EXTRAPOLATION: f64 = 0.25;
@@ -31,13 +35,25 @@ pub(super) struct Track {
     samples: VecDeque<(f64, Isometry3d)>,
     /// Whether the next change is a teleport, of any size.
     pub teleports_next: bool,
+    /// Mean velocity over the last change, m/s, if that was a teleport that had not been requested.
+    jump: Option<Vec3>,
+}
+
+/// What a change of pose is besides a motion that goes on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Departure {
+    /// A teleport, by this transformation.
+    Teleport(Isometry3d),
+    /// A motion that began with the teleport before: its velocity less that before the teleport, m/s.
+    Launch(Vec3),
 }
 
 impl Track {
     /// Adds a pose. If it departs from the extrapolated motion by a change of velocity of more than `limit`
     /// m/s, the change is a teleport: all earlier samples are moved along, as if the entity had come from
-    /// there, and the transformation is returned.
-    pub fn push(&mut self, time: f64, pose: Isometry3d, limit: f32) -> Option<Isometry3d> {
+    /// there. A second such change with the velocity of the first is no teleport but a motion: the entity has been fast
+    /// since the first.
+    pub fn push(&mut self, time: f64, pose: Isometry3d, limit: f32) -> Option<Departure> {
         let mut replaced = None;
         while self.samples.back().is_some_and(|&(newest, _)| newest >= time) {
             replaced = self.samples.pop_back();
@@ -46,34 +62,54 @@ impl Track {
             // The replaced pose is the only knowledge of the earlier motion.
             self.samples.push_back((time - LEAST_INTERVAL, earlier));
         }
-        let teleport = self.teleport(time, pose, limit);
-        if let Some(teleport) = teleport {
+        let departure = self.departure(time, pose, limit);
+        self.jump = None;
+        if let Some(Departure::Teleport(by)) = departure {
+            if !self.teleports_next {
+                self.jump = self.velocity_to(time, pose);
+            }
             self.teleports_next = false;
             for (_, earlier) in &mut self.samples {
-                *earlier = teleport * *earlier;
+                *earlier = by * *earlier;
             }
         }
         self.samples.push_back((time, pose));
         if self.samples.len() > MOST_SAMPLES {
             self.samples.pop_front();
         }
-        teleport
+        departure
     }
 
-    /// The transformation from the extrapolated pose to a pose, if the change between them is a
-    /// teleport: far from both the extrapolated and the last pose, or requested.
-    fn teleport(&self, time: f64, pose: Isometry3d, limit: f32) -> Option<Isometry3d> {
+    /// Mean velocity from the last pose to a new one, m/s.
+    fn velocity_to(&self, time: f64, pose: Isometry3d) -> Option<Vec3> {
+        let &(before, last) = self.samples.back()?;
+        let way = Vec3::from(pose.translation - last.translation);
+        Some(way / (time - before).max(LEAST_INTERVAL) as f32)
+    }
+
+    /// The departure of a pose from the extrapolated motion: a teleport if the pose is far from both the extrapolated
+    /// and the last pose, or if a teleport was requested.
+    fn departure(&self, time: f64, pose: Isometry3d, limit: f32) -> Option<Departure> {
         let &(before, last) = self.samples.back()?;
         let expected = self.pose_at(time)?;
         let distance = limit * (time - before).max(LEAST_INTERVAL) as f32;
         let angle = (distance / LEVER).min(TELEPORT_ANGLE);
+        let turns = |from: Isometry3d| from.rotation.angle_between(pose.rotation) > angle;
         let is_far = |from: Isometry3d| {
-            from.translation.distance(pose.translation) > distance
-                || from.rotation.angle_between(pose.rotation) > angle
+            from.translation.distance(pose.translation) > distance || turns(from)
         };
-        let is_teleport =
-            (self.teleports_next && pose != last) || (is_far(last) && is_far(expected));
-        is_teleport.then(|| pose * expected.inverse())
+        if self.teleports_next && pose != last {
+            return Some(Departure::Teleport(pose * expected.inverse()));
+        }
+        let velocity = self.velocity_to(time, pose)?;
+        let goes_on = |jump: Vec3| jump.distance(velocity) < limit && velocity.length() < FASTEST;
+        if !turns(last) && self.jump.is_some_and(goes_on) {
+            return Some(Departure::Launch(velocity - self.velocity_to(time, expected)?));
+        }
+        if !(is_far(last) && is_far(expected)) {
+            return None;
+        }
+        Some(Departure::Teleport(pose * expected.inverse()))
     }
 
     /// The pose at a time (s): interpolated between two samples, or extrapolated from the last two.
