@@ -23,7 +23,7 @@ use crate::fabric::{Fabric, FabricMaterial};
 use crate::simd::registers::{Pack1, Pack8, Pack16};
 use crate::step::bdf::IntegratorHistory;
 use crate::step::limits::StepLimits;
-use crate::step::{Drive, Scheme, StepSettings};
+use crate::step::{Drive, MovingPin, Scheme, StepSettings};
 
 /// The state of up to [`LaneCount`] cloths of one [`Fabric`], or of fabrics of one topology, stepped together.
 ///
@@ -281,6 +281,17 @@ impl ClothBatch {
             }
         });
         Ok(())
+    }
+
+    /// Moves pins of a lane's cloth within its frame in the next tick, in each substep by the same way; later they stay
+    /// where they are. Constraints see them as held, and the air as moving. An empty lane stays empty.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane, a particle is not pinned, or a position is not finite. The pins then stay where they are.
+    pub fn move_pins(&mut self, lane: usize, pins: Vec<MovingPin>) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        with_batch!(&mut self.0, batch => batch.set_pin_motion(lane, pins))
     }
 
     /// Sets the shapes that a lane's cloth cannot enter, from the next tick on. An empty lane stays empty.

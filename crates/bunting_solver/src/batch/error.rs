@@ -40,6 +40,12 @@ pub enum BatchError {
         /// The field's name.
         name: &'static str,
     },
+    /// A pin to be moved is not pinned, or one of its positions is infinite or not a number.
+    #[error("particle {particle} is not pinned, or its way is not finite")]
+    Pin {
+        /// Index of the particle.
+        particle: u32,
+    },
     /// A number of a collider is infinite or not a number.
     #[error("the pose, margin or friction of collider {index} is not finite")]
     Collider {

@@ -9,6 +9,7 @@ use crate::stability::added_mass::AddedMass;
 use crate::stability::pin_strain::PinStrain;
 use crate::step::Drive;
 use crate::step::bdf::IntegratorHistory;
+use crate::step::moving_pins::MovingPins;
 use crate::step::parameters::ParameterInputs;
 
 /// The state of one cloth in a batch besides its particles.
@@ -28,6 +29,7 @@ pub(crate) struct LaneState {
     pub external_moment: f32,
     pub history: IntegratorHistory,
     pub pin_strain: PinStrain,
+    pub moving_pins: MovingPins,
     /// Inputs of the lane's parameters; none if the parameters must be computed.
     pub inputs: Option<ParameterInputs>,
     /// Inputs of the lane's inverse masses besides the substep; none if the masses must be computed.
@@ -47,6 +49,7 @@ impl LaneState {
             external_moment: 0.0,
             history: IntegratorHistory::default(),
             pin_strain: PinStrain::default(),
+            moving_pins: MovingPins::default(),
             inputs: None,
             added_mass: None,
         }

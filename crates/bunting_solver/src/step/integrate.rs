@@ -20,6 +20,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if self.parameters.any_frame_moved {
             self.carry_state();
         }
+        self.move_pins();
         let feels_air = self.parameters.any_feels_air();
         if feels_air {
             self.gather_air();

@@ -11,9 +11,11 @@ pub(crate) mod frame;
 mod integrate;
 pub(crate) mod limits;
 pub(crate) mod load_stretch;
+pub(crate) mod moving_pins;
 pub(crate) mod parameters;
 mod predict;
 mod settings;
 mod velocity;
 
+pub use moving_pins::MovingPin;
 pub use settings::{Drive, Scheme, StepSettings};
