@@ -1,5 +1,6 @@
 //! The plugin in an app with manual time: no window, no renderer, no GPU.
 
+mod anchors;
 mod any_order;
 mod attachment;
 mod broad_phase;

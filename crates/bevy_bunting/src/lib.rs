@@ -148,7 +148,9 @@ pub use lod::report::{ClothCounts, LodReport};
 pub use lod::select::LodPlugin;
 pub use lod::sleep::{SleepPlugin, WakeCloth};
 pub use lod::viewer::{Lens, LodViewer};
-pub use motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
+pub use motion::attachment::{
+    Anchor, AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost,
+};
 pub use motion::plugin::AttachmentPlugin;
 pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
@@ -165,12 +167,12 @@ pub use timings::ClothTimings;
 /// The items that most apps need.
 pub mod prelude {
     pub use crate::{
-        AttachedVertices, Attachment, ClothActivity, ClothBudget, ClothCollider, ClothCorner,
-        ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothLayers, ClothLevelChanged,
-        ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
-        ClothReactions, ClothSeed, ClothSettings, ClothState, ClothSurface, ClothSystems,
-        ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, SelfCollision, TargetLost,
-        TeleportCloth, TeleportMode, WeightsError, WindField,
+        Anchor, AttachedVertices, Attachment, ClothActivity, ClothBudget, ClothCollider,
+        ClothCorner, ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothLayers,
+        ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins,
+        ClothPreroll, ClothReactions, ClothSeed, ClothSettings, ClothState, ClothSurface,
+        ClothSystems, ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, SelfCollision,
+        TargetLost, TeleportCloth, TeleportMode, WeightsError, WindField,
     };
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }

@@ -30,7 +30,7 @@ fn sheet(lanes: LaneCount) -> (ClothBatch, Vec<(u32, Vec3)>) {
 
 /// Way of the upper edge until a time, m.
 fn way(seconds: f32) -> Vec3 {
-    Vec3::new(0.4 * (5.0 * seconds).sin(), 0.0, 0.3 * (3.0 * seconds).sin())
+    Vec3::new(0.4 * libm::sinf(5.0 * seconds), 0.0, 0.3 * libm::sinf(3.0 * seconds))
 }
 
 fn drive(motion: FrameMotion) -> Drive {

@@ -6,7 +6,7 @@ use std::time::Duration;
 use bevy_ecs::prelude::*;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, LaneCount, LaneSurface,
-    SelfCollision,
+    MovingPin, SelfCollision,
 };
 use parry3d::bounding_volume::Aabb;
 
@@ -182,6 +182,11 @@ impl LaneMut<'_> {
         if batch.drive(self.lane, drive).is_err() {
             batch.drive(self.lane, Drive::NONE).expect("an occupied lane");
         }
+    }
+
+    /// Moves pins of the cloth in the next tick. None moves if a position is not finite.
+    pub fn move_pins(&mut self, pins: Vec<MovingPin>) {
+        let _ = self.occupied.batch.move_pins(self.lane, pins);
     }
 
     /// Sets the shapes that the cloth may touch in the next tick. Shapes with numbers that are not finite are

@@ -115,7 +115,7 @@ impl FabricLibrary {
         lods: &LodSet,
     ) -> Result<Found, ClothError> {
         lods.validate(entity)?;
-        let attached = attachment.map(|attachment| attachment.vertices.choose(&mesh.uvs()));
+        let attached = attachment.map(|attachment| attachment.groups(&mesh.uvs()).concat());
         check_weights(mesh.weights(), mesh.vertex_count())
             .map_err(|source| ClothError::Weights { entity, source })?;
         let holds = |attached: &Vec<u32>| !attached.is_empty() || mesh.weights().contains(&0.0);

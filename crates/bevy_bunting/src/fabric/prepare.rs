@@ -177,7 +177,9 @@ impl CutClothItem<'_, '_> {
     ) -> Result<Found, ClothError> {
         let entity = self.entity;
         let is_missing = |target: &Entity| !self.instance.target_lost && !targets.contains(*target);
-        if let Some(target) = target.filter(is_missing) {
+        let anchors = self.attachment.iter().flat_map(|attachment| &attachment.anchors);
+        let mut needed = target.into_iter().chain(anchors.map(|anchor| anchor.target));
+        if let Some(target) = needed.find(is_missing) {
             return Err(ClothError::MissingTarget { entity, target });
         }
         if self.instance.levels.is_none() {

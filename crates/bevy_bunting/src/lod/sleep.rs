@@ -16,6 +16,7 @@ use crate::environment::self_collision::SelfCollision;
 use crate::environment::wind::TickWind;
 use crate::lod::record::{LodRecord, RestTimer};
 use crate::lod::select::select_levels;
+use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
@@ -134,6 +135,7 @@ type RestingCloth = (
     &'static mut ClothInstance,
     &'static ClothState,
     &'static PoseHistory,
+    Option<&'static AnchorPoses>,
     &'static mut RestTimer,
     &'static LodRecord,
 );
@@ -143,11 +145,14 @@ pub(crate) fn wake_cloths(mut cloths: Query<RestingCloth>, mut changes: ResMut<C
         return;
     }
     changes.asleep = 0;
-    for (mut instance, state, frame, timer, record) in &mut cloths {
+    for (mut instance, state, frame, anchors, timer, record) in &mut cloths {
         if instance.activity != ClothActivity::AtRest {
             continue;
         }
-        if changes.everywhere || changes.act_on(state, frame.end(), &timer, record.radius) {
+        if changes.everywhere
+            || changes.act_on(state, frame.end(), &timer, record.radius)
+            || anchors.is_some_and(AnchorPoses::may_move)
+        {
             instance.wake();
         } else {
             changes.asleep += 1;
@@ -165,13 +170,14 @@ pub(crate) fn send_to_sleep(
         return;
     }
     let tick = time.delta_secs();
-    for (mut instance, state, frame, mut timer, record) in &mut cloths {
+    for (mut instance, state, frame, anchors, mut timer, record) in &mut cloths {
         if instance.lane().is_none() {
             continue;
         }
         let pose = frame.end();
-        let is_disturbed =
-            changes.act_on(state, pose, &timer, record.radius) || instance.taking_up.is_some();
+        let is_disturbed = changes.act_on(state, pose, &timer, record.radius)
+            || anchors.is_some_and(AnchorPoses::may_move)
+            || instance.taking_up.is_some();
         timer.pose = Some(pose);
         let is_still = !is_disturbed && speed(state, tick) <= REST_SPEED;
         timer.ticks = if is_still { timer.ticks + 1 } else { 0 };

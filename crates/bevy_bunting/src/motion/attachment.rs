@@ -1,5 +1,7 @@
 //! Attachments: chosen vertices of a cloth stay on another entity.
 
+use std::collections::HashSet;
+
 use bevy_ecs::entity::EntityMapper;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec2;
@@ -48,12 +50,48 @@ pub struct Attachment {
     /// is not teleported but fast: the cloth gets its velocity (up to 100 m/s) and flies on with it. A turn counts by the change of velocity of a
     /// point 1 m away, and any turn of more than 90° is a teleport.
     pub teleport_speed: f32,
+    /// Further vertices, held on further entities: the other mast of a banner, the other shoulder of a cape.
+    pub anchors: Vec<Anchor>,
 }
 
-/// Maps the target when a scene is loaded. The placeholder is no entity of a scene and stays.
+/// Vertices of a cloth that are held on an entity besides the [`Attachment`]'s own: its pose times the offset, times the
+/// vertices' positions in the [`ClothMesh`](crate::ClothMesh).
+///
+/// They move relative to the cloth's frame, which is that of the attachment's target, evenly in the substeps of a tick.
+/// A vertex that is held more than once is held by the attachment, or else by the first anchor that names it.
+#[derive(Clone, Debug, Reflect)]
+#[reflect(Debug, Clone)]
+pub struct Anchor {
+    /// Entity that the vertices stay on.
+    pub target: Entity,
+    /// The vertices that are held.
+    pub vertices: AttachedVertices,
+    /// Pose of the vertices' frame relative to the target; the scale is ignored.
+    pub offset: Transform,
+}
+
+impl Anchor {
+    /// Holds vertices on a target, in the target's own frame.
+    #[must_use]
+    pub fn new(target: Entity, vertices: impl Into<AttachedVertices>) -> Self {
+        Self { target, vertices: vertices.into(), offset: Transform::IDENTITY }
+    }
+
+    /// The anchor with another [`offset`](Self::offset).
+    #[must_use]
+    pub fn with_offset(mut self, offset: Transform) -> Self {
+        self.offset = offset;
+        self
+    }
+}
+
+/// Maps the targets when a scene is loaded. The placeholder is no entity of a scene and stays.
 fn map_target<M: EntityMapper>(attachment: &mut Attachment, mapper: &mut M) {
-    if attachment.target != Entity::PLACEHOLDER {
-        attachment.target = mapper.get_mapped(attachment.target);
+    let anchors = attachment.anchors.iter_mut().map(|anchor| &mut anchor.target);
+    for target in anchors.chain([&mut attachment.target]) {
+        if *target != Entity::PLACEHOLDER {
+            *target = mapper.get_mapped(*target);
+        }
     }
 }
 
@@ -67,6 +105,7 @@ impl Attachment {
             offset: Transform::IDENTITY,
             on_lost: TargetLost::default(),
             teleport_speed: TELEPORT_SPEED,
+            anchors: Vec::new(),
         }
     }
 
@@ -81,6 +120,25 @@ impl Attachment {
     pub fn with_offset(mut self, offset: Transform) -> Self {
         self.offset = offset;
         self
+    }
+
+    /// The attachment with a further [`Anchor`].
+    #[must_use]
+    pub fn with_anchor(mut self, anchor: Anchor) -> Self {
+        self.anchors.push(anchor);
+        self
+    }
+
+    /// The vertices that are held on each target: those of the attachment, then those of each anchor. A vertex occurs once.
+    pub(crate) fn groups(&self, uv: &[Vec2]) -> Vec<Vec<u32>> {
+        let mut taken = HashSet::new();
+        let anchored = self.anchors.iter().map(|anchor| &anchor.vertices);
+        let mut of_group = |vertices: &AttachedVertices| {
+            let mut group = vertices.choose(uv);
+            group.retain(|&vertex| taken.insert(vertex));
+            group
+        };
+        core::iter::once(&self.vertices).chain(anchored).map(&mut of_group).collect()
     }
 
     /// The target of the attachment of `cloth`, unless it is the cloth itself.

@@ -1,4 +1,4 @@
-//! Attachments whose target was despawned.
+//! Attachments whose targets were despawned.
 
 use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
@@ -8,25 +8,36 @@ use crate::cloth::events::ClothTargetLost;
 use crate::cloth::instance::ClothInstance;
 use crate::motion::attachment::{Attachment, TargetLost};
 
-/// Freezes or releases cloths whose target was despawned.
+/// Freezes or releases cloths whose target was despawned, or the vertices of a despawned anchor.
 pub(crate) fn handle_lost_targets(
-    mut cloths: Query<(Entity, &Attachment, &mut ClothInstance, Has<ClothPaused>)>,
+    mut cloths: Query<(Entity, &mut Attachment, &mut ClothInstance, Has<ClothPaused>)>,
     targets: Query<(), With<Transform>>,
     mut commands: Commands,
 ) {
-    for (entity, attachment, mut instance, is_paused) in &mut cloths {
-        let Some(target) = attachment.target_other_than(entity) else { continue };
-        if instance.target_lost || instance.target != Some(target) || targets.contains(target) {
+    for (entity, mut attachment, mut instance, is_paused) in &mut cloths {
+        if instance.target_lost {
             continue;
         }
-        instance.target_lost = true;
-        match attachment.on_lost {
-            TargetLost::Freeze => {
-                instance.frozen = !is_paused;
-                commands.entity(entity).insert(ClothPaused)
-            }
-            TargetLost::Release => commands.entity(entity).remove::<Attachment>(),
+        let target = attachment.target_other_than(entity);
+        let own = target.filter(|&target| instance.target == Some(target));
+        let mut followed = own.into_iter().chain(attachment.anchors.iter().map(|it| it.target));
+        let is_cut = instance.levels.is_some();
+        let Some(lost) = followed.find(|&target| is_cut && !targets.contains(target)) else {
+            continue;
         };
-        commands.trigger(ClothTargetLost { entity, target, outcome: attachment.on_lost });
+        let outcome = attachment.on_lost;
+        match outcome {
+            TargetLost::Freeze => {
+                instance.target_lost = true;
+                instance.frozen = !is_paused;
+                commands.entity(entity).insert(ClothPaused);
+            }
+            TargetLost::Release if own == Some(lost) => {
+                instance.target_lost = true;
+                commands.entity(entity).remove::<Attachment>();
+            }
+            TargetLost::Release => attachment.anchors.retain(|anchor| anchor.target != lost),
+        }
+        commands.trigger(ClothTargetLost { entity, target: lost, outcome });
     }
 }

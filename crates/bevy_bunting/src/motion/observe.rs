@@ -93,11 +93,7 @@ pub(super) fn observe_ticks(
     mut times: ResMut<ObservationTimes>,
     mut commands: Commands,
 ) {
-    let now = ObservationTimes {
-        tick: time.elapsed_secs_f64(),
-        ticks: times.ticks.wrapping_add(1),
-        ..*times
-    };
+    let now = times.in_tick(time.elapsed_secs_f64());
     let tick = time.delta_secs_f64();
     observer.for_each(|entity, history, attachment| {
         let pose = frame_of(entity, attachment.as_deref(), &transforms);

@@ -8,7 +8,12 @@ use bevy_transform::systems::{propagate_parent_transforms, sync_simple_transform
 
 use crate::environment::drive::drive_cloths;
 use crate::fabric::prepare::change_materials;
-use crate::motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
+use crate::motion::anchor_poses::{
+    follow_anchors, observe_anchors_in_frames, observe_anchors_in_ticks,
+};
+use crate::motion::attachment::{
+    Anchor, AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost,
+};
 use crate::motion::follow::{follow_targets, stop_following};
 use crate::motion::lead::lead_pins;
 use crate::motion::observe::{observe_frames, observe_ticks};
@@ -24,6 +29,7 @@ pub struct AttachmentPlugin;
 impl Plugin for AttachmentPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<Attachment>()
+            .register_type::<Anchor>()
             .register_type::<AttachedVertices>()
             .register_type::<ClothEdge>()
             .register_type::<ClothCorner>()
@@ -32,12 +38,18 @@ impl Plugin for AttachmentPlugin {
             .add_observer(stop_following)
             .add_systems(
                 RunFixedMainLoop,
-                observe_frames::<true>.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+                (observe_anchors_in_frames::<true>, observe_frames::<true>)
+                    .chain()
+                    .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
             )
             .add_systems(
                 ClothTick,
                 (
-                    (follow_targets.after(change_materials), observe_ticks)
+                    (
+                        (follow_targets, follow_anchors).chain().after(change_materials),
+                        observe_anchors_in_ticks,
+                        observe_ticks,
+                    )
                         .chain()
                         .in_set(ClothSystems::Prepare),
                     lead_pins.in_set(ClothSystems::Drive).before(drive_cloths),
@@ -46,7 +58,12 @@ impl Plugin for AttachmentPlugin {
             )
             .add_systems(
                 PostUpdate,
-                (follow_targets, observe_frames::<false>, place_cloths)
+                (
+                    follow_targets,
+                    observe_anchors_in_frames::<false>,
+                    observe_frames::<false>,
+                    place_cloths,
+                )
                     .chain_ignore_deferred()
                     .after(AnimationSystems)
                     .before(TransformSystems::Propagate),

@@ -92,6 +92,11 @@ struct Rest {
 }
 
 impl ObservationTimes {
+    /// The times of a tick that ends at a time (s).
+    pub fn in_tick(&self, end: f64) -> Self {
+        Self { tick: end, ticks: self.ticks.wrapping_add(1), ..*self }
+    }
+
     /// Notes the length of a frame, s.
     pub fn note_frame(&mut self, length: f64) {
         if length <= 0.0 {

@@ -1,7 +1,7 @@
 //! Newly attached vertices that are not in their places yet: they are moved there within one and a half seconds.
 
 use bevy_math::{Isometry3d, Vec3};
-use bunting_solver::{ClothSnapshot, Fabric};
+use bunting_solver::{ClothSnapshot, Fabric, MovingPin};
 
 /// Time in which newly attached vertices move to their places, s. In one second the corner of a flag that is turned by
 /// a quarter cracks like a whip at 14 m/s, in half of it cloth at a distance of [`REACH`] is stretched by a tenth.
@@ -11,27 +11,33 @@ const TIME: f32 = 1.5;
 /// whole, as by a teleport.
 const REACH: f32 = 2.0;
 
-/// A pinned particle on the way to its place.
+/// The way of a pinned particle to its place.
 #[derive(Clone, Copy, Debug)]
-struct MovingPin {
-    particle: usize,
+struct Way {
+    particle: u32,
     /// Position when the motion began, m.
     from: Vec3,
+    /// Position now, m.
+    at: Vec3,
 }
 
-impl MovingPin {
-    /// Position after a part of [`TIME`]: a cubic that begins with a velocity (m/s) and ends at `rest` without one.
-    fn at(&self, part: f32, velocity: Vec3, rest: Vec3) -> Vec3 {
+impl Way {
+    fn new(particle: usize, from: Vec3) -> Self {
+        Self { particle: particle as u32, from, at: from }
+    }
+
+    /// Position after a part of [`TIME`]: a cubic that begins with a velocity (m/s) and ends at `place` without one.
+    fn after(&self, part: f32, velocity: Vec3, place: Vec3) -> Vec3 {
         let eased = part * part * (3.0 - 2.0 * part);
         let coasting = part * (1.0 - part) * (1.0 - part) * TIME;
-        self.from.lerp(rest, eased) + coasting * velocity
+        self.from.lerp(place, eased) + coasting * velocity
     }
 }
 
 /// Attached vertices on the way to their places.
 #[derive(Clone, Debug)]
 pub(crate) struct TakingUp {
-    pins: Vec<MovingPin>,
+    pins: Vec<Way>,
     /// Velocity when the motion began, m/s: the mean of the pins'. With a velocity of its own, each pin would draw away
     /// from its neighbours, and stretch the edge between them.
     velocity: Vec3,
@@ -70,22 +76,34 @@ impl TakingUp {
             velocity = sum / pins.len().max(1) as f32;
         }
         pins.iter().for_each(|&pin| snapshot.velocities[pin] = Vec3::ZERO);
-        let moving = |&particle: &usize| MovingPin { particle, from: snapshot.positions[particle] };
-        let pins: Vec<MovingPin> = pins.iter().map(moving).collect();
         let in_place =
-            velocity == Vec3::ZERO && pins.iter().all(|pin| pin.from == rest[pin.particle]);
-        (!in_place).then_some(Self { pins, velocity, passed: 0.0 })
+            velocity == Vec3::ZERO && pins.iter().all(|&pin| snapshot.positions[pin] == rest[pin]);
+        let ways = || pins.iter().map(|&pin| Way::new(pin, snapshot.positions[pin])).collect();
+        (!in_place).then(|| Self { pins: ways(), velocity, passed: 0.0 })
     }
 
-    /// Moves the pins for `tick` seconds. Returns whether all are in their places.
-    pub fn go_on(&mut self, tick: f32, fabric: &Fabric, positions: &mut [Vec3]) -> bool {
+    /// Begins the motion of all pins of a cloth from their positions, m.
+    pub fn from_positions(fabric: &Fabric, positions: &[Vec3]) -> Self {
+        let pins = (0..positions.len()).filter(|&particle| fabric.is_pinned(particle));
+        let pins = pins.map(|pin| Way::new(pin, positions[pin])).collect();
+        Self { pins, velocity: Vec3::ZERO, passed: 0.0 }
+    }
+
+    /// Moves the pins for `tick` seconds towards their places (m), and returns their motions.
+    pub fn go_on(&mut self, tick: f32, place: impl Fn(u32) -> Vec3) -> Vec<MovingPin> {
         self.passed += tick;
         let part = (self.passed / TIME).min(1.0);
-        for pin in &self.pins {
-            let rest = fabric.rest_positions()[pin.particle];
-            positions[pin.particle] =
-                if part < 1.0 { pin.at(part, self.velocity, rest) } else { rest };
-        }
-        part == 1.0
+        let velocity = self.velocity;
+        let moved = self.pins.iter_mut().map(|pin| {
+            let (from, place) = (pin.at, place(pin.particle));
+            pin.at = if part < 1.0 { pin.after(part, velocity, place) } else { place };
+            MovingPin { particle: pin.particle, from, to: pin.at }
+        });
+        moved.collect()
+    }
+
+    /// Whether all pins are in their places.
+    pub fn has_ended(&self) -> bool {
+        self.passed >= TIME
     }
 }

@@ -262,6 +262,13 @@ struct Before<'a> {
 }
 
 impl Before<'_> {
+    /// Whether all pins are where they are at rest.
+    fn pins_rest(&self) -> bool {
+        let rest = self.fabric.rest_positions();
+        let mut pins = self.fabric.pins().iter().map(|pin| pin.particle as usize);
+        pins.all(|pin| self.state.positions[pin] == rest[pin])
+    }
+
     /// Completes the state on the settler's fabric from positions and velocities there: removes the strain of
     /// the change, conserves the momentum, and limits the energy to that before.
     fn conserve(
@@ -273,8 +280,11 @@ impl Before<'_> {
         gravity: Vec3,
     ) -> ClothSnapshot {
         let fabric = settler.fabric();
-        for pin in fabric.pins() {
-            positions[pin.particle as usize] = fabric.rest_positions()[pin.particle as usize];
+        // Pins that have been moved stay where the other level has them.
+        if self.pins_rest() {
+            for pin in fabric.pins() {
+                positions[pin.particle as usize] = fabric.rest_positions()[pin.particle as usize];
+            }
         }
         let density = f64::from(material.area_density);
         let motion = internal_motion(self.fabric, &self.state.velocities);

@@ -1,0 +1,105 @@
+//! The pins that anchors hold, and where they are.
+
+use std::sync::Arc;
+
+use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Vec3};
+use bunting_solver::{Fabric, MovingPin};
+
+use crate::fabric::levels::ClothLevels;
+use crate::motion::anchor_poses::AnchorPoses;
+
+/// Distance of a pin from its place at which it begins to move there over a while, m. Smaller: a change of level,
+/// after which pins are interpolated, counts. Larger: pins visibly jump.
+const IN_PLACE: f32 = 1e-3;
+
+/// The pins of a cloth that are held by its anchors, at its present level.
+#[derive(Component, Debug, Default)]
+pub(crate) struct AnchorPins {
+    /// The levels and the level that the pins are those of.
+    of: Option<(Arc<ClothLevels>, usize)>,
+    pins: Vec<AnchoredPin>,
+}
+
+/// A pin that an anchor holds.
+#[derive(Clone, Copy, Debug)]
+struct AnchoredPin {
+    particle: u32,
+    anchor: usize,
+    /// Position now, in the cloth's frame, m.
+    at: Vec3,
+    /// Place at the end of the tick, in the cloth's frame at that time, m.
+    place: Vec3,
+}
+
+impl AnchorPins {
+    /// Whether the pins are those of a level.
+    pub fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
+        self.of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, levels) && *at == level)
+    }
+
+    /// Finds the pins of a level, given the vertices that each anchor holds and the positions of all particles, m.
+    pub fn find(
+        &mut self,
+        levels: &Arc<ClothLevels>,
+        level: usize,
+        groups: &[Vec<u32>],
+        positions: &[Vec3],
+    ) {
+        self.of = Some((Arc::clone(levels), level));
+        self.pins.clear();
+        for (anchor, group) in groups.iter().enumerate() {
+            let particles = group.iter().filter_map(|&vertex| levels.particle(level, vertex));
+            self.pins.extend(particles.map(|particle| {
+                let at = positions[particle];
+                AnchoredPin { particle: particle as u32, anchor, at, place: at }
+            }));
+        }
+        // Vertices that share a particle may be of different anchors: the first one holds it.
+        self.pins.sort_by_key(|pin| (pin.particle, pin.anchor));
+        self.pins.dedup_by_key(|pin| pin.particle);
+    }
+
+    /// Finds the places of the pins in a tick, given the cloth's frame at its start and at its end. Returns whether all
+    /// are in their places at its start.
+    pub fn find_places(
+        &mut self,
+        fabric: &Fabric,
+        poses: &AnchorPoses,
+        (start, end): (Isometry3d, Isometry3d),
+    ) -> bool {
+        let (start, end) = (start.inverse(), end.inverse());
+        let mut are_in_place = true;
+        for pin in &mut self.pins {
+            let Some((from, to)) = poses.span(pin.anchor) else { continue };
+            let rest = fabric.rest_positions()[pin.particle as usize];
+            pin.place = end * (to * rest);
+            are_in_place &= (start * (from * rest)).distance(pin.at) < IN_PLACE;
+        }
+        are_in_place
+    }
+
+    /// Place of a particle that an anchor holds, m.
+    pub fn place(&self, particle: u32) -> Option<Vec3> {
+        let index = self.pins.binary_search_by_key(&particle, |pin| pin.particle).ok()?;
+        Some(self.pins[index].place)
+    }
+
+    /// The motions of the pins to their places in this tick.
+    pub fn motions(&self) -> Vec<MovingPin> {
+        let moving = self.pins.iter().filter(|pin| pin.at != pin.place);
+        let moving =
+            moving.map(|pin| MovingPin { particle: pin.particle, from: pin.at, to: pin.place });
+        moving.collect()
+    }
+
+    /// Notes the motions of pins in this tick.
+    pub fn note(&mut self, motions: &[MovingPin]) {
+        for motion in motions {
+            if let Ok(index) = self.pins.binary_search_by_key(&motion.particle, |pin| pin.particle)
+            {
+                self.pins[index].at = motion.to;
+            }
+        }
+    }
+}

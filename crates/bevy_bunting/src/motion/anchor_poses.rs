@@ -1,0 +1,116 @@
+//! The poses of anchors' targets, observed like the frames of cloths.
+
+use bevy_ecs::prelude::*;
+use bevy_math::Isometry3d;
+use bevy_time::{Time, Virtual};
+use bevy_transform::helper::TransformHelper;
+
+use crate::motion::anchor_pins::AnchorPins;
+use crate::motion::attachment::{Anchor, Attachment};
+use crate::motion::frame::{frame_on, is_finite};
+use crate::motion::pose::{ObservationTimes, PoseHistory};
+
+/// The poses of a cloth's anchors, in their order.
+#[derive(Component, Debug, Default)]
+#[require(AnchorPins)]
+pub(crate) struct AnchorPoses(Vec<AnchorPose>);
+
+/// The pose of one anchor.
+#[derive(Debug)]
+struct AnchorPose {
+    target: Entity,
+    history: PoseHistory,
+}
+
+impl AnchorPoses {
+    /// Poses of an anchor at the start and the end of the tick. None before its first tick.
+    pub fn span(&self, anchor: usize) -> Option<(Isometry3d, Isometry3d)> {
+        let history = &self.0.get(anchor)?.history;
+        history.is_observed().then(|| (history.start(), history.end()))
+    }
+
+    /// Whether any anchor may move in this tick.
+    pub fn may_move(&self) -> bool {
+        self.0.iter().any(|pose| !pose.history.rests())
+    }
+
+    /// Forgets the poses of targets that are no longer those of the anchors.
+    fn fit(&mut self, anchors: &[Anchor]) {
+        self.0.truncate(anchors.len());
+        for (pose, anchor) in self.0.iter_mut().zip(anchors) {
+            if pose.target != anchor.target {
+                *pose = AnchorPose { target: anchor.target, history: PoseHistory::default() };
+            }
+        }
+        let new = anchors.iter().skip(self.0.len());
+        self.0.extend(
+            new.map(|anchor| AnchorPose { target: anchor.target, history: PoseHistory::default() }),
+        );
+    }
+
+    /// Calls `observe` with the history of each anchor and its present pose, if it has one.
+    fn observe(
+        &mut self,
+        anchors: &[Anchor],
+        transforms: &TransformHelper,
+        mut observe: impl FnMut(&mut PoseHistory, Option<Isometry3d>),
+    ) {
+        self.fit(anchors);
+        for (pose, anchor) in self.0.iter_mut().zip(anchors) {
+            let target = transforms.compute_global_transform(anchor.target).ok();
+            let now = target.map(|target| frame_on(&target, &anchor.offset)).filter(is_finite);
+            observe(&mut pose.history, now);
+        }
+    }
+}
+
+/// Gives cloths with anchors their [`AnchorPoses`].
+pub(super) fn follow_anchors(
+    attachments: Query<(Entity, &Attachment, Has<AnchorPoses>), Changed<Attachment>>,
+    mut commands: Commands,
+) {
+    for (entity, attachment, has_poses) in &attachments {
+        let has_anchors = !attachment.anchors.is_empty();
+        if has_anchors && !has_poses {
+            commands.entity(entity).insert(AnchorPoses::default());
+        } else if has_poses && !has_anchors {
+            commands.entity(entity).remove::<AnchorPoses>();
+        }
+    }
+}
+
+/// Observes all anchors in a frame of the app; if `EARLY`, before the ticks of that frame.
+pub(super) fn observe_anchors_in_frames<const EARLY: bool>(
+    mut cloths: Query<(&Attachment, &mut AnchorPoses)>,
+    transforms: TransformHelper,
+    time: Res<Time<Virtual>>,
+    times: Res<ObservationTimes>,
+) {
+    let now = time.elapsed_secs_f64();
+    for (attachment, mut poses) in &mut cloths {
+        poses.observe(&attachment.anchors, &transforms, |history, pose| {
+            if let Some(pose) = pose {
+                history.observe_frame(&times, now, pose, attachment.teleport_speed, EARLY);
+            }
+        });
+    }
+}
+
+/// Observes all anchors in a tick.
+pub(super) fn observe_anchors_in_ticks(
+    mut cloths: Query<(&Attachment, &mut AnchorPoses)>,
+    transforms: TransformHelper,
+    time: Res<Time>,
+    times: Res<ObservationTimes>,
+) {
+    let now = times.in_tick(time.elapsed_secs_f64());
+    let tick = time.delta_secs_f64();
+    for (attachment, mut poses) in &mut cloths {
+        poses.observe(&attachment.anchors, &transforms, |history, pose| match pose {
+            Some(pose) => {
+                history.observe_tick(&times, &now, tick, pose, attachment.teleport_speed);
+            }
+            None => history.hold(),
+        });
+    }
+}
