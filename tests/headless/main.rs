@@ -18,3 +18,4 @@ mod substep;
 mod thread_probe;
 mod threads;
 mod weights;
+mod wind;

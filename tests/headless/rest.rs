@@ -156,3 +156,26 @@ fn a_pause_keeps_a_sheet_asleep() {
     scene.app.world_mut().spawn(WindField::steady(Vec3::Z));
     assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
 }
+
+#[test]
+fn local_winds_wake_the_sheets_that_they_reach() {
+    let gusty = WindField::steady(Vec3::Z).with_gusts(1.0, 0.5, 1);
+    for (x, expected) in [(20.0, ClothActivity::AtRest), (2.0, ClothActivity::Ticking)] {
+        let mut scene = sleeping_sheet();
+        let place = Transform::from_xyz(x, 3.0, 0.0);
+        scene.app.world_mut().spawn((gusty, WindRegion::ball(4.0, 1.0), place));
+        assert_eq!(scene.activity_after_ticks(), expected, "{x} m away");
+    }
+}
+
+#[test]
+fn a_change_of_shelter_wakes_a_sheet() {
+    let mut scene = sleeping_sheet();
+    let sheet = scene.sheet;
+    scene.entity(sheet).insert(WindInfluence(0.5));
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
+    run(&mut scene.app, SETTLING);
+    assert_eq!(scene.activity(), ClothActivity::AtRest);
+    scene.entity(sheet).remove::<WindInfluence>();
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
+}

@@ -41,7 +41,10 @@
 //! | [`ClothPaused`] | a cloth | stops the simulation of the cloth |
 //! | [`ClothState`] | a cloth | positions and normals after the last tick, to be read |
 //! | [`ClothSurface`] | a cloth | positions and normals between two ticks, for display |
-//! | [`WindField`] | any entity | velocity of the air |
+//! | [`WindInfluence`] | a cloth | the part of the wind that it feels |
+//! | [`WindField`] | any entity | velocity of the air, with gusts |
+//! | [`WindRegion`] | a `WindField` | the space in which it blows |
+//! | [`WindFan`], [`WindBlast`], [`WindWake`] | any entity | a jet, a blast, a wake behind the entity |
 //! | [`ClothCollider`] | any entity | a shape that cloth does not enter |
 //! | [`LodViewer`] | a camera | a viewer in whose picture errors of levels are measured |
 //!
@@ -138,7 +141,14 @@ pub use environment::reactions::{
     ClothParted, ClothReaction, ClothReactions, ClothTouched, ReactionPlugin,
 };
 pub use environment::self_collision::{SelfCollision, SelfCollisionPlugin};
-pub use environment::wind::{GustTravel, TickWind, WindField, WindPlugin};
+pub use environment::wind::blast::WindBlast;
+pub use environment::wind::fan::WindFan;
+pub use environment::wind::field::{GustTravel, WindField};
+pub use environment::wind::influence::WindInfluence;
+pub use environment::wind::plugin::WindPlugin;
+pub use environment::wind::region::{WindRegion, WindShape};
+pub use environment::wind::tick_wind::TickWind;
+pub use environment::wind::wake::{WakeTrail, WindWake};
 pub use fabric::prepare::PreparePlugin;
 pub use lod::budget::{ClothBudget, LodCosts};
 pub use lod::cost_table::CostTable;
@@ -170,7 +180,8 @@ pub mod prelude {
         ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
         ClothReactions, ClothSeed, ClothSettings, ClothState, ClothSurface, ClothSystems,
         ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, SelfCollision, TargetLost,
-        TeleportCloth, TeleportMode, WeightsError, WindField,
+        TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan, WindField, WindInfluence,
+        WindRegion, WindShape, WindWake,
     };
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }

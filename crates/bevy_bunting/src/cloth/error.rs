@@ -117,6 +117,12 @@ pub enum ClothError {
         /// The cloth.
         entity: Entity,
     },
+    /// The [`WindInfluence`](crate::WindInfluence) is not finite, or negative. It counts as 1.
+    #[error("the WindInfluence of cloth {entity} must be finite and not negative")]
+    Influence {
+        /// The cloth.
+        entity: Entity,
+    },
     /// The cloth's `Mesh3d` is kept in the render world only. The cloth is simulated, but its mesh is not
     /// written until its `Mesh3d` is replaced.
     #[cfg(feature = "render")]
