@@ -10,7 +10,7 @@ use crate::environment::wind::fan::WindFan;
 use crate::environment::wind::field::{GustTravel, MovingAir, WindField};
 use crate::environment::wind::influence::{WindInfluence, report_influences};
 use crate::environment::wind::region::{WindRegion, WindShape};
-use crate::environment::wind::tick_wind::{LocalAir, Source, TickWind};
+use crate::environment::wind::tick_wind::{LocalAir, TickWind};
 use crate::environment::wind::wake::{WakeTrail, WindWake};
 use crate::motion::observe::observe_ticks;
 use crate::motion::pose::PoseHistory;
@@ -46,24 +46,24 @@ impl Plugin for WindPlugin {
     }
 }
 
+type Region = (&'static WindRegion, &'static PoseHistory);
+
 fn collect_fields(
-    mut fields: Query<(&WindField, &mut GustTravel, Option<(&WindRegion, &PoseHistory)>)>,
+    mut fields: Query<(&WindField, &mut GustTravel, Option<Region>)>,
     time: Res<Time>,
     mut wind: ResMut<TickWind>,
 ) {
-    let TickWind { everywhere, local } = &mut *wind;
-    everywhere.clear();
-    local.clear();
+    wind.clear();
     for (field, mut travel, region) in &mut fields {
         travel.0 += field.travel_rate() * time.delta_secs_f64();
         let air = MovingAir::new(field, travel.0);
         let Some((region, history)) = region else {
-            everywhere.push(air);
+            wind.everywhere.push(air);
             continue;
         };
         let pose = history.end();
         let ball = (Vec3::from(pose.translation), region.shape.reach());
-        local.push(LocalAir { ball, source: Source::Region(air, *region, pose) });
+        wind.add_local(ball, LocalAir::Region(air, *region, pose));
     }
 }
 
@@ -71,8 +71,7 @@ fn collect_fans(fans: Query<(&WindFan, &PoseHistory)>, mut wind: ResMut<TickWind
     for (fan, history) in &fans {
         let pose = history.end();
         let (centre, radius) = fan.ball();
-        wind.local
-            .push(LocalAir { ball: (pose * centre, radius), source: Source::Fan(*fan, pose) });
+        wind.add_local((pose * centre, radius), LocalAir::Fan(*fan, pose));
     }
 }
 
@@ -87,8 +86,8 @@ fn collect_blasts(
     for (entity, mut blast, history) in &mut blasts {
         blast.age += tick;
         if let Some(radius) = blast.reached() {
-            let ball = (Vec3::from(history.end().translation), radius);
-            wind.local.push(LocalAir { ball, source: Source::Blast(*blast, tick) });
+            let centre = Vec3::from(history.end().translation);
+            wind.add_local((centre, radius), LocalAir::Blast(*blast, centre, tick));
         } else if blast.is_over() {
             commands.entity(entity).remove::<WindBlast>();
         }
@@ -104,8 +103,7 @@ fn collect_wakes(
         let path = [history.start(), history.end()].map(|pose| Vec3::from(pose.translation));
         trail.advance(path.into(), time.delta_secs());
         if let Some(ball) = trail.ball(wake.drag_area) {
-            let source = Source::Wake(trail.clone(), wake.drag_area);
-            wind.local.push(LocalAir { ball, source });
+            wind.add_local(ball, LocalAir::Wake(trail.clone(), wake.drag_area));
         }
     }
 }

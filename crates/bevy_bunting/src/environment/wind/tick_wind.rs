@@ -19,51 +19,51 @@ pub(crate) const FASTEST: f32 = 340.0;
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct TickWind {
     pub(super) everywhere: Vec<MovingAir>,
-    pub(super) local: Vec<LocalAir>,
+    /// Balls in which local winds blow, beside one another in memory since each cloth is compared with all of them.
+    balls: Vec<Ball>,
+    local: Vec<LocalAir>,
+}
+
+/// A ball in the world.
+#[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+struct Ball {
+    /// Its centre, m.
+    centre: Vec3,
+    /// Its squared radius, m².
+    squared_radius: f32,
 }
 
 /// A wind that blows inside a ball.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "regions are the common case, and boxes cannot be reflected"
+)]
 #[derive(Clone, Debug, PartialEq, Reflect)]
-pub(super) struct LocalAir {
-    /// Centre in the world and radius of the ball, m.
-    pub ball: (Vec3, f32),
-    pub source: Source,
-}
-
-/// What moves the air of a [`LocalAir`].
-#[derive(Clone, Debug, PartialEq, Reflect)]
-pub(super) enum Source {
+pub(super) enum LocalAir {
     /// A field bounded to a region, and the region's pose.
     Region(MovingAir, WindRegion, Isometry3d),
     /// A jet, and its pose.
     Fan(WindFan, Isometry3d),
-    /// A blast, and the length of the tick, s.
-    Blast(WindBlast, f32),
+    /// A blast, its centre (m), and the length of the tick (s).
+    Blast(WindBlast, Vec3, f32),
     /// A wake, and the drag area of its body, m².
     Wake(WakeTrail, f32),
 }
 
 impl LocalAir {
     /// Velocity (m/s) at a position in the world (m).
+    #[inline(never)]
     fn at(&self, position: Vec3) -> Vec3 {
-        let (centre, radius) = self.ball;
-        let from_centre = position - centre;
-        // False where a number is NaN.
-        let is_near = from_centre.length_squared() <= radius * radius;
-        if !is_near {
-            return Vec3::ZERO;
-        }
-        match &self.source {
-            Source::Region(air, region, pose) => {
-                let weight = region.weight_at(pose.rotation.inverse() * from_centre);
-                if weight == 0.0 { Vec3::ZERO } else { weight * air.at(position) }
-            }
-            Source::Fan(fan, pose) => {
-                let from_fan = position - Vec3::from(pose.translation);
-                pose.rotation * fan.velocity_at(pose.rotation.inverse() * from_fan)
-            }
-            Source::Blast(blast, tick) => blast.velocity_at(from_centre, *tick),
-            Source::Wake(trail, drag_area) => trail.velocity_at(position, *drag_area),
+        let in_frame =
+            |pose: &Isometry3d| pose.rotation.inverse() * (position - Vec3::from(pose.translation));
+        match self {
+            Self::Region(air, region, pose) => match region.weight_at(in_frame(pose)) {
+                0.0 => Vec3::ZERO,
+                weight => weight * air.at(position),
+            },
+            Self::Fan(fan, pose) => pose.rotation * fan.velocity_at(in_frame(pose)),
+            Self::Blast(blast, centre, tick) => blast.velocity_at(position - centre, *tick),
+            Self::Wake(trail, drag_area) => trail.velocity_at(position, *drag_area),
         }
     }
 }
@@ -75,10 +75,11 @@ impl TickWind {
     pub fn at(&self, position: Vec3) -> Vec3 {
         let velocities = self.everywhere.iter().map(|air| air.at(position));
         let mut sum: Vec3 = velocities.filter(|velocity| velocity.is_finite()).sum();
-        for air in &self.local {
-            let velocity = air.at(position);
-            if velocity.is_finite() {
-                sum += velocity;
+        for (ball, air) in self.balls.iter().zip(&self.local) {
+            // False where a number is NaN.
+            if position.distance_squared(ball.centre) <= ball.squared_radius {
+                let velocity = air.at(position);
+                sum += if velocity.is_finite() { velocity } else { Vec3::ZERO };
             }
         }
         if sum.abs().max_element() < 0.5 * FASTEST { sum } else { limited(sum) }
@@ -90,12 +91,29 @@ impl TickWind {
     }
 
     /// Centres and radii (m) of balls outside which the local air has not changed since an earlier tick.
-    pub(crate) fn changed_balls(&self, before: &Self) -> impl Iterator<Item = (Vec3, f32)> {
-        let changed = |one: &Self, other: &Self| {
-            let is_new = |air: &&LocalAir| !other.local.contains(air);
-            one.local.iter().filter(is_new).map(|air| air.ball).collect::<Vec<_>>()
+    pub(crate) fn changed_balls<'a>(
+        &'a self,
+        before: &'a Self,
+    ) -> impl Iterator<Item = (Vec3, f32)> + 'a {
+        let changed = |one: &'a Self, other: &'a Self| {
+            let both = one.balls.iter().zip(&one.local);
+            let new = both.filter(|(_, air)| !other.local.contains(air));
+            new.map(|(ball, _)| (ball.centre, ball.squared_radius.sqrt()))
         };
-        changed(self, before).into_iter().chain(changed(before, self))
+        changed(self, before).chain(changed(before, self))
+    }
+
+    /// Removes all winds.
+    pub(super) fn clear(&mut self) {
+        self.everywhere.clear();
+        self.balls.clear();
+        self.local.clear();
+    }
+
+    /// Adds a wind that blows inside a ball, given by its centre and radius in the world, m.
+    pub(super) fn add_local(&mut self, (centre, radius): (Vec3, f32), air: LocalAir) {
+        self.balls.push(Ball { centre, squared_radius: radius * radius });
+        self.local.push(air);
     }
 }
 
