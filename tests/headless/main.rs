@@ -9,6 +9,7 @@ mod effort;
 mod environment;
 mod errors;
 mod first_hour;
+mod forces;
 mod governor;
 mod levels;
 mod lifecycle;

@@ -42,6 +42,7 @@
 //! | [`ClothState`] | a cloth | positions and normals after the last tick, to be read |
 //! | [`ClothSurface`] | a cloth | positions and normals between two ticks, for display |
 //! | [`WindInfluence`] | a cloth | the part of the wind that it feels |
+//! | [`ClothAcceleration`] | a cloth | an acceleration besides gravity |
 //! | [`WindField`] | any entity | velocity of the air, with gusts |
 //! | [`WindRegion`] | a `WindField` | the space in which it blows |
 //! | [`WindFan`], [`WindBlast`], [`WindWake`] | any entity | a jet, a blast, a wake behind the entity |
@@ -80,7 +81,8 @@
 //! # Events
 //!
 //! [`ClothFailed`], [`ClothLevelChanged`] and [`ClothTargetLost`] are triggered on the cloth;
-//! [`TeleportCloth`] and [`WakeCloth`] are triggered by the user.
+//! [`TeleportCloth`], [`WakeCloth`] and [`ClothImpulse`] are triggered by the user. The system parameter [`ClothControl`]
+//! moves single particles between ticks.
 //!
 //! # Drawing
 //!
@@ -136,6 +138,10 @@ pub use display::surface::{ClothSurface, SurfacePlugin};
 pub use environment::collider::{ClothCollider, ColliderError};
 pub use environment::drive::DrivePlugin;
 pub use environment::drive_colliders::ColliderPlugin;
+pub use environment::forces::acceleration::ClothAcceleration;
+pub use environment::forces::control::{ClothControl, ControlError, ControlledCloth};
+pub use environment::forces::impulse::{ClothImpulse, Push};
+pub use environment::forces::plugin::ForcePlugin;
 pub use environment::layers::{ClothFeatures, ClothLayers};
 pub use environment::reactions::{
     ClothParted, ClothReaction, ClothReactions, ClothTouched, ReactionPlugin,
@@ -175,13 +181,13 @@ pub use timings::ClothTimings;
 /// The items that most apps need.
 pub mod prelude {
     pub use crate::{
-        AttachedVertices, Attachment, ClothActivity, ClothBudget, ClothCollider, ClothCorner,
-        ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothLayers, ClothLevelChanged,
-        ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
-        ClothReactions, ClothSeed, ClothSettings, ClothState, ClothSurface, ClothSystems,
-        ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, SelfCollision, TargetLost,
-        TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan, WindField, WindInfluence,
-        WindRegion, WindShape, WindWake,
+        AttachedVertices, Attachment, ClothAcceleration, ClothActivity, ClothBudget, ClothCollider,
+        ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothImpulse,
+        ClothLayers, ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted, ClothPaused,
+        ClothPlugins, ClothPreroll, ClothReactions, ClothSeed, ClothSettings, ClothState,
+        ClothSurface, ClothSystems, ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer,
+        SelfCollision, TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan,
+        WindField, WindInfluence, WindRegion, WindShape, WindWake,
     };
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
@@ -219,6 +225,7 @@ impl PluginGroup for ClothPlugins {
             .add(PrerollPlugin)
             .add(LanePlugin)
             .add(WindPlugin)
+            .add(ForcePlugin)
             .add(AttachmentPlugin)
             .add(TeleportPlugin)
             .add(DrivePlugin)

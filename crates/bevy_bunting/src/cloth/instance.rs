@@ -108,6 +108,25 @@ impl ClothInstance {
         }
     }
 
+    /// A copy of the state, between two ticks, wherever it is stored.
+    pub fn state(&self, batches: &ClothBatches) -> Option<ClothSnapshot> {
+        match &self.storage {
+            StateStorage::None => None,
+            StateStorage::Snapshot(snapshot) => Some(snapshot.clone()),
+            StateStorage::Lane(lane) => Some(batches.batch(*lane).snapshot(lane.lane)),
+        }
+    }
+
+    /// Overwrites the state by a finite one of the same fabric, between two ticks, and wakes the cloth.
+    pub fn set_state(&mut self, state: ClothSnapshot, batches: &mut ClothBatches) {
+        match self.storage {
+            StateStorage::Lane(lane) => batches.lane(lane).restore(&state),
+            _ => self.storage = StateStorage::Snapshot(state),
+        }
+        self.unmoved = false;
+        self.wake();
+    }
+
     /// Moves the state out of its lane into a snapshot.
     pub fn leave_lane(&mut self, batches: &mut ClothBatches) {
         if let StateStorage::Lane(lane) = self.storage {

@@ -175,9 +175,10 @@ fn begin_prerolls(
         *state = ClothState::default();
         let frame = frame_of(entity, attachment, &transforms).unwrap_or_default();
         let seconds = if preroll.seconds.is_finite() { preroll.seconds } else { 0.0 };
-        let drive = surroundings.drive(instance.rest_middle, frame, FrameMotion::NONE, exposure);
+        let drive = surroundings.drive(instance.rest_middle, frame, FrameMotion::NONE, &exposure);
         let air = Loads::of_air(&drive, &instance.material, tick);
-        let (class, _) = Loads { air, ..Loads::default() }.class();
+        let (class, _) =
+            Loads { air, frame: exposure.acceleration().length(), motion: 0.0 }.class();
         let acceleration = class.acceleration(settings.gravity.length());
         let preroll = Preroll {
             settings: settings.limits(instance.level).of_fabric(&fabric, tick, acceleration),

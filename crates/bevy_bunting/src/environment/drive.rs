@@ -38,11 +38,11 @@ pub(crate) fn drive_cloths(
     for ((mut instance, frame, mut effort), exposure) in &mut cloths {
         let Some(lane) = instance.lane() else { continue };
         let motion = frame.motion();
-        let drive = surroundings.drive(instance.rest_middle, frame.end(), motion, exposure);
+        let drive = surroundings.drive(instance.rest_middle, frame.end(), motion, &exposure);
         // Gravity is written in every tick, which must not mark the cloth as changed.
         instance.bypass_change_detection().gravity = drive.gravity;
         let air = Loads::of_air(&drive, &instance.material, surroundings.tick());
-        effort.note_drive(motion, air);
+        effort.note_drive(motion, air, exposure.acceleration().length());
         batches.lane(lane).drive(drive);
     }
 }

@@ -5,6 +5,7 @@ mod collider_tree;
 pub mod drive;
 pub mod drive_colliders;
 mod falloff;
+pub mod forces;
 pub(crate) mod layers;
 pub(crate) mod reactions;
 pub(crate) mod self_collision;

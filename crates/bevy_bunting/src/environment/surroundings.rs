@@ -1,11 +1,13 @@
 //! What acts on a cloth in a tick besides its attachment and colliders: gravity and the air.
 
 use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
 use bevy_ecs::system::SystemParam;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_time::Time;
 use bunting_solver::{Drive, FrameMotion};
 
+use crate::environment::forces::acceleration::ClothAcceleration;
 use crate::environment::wind::influence::WindInfluence;
 use crate::environment::wind::tick_wind::TickWind;
 use crate::settings::ClothSettings;
@@ -19,7 +21,18 @@ pub(crate) struct Surroundings<'w> {
 }
 
 /// The components of a cloth on which the effect of its surroundings depends.
-pub(crate) type Exposure = (Option<&'static WindInfluence>,);
+#[derive(QueryData)]
+pub(crate) struct Exposure {
+    influence: Option<&'static WindInfluence>,
+    acceleration: Option<&'static ClothAcceleration>,
+}
+
+impl ExposureItem<'_, '_> {
+    /// Acceleration of the cloth's own along the world's axes, m/s².
+    pub fn acceleration(&self) -> Vec3 {
+        self.acceleration.map_or(Vec3::ZERO, |acceleration| acceleration.acting())
+    }
+}
 
 impl Surroundings<'_> {
     /// The length of the tick, s.
@@ -28,18 +41,21 @@ impl Surroundings<'_> {
     }
 
     /// What acts on a cloth with the given middle at rest (m) in a frame with this pose and motion. Gravity and wind are
-    /// rotated from the world's axes to those of the frame. The cloth feels the air at its middle.
+    /// rotated from the world's axes to those of the frame. An acceleration of the cloth's own adds to gravity. The cloth feels the air at its middle.
     pub fn drive(
         &self,
         rest_middle: Vec3,
         frame: Isometry3d,
         motion: FrameMotion,
-        (influence,): (Option<&WindInfluence>,),
+        exposure: &ExposureItem,
     ) -> Drive {
         let inverse = frame.rotation.inverse();
-        let (gravity, air_density) = self.gravity_and_air();
+        let (mut gravity, air_density) = self.gravity_and_air();
+        if exposure.acceleration.is_some() {
+            gravity += exposure.acceleration();
+        }
         let mut wind = inverse * self.wind.at(frame * rest_middle);
-        if let Some(influence) = influence {
+        if let Some(influence) = exposure.influence {
             wind = influence.felt(wind, motion.translation / self.tick());
         }
         Drive { motion, gravity: inverse * gravity, wind, air_density }

@@ -11,6 +11,7 @@ use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
 use crate::display::lift::lift_surfaces;
 use crate::environment::collider::ClothCollider;
+use crate::environment::forces::acceleration::ClothAcceleration;
 use crate::environment::layers::{ClothFeatures, ClothLayers};
 use crate::environment::self_collision::SelfCollision;
 use crate::environment::wind::influence::WindInfluence;
@@ -48,7 +49,10 @@ pub struct SleepPlugin;
 
 impl Plugin for SleepPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Changes>().add_observer(wake).add_observer(wake_bared::<WindInfluence>);
+        app.init_resource::<Changes>()
+            .add_observer(wake)
+            .add_observer(wake_bared::<WindInfluence>)
+            .add_observer(wake_bared::<ClothAcceleration>);
         app.add_systems(
             ClothTick,
             (
@@ -117,7 +121,7 @@ fn wake_bared<C: Component>(
 }
 
 /// Filter of cloths on which their surroundings act otherwise than before.
-type HasNewExposure = Changed<WindInfluence>;
+type HasNewExposure = Or<(Changed<WindInfluence>, Changed<ClothAcceleration>)>;
 
 fn wake_exposed(mut cloths: Query<(&mut ClothInstance, &mut RestTimer), HasNewExposure>) {
     for (mut instance, mut timer) in &mut cloths {
