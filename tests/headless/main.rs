@@ -11,6 +11,7 @@ mod errors;
 mod first_hour;
 mod forces;
 mod governor;
+mod inertia;
 mod levels;
 mod lifecycle;
 mod order;

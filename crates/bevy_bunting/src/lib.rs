@@ -42,6 +42,7 @@
 //! | [`ClothState`] | a cloth | positions and normals after the last tick, to be read |
 //! | [`ClothSurface`] | a cloth | positions and normals between two ticks, for display |
 //! | [`WindInfluence`] | a cloth | the part of the wind that it feels |
+//! | [`ClothInertia`] | a cloth | the part of its frame's acceleration that it feels |
 //! | [`ClothAcceleration`] | a cloth | an acceleration besides gravity |
 //! | [`WindField`] | any entity | velocity of the air, with gusts |
 //! | [`WindRegion`] | a `WindField` | the space in which it blows |
@@ -165,6 +166,7 @@ pub use lod::select::LodPlugin;
 pub use lod::sleep::{SleepPlugin, WakeCloth};
 pub use lod::viewer::{Lens, LodViewer};
 pub use motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
+pub use motion::inertia::ClothInertia;
 pub use motion::plugin::AttachmentPlugin;
 pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
@@ -183,11 +185,11 @@ pub mod prelude {
     pub use crate::{
         AttachedVertices, Attachment, ClothAcceleration, ClothActivity, ClothBudget, ClothCollider,
         ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothImpulse,
-        ClothLayers, ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted, ClothPaused,
-        ClothPlugins, ClothPreroll, ClothReactions, ClothSeed, ClothSettings, ClothState,
-        ClothSurface, ClothSystems, ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer,
-        SelfCollision, TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan,
-        WindField, WindInfluence, WindRegion, WindShape, WindWake,
+        ClothInertia, ClothLayers, ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted,
+        ClothPaused, ClothPlugins, ClothPreroll, ClothReactions, ClothSeed, ClothSettings,
+        ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick, ClothTouched, LodSet,
+        LodViewer, SelfCollision, TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast,
+        WindFan, WindField, WindInfluence, WindRegion, WindShape, WindWake,
     };
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }

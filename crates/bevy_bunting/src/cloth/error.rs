@@ -123,6 +123,12 @@ pub enum ClothError {
         /// The cloth.
         entity: Entity,
     },
+    /// A part of the [`ClothInertia`](crate::ClothInertia) is not within 0 to 1. The cloth feels everything.
+    #[error("the parts of the ClothInertia of cloth {entity} must lie within 0 to 1")]
+    Inertia {
+        /// The cloth.
+        entity: Entity,
+    },
     /// The [`ClothAcceleration`](crate::ClothAcceleration) is not finite. It counts as zero.
     #[error("the ClothAcceleration of cloth {entity} must be finite")]
     Acceleration {

@@ -15,6 +15,7 @@ use crate::cloth::imperfection::{ClothSeed, almost_at_rest};
 use crate::cloth::state::ClothState;
 use crate::fabric::awaited::AwaitedLevels;
 use crate::fabric::levels::ClothLevels;
+use crate::motion::inertia::ClothInertia;
 use crate::motion::take_up::TakingUp;
 
 /// Storage of a cloth's state.
@@ -50,6 +51,8 @@ pub(crate) struct ClothInstance {
     pub material: FabricMaterial,
     /// Gravity in the last tick, along the axes of the cloth's frame, m/s².
     pub gravity: Vec3,
+    /// Inertia in the last tick, on which the meaning of the velocities depends; none before the first.
+    pub inertia: Option<ClothInertia>,
     /// Target that the levels were built for: the attachment's, or the cloth itself if it is attached to its
     /// own transform; none without an attachment.
     pub target: Option<Entity>,

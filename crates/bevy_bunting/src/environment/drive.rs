@@ -2,12 +2,13 @@
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
-use bunting_solver::Loads;
+use bunting_solver::{FrameMotion, Loads};
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::environment::surroundings::{Exposure, Surroundings, report_settings};
 use crate::lod::effort::ClothEffort;
+use crate::motion::inertia::ClothInertia;
 use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 
@@ -27,7 +28,12 @@ impl Plugin for DrivePlugin {
     }
 }
 
-type DrivenCloth = (&'static mut ClothInstance, &'static PoseHistory, &'static mut ClothEffort);
+type DrivenCloth = (
+    &'static mut ClothInstance,
+    &'static PoseHistory,
+    &'static mut ClothEffort,
+    Option<&'static ClothInertia>,
+);
 
 /// Sets frame motion, gravity and wind, along the axes of the cloth's frame at the end of the tick.
 pub(crate) fn drive_cloths(
@@ -35,14 +41,41 @@ pub(crate) fn drive_cloths(
     surroundings: Surroundings,
     mut batches: ResMut<ClothBatches>,
 ) {
-    for ((mut instance, frame, mut effort), exposure) in &mut cloths {
+    let tick = surroundings.tick();
+    for ((mut instance, frame, mut effort, inertia), exposure) in &mut cloths {
         let Some(lane) = instance.lane() else { continue };
         let motion = frame.motion();
-        let drive = surroundings.drive(instance.rest_middle, frame.end(), motion, &exposure);
+        let mut drive = surroundings.drive(instance.rest_middle, frame.end(), motion, &exposure);
         // Gravity is written in every tick, which must not mark the cloth as changed.
-        instance.bypass_change_detection().gravity = drive.gravity;
-        let air = Loads::of_air(&drive, &instance.material, surroundings.tick());
-        effort.note_drive(motion, air, exposure.acceleration().length());
+        let instance = instance.bypass_change_detection();
+        instance.gravity = drive.gravity;
+        let inertia = inertia.map_or_else(ClothInertia::default, |inertia| inertia.acting());
+        if instance.inertia.is_some_and(|former| former != inertia) {
+            replace_inertia(instance, inertia, &effort.motion(), tick, &mut batches);
+        }
+        instance.inertia = Some(inertia);
+        if !inertia.is_full() {
+            inertia.reduce(&mut drive, &effort.motion(), tick);
+        }
+        let air = Loads::of_air(&drive, &instance.material, tick);
+        effort.note_drive(motion, air, exposure.acceleration().length(), inertia.greatest());
         batches.lane(lane).drive(drive);
+    }
+}
+
+/// Gives a cloth another inertia without a jolt, given the motion of its frame in the last tick of `tick` seconds.
+fn replace_inertia(
+    instance: &mut ClothInstance,
+    inertia: ClothInertia,
+    motion: &FrameMotion,
+    tick: f32,
+    batches: &mut ClothBatches,
+) {
+    let (Some(former), Some(mut state)) = (instance.inertia, instance.state(batches)) else {
+        return;
+    };
+    inertia.replace(former, &mut state, motion, tick);
+    if state.is_finite() {
+        instance.set_state(state, batches);
     }
 }

@@ -10,6 +10,7 @@ use bunting_solver::{Drive, FrameMotion};
 use crate::environment::forces::acceleration::ClothAcceleration;
 use crate::environment::wind::influence::WindInfluence;
 use crate::environment::wind::tick_wind::TickWind;
+use crate::motion::inertia::ride;
 use crate::settings::ClothSettings;
 
 /// Gravity and air in this tick.
@@ -56,7 +57,7 @@ impl Surroundings<'_> {
         }
         let mut wind = inverse * self.wind.at(frame * rest_middle);
         if let Some(influence) = exposure.influence {
-            wind = influence.felt(wind, motion.translation / self.tick());
+            wind = influence.felt(wind, ride(&motion, self.tick()));
         }
         Drive { motion, gravity: inverse * gravity, wind, air_density }
     }

@@ -3,6 +3,7 @@
 pub mod attachment;
 pub mod follow;
 pub mod frame;
+pub mod inertia;
 pub mod lead;
 pub mod lost_target;
 pub mod observe;

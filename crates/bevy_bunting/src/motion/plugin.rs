@@ -10,6 +10,7 @@ use crate::environment::drive::drive_cloths;
 use crate::fabric::prepare::change_materials;
 use crate::motion::attachment::{AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost};
 use crate::motion::follow::{follow_targets, stop_following};
+use crate::motion::inertia::{ClothInertia, report_inertia};
 use crate::motion::lead::lead_pins;
 use crate::motion::observe::{observe_frames, observe_ticks};
 use crate::motion::place::place_cloths;
@@ -28,6 +29,7 @@ impl Plugin for AttachmentPlugin {
             .register_type::<ClothEdge>()
             .register_type::<ClothCorner>()
             .register_type::<TargetLost>()
+            .register_type::<ClothInertia>()
             .init_resource::<ObservationTimes>()
             .add_observer(stop_following)
             .add_systems(
@@ -40,6 +42,7 @@ impl Plugin for AttachmentPlugin {
                     (follow_targets.after(change_materials), observe_ticks)
                         .chain()
                         .in_set(ClothSystems::Prepare),
+                    report_inertia.in_set(ClothSystems::Prepare),
                     lead_pins.in_set(ClothSystems::Drive).before(drive_cloths),
                     place_cloths.in_set(ClothSystems::Publish),
                 ),
