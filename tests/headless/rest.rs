@@ -156,3 +156,63 @@ fn a_pause_keeps_a_sheet_asleep() {
     scene.app.world_mut().spawn(WindField::steady(Vec3::Z));
     assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
 }
+
+#[test]
+fn local_winds_wake_the_sheets_that_they_reach() {
+    let gusty = WindField::steady(Vec3::Z).with_gusts(1.0, 0.5, 1);
+    for (x, expected) in [(20.0, ClothActivity::AtRest), (2.0, ClothActivity::Ticking)] {
+        let mut scene = sleeping_sheet();
+        let place = Transform::from_xyz(x, 3.0, 0.0);
+        scene.app.world_mut().spawn((gusty, WindRegion::ball(4.0, 1.0), place));
+        assert_eq!(scene.activity_after_ticks(), expected, "{x} m away");
+    }
+}
+
+#[test]
+fn a_change_of_shelter_wakes_a_sheet() {
+    let mut scene = sleeping_sheet();
+    let sheet = scene.sheet;
+    scene.entity(sheet).insert(WindInfluence(0.5));
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
+    run(&mut scene.app, SETTLING);
+    assert_eq!(scene.activity(), ClothActivity::AtRest);
+    scene.entity(sheet).remove::<WindInfluence>();
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
+}
+
+#[test]
+fn an_impulse_wakes_a_sheet() {
+    let mut scene = sleeping_sheet();
+    let far = ClothImpulse::velocity(Vec3::new(50.0, 3.0, 0.0), 2.0, Vec3::Z);
+    scene.app.world_mut().trigger(far);
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::AtRest);
+    let shape = bits(&scene.app, scene.sheet);
+    let near = ClothImpulse::velocity(Vec3::new(0.0, 2.0, 0.0), 2.0, Vec3::Z);
+    scene.app.world_mut().trigger(near);
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
+    assert_ne!(bits(&scene.app, scene.sheet), shape);
+}
+
+#[test]
+fn an_acceleration_wakes_a_sheet() {
+    let mut scene = sleeping_sheet();
+    let sheet = scene.sheet;
+    scene.entity(sheet).insert(ClothAcceleration(Vec3::Z));
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
+    run(&mut scene.app, SETTLING);
+    assert_eq!(scene.activity(), ClothActivity::AtRest);
+    scene.entity(sheet).remove::<ClothAcceleration>();
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
+}
+
+#[test]
+fn control_wakes_a_sheet() {
+    use bevy_ecs::system::RunSystemOnce;
+    let mut scene = sleeping_sheet();
+    let sheet = scene.sheet;
+    let kick = move |mut control: ClothControl| {
+        control.edit(sheet, |cloth| cloth.set_velocity(80, Vec3::Z)).expect("a good velocity");
+    };
+    scene.app.world_mut().run_system_once(kick).expect("the system runs");
+    assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking);
+}

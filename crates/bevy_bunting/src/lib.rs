@@ -41,7 +41,12 @@
 //! | [`ClothPaused`] | a cloth | stops the simulation of the cloth |
 //! | [`ClothState`] | a cloth | positions and normals after the last tick, to be read |
 //! | [`ClothSurface`] | a cloth | positions and normals between two ticks, for display |
-//! | [`WindField`] | any entity | velocity of the air |
+//! | [`WindInfluence`] | a cloth | the part of the wind that it feels |
+//! | [`ClothInertia`] | a cloth | the part of its frame's acceleration that it feels |
+//! | [`ClothAcceleration`] | a cloth | an acceleration besides gravity |
+//! | [`WindField`] | any entity | velocity of the air, with gusts |
+//! | [`WindRegion`] | a `WindField` | the space in which it blows |
+//! | [`WindFan`], [`WindBlast`], [`WindWake`] | any entity | a jet, a blast, a wake behind the entity |
 //! | [`ClothCollider`] | any entity | a shape that cloth does not enter |
 //! | [`LodViewer`] | a camera | a viewer in whose picture errors of levels are measured |
 //!
@@ -77,7 +82,8 @@
 //! # Events
 //!
 //! [`ClothFailed`], [`ClothLevelChanged`] and [`ClothTargetLost`] are triggered on the cloth;
-//! [`TeleportCloth`] and [`WakeCloth`] are triggered by the user.
+//! [`TeleportCloth`], [`WakeCloth`] and [`ClothImpulse`] are triggered by the user. The system parameter [`ClothControl`]
+//! moves single particles between ticks.
 //!
 //! # Drawing
 //!
@@ -133,12 +139,23 @@ pub use display::surface::{ClothSurface, SurfacePlugin};
 pub use environment::collider::{ClothCollider, ColliderError};
 pub use environment::drive::DrivePlugin;
 pub use environment::drive_colliders::ColliderPlugin;
+pub use environment::forces::acceleration::ClothAcceleration;
+pub use environment::forces::control::{ClothControl, ControlError, ControlledCloth};
+pub use environment::forces::impulse::{ClothImpulse, Push};
+pub use environment::forces::plugin::ForcePlugin;
 pub use environment::layers::{ClothFeatures, ClothLayers};
 pub use environment::reactions::{
     ClothParted, ClothReaction, ClothReactions, ClothTouched, ReactionPlugin,
 };
 pub use environment::self_collision::{SelfCollision, SelfCollisionPlugin};
-pub use environment::wind::{GustTravel, TickWind, WindField, WindPlugin};
+pub use environment::wind::blast::WindBlast;
+pub use environment::wind::fan::WindFan;
+pub use environment::wind::field::{GustTravel, WindField};
+pub use environment::wind::influence::WindInfluence;
+pub use environment::wind::plugin::WindPlugin;
+pub use environment::wind::region::{WindRegion, WindShape};
+pub use environment::wind::tick_wind::TickWind;
+pub use environment::wind::wake::{WakeTrail, WindWake};
 pub use fabric::prepare::PreparePlugin;
 pub use lod::budget::{ClothBudget, LodCosts};
 pub use lod::cost_table::CostTable;
@@ -151,6 +168,7 @@ pub use lod::viewer::{Lens, LodViewer};
 pub use motion::attachment::{
     Anchor, AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost,
 };
+pub use motion::inertia::ClothInertia;
 pub use motion::plugin::AttachmentPlugin;
 pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
@@ -167,12 +185,14 @@ pub use timings::ClothTimings;
 /// The items that most apps need.
 pub mod prelude {
     pub use crate::{
-        Anchor, AttachedVertices, Attachment, ClothActivity, ClothBudget, ClothCollider,
-        ClothCorner, ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothLayers,
-        ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins,
-        ClothPreroll, ClothReactions, ClothSeed, ClothSettings, ClothState, ClothSurface,
-        ClothSystems, ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, SelfCollision,
-        TargetLost, TeleportCloth, TeleportMode, WeightsError, WindField,
+        Anchor, AttachedVertices, Attachment, ClothAcceleration, ClothActivity, ClothBudget,
+        ClothCollider, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
+        ClothFeatures, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged, ClothMaterial,
+        ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll, ClothReactions, ClothSeed,
+        ClothSettings, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick,
+        ClothTouched, LodSet, LodViewer, SelfCollision, TargetLost, TeleportCloth, TeleportMode,
+        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindRegion, WindShape,
+        WindWake,
     };
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
@@ -210,6 +230,7 @@ impl PluginGroup for ClothPlugins {
             .add(PrerollPlugin)
             .add(LanePlugin)
             .add(WindPlugin)
+            .add(ForcePlugin)
             .add(AttachmentPlugin)
             .add(TeleportPlugin)
             .add(DrivePlugin)

@@ -6,7 +6,8 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    budget, contacts, effort, gate, lod, memory, oracles, pareto, report, schedule, stability,
+    budget, contacts, effort, forces, gate, lod, memory, oracles, pareto, report, schedule,
+    stability,
 };
 use crate::output::Outcome;
 
@@ -42,6 +43,8 @@ enum Command {
     Effort,
     /// Contacts compared with closed forms, and shapes that must not pass through cloth.
     Contacts,
+    /// Wind with a place and forces, compared with what their documentation states.
+    Forces,
     /// Bytes of a chain of levels and of batches.
     Memory,
     /// The hard cases.
@@ -71,6 +74,7 @@ impl Arguments {
             Command::Budget => budget::run(self.quick),
             Command::Effort => effort::run(self.quick),
             Command::Contacts => contacts::run(self.quick),
+            Command::Forces => forces::run(self.quick),
             Command::Memory => memory::run(),
             Command::Oracles => oracles::run(),
             Command::Stability => stability::run(self.quick),

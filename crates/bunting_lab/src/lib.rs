@@ -14,6 +14,7 @@ pub mod contender;
 pub mod effort;
 pub mod fleet;
 pub mod flight;
+pub mod forces;
 pub mod game;
 pub mod golden;
 pub mod heap;

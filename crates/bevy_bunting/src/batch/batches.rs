@@ -174,7 +174,6 @@ impl ClothBatches {
     }
 
     /// The batch of a lane.
-    #[cfg(test)]
     pub(crate) fn batch(&self, lane: LaneHandle) -> &ClothBatch {
         &self.groups[lane.group].batches[lane.batch].batch
     }

@@ -117,6 +117,31 @@ pub enum ClothError {
         /// The cloth.
         entity: Entity,
     },
+    /// The [`WindInfluence`](crate::WindInfluence) is not finite, or negative. It counts as 1.
+    #[error("the WindInfluence of cloth {entity} must be finite and not negative")]
+    Influence {
+        /// The cloth.
+        entity: Entity,
+    },
+    /// A part of the [`ClothInertia`](crate::ClothInertia) is not within 0 to 1. The cloth feels everything.
+    #[error("the parts of the ClothInertia of cloth {entity} must lie within 0 to 1")]
+    Inertia {
+        /// The cloth.
+        entity: Entity,
+    },
+    /// The [`ClothAcceleration`](crate::ClothAcceleration) is not finite. It counts as zero.
+    #[error("the ClothAcceleration of cloth {entity} must be finite")]
+    Acceleration {
+        /// The cloth.
+        entity: Entity,
+    },
+    /// A [`ClothImpulse`](crate::ClothImpulse) for this cloth is not finite, has a radius that is not positive, or would
+    /// make a velocity that is not finite. It is left out.
+    #[error("an impulse on cloth {entity} must be finite, with a positive radius")]
+    Impulse {
+        /// The cloth.
+        entity: Entity,
+    },
     /// The cloth's `Mesh3d` is kept in the render world only. The cloth is simulated, but its mesh is not
     /// written until its `Mesh3d` is replaced.
     #[cfg(feature = "render")]

@@ -15,6 +15,7 @@ use crate::cloth::imperfection::{ClothSeed, almost_at_rest};
 use crate::cloth::state::ClothState;
 use crate::fabric::awaited::AwaitedLevels;
 use crate::fabric::levels::ClothLevels;
+use crate::motion::inertia::ClothInertia;
 use crate::motion::take_up::TakingUp;
 
 /// Storage of a cloth's state.
@@ -50,6 +51,8 @@ pub(crate) struct ClothInstance {
     pub material: FabricMaterial,
     /// Gravity in the last tick, along the axes of the cloth's frame, m/s².
     pub gravity: Vec3,
+    /// Inertia in the last tick, on which the meaning of the velocities depends; none before the first.
+    pub inertia: Option<ClothInertia>,
     /// Target that the levels were built for: the attachment's, or the cloth itself if it is attached to its
     /// own transform; none without an attachment.
     pub target: Option<Entity>,
@@ -106,6 +109,25 @@ impl ClothInstance {
         if self.activity == ClothActivity::AtRest {
             self.activity = ClothActivity::Ticking;
         }
+    }
+
+    /// A copy of the state, between two ticks, wherever it is stored.
+    pub fn state(&self, batches: &ClothBatches) -> Option<ClothSnapshot> {
+        match &self.storage {
+            StateStorage::None => None,
+            StateStorage::Snapshot(snapshot) => Some(snapshot.clone()),
+            StateStorage::Lane(lane) => Some(batches.batch(*lane).snapshot(lane.lane)),
+        }
+    }
+
+    /// Overwrites the state by a finite one of the same fabric, between two ticks, and wakes the cloth.
+    pub fn set_state(&mut self, state: ClothSnapshot, batches: &mut ClothBatches) {
+        match self.storage {
+            StateStorage::Lane(lane) => batches.lane(lane).restore(&state),
+            _ => self.storage = StateStorage::Snapshot(state),
+        }
+        self.unmoved = false;
+        self.wake();
     }
 
     /// Moves the state out of its lane into a snapshot.

@@ -6,7 +6,6 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
-use bevy_time::Time;
 use bevy_transform::helper::TransformHelper;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, FrameMotion, LaneCount, Loads,
@@ -17,7 +16,7 @@ use crate::background::Background;
 use crate::batch::assign::assign_lanes;
 use crate::cloth::instance::{ClothInstance, StateStorage};
 use crate::cloth::state::ClothState;
-use crate::environment::wind::TickWind;
+use crate::environment::surroundings::{Exposure, Surroundings};
 use crate::fabric::library::FabricLibrary;
 use crate::lod::select::select_levels;
 use crate::motion::attachment::Attachment;
@@ -141,21 +140,26 @@ impl Preroll {
     }
 }
 
-type New<'a> =
-    (Entity, &'a ClothPreroll, &'a mut ClothInstance, &'a mut ClothState, Option<&'a Attachment>);
+type New<'a> = (
+    Entity,
+    &'a ClothPreroll,
+    &'a mut ClothInstance,
+    &'a mut ClothState,
+    Option<&'a Attachment>,
+    Exposure,
+);
 
 fn begin_prerolls(
     mut cloths: Query<New, Without<PrerollTask>>,
     transforms: TransformHelper,
     settings: Res<ClothSettings>,
-    wind: Res<TickWind>,
-    time: Res<Time>,
+    surroundings: Surroundings,
     (library, mut queue): (Res<FabricLibrary>, ResMut<PrerollQueue>),
     mut commands: Commands,
 ) {
     queue.tick += 1;
-    let tick = time.delta_secs();
-    for (entity, preroll, mut instance, mut state, attachment) in &mut cloths {
+    let tick = surroundings.tick();
+    for (entity, preroll, mut instance, mut state, attachment, exposure) in &mut cloths {
         // A cloth that has been simulated is not simulated in advance.
         if !instance.unmoved {
             if instance.lane().is_some() {
@@ -170,16 +174,11 @@ fn begin_prerolls(
         instance.unmoved = false;
         *state = ClothState::default();
         let frame = frame_of(entity, attachment, &transforms).unwrap_or_default();
-        let inverse = frame.rotation.inverse();
         let seconds = if preroll.seconds.is_finite() { preroll.seconds } else { 0.0 };
-        let drive = Drive {
-            motion: FrameMotion::NONE,
-            gravity: inverse * settings.gravity,
-            wind: inverse * wind.at(frame * instance.rest_middle),
-            air_density: settings.air_density,
-        };
+        let drive = surroundings.drive(instance.rest_middle, frame, FrameMotion::NONE, &exposure);
         let air = Loads::of_air(&drive, &instance.material, tick);
-        let (class, _) = Loads { air, ..Loads::default() }.class();
+        let (class, _) =
+            Loads { air, frame: exposure.acceleration().length(), motion: 0.0 }.class();
         let acceleration = class.acceleration(settings.gravity.length());
         let preroll = Preroll {
             settings: settings.limits(instance.level).of_fabric(&fabric, tick, acceleration),

@@ -3,17 +3,16 @@
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bevy_time::Time;
-use bunting_solver::{Drive, Loads};
+use bunting_solver::{FrameMotion, Loads};
 
 use crate::batch::batches::ClothBatches;
 use crate::batch::occupancy::LaneMut;
 use crate::cloth::instance::ClothInstance;
-use crate::environment::wind::TickWind;
+use crate::environment::surroundings::{Exposure, Surroundings, report_settings};
 use crate::lod::effort::ClothEffort;
+use crate::motion::inertia::ClothInertia;
 use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
-use crate::settings::ClothSettings;
 
 /// Sets the frame motion, gravity and air of each cloth in a tick.
 #[derive(Debug, Default)]
@@ -21,37 +20,69 @@ pub struct DrivePlugin;
 
 impl Plugin for DrivePlugin {
     fn build(&self, app: &mut App) {
-        app.add_systems(ClothTick, drive_cloths.in_set(ClothSystems::Drive));
+        app.add_systems(
+            ClothTick,
+            (
+                report_settings.in_set(ClothSystems::Prepare),
+                drive_cloths.in_set(ClothSystems::Drive),
+            ),
+        );
     }
 }
 
-/// Sets frame motion, gravity and wind. Gravity and wind are rotated from the world's axes to those of the
-/// cloth's frame at the end of the tick.
+type DrivenCloth = (
+    &'static mut ClothInstance,
+    &'static PoseHistory,
+    &'static mut ClothEffort,
+    Option<&'static ClothInertia>,
+);
+
+/// Sets frame motion, gravity and wind, along the axes of the cloth's frame at the end of the tick.
 pub(crate) fn drive_cloths(
-    mut cloths: Query<(&mut ClothInstance, &PoseHistory, &mut ClothEffort)>,
-    settings: Res<ClothSettings>,
-    wind: Res<TickWind>,
-    time: Res<Time>,
+    mut cloths: Query<(DrivenCloth, Exposure)>,
+    surroundings: Surroundings,
     mut batches: ResMut<ClothBatches>,
 ) {
-    let (gravity, air_density) = gravity_and_air(&settings);
-    for (mut instance, frame, mut effort) in &mut cloths {
+    let tick = surroundings.tick();
+    for ((mut instance, frame, mut effort, inertia), exposure) in &mut cloths {
         let Some(lane) = instance.lane() else { continue };
-        let end = frame.end();
-        let inverse = end.rotation.inverse();
-        let gravity = inverse * gravity;
+        let motion = frame.motion();
+        let mut drive = surroundings.drive(instance.rest_middle, frame.end(), motion, &exposure);
         // Gravity is written in every tick, which must not mark the cloth as changed.
-        instance.bypass_change_detection().gravity = gravity;
-        let middle = end * instance.rest_middle;
-        let drive =
-            Drive { motion: frame.motion(), gravity, wind: inverse * wind.at(middle), air_density };
-        let air = Loads::of_air(&drive, &instance.material, time.delta_secs());
-        effort.note_drive(drive.motion, air);
+        let instance = instance.bypass_change_detection();
+        instance.gravity = drive.gravity;
+        let inertia = inertia.map_or_else(ClothInertia::default, |inertia| inertia.acting());
+        if instance.inertia.is_some_and(|former| former != inertia) {
+            replace_inertia(instance, inertia, &effort.motion(), tick, &mut batches);
+        }
+        instance.inertia = Some(inertia);
+        if !inertia.is_full() {
+            inertia.reduce(&mut drive, &effort.motion(), tick);
+        }
+        let air = Loads::of_air(&drive, &instance.material, tick);
+        effort.note_drive(motion, air, exposure.acceleration().length(), inertia.greatest());
         let mut lane = batches.lane(lane);
         if let Some(velocity) = frame.launch() {
-            launch(&mut lane, inverse * velocity);
+            launch(&mut lane, frame.end().rotation.inverse() * (inertia.linear * velocity));
         }
         lane.drive(drive);
+    }
+}
+
+/// Gives a cloth another inertia without a jolt, given the motion of its frame in the last tick of `tick` seconds.
+fn replace_inertia(
+    instance: &mut ClothInstance,
+    inertia: ClothInertia,
+    motion: &FrameMotion,
+    tick: f32,
+    batches: &mut ClothBatches,
+) {
+    let (Some(former), Some(mut state)) = (instance.inertia, instance.state(batches)) else {
+        return;
+    };
+    inertia.replace(former, &mut state, motion, tick);
+    if state.is_finite() {
+        instance.set_state(state, batches);
     }
 }
 
@@ -61,18 +92,4 @@ fn launch(lane: &mut LaneMut, velocity: Vec3) {
     let mut state = lane.snapshot().without_history();
     state.velocities.iter_mut().for_each(|speed| *speed += velocity);
     lane.restore(&state);
-}
-
-/// Gravity (m/s²) and the density of the air (kg/m³). A value that is not finite, or a negative density,
-/// counts as zero and is logged whenever the settings change.
-fn gravity_and_air(settings: &Res<ClothSettings>) -> (Vec3, f32) {
-    let (gravity, air_density) = (settings.gravity, settings.air_density);
-    let is_gravity = gravity.is_finite();
-    let is_density = air_density >= 0.0 && air_density.is_finite();
-    if settings.is_changed() && !(is_gravity && is_density) {
-        log::error!(
-            "ClothSettings: gravity {gravity} and air density {air_density} must be finite, and the density not negative; an invalid value counts as zero"
-        );
-    }
-    (if is_gravity { gravity } else { Vec3::ZERO }, if is_density { air_density } else { 0.0 })
 }

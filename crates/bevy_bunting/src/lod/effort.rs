@@ -17,6 +17,10 @@ pub struct ClothEffort {
     loads: Loads,
     /// Motion of the frame in the last tick.
     motion: FrameMotion,
+    /// Acceleration of the cloth's own in the last tick, m/s².
+    acceleration: f32,
+    /// The part of the frame's acceleration that the cloth did not feel in the last tick.
+    unfelt: f32,
     pub(crate) settings: StepSettings,
 }
 
@@ -53,18 +57,33 @@ impl ClothEffort {
         frame: &PoseHistory,
         tick: f32,
     ) -> bool {
-        self.loads.frame = if frame.rests() && self.motion.is_none() {
+        let of_frame = if frame.rests() && self.motion.is_none() {
             0.0
         } else {
             let Some(fabric) = instance.fabric() else { return false };
             Loads::of_frame(&self.motion, &frame.motion(), fabric, tick)
         };
+        self.loads.frame = (1.0 - self.unfelt) * of_frame + self.acceleration;
         let before = self.effort.class();
         self.effort.update(&self.loads, tick) != before
     }
 
-    /// Notes the motion of the frame in this tick, and the acceleration by air, m/s².
-    pub(crate) fn note_drive(&mut self, motion: FrameMotion, air: f32) {
+    /// Motion of the frame in the last tick.
+    pub(crate) fn motion(&self) -> FrameMotion {
+        self.motion
+    }
+
+    /// Notes the motion of the frame in this tick, the accelerations by air and of the cloth's own, m/s², and the part of
+    /// the frame's acceleration that the cloth feels.
+    pub(crate) fn note_drive(
+        &mut self,
+        motion: FrameMotion,
+        air: f32,
+        acceleration: f32,
+        felt: f32,
+    ) {
+        self.unfelt = 1.0 - felt;
+        self.acceleration = acceleration;
         self.motion = motion;
         self.loads.air = air;
     }

@@ -11,9 +11,11 @@ use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
 use crate::display::lift::lift_surfaces;
 use crate::environment::collider::ClothCollider;
+use crate::environment::forces::acceleration::ClothAcceleration;
 use crate::environment::layers::{ClothFeatures, ClothLayers};
 use crate::environment::self_collision::SelfCollision;
-use crate::environment::wind::TickWind;
+use crate::environment::wind::influence::WindInfluence;
+use crate::environment::wind::tick_wind::TickWind;
 use crate::lod::record::{LodRecord, RestTimer};
 use crate::lod::select::select_levels;
 use crate::motion::anchor_poses::AnchorPoses;
@@ -48,10 +50,14 @@ pub struct SleepPlugin;
 
 impl Plugin for SleepPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<Changes>().add_observer(wake).add_systems(
+        app.init_resource::<Changes>()
+            .add_observer(wake)
+            .add_observer(wake_bared::<WindInfluence>)
+            .add_observer(wake_bared::<ClothAcceleration>);
+        app.add_systems(
             ClothTick,
             (
-                (note_changes, wake_cloths)
+                (note_changes, wake_exposed, wake_cloths)
                     .chain()
                     .in_set(ClothSystems::SelectLod)
                     .before(select_levels),
@@ -72,15 +78,16 @@ pub(crate) struct Changes {
     everywhere: bool,
     /// Number of ticks since the last change that affects all cloths.
     unchanged_ticks: u32,
-    /// Bounding balls of moving colliders: centres and radii, m.
-    moving_colliders: Vec<(Vec3, f32)>,
+    /// Balls around moving colliders and changing local winds: centres and radii, m.
+    disturbed: Vec<(Vec3, f32)>,
     /// Number of cloths asleep at rest; some may have been woken since.
     asleep: usize,
     wind: TickWind,
 }
 
 impl Changes {
-    /// Whether a change affects a cloth with a radius (m): of its frame, or of a collider near it.
+    /// Whether a change affects a cloth with a radius (m): of its frame, or of a collider or a wind
+    /// near it.
     fn act_on(
         &self,
         state: &ClothState,
@@ -92,12 +99,33 @@ impl Changes {
         let middle = frame * middle.copied().unwrap_or_default();
         let is_near =
             |&(centre, other): &(Vec3, f32)| middle.distance(centre) < radius + other + CLEARANCE;
-        timer.pose != Some(frame) || self.moving_colliders.iter().any(is_near)
+        timer.pose != Some(frame) || self.disturbed.iter().any(is_near)
     }
 }
 
 fn wake(request: On<WakeCloth>, mut cloths: Query<(&mut ClothInstance, &mut RestTimer)>) {
     if let Ok((mut instance, mut timer)) = cloths.get_mut(request.entity) {
+        timer.ticks = 0;
+        instance.wake();
+    }
+}
+
+/// Wakes a cloth that loses a component on which the effect of its surroundings depends.
+fn wake_bared<C: Component>(
+    removed: On<Remove, C>,
+    mut cloths: Query<(&mut ClothInstance, &mut RestTimer)>,
+) {
+    if let Ok((mut instance, mut timer)) = cloths.get_mut(removed.entity) {
+        timer.ticks = 0;
+        instance.wake();
+    }
+}
+
+/// Filter of cloths on which their surroundings act otherwise than before.
+type HasNewExposure = Or<(Changed<WindInfluence>, Changed<ClothAcceleration>)>;
+
+fn wake_exposed(mut cloths: Query<(&mut ClothInstance, &mut RestTimer), HasNewExposure>) {
+    for (mut instance, mut timer) in &mut cloths {
         timer.ticks = 0;
         instance.wake();
     }
@@ -115,16 +143,17 @@ fn note_changes(
     mut changes: ResMut<Changes>,
 ) {
     let changes = &mut *changes;
-    changes.everywhere = settings.is_changed() || *wind != changes.wind;
-    changes.wind.clone_from(&wind);
+    changes.everywhere = settings.is_changed() || wind.changed_everywhere(&changes.wind);
     changes.everywhere |= removed.read().count() > 0 || !layers.is_empty();
-    changes.moving_colliders.clear();
+    changes.disturbed.clear();
+    changes.disturbed.extend(wind.changed_balls(&changes.wind));
+    changes.wind.clone_from(&wind);
     for (collider, history) in &colliders {
         changes.everywhere |= collider.is_changed();
         if PoseHistory::may_have_moved(&history) {
             let ball = collider.shape.compute_local_bounding_sphere();
             let centre = history.end() * ball.center;
-            changes.moving_colliders.push((centre, ball.radius + collider.margin));
+            changes.disturbed.push((centre, ball.radius + collider.margin));
         }
     }
     changes.unchanged_ticks =

@@ -5,6 +5,7 @@ pub mod anchor_poses;
 pub mod attachment;
 pub mod follow;
 pub mod frame;
+pub mod inertia;
 pub mod lead;
 pub mod lost_target;
 pub mod observe;

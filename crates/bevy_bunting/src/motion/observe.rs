@@ -26,7 +26,7 @@ type Histories<'w, 's> =
 /// Entities with a [`PoseHistory`] that must be observed: those that may have moved, and those whose history
 /// is not at rest yet.
 #[derive(SystemParam)]
-pub(super) struct Observer<'w, 's> {
+pub(crate) struct Observer<'w, 's> {
     moved: MovedEntities<'w, 's>,
     /// Histories that are new, were reset, or expect a teleport; and all histories.
     histories: ParamSet<'w, 's, (ChangedHistories<'static, 'static>, Histories<'static, 'static>)>,
@@ -85,7 +85,7 @@ pub(super) fn observe_frames<const EARLY: bool>(
 }
 
 /// Observes all frames in a tick, from which their motion in it follows. Reports frames that are not finite.
-pub(super) fn observe_ticks(
+pub(crate) fn observe_ticks(
     mut observer: Observer,
     mut instances: Query<&mut ClothInstance>,
     transforms: TransformHelper,

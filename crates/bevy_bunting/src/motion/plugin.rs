@@ -15,6 +15,7 @@ use crate::motion::attachment::{
     Anchor, AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost,
 };
 use crate::motion::follow::{follow_targets, stop_following};
+use crate::motion::inertia::{ClothInertia, report_inertia};
 use crate::motion::lead::lead_pins;
 use crate::motion::observe::{observe_frames, observe_ticks};
 use crate::motion::place::place_cloths;
@@ -34,6 +35,7 @@ impl Plugin for AttachmentPlugin {
             .register_type::<ClothEdge>()
             .register_type::<ClothCorner>()
             .register_type::<TargetLost>()
+            .register_type::<ClothInertia>()
             .init_resource::<ObservationTimes>()
             .add_observer(stop_following)
             .add_systems(
@@ -52,6 +54,7 @@ impl Plugin for AttachmentPlugin {
                     )
                         .chain()
                         .in_set(ClothSystems::Prepare),
+                    report_inertia.in_set(ClothSystems::Prepare),
                     lead_pins.in_set(ClothSystems::Drive).before(drive_cloths),
                     place_cloths.in_set(ClothSystems::Publish),
                 ),

@@ -17,7 +17,7 @@ use bunting_solver::{EffortCause, LinkFamily};
 
 use crate::cloth::state::ClothState;
 use crate::display::surface::ClothSurface;
-use crate::environment::wind::TickWind;
+use crate::environment::wind::tick_wind::TickWind;
 use crate::lod::effort::ClothEffort;
 
 /// Half the size of the cross on an attached particle, m.

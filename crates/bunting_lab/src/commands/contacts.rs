@@ -17,7 +17,11 @@ pub fn run(quick: bool) -> Outcome {
     let families = families(quick);
     let times = families::times("contacts", &families);
     let rows: Vec<Row> = families.into_iter().flat_map(|family| family.cases).collect();
-    Outcome { json: json!({ "rows": rows }), tables: vec![table(&rows), times], plots: Vec::new() }
+    Outcome {
+        json: json!({ "rows": rows }),
+        tables: vec![table("contacts", &rows), times],
+        plots: Vec::new(),
+    }
 }
 
 /// Every family with its rows.
@@ -26,7 +30,8 @@ pub fn families(quick: bool) -> Vec<Family<Row>> {
     families::run(&contacts::ALL, |family| family(quick))
 }
 
-fn table(rows: &[Row]) -> Table {
+/// Table of the rows of a command.
+pub(super) fn table(command: &str, rows: &[Row]) -> Table {
     let passed = rows.iter().filter(|row| row.pass).count();
     let cells = |row: &Row| {
         vec![
@@ -39,8 +44,8 @@ fn table(rows: &[Row]) -> Table {
         ]
     };
     Table {
-        name: "contacts".into(),
-        title: format!("{passed} of {} rows of contacts hold", rows.len()),
+        name: command.into(),
+        title: format!("{passed} of {} rows of {command} hold", rows.len()),
         headers: vec!["row", "figure", "worst", "limit", "pass", "µs a tick"],
         rows: rows.iter().map(cells).collect(),
     }

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::{
     contacts,
     differences::{Differences, GateCase},
-    families, oracles, stability,
+    families, forces, oracles, stability,
 };
 use crate::{
     golden::{self, GoldenHash},
@@ -63,17 +63,20 @@ pub fn run(options: Options, present: impl FnOnce(&Outcome) -> Result<()>) -> Re
     Ok(())
 }
 
-/// Runs every case of the oracles, and of the quick hard cases and contacts that this machine can run, and tabulates the
+/// Runs every case of the oracles, and of the quick hard cases, contacts and forces that this machine can run, and tabulates the
 /// times that they took.
 fn measure_cases(times: &mut Vec<Table>) -> Vec<GateCase> {
     let oracles = oracles::families();
     let stability = stability::families(true);
     let contacts = contacts::families(true);
+    let forces = forces::families(true);
     times.extend([
         families::times("oracles", &oracles),
         families::times("stability", &stability),
         families::times("contacts", &contacts),
+        families::times("forces", &forces),
     ]);
+    let forces = forces.into_iter().flat_map(|family| family.cases);
     let contacts = contacts.into_iter().flat_map(|family| family.cases);
     let oracles = oracles.into_iter().flat_map(|family| family.cases);
     let stability = stability.into_iter().flat_map(|family| family.cases);
@@ -87,6 +90,12 @@ fn measure_cases(times: &mut Vec<Table>) -> Vec<GateCase> {
         .chain(
             contacts.map(|row| GateCase {
                 identity: format!("contacts: {}", row.name),
+                fails: !row.pass,
+            }),
+        )
+        .chain(
+            forces.map(|row| GateCase {
+                identity: format!("forces: {}", row.name),
                 fails: !row.pass,
             }),
         )

@@ -6,6 +6,7 @@ pub mod contacts;
 pub mod differences;
 pub mod effort;
 pub mod families;
+pub mod forces;
 pub mod gate;
 pub mod lod;
 pub mod memory;

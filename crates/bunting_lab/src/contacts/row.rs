@@ -21,7 +21,7 @@ pub struct Row {
 
 impl Row {
     /// A row. A figure that is not a number fails.
-    pub(super) fn new(
+    pub(crate) fn new(
         name: impl Into<String>,
         quantity: &'static str,
         figure: f64,

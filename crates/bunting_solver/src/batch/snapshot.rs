@@ -64,6 +64,23 @@ impl ClothSnapshot {
         Self { history: None, ..self }
     }
 
+    /// Changes the velocity of a particle by an impulse, m/s, as if the particle had had the changed velocity in the
+    /// substeps before, too: the integrator then extrapolates no change, and momentum changes by exactly this. Meant for
+    /// particles that are not pinned.
+    ///
+    /// # Panics
+    ///
+    /// There is no such particle.
+    pub fn add_velocity(&mut self, particle: usize, change: Vec3) {
+        self.velocities[particle] += change;
+        let Some(history) = &mut self.history else { return };
+        let displacements = history.displacements.iter_mut();
+        for (displacements, step) in displacements.zip(history.integrator.steps()) {
+            displacements[particle] += change * step;
+        }
+        history.older_velocities.iter_mut().for_each(|velocities| velocities[particle] += change);
+    }
+
     /// Whether every number is finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {

@@ -98,6 +98,11 @@ pub(crate) struct IntegratorHistory {
 }
 
 impl IntegratorHistory {
+    /// Lengths of the last two substeps, s, the latest first.
+    pub const fn steps(&self) -> [f32; 2] {
+        self.steps
+    }
+
     /// Whether any substep has been recorded.
     pub fn exists(&self) -> bool {
         self.steps[0] > 0.0

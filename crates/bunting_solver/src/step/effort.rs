@@ -62,7 +62,7 @@ pub enum EffortCause {
     Weight,
     /// The speed of the air.
     Air,
-    /// The acceleration or the turn of its frame.
+    /// The acceleration or the turn of its frame, or an acceleration that acts on it like one.
     Frame,
     /// Its own motion.
     Motion,

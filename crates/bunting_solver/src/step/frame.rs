@@ -32,7 +32,8 @@ impl FrameMotion {
     }
 
     /// Axis times angle of the rotation in the tick, rad; the same along the axes of the old and the new frame.
-    pub(crate) fn turn(&self) -> Vec3 {
+    #[must_use]
+    pub fn turn(&self) -> Vec3 {
         let rotation = if self.rotation.w < 0.0 { -self.rotation } else { self.rotation };
         let sine = rotation.xyz().length();
         if sine == 0.0 {
@@ -42,7 +43,8 @@ impl FrameMotion {
     }
 
     /// The orientation after a fraction of the tick, turning at a constant rate about a fixed axis.
-    pub(crate) fn rotation_at(&self, part: f32) -> Quat {
+    #[must_use]
+    pub fn rotation_at(&self, part: f32) -> Quat {
         let rotation = if self.rotation.w < 0.0 { -self.rotation } else { self.rotation };
         let sine = rotation.xyz().length();
         if sine == 0.0 {

@@ -1,26 +1,24 @@
-//! Wind: the velocity of the air.
+//! Fields of wind: a mean velocity with gusts.
 
-use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_math::{DVec3, Vec3};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
-use bevy_time::Time;
 
-use crate::environment::gusts::Gusts;
-use crate::schedule::{ClothSystems, ClothTick};
+use crate::environment::wind::gusts::Gusts;
 
 /// Least length of a gust, m: the size of a large flag. Smaller: gusts are shorter than the cloth, which
 /// feels them at its middle only.
 const LEAST_GUST_LENGTH: f32 = 2.0;
 
-/// Moving air. The velocities of all fields are added up.
+/// Moving air, everywhere or, with a [`WindRegion`](crate::WindRegion), where the entity is. The velocities of all winds
+/// are added up.
 ///
 /// Gusts are a sum of eight plane waves, free of divergence, that the mean wind carries along (Taylor's
 /// hypothesis of frozen turbulence). Their length is the distance that the mean wind covers in
 /// 1/`gust_frequency`, at least 2 m, and a cloth downwind feels a gust later. Gusts depend on position, time
 /// and seed, and not on the frame rate. After a change of the mean velocity, gusts travel at the new
-/// velocity. A cloth feels the air at its middle.
+/// velocity. A cloth feels the air at its middle. A field that is not finite is logged and left out.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(GustTravel)]
@@ -93,64 +91,23 @@ impl Default for WindField {
 
 /// The air of one [`WindField`] in one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
-struct MovingAir {
+pub(super) struct MovingAir {
     /// Mean velocity, m/s.
     velocity: Vec3,
     gusts: Option<Gusts>,
 }
 
 impl MovingAir {
-    fn new(field: &WindField, travel: DVec3) -> Self {
+    pub fn new(field: &WindField, travel: DVec3) -> Self {
         let WindField { velocity, gust_strength, seed, .. } = *field;
         let gusts = || Gusts::new(seed, gust_strength, field.gust_length(), travel);
         Self { velocity, gusts: (gust_strength != 0.0).then(gusts) }
     }
 
     /// Velocity (m/s) at a position in the world (m).
-    fn at(&self, position: Vec3) -> Vec3 {
+    pub fn at(&self, position: Vec3) -> Vec3 {
         self.velocity + self.gusts.map_or(Vec3::ZERO, |gusts| gusts.at(position))
     }
-}
-
-/// Air in this tick: the sum of all [`WindField`]s.
-#[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
-#[reflect(Resource, Default, Debug, PartialEq, Clone)]
-pub struct TickWind(Vec<MovingAir>);
-
-impl TickWind {
-    /// Velocity of the air (m/s) at a position in the world (m): the sum of all fields. A field that is not
-    /// finite is left out.
-    #[must_use]
-    pub fn at(&self, position: Vec3) -> Vec3 {
-        let velocities = self.0.iter().map(|air| air.at(position));
-        velocities.filter(|velocity| velocity.is_finite()).sum()
-    }
-}
-
-/// Collects the [`WindField`]s.
-#[derive(Debug, Default)]
-pub struct WindPlugin;
-
-impl Plugin for WindPlugin {
-    fn build(&self, app: &mut App) {
-        app.register_type::<WindField>()
-            .register_type::<GustTravel>()
-            .register_type::<TickWind>()
-            .init_resource::<TickWind>()
-            .add_systems(ClothTick, collect_winds.in_set(ClothSystems::Prepare));
-    }
-}
-
-fn collect_winds(
-    mut fields: Query<(&WindField, &mut GustTravel)>,
-    time: Res<Time>,
-    mut wind: ResMut<TickWind>,
-) {
-    wind.0.clear();
-    wind.0.extend(fields.iter_mut().map(|(field, mut travel)| {
-        travel.0 += field.travel_rate() * time.delta_secs_f64();
-        MovingAir::new(field, travel.0)
-    }));
 }
 
 #[cfg(test)]

@@ -1,0 +1,27 @@
+//! Applies impulses, and reports forces that cannot be used.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+
+use crate::environment::forces::acceleration::{ClothAcceleration, report_accelerations};
+use crate::environment::forces::impulse::{Impulses, apply_impulses, queue_impulse};
+use crate::motion::observe::observe_ticks;
+use crate::schedule::{ClothSystems, ClothTick};
+
+/// Handles [`ClothImpulse`](crate::ClothImpulse) and [`ClothAcceleration`].
+#[derive(Debug, Default)]
+pub struct ForcePlugin;
+
+impl Plugin for ForcePlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<ClothAcceleration>()
+            .init_resource::<Impulses>()
+            .add_observer(queue_impulse)
+            .add_systems(
+                ClothTick,
+                (report_accelerations, apply_impulses)
+                    .in_set(ClothSystems::Prepare)
+                    .after(observe_ticks),
+            );
+    }
+}

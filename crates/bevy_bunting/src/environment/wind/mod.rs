@@ -1,0 +1,11 @@
+//! Wind: the velocity of the air, everywhere or where its sources are.
+
+pub mod blast;
+pub mod fan;
+pub mod field;
+mod gusts;
+pub mod influence;
+pub mod plugin;
+pub mod region;
+pub mod tick_wind;
+pub mod wake;
