@@ -75,6 +75,28 @@ impl<L: Lane> V3<L> {
         Self { x: value, y: value, z: value }
     }
 
+    /// The vector of one lane, in every lane.
+    #[inline(always)]
+    pub fn splat_lane(token: L::Token, pack: &Pack3<L::Pack>, lane: usize) -> Self {
+        Self {
+            x: L::splat(token, pack[0].lanes()[lane]),
+            y: L::splat(token, pack[1].lanes()[lane]),
+            z: L::splat(token, pack[2].lanes()[lane]),
+        }
+    }
+
+    /// The smaller of each coordinate.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        Self { x: self.x.min(other.x), y: self.y.min(other.y), z: self.z.min(other.z) }
+    }
+
+    /// The larger of each coordinate.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        Self { x: self.x.max(other.x), y: self.y.max(other.y), z: self.z.max(other.z) }
+    }
+
     /// `self` where the mask is true, `other` elsewhere.
     #[inline(always)]
     pub fn or_where_not(self, mask: L::Mask, other: Self) -> Self {

@@ -9,17 +9,20 @@
 //! Magnenat-Thalmann 2006).
 
 mod apart;
+mod boxes;
 mod closest;
+mod cloth;
 mod crossing;
+mod flat;
 mod lane;
 pub(crate) mod mesh;
 mod pairs;
 mod particles;
 mod patches;
-mod region;
 mod rigid_zones;
 mod search;
 mod separate;
 pub(crate) mod settings;
 pub(crate) mod state;
+mod swept;
 mod untangle;
