@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Mul, Range, Sub};
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use crate::simd::lane::{Lane, Pack};
 
@@ -73,6 +73,16 @@ impl<L: Lane> V3<L> {
     pub fn splat(token: L::Token, value: f32) -> Self {
         let value = L::splat(token, value);
         Self { x: value, y: value, z: value }
+    }
+
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn splat3(token: L::Token, vector: Vec3A) -> Self {
+        Self {
+            x: L::splat(token, vector.x),
+            y: L::splat(token, vector.y),
+            z: L::splat(token, vector.z),
+        }
     }
 
     /// The vector of one lane, in every lane.

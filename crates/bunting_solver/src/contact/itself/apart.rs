@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
-use crate::contact::itself::boxes::{Around, Boxes};
+use crate::contact::itself::boxes::{Around, Boxes, Splat};
 use crate::contact::itself::patches::Cell;
+use crate::contact::itself::swept::Swept;
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::registers::Pack8;
 use crate::simd::vec3::{Pack3, V3};
@@ -11,9 +12,9 @@ use crate::simd::vec3::{Pack3, V3};
 /// Corners of the triangles of a cell, one triangle in each lane; the last in those without one.
 pub(super) type Corners = [Pack3<Pack8>; 3];
 
-/// Paths of the triangles of a cell in a substep.
+/// TrianglePaths of the triangles of a cell in a substep.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Paths {
+pub(super) struct TrianglePaths {
     /// Corners at the start and at the end, m.
     corners: [Corners; 2],
     /// Boxes around the paths, widened by half of the thickness.
@@ -22,8 +23,8 @@ pub(super) struct Paths {
     count: usize,
 }
 
-impl Paths {
-    /// Paths of no triangles.
+impl TrianglePaths {
+    /// TrianglePaths of no triangles.
     pub fn empty() -> Self {
         let corners = [[[Pack8::splat(0.0); 3]; 3]; 2];
         Self { corners, around: Boxes::empty(), count: 0 }
@@ -64,13 +65,20 @@ pub(super) struct Meeting {
 
 /// Finds the triangles of two cells that may touch: all but those that a plane keeps farther than the thickness from each
 /// other, at the start and at the end of the substep.
-pub(super) fn find_meetings(cells: [&Paths; 2], thickness: f32, meetings: &mut Vec<Meeting>) {
+pub(super) fn find_meetings(
+    cells: [&TrianglePaths; 2],
+    around: &Swept,
+    thickness: f32,
+    meetings: &mut Vec<Meeting>,
+) {
     meetings.clear();
-    Pack8::run(FindMeetings { cells, thickness, meetings });
+    Pack8::run(FindMeetings { cells, around, thickness, meetings });
 }
 
 struct FindMeetings<'a> {
-    cells: [&'a Paths; 2],
+    cells: [&'a TrianglePaths; 2],
+    /// Boxes around the second cell.
+    around: &'a Swept,
     thickness: f32,
     meetings: &'a mut Vec<Meeting>,
 }
@@ -88,7 +96,13 @@ impl Kernel<Pack8> for FindMeetings<'_> {
         let [apart, hinged, near] =
             [L::splat(token, APART), L::splat(token, HINGED), L::splat(token, NEAR)];
         let others = [load(token, &other.corners[0]), load(token, &other.corners[1])];
+        let mut meeting = Pack8::splat(APART);
+        let meets_cell = Splat::<L>::of(token, self.around).meets(token, &one.around);
+        near.or_where_not(meets_cell, apart).store(&mut meeting);
         for first in 0..one.count {
+            if meeting.lanes()[first] == APART {
+                continue;
+            }
             let meets = one.around.lane::<L>(token, first).meets(token, &other.around);
             let state = near.or_where_not(meets, apart);
             if !apart.lt(state).any() {

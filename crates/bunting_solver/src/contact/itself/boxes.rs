@@ -51,6 +51,14 @@ pub(super) struct Splat<L> {
 }
 
 impl<L: Lane<Pack = Pack8>> Splat<L> {
+    #[inline(always)]
+    pub fn of(token: L::Token, swept: &Swept) -> Self {
+        Self {
+            low: [V3::splat3(token, swept.low[0]), V3::splat3(token, swept.low[1])],
+            high: [V3::splat3(token, swept.high[0]), V3::splat3(token, swept.high[1])],
+        }
+    }
+
     /// Whether it meets others, see [`Swept::meets`].
     #[inline(always)]
     pub fn meets(&self, token: L::Token, others: &Boxes) -> L::Mask {

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use crate::constants::LEAST_AREA_SQUARED;
 use crate::contact::itself::apart::gather;
@@ -13,7 +13,7 @@ use crate::simd::vec3::{Pack3, V3};
 
 /// Cosine of the greatest angle between a triangle's normal and the mean of a part's normals. Smaller: parts that are about
 /// to fold upon themselves are skipped. Larger: more of them are compared in vain.
-const LEAST_COSINE: f32 = 0.35;
+const LEAST_COSINE: f32 = 0.2;
 
 /// Unit normals of the triangles of each cell; zero of collapsed triangles.
 #[derive(Clone, Debug, Default)]
@@ -42,7 +42,11 @@ impl Normals {
         }
         let normals = parts.map(|part| &self.cells[part]);
         let mut are_flat = false;
-        Pack8::run(AreAbout { normals: &normals, direction, are_about: &mut are_flat });
+        Pack8::run(AreAbout {
+            normals: &normals,
+            direction: direction.into(),
+            are_about: &mut are_flat,
+        });
         are_flat
     }
 }
@@ -75,18 +79,14 @@ impl Kernel<Pack8> for Compute<'_> {
 /// Finds whether normals are about a direction.
 struct AreAbout<'a> {
     normals: &'a [&'a [Pack3<Pack8>]],
-    direction: Vec3,
+    direction: Vec3A,
     are_about: &'a mut bool,
 }
 
 impl Kernel<Pack8> for AreAbout<'_> {
     #[inline(always)]
     fn run<L: Lane<Pack = Pack8>>(self, token: L::Token) {
-        let direction = V3::<L> {
-            x: L::splat(token, self.direction.x),
-            y: L::splat(token, self.direction.y),
-            z: L::splat(token, self.direction.z),
-        };
+        let direction = V3::<L>::splat3(token, self.direction);
         let bound = L::splat(token, LEAST_COSINE) * direction.dot(direction).sqrt();
         let mut least = L::splat(token, f32::INFINITY);
         for part in self.normals {

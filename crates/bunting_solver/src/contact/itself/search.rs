@@ -5,21 +5,21 @@ use core::ops::Range;
 
 use glam::Vec3;
 
-use crate::contact::itself::apart::{Meeting, Paths, find_meetings};
+use crate::contact::itself::apart::{Meeting, TrianglePaths, find_meetings};
 use crate::contact::itself::boxes::{Boxes, FindMeeting};
 use crate::contact::itself::cloth::Cloth;
 use crate::contact::itself::flat::Normals;
 use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
 use crate::contact::itself::patches::Neighbour;
-use crate::contact::itself::swept::Swept;
+use crate::contact::itself::swept::{Path, Swept};
 use crate::simd::lane::Pack;
 use crate::simd::registers::Pack8;
 
 /// Scratch arrays of the search.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Search {
-    /// Positions of all particles at the end of the substep when pairs were found, m.
-    end: Vec<Vec3>,
+    /// Paths of all particles when pairs were found.
+    paths: Vec<Path>,
     /// Normals of the cells at the end of the substep.
     normals: Normals,
     /// Boxes around the paths of cells, widened by half of the thickness.
@@ -28,20 +28,20 @@ pub(super) struct Search {
     patches: Vec<Boxes>,
     /// Indices of patches that meet one.
     met: Vec<usize>,
-    /// For each cell, the index of its paths, if they have been computed in this search.
-    paths_of: Vec<Option<u32>>,
-    /// Paths, of which the first `path_count` are of this search.
-    paths: Vec<Paths>,
-    path_count: usize,
+    /// For each cell, the index of its triangles' paths, if they have been computed in this search.
+    triangles_of: Vec<Option<u32>>,
+    /// Paths of triangles, of which the first `triangles_count` are of this search.
+    triangles: Vec<TrianglePaths>,
+    triangles_count: usize,
     meetings: Vec<Meeting>,
 }
 
 impl Search {
     /// Whether a particle has moved since pairs were found such that pairs may be missing.
     pub fn is_outdated(&self, cloth: Cloth) -> bool {
-        let mut ends = self.end.iter().zip(&cloth.particles.end);
+        let mut ends = self.paths.iter().zip(&cloth.particles.end);
         let far = 0.5 * cloth.thickness;
-        ends.any(|(searched, &end)| searched.distance_squared(end) > far * far)
+        ends.any(|([_, searched], &end)| Vec3::from(*searched).distance_squared(end) > far * far)
     }
 
     /// Finds all pairs of a cloth that come nearer than the thickness.
@@ -77,10 +77,12 @@ impl Search {
     /// Computes the boxes of cells and patches, and the normals.
     fn bound(&mut self, cloth: Cloth) {
         let Cloth { mesh, particles, thickness } = cloth;
-        self.end.clone_from(&particles.end);
+        self.paths.clear();
+        let paths = particles.start.iter().zip(&particles.end);
+        self.paths.extend(paths.map(|(&start, &end)| [start.into(), end.into()]));
         self.normals.compute(&mesh.cells, &particles.end);
         self.cells.clear();
-        let boxes = mesh.cells.iter().map(|cell| cloth.swept(&cell.particles));
+        let boxes = mesh.cells.iter().map(|cell| Swept::around(&cell.particles, &self.paths));
         self.cells.extend(boxes.map(|swept| swept.widened(0.5 * thickness)));
         self.patches.clear();
         self.patches.resize(mesh.patches.len().div_ceil(Pack8::WIDTH), Boxes::empty());
@@ -89,9 +91,9 @@ impl Search {
             let around = cells.iter().fold(Swept::EMPTY, |around, &cell| around.merged(cell));
             self.patches[index / Pack8::WIDTH].set(index % Pack8::WIDTH, &around);
         }
-        self.path_count = 0;
-        self.paths_of.clear();
-        self.paths_of.resize(mesh.cells.len(), None);
+        self.triangles_count = 0;
+        self.triangles_of.clear();
+        self.triangles_of.resize(mesh.cells.len(), None);
     }
 
     /// Compares the cells of two patches, or of one with itself.
@@ -118,30 +120,31 @@ impl Search {
 
     /// Compares the triangles of two cells, or of one with itself.
     fn compare_cells(&mut self, cloth: Cloth, cells: [usize; 2], pairs: &mut Pairs) {
-        let paths = cells.map(|cell| self.paths_of(cloth, cell)).map(|at| &self.paths[at]);
-        find_meetings(paths, cloth.thickness, &mut self.meetings);
+        let paths = cells.map(|cell| self.triangles_of(cloth, cell)).map(|at| &self.triangles[at]);
+        find_meetings(paths, &self.cells[cells[1]], cloth.thickness, &mut self.meetings);
         let firsts = cells.map(|cell| cloth.mesh.cells[cell].triangles.start as usize);
         for &Meeting { lanes: [one, other], is_hinged } in &self.meetings {
             let triangles = [firsts[0] + one, firsts[1] + other];
             if triangles[0] < triangles[1] || cells[0] != cells[1] {
                 let most_common = if is_hinged { 0 } else { 1 };
                 if !cloth.mesh.share_corners(triangles, most_common + 1) {
-                    add_features(cloth, triangles, pairs);
+                    add_features(cloth, &self.paths, triangles, pairs);
                 }
             }
         }
     }
 
     /// The index of the paths of a cell's triangles.
-    fn paths_of(&mut self, Cloth { mesh, particles, thickness }: Cloth, cell: usize) -> usize {
-        let index = self.paths_of[cell].get_or_insert_with(|| {
-            let positions = [&particles.start[..], &particles.end[..]];
-            if self.path_count == self.paths.len() {
-                self.paths.push(Paths::empty());
+    fn triangles_of(&mut self, Cloth { mesh, particles, thickness }: Cloth, cell: usize) -> usize {
+        let index = self.triangles_of[cell].get_or_insert_with(|| {
+            let index = self.triangles_count;
+            if index == self.triangles.len() {
+                self.triangles.push(TrianglePaths::empty());
             }
-            self.paths[self.path_count].set(&mesh.cells[cell], positions, thickness);
-            self.path_count += 1;
-            self.path_count as u32 - 1
+            let positions = [&particles.start[..], &particles.end[..]];
+            self.triangles[index].set(&mesh.cells[cell], positions, thickness);
+            self.triangles_count += 1;
+            index as u32
         });
         *index as usize
     }
@@ -164,24 +167,25 @@ impl Search {
 }
 
 /// Adds the pairs of features that two triangles stand for.
-fn add_features(cloth: Cloth, triangles: [usize; 2], pairs: &mut Pairs) {
+fn add_features(cloth: Cloth, paths: &[Path], triangles: [usize; 2], pairs: &mut Pairs) {
     let Cloth { mesh, thickness, .. } = cloth;
     let corners = triangles.map(|triangle| mesh.triangles[triangle]);
+    let swept = |particles: &[u32]| Swept::around(particles, paths);
     let near = |one: Swept, other: Swept| one.widened(thickness).meets(&other);
     let represented = triangles.map(|triangle| &mesh.represented[triangle]);
     for (one, other) in [(0, 1), (1, 0)] {
         let triangle = corners[other];
         let [a, b, c] = triangle;
-        let around = cloth.swept(&triangle);
+        let around = swept(&triangle);
         for &particle in &represented[one].particles {
-            if !triangle.contains(&particle) && near(cloth.swept(&[particle]), around) {
+            if !triangle.contains(&particle) && near(swept(&[particle]), around) {
                 pairs.particles_triangles.push([particle, a, b, c]);
             }
         }
         for &index in &represented[one].edges {
             let edge = mesh.edges[index as usize].ends;
             let apart = edge.iter().all(|end| !triangle.contains(end));
-            if apart && near(cloth.swept(&edge), around) {
+            if apart && near(swept(&edge), around) {
                 pairs.edges_triangles.push(EdgeTriangle { index, edge, triangle });
             }
         }
@@ -191,7 +195,7 @@ fn add_features(cloth: Cloth, triangles: [usize; 2], pairs: &mut Pairs) {
         for &other in &represented[1].edges {
             let [c, d] = mesh.edges[other as usize].ends;
             let apart = a != c && a != d && b != c && b != d;
-            if apart && near(cloth.swept(&[a, b]), cloth.swept(&[c, d])) {
+            if apart && near(swept(&[a, b]), swept(&[c, d])) {
                 pairs.edges_edges.push([a, b, c, d]);
             }
         }

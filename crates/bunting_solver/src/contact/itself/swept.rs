@@ -1,6 +1,9 @@
 //! Boxes around paths.
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3A;
+
+/// Positions of a particle at the start and at the end of a substep, m.
+pub(super) type Path = [Vec3A; 2];
 
 /// Boxes around some particles at the start and at the end of a substep, m. Particles move along straight lines.
 #[derive(Clone, Copy, Debug)]
@@ -12,12 +15,14 @@ pub(super) struct Swept {
 impl Swept {
     pub const EMPTY: Self = Self { low: [Vec3A::INFINITY; 2], high: [Vec3A::NEG_INFINITY; 2] };
 
-    /// Takes in a particle.
-    pub fn add(&mut self, start: Vec3, end: Vec3) {
-        for (at, position) in [start, end].into_iter().enumerate() {
-            self.low[at] = self.low[at].min(position.into());
-            self.high[at] = self.high[at].max(position.into());
+    /// Boxes around the paths of some particles, given those of all.
+    pub fn around(particles: &[u32], paths: &[Path]) -> Self {
+        let mut swept = Self::EMPTY;
+        for &particle in particles {
+            let path = &paths[particle as usize];
+            swept = swept.merged(Self { low: *path, high: *path });
         }
+        swept
     }
 
     pub fn merged(self, other: Self) -> Self {
