@@ -12,7 +12,7 @@ use crate::simd::vec3::{Pack3, V3};
 /// Corners of the triangles of a cell, one triangle in each lane; the last in those without one.
 pub(super) type Corners = [Pack3<Pack8>; 3];
 
-/// TrianglePaths of the triangles of a cell in a substep.
+/// Paths of the triangles of a cell in a substep.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TrianglePaths {
     /// Corners at the start and at the end, m.
@@ -24,7 +24,7 @@ pub(super) struct TrianglePaths {
 }
 
 impl TrianglePaths {
-    /// TrianglePaths of no triangles.
+    /// Paths of no triangles.
     pub fn empty() -> Self {
         let corners = [[[Pack8::splat(0.0); 3]; 3]; 2];
         Self { corners, around: Boxes::empty(), count: 0 }
@@ -112,10 +112,7 @@ impl Kernel<Pack8> for FindMeetings<'_> {
                 splat_lane::<L>(token, &one.corners[0], first),
                 splat_lane::<L>(token, &one.corners[1], first),
             ];
-            let gaps = [
-                Gap::between(token, &ones[0], &others[0]),
-                Gap::between(token, &ones[1], &others[1]),
-            ];
+            let gaps = [Gap::between(&ones[0], &others[0]), Gap::between(&ones[1], &others[1])];
             let are_hinged = gaps[0].is_none(token) & gaps[1].is_none(token);
             let are_far = gaps[0].is_wider(token, squared_thickness)
                 & gaps[1].is_wider(token, squared_thickness);
@@ -168,7 +165,7 @@ struct Gap<L> {
 
 impl<L: Lane> Gap<L> {
     #[inline(always)]
-    fn between(_: L::Token, one: &[V3<L>; 3], other: &[V3<L>; 3]) -> Self {
+    fn between(one: &[V3<L>; 3], other: &[V3<L>; 3]) -> Self {
         let axis = one[0] + one[1] + one[2] - (other[0] + other[1] + other[2]);
         let least = axis.dot(one[0]).min(axis.dot(one[1])).min(axis.dot(one[2]));
         let greatest = axis.dot(other[0]).max(axis.dot(other[1])).max(axis.dot(other[2]));
@@ -179,9 +176,7 @@ impl<L: Lane> Gap<L> {
     /// them, else negative.
     #[inline(always)]
     fn is_none(&self, token: L::Token) -> L::Mask {
-        let least = L::splat(token, -f32::MIN_POSITIVE);
-        let greatest = L::splat(token, f32::MIN_POSITIVE);
-        least.lt(self.width) & self.width.lt(greatest)
+        self.width.abs().lt(L::splat(token, f32::MIN_POSITIVE))
     }
 
     /// Whether the gap is wider than the thickness.
@@ -222,4 +217,97 @@ fn sides<L: Lane>(
     let least = first.min(second).min(third);
     let greatest = first.max(second).max(third);
     [zero.lt(least) & far.lt(least * least), greatest.lt(zero) & far.lt(greatest * greatest)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::itself::crossing::crossing;
+    use crate::contact::itself::pairs::EdgeTriangle;
+
+    const THICKNESS: f32 = 5e-3;
+
+    /// A number from −0.5 to 0.5.
+    fn noise(index: usize) -> f32 {
+        let mixed = (index as u32 + 1).wrapping_mul(2_654_435_769);
+        let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(2_246_822_519);
+        (mixed >> 8) as f32 / (1 << 24) as f32 - 0.5
+    }
+
+    /// A cell of triangles, and the meetings of its triangles with those of another, all at rest.
+    fn meetings(cells: [&[[u32; 3]]; 2], positions: &[Vec3]) -> Vec<Meeting> {
+        let paths: Vec<_> = positions.iter().map(|&at| [at.into(); 2]).collect();
+        let cells = cells.map(|triangles| {
+            let last = triangles.len() - 1;
+            let corner =
+                |corner: usize| core::array::from_fn(|lane| triangles[lane.min(last)][corner]);
+            Cell {
+                triangles: 0..triangles.len() as u32,
+                particles: triangles.iter().flatten().copied().collect(),
+                corners: core::array::from_fn(corner),
+                neighbours: Vec::new(),
+            }
+        });
+        let around = Swept::around(&cells[1].particles, &paths).widened(0.5 * THICKNESS);
+        let paths = cells.map(|cell| {
+            let mut paths = TrianglePaths::empty();
+            paths.set(&cell, [positions, positions], THICKNESS);
+            paths
+        });
+        let mut meetings = Vec::new();
+        find_meetings([&paths[0], &paths[1]], &around, THICKNESS, &mut meetings);
+        meetings
+    }
+
+    /// Whether an edge of one triangle passes through the other.
+    fn cross(triangles: [[u32; 3]; 2], positions: &[Vec3]) -> bool {
+        let passes = |[a, b, c]: [u32; 3], triangle| {
+            let edges = [[a, b], [b, c], [c, a]];
+            edges.iter().any(|&edge| {
+                crossing(&EdgeTriangle { index: 0, edge, triangle }, positions).is_some()
+            })
+        };
+        let [one, other] = triangles;
+        passes(one, other) || passes(other, one)
+    }
+
+    #[test]
+    fn triangles_that_cross_meet_and_most_that_are_apart_do_not() {
+        let (mut crossing, mut found) = (0, 0);
+        for round in 0..50 {
+            let position = |index: usize| {
+                let [triangle, at] = [index / 3, 9 * index + 432 * round];
+                let middle = Vec3::new(noise(triangle), noise(triangle + 50), noise(triangle + 90));
+                middle + Vec3::new(noise(at), noise(at + 301), noise(at + 602))
+            };
+            let positions: Vec<Vec3> = (0..39).map(position).collect();
+            let triangles: Vec<[u32; 3]> =
+                (0..13).map(|it| [3 * it, 3 * it + 1, 3 * it + 2]).collect();
+            let (one, other) = triangles.split_at(8);
+            let meetings = meetings([one, other], &positions);
+            found += meetings.len();
+            for (first, &of_one) in one.iter().enumerate() {
+                for (second, &of_other) in other.iter().enumerate() {
+                    let crosses = cross([of_one, of_other], &positions);
+                    let lanes = [first, second];
+                    crossing += usize::from(crosses);
+                    let meeting = Meeting { lanes, is_hinged: false };
+                    assert!(!crosses || meetings.contains(&meeting), "{round}: {lanes:?}");
+                }
+            }
+        }
+        assert!(crossing > 50 && found < 3 * crossing, "{found} found, {crossing} cross");
+    }
+
+    #[test]
+    fn triangles_about_a_corner_are_hinged_unless_they_lie_upon_each_other() {
+        let flat = [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 0.0, 1.0)];
+        let beyond = flat.map(|at| Vec3::new(-at.x, 0.1 * at.x, -at.z));
+        let upon = flat.map(|at| Vec3::new(at.x, 1e-3 * at.x, at.z - 0.2 * at.x));
+        for (other, is_hinged) in [(beyond, true), (upon, false)] {
+            let positions = [flat[0], flat[1], flat[2], other[1], other[2]];
+            let meetings = meetings([&[[0, 1, 2]], &[[0, 3, 4]]], &positions);
+            assert_eq!(meetings, [Meeting { lanes: [0, 0], is_hinged }]);
+        }
+    }
 }
