@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bunting_solver::{
     BatchError, ClothBatch, ClothSnapshot, Collider, Fabric, FabricBuilder, FabricMaterial, Grid,
-    LaneCount, SelfCollision, StepSettings,
+    LaneCount, SelfCollision, StepSettings, with_every_instruction_set,
 };
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
@@ -98,6 +98,15 @@ fn layers_have_the_same_bits_at_every_width() {
     for &lanes in LaneCount::available() {
         assert_eq!(bits(lanes), one, "{lanes:?}");
     }
+}
+
+#[test]
+fn layers_have_the_same_bits_with_every_instruction_set() {
+    let runs = with_every_instruction_set(|| {
+        fall(LaneCount::One, APART).iter().map(|at| at.to_array().map(f32::to_bits)).collect()
+    });
+    let [best, others @ ..]: &[Vec<[u32; 3]>] = &runs else { panic!("no instruction set") };
+    assert!(others.iter().all(|run| run == best));
 }
 
 /// Number of links of the upper layer through the lower one, which is held in the plane y = 0.

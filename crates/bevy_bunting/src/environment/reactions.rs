@@ -1,6 +1,7 @@
 //! What cloths do to colliders: forces, contact areas, and events when cloth begins and ceases to touch.
 
 use bevy_app::{App, Plugin};
+use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_reflect::Reflect;
@@ -104,7 +105,7 @@ fn sum_reactions(
     if colliders.is_empty() || tick <= 0.0 {
         return;
     }
-    let mut found: Vec<(Entity, ClothReaction)> = Vec::new();
+    let mut found: EntityHashMap<Vec<ClothReaction>> = EntityHashMap::default();
     for (cloth, instance, frame) in &cloths {
         let Some(lane) = instance.lane() else { continue };
         let rotation = frame.extrapolated().1.rotation;
@@ -112,7 +113,8 @@ fn sum_reactions(
             let ContactReaction { collider, impulse, angular_impulse, area } = reaction;
             let force = rotation * impulse / tick;
             let torque = rotation * angular_impulse / tick;
-            found.push((Entity::from_bits(collider), ClothReaction { cloth, force, torque, area }));
+            let of_collider = found.entry(Entity::from_bits(collider)).or_default();
+            of_collider.push(ClothReaction { cloth, force, torque, area });
         }
     }
     for (entity, mut reactions) in &mut colliders {
@@ -122,7 +124,7 @@ fn sum_reactions(
         };
         let before = core::mem::take(&mut reactions.by_cloth);
         let asleep = before.iter().copied().filter(|reaction| sleeps(reaction.cloth));
-        let awake = found.iter().filter(|(of, _)| *of == entity).map(|(_, reaction)| *reaction);
+        let awake = found.remove(&entity).unwrap_or_default();
         let mut now: Vec<ClothReaction> = asleep.chain(awake).collect();
         now.sort_unstable_by_key(|reaction| reaction.cloth);
         reactions.force = now.iter().map(|reaction| reaction.force).sum();

@@ -79,6 +79,12 @@ pub(crate) trait Lane:
     /// `self` where the mask is true, `other` elsewhere.
     fn or_where_not(self, mask: Self::Mask, other: Self) -> Self;
 
+    /// The smaller of `self` and `other`; `other` if either is not a number.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        self.or_where_not(self.lt(other), other)
+    }
+
     /// The larger of `self` and `other`; `other` if either is not a number.
     #[inline(always)]
     fn max(self, other: Self) -> Self {

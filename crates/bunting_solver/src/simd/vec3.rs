@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Mul, Range, Sub};
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use crate::simd::lane::{Lane, Pack};
 
@@ -73,6 +73,38 @@ impl<L: Lane> V3<L> {
     pub fn splat(token: L::Token, value: f32) -> Self {
         let value = L::splat(token, value);
         Self { x: value, y: value, z: value }
+    }
+
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn splat3(token: L::Token, vector: Vec3A) -> Self {
+        Self {
+            x: L::splat(token, vector.x),
+            y: L::splat(token, vector.y),
+            z: L::splat(token, vector.z),
+        }
+    }
+
+    /// The vector of one lane, in every lane.
+    #[inline(always)]
+    pub fn splat_lane(token: L::Token, pack: &Pack3<L::Pack>, lane: usize) -> Self {
+        Self {
+            x: L::splat(token, pack[0].lanes()[lane]),
+            y: L::splat(token, pack[1].lanes()[lane]),
+            z: L::splat(token, pack[2].lanes()[lane]),
+        }
+    }
+
+    /// The smaller of each coordinate.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        Self { x: self.x.min(other.x), y: self.y.min(other.y), z: self.z.min(other.z) }
+    }
+
+    /// The larger of each coordinate.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        Self { x: self.x.max(other.x), y: self.y.max(other.y), z: self.z.max(other.z) }
     }
 
     /// `self` where the mask is true, `other` elsewhere.

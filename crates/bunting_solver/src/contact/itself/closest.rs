@@ -2,7 +2,11 @@
 
 use glam::Vec3;
 
-use crate::constants::LEAST_LENGTH;
+use crate::constants::{LEAST_AREA_SQUARED, LEAST_LENGTH};
+
+/// Squared sine of the angle between two edges from which on they are not parallel. Smaller: rounding errors choose the
+/// points. Larger: edges that nearly point along each other are not met at their closest points.
+const LEAST_SQUARED_SINE: f32 = 1e-6;
 
 /// Parameters from 0 to 1 of the closest points of two edges (Ericson 2005, "Real-time collision detection", 5.1.9).
 pub(super) fn edges([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> [f32; 2] {
@@ -14,7 +18,7 @@ pub(super) fn edges([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> [f32; 2] {
     }
     let both = one.dot(other);
     let determinant = squared_one * squared_other - both * both;
-    let first = if determinant > 1e-6 * squared_one * squared_other {
+    let first = if determinant > LEAST_SQUARED_SINE * squared_one * squared_other {
         ((both * along_other - along_one * squared_other) / determinant).clamp(0.0, 1.0)
     } else {
         0.5
@@ -51,7 +55,7 @@ pub(super) fn over(point: Vec3, [a, b, c]: [Vec3; 3]) -> Option<Over> {
     let (first, second, from) = (b - a, c - a, point - a);
     let normal = first.cross(second);
     let squared_area = normal.length_squared();
-    if squared_area < crate::constants::LEAST_AREA_SQUARED {
+    if squared_area < LEAST_AREA_SQUARED {
         return None;
     }
     let of_c = first.cross(from).dot(normal) / squared_area;

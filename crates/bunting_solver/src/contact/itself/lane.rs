@@ -8,7 +8,7 @@ use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_fabric::LaneFabric;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
-use crate::contact::itself::apart::Cloth;
+use crate::contact::itself::cloth::Cloth;
 use crate::contact::itself::mesh::ContactMesh;
 use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
 use crate::contact::itself::particles::Particles;
@@ -47,10 +47,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if pairs.is_empty() {
             return;
         }
-        let before = contacts.particles.end.clone();
-        self.gather_velocities(cloth, &mut contacts.particles, &before);
         let SelfContacts { settings, mesh, pairs, particles, contacts: touching, tangles, .. } =
             contacts;
+        particles.before.clone_from(&particles.end);
+        particles.mark_near(pairs);
+        self.gather_velocities(cloth, particles);
         let step = self.clock.step;
         untangle(mesh, pairs, particles, step, tangles);
         let spacing = Spacing {
@@ -61,7 +62,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             tangles,
         };
         spacing.separate(pairs, particles, touching);
-        self.scatter_particles(cloth, &contacts.particles, &before);
+        self.scatter_particles(cloth, particles);
     }
 
     /// Returns features that pass through one another to where they began in the substep.
@@ -70,10 +71,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if contacts.pairs.is_empty() {
             return;
         }
-        self.gather_particles(cloth, contacts);
         let SelfContacts { settings, mesh, search, pairs, particles, tangles, .. } = contacts;
         let thickness = settings.thickness;
-        let before = particles.end.clone();
+        self.layout.read(self.positions.packs_mut(), cloth, &mut particles.end);
+        particles.touched.fill(false);
+        particles.before.clone_from(&particles.end);
         if search.is_outdated(Cloth { mesh, particles, thickness }) {
             search.find(Cloth { mesh, particles, thickness }, pairs);
         }
@@ -81,15 +83,20 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let mut grew = false;
         while zones.grow(pairs, tangles, particles) {
             grew = true;
-            search.find(Cloth { mesh, particles, thickness }, pairs);
+            let cloth = Cloth { mesh, particles, thickness };
+            if !search.is_outdated(cloth) {
+                break;
+            }
+            search.find(cloth, pairs);
         }
         if grew {
-            self.gather_velocities(cloth, &mut contacts.particles, &before);
-            zones.stop(&mut contacts.particles);
-            self.scatter_particles(cloth, &contacts.particles, &before);
+            particles.is_near.clone_from(&particles.touched);
+            self.gather_velocities(cloth, particles);
+            zones.stop(particles);
+            self.scatter_particles(cloth, particles);
         }
         if self.parameters.is_near_rest(Y::lanes(cloth)) {
-            self.suspend_relaxation(cloth, &contacts.pairs);
+            self.suspend_relaxation(cloth, pairs);
         }
     }
 
@@ -104,23 +111,30 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
-    /// Copies positions of a cloth out of the lanes.
+    /// Copies positions and masses of a cloth out of the lanes.
     fn gather_particles(&mut self, cloth: usize, contacts: &mut SelfContacts) {
-        let Particles { start, end, touched, .. } = &mut contacts.particles;
+        let Particles { start, end, touched, inverse_mass, .. } = &mut contacts.particles;
         self.layout.read(&self.scratch, cloth, start);
         self.layout.read(self.positions.packs_mut(), cloth, end);
         touched.fill(false);
+        for (particle, inverse_mass) in inverse_mass.iter_mut().enumerate() {
+            let (pack, lane) = self.layout.locate(particle, cloth);
+            *inverse_mass = self.masses.inverse[pack].lanes()[lane];
+        }
     }
 
-    /// Copies masses and velocities of a cloth out of the lanes, with corrections to the given positions.
-    fn gather_velocities(&mut self, cloth: usize, particles: &mut Particles, before: &[Vec3]) {
+    /// Copies velocities of particles that are near others out of the lanes, with corrections to the positions before this
+    /// phase.
+    fn gather_velocities(&self, cloth: usize, particles: &mut Particles) {
         particles.impact.fill(Vec3::ZERO);
         let inverse_step = 1.0 / self.parameters.step.lanes()[Y::lanes(cloth).start];
-        for (particle, before) in before.iter().enumerate() {
+        for particle in 0..particles.is_near.len() {
+            if !particles.is_near[particle] {
+                continue;
+            }
             let (pack, lane) = self.layout.locate(particle, cloth);
             let predicted = particles.start[particle] + lane3(&self.displacement[pack], lane);
-            let correction = before - predicted;
-            particles.inverse_mass[particle] = self.masses.inverse[pack].lanes()[lane];
+            let correction = particles.before[particle] - predicted;
             particles.velocity[particle] =
                 lane3(&self.velocity[pack], lane) + correction * inverse_step;
             particles.past_velocity[particle] = lane3(&self.older_velocity[pack], lane);
@@ -130,9 +144,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Copies what contacts have changed back into the lanes. A correction of the position is no velocity: that of a
     /// particle is the one that the contacts gave to it. An impact is not extrapolated, so the velocities of the last
     /// substeps change by the same amount.
-    fn scatter_particles(&mut self, cloth: usize, particles: &Particles, before: &[Vec3]) {
+    fn scatter_particles(&mut self, cloth: usize, particles: &Particles) {
         let inverse_step = 1.0 / self.parameters.step.lanes()[Y::lanes(cloth).start];
-        for particle in 0..before.len() {
+        for particle in 0..particles.end.len() {
             if !particles.touched[particle] || particles.inverse_mass[particle] == 0.0 {
                 continue;
             }

@@ -70,6 +70,12 @@ impl ContactMesh {
         set_inner_ends(&mut edges, fabric.particle_count());
         Self { triangles, edges, represented, patches, cells }
     }
+
+    /// Whether two triangles have a number of corners in common, or more.
+    pub(super) fn share_corners(&self, triangles: [usize; 2], count: usize) -> bool {
+        let [one, other] = triangles.map(|triangle| self.triangles[triangle]);
+        one.iter().filter(|corner| other.contains(corner)).nth(count - 1).is_some()
+    }
 }
 
 /// Finds the inner ends of edges: those more edges away from the border.

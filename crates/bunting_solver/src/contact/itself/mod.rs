@@ -1,7 +1,8 @@
 //! Contacts of a cloth with itself.
 //!
 //! In each substep, after all other constraints and before the contacts with colliders, pairs of features (a particle
-//! and a triangle, or two edges) whose paths come near one another are found (`search.rs`), and those nearer than the
+//! and a triangle, or two edges) whose paths come near one another are found (`search.rs`; `flat.rs` and `apart.rs` say
+//! what can be left out), and those nearer than the
 //! thickness are moved apart, on the side on which they began (`separate.rs`). After the contacts with colliders, any
 //! edges that still pass through triangles return, together with these, to where they began, moved by their mean
 //! displacement (`rigid_zones.rs`, after Provot 1997). So cloth that began apart ends apart. Cloth that began tangled
@@ -9,17 +10,20 @@
 //! Magnenat-Thalmann 2006).
 
 mod apart;
+mod boxes;
 mod closest;
+mod cloth;
 mod crossing;
+mod flat;
 mod lane;
 pub(crate) mod mesh;
 mod pairs;
 mod particles;
 mod patches;
-mod region;
 mod rigid_zones;
 mod search;
 mod separate;
 pub(crate) mod settings;
 pub(crate) mod state;
+mod swept;
 mod untangle;

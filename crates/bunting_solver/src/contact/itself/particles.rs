@@ -2,6 +2,8 @@
 
 use glam::Vec3;
 
+use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
+
 /// The particles of a cloth in a substep.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Particles {
@@ -9,6 +11,10 @@ pub(super) struct Particles {
     pub start: Vec<Vec3>,
     /// Positions, corrected so far, m.
     pub end: Vec<Vec3>,
+    /// Positions before the corrections of this phase of the substep, m.
+    pub before: Vec<Vec3>,
+    /// Whether a contact may change the particle. Velocities are known of these alone.
+    pub is_near: Vec<bool>,
     /// Inverse masses per unit area density, 1/m²; zero of pins.
     pub inverse_mass: Vec<f32>,
     /// Velocities at the end of the substep with the corrections so far, m/s.
@@ -26,6 +32,7 @@ impl Particles {
         for vectors in [
             &mut self.start,
             &mut self.end,
+            &mut self.before,
             &mut self.velocity,
             &mut self.past_velocity,
             &mut self.impact,
@@ -34,6 +41,16 @@ impl Particles {
         }
         self.inverse_mass.resize(count, 0.0);
         self.touched.resize(count, false);
+        self.is_near.resize(count, false);
+    }
+
+    /// Marks the particles of pairs as near others.
+    pub fn mark_near(&mut self, pairs: &Pairs) {
+        self.is_near.fill(false);
+        let fours = pairs.particles_triangles.iter().chain(&pairs.edges_edges);
+        fours.flatten().for_each(|&particle| self.is_near[particle as usize] = true);
+        let fives = pairs.edges_triangles.iter().flat_map(EdgeTriangle::particles);
+        fives.for_each(|particle| self.is_near[particle as usize] = true);
     }
 }
 

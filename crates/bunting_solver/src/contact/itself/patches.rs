@@ -5,28 +5,31 @@ use core::ops::Range;
 use glam::Vec3;
 
 use crate::fabric::Fabric;
+use crate::simd::lane::Pack;
+use crate::simd::registers::Pack8;
 
 /// Most triangles of a patch. Fewer: more patches are compared in each substep. More: boxes of patches are large, and
 /// patches bend more, so that more cells are compared.
 const LARGEST_PATCH: usize = 32;
 
-/// Most triangles of a cell. Fewer: more cells are compared. More: more triangles are compared.
-const LARGEST_CELL: usize = 8;
+/// Most triangles of a cell, which are compared with another in lanes.
+const LARGEST_CELL: usize = Pack8::WIDTH;
 
 /// Neighbouring triangles, in cells.
 #[derive(Clone, Debug)]
 pub(super) struct Patch {
-    pub particles: Vec<u32>,
     pub neighbours: Vec<Neighbour>,
-    /// Indices of its cells and of its triangles.
+    /// Indices of its cells.
     pub cells: Range<u32>,
-    pub triangles: Range<u32>,
 }
 
 /// A few neighbouring triangles of a patch.
 #[derive(Clone, Debug)]
 pub(super) struct Cell {
     pub triangles: Range<u32>,
+    pub particles: Vec<u32>,
+    /// Corners of its triangles, one triangle in each lane; the last in those without one.
+    pub corners: [[u32; LARGEST_CELL]; 3],
     pub neighbours: Vec<Neighbour>,
 }
 
@@ -39,27 +42,25 @@ pub(super) fn patches_of(fabric: &Fabric) -> (Vec<Patch>, Vec<Cell>, Vec<[u32; 3
         cells.extend(split(fabric, triangles, LARGEST_CELL));
         patches.push((particles, first..cells.len() as u32));
     }
-    // Bridges are in the patches of the two cells, so that their regions are known when the two are compared.
-    let patch_of = |cell: u32| patches.partition_point(|(_, range)| range.end <= cell);
-    let may_bridge =
-        |bridge: u32, cells: [u32; 2]| cells.iter().any(|&cell| patch_of(cell) == patch_of(bridge));
     let of_cells = cells.iter().map(|it| particles_of(fabric, it));
-    let neighbours = self::neighbours(of_cells, fabric, may_bridge);
+    let neighbours = self::neighbours(of_cells, fabric);
     let order = cells.iter().flatten();
-    let triangles = order.map(|&triangle| fabric.triangles()[triangle as usize]).collect();
+    let triangles: Vec<[u32; 3]> =
+        order.map(|&triangle| fabric.triangles()[triangle as usize]).collect();
     let mut begin = 0;
-    let cells = cells.iter().zip(neighbours).map(|(triangles, neighbours)| {
-        let end = begin + triangles.len() as u32;
-        Cell { triangles: core::mem::replace(&mut begin, end)..end, neighbours }
+    let cells = cells.iter().zip(neighbours).map(|(of_cell, neighbours)| {
+        let end = begin + of_cell.len() as u32;
+        let range = core::mem::replace(&mut begin, end)..end;
+        let of_lane = |lane: usize| triangles[range.start as usize + lane.min(of_cell.len() - 1)];
+        let corners =
+            core::array::from_fn(|corner| core::array::from_fn(|lane| of_lane(lane)[corner]));
+        Cell { triangles: range, particles: particles_of(fabric, of_cell), corners, neighbours }
     });
     let cells: Vec<Cell> = cells.collect();
     let of_patches = patches.iter().map(|(particles, _)| particles.clone());
-    let neighbours = self::neighbours(of_patches, fabric, |_, _| true);
-    let patches = patches.into_iter().zip(neighbours).map(|((particles, range), neighbours)| {
-        let of_patch = &cells[range.start as usize..range.end as usize];
-        let triangles = of_patch[0].triangles.start..of_patch[of_patch.len() - 1].triangles.end;
-        Patch { particles, neighbours, cells: range, triangles }
-    });
+    let neighbours = self::neighbours(of_patches, fabric);
+    let patches = patches.into_iter().zip(neighbours);
+    let patches = patches.map(|((_, cells), neighbours)| Patch { neighbours, cells });
     (patches.collect(), cells, triangles)
 }
 
@@ -72,11 +73,10 @@ pub(super) struct Neighbour {
 }
 
 /// For each set of particles, its neighbours in the order of their indices: those with several common particles, and
-/// those with one that have a bridge, which `may_bridge` the two.
+/// those with one that have a bridge.
 fn neighbours(
     sets: impl Iterator<Item = Vec<u32>> + Clone,
     fabric: &Fabric,
-    may_bridge: impl Fn(u32, [u32; 2]) -> bool,
 ) -> Vec<Vec<Neighbour>> {
     let mut sets_at: Vec<Vec<u32>> = vec![Vec::new(); fabric.particle_count()];
     for (index, set) in sets.clone().enumerate() {
@@ -96,14 +96,11 @@ fn neighbours(
         .collect();
     touching
         .iter()
-        .enumerate()
-        .map(|(from, [several, one])| {
+        .map(|[several, one]| {
             let along_edges = several.iter().map(|&index| Neighbour { index, bridge: None });
             let bridged = one.iter().filter_map(|&index| {
                 let of_other = &touching[index as usize][0];
-                let bridge = several.iter().copied().find(|bridge| {
-                    of_other.contains(bridge) && may_bridge(*bridge, [from as u32, index])
-                });
+                let bridge = several.iter().copied().find(|bridge| of_other.contains(bridge));
                 Some(Neighbour { index, bridge: Some(bridge?) })
             });
             let mut neighbours: Vec<Neighbour> = along_edges.chain(bridged).collect();

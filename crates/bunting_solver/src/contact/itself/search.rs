@@ -3,129 +3,114 @@
 
 use core::ops::Range;
 
-use glam::{Vec3, Vec3A};
+use glam::Vec3;
 
-use crate::contact::itself::apart::Cloth;
+use crate::contact::itself::apart::{Meeting, TrianglePaths, find_meetings};
+use crate::contact::itself::boxes::{Boxes, FindMeeting};
+use crate::contact::itself::cloth::Cloth;
+use crate::contact::itself::flat::Normals;
 use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
-use crate::contact::itself::particles::Particles;
 use crate::contact::itself::patches::Neighbour;
-use crate::contact::itself::region::{Normals, Region, Swept, is_about};
+use crate::contact::itself::swept::{Path, Swept};
+use crate::simd::lane::Pack;
+use crate::simd::registers::Pack8;
 
 /// Scratch arrays of the search.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Search {
-    /// Positions of all particles at the end of the substep when pairs were found, m.
-    end: Vec<Vec3>,
-    patches: Vec<Region>,
-    /// Normals of all triangles at the end of the substep, as long as twice their areas, m².
-    normals: Vec<Vec3A>,
-    /// Whether the cells and triangles of a patch are those of this substep.
-    refined: Vec<bool>,
-    cells: Vec<Region>,
-    /// Boxes around the paths of triangles, widened by half of the thickness.
-    triangles: Vec<Swept>,
+    /// Paths of all particles when pairs were found.
+    paths: Vec<Path>,
+    /// Normals of the cells at the end of the substep.
+    normals: Normals,
+    /// Boxes around the paths of cells, widened by half of the thickness.
+    cells: Vec<Swept>,
+    /// Boxes around the paths of patches, widened by half of the thickness, in lanes.
+    patches: Vec<Boxes>,
+    /// Indices of patches that meet one.
+    met: Vec<usize>,
+    /// For each cell, the index of its triangles' paths, if they have been computed in this search.
+    triangles_of: Vec<Option<u32>>,
+    /// Paths of triangles, of which the first `triangles_count` are of this search.
+    triangles: Vec<TrianglePaths>,
+    triangles_count: usize,
+    meetings: Vec<Meeting>,
 }
 
 impl Search {
     /// Whether a particle has moved since pairs were found such that pairs may be missing.
     pub fn is_outdated(&self, cloth: Cloth) -> bool {
-        let mut ends = self.end.iter().zip(&cloth.particles.end);
+        let mut ends = self.paths.iter().zip(&cloth.particles.end);
         let far = 0.5 * cloth.thickness;
-        ends.any(|(searched, &end)| searched.distance_squared(end) > far * far)
+        ends.any(|([_, searched], &end)| Vec3::from(*searched).distance_squared(end) > far * far)
     }
 
     /// Finds all pairs of a cloth that come nearer than the thickness.
     pub fn find(&mut self, cloth: Cloth, pairs: &mut Pairs) {
         pairs.clear();
         self.bound(cloth);
+        let cells_of = |patch: usize| cloth.mesh.patches[patch].cells.clone();
         for (one, patch) in cloth.mesh.patches.iter().enumerate() {
-            let part =
-                |index: usize| (&self.patches[index], cloth.mesh.patches[index].triangles.clone());
-            if !self.are_flat([part(one)]) {
+            if !self.normals.are_flat([cells_of(one)]) {
                 self.compare_patches(cloth, [one, one], pairs);
             }
-            for other in one + 1..self.patches.len() {
-                let part = |index: usize| {
-                    (&self.patches[index], cloth.mesh.patches[index].triangles.clone())
-                };
-                if self.patches[one].around.meets(&self.patches[other].around)
-                    && !self.are_neighbours_flat(part, &patch.neighbours, [one, other])
-                {
+            self.find_patches(one);
+            let mut met = core::mem::take(&mut self.met);
+            for &other in met.iter().filter(|&&other| other > one) {
+                let are_flat = self.are_neighbours_flat(cells_of, &patch.neighbours, [one, other]);
+                if !are_flat {
                     self.compare_patches(cloth, [one, other], pairs);
                 }
             }
+            met.clear();
+            self.met = met;
         }
     }
 
-    /// Computes the patches.
-    fn bound(&mut self, Cloth { mesh, particles, thickness }: Cloth) {
-        let Particles { start, end, .. } = particles;
-        self.end.clone_from(end);
+    /// Finds the patches that meet one, among those from its own lanes on.
+    fn find_patches(&mut self, patch: usize) {
+        let (group, lane) = (patch / Pack8::WIDTH, patch % Pack8::WIDTH);
+        let first = group * Pack8::WIDTH;
+        let others = &self.patches[group..];
+        Pack8::run(FindMeeting { one: &others[0], lane, others, first, found: &mut self.met });
+    }
+
+    /// Computes the boxes of cells and patches, and the normals.
+    fn bound(&mut self, cloth: Cloth) {
+        let Cloth { mesh, particles, thickness } = cloth;
+        self.paths.clear();
+        let paths = particles.start.iter().zip(&particles.end);
+        self.paths.extend(paths.map(|(&start, &end)| [start.into(), end.into()]));
+        self.normals.compute(&mesh.cells, &particles.end);
+        self.cells.clear();
+        let boxes = mesh.cells.iter().map(|cell| Swept::around(&cell.particles, &self.paths));
+        self.cells.extend(boxes.map(|swept| swept.widened(0.5 * thickness)));
         self.patches.clear();
-        self.normals.clear();
-        for patch in &mesh.patches {
-            let mut around = Swept::EMPTY;
-            for &particle in &patch.particles {
-                around.add(start[particle as usize], end[particle as usize]);
-            }
-            let mut normals = Normals::EMPTY;
-            let Range { start: first, end: last } = patch.triangles;
-            for triangle in &mesh.triangles[first as usize..last as usize] {
-                let [a, b, c] = triangle.map(|corner| Vec3A::from(end[corner as usize]));
-                let normal = (b - a).cross(c - a);
-                normals.add(normal);
-                self.normals.push(normal);
-            }
-            self.patches.push(Region { around: around.widened(0.5 * thickness), normals });
+        self.patches.resize(mesh.patches.len().div_ceil(Pack8::WIDTH), Boxes::empty());
+        for (index, patch) in mesh.patches.iter().enumerate() {
+            let cells = &self.cells[patch.cells.start as usize..patch.cells.end as usize];
+            let around = cells.iter().fold(Swept::EMPTY, |around, &cell| around.merged(cell));
+            self.patches[index / Pack8::WIDTH].set(index % Pack8::WIDTH, &around);
         }
-        self.refined.clear();
-        self.refined.resize(mesh.patches.len(), false);
-        self.cells.resize(mesh.cells.len(), Region::EMPTY);
-        self.triangles.resize(mesh.triangles.len(), Swept::EMPTY);
-    }
-
-    /// Computes the cells and triangles of a patch, once a substep.
-    fn refine(&mut self, cloth: Cloth, patch: usize) {
-        if core::mem::replace(&mut self.refined[patch], true) {
-            return;
-        }
-        for cell in cloth.mesh.patches[patch].cells.clone() {
-            let mut region = Region::EMPTY;
-            for triangle in cloth.mesh.cells[cell as usize].triangles.clone() {
-                let [start, end] = cloth.positions(cloth.mesh.triangles[triangle as usize]);
-                let around = Swept::around(start, end, 0.5 * cloth.thickness);
-                region.around = region.around.merged(around);
-                region.normals.add(self.normals[triangle as usize]);
-                self.triangles[triangle as usize] = around;
-            }
-            self.cells[cell as usize] = region;
-        }
+        self.triangles_count = 0;
+        self.triangles_of.clear();
+        self.triangles_of.resize(mesh.cells.len(), None);
     }
 
     /// Compares the cells of two patches, or of one with itself.
     fn compare_patches(&mut self, cloth: Cloth, patches: [usize; 2], pairs: &mut Pairs) {
-        patches.iter().for_each(|&patch| self.refine(cloth, patch));
-        let [one, other] = patches.map(|patch| &cloth.mesh.patches[patch]);
-        let around = self.patches[patches[1]].around;
-        for first in one.cells.clone() {
-            let of_first = &self.cells[first as usize];
-            if !of_first.around.meets(&around) {
-                continue;
-            }
-            let part =
-                |index: usize| (&self.cells[index], cloth.mesh.cells[index].triangles.clone());
-            if patches[0] == patches[1] && !self.are_flat([part(first as usize)]) {
+        let [one, other] = patches.map(|patch| cloth.mesh.patches[patch].cells.clone());
+        let cells_of = |cell: usize| cell as u32..cell as u32 + 1;
+        for first in one {
+            let first = first as usize;
+            if patches[0] == patches[1] && !self.normals.are_flat([cells_of(first)]) {
                 self.compare_cells(cloth, [first, first], pairs);
             }
-            let neighbours = &cloth.mesh.cells[first as usize].neighbours;
-            for second in other.cells.clone() {
+            let neighbours = &cloth.mesh.cells[first].neighbours;
+            for second in other.clone() {
+                let second = second as usize;
                 if (patches[0] != patches[1] || first < second)
-                    && of_first.around.meets(&self.cells[second as usize].around)
-                    && !self.are_neighbours_flat(
-                        part,
-                        neighbours,
-                        [first, second].map(|it| it as usize),
-                    )
+                    && self.cells[first].meets(&self.cells[second])
+                    && !self.are_neighbours_flat(cells_of, neighbours, [first, second])
                 {
                     self.compare_cells(cloth, [first, second], pairs);
                 }
@@ -134,87 +119,85 @@ impl Search {
     }
 
     /// Compares the triangles of two cells, or of one with itself.
-    fn compare_cells(&self, cloth: Cloth, cells: [u32; 2], pairs: &mut Pairs) {
-        let [one, other] = cells.map(|cell| cloth.mesh.cells[cell as usize].triangles.clone());
-        let around = self.cells[cells[1] as usize].around;
-        for first in one {
-            let of_first = &self.triangles[first as usize];
-            if !of_first.meets(&around) {
-                continue;
-            }
-            for second in other.clone() {
-                let of_second = &self.triangles[second as usize];
-                if (cells[0] != cells[1] || first < second)
-                    && of_first.meets(of_second)
-                    && cloth.may_touch([first, second])
-                {
-                    self.add_features(cloth, [first, second], pairs);
+    fn compare_cells(&mut self, cloth: Cloth, cells: [usize; 2], pairs: &mut Pairs) {
+        let paths = cells.map(|cell| self.triangles_of(cloth, cell)).map(|at| &self.triangles[at]);
+        find_meetings(paths, &self.cells[cells[1]], cloth.thickness, &mut self.meetings);
+        let firsts = cells.map(|cell| cloth.mesh.cells[cell].triangles.start as usize);
+        for &Meeting { lanes: [one, other], is_hinged } in &self.meetings {
+            let triangles = [firsts[0] + one, firsts[1] + other];
+            if triangles[0] < triangles[1] || cells[0] != cells[1] {
+                let most_common = if is_hinged { 0 } else { 1 };
+                if !cloth.mesh.share_corners(triangles, most_common + 1) {
+                    add_features(cloth, &self.paths, triangles, pairs);
                 }
             }
         }
     }
 
-    /// Adds the pairs of features that two triangles stand for.
-    fn add_features(&self, cloth: Cloth, triangles: [u32; 2], pairs: &mut Pairs) {
-        let Cloth { mesh, thickness, .. } = cloth;
-        let corners = triangles.map(|triangle| mesh.triangles[triangle as usize]);
-        let near = |one: Swept, other: Swept| one.widened(thickness).meets(&other);
-        let represented = triangles.map(|triangle| &mesh.represented[triangle as usize]);
-        for (one, other) in [(0, 1), (1, 0)] {
-            let triangle = corners[other];
-            let [a, b, c] = triangle;
-            let around = cloth.swept(triangle);
-            for &particle in &represented[one].particles {
-                if !triangle.contains(&particle) && near(cloth.swept([particle]), around) {
-                    pairs.particles_triangles.push([particle, a, b, c]);
-                }
+    /// The index of the paths of a cell's triangles.
+    fn triangles_of(&mut self, Cloth { mesh, particles, thickness }: Cloth, cell: usize) -> usize {
+        let index = self.triangles_of[cell].get_or_insert_with(|| {
+            let index = self.triangles_count;
+            if index == self.triangles.len() {
+                self.triangles.push(TrianglePaths::empty());
             }
-            for &index in &represented[one].edges {
-                let edge = mesh.edges[index as usize].ends;
-                let apart = edge.iter().all(|end| !triangle.contains(end));
-                if apart && near(cloth.swept(edge), around) {
-                    pairs.edges_triangles.push(EdgeTriangle { index, edge, triangle });
-                }
-            }
-        }
-        for &one in &represented[0].edges {
-            let [a, b] = mesh.edges[one as usize].ends;
-            for &other in &represented[1].edges {
-                let [c, d] = mesh.edges[other as usize].ends;
-                let apart = a != c && a != d && b != c && b != d;
-                if apart && near(cloth.swept([a, b]), cloth.swept([c, d])) {
-                    pairs.edges_edges.push([a, b, c, d]);
-                }
-            }
-        }
-    }
-
-    /// Whether parts of the cloth that are connected along edges do not touch themselves: whether all their normals lie in
-    /// one half space (Volino and Magnenat-Thalmann 1994, without their test of the contour).
-    fn are_flat<const COUNT: usize>(&self, parts: [Part; COUNT]) -> bool {
-        let direction = parts.iter().fold(Vec3A::ZERO, |sum, (it, _)| sum + it.normals.sum);
-        parts.iter().all(|(region, triangles)| {
-            let normals = &self.normals[triangles.start as usize..triangles.end as usize];
-            region.normals.are_about(direction)
-                || normals.iter().all(|&normal| is_about(normal, direction))
-        })
+            let positions = [&particles.start[..], &particles.end[..]];
+            self.triangles[index].set(&mesh.cells[cell], positions, thickness);
+            self.triangles_count += 1;
+            index as u32
+        });
+        *index as usize
     }
 
     /// Whether two parts are neighbours and do not touch each other, with their bridge if they need it.
-    fn are_neighbours_flat<'a>(
+    fn are_neighbours_flat(
         &self,
-        part: impl Fn(usize) -> Part<'a>,
+        cells_of: impl Fn(usize) -> Range<u32>,
         neighbours: &[Neighbour],
         [one, other]: [usize; 2],
     ) -> bool {
         let find = neighbours.binary_search_by_key(&(other as u32), |neighbour| neighbour.index);
         let Ok(found) = find else { return false };
+        let [one, other] = [one, other].map(&cells_of);
         match neighbours[found].bridge {
-            Some(bridge) => self.are_flat([part(one), part(bridge as usize), part(other)]),
-            None => self.are_flat([part(one), part(other)]),
+            Some(bridge) => self.normals.are_flat([one, cells_of(bridge as usize), other]),
+            None => self.normals.are_flat([one, other]),
         }
     }
 }
 
-/// A patch or a cell, and its triangles.
-type Part<'a> = (&'a Region, Range<u32>);
+/// Adds the pairs of features that two triangles stand for.
+fn add_features(cloth: Cloth, paths: &[Path], triangles: [usize; 2], pairs: &mut Pairs) {
+    let Cloth { mesh, thickness, .. } = cloth;
+    let corners = triangles.map(|triangle| mesh.triangles[triangle]);
+    let swept = |particles: &[u32]| Swept::around(particles, paths);
+    let near = |one: Swept, other: Swept| one.widened(thickness).meets(&other);
+    let represented = triangles.map(|triangle| &mesh.represented[triangle]);
+    for (one, other) in [(0, 1), (1, 0)] {
+        let triangle = corners[other];
+        let [a, b, c] = triangle;
+        let around = swept(&triangle);
+        for &particle in &represented[one].particles {
+            if !triangle.contains(&particle) && near(swept(&[particle]), around) {
+                pairs.particles_triangles.push([particle, a, b, c]);
+            }
+        }
+        for &index in &represented[one].edges {
+            let edge = mesh.edges[index as usize].ends;
+            let apart = edge.iter().all(|end| !triangle.contains(end));
+            if apart && near(swept(&edge), around) {
+                pairs.edges_triangles.push(EdgeTriangle { index, edge, triangle });
+            }
+        }
+    }
+    for &one in &represented[0].edges {
+        let [a, b] = mesh.edges[one as usize].ends;
+        for &other in &represented[1].edges {
+            let [c, d] = mesh.edges[other as usize].ends;
+            let apart = a != c && a != d && b != c && b != d;
+            if apart && near(swept(&[a, b]), swept(&[c, d])) {
+                pairs.edges_edges.push([a, b, c, d]);
+            }
+        }
+    }
+}
