@@ -139,6 +139,7 @@ pub use display::surface::{ClothSurface, SurfacePlugin};
 pub use environment::collider::{ClothCollider, ColliderError};
 pub use environment::drive::DrivePlugin;
 pub use environment::drive_colliders::ColliderPlugin;
+pub use environment::drive_self_collisions::SelfCollisionPlugin;
 pub use environment::forces::acceleration::ClothAcceleration;
 pub use environment::forces::control::{ClothControl, ControlError, ControlledCloth};
 pub use environment::forces::impulse::{ClothImpulse, Push};
@@ -147,7 +148,7 @@ pub use environment::layers::{ClothFeatures, ClothLayers};
 pub use environment::reactions::{
     ClothParted, ClothReaction, ClothReactions, ClothTouched, ReactionPlugin,
 };
-pub use environment::self_collision::{SelfCollision, SelfCollisionPlugin};
+pub use environment::self_collision::SelfCollision;
 pub use environment::wind::blast::WindBlast;
 pub use environment::wind::fan::WindFan;
 pub use environment::wind::field::{GustTravel, WindField};

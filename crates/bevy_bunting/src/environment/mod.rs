@@ -4,6 +4,7 @@ pub mod collider;
 mod collider_tree;
 pub mod drive;
 pub mod drive_colliders;
+pub mod drive_self_collisions;
 mod falloff;
 pub mod forces;
 pub(crate) mod layers;

@@ -5,14 +5,12 @@ use bevy_math::Isometry3d;
 use bevy_time::{Time, Virtual};
 use bevy_transform::helper::TransformHelper;
 
-use crate::motion::anchor_pins::AnchorPins;
 use crate::motion::attachment::{Anchor, Attachment};
 use crate::motion::frame::{frame_on, is_finite};
 use crate::motion::pose::{ObservationTimes, PoseHistory};
 
 /// The poses of a cloth's anchors, in their order.
 #[derive(Component, Debug, Default)]
-#[require(AnchorPins)]
 pub(crate) struct AnchorPoses(Vec<AnchorPose>);
 
 /// The pose of one anchor.
@@ -60,21 +58,6 @@ impl AnchorPoses {
             let target = transforms.compute_global_transform(anchor.target).ok();
             let now = target.map(|target| frame_on(&target, &anchor.offset)).filter(is_finite);
             observe(&mut pose.history, now);
-        }
-    }
-}
-
-/// Gives cloths with anchors their [`AnchorPoses`].
-pub(super) fn follow_anchors(
-    attachments: Query<(Entity, &Attachment, Has<AnchorPoses>), Changed<Attachment>>,
-    mut commands: Commands,
-) {
-    for (entity, attachment, has_poses) in &attachments {
-        let has_anchors = !attachment.anchors.is_empty();
-        if has_anchors && !has_poses {
-            commands.entity(entity).insert(AnchorPoses::default());
-        } else if has_poses && !has_anchors {
-            commands.entity(entity).remove::<AnchorPoses>();
         }
     }
 }

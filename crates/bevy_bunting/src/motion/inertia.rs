@@ -10,15 +10,12 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bunting_solver::{ClothSnapshot, Drive, FrameMotion};
 
-use crate::cloth::error::ClothError;
-use crate::cloth::events::ClothFailed;
-
 /// The parts of its frame's acceleration that a cloth feels, from 0 to 1, so that the cape of a hero who dashes and spins
 /// stays a cape. Without this component, and by default, cloth feels everything, as in nature. The wind of a steady ride is
 /// felt in any case.
 ///
 /// Where a part is less than 1, [`ClothControl`](crate::ClothControl) and [`ClothParticles`](crate::ClothParticles) give
-/// velocities relative to the motion that is not felt. A part outside of 0 to 1 is reported as [`ClothError::Inertia`], and
+/// velocities relative to the motion that is not felt. A part outside of 0 to 1 is reported as [`ClothError::Inertia`](crate::ClothError::Inertia), and
 /// the cloth feels everything.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
@@ -42,7 +39,8 @@ impl ClothInertia {
         Self { linear, angular }
     }
 
-    fn is_valid(self) -> bool {
+    /// Whether both parts are from 0 to 1.
+    pub(super) fn is_valid(self) -> bool {
         [self.linear, self.angular].iter().all(|part| (0.0..=1.0).contains(part))
     }
 
@@ -103,16 +101,4 @@ impl ClothInertia {
 /// Velocity of a frame's origin along its axes at the end of a tick of `tick` seconds, m/s.
 pub(crate) fn ride(motion: &FrameMotion, tick: f32) -> Vec3 {
     motion.rotation.inverse() * motion.translation / tick
-}
-
-/// Reports parts that cannot be used.
-pub(super) fn report_inertia(
-    changed: Query<(Entity, &ClothInertia), Changed<ClothInertia>>,
-    mut commands: Commands,
-) {
-    for (entity, inertia) in &changed {
-        if !inertia.is_valid() {
-            ClothFailed::report(&mut commands, entity, ClothError::Inertia { entity });
-        }
-    }
 }

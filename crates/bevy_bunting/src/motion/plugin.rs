@@ -8,18 +8,18 @@ use bevy_transform::systems::{propagate_parent_transforms, sync_simple_transform
 
 use crate::environment::drive::drive_cloths;
 use crate::fabric::prepare::change_materials;
-use crate::motion::anchor_poses::{
-    follow_anchors, observe_anchors_in_frames, observe_anchors_in_ticks,
-};
+use crate::motion::anchor_poses::{observe_anchors_in_frames, observe_anchors_in_ticks};
 use crate::motion::attachment::{
     Anchor, AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost,
 };
 use crate::motion::follow::{follow_targets, stop_following};
-use crate::motion::inertia::{ClothInertia, report_inertia};
+use crate::motion::follow_anchors::follow_anchors;
+use crate::motion::inertia::ClothInertia;
 use crate::motion::lead::lead_pins;
 use crate::motion::observe::{observe_frames, observe_ticks};
 use crate::motion::place::place_cloths;
 use crate::motion::pose::ObservationTimes;
+use crate::motion::report_inertia::report_inertia;
 use crate::motion::scale::remove_scales;
 use crate::schedule::{ClothSystems, ClothTick};
 

@@ -11,6 +11,7 @@ pub(crate) mod frame;
 mod integrate;
 pub(crate) mod limits;
 pub(crate) mod load_stretch;
+mod move_pins;
 pub(crate) mod moving_pins;
 pub(crate) mod parameters;
 mod predict;

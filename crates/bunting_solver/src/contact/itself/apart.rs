@@ -2,15 +2,12 @@
 
 use glam::Vec3;
 
-use crate::contact::itself::boxes::{Around, Boxes, Splat};
+use crate::contact::itself::boxes::{Around, Boxes, Corners, Splat};
 use crate::contact::itself::patches::Cell;
 use crate::contact::itself::swept::Swept;
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::registers::Pack8;
 use crate::simd::vec3::{Pack3, V3};
-
-/// Corners of the triangles of a cell, one triangle in each lane; the last in those without one.
-pub(super) type Corners = [Pack3<Pack8>; 3];
 
 /// Paths of the triangles of a cell in a substep.
 #[derive(Clone, Copy, Debug)]

@@ -1,10 +1,12 @@
 //! Boxes around paths, one in each lane.
 
-use crate::contact::itself::apart::Corners;
 use crate::contact::itself::swept::Swept;
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::registers::Pack8;
 use crate::simd::vec3::{Pack3, V3, set_lane3};
+
+/// Corners of the triangles of a cell, one triangle in each lane; the last in those without one.
+pub(super) type Corners = [Pack3<Pack8>; 3];
 
 /// Boxes around paths, like [`Swept`], one in each lane.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,95 @@
+//! Moves pins in the frame of their cloth, substep by substep.
+
+use core::mem;
+
+use glam::Vec3;
+
+use crate::batch::BatchError;
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::layout::{Layout, Positions};
+use crate::simd::lane::Pack;
+use crate::simd::vec3::{lane3, set_lane3};
+use crate::stability::pin_strain::PinStrain;
+use crate::step::moving_pins::MovingPin;
+
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Sets the motion of a cloth's pins in the next tick.
+    pub fn set_pin_motion(&mut self, cloth: usize, pins: Vec<MovingPin>) -> Result<(), BatchError> {
+        let fabric = &self.fabrics[Y::fabric_of(cloth)].fabric;
+        let count = fabric.particle_count();
+        let is_bad = |pin: &&MovingPin| {
+            let particle = pin.particle as usize;
+            let is_pinned = particle < count && fabric.is_pinned(particle);
+            !(is_pinned && pin.from.is_finite() && pin.to.is_finite())
+        };
+        if let Some(&MovingPin { particle, .. }) = pins.iter().find(is_bad) {
+            return Err(BatchError::Pin { particle });
+        }
+        if let Some(state) = &mut self.lanes[cloth] {
+            state.moving_pins.next = pins;
+        }
+        Ok(())
+    }
+
+    /// Begins a tick: pins whose motion has ended come to rest, and those of this tick begin theirs.
+    pub fn begin_pin_motion(&mut self) {
+        for cloth in 0..self.lanes.len() {
+            let Some(state) = &mut self.lanes[cloth] else { continue };
+            if state.moving_pins.is_empty() {
+                continue;
+            }
+            for pin in &state.moving_pins.now {
+                let (pack, lane) = self.layout.locate(pin.particle as usize, cloth);
+                set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
+            }
+            state.moving_pins.now = mem::take(&mut state.moving_pins.next);
+        }
+    }
+
+    /// Moves pins to their places at the end of the coming substep, and gives them the velocity of their motion besides
+    /// that of the frame.
+    pub fn move_pins(&mut self) {
+        for cloth in 0..self.lanes.len() {
+            let Some(state) = &mut self.lanes[cloth] else { continue };
+            if state.moving_pins.now.is_empty() {
+                continue;
+            }
+            let pins = mem::take(&mut state.moving_pins.now);
+            self.move_pins_of(cloth, &pins);
+            self.update_pins(cloth);
+            if let Some(state) = &mut self.lanes[cloth] {
+                state.moving_pins.now = pins;
+            }
+        }
+    }
+
+    fn move_pins_of(&mut self, cloth: usize, pins: &[MovingPin]) {
+        let substeps = self.clock.settings.substeps as f32;
+        let part = (self.clock.begun + 1) as f32 / substeps;
+        let rate = 1.0 / (substeps * self.clock.step);
+        let frame_moves = self.parameters.any_frame_moved;
+        for pin in pins {
+            let (pack, lane) = self.layout.locate(pin.particle as usize, cloth);
+            set_lane3(&mut self.positions.packs_mut()[pack], lane, pin.from.lerp(pin.to, part));
+            // The frame's velocity was set anew in this substep, if the frame moves.
+            let velocity = &mut self.velocity[pack];
+            let of_frame = if frame_moves { lane3(velocity, lane) } else { Vec3::ZERO };
+            set_lane3(velocity, lane, of_frame + (pin.to - pin.from) * rate);
+        }
+    }
+
+    /// Updates all that depends on the positions of a cloth's pins.
+    fn update_pins(&mut self, cloth: usize) {
+        let mut positions = Vec::new();
+        self.layout.read(self.positions.packs(), cloth, &mut positions);
+        let fabric = &self.fabrics[Y::fabric_of(cloth)].fabric;
+        self.layout.set_pins(cloth, fabric, &positions);
+        let pin_strain = PinStrain::of(fabric, &positions);
+        if let Some(state) = &mut self.lanes[cloth]
+            && state.pin_strain != pin_strain
+        {
+            state.pin_strain = pin_strain;
+            state.added_mass = None;
+        }
+    }
+}
