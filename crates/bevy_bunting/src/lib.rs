@@ -153,7 +153,11 @@ pub use motion::plugin::AttachmentPlugin;
 pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
 #[cfg(feature = "render")]
+pub use render::cloth_from_mesh::ClothFromMesh;
+#[cfg(feature = "render")]
 pub use render::debug::{ClothDebugPlugin, ClothGizmos};
+#[cfg(feature = "render")]
+pub use render::painted_weights::{ColorChannel, PaintedWeights, VertexPaint};
 #[cfg(feature = "render")]
 pub use render::plugin::{ClothRenderPlugin, ClothRenderSystems};
 pub use schedule::{
@@ -172,6 +176,8 @@ pub mod prelude {
         ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, SelfCollision, TargetLost,
         TeleportCloth, TeleportMode, WeightsError, WindField,
     };
+    #[cfg(feature = "render")]
+    pub use crate::{ClothFromMesh, ColorChannel, PaintedWeights, VertexPaint};
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 

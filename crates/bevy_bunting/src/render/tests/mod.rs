@@ -2,6 +2,7 @@
 
 mod cost;
 mod first_hour;
+mod from_mesh;
 mod given;
 mod levels;
 mod parts;
