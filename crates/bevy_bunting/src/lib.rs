@@ -98,6 +98,8 @@ mod diagnostics;
 mod display;
 mod environment;
 mod fabric;
+#[cfg(doctest)]
+mod guide;
 mod lod;
 mod motion;
 #[cfg(feature = "render")]

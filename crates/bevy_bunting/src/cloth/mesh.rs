@@ -203,6 +203,7 @@ impl From<Grid> for ClothMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fabric::simulated::SimulatedPart;
 
     #[test]
     fn a_repaired_mesh_stays_split_and_keeps_what_its_vertices_have() {
@@ -224,6 +225,8 @@ mod tests {
         assert_eq!(mesh.uvs()[5], Vec2::ONE);
         let fabric = |mesh: &ClothMesh| mesh.builder().build().expect("a fabric");
         assert_eq!(fabric(&mesh).particle_count(), 6, "the split vertex is two particles");
+        let part = SimulatedPart::of(&mesh, &[]).expect("a part");
+        assert_eq!(part.builder.build().map(|part| part.particle_count()), Ok(6), "in parts, too");
         let weighted = mesh.with_weights(vec![1.0; 6]);
         assert_eq!(fabric(&weighted).particle_count(), 6, "and stays two");
         let grid = ClothMesh::grid(3, 3, 1.0, 1.0);

@@ -6,6 +6,7 @@ mod from_mesh;
 mod given;
 mod levels;
 mod parts;
+mod reflect;
 mod written;
 
 use std::time::Duration;
