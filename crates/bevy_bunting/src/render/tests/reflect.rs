@@ -17,39 +17,44 @@ const RESULTS: [&str; 6] =
 /// Opaque values that the feature `serialize` serialises.
 const SERIALIZED: [&str; 1] = ["SharedShapeReflect"];
 
-/// Names of the public types of the crate with this derive, from its source.
-fn public_types(derive: &str) -> Vec<String> {
-    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let exports = std::fs::read_to_string(source.join("lib.rs")).expect("lib.rs");
-    let exported: BTreeSet<&str> =
-        exports.split(|letter: char| !letter.is_alphanumeric()).collect();
-    let mut folders = vec![source];
-    let mut found = Vec::new();
+/// The texts of all source files of the crate.
+fn sources() -> Vec<String> {
+    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join("src")];
+    let mut texts = Vec::new();
     while let Some(folder) = folders.pop() {
         for entry in std::fs::read_dir(folder).expect("a folder") {
             let path = entry.expect("an entry").path();
             if path.is_dir() {
                 folders.push(path);
-                continue;
-            }
-            let text = std::fs::read_to_string(path).expect("a source file");
-            for declared in text.split("#[derive(").skip(1) {
-                let (derives, after) = declared.split_once(")]").expect("a derive");
-                if !derives.split(", ").any(|it| it.trim() == derive) {
-                    continue;
-                }
-                let kind = ["pub struct ", "pub enum "].iter();
-                let after =
-                    kind.filter_map(|kind| after.split_once(kind)).min_by_key(|it| it.0.len());
-                let Some((_, name)) = after else { continue };
-                let name: String = name.chars().take_while(|it| it.is_alphanumeric()).collect();
-                if exported.contains(&name[..]) && !RESULTS.contains(&&name[..]) {
-                    found.push(name);
-                }
+            } else {
+                texts.push(std::fs::read_to_string(path).expect("a source file"));
             }
         }
     }
-    found.sort();
+    texts
+}
+
+/// Names of the public types of the crate with this derive, from its source.
+fn public_types(derive: &str) -> BTreeSet<String> {
+    let exports = include_str!("../../lib.rs");
+    let exported: BTreeSet<&str> =
+        exports.split(|letter: char| !letter.is_alphanumeric()).collect();
+    let mut found = BTreeSet::new();
+    for text in sources() {
+        for declared in text.split("#[derive(").skip(1) {
+            let (derives, after) = declared.split_once(")]").expect("a derive");
+            if !derives.split(", ").any(|it| it.trim() == derive) {
+                continue;
+            }
+            let kinds = ["pub struct ", "pub enum "].into_iter();
+            let after = kinds.filter_map(|kind| after.split_once(kind)).min_by_key(|it| it.0.len());
+            let Some((_, name)) = after else { continue };
+            let name: String = name.chars().take_while(|it| it.is_alphanumeric()).collect();
+            if exported.contains(&name[..]) && !RESULTS.contains(&&name[..]) {
+                found.insert(name);
+            }
+        }
+    }
     found
 }
 
@@ -108,6 +113,12 @@ fn every_public_component_and_resource_is_reflected() {
         assert!(of(name).contains::<ReflectResource>(), "{name}");
         check_serializable(of(name).type_id(), &types, &mut seen);
     }
+}
+
+#[test]
+fn no_field_is_left_out_of_reflection() {
+    let left_out = ["#[reflect(", "ignore"].concat();
+    assert!(!sources().iter().any(|text| text.contains(&left_out)));
 }
 
 #[test]
