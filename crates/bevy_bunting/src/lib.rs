@@ -104,6 +104,8 @@ mod diagnostics;
 mod display;
 mod environment;
 mod fabric;
+#[cfg(doctest)]
+mod guide;
 mod lod;
 mod motion;
 #[cfg(feature = "render")]
@@ -174,7 +176,11 @@ pub use motion::plugin::AttachmentPlugin;
 pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
 #[cfg(feature = "render")]
+pub use render::cloth_from_mesh::ClothFromMesh;
+#[cfg(feature = "render")]
 pub use render::debug::{ClothDebugPlugin, ClothGizmos};
+#[cfg(feature = "render")]
+pub use render::painted_weights::{ColorChannel, PaintedWeights, VertexPaint};
 #[cfg(feature = "render")]
 pub use render::plugin::{ClothRenderPlugin, ClothRenderSystems};
 pub use schedule::{
@@ -195,6 +201,8 @@ pub mod prelude {
         WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindRegion, WindShape,
         WindWake,
     };
+    #[cfg(feature = "render")]
+    pub use crate::{ClothFromMesh, ColorChannel, PaintedWeights, VertexPaint};
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 

@@ -17,11 +17,9 @@ pub struct ClothSettings {
     /// Limits of substeps and passes at each level of detail, the finest level first; the last entry also
     /// holds for all coarser levels. Within these limits each cloth's number of substeps follows from
     /// gravity, its length and its spacing, and from what acts on it, see [`ClothEffort`](crate::ClothEffort).
-    #[reflect(ignore)]
     pub steps: Vec<StepLimits>,
     /// Number of lanes in each batch. By default it follows from the number of cloths and the instruction
     /// set. It does not change the bits of the result.
-    #[reflect(ignore)]
     pub lanes: Option<LaneCount>,
 }
 

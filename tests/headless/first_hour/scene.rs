@@ -1,6 +1,6 @@
 //! Item 9: all components of a cloth reflect fully, and survive a round trip through a scene file.
 
-use bevy_bunting::bunting_solver::FabricMaterial;
+use bevy_bunting::bunting_solver::{FabricMaterial, LaneCount};
 use bevy_bunting::prelude::*;
 use bevy_ecs::entity::{EntityHashMap, SceneEntityMapper};
 use bevy_ecs::prelude::*;
@@ -11,7 +11,9 @@ use bevy_reflect::serde::{
     ReflectDeserializer, ReflectDeserializerProcessor, ReflectSerializer,
     ReflectSerializerProcessor,
 };
-use bevy_reflect::{GetPath, PartialReflect, ReflectRef, TypeRegistration, TypeRegistry};
+use bevy_reflect::{
+    FromReflect, GetPath, PartialReflect, ReflectRef, TypeRegistration, TypeRegistry,
+};
 use bevy_transform::prelude::*;
 use bunting_tests::{FLAG, Seen, app, run, state};
 use serde::de::DeserializeSeed;
@@ -187,6 +189,18 @@ fn colliders_winds_and_viewers_make_the_round_trip() {
         assert_eq!(collider.shape.shape_type(), original.shape.shape_type());
         assert_eq!(collider.shape.compute_local_aabb(), original.shape.compute_local_aabb());
     }
+}
+
+#[test]
+fn settings_make_the_round_trip() {
+    let limits = StepLimits { substeps: 2..=7, rate: 90, passes: 3, ..StepLimits::default() };
+    let lanes = Some(LaneCount::Sixteen);
+    let settings = ClothSettings { steps: vec![limits], lanes, ..ClothSettings::default() };
+    let app = app();
+    let types = app.world().resource::<AppTypeRegistry>().read();
+    let text = ron::to_string(&ReflectSerializer::new(&settings, &types)).expect("RON");
+    let loaded = ClothSettings::from_reflect(&*read(&text, &types)).expect("settings");
+    assert_eq!(loaded, settings);
 }
 
 #[test]

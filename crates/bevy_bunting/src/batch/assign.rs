@@ -1,7 +1,10 @@
 //! Assigns lanes: each simulated cloth gets a lane, paused and sleeping cloths leave theirs.
 
+use core::ops::RangeInclusive;
+
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
+use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_time::Time;
 
 use crate::batch::batches::ClothBatches;
@@ -20,6 +23,8 @@ pub struct LanePlugin;
 impl Plugin for LanePlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<ClothSettings>()
+            .register_type_data::<RangeInclusive<u32>, ReflectSerialize>()
+            .register_type_data::<RangeInclusive<u32>, ReflectDeserialize>()
             .register_type::<ClothPaused>()
             .init_resource::<ClothSettings>()
             .init_resource::<ClothBatches>()

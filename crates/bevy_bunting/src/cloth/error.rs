@@ -166,6 +166,36 @@ pub enum ClothError {
         /// Vertices of the `ClothMesh`.
         expected: usize,
     },
+    /// The mesh of a [`ClothFromMesh`](crate::ClothFromMesh) is kept in the render world only. No cloth is made
+    /// until its `Mesh3d` or `ClothFromMesh` changes.
+    #[cfg(feature = "render")]
+    #[error(
+        "no cloth can be made of the mesh of {entity}, which is not kept in the main world: make or load it with RenderAssetUsages::default()"
+    )]
+    MeshUnreadable {
+        /// The entity with the mesh.
+        entity: Entity,
+    },
+    /// The mesh of a [`ClothFromMesh`](crate::ClothFromMesh) failed to load. No cloth is made until its `Mesh3d`
+    /// or `ClothFromMesh` changes.
+    #[cfg(feature = "render")]
+    #[error(
+        "no cloth can be made of the mesh of {entity}, which failed to load: Bevy's error before this one names the file"
+    )]
+    MeshNotLoaded {
+        /// The entity with the mesh.
+        entity: Entity,
+    },
+    /// The mesh of a [`ClothFromMesh`](crate::ClothFromMesh) lacks the values that its weights are read from. No
+    /// cloth is made until its `Mesh3d` or `ClothFromMesh` changes.
+    #[cfg(feature = "render")]
+    #[error(
+        "the mesh of {entity} lacks the painted weights that its ClothFromMesh names: give it vertex colours of four floats, or an attribute of this name and of the format Float32"
+    )]
+    NotPainted {
+        /// The entity with the mesh.
+        entity: Entity,
+    },
     /// A position became infinite or not a number. The cloth was reset to its rest shape.
     #[error(
         "cloth {entity} diverged and was reset to its rest shape: give it more substeps, or a softer material"

@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Vec2, Vec3};
 use bevy_reflect::Reflect;
 use bevy_transform::components::Transform;
-use bunting_solver::{FabricBuilder, Grid};
+use bunting_solver::{FabricBuilder, FabricError, Grid, MeshRepair};
 
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::material::ClothMaterial;
@@ -59,6 +59,10 @@ pub enum ClothMesh {
         /// Weights from 0 (rigid) to 1 (simulated), one for each vertex. An empty list simulates all
         /// vertices. See [`with_weights`](ClothMesh::with_weights).
         weights: Vec<f32>,
+        /// For each vertex a number that it shares with those of the same particle. An empty list merges
+        /// vertices at one position. A [repaired](ClothMesh::repaired) mesh has numbers: vertices that were
+        /// split lie at one position.
+        merged: Vec<u32>,
     },
 }
 
@@ -73,7 +77,7 @@ impl ClothMesh {
     /// one for each vertex or none at all.
     #[must_use]
     pub const fn triangles(positions: Vec<Vec3>, indices: Vec<u32>, uv: Vec<Vec2>) -> Self {
-        Self::Triangles { positions, indices, uv, weights: Vec::new() }
+        Self::Triangles { positions, indices, uv, weights: Vec::new(), merged: Vec::new() }
     }
 
     /// Simulates only a part of the mesh, by a weight from 0 to 1 for each vertex.
@@ -100,9 +104,34 @@ impl ClothMesh {
         Self::Triangles {
             positions: builder.positions().to_vec(),
             indices: builder.indices().to_vec(),
+            merged: builder.merged().to_vec(),
             uv: self.uvs(),
             weights,
         }
+    }
+
+    /// Repairs a mesh as artists ship them, and says what was done: triangles without area and duplicates are
+    /// removed, edges of more than two triangles are split, and the winding is made consistent. Vertices
+    /// without triangles are left out and split ones have copies, so that vertices are numbered anew:
+    /// [`MeshRepair::vertices`] names the vertex that each comes from. Grids need no repair.
+    ///
+    /// # Errors
+    ///
+    /// [`FabricError::OneSided`] if a piece has no consistent winding, as a Möbius strip;
+    /// [`FabricError::Empty`] if no triangle is left; the errors of lists that do not fit one another and of
+    /// numbers that are not finite.
+    pub fn repaired(self) -> Result<(Self, MeshRepair), FabricError> {
+        let (builder, repair) = self.builder().repair()?;
+        let Self::Triangles { uv, weights, .. } = self else { return Ok((self, repair)) };
+        let vertices = || repair.vertices.iter().map(|&vertex| vertex as usize);
+        let repaired = Self::Triangles {
+            positions: builder.positions().to_vec(),
+            indices: builder.indices().to_vec(),
+            uv: vertices().filter_map(|vertex| uv.get(vertex).copied()).collect(),
+            weights: vertices().filter_map(|vertex| weights.get(vertex).copied()).collect(),
+            merged: builder.merged().to_vec(),
+        };
+        Ok((repaired, repair))
     }
 
     /// Weights of all vertices; empty where all vertices are simulated.
@@ -110,6 +139,15 @@ impl ClothMesh {
         match self {
             Self::Grid { .. } => &[],
             Self::Triangles { weights, .. } => weights,
+        }
+    }
+
+    /// For each vertex a number that it shares with those of the same particle; empty where vertices at one
+    /// position are merged.
+    pub(crate) fn merged(&self) -> &[u32] {
+        match self {
+            Self::Grid { .. } => &[],
+            Self::Triangles { merged, .. } => merged,
         }
     }
 
@@ -147,8 +185,10 @@ impl ClothMesh {
             Self::Grid { columns, rows, width, height } => {
                 FabricBuilder::grid(Grid::new(*columns, *rows, *width, *height))
             }
-            Self::Triangles { positions, indices, uv, .. } => {
-                FabricBuilder::new(positions.clone(), indices.clone()).uv(uv.clone())
+            Self::Triangles { positions, indices, uv, merged, .. } => {
+                FabricBuilder::new(positions.clone(), indices.clone())
+                    .uv(uv.clone())
+                    .merge(merged.clone())
             }
         }
     }
@@ -157,5 +197,39 @@ impl ClothMesh {
 impl From<Grid> for ClothMesh {
     fn from(grid: Grid) -> Self {
         Self::grid(grid.columns, grid.rows, grid.width, grid.height)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fabric::simulated::SimulatedPart;
+
+    #[test]
+    fn a_repaired_mesh_stays_split_and_keeps_what_its_vertices_have() {
+        // Two triangles that touch in vertex 2 only, and vertex 1 without triangles.
+        let positions = [
+            Vec3::ZERO,
+            Vec3::splat(9.0),
+            Vec3::new(1.0, 1.0, 0.0),
+            Vec3::X,
+            Vec3::new(2.0, 1.0, 0.0),
+            Vec3::new(2.0, 2.0, 0.0),
+        ];
+        let uv: Vec<Vec2> = positions.iter().map(|at| at.truncate()).collect();
+        let given = ClothMesh::triangles(positions.to_vec(), vec![0, 3, 2, 2, 4, 5], uv);
+        let given = given.with_weights(vec![1.0, 1.0, 0.0, 1.0, 0.5, 1.0]);
+        let (mesh, repair) = given.repaired().expect("a mesh that can be repaired");
+        assert_eq!((&repair.vertices[..], &repair.loose[..]), (&[0, 2, 3, 4, 5, 2][..], &[1][..]));
+        assert_eq!(mesh.weights(), [1.0, 0.0, 1.0, 0.5, 1.0, 0.0]);
+        assert_eq!(mesh.uvs()[5], Vec2::ONE);
+        let fabric = |mesh: &ClothMesh| mesh.builder().build().expect("a fabric");
+        assert_eq!(fabric(&mesh).particle_count(), 6, "the split vertex is two particles");
+        let part = SimulatedPart::of(&mesh, &[]).expect("a part");
+        assert_eq!(part.builder.build().map(|part| part.particle_count()), Ok(6), "in parts, too");
+        let weighted = mesh.with_weights(vec![1.0; 6]);
+        assert_eq!(fabric(&weighted).particle_count(), 6, "and stays two");
+        let grid = ClothMesh::grid(3, 3, 1.0, 1.0);
+        assert_eq!(grid.clone().repaired().map(|(mesh, _)| mesh), Ok(grid));
     }
 }

@@ -177,14 +177,15 @@ fn content_key(mesh: &ClothMesh, attached: &[u32], levels: usize) -> ContentKey 
         ClothMesh::Grid { columns, rows, width, height } => {
             key.extend([0, *columns, *rows, width.to_bits(), height.to_bits()]);
         }
-        ClothMesh::Triangles { positions, indices, uv, weights } => {
-            let lengths = [positions.len(), indices.len(), uv.len(), weights.len()];
+        ClothMesh::Triangles { positions, indices, uv, weights, merged } => {
+            let lengths = [positions.len(), indices.len(), uv.len(), weights.len(), merged.len()];
             key.push(1);
             key.extend(lengths.map(|length| length as u32));
             key.extend(positions.iter().flat_map(|position| position.to_array()).map(f32::to_bits));
             key.extend(indices);
             key.extend(uv.iter().flat_map(|uv| uv.to_array()).map(f32::to_bits));
             key.extend(weights.iter().map(|weight| weight.to_bits()));
+            key.extend(merged);
         }
     }
     key.extend(attached);

@@ -94,7 +94,7 @@ fn part_builder(
 ) -> FabricBuilder {
     let index = |vertex: &u32| vertices.binary_search(vertex).ok().map(|index| index as u32);
     let corners = triangles.iter().flat_map(|triangle| &whole.indices()[3 * triangle..][..3]);
-    let uv = mesh.uvs();
+    let (uv, merged) = (mesh.uvs(), mesh.merged());
     let held = rigid.blended.iter().filter(|(_, weight)| *weight == 0.0);
     let held = held.filter_map(|(rest, _)| index(&rest.vertex));
     FabricBuilder::new(
@@ -102,6 +102,7 @@ fn part_builder(
         corners.filter_map(index).collect(),
     )
     .uv(vertices.iter().filter_map(|&vertex| uv.get(vertex as usize).copied()).collect())
+    .merge(vertices.iter().filter_map(|&vertex| merged.get(vertex as usize).copied()).collect())
     .pin(attached.iter().filter_map(index).chain(held))
 }
 

@@ -22,11 +22,10 @@ pub fn finest(shape: &ClothMesh, levels: &ClothLevels) -> Mesh {
 /// same vertices of the finest mesh.
 pub fn coarser(finest: &Mesh, levels: &ClothLevels, level: usize) -> Mesh {
     let mut mesh = at_rest(levels, level);
-    for (attribute, values) in finest.try_attributes().into_iter().flatten() {
-        if !mesh.contains_attribute(attribute.id)
-            && let Some(values) = pick(values, &levels.topology(level).vertices)
-        {
-            mesh.insert_attribute(*attribute, values);
+    let picked = with_vertices(finest.clone(), levels.topology(level).vertices.clone());
+    for (attribute, values) in picked.attributes() {
+        if !mesh.contains_attribute(attribute.id) {
+            mesh.insert_attribute(*attribute, values.clone());
         }
     }
     mesh
@@ -63,18 +62,8 @@ pub fn write_rigid(mesh: &mut Mesh, levels: &ClothLevels, level: usize) {
     }
 }
 
-/// Picks the values of some vertices; none for formats that Bevy's own attributes do not have.
-fn pick(values: &VertexAttributeValues, vertices: &[u32]) -> Option<VertexAttributeValues> {
-    use VertexAttributeValues::{Float32x2, Float32x3, Float32x4};
-
-    match values {
-        Float32x2(values) => Some(Float32x2(pick_each(values, vertices))),
-        Float32x3(values) => Some(Float32x3(pick_each(values, vertices))),
-        Float32x4(values) => Some(Float32x4(pick_each(values, vertices))),
-        _ => None,
-    }
-}
-
-fn pick_each<T: Copy>(values: &[T], vertices: &[u32]) -> Vec<T> {
-    vertices.iter().map(|&vertex| values[vertex as usize]).collect()
+/// The mesh with some of its vertices, which may be repeated, and without triangles. Attributes of every format are
+/// picked.
+pub fn with_vertices(mesh: Mesh, vertices: Vec<u32>) -> Mesh {
+    mesh.with_inserted_indices(Indices::U32(vertices)).with_duplicated_vertices()
 }

@@ -3,11 +3,13 @@
 pub mod assign_meshes;
 pub mod bounds;
 pub mod camera_lens;
+pub mod cloth_from_mesh;
 pub mod debug;
 mod from_mesh;
 pub mod hidden;
 pub mod level_mesh;
 pub mod level_meshes;
+pub mod painted_weights;
 pub mod plugin;
 pub mod tangents;
 pub mod write;

@@ -11,6 +11,7 @@ use crate::lod::sleep::wake_cloths;
 use crate::render::assign_meshes::assign_meshes;
 use crate::render::bounds::bound_cloths;
 use crate::render::camera_lens::{add_viewer, follow_cameras};
+use crate::render::cloth_from_mesh::{ClothFromMesh, make_cloths};
 use crate::render::hidden::hide_cloths;
 use crate::render::level_meshes::show_level;
 use crate::render::write::{write_newly_visible, write_visible};
@@ -63,10 +64,12 @@ pub struct ClothRenderPlugin;
 
 impl Plugin for ClothRenderPlugin {
     fn build(&self, app: &mut App) {
-        app.add_observer(add_viewer)
+        app.register_type::<ClothFromMesh>()
+            .add_observer(add_viewer)
             .add_systems(
                 RunFixedMainLoop,
-                follow_cameras.in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+                (follow_cameras, make_cloths.run_if(resource_exists::<Assets<Mesh>>))
+                    .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
             )
             .add_systems(
                 ClothTick,

@@ -10,6 +10,11 @@ const MOST_IN_SIXTEEN: usize = 65 * 65;
 
 /// Number of cloths that a batch can hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+#[cfg_attr(
+    feature = "bevy_reflect",
+    derive(bevy_reflect::Reflect),
+    reflect(Debug, PartialEq, Hash, Clone)
+)]
 pub enum LaneCount {
     /// One cloth. A cloth on a grid is spread across the lanes of a vector, and so is a mesh that is flat at rest and fills
     /// a rectangle; other meshes are solved in scalar code.

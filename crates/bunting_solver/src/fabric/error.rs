@@ -49,6 +49,14 @@ pub enum FabricError {
         /// The distance, m.
         distance: f32,
     },
+    /// There must be one number per vertex to merge vertices by.
+    #[error("{numbers} numbers for {vertices} vertices to merge: give one per vertex, or none")]
+    MergeCount {
+        /// Number of numbers given.
+        numbers: usize,
+        /// Number of vertices given.
+        vertices: usize,
+    },
     /// There must be one texture coordinate per vertex.
     #[error("{uvs} texture coordinates for {vertices} vertices: give one per vertex, or none")]
     UvCount {

@@ -17,6 +17,11 @@ const TOO_LONG: f32 = 1e-3;
 /// Limits within which the number of substeps is chosen, from the fabric, the tick and the acceleration that the cloth
 /// bears: gravity, or that of its [`EffortClass`](crate::EffortClass).
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(
+    feature = "bevy_reflect",
+    derive(bevy_reflect::Reflect),
+    reflect(Debug, PartialEq, Hash, Clone)
+)]
 pub struct StepLimits {
     /// Constraint solver and integrator.
     pub scheme: Scheme,

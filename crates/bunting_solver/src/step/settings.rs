@@ -7,6 +7,11 @@ use crate::step::frame::FrameMotion;
 
 /// Constraint solver and integrator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(
+    feature = "bevy_reflect",
+    derive(bevy_reflect::Reflect),
+    reflect(Debug, PartialEq, Hash, Clone)
+)]
 pub enum Scheme {
     /// The thesis's scheme (4.4): Gauss–Seidel over single constraints, and backward Euler. It is PBD, and
     /// XPBD if the material has a compliance. It needs ten substeps or more.

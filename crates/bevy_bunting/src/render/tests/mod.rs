@@ -2,9 +2,11 @@
 
 mod cost;
 mod first_hour;
+mod from_mesh;
 mod given;
 mod levels;
 mod parts;
+mod reflect;
 mod written;
 
 use std::time::Duration;

@@ -106,6 +106,14 @@ impl FabricBuilder {
         self
     }
 
+    /// Merges vertices that have the same number, whatever their distance: one number for each vertex. An empty list
+    /// merges vertices by their distance, as without it.
+    #[must_use]
+    pub fn merge(mut self, numbers: Vec<u32>) -> Self {
+        self.merged = (!numbers.is_empty()).then_some(numbers);
+        self
+    }
+
     /// Sets whether free particles are tethered to their pins, as they are by default. A tether bounds the
     /// distance from a pin along the cloth, which stops overshoot in violent motion; without tethers a step
     /// costs a little less.
@@ -125,6 +133,13 @@ impl FabricBuilder {
     #[must_use]
     pub fn indices(&self) -> &[u32] {
         &self.indices
+    }
+
+    /// For each vertex a number that it shares with those that are merged with it; empty where vertices are merged by
+    /// their distance.
+    #[must_use]
+    pub fn merged(&self) -> &[u32] {
+        self.merged.as_deref().unwrap_or_default()
     }
 
     /// Distance in metres at which vertices are merged.

@@ -33,6 +33,11 @@ impl FabricBuilder {
         if !self.uv.is_empty() && self.uv.len() != vertices {
             return Err(FabricError::UvCount { uvs: self.uv.len(), vertices });
         }
+        if let Some(merged) = &self.merged
+            && merged.len() != vertices
+        {
+            return Err(FabricError::MergeCount { numbers: merged.len(), vertices });
+        }
         if self.pinned_before_uv && !self.uv.is_empty() {
             return Err(FabricError::PinnedBeforeUv);
         }

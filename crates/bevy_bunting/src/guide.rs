@@ -1,0 +1,38 @@
+//! The guide in `docs/guide`, whose snippets are compiled and run as tests.
+
+#[doc = include_str!("../../../docs/guide/concepts.md")]
+mod concepts {}
+
+#[doc = include_str!("../../../docs/guide/materials.md")]
+mod materials {}
+
+#[doc = include_str!("../../../docs/guide/anchors.md")]
+mod anchors {}
+
+#[doc = include_str!("../../../docs/guide/wind.md")]
+mod wind {}
+
+#[doc = include_str!("../../../docs/guide/colliders.md")]
+mod colliders {}
+
+#[doc = include_str!("../../../docs/guide/levels.md")]
+mod levels {}
+
+#[doc = include_str!("../../../docs/guide/effort.md")]
+mod effort {}
+
+#[doc = include_str!("../../../docs/guide/determinism.md")]
+mod determinism {}
+
+#[doc = include_str!("../../../docs/guide/performance.md")]
+mod performance {}
+
+#[doc = include_str!("../../../docs/guide/troubleshooting.md")]
+mod troubleshooting {}
+
+#[doc = include_str!("../../../docs/guide/coming-from.md")]
+mod coming_from {}
+
+#[cfg(feature = "render")]
+#[doc = include_str!("../../../docs/guide/meshes.md")]
+mod meshes {}

@@ -1,0 +1,173 @@
+//! Makes cloths of the meshes that entities already have.
+
+use bevy_asset::{AssetId, AssetServer, Assets, Handle, LoadState, RenderAssetUsages};
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_mesh::{Indices, Mesh, Mesh3d};
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+use bevy_transform::helper::TransformHelper;
+
+use crate::cloth::error::ClothError;
+use crate::cloth::events::ClothFailed;
+use crate::cloth::mesh::ClothMesh;
+use crate::render::level_mesh::with_vertices;
+use crate::render::level_meshes::LevelMeshes;
+use crate::render::painted_weights::PaintedWeights;
+
+/// Makes the entity's own `Mesh3d` a cloth, as soon as it is loaded: inserts a [`ClothMesh`] and shows a copy of the
+/// mesh, which keeps its texture coordinates, tangents, vertex colours and all other attributes. The
+/// material stays. Other entities with the same mesh asset stay as they are.
+///
+/// Scales of the entity and its parents are baked into the copy, since a cloth's frame has no scale; a scale
+/// of zero is ignored. A change of this component or of the `Mesh3d` makes the cloth anew.
+///
+/// # Errors
+///
+/// A [`ClothFailed`] event tells what cannot be used: a mesh that failed to load, one that is kept in the
+/// render world only, weights that are not painted, or a defect of the mesh. The entity is shown as before.
+///
+/// ```no_run
+/// use bevy_asset::AssetServer;
+/// use bevy_bunting::prelude::*;
+/// use bevy_bunting::ClothFromMesh;
+/// use bevy_ecs::prelude::*;
+/// use bevy_mesh::Mesh3d;
+///
+/// fn spawn(mut commands: Commands, assets: Res<AssetServer>) {
+///     commands.spawn((
+///         Mesh3d(assets.load("cape.glb#Mesh0/Primitive0")),
+///         ClothFromMesh { repair: true, ..ClothFromMesh::painted() },
+///         ClothMaterial::FLAG_POLYESTER,
+///     ));
+/// }
+/// ```
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
+pub struct ClothFromMesh {
+    /// Whether the mesh is [repaired](ClothMesh::repaired) before. Vertices are then numbered anew, which matters
+    /// for [`AttachedVertices::List`](crate::AttachedVertices::List).
+    pub repair: bool,
+    /// Whether texture coordinates of the mesh are left out of the cloth; they are shown all the same. The warp runs
+    /// along u: leave out coordinates that have nothing to do with the weave, as those of an atlas.
+    pub ignore_uv: bool,
+    /// Weights of the vertices, painted by the artist; without them all vertices are simulated. What
+    /// is pinned stays on the entity, or on the target of its [`Attachment`](crate::Attachment) if it has one.
+    pub weights: Option<PaintedWeights>,
+}
+
+impl ClothFromMesh {
+    /// Reads weights from the red channel of the vertex colours: red is pinned.
+    #[must_use]
+    pub fn painted() -> Self {
+        Self { weights: Some(PaintedWeights::default()), ..Self::default() }
+    }
+}
+
+/// The mesh that a cloth is made of.
+#[derive(Component, Clone, Debug)]
+pub struct SourceMesh {
+    source: Handle<Mesh>,
+    /// The mesh that was shown when the cloth was made: the copy or, if no cloth was made, the source.
+    shown: AssetId<Mesh>,
+}
+
+/// Marks a cloth whose mesh is not loaded yet.
+#[derive(Component, Clone, Copy, Debug)]
+pub struct AwaitsMesh;
+
+type Asked = (
+    Entity,
+    Ref<'static, ClothFromMesh>,
+    &'static Mesh3d,
+    Option<&'static SourceMesh>,
+    Option<&'static LevelMeshes>,
+    Has<AwaitsMesh>,
+);
+type MayBeStale = Or<(Changed<ClothFromMesh>, Changed<Mesh3d>, With<AwaitsMesh>)>;
+
+/// Makes cloths of meshes that are new, changed or have been loaded since the last frame.
+pub fn make_cloths(
+    asked: Query<Asked, MayBeStale>,
+    server: Option<Res<AssetServer>>,
+    transforms: TransformHelper,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut commands: Commands,
+) {
+    for (entity, wanted, shown, known, levels, awaits) in &asked {
+        let is_own = |known: &&SourceMesh| {
+            known.shown == shown.id() || levels.is_some_and(|levels| levels.contains(shown.id()))
+        };
+        let known = known.filter(is_own);
+        if known.is_some() && !wanted.is_changed() && !awaits {
+            continue;
+        }
+        let source = known.map_or(&shown.0, |known| &known.source).clone();
+        let mut cloth = commands.entity(entity);
+        let Some(mesh) = meshes.get(&source) else {
+            cloth.insert(SourceMesh { source: source.clone(), shown: shown.id() });
+            let state = server.as_ref().map(|server| server.load_state(source.id()));
+            if matches!(state, Some(LoadState::Failed(_))) {
+                cloth.remove::<AwaitsMesh>();
+                ClothFailed::report(&mut commands, entity, ClothError::MeshNotLoaded { entity });
+            } else if !awaits {
+                cloth.insert(AwaitsMesh);
+            }
+            continue;
+        };
+        let global = transforms.compute_global_transform(entity);
+        let scale = global.map_or(Vec3::ONE, |global| global.scale());
+        match wanted.convert(entity, mesh, scale) {
+            Ok((shape, copy)) => {
+                let copy = meshes.add(copy);
+                cloth.insert((shape, SourceMesh { source, shown: copy.id() }, Mesh3d(copy)));
+                cloth.remove::<AwaitsMesh>();
+            }
+            Err(error) => {
+                cloth.insert(SourceMesh { source, shown: shown.id() }).remove::<AwaitsMesh>();
+                ClothFailed::report(&mut commands, entity, error);
+            }
+        }
+    }
+}
+
+impl ClothFromMesh {
+    /// The cloth of a mesh with a scale, and the mesh that shows it, vertex by vertex.
+    fn convert(
+        &self,
+        entity: Entity,
+        mesh: &Mesh,
+        scale: Vec3,
+    ) -> Result<(ClothMesh, Mesh), ClothError> {
+        let is_kept = mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD);
+        if !is_kept || mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION).is_err() {
+            return Err(ClothError::MeshUnreadable { entity });
+        }
+        let mut shown = mesh.clone();
+        if scale != Vec3::ONE && scale.is_finite() && scale.cmpne(Vec3::ZERO).all() {
+            shown.scale_by(scale);
+            if scale.element_product() < 0.0 {
+                // A mesh that is no list of triangles gives an empty cloth, which is reported later.
+                let _ = shown.invert_winding();
+            }
+        }
+        let mut shape = ClothMesh::from(&shown);
+        if let (ClothMesh::Triangles { uv, .. }, true) = (&mut shape, self.ignore_uv) {
+            uv.clear();
+        }
+        if let Some(painted) = &self.weights {
+            shape = shape.with_weights(painted.read(entity, &shown)?);
+        }
+        if self.repair {
+            let repaired = shape.repaired();
+            let (repaired, report) =
+                repaired.map_err(|source| ClothError::Mesh { entity, source })?;
+            shape = repaired;
+            shown = with_vertices(shown, report.vertices);
+            if let ClothMesh::Triangles { indices, .. } = &shape {
+                shown.insert_indices(Indices::U32(indices.clone()));
+            }
+        }
+        Ok((shape, shown))
+    }
+}
