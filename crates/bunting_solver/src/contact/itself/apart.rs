@@ -7,7 +7,7 @@ use crate::contact::itself::patches::Cell;
 use crate::contact::itself::swept::Swept;
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::registers::Pack8;
-use crate::simd::vec3::{Pack3, V3};
+use crate::simd::vec3::V3;
 
 /// Paths of the triangles of a cell in a substep.
 #[derive(Clone, Copy, Debug)]
