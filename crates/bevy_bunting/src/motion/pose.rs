@@ -19,6 +19,10 @@ const LONGEST_TIME: f64 = 2.0;
 /// Ratio of a frame's length to the mean above which the frame is a hitch, which does not change the delay.
 const HITCH: f64 = 1.5;
 
+/// Time of rest after which it is known that an entity rested, in units of the longest frame: entities that are moved in
+/// frames are not moved in every tick.
+const KNOWN_REST: f64 = 1.5;
+
 /// Number of ticks without a change of pose in them after which a change of pose in a frame means that the
 /// entity is moved in frames. Fewer: a target that pauses for a tick is taken for one that is moved in
 /// frames.
@@ -277,6 +281,10 @@ impl PoseHistory {
             let ticks = last.ticks.wrapping_sub(rest.ticks);
             self.ticks_to_quiet = self.ticks_to_quiet.saturating_sub(ticks);
             self.change_delay(last.tick - rest.tick, last.longest_frame);
+            if last.tick - rest.tick > KNOWN_REST * last.longest_frame {
+                self.ticks.is_known = true;
+                self.frames.is_known = true;
+            }
         }
     }
 

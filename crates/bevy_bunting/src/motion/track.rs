@@ -20,9 +20,17 @@ const TELEPORT_ANGLE: f32 = core::f32::consts::FRAC_PI_2;
 /// moves at the rate of ticks, observed in shorter frames, is teleported with each step.
 const LEAST_INTERVAL: f64 = 1.0 / 64.0;
 
+/// Speed above which the first change of a new entity's pose is a teleport, m/s: the entity may be put in its place, or
+/// have been moving before. Smaller: an entity that starts to move in its second frame swings its cloth late. Larger:
+/// cloth that is spawned on a moving vehicle is torn along.
+const FIRST_SPEED: f32 = 3.0;
+
 /// Greatest speed, m/s, of a motion that is recognised by two like changes of pose, the first of which is a teleport by its
 /// change of velocity: that of a light aircraft. Larger: an entity that is put elsewhere twice, by the same way, throws its cloth.
 const FASTEST: f32 = 100.0;
+
+/// Shortest time between two observations from which a velocity is computed, s: a thousand frames a second.
+const SHORTEST: f64 = 1e-3;
 
 /// Time past the last observed pose up to which the motion is extrapolated, s: Bevy's clock allows no
 /// longer frame.
@@ -35,6 +43,8 @@ pub(super) struct Track {
     samples: VecDeque<(f64, Isometry3d)>,
     /// Whether the next change is a teleport, of any size.
     pub teleports_next: bool,
+    /// Whether it is known how the entity moves: its pose has changed, or has rested.
+    pub is_known: bool,
     /// Mean velocity over the last change, m/s, if that was a teleport that had not been requested.
     jump: Option<Vec3>,
 }
@@ -63,6 +73,7 @@ impl Track {
             self.samples.push_back((time - LEAST_INTERVAL, earlier));
         }
         let departure = self.departure(time, pose, limit);
+        self.is_known |= self.samples.back().is_some_and(|&(_, last)| last != pose);
         self.jump = None;
         if let Some(Departure::Teleport(by)) = departure {
             if !self.teleports_next {
@@ -84,7 +95,7 @@ impl Track {
     fn velocity_to(&self, time: f64, pose: Isometry3d) -> Option<Vec3> {
         let &(before, last) = self.samples.back()?;
         let way = Vec3::from(pose.translation - last.translation);
-        Some(way / (time - before).max(LEAST_INTERVAL) as f32)
+        Some(way / (time - before).max(SHORTEST) as f32)
     }
 
     /// The departure of a pose from the extrapolated motion: a teleport if the pose is far from both the extrapolated
@@ -92,6 +103,7 @@ impl Track {
     fn departure(&self, time: f64, pose: Isometry3d, limit: f32) -> Option<Departure> {
         let &(before, last) = self.samples.back()?;
         let expected = self.pose_at(time)?;
+        let limit = if self.is_known { limit } else { limit.min(FIRST_SPEED) };
         let distance = limit * (time - before).max(LEAST_INTERVAL) as f32;
         let angle = (distance / LEVER).min(TELEPORT_ANGLE);
         let turns = |from: Isometry3d| from.rotation.angle_between(pose.rotation) > angle;
