@@ -155,7 +155,7 @@ pub enum TargetLost {
     /// the cloth hangs from the last pose of its target.
     #[default]
     Freeze,
-    /// The cloth falls: its [`Attachment`] is removed.
+    /// The cloth falls: its [`Attachment`] is removed; or if the target is that of an [`Anchor`], the anchor is.
     Release,
 }
 
