@@ -21,6 +21,7 @@ pub(crate) mod single_mesh;
 mod single_tethers;
 pub(crate) mod snapshot;
 mod surfaces;
+mod surroundings;
 mod tether_pack;
 
 pub use cloth_batch::ClothBatch;

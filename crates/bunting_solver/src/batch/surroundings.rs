@@ -1,0 +1,115 @@
+//! What acts on the cloths of a batch from outside, and what they touch.
+
+use parry3d::bounding_volume::Aabb;
+
+use crate::batch::cloth_batch::{ClothBatch, Lanes, with_batch};
+use crate::batch::error::BatchError;
+use crate::contact::collider::Collider;
+use crate::contact::itself::settings::SelfCollision;
+use crate::contact::reaction::ContactReaction;
+use crate::step::{Drive, MovingPin};
+
+impl ClothBatch {
+    /// Sets the frame motion, gravity and air that act on a lane from the next tick on. The frame's motion is
+    /// repeated in every tick until it is set again. An empty lane stays empty.
+    ///
+    /// # Errors
+    ///
+    /// A number is not finite, the air's density is negative, or there is no such lane. The lane then keeps
+    /// its former drive.
+    pub fn drive(&mut self, lane: usize, drive: Drive) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        drive.validate().map_err(|name| BatchError::Drive { name })?;
+        with_batch!(&mut self.0, batch => {
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                cloth.drive = drive;
+            }
+        });
+        Ok(())
+    }
+
+    /// Moves pins of a lane's cloth within its frame in the next tick, in each substep by the same way; later they stay
+    /// where they are. Constraints see them as held, and the air as moving. An empty lane stays empty.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane, a particle is not pinned, or a position is not finite. The pins then stay where they are.
+    pub fn move_pins(&mut self, lane: usize, pins: Vec<MovingPin>) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        with_batch!(&mut self.0, batch => batch.set_pin_motion(lane, pins))
+    }
+
+    /// Sets the shapes that a lane's cloth cannot enter, from the next tick on. An empty lane stays empty.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane, or a number of a collider is not finite. Such a collider is left out.
+    pub fn set_colliders(
+        &mut self,
+        lane: usize,
+        colliders: impl IntoIterator<Item = Collider>,
+    ) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        let mut refused = None;
+        with_batch!(&mut self.0, batch => {
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                cloth.colliders.clear();
+                for (index, collider) in colliders.into_iter().enumerate() {
+                    if collider.is_finite() {
+                        cloth.colliders.push(collider);
+                    } else {
+                        refused.get_or_insert(index);
+                    }
+                }
+            }
+        });
+        refused.map_or(Ok(()), |index| Err(BatchError::Collider { index }))
+    }
+
+    /// Keeps a lane's cloth from passing through itself from the next substep on, or lets it; at first it does. An empty
+    /// lane stays empty. The first call for a lane computes the features of its fabric that may touch, which takes
+    /// longer than a tick.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane, or the thickness is not finite and greater than zero. The lane keeps its settings.
+    pub fn set_self_collision(
+        &mut self,
+        lane: usize,
+        settings: Option<SelfCollision>,
+    ) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        if settings.is_some_and(|settings| !settings.is_valid()) {
+            return Err(BatchError::SelfCollision);
+        }
+        with_batch!(&mut self.0, batch => batch.set_self_collision(lane, settings));
+        Ok(())
+    }
+
+    /// For each lane, the box around all positions that its cloth's particles reach in a tick of `tick` seconds under
+    /// the present [`Drive`], as far as they touch nothing, with the cloth's thickness; in m, relative to the cloth's
+    /// frame at the start of the tick. None for a lane without a cloth. By this box a host finds the colliders that a
+    /// cloth may touch.
+    #[must_use]
+    pub fn swept_bounds(&self, tick: f32) -> Vec<Option<Aabb>> {
+        with_batch!(&self.0, batch => batch.swept_bounds(tick))
+    }
+
+    /// The colliders that a lane's cloth could touch in the last tick.
+    pub fn near_colliders(&self, lane: usize) -> impl Iterator<Item = &Collider> {
+        let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
+        let near = cloth.into_iter().flat_map(|cloth| cloth.colliders.iter().zip(&cloth.contacts));
+        near.filter(|(_, candidates)| !candidates.is_empty()).map(|(collider, _)| collider)
+    }
+
+    /// What a lane's cloth did in the last tick to each collider that [`reports_as`](Collider::reports_as) a number, in
+    /// the order of the colliders.
+    pub fn reactions(&self, lane: usize) -> impl Iterator<Item = ContactReaction> {
+        let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
+        let areas = self.fabric().particle_areas();
+        let sums = cloth.into_iter().flat_map(|cloth| cloth.colliders.iter().zip(&cloth.reactions));
+        sums.filter_map(|(collider, sum)| {
+            Some(sum.total(collider.reports_as?, collider.to.1, areas))
+        })
+    }
+}
