@@ -1,7 +1,9 @@
-//! Wind with a place and forces of the user, in the plugin, compared with what their documentation states.
+//! Anchors, wind with a place and forces of the user, in the plugin, compared with closed forms and with what their
+//! documentation states.
 //!
 //! Every row is one figure and one limit.
 
+mod anchors;
 mod blast;
 mod impossible;
 mod impulse;
@@ -13,7 +15,8 @@ use crate::contacts::Row;
 pub type Family = fn(quick: bool) -> Vec<Row>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 4] = [
+pub const ALL: [(&str, Family); 5] = [
+    ("anchors", anchors::rows),
     ("impulse", impulse::rows),
     ("turbulence", turbulence::rows),
     ("blast", blast::rows),
