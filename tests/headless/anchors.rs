@@ -4,9 +4,9 @@ use bevy_app::prelude::*;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_math::{Quat, Vec3};
-use bevy_time::Time;
+use bevy_time::{Fixed, Time};
 use bevy_transform::prelude::*;
-use bunting_tests::{Seen, TICK, app, assert_finite, run, state};
+use bunting_tests::{Seen, TICK, app, assert_finite, greatest_speed, run, state};
 
 /// A banner of 2 × 0.5 m, between masts at its ends.
 const BANNER: ClothMesh = ClothMesh::grid(33, 9, 2.0, 0.5);
@@ -141,6 +141,34 @@ fn an_anchor_far_from_its_place_is_reached_gently() {
     let [_, right] = ends(&app, banner);
     let place = Vec3::new(1.0, 0.0, 0.5);
     assert!(right.distance(place) < TOLERANCE, "{right}");
+}
+
+#[test]
+fn a_requested_teleport_of_a_mast_does_not_tear_its_edge_along() {
+    fn jumps(time: f32) -> (Vec3, f32) {
+        (if time > 2.0 { 0.2 * Vec3::new(-1.0, 1.0, 0.0) } else { Vec3::ZERO }, 0.0)
+    }
+    let fastest = |requested: bool| {
+        let mut app = app();
+        app.add_systems(FixedUpdate, sway);
+        let (_, banner) = banner(&mut app, [still, jumps]);
+        app.world_mut().entity_mut(banner).insert(finest());
+        let mut fastest = 0.0_f32;
+        for _ in 0..(3.0 / TICK) as usize {
+            let before = app.world().resource::<Time<Fixed>>().elapsed_secs();
+            if requested && before <= 2.0 && before + TICK > 2.0 {
+                app.world_mut().trigger(TeleportCloth { entity: banner, mode: TeleportMode::Keep });
+            }
+            run(&mut app, 1);
+            let time = app.world().resource::<Time<Fixed>>().elapsed_secs();
+            if time > 1.9 {
+                fastest = fastest.max(greatest_speed(&app, banner));
+            }
+        }
+        fastest
+    };
+    let (requested, seen) = (fastest(true), fastest(false));
+    assert!(requested < 1.5 && seen > 5.0, "{requested} and {seen} m/s");
 }
 
 #[test]

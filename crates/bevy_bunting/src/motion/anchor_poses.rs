@@ -32,6 +32,11 @@ impl AnchorPoses {
         self.0.iter().any(|pose| !pose.history.rests())
     }
 
+    /// Makes the next change of each pose a teleport.
+    pub fn teleport_next(&mut self, last: &ObservationTimes) {
+        self.0.iter_mut().for_each(|pose| pose.history.teleport_next(last));
+    }
+
     /// Forgets the poses of targets that are no longer those of the anchors.
     fn fit(&mut self, anchors: &[Anchor]) {
         self.0.truncate(anchors.len());

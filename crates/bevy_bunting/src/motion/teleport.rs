@@ -8,9 +8,10 @@ use bevy_reflect::std_traits::ReflectDefault;
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
+use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::pose::{ObservationTimes, PoseHistory};
 
-/// Makes the next change of a cloth's frame a teleport: the cloth moves with its frame rigidly, without being
+/// Makes the next change of a cloth's frame, and of each of its anchors, a teleport: the cloth moves with its frame rigidly, without being
 /// accelerated. Trigger this event in the frame or tick in which the target is moved, before or after the
 /// motion, but before the next tick of the cloth.
 ///
@@ -45,14 +46,26 @@ impl Plugin for TeleportPlugin {
     }
 }
 
+type TeleportedCloth = (
+    &'static mut PoseHistory,
+    Option<&'static mut AnchorPoses>,
+    &'static mut ClothInstance,
+    &'static mut ClothState,
+);
+
 fn teleport(
     request: On<TeleportCloth>,
-    mut cloths: Query<(&mut PoseHistory, &mut ClothInstance, &mut ClothState)>,
+    mut cloths: Query<TeleportedCloth>,
     mut batches: ResMut<ClothBatches>,
     times: Res<ObservationTimes>,
 ) {
-    let Ok((mut history, mut instance, mut state)) = cloths.get_mut(request.entity) else { return };
+    let Ok((mut history, anchors, mut instance, mut state)) = cloths.get_mut(request.entity) else {
+        return;
+    };
     history.teleport_next(&times);
+    if let Some(mut anchors) = anchors {
+        anchors.teleport_next(&times);
+    }
     if request.mode == TeleportMode::Reset {
         instance.reset(&mut state, &mut batches);
     }
