@@ -5,9 +5,13 @@ use crate::batch::lane_batch::{BackgroundGrid, LaneBatch, SingleGrid};
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::single_mesh::pack_count;
+use crate::batch::snapshot::ClothSnapshot;
 use crate::fabric::{Background, Fabric, GridTransfer};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
+use crate::step::Drive;
+use crate::step::bdf::IntegratorHistory;
+use crate::step::clock::Clock;
 use crate::step::load_stretch::LoadStretch;
 use crate::step::parameters::ParameterInputs;
 
@@ -31,10 +35,13 @@ impl<P: Pack> BackgroundGrid<P> {
         let background = fabric.background()?;
         let grid = &background.fabric;
         let single = if is_single { LaneBatch::single_cloth(grid) } else { None };
-        Some(match single {
+        let mut batch = match single {
             Some(batch) => Self::Single(Box::new(SingleGrid::new(batch, fabric, background))),
             None => Self::SideBySide(Box::new(LaneBatch::side_by_side(grid.clone()))),
-        })
+        };
+        // The particles undo what the corrections turn.
+        with_grid!(&mut batch, nodes => nodes.numbers.pole = None);
+        Some(batch)
     }
 
     /// Marks a cloth's lanes as empty.
@@ -52,6 +59,24 @@ impl<P: Pack> BackgroundGrid<P> {
         with_grid!(self, batch => batch.set_inputs(cloth, inputs));
     }
 
+    /// Sets what acts on a cloth in the substep that `clock` is about to begin.
+    pub fn set_drive(&mut self, cloth: usize, drive: &Drive, clock: &Clock) {
+        with_grid!(self, batch => batch.set_drive(cloth, drive, clock));
+    }
+
+    /// The state of a cloth's nodes, whose history is that of the particles.
+    pub fn snapshot(&self, cloth: usize, integrator: IntegratorHistory) -> ClothSnapshot {
+        match self {
+            Self::SideBySide(batch) => batch.snapshot_with(cloth, integrator),
+            Self::Single(single) => single.batch.snapshot_with(cloth, integrator),
+        }
+    }
+
+    /// Overwrites the state of a cloth's nodes.
+    pub fn restore(&mut self, cloth: usize, nodes: &ClothSnapshot) {
+        with_grid!(self, batch => batch.restore(&[(cloth, nodes)]));
+    }
+
     /// Sets the inverse masses of a cloth's nodes, 1/m².
     pub fn set_inverse_masses(&mut self, cloth: usize, of_nodes: &[f32]) {
         with_grid!(self, batch => {
@@ -64,6 +89,10 @@ impl<P: Pack> BackgroundGrid<P> {
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     fn set_empty(&mut self, cloth: usize) {
         self.parameters.set_empty(Y::lanes(cloth));
+    }
+
+    fn set_drive(&mut self, cloth: usize, drive: &Drive, clock: &Clock) {
+        self.parameters.set_drive(Y::lanes(cloth), drive, clock);
     }
 
     fn set_load_stretch(&mut self, cloth: usize, stretch: &LoadStretch) {
@@ -84,7 +113,7 @@ impl SingleGrid {
             (pack * Pack8::WIDTH + lane) as u32
         };
         let places: Vec<u32> = (0..batch.fabric.particle_count()).map(place).collect();
-        let GridTransfer { nodes, particles, means, heights, is_whole } =
+        let GridTransfer { nodes, particles, means, held, moved_areas, heights, is_whole } =
             background.transfer.clone();
         Self {
             nodes: vec![zero; count],
@@ -93,6 +122,8 @@ impl SingleGrid {
                 nodes: nodes.with_rows_at(&places, count),
                 particles: particles.with_columns(&places),
                 means: means.with_rows_at(&places, count),
+                held: held.with_rows_at(&places, count),
+                moved_areas,
                 heights,
                 is_whole,
             },

@@ -10,6 +10,7 @@ use crate::batch::layout::{Layout, OfCloth, Positions};
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::single_mesh::SingleMesh;
 use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
+use crate::constraints::background::nodes_of;
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack1, Pack8};
@@ -120,6 +121,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.positions.clear();
         let fabric = &self.fabrics[Y::fabric_of(lane)].fabric;
         self.layout.set_pins(lane, fabric, positions);
+        if let Some(grid) = &mut self.background {
+            let nodes = history.and_then(|history| history.nodes.as_deref());
+            match nodes {
+                Some(nodes) => grid.restore(lane, nodes),
+                None => grid.restore(lane, &nodes_of(fabric, positions, &state.velocities)),
+            }
+        }
         if let Some(cloth) = &mut self.lanes[lane] {
             cloth.history =
                 history.map_or_else(IntegratorHistory::default, |history| history.integrator);

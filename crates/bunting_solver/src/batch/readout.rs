@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::batch::lane_batch::LaneBatch;
+use crate::batch::lane_batch::{BackgroundGrid, LaneBatch};
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
 use crate::simd::lane::Pack;
@@ -15,12 +15,19 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let integrator = self.lanes[lane]
             .as_ref()
             .map_or_else(IntegratorHistory::default, |cloth| cloth.history);
+        self.snapshot_with(lane, integrator)
+    }
+
+    /// The state of a lane, with its history if the integrator has one.
+    pub fn snapshot_with(&self, lane: usize, integrator: IntegratorHistory) -> ClothSnapshot {
         let read = |packs| self.read(packs, lane);
+        let nodes = |grid: &BackgroundGrid<P>| Box::new(grid.snapshot(lane, integrator));
         let history = integrator.exists().then(|| SnapshotHistory {
             integrator,
             displacements: [read(&self.displacement), read(&self.older_displacement)],
             older_velocities: [read(&self.older_velocity), read(&self.oldest_velocity)],
             relaxation: self.relaxation_of(lane),
+            nodes: self.background.as_ref().map(nodes),
         });
         ClothSnapshot { history, ..self.snapshot_without_history(lane) }
     }

@@ -28,6 +28,8 @@ pub(crate) struct SnapshotHistory {
     pub older_velocities: [Vec<Vec3>; 2],
     /// Under-relaxation factor of each particle; empty where all are 1.
     pub relaxation: Vec<f32>,
+    /// State of the nodes of a mesh's background grid.
+    pub nodes: Option<Box<ClothSnapshot>>,
 }
 
 impl ClothSnapshot {

@@ -1,50 +1,90 @@
 //! Stretch, shear and bending of a mesh on its background grid.
 //!
-//! The positions X of the nodes are found from the positions x of the particles, the grid is solved as any other grid,
-//! and the particles follow: x = P X, where P interpolates between nodes. A node has the mass that its displacement
-//! moves, Pᵀ m, so that momentum is kept. At rest the nodes are in the grid's own equilibrium, whatever the triangles
-//! are like: all particles fall by the same length in a substep, and the nodes bring them back by the same length.
+//! The nodes are integrated as the particles are (`step/nodes.rs`), and take over whatever else acts on the particles:
+//! air, contacts and forces of users. The grid is solved as any other grid, and the particles follow: x = P X, where P
+//! interpolates between nodes. A node takes over what its displacement moves: X ← X + R (x − P X) with
+//! R = (Pᵀ m)⁻¹ Pᵀ m, which is Galerkin's method with lumped masses. What the grid does not resolve is taken off.
 //!
-//! The nodes begin at X = B x, with B the weights in triangles, which keeps straight rows straight. Steps
-//! X ← X + R (x − P X), R = (Pᵀ m)⁻¹ Pᵀ m, lead towards the orthogonal projection onto what the grid can move. An
-//! oblique one feeds motion: see [`PROJECTION_STEPS`]. As the projection is orthogonal, taking off what the grid does
-//! not resolve, x − P X, neither moves the nodes nor changes the momentum.
+//! Nodes without a past are read from the particles alone. They begin at X = B x, with B the weights in triangles, which
+//! keeps straight rows straight, and take steps of R towards the orthogonal projection. In each substep that would move
+//! them by an error whose size does not depend on the substep's length, of modes that P hardly shows.
 
 use glam::Vec3;
 
 use crate::batch::lane_batch::{BackgroundGrid, LaneBatch};
 use crate::batch::layout::Positions;
 use crate::batch::side_by_side::SideBySide;
+use crate::batch::snapshot::ClothSnapshot;
 use crate::constants::LEAST_LENGTH;
 use crate::constraints::interpolate::{AddInterpolated, Interpolate, Remainder};
-use crate::fabric::{Fabric, GridTransfer, Height};
+use crate::fabric::{Background, Fabric, GridTransfer, Height};
 use crate::simd::lane::{Kernel, Lane, Pack};
-use crate::simd::vec3::{Pack3, V3, splat3};
+use crate::simd::registers::Pack1;
+use crate::simd::vec3::{Pack3, V3, lane3, splat3};
 
-/// Steps towards the orthogonal projection. Fewer: a cloth that hangs by two corners does not rest (160 mm/s without a
-/// step, 12 mm/s with one, 0.1 mm/s with two).
-pub(super) const PROJECTION_STEPS: usize = 2;
+/// Steps towards the orthogonal projection for nodes that are read from the particles alone. Fewer: rows of nodes zigzag.
+const READING_STEPS: usize = 2;
 
-/// The inverse mass of each node, 1/m², from those of the particles; zero where the node is pinned.
+/// The inverse mass of each node, 1/m², from those of the particles, which include added masses; zero where the node is
+/// pinned.
 pub(crate) fn node_inverse_masses(fabric: &Fabric, of_particles: &[f32]) -> Vec<f32> {
-    let Some(background) = fabric.background() else { return Vec::new() };
+    let Some(Background { fabric: grid, transfer, .. }) = fabric.background() else {
+        return Vec::new();
+    };
     let mass = |&inverse: &f32| if inverse > 0.0 { 1.0 / inverse } else { 0.0 };
     let masses: Vec<f32> = of_particles.iter().map(mass).collect();
-    let at_rest = background.fabric.inverse_areas();
-    let of_nodes = background.transfer.node_masses(&masses);
-    let inverse = |(mass, &at_rest): (&f32, &f32)| if at_rest > 0.0 { 1.0 / mass } else { 0.0 };
-    of_nodes.iter().zip(at_rest).map(inverse).collect()
+    let moved = transfer.node_masses(&masses);
+    let inverse = |((mass, area), at_rest): ((&f32, &f32), &f32)| area / mass * at_rest;
+    moved.iter().zip(&transfer.moved_areas).zip(grid.inverse_areas()).map(inverse).collect()
+}
+
+/// The state of the nodes of a mesh without a past.
+pub(crate) fn nodes_of(fabric: &Fabric, positions: &[Vec3], velocities: &[Vec3]) -> ClothSnapshot {
+    let Some(Background { fabric: grid, transfer, .. }) = fabric.background() else {
+        return ClothSnapshot::default();
+    };
+    let flat = GridTransfer { heights: Vec::new(), ..transfer.clone() };
+    let still = vec![Vec3::ZERO; grid.particle_count()];
+    ClothSnapshot::new(
+        interpolated(transfer, positions, grid.rest_positions()),
+        interpolated(&flat, velocities, &still),
+    )
+}
+
+/// The vectors of nodes, interpolated from those of particles; `outside` where a node lies outside the mesh.
+fn interpolated(transfer: &GridTransfer, of_particles: &[Vec3], outside: &[Vec3]) -> Vec<Vec3> {
+    let packs = |vectors: &[Vec3]| vectors.iter().copied().map(splat3).collect();
+    let (particles, mut nodes): (Vec<Pack3<Pack1>>, Vec<_>) = (packs(of_particles), packs(outside));
+    Pack1::run(Interpolate { rows: &transfer.nodes, from: &particles, to: &mut nodes });
+    let mut unresolved = Vec::new();
+    for _ in 0..READING_STEPS {
+        project(transfer, &particles, &mut unresolved, &mut nodes);
+    }
+    nodes.iter().map(|node| lane3(node, 0)).collect()
+}
+
+/// Moves nodes by R (x − P X), one step towards the places at which the particles are interpolated from them best.
+fn project<P: Pack>(
+    GridTransfer { particles: rows, means, heights, .. }: &GridTransfer,
+    particles: &[Pack3<P>],
+    unresolved: &mut Vec<Pack3<P>>,
+    nodes: &mut [Pack3<P>],
+) {
+    unresolved.resize(particles.len(), splat3(Vec3::ZERO));
+    P::run(Remainder { rows, from: nodes, of: particles, to: unresolved });
+    P::run(AddHeights { heights, sign: -1.0, nodes, to: unresolved });
+    P::run(AddInterpolated { rows: means, from: unresolved, to: nodes });
 }
 
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
-    /// Solves bending: on the background grid if the mesh fills it, else at the mesh's hinges. Then reads the nodes for
+    /// Solves bending: on the background grid if the mesh fills it, else at the mesh's hinges. Then moves the nodes for
     /// [`solve_stretch_on_background`](Self::solve_stretch_on_background).
     pub(super) fn solve_bending_with_background(&mut self) {
         let is_whole = self.fabric.background().is_some_and(|grid| grid.transfer.is_whole);
         if !is_whole {
             self.solve_dihedral_both_ways();
         }
-        self.read_nodes();
+        self.move_nodes();
         if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background
             && is_whole
         {
@@ -68,26 +108,18 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         self.solve_contacts();
     }
 
-    /// Finds the nodes' positions from the particles.
-    fn read_nodes(&mut self) {
+    /// Moves the nodes as the particles have moved since the last substep.
+    fn move_nodes(&mut self) {
         let (Some(BackgroundGrid::SideBySide(grid)), Some(background)) =
             (&mut self.background, self.fabric.background())
         else {
             return;
         };
-        grid.clock = self.clock;
-        let GridTransfer { nodes, particles, means, heights, .. } = &background.transfer;
-        let positions = grid.positions.packs_mut();
-        P::run(Interpolate { rows: nodes, from: self.positions.packs(), to: positions });
-        // What the grid does not resolve.
-        let rest = &mut self.stretch_shift;
-        rest.resize(self.positions.packs().len(), splat3(Vec3::ZERO));
-        for _ in 0..PROJECTION_STEPS {
-            let (rows, of) = (particles, self.positions.packs());
-            P::run(Remainder { rows, from: positions, of, to: rest });
-            P::run(AddHeights { heights, sign: -1.0, nodes: positions, to: rest });
-            P::run(AddInterpolated { rows: means, from: rest, to: positions });
-        }
+        grid.predict_nodes(self.clock, self.parameters.any_frame_moved);
+        let (transfer, particles) = (&background.transfer, self.positions.packs());
+        let nodes = grid.positions.packs_mut();
+        P::run(Interpolate { rows: &transfer.held, from: particles, to: nodes });
+        project(transfer, particles, &mut self.stretch_shift, nodes);
     }
 
     /// Interpolates the positions of the free particles from the nodes.
@@ -97,6 +129,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         else {
             return;
         };
+        grid.update_node_velocities();
         let GridTransfer { particles: rows, heights, .. } = &background.transfer;
         let to = self.positions.packs_mut();
         let nodes = grid.positions.packs_mut();

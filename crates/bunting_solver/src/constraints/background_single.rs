@@ -2,7 +2,6 @@
 //! the coordinates of a vector in the lanes of a register: neither particles nor nodes of a row are neighbours in
 //! memory.
 
-use super::background::PROJECTION_STEPS;
 use crate::batch::lane_batch::{BackgroundGrid, LaneBatch, SingleGrid};
 use crate::batch::layout::Positions;
 use crate::batch::single_mesh::{SingleMesh, read_vectors, write_vectors};
@@ -24,7 +23,7 @@ impl LaneBatch<Pack8, SingleMesh> {
             return;
         }
         let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
-        grid.batch.clock = self.clock;
+        grid.batch.predict_nodes(self.clock, self.parameters.any_frame_moved);
         grid.project(self.positions.read_vectors());
         grid.batch.solve_bending_before_stretch();
     }
@@ -44,16 +43,14 @@ impl LaneBatch<Pack8, SingleMesh> {
 }
 
 impl SingleGrid {
-    /// Finds the nodes' positions from those of the particles, m.
-    fn project(&mut self, particles: &[Pack4]) {
+    /// Moves the predicted nodes to where the particles are, m.
+    fn project(&mut self, of: &[Pack4]) {
         let Self { batch, nodes, unresolved, transfer } = self;
-        let GridTransfer { nodes: first, particles: of_particles, means, .. } = &*transfer;
-        Pack4::run(Interpolate { rows: first, from: particles, to: nodes });
-        for _ in 0..PROJECTION_STEPS {
-            let (rows, of) = (of_particles, particles);
-            Pack4::run(Remainder { rows, from: nodes, of, to: unresolved });
-            Pack4::run(AddInterpolated { rows: means, from: unresolved, to: nodes });
-        }
+        let GridTransfer { particles: rows, means, held, .. } = &*transfer;
+        read_vectors(batch.positions.packs_mut(), nodes);
+        Pack4::run(Interpolate { rows: held, from: of, to: nodes });
+        Pack4::run(Remainder { rows, from: nodes, of, to: unresolved });
+        Pack4::run(AddInterpolated { rows: means, from: unresolved, to: nodes });
         write_vectors(nodes, batch.positions.packs_mut());
     }
 
@@ -61,6 +58,7 @@ impl SingleGrid {
     fn place_particles(&mut self, particles: &mut [Pack4]) {
         let Self { batch, nodes, transfer, .. } = self;
         read_vectors(batch.positions.packs_mut(), nodes);
+        batch.update_node_velocities();
         Pack4::run(Interpolate { rows: &transfer.particles, from: nodes, to: particles });
     }
 }

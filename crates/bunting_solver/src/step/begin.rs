@@ -79,6 +79,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         self.set_added_mass(cloth, state);
         self.parameters.set_drive(Y::lanes(cloth), &state.drive, &self.clock);
+        if let Some(background) = &mut self.background {
+            background.set_drive(cloth, &state.drive, &self.clock);
+        }
         let fabric = &self.fabric_of(cloth).fabric;
         let reach = match fabric.grid() {
             // A cloth without pins is held by its own inertia.

@@ -33,7 +33,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Predicts positions and velocities, and sums the squares of velocities and of their differences. The
     /// newest values overwrite the oldest arrays, and the arrays swap their names.
-    fn predict(&mut self, feels_air: bool) -> MotionSums<P> {
+    pub(super) fn predict(&mut self, feels_air: bool) -> MotionSums<P> {
         let zero = P::splat(0.0);
         let mut sums =
             MotionSums { velocity: zero, first_difference: zero, second_difference: zero };

@@ -13,6 +13,7 @@ pub(crate) mod limits;
 pub(crate) mod load_stretch;
 mod move_pins;
 pub(crate) mod moving_pins;
+mod nodes;
 pub(crate) mod parameters;
 mod predict;
 mod settings;

@@ -21,12 +21,22 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             return;
         }
         let has_chains = self.clock.settings.scheme == Scheme::Yarns;
-        let pole = self.numbers.pole.as_ref().filter(|_| has_chains);
-        let turns = pole.is_some();
+        let turns = has_chains && self.numbers.pole.is_some();
         let mut turn = self.external_moments();
+        self.correct_velocities(turns, &mut turn);
+        if turns {
+            self.store_pole_turn(&turn);
+        }
+        self.damp_internally();
+        self.clock.predicted = false;
+    }
+
+    /// Computes velocities from the corrected positions. `turn` is that of [`UpdateVelocities`], if the turn about the
+    /// pole is wanted.
+    pub(super) fn correct_velocities(&mut self, turns: bool, turn: &mut P) {
         P::run(UpdateVelocities {
-            pole,
-            turn: &mut turn,
+            pole: self.numbers.pole.as_ref().filter(|_| turns),
+            turn,
             inertias: &self.masses.inertia,
             partial_sums: &self.partial_sums,
             inverse_areas: &self.masses.inverse_areas,
@@ -39,11 +49,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             velocity: &mut self.velocity,
             past_velocities: [&self.older_velocity, &self.oldest_velocity],
         });
-        if turns {
-            self.store_pole_turn(&turn);
-        }
-        self.damp_internally();
-        self.clock.predicted = false;
     }
 
     /// Moments about the pole of corrections from outside the cloths, m⁴.

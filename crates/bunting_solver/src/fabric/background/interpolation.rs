@@ -134,6 +134,15 @@ impl Interpolation {
         self.grouped()
     }
 
+    /// The rows that are `wanted`. The others are empty.
+    pub fn rows_where(&self, wanted: impl Fn(usize) -> bool) -> Self {
+        let mut rows = Self::default();
+        for (index, row) in self.rows().enumerate() {
+            rows.push(if wanted(index) { row } else { &[] }.iter().copied());
+        }
+        rows
+    }
+
     /// One row for each of `count` numbers: the mean of the rows that have this number.
     pub fn mean_rows(&self, numbers: &[u32], count: usize) -> Self {
         let mut rows = vec![Vec::new(); count];

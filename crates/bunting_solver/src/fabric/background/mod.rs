@@ -50,6 +50,10 @@ pub(crate) struct GridTransfer {
     pub particles: Interpolation,
     /// Of each free node the mean of the particles that its displacement moves.
     pub means: Interpolation,
+    /// Of each pinned node the particles that its position is interpolated from.
+    pub held: Interpolation,
+    /// Area of the free particles that the displacement of each node moves, m².
+    pub moved_areas: Vec<f32>,
     /// How far each free particle of a mesh that is curved at rest lies above the surface between nodes; empty for flat
     /// meshes. Without them each substep would flatten the mesh, as a particle between nodes lies below the arc through
     /// them.
@@ -108,17 +112,29 @@ impl BackgroundMesh {
         let is_whole = chart.plane.is_some()
             && (0..nodes.len() as u32).all(in_mesh)
             && covered.iter().sum::<f32>() > WHOLE * covered.len() as f32;
-        let means = Interpolation::default();
-        let mut transfer = GridTransfer { nodes, particles, means, heights: Vec::new(), is_whole };
+        let mut transfer = GridTransfer {
+            nodes,
+            particles,
+            means: Interpolation::default(),
+            held: Interpolation::default(),
+            moved_areas: Vec::new(),
+            heights: Vec::new(),
+            is_whole,
+        };
+        let free_areas = mesh.areas.iter().zip(&mesh.inverse_areas);
+        let free_areas: Vec<f32> =
+            free_areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect();
+        transfer.moved_areas = transfer.node_masses(&free_areas);
         let nodes = node_mesh(mesh, &chart, &grid, &transfer);
         let is_free = |node: usize| !nodes.is_pinned(node as u32);
-        transfer.means = transfer.particles.adjoint(&mesh.areas, &nodes.areas, is_free);
+        transfer.means = transfer.particles.adjoint(&mesh.areas, &transfer.moved_areas, is_free);
+        transfer.held = transfer.nodes.rows_where(|node| !is_free(node));
         if chart.plane.is_none() {
             transfer.heights = heights(mesh, &chart, &grid, &nodes, &transfer);
         }
         let is_held = is_held(mesh, &chart, &grid, &nodes, &transfer.nodes);
-        let GridTransfer { nodes: first, particles, means, .. } = &mut transfer;
-        for rows in [first, particles, means] {
+        let GridTransfer { nodes: first, particles, means, held, .. } = &mut transfer;
+        for rows in [first, particles, means, held] {
             *rows = core::mem::take(rows).grouped();
         }
         is_held.then_some(Self {
@@ -202,12 +218,12 @@ fn is_held(
     pinned.all(|(_, &at)| is_near_pinned_node(at))
 }
 
-/// The nodes as particles. Those that stand for pinned particles, or for none, are pinned.
+/// The nodes as particles. Those that stand for pinned particles, or for none, are pinned. Where the mesh fills the grid,
+/// nodes have the areas of a grid's particles: with those of the particles that they move, which differ from node to node
+/// by chance, a swing loses motion to short waves.
 fn node_mesh(mesh: &RestMesh, chart: &Chart, grid: &Grid, transfer: &GridTransfer) -> RestMesh {
-    let free_areas = mesh.areas.iter().zip(&mesh.inverse_areas);
-    let free_areas: Vec<f32> =
-        free_areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect();
-    let areas = transfer.node_masses(&free_areas);
+    let areas =
+        if transfer.is_whole { grid.particle_areas() } else { transfer.moved_areas.clone() };
     let is_free = |row: &[Term]| {
         let free = row.iter().filter(|term| !mesh.is_pinned(term.from));
         free.map(|term| term.weight).sum::<f32>() > LEAST_FREE
