@@ -9,6 +9,7 @@ use crate::stability::added_mass::AddedMass;
 use crate::stability::pin_strain::PinStrain;
 use crate::step::Drive;
 use crate::step::bdf::IntegratorHistory;
+use crate::step::guides::ClothGuides;
 use crate::step::moving_pins::MovingPins;
 use crate::step::parameters::ParameterInputs;
 
@@ -30,6 +31,7 @@ pub(crate) struct LaneState {
     pub history: IntegratorHistory,
     pub pin_strain: PinStrain,
     pub moving_pins: MovingPins,
+    pub guides: Option<ClothGuides>,
     /// Inputs of the lane's parameters; none if the parameters must be computed.
     pub inputs: Option<ParameterInputs>,
     /// Inputs of the lane's inverse masses besides the substep; none if the masses must be computed.
@@ -50,6 +52,7 @@ impl LaneState {
             history: IntegratorHistory::default(),
             pin_strain: PinStrain::default(),
             moving_pins: MovingPins::default(),
+            guides: None,
             inputs: None,
             added_mass: None,
         }
