@@ -4,6 +4,7 @@ use bevy_ecs::prelude::*;
 use bunting_solver::FabricError;
 
 use crate::cloth::weights::WeightsError;
+use crate::skeleton::skin::SkinError;
 
 /// Reason why a cloth is not simulated or shown as asked; the message says what to do. Other cloths are not
 /// affected.
@@ -141,6 +142,26 @@ pub enum ClothError {
     Impulse {
         /// The cloth.
         entity: Entity,
+    },
+    /// The [`ClothSkin`](crate::ClothSkin) or the [`SkinLimits`](crate::SkinLimits) cannot be used. The cloth is simulated
+    /// without them until they or its `ClothMesh` change.
+    #[error("the skin of cloth {entity} cannot be used: {source}")]
+    Skin {
+        /// The cloth.
+        entity: Entity,
+        /// Defect of the skin.
+        source: SkinError,
+    },
+    /// A joint of the [`ClothSkin`](crate::ClothSkin) does not exist, or has no finite `Transform`. Reported once; the joint
+    /// stays where it was in the cloth's frame, or in its bind pose if it never existed.
+    #[error(
+        "joint {joint} of cloth {entity} does not exist or has no finite Transform: spawn it, or name another in the ClothSkin"
+    )]
+    MissingJoint {
+        /// The cloth.
+        entity: Entity,
+        /// The joint.
+        joint: Entity,
     },
     /// The cloth's `Mesh3d` is kept in the render world only. The cloth is simulated, but its mesh is not
     /// written until its `Mesh3d` is replaced.

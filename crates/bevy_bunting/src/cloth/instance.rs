@@ -64,6 +64,8 @@ pub(crate) struct ClothInstance {
     pub missing_target: Option<Entity>,
     /// Motion of attached vertices that have not reached their places yet.
     pub taking_up: Option<TakingUp>,
+    /// Whether the state lies on the pose of the skeleton, if there is one, and not at rest.
+    pub is_posed: bool,
     /// Whether a pose that is not finite was reported.
     pub pose_reported: bool,
 }
@@ -199,6 +201,7 @@ impl ClothInstance {
     pub fn reset(&mut self, state: &mut ClothState, batches: &mut ClothBatches) {
         self.wake();
         self.taking_up = None;
+        self.is_posed = false;
         let Some(levels) = self.levels.clone() else { return };
         let rest = almost_at_rest(levels.fabric(self.level), self.seed);
         state.restart(self.level, &levels, &rest.positions);
@@ -211,6 +214,7 @@ impl ClothInstance {
     /// Stores a snapshot at rest, with the imperfection; the cloth then waits for a lane.
     fn start_at_rest(&mut self) {
         self.taking_up = None;
+        self.is_posed = false;
         if let Some(fabric) = self.fabric() {
             self.storage = StateStorage::Snapshot(almost_at_rest(fabric, self.seed));
             self.unmoved = true;

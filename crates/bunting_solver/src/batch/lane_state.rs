@@ -30,6 +30,8 @@ pub(crate) struct LaneState {
     pub external_moment: f32,
     pub history: IntegratorHistory,
     pub pin_strain: PinStrain,
+    /// Whether the pins are where they are at rest.
+    pub are_pins_at_rest: bool,
     pub moving_pins: MovingPins,
     pub guides: Option<ClothGuides>,
     /// Inputs of the lane's parameters; none if the parameters must be computed.
@@ -51,6 +53,7 @@ impl LaneState {
             external_moment: 0.0,
             history: IntegratorHistory::default(),
             pin_strain: PinStrain::default(),
+            are_pins_at_rest: true,
             moving_pins: MovingPins::default(),
             guides: None,
             inputs: None,

@@ -63,7 +63,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             if let Some(state) = state {
                 let lane = Y::lanes(cloth).start;
                 // The pole is that of pins in their places at rest, and guides turn the cloth from outside.
-                let turns = state.moving_pins.is_empty() && state.guides.is_none();
+                let rests = state.moving_pins.is_empty() && state.are_pins_at_rest;
+                let turns = rests && state.guides.is_none();
                 let angle = if turns { turn.lanes()[lane] } else { 0.0 };
                 let rate = angle * self.parameters.inverse_step.lanes()[lane];
                 state.history.pole_turn = PoleTurn { angle, rate };
