@@ -26,16 +26,20 @@ const LENGTH: f32 = 1.12;
 const COLLAR: usize = 7;
 
 /// Centre of the collar in the figure's frame at rest, m.
-const NECK: Vec3 = Vec3::new(0.0, 1.475, 0.005);
+const NECK: Vec3 = Vec3::new(0.0, 1.475, 0.03);
 
 /// Half the width of the collar, and its depth behind the neck, m.
-const REACH: [f32; 2] = [0.19, 0.115];
+const REACH: [f32; 2] = [0.19, 0.11];
 
 /// Half the angle that the collar lies about the neck, rad.
-const HALF_ANGLE: f32 = 0.95 * FRAC_PI_2;
+const HALF_ANGLE: f32 = 0.75 * FRAC_PI_2;
 
 /// Angle by which the cape stands off from the body in the pose of its skeleton, rad.
 const FLARE: f32 = 0.12;
+
+/// A woollen cloth: heavier and stiffer than cotton.
+const WOOL: FabricMaterial =
+    FabricMaterial { area_density: 0.22, bend_stiffness: 2e-4, ..FabricMaterial::COTTON };
 
 /// Colour.
 const CRIMSON: [u8; 3] = [148, 28, 36];
@@ -53,7 +57,7 @@ pub fn spawn(commands: &mut Commands, joints: &[Entity]) {
     let bound = (0..COLLAR).map(|joint| Mat4::from_translation(-bind_place(joint)));
     commands.spawn((
         ClothMesh::grid(COUNT, COUNT, WIDTH, LENGTH),
-        ClothMaterial(FabricMaterial { area_density: 0.22, ..FabricMaterial::COTTON }),
+        ClothMaterial(WOOL),
         Attachment::new(chest, ClothEdge::Top),
         ClothSkin::new(collar.into_iter().zip(bound)).with_vertices(vertices()),
         SkinLimits {

@@ -33,8 +33,8 @@ const CENTRE: Vec3 = Vec3::new(0.0, 0.9, 0.25);
 /// Limit of the mean strain of the cape: larger strain would be visible.
 const STRAIN_LIMIT: f32 = 0.03;
 
-/// Limit of a particle's depth in the body, m: less than what a fold is thick.
-const DEPTH_LIMIT: f32 = 0.01;
+/// Limit of a particle's depth in the body, m: where an arm squeezes the cape against the side.
+const DEPTH_LIMIT: f32 = 0.015;
 
 /// Limit of the distance of the collar from its pose, m: rounding.
 const COLLAR_LIMIT: f32 = 1e-4;

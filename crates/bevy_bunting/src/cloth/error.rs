@@ -110,6 +110,15 @@ pub enum ClothError {
         /// The target of its attachment.
         target: Entity,
     },
+    /// A scale on the way to the cloth is zero or not finite. The cloth is not simulated until its `ClothMesh` or its
+    /// `Attachment` changes.
+    #[error(
+        "cloth {entity} cannot have its scale: give its Transform, those above it and the offset of its Attachment scales that are finite and not zero"
+    )]
+    Scale {
+        /// The cloth.
+        entity: Entity,
+    },
     /// The pose that the cloth should follow is not finite. The cloth keeps its last finite pose.
     #[error(
         "the transform that cloth {entity} follows is not finite: check the systems that write it"

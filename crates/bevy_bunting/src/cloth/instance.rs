@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::*;
 use bevy_ecs::world::DeferredWorld;
-use bevy_math::Vec3;
+use bevy_math::{Mat3, Vec3};
 use bunting_solver::{ClothSnapshot, Fabric, FabricMaterial};
 
 use crate::batch::batches::ClothBatches;
@@ -44,6 +44,8 @@ pub(crate) struct ClothInstance {
     pub seed: ClothSeed,
     /// Whether the state is still the initial one, at rest with the imperfection, and has been in no lane.
     pub unmoved: bool,
+    /// Scale and shear that are baked into the fabrics.
+    pub scale: Mat3,
     /// Levels that another thread is building for this cloth.
     pub cutting: Option<AwaitedLevels>,
     pub activity: ClothActivity,

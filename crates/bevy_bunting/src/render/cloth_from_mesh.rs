@@ -13,6 +13,7 @@ use bevy_transform::helper::TransformHelper;
 use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::cloth::mesh::ClothMesh;
+use crate::fabric::scale::ScaleBaked;
 use crate::render::from_skin::{BindPoses, LoadedSkin, unbind};
 use crate::render::level_mesh::with_vertices;
 use crate::render::level_meshes::LevelMeshes;
@@ -155,7 +156,7 @@ pub fn make_cloths(
                 }
                 let copy = meshes.add(copy);
                 let made_of = SourceMesh { source, shown: copy.id(), skin };
-                cloth.insert((shape, made_of, Mesh3d(copy)));
+                cloth.insert((shape, made_of, ScaleBaked, Mesh3d(copy)));
                 cloth.remove::<AwaitsMesh>();
             }
             Err(error) => {
