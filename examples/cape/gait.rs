@@ -12,6 +12,10 @@ const WALK: f32 = 1.4;
 /// Speed of the run, m/s.
 const RUN: f32 = 4.2;
 
+/// Height of the hips in a run, and the amplitude by which they bob, m.
+const RUN_HEIGHT: f32 = 0.91;
+const BOB: f32 = 0.03;
+
 /// Changes of speed: the time at which each begins, s, its duration, s, and the speed that it adds, m/s.
 const CHANGES: [[f32; 3]; 3] = [[1.5, 0.7, WALK], [6.5, 1.0, RUN - WALK], [11.0, 0.9, -RUN]];
 
@@ -66,16 +70,17 @@ impl Pose {
         0.08 + 0.2 * self.run + swing * forwards
     }
 
-    /// Height of the hips above the ground, m: one foot is on the ground, but for the leaps of a run.
+    /// Height of the hips above the ground, m: one foot is on the ground in a walk, and a run leaps over its wide steps.
     fn hips(&self) -> f32 {
         let leg = |side| {
             let thigh = self.thigh(side);
             LEG * (thigh.cos() + (thigh - self.knee(side)).cos())
         };
         let longest = leg(Side::Left).max(leg(Side::Right));
-        let leap = 0.05 * self.run * (2.0 * self.phase + 0.6).sin().max(0.0);
         let above_thighs = Joint::Hips.place().y - Joint::Thigh(Side::Left).place().y;
-        ANKLE + longest + leap + above_thighs
+        let on_ground = ANKLE + longest + above_thighs;
+        let leaping = RUN_HEIGHT - BOB * (2.0 * self.phase).cos();
+        on_ground + 0.85 * self.run * (leaping - on_ground)
     }
 
     fn rotation(&self, joint: Joint) -> Quat {
