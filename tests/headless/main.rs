@@ -17,6 +17,7 @@ mod levels;
 mod lifecycle;
 mod order;
 mod rest;
+mod skeletons;
 mod substep;
 mod thread_probe;
 mod threads;

@@ -41,6 +41,8 @@
 //! | [`ClothPaused`] | a cloth | stops the simulation of the cloth |
 //! | [`ClothState`] | a cloth | positions and normals after the last tick, to be read |
 //! | [`ClothSurface`] | a cloth | positions and normals between two ticks, for display |
+//! | [`ClothSkin`] | a cloth | the joints of a skeleton that lead it |
+//! | [`SkinLimits`] | a cloth | how far it may go from where its skeleton would have it |
 //! | [`WindInfluence`] | a cloth | the part of the wind that it feels |
 //! | [`ClothInertia`] | a cloth | the part of its frame's acceleration that it feels |
 //! | [`ClothAcceleration`] | a cloth | an acceleration besides gravity |
@@ -112,6 +114,7 @@ mod motion;
 mod render;
 mod schedule;
 mod settings;
+mod skeleton;
 mod timings;
 mod waves;
 
@@ -180,29 +183,33 @@ pub use render::cloth_from_mesh::ClothFromMesh;
 #[cfg(feature = "render")]
 pub use render::debug::{ClothDebugPlugin, ClothGizmos};
 #[cfg(feature = "render")]
-pub use render::painted_weights::{ColorChannel, PaintedWeights, VertexPaint};
+pub use render::painted_weights::{ColorChannel, PaintedDistance, PaintedWeights, VertexPaint};
 #[cfg(feature = "render")]
 pub use render::plugin::{ClothRenderPlugin, ClothRenderSystems};
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
 pub use settings::ClothSettings;
+pub use skeleton::by_vertex::ByVertex;
+pub use skeleton::limits::SkinLimits;
+pub use skeleton::plugin::SkeletonPlugin;
+pub use skeleton::skin::{ClothSkin, SkinError};
 pub use timings::ClothTimings;
 
 /// The items that most apps need.
 pub mod prelude {
     pub use crate::{
-        Anchor, AttachedVertices, Attachment, ClothAcceleration, ClothActivity, ClothBudget,
-        ClothCollider, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
+        Anchor, AttachedVertices, Attachment, ByVertex, ClothAcceleration, ClothActivity,
+        ClothBudget, ClothCollider, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
         ClothFeatures, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged, ClothMaterial,
         ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll, ClothReactions, ClothSeed,
-        ClothSettings, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick,
-        ClothTouched, LodSet, LodViewer, SelfCollision, TargetLost, TeleportCloth, TeleportMode,
-        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindRegion, WindShape,
-        WindWake,
+        ClothSettings, ClothSkin, ClothState, ClothSurface, ClothSystems, ClothTargetLost,
+        ClothTick, ClothTouched, LodSet, LodViewer, SelfCollision, SkinError, SkinLimits,
+        TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan, WindField,
+        WindInfluence, WindRegion, WindShape, WindWake,
     };
     #[cfg(feature = "render")]
-    pub use crate::{ClothFromMesh, ColorChannel, PaintedWeights, VertexPaint};
+    pub use crate::{ClothFromMesh, ColorChannel, PaintedDistance, PaintedWeights, VertexPaint};
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 
@@ -242,6 +249,7 @@ impl PluginGroup for ClothPlugins {
             .add(ForcePlugin)
             .add(AttachmentPlugin)
             .add(TeleportPlugin)
+            .add(SkeletonPlugin)
             .add(DrivePlugin)
             .add(ColliderPlugin)
             .add(ReactionPlugin)

@@ -88,5 +88,5 @@ pub use simd::level::{instruction_set, with_every_instruction_set};
 pub use step::effort::{Effort, EffortCause, EffortClass, Loads};
 pub use step::frame::FrameMotion;
 pub use step::limits::StepLimits;
-pub use step::{Drive, MovingPin, Scheme, StepSettings};
+pub use step::{Backstop, Drive, Guide, MovingPin, Scheme, StepSettings};
 pub use transfer::{LevelTransfer, TransferError};

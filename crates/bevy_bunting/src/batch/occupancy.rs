@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use bevy_ecs::prelude::*;
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, LaneCount, LaneSurface,
-    MovingPin, SelfCollision,
+    ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, Guide, LaneCount,
+    LaneSurface, MovingPin, SelfCollision,
 };
 use parry3d::bounding_volume::Aabb;
 
@@ -187,6 +187,12 @@ impl LaneMut<'_> {
     /// Moves pins of the cloth in the next tick. None moves if a position is not finite.
     pub fn move_pins(&mut self, pins: Vec<MovingPin>) {
         let _ = self.occupied.batch.move_pins(self.lane, pins);
+    }
+
+    /// Sets the guides of the cloth in the next tick; without any, the cloth is free. They stay as they are if a number is
+    /// not finite.
+    pub fn set_guides(&mut self, guides: Vec<Guide>) {
+        let _ = self.occupied.batch.set_guides(self.lane, guides);
     }
 
     /// Sets the shapes that the cloth may touch in the next tick. Shapes with numbers that are not finite are

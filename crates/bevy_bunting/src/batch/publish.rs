@@ -45,7 +45,7 @@ fn stop_states(mut cloths: Query<(&ClothInstance, &mut ClothState), Changed<Clot
 
 /// Copies surfaces batch by batch, as the lanes of a batch lie side by side in memory. The buffers of each lane and of
 /// the cloth's two surfaces are exchanged in turn, so that nothing is allocated.
-fn publish_states(
+pub(crate) fn publish_states(
     mut cloths: Query<(&mut ClothState, &mut ClothEffort)>,
     mut batches: ResMut<ClothBatches>,
     mut diverged: ResMut<Diverged>,

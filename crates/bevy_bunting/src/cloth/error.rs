@@ -4,6 +4,7 @@ use bevy_ecs::prelude::*;
 use bunting_solver::FabricError;
 
 use crate::cloth::weights::WeightsError;
+use crate::skeleton::skin::SkinError;
 
 /// Reason why a cloth is not simulated or shown as asked; the message says what to do. Other cloths are not
 /// affected.
@@ -109,6 +110,15 @@ pub enum ClothError {
         /// The target of its attachment.
         target: Entity,
     },
+    /// A scale on the way to the cloth is zero or not finite. The cloth is not simulated until its `ClothMesh` or its
+    /// `Attachment` changes.
+    #[error(
+        "cloth {entity} cannot have its scale: give its Transform, those above it and the offset of its Attachment scales that are finite and not zero"
+    )]
+    Scale {
+        /// The cloth.
+        entity: Entity,
+    },
     /// The pose that the cloth should follow is not finite. The cloth keeps its last finite pose.
     #[error(
         "the transform that cloth {entity} follows is not finite: check the systems that write it"
@@ -141,6 +151,26 @@ pub enum ClothError {
     Impulse {
         /// The cloth.
         entity: Entity,
+    },
+    /// The [`ClothSkin`](crate::ClothSkin) or the [`SkinLimits`](crate::SkinLimits) cannot be used. The cloth is simulated
+    /// without them until they or its `ClothMesh` change.
+    #[error("the skin of cloth {entity} cannot be used: {source}")]
+    Skin {
+        /// The cloth.
+        entity: Entity,
+        /// Defect of the skin.
+        source: SkinError,
+    },
+    /// A joint of the [`ClothSkin`](crate::ClothSkin) does not exist, or has no finite `Transform`. Reported once; the joint
+    /// stays where it was in the cloth's frame, or in its bind pose if it never existed.
+    #[error(
+        "joint {joint} of cloth {entity} does not exist or has no finite Transform: spawn it, or name another in the ClothSkin"
+    )]
+    MissingJoint {
+        /// The cloth.
+        entity: Entity,
+        /// The joint.
+        joint: Entity,
     },
     /// The cloth's `Mesh3d` is kept in the render world only. The cloth is simulated, but its mesh is not
     /// written until its `Mesh3d` is replaced.

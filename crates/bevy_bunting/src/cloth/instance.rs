@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::*;
 use bevy_ecs::world::DeferredWorld;
-use bevy_math::Vec3;
+use bevy_math::{Mat3, Vec3};
 use bunting_solver::{ClothSnapshot, Fabric, FabricMaterial};
 
 use crate::batch::batches::ClothBatches;
@@ -44,6 +44,8 @@ pub(crate) struct ClothInstance {
     pub seed: ClothSeed,
     /// Whether the state is still the initial one, at rest with the imperfection, and has been in no lane.
     pub unmoved: bool,
+    /// Scale and shear that are baked into the fabrics.
+    pub scale: Mat3,
     /// Levels that another thread is building for this cloth.
     pub cutting: Option<AwaitedLevels>,
     pub activity: ClothActivity,
@@ -64,6 +66,8 @@ pub(crate) struct ClothInstance {
     pub missing_target: Option<Entity>,
     /// Motion of attached vertices that have not reached their places yet.
     pub taking_up: Option<TakingUp>,
+    /// Whether the state lies on the pose of the skeleton, if there is one, and not at rest.
+    pub is_posed: bool,
     /// Whether a pose that is not finite was reported.
     pub pose_reported: bool,
 }
@@ -199,6 +203,7 @@ impl ClothInstance {
     pub fn reset(&mut self, state: &mut ClothState, batches: &mut ClothBatches) {
         self.wake();
         self.taking_up = None;
+        self.is_posed = false;
         let Some(levels) = self.levels.clone() else { return };
         let rest = almost_at_rest(levels.fabric(self.level), self.seed);
         state.restart(self.level, &levels, &rest.positions);
@@ -211,6 +216,7 @@ impl ClothInstance {
     /// Stores a snapshot at rest, with the imperfection; the cloth then waits for a lane.
     fn start_at_rest(&mut self) {
         self.taking_up = None;
+        self.is_posed = false;
         if let Some(fabric) = self.fabric() {
             self.storage = StateStorage::Snapshot(almost_at_rest(fabric, self.seed));
             self.unmoved = true;

@@ -35,6 +35,8 @@ pub struct ClothState {
     pub(crate) levels: Option<Arc<ClothLevels>>,
     /// The surface before a change of level, until the change is eased.
     pub(crate) replaced: Option<ReplacedSurface>,
+    /// Whether the cloth follows a skeleton.
+    pub(crate) is_skinned: bool,
 }
 
 /// The surface of a cloth before a change of level, in the cloth's frame.
@@ -156,7 +158,8 @@ impl ClothState {
 
     /// Blends simulated positions and normals with those at rest, for particles with a weight below 1.
     pub(crate) fn blend(&mut self) {
-        if let Some(levels) = &self.levels {
+        // The surface of a skinned cloth is blended with the animated places.
+        if let Some(levels) = self.levels.as_ref().filter(|_| !self.is_skinned) {
             levels.blend(self.level, &mut self.positions, &mut self.normals);
         }
     }

@@ -63,9 +63,19 @@ impl Plugin for SurfacePlugin {
 
 /// End and length of the last tick, s.
 #[derive(Resource, Debug, Default)]
-struct LastTick {
+pub(crate) struct LastTick {
     end: f64,
     length: f64,
+}
+
+impl LastTick {
+    /// The fraction of the last tick whose surfaces are shown now.
+    pub fn fraction(&self, time: &Time<Virtual>) -> f32 {
+        if self.length <= 0.0 {
+            return 1.0;
+        }
+        ((time.elapsed_secs_f64() - self.end) / self.length).clamp(0.0, 1.0) as f32
+    }
 }
 
 fn note_tick(mut tick: ResMut<LastTick>, time: Res<Time>) {
@@ -77,9 +87,7 @@ fn interpolate_surfaces(
     tick: Res<LastTick>,
     time: Res<Time<Virtual>>,
 ) {
-    let fraction =
-        if tick.length > 0.0 { (time.elapsed_secs_f64() - tick.end) / tick.length } else { 1.0 };
-    let fraction = fraction.clamp(0.0, 1.0) as f32;
+    let fraction = tick.fraction(&time);
     for (state, easing, lift, mut surface) in &mut surfaces {
         let (level, [from, to], normals) = match easing.level() {
             Some(level) => (

@@ -94,6 +94,16 @@ impl ClothLevels {
         Some(level.fabric.particle_of_vertex()[index] as usize)
     }
 
+    /// For each particle of a level, the first of its vertices in the [`ClothMesh`](crate::ClothMesh).
+    pub fn vertices(&self, level: usize) -> Vec<u32> {
+        let Level { fabric, vertices, .. } = self.level(level);
+        let mut first = vec![u32::MAX; fabric.particle_count()];
+        for (&vertex, &particle) in vertices.iter().zip(fabric.particle_of_vertex()) {
+            first[particle as usize] = first[particle as usize].min(vertex);
+        }
+        first
+    }
+
     /// Blends simulated positions (m) and normals of a level's particles with those at rest.
     pub fn blend(&self, level: usize, positions: &mut [Vec3], normals: &mut [Vec3]) {
         let blends = &self.level(level).blends;

@@ -8,5 +8,6 @@ pub mod levels;
 pub mod library;
 pub mod prepare;
 pub mod rigid;
+pub mod scale;
 pub mod simulated;
 pub mod transfer;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
-use bevy_math::Isometry3d;
+use bevy_math::{Isometry3d, Mat3};
 use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
 
@@ -20,6 +20,7 @@ use crate::cloth::mesh::ClothMesh;
 use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::library::{FabricLibrary, Found};
+use crate::fabric::scale::{ScaleBaked, bake, scale_of};
 use crate::lod::budget::{ClothBudget, LodCosts};
 use crate::lod::lod_set::{LodChoice, LodSet};
 use crate::motion::attachment::Attachment;
@@ -28,6 +29,7 @@ use crate::motion::lost_target::handle_lost_targets;
 use crate::motion::pose::PoseHistory;
 use crate::motion::take_up::TakingUp;
 use crate::schedule::{ClothSystems, ClothTick};
+use crate::skeleton::skin::ClothSkin;
 
 /// Prepares cloths that are new, changed or removed.
 #[derive(Debug, Default)]
@@ -89,6 +91,8 @@ struct CutCloth {
     lods: Ref<'static, LodSet>,
     attachment: Option<Ref<'static, Attachment>>,
     seed: Option<&'static ClothSeed>,
+    has_baked: Has<ScaleBaked>,
+    has_skin: Has<ClothSkin>,
     instance: &'static mut ClothInstance,
     state: &'static mut ClothState,
     history: &'static mut PoseHistory,
@@ -118,7 +122,7 @@ fn cut_cloths(
         if !cloth.is_stale(target) {
             continue;
         }
-        match cloth.find_levels(target, &targets, &mut library) {
+        match cloth.find_levels(target, &targets, &transforms, &mut library) {
             Ok(Found::Awaited(awaited)) => {
                 cloth.instance.cutting = Some(awaited);
                 library.awaited = true;
@@ -170,9 +174,10 @@ impl CutClothItem<'_, '_> {
 
     /// Looks up or builds the levels of the cloth.
     fn find_levels(
-        &self,
+        &mut self,
         target: Option<Entity>,
         targets: &Query<(), With<Transform>>,
+        transforms: &TransformHelper,
         library: &mut FabricLibrary,
     ) -> Result<Found, ClothError> {
         let entity = self.entity;
@@ -186,7 +191,16 @@ impl CutClothItem<'_, '_> {
             let valid = self.material.0.validate();
             valid.map_err(|source| ClothError::Material { entity, source })?;
         }
-        library.levels(entity, &self.mesh, self.attachment.as_deref(), &self.lods)
+        let attachment = self.attachment.as_deref();
+        if self.instance.cutting.is_none() || self.is_edited() {
+            self.instance.scale = if self.has_baked || self.has_skin {
+                Mat3::IDENTITY
+            } else {
+                scale_of(entity, attachment, transforms)?
+            };
+        }
+        let mesh = bake(&self.mesh, self.instance.scale);
+        library.levels(entity, &mesh, attachment, &self.lods)
     }
 
     /// Simulates the cloth with new levels from now on.

@@ -22,6 +22,7 @@ use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::pose::PoseHistory;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
+use crate::skeleton::joints::JointPoses;
 
 /// Root mean square speed of the particles below which a cloth rests, m/s: a millimetre in a second is
 /// invisible. Larger: cloth visibly stops.
@@ -165,6 +166,7 @@ type RestingCloth = (
     &'static ClothState,
     &'static PoseHistory,
     Option<&'static AnchorPoses>,
+    Option<&'static JointPoses>,
     &'static mut RestTimer,
     &'static LodRecord,
 );
@@ -174,13 +176,14 @@ pub(crate) fn wake_cloths(mut cloths: Query<RestingCloth>, mut changes: ResMut<C
         return;
     }
     changes.asleep = 0;
-    for (mut instance, state, frame, anchors, timer, record) in &mut cloths {
+    for (mut instance, state, frame, anchors, joints, timer, record) in &mut cloths {
         if instance.activity != ClothActivity::AtRest {
             continue;
         }
         if changes.everywhere
             || changes.act_on(state, frame.end(), &timer, record.radius)
             || anchors.is_some_and(AnchorPoses::may_move)
+            || joints.is_some_and(JointPoses::may_move)
         {
             instance.wake();
         } else {
@@ -199,13 +202,14 @@ pub(crate) fn send_to_sleep(
         return;
     }
     let tick = time.delta_secs();
-    for (mut instance, state, frame, anchors, mut timer, record) in &mut cloths {
+    for (mut instance, state, frame, anchors, joints, mut timer, record) in &mut cloths {
         if instance.lane().is_none() {
             continue;
         }
         let pose = frame.end();
         let is_disturbed = changes.act_on(state, pose, &timer, record.radius)
             || anchors.is_some_and(AnchorPoses::may_move)
+            || joints.is_some_and(JointPoses::may_move)
             || instance.taking_up.is_some();
         timer.pose = Some(pose);
         let is_still = !is_disturbed && speed(state, tick) <= REST_SPEED;

@@ -40,7 +40,7 @@ pub struct Attachment {
     pub target: Entity,
     /// The vertices that are held.
     pub vertices: AttachedVertices,
-    /// Pose of the cloth's frame relative to the target; the scale is ignored.
+    /// Pose of the cloth's frame relative to the target. The scale is baked into the cloth when it is attached.
     pub offset: Transform,
     /// Fate of the cloth when the target is despawned.
     pub on_lost: TargetLost,

@@ -12,13 +12,17 @@ use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::attachment::Attachment;
 use crate::motion::pose::PoseHistory;
 use crate::motion::take_up::TakingUp;
+use crate::skeleton::particles::SkinnedParticles;
 
 /// The anchors of a cloth.
 type Anchors =
     (&'static ClothMesh, Ref<'static, Attachment>, &'static AnchorPoses, &'static mut AnchorPins);
 
 pub(crate) fn lead_pins(
-    mut cloths: Query<(&mut ClothInstance, &PoseHistory, Option<Anchors>)>,
+    mut cloths: Query<
+        (&mut ClothInstance, &PoseHistory, Option<Anchors>),
+        Without<SkinnedParticles>,
+    >,
     time: Res<Time>,
     mut batches: ResMut<ClothBatches>,
 ) {

@@ -63,7 +63,7 @@ impl Observer<'_, '_> {
 }
 
 /// Observes all frames in a frame of the app; if `EARLY`, before the ticks of that frame.
-pub(super) fn observe_frames<const EARLY: bool>(
+pub(crate) fn observe_frames<const EARLY: bool>(
     mut observer: Observer,
     transforms: TransformHelper,
     time: Res<Time<Virtual>>,

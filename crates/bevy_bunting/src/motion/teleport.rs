@@ -10,8 +10,9 @@ use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
 use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::pose::{ObservationTimes, PoseHistory};
+use crate::skeleton::joints::JointPoses;
 
-/// Makes the next change of a cloth's frame, and of each of its anchors, a teleport: the cloth moves with its frame rigidly, without being
+/// Makes the next change of a cloth's frame, and of each of its anchors and joints, a teleport: the cloth moves with its frame rigidly, without being
 /// accelerated. Trigger this event in the frame or tick in which the target is moved, before or after the
 /// motion, but before the next tick of the cloth.
 ///
@@ -32,7 +33,8 @@ pub enum TeleportMode {
     /// The cloth keeps its shape and its velocities relative to its frame.
     #[default]
     Keep,
-    /// The cloth is reset to its shape at rest, without velocity.
+    /// The cloth is reset to its shape at rest, without velocity; that of a [`ClothSkin`](crate::ClothSkin) to the pose of
+    /// its skeleton.
     Reset,
 }
 
@@ -49,6 +51,7 @@ impl Plugin for TeleportPlugin {
 type TeleportedCloth = (
     &'static mut PoseHistory,
     Option<&'static mut AnchorPoses>,
+    Option<&'static mut JointPoses>,
     &'static mut ClothInstance,
     &'static mut ClothState,
 );
@@ -59,12 +62,17 @@ fn teleport(
     mut batches: ResMut<ClothBatches>,
     times: Res<ObservationTimes>,
 ) {
-    let Ok((mut history, anchors, mut instance, mut state)) = cloths.get_mut(request.entity) else {
+    let Ok((mut history, anchors, joints, mut instance, mut state)) =
+        cloths.get_mut(request.entity)
+    else {
         return;
     };
     history.teleport_next(&times);
     if let Some(mut anchors) = anchors {
         anchors.teleport_next(&times);
+    }
+    if let Some(mut joints) = joints {
+        joints.snap_next(&times);
     }
     if request.mode == TeleportMode::Reset {
         instance.reset(&mut state, &mut batches);

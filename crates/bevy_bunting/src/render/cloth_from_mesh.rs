@@ -1,8 +1,10 @@
 //! Makes cloths of the meshes that entities already have.
 
 use bevy_asset::{AssetId, AssetServer, Assets, Handle, LoadState, RenderAssetUsages};
+use bevy_camera::visibility::DynamicSkinnedMeshBounds;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
+use bevy_mesh::skinning::SkinnedMesh;
 use bevy_mesh::{Indices, Mesh, Mesh3d};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
@@ -11,16 +13,23 @@ use bevy_transform::helper::TransformHelper;
 use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::cloth::mesh::ClothMesh;
+use crate::fabric::scale::ScaleBaked;
+use crate::render::from_skin::{BindPoses, LoadedSkin, unbind};
 use crate::render::level_mesh::with_vertices;
 use crate::render::level_meshes::LevelMeshes;
-use crate::render::painted_weights::PaintedWeights;
+use crate::render::painted_weights::{PaintedDistance, PaintedWeights};
+use crate::skeleton::by_vertex::ByVertex;
+use crate::skeleton::limits::SkinLimits;
 
 /// Makes the entity's own `Mesh3d` a cloth, as soon as it is loaded: inserts a [`ClothMesh`] and shows a copy of the
 /// mesh, which keeps its texture coordinates, tangents, vertex colours and all other attributes. The
 /// material stays. Other entities with the same mesh asset stay as they are.
 ///
-/// Scales of the entity and its parents are baked into the copy, since a cloth's frame has no scale; a scale
-/// of zero is ignored. A change of this component or of the `Mesh3d` makes the cloth anew.
+/// A skinned mesh becomes a cloth that its skeleton leads: Bevy's `SkinnedMesh` is replaced by a
+/// [`ClothSkin`](crate::ClothSkin), and the copy has no joints.
+///
+/// Scales of the entity and its parents, or of the skeleton, are baked into the copy, since a cloth's frame has no scale; a
+/// scale of zero is ignored. A change of this component or of the `Mesh3d` makes the cloth anew.
 ///
 /// # Errors
 ///
@@ -54,6 +63,9 @@ pub struct ClothFromMesh {
     /// Weights of the vertices, painted by the artist; without them all vertices are simulated. What
     /// is pinned stays on the entity, or on the target of its [`Attachment`](crate::Attachment) if it has one.
     pub weights: Option<PaintedWeights>,
+    /// Greatest distances of the particles of a skinned mesh from their animated places, painted by the artist; written into
+    /// the entity's [`SkinLimits`](crate::SkinLimits).
+    pub max_distance: Option<PaintedDistance>,
 }
 
 impl ClothFromMesh {
@@ -70,6 +82,8 @@ pub struct SourceMesh {
     source: Handle<Mesh>,
     /// The mesh that was shown when the cloth was made: the copy or, if no cloth was made, the source.
     shown: AssetId<Mesh>,
+    /// The skin of the source.
+    skin: Option<SkinnedMesh>,
 }
 
 /// Marks a cloth whose mesh is not loaded yet.
@@ -82,6 +96,8 @@ type Asked = (
     &'static Mesh3d,
     Option<&'static SourceMesh>,
     Option<&'static LevelMeshes>,
+    Option<&'static SkinnedMesh>,
+    Option<&'static SkinLimits>,
     Has<AwaitsMesh>,
 );
 type MayBeStale = Or<(Changed<ClothFromMesh>, Changed<Mesh3d>, With<AwaitsMesh>)>;
@@ -90,11 +106,12 @@ type MayBeStale = Or<(Changed<ClothFromMesh>, Changed<Mesh3d>, With<AwaitsMesh>)
 pub fn make_cloths(
     asked: Query<Asked, MayBeStale>,
     server: Option<Res<AssetServer>>,
+    poses: BindPoses,
     transforms: TransformHelper,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, wanted, shown, known, levels, awaits) in &asked {
+    for (entity, wanted, shown, known, levels, skinned, limits, awaits) in &asked {
         let is_own = |known: &&SourceMesh| {
             known.shown == shown.id() || levels.is_some_and(|levels| levels.contains(shown.id()))
         };
@@ -103,9 +120,12 @@ pub fn make_cloths(
             continue;
         }
         let source = known.map_or(&shown.0, |known| &known.source).clone();
+        let skin = skinned.or_else(|| known.and_then(|known| known.skin.as_ref())).cloned();
         let mut cloth = commands.entity(entity);
-        let Some(mesh) = meshes.get(&source) else {
-            cloth.insert(SourceMesh { source: source.clone(), shown: shown.id() });
+        let loaded = skin.as_ref().map(|skin| LoadedSkin::of(skin, &poses));
+        let mesh = meshes.get(&source).filter(|_| loaded.as_ref().is_none_or(Option::is_some));
+        let Some(mesh) = mesh else {
+            cloth.insert(SourceMesh { source: source.clone(), shown: shown.id(), skin });
             let state = server.as_ref().map(|server| server.load_state(source.id()));
             if matches!(state, Some(LoadState::Failed(_))) {
                 cloth.remove::<AwaitsMesh>();
@@ -115,36 +135,59 @@ pub fn make_cloths(
             }
             continue;
         };
-        let global = transforms.compute_global_transform(entity);
-        let scale = global.map_or(Vec3::ONE, |global| global.scale());
+        let loaded = loaded.flatten();
+        let of_entity = || transforms.compute_global_transform(entity).map(|global| global.scale());
+        let scale = match &loaded {
+            Some(skin) => skin.scale(&transforms),
+            None => of_entity().unwrap_or(Vec3::ONE),
+        };
+        let scale = if is_scale(scale) { scale } else { Vec3::ONE };
         match wanted.convert(entity, mesh, scale) {
-            Ok((shape, copy)) => {
+            Ok((shape, mut copy, distances)) => {
+                if let Some(skin) = loaded {
+                    cloth.insert(skin.convert(&copy, scale));
+                    cloth.remove::<(SkinnedMesh, DynamicSkinnedMeshBounds)>();
+                    unbind(&mut copy);
+                }
+                if let Some(distances) = distances {
+                    let others = limits.cloned().unwrap_or_default();
+                    let max_distance = ByVertex::Each(distances);
+                    cloth.insert(SkinLimits { max_distance, ..others });
+                }
                 let copy = meshes.add(copy);
-                cloth.insert((shape, SourceMesh { source, shown: copy.id() }, Mesh3d(copy)));
+                let made_of = SourceMesh { source, shown: copy.id(), skin };
+                cloth.insert((shape, made_of, ScaleBaked, Mesh3d(copy)));
                 cloth.remove::<AwaitsMesh>();
             }
             Err(error) => {
-                cloth.insert(SourceMesh { source, shown: shown.id() }).remove::<AwaitsMesh>();
+                let made_of = SourceMesh { source, shown: shown.id(), skin };
+                cloth.insert(made_of).remove::<AwaitsMesh>();
                 ClothFailed::report(&mut commands, entity, error);
             }
         }
     }
 }
 
+/// Whether a scale can be baked.
+fn is_scale(scale: Vec3) -> bool {
+    scale.is_finite() && scale.cmpne(Vec3::ZERO).all()
+}
+
 impl ClothFromMesh {
-    /// The cloth of a mesh with a scale, and the mesh that shows it, vertex by vertex.
+    /// The cloth of a mesh with a scale, the mesh that shows it, vertex by vertex, and the vertices' greatest distances, if
+    /// they are painted.
     fn convert(
         &self,
         entity: Entity,
         mesh: &Mesh,
         scale: Vec3,
-    ) -> Result<(ClothMesh, Mesh), ClothError> {
+    ) -> Result<(ClothMesh, Mesh, Option<Vec<f32>>), ClothError> {
         let is_kept = mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD);
         if !is_kept || mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION).is_err() {
             return Err(ClothError::MeshUnreadable { entity });
         }
         let mut shown = mesh.clone();
-        if scale != Vec3::ONE && scale.is_finite() && scale.cmpne(Vec3::ZERO).all() {
+        if scale != Vec3::ONE {
             shown.scale_by(scale);
             if scale.element_product() < 0.0 {
                 // A mesh that is no list of triangles gives an empty cloth, which is reported later.
@@ -168,6 +211,7 @@ impl ClothFromMesh {
                 shown.insert_indices(Indices::U32(indices.clone()));
             }
         }
-        Ok((shape, shown))
+        let distances = self.max_distance.as_ref().map(|painted| painted.read(entity, &shown));
+        Ok((shape, shown, distances.transpose()?))
     }
 }

@@ -6,6 +6,7 @@ pub mod camera_lens;
 pub mod cloth_from_mesh;
 pub mod debug;
 mod from_mesh;
+mod from_skin;
 pub mod hidden;
 pub mod level_mesh;
 pub mod level_meshes;

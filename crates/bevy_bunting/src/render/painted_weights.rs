@@ -35,6 +35,32 @@ pub struct PaintedWeights {
     pub pinned: f32,
 }
 
+/// Greatest distances of particles from their animated places, see [`SkinLimits::max_distance`](crate::SkinLimits), read from
+/// values that an artist has painted into the mesh. They grow evenly with the value, also beyond 0 and 1.
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[reflect(Debug, PartialEq, Clone)]
+pub struct PaintedDistance {
+    /// Where the mesh has the values.
+    pub paint: VertexPaint,
+    /// Distance where the value is 0, m.
+    pub at_zero: f32,
+    /// Distance where the value is 1, m.
+    pub at_one: f32,
+}
+
+impl PaintedDistance {
+    /// The distances of a mesh's vertices, m.
+    ///
+    /// # Errors
+    ///
+    /// The mesh does not have the values in a format that can be read.
+    pub(super) fn read(&self, entity: Entity, mesh: &Mesh) -> Result<Vec<f32>, ClothError> {
+        let values = self.paint.values(mesh).ok_or(ClothError::NotPainted { entity })?;
+        let distance = |value: f32| self.at_zero + (self.at_one - self.at_zero) * value;
+        Ok(values.into_iter().map(distance).collect())
+    }
+}
+
 /// Values that a mesh has for each vertex.
 #[derive(Clone, Debug, PartialEq, Eq, Reflect)]
 #[reflect(Default, Debug, PartialEq, Clone)]
@@ -101,7 +127,7 @@ impl PaintedWeights {
 
 impl VertexPaint {
     /// The value of each vertex; none if the mesh does not have them.
-    fn values(&self, mesh: &Mesh) -> Option<Vec<f32>> {
+    pub(super) fn values(&self, mesh: &Mesh) -> Option<Vec<f32>> {
         match self {
             Self::Color(channel) => match mesh.try_attribute(Mesh::ATTRIBUTE_COLOR).ok()? {
                 VertexAttributeValues::Float32x4(colors) => {

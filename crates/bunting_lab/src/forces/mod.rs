@@ -1,10 +1,11 @@
-//! Anchors, wind with a place and forces of the user, in the plugin, compared with closed forms and with what their
+//! Anchors, guides, wind with a place and forces of the user, in the plugin, compared with closed forms and with what their
 //! documentation states.
 //!
 //! Every row is one figure and one limit.
 
 mod anchors;
 mod blast;
+mod guides;
 mod impossible;
 mod impulse;
 mod turbulence;
@@ -15,8 +16,9 @@ use crate::contacts::Row;
 pub type Family = fn(quick: bool) -> Vec<Row>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 5] = [
+pub const ALL: [(&str, Family); 6] = [
     ("anchors", anchors::rows),
+    ("guides", guides::rows),
     ("impulse", impulse::rows),
     ("turbulence", turbulence::rows),
     ("blast", blast::rows),

@@ -46,6 +46,12 @@ pub enum BatchError {
         /// Index of the particle.
         particle: u32,
     },
+    /// A number of a guide is infinite or not a number, or a distance is negative.
+    #[error("the guide of particle {particle} is not finite, or has a negative distance or radius")]
+    Guide {
+        /// Index of the particle.
+        particle: u32,
+    },
     /// A number of a collider is infinite or not a number.
     #[error("the pose, margin or friction of collider {index} is not finite")]
     Collider {

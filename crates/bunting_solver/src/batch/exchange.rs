@@ -131,6 +131,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if let Some(cloth) = &mut self.lanes[lane] {
             cloth.history =
                 history.map_or_else(IntegratorHistory::default, |history| history.integrator);
+            cloth.are_pins_at_rest = fabric.are_pins_at_rest(positions);
             let pin_strain = PinStrain::of(fabric, positions);
             if cloth.pin_strain != pin_strain {
                 cloth.pin_strain = pin_strain;

@@ -9,6 +9,7 @@ use crate::stability::added_mass::AddedMass;
 use crate::stability::pin_strain::PinStrain;
 use crate::step::Drive;
 use crate::step::bdf::IntegratorHistory;
+use crate::step::guides::ClothGuides;
 use crate::step::moving_pins::MovingPins;
 use crate::step::parameters::ParameterInputs;
 
@@ -29,7 +30,10 @@ pub(crate) struct LaneState {
     pub external_moment: f32,
     pub history: IntegratorHistory,
     pub pin_strain: PinStrain,
+    /// Whether the pins are where they are at rest.
+    pub are_pins_at_rest: bool,
     pub moving_pins: MovingPins,
+    pub guides: Option<ClothGuides>,
     /// Inputs of the lane's parameters; none if the parameters must be computed.
     pub inputs: Option<ParameterInputs>,
     /// Inputs of the lane's inverse masses besides the substep; none if the masses must be computed.
@@ -49,7 +53,9 @@ impl LaneState {
             external_moment: 0.0,
             history: IntegratorHistory::default(),
             pin_strain: PinStrain::default(),
+            are_pins_at_rest: true,
             moving_pins: MovingPins::default(),
+            guides: None,
             inputs: None,
             added_mass: None,
         }

@@ -7,7 +7,7 @@ use crate::batch::error::BatchError;
 use crate::contact::collider::Collider;
 use crate::contact::itself::settings::SelfCollision;
 use crate::contact::reaction::ContactReaction;
-use crate::step::{Drive, MovingPin};
+use crate::step::{Drive, Guide, MovingPin};
 
 impl ClothBatch {
     /// Sets the frame motion, gravity and air that act on a lane from the next tick on. The frame's motion is
@@ -37,6 +37,18 @@ impl ClothBatch {
     pub fn move_pins(&mut self, lane: usize, pins: Vec<MovingPin>) -> Result<(), BatchError> {
         self.check_lane(lane)?;
         with_batch!(&mut self.0, batch => batch.set_pin_motion(lane, pins))
+    }
+
+    /// Sets the guides of a lane's cloth in the next tick, one for each particle; without any, the cloth is free. Later
+    /// guides stay where they are at the end of that tick. Pinned particles have no limits. An empty lane stays empty.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane, the number of guides is neither zero nor that of the particles, or a number is not finite or
+    /// is negative where it cannot be. The lane keeps its guides.
+    pub fn set_guides(&mut self, lane: usize, guides: Vec<Guide>) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        with_batch!(&mut self.0, batch => batch.set_guides(lane, guides))
     }
 
     /// Sets the shapes that a lane's cloth cannot enter, from the next tick on. An empty lane stays empty.

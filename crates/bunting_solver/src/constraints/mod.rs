@@ -15,6 +15,7 @@ mod chain;
 mod corrections;
 pub(crate) mod factors;
 mod gauss_seidel;
+mod guide;
 mod interpolate;
 mod mesh_sweep;
 mod overlong;

@@ -2,11 +2,14 @@
 
 use glam::Vec3;
 use parry3d::query::Ray;
-use parry3d::shape::{HeightField, Shape};
+use parry3d::shape::{HeightField, Segment, Shape};
 
 use crate::constants::LEAST_LENGTH;
 use crate::contact::ground;
 use crate::contact::nearest::nearest_point;
+
+/// How much longer than it is a path is taken to be where it is found out whether it reaches a shape: more than rounding.
+const REACH: f32 = 1.001;
 
 /// The surface of a shape, in the shape's frame.
 pub(super) struct Surface<'a> {
@@ -52,7 +55,7 @@ impl Surface<'_> {
     /// moves with the shape and does not slide: a slide as long as the path would carry it around the shape
     /// within the substep.
     fn cross(&self, from: Vec3, to: Vec3) -> Option<Projection> {
-        if self.contains(from) {
+        if self.is_out_of_reach(from, to) || self.contains(from) {
             return None;
         }
         let path = Ray::new(from, to - from);
@@ -68,6 +71,18 @@ impl Surface<'_> {
         let overlap = self.overlap(from, at);
         let to = overlap.map_or(at, |Overlap { normal, depth }| at + normal * depth);
         Some(Projection { to, normal: hit.normal, sticks: true })
+    }
+
+    /// Whether a path is known to end farther from the shape than it is long. Only capsules are asked, at which rays are
+    /// cast by iteration.
+    fn is_out_of_reach(&self, from: Vec3, to: Vec3) -> bool {
+        let Some(capsule) = self.shape.as_capsule() else { return false };
+        let Segment { a, b } = capsule.segment;
+        let along = b - a;
+        let part =
+            ((to - a).dot(along) / along.length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
+        let reach = capsule.radius + REACH * from.distance(to);
+        (a + along * part).distance_squared(to) > reach * reach
     }
 
     /// Projects a particle that comes closer than the clearance, with friction.

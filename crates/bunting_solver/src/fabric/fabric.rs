@@ -333,6 +333,12 @@ impl Fabric {
         &self.tethers.pins
     }
 
+    /// Whether all pins of a cloth with its particles at these positions (m) are where they are at rest.
+    pub(crate) fn are_pins_at_rest(&self, positions: &[Vec3]) -> bool {
+        let is_at_rest = |particle: usize| positions[particle] == self.rest_positions()[particle];
+        self.pins().iter().all(|pin| is_at_rest(pin.particle as usize))
+    }
+
     /// Tether of each free particle to its nearest pin.
     pub(crate) fn tethers(&self) -> &[Tether] {
         &self.tethers.near

@@ -57,7 +57,7 @@ impl<L: Lane> FrameRegisters<L> {
 
     /// Change of the coordinates of a point that is fixed in the world, m.
     #[inline(always)]
-    fn change_of_point(&self, point: V3<L>) -> V3<L> {
+    pub fn change_of_point(&self, point: V3<L>) -> V3<L> {
         self.change_of_direction(point) + self.shift
     }
 

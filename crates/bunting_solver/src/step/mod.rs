@@ -3,11 +3,12 @@
 pub(crate) mod air;
 pub(crate) mod bdf;
 mod begin;
-mod carry;
+pub(crate) mod carry;
 pub(crate) mod clock;
 mod damping;
 pub(crate) mod effort;
 pub(crate) mod frame;
+pub(crate) mod guides;
 mod integrate;
 pub(crate) mod limits;
 pub(crate) mod load_stretch;
@@ -19,5 +20,6 @@ mod predict;
 mod settings;
 mod velocity;
 
+pub use guides::{Backstop, Guide};
 pub use moving_pins::MovingPin;
 pub use settings::{Drive, Scheme, StepSettings};

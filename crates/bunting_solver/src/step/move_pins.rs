@@ -85,11 +85,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let fabric = &self.fabrics[Y::fabric_of(cloth)].fabric;
         self.layout.set_pins(cloth, fabric, &positions);
         let pin_strain = PinStrain::of(fabric, &positions);
-        if let Some(state) = &mut self.lanes[cloth]
-            && state.pin_strain != pin_strain
-        {
-            state.pin_strain = pin_strain;
-            state.added_mass = None;
+        if let Some(state) = &mut self.lanes[cloth] {
+            state.are_pins_at_rest = fabric.are_pins_at_rest(&positions);
+            if state.pin_strain != pin_strain {
+                state.pin_strain = pin_strain;
+                state.added_mass = None;
+            }
         }
     }
 }

@@ -67,8 +67,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         for (cloth, state) in self.lanes.iter_mut().enumerate() {
             if let Some(state) = state {
                 let lane = Y::lanes(cloth).start;
-                // The pole is that of pins in their places at rest.
-                let angle = if state.moving_pins.is_empty() { turn.lanes()[lane] } else { 0.0 };
+                // The pole is that of pins in their places at rest, and guides turn the cloth from outside.
+                let rests = state.moving_pins.is_empty() && state.are_pins_at_rest;
+                let turns = rests && state.guides.is_none();
+                let angle = if turns { turn.lanes()[lane] } else { 0.0 };
                 let rate = angle * self.parameters.inverse_step.lanes()[lane];
                 state.history.pole_turn = PoleTurn { angle, rate };
             }

@@ -3,6 +3,7 @@
 mod cost;
 mod first_hour;
 mod from_mesh;
+mod from_skin;
 mod given;
 mod levels;
 mod parts;

@@ -18,6 +18,7 @@ impl<P: Pack> LaneBatch<P> {
         for _ in 0..passes {
             self.solve_dihedral(accumulate);
             self.solve_distance(accumulate);
+            self.solve_guides();
             self.solve_contacts();
         }
     }

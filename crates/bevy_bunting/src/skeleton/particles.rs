@@ -1,0 +1,232 @@
+//! The animated places of a cloth's particles, by linear blend skinning.
+
+use std::sync::Arc;
+
+use bevy_ecs::prelude::*;
+use bevy_math::{Affine3A, Mat3A, Vec3, Vec3A};
+use bunting_solver::{Backstop, Guide, MovingPin};
+
+use crate::cloth::mesh::ClothMesh;
+use crate::fabric::levels::ClothLevels;
+use crate::skeleton::limits::SkinLimits;
+use crate::skeleton::skin::ClothSkin;
+
+/// The particles of a skinned cloth at its present level, and their places.
+#[derive(Component, Debug, Default)]
+pub(crate) struct SkinnedParticles {
+    /// The levels and the level that the particles are those of.
+    of: Option<(Arc<ClothLevels>, usize)>,
+    particles: Vec<SkinnedParticle>,
+    /// The pinned particles.
+    pins: Vec<u32>,
+    has_limits: bool,
+    /// Places at the start and at the end of the tick, each in the cloth's frame at that time.
+    places: [Vec<Place>; 2],
+    /// Skinning matrices of the places at the end of the tick; none before the first.
+    matrices: Option<Vec<Affine3A>>,
+}
+
+/// A particle and the joints that move it.
+#[derive(Clone, Copy, Debug)]
+struct SkinnedParticle {
+    /// Position at rest, m.
+    rest: Vec3,
+    /// Unit normal at rest.
+    normal: Vec3,
+    joints: [u16; 4],
+    /// Weights of the joints, whose sum is 1.
+    weights: [f32; 4],
+    max_distance: f32,
+    backstop: Backstop,
+    /// Weight of the simulated position where the particle is shown.
+    simulated: f32,
+}
+
+/// The animated place of a particle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place {
+    /// In the cloth's frame, m.
+    pub position: Vec3,
+    /// Unit normal.
+    pub normal: Vec3,
+}
+
+impl SkinnedParticle {
+    /// The matrix from the space of the mesh to the cloth's frame.
+    fn matrix(&self, matrices: &[Affine3A]) -> Affine3A {
+        let mut sum = Affine3A { matrix3: Mat3A::ZERO, translation: Vec3A::ZERO };
+        for (&joint, &weight) in self.joints.iter().zip(&self.weights) {
+            if weight > 0.0 {
+                let matrix = &matrices[joint as usize];
+                sum.matrix3 += matrix.matrix3 * weight;
+                sum.translation += matrix.translation * weight;
+            }
+        }
+        sum
+    }
+
+    fn place(&self, matrices: &[Affine3A]) -> Place {
+        let matrix = self.matrix(matrices);
+        Place {
+            position: matrix.transform_point3(self.rest),
+            normal: matrix.transform_vector3(self.normal).normalize_or_zero(),
+        }
+    }
+}
+
+impl SkinnedParticles {
+    /// Whether the particles are those of a level.
+    pub fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
+        self.of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, levels) && *at == level)
+    }
+
+    /// Finds the particles anew in the next tick.
+    pub fn forget(&mut self) {
+        self.of = None;
+    }
+
+    /// Finds the particles of a level of a mesh, given a valid skin and valid limits.
+    pub fn find(
+        &mut self,
+        levels: &Arc<ClothLevels>,
+        level: usize,
+        mesh: &ClothMesh,
+        skin: &ClothSkin,
+        limits: Option<&SkinLimits>,
+    ) {
+        self.particles.clear();
+        let Some(normals) = mesh.builder().rest_normals().ok() else { return };
+        let limits = limits.cloned().unwrap_or_default().of(mesh).ok();
+        let fabric = levels.fabric(level);
+        for (vertex, &rest) in levels.vertices(level).iter().zip(fabric.rest_positions()) {
+            let vertex = *vertex as usize;
+            let weights = skin.joint_weights[vertex];
+            let sum: f32 = weights.iter().sum();
+            let limit = |of: fn(&_) -> &Vec<f32>, none: f32| {
+                limits.as_ref().map_or(none, |limits| of(limits)[vertex])
+            };
+            let shown = mesh.weights().get(vertex).copied().unwrap_or(1.0);
+            self.particles.push(SkinnedParticle {
+                rest,
+                normal: normals[vertex],
+                joints: skin.joint_indices[vertex],
+                weights: weights.map(|weight| weight / sum),
+                max_distance: limit(|limits| &limits.max_distance, f32::INFINITY),
+                backstop: Backstop {
+                    distance: limit(|limits| &limits.backstop_distance, 0.0),
+                    radius: limit(|limits| &limits.backstop_radius, 0.0),
+                },
+                simulated: shown * limit(|limits| &limits.simulated, 1.0),
+            });
+        }
+        self.of = Some((Arc::clone(levels), level));
+        let pins = (0..self.particles.len()).filter(|&particle| fabric.is_pinned(particle));
+        self.pins = pins.map(|particle| particle as u32).collect();
+        let is_limited = |particle: &SkinnedParticle| {
+            particle.max_distance < f32::INFINITY || particle.backstop.radius > 0.0
+        };
+        self.has_limits = self.particles.iter().any(is_limited);
+    }
+
+    /// Skinning matrices of the places at the end of the last tick; none before the first.
+    pub fn matrices(&self) -> Option<&[Affine3A]> {
+        self.matrices.as_deref()
+    }
+
+    /// Begins a tick whose places at the start are those of the end of the last one.
+    pub fn go_on(&mut self) {
+        self.places.swap(0, 1);
+    }
+
+    /// Begins a tick whose places at the start are those of the given skinning matrices.
+    pub fn begin_at(&mut self, matrices: &[Affine3A]) {
+        self.places[0].clear();
+        self.places[0].extend(self.particles.iter().map(|particle| particle.place(matrices)));
+    }
+
+    /// Finds the places at the end of the tick.
+    pub fn end_at(&mut self, matrices: Vec<Affine3A>) {
+        self.places[1].clear();
+        self.places[1].extend(self.particles.iter().map(|particle| particle.place(&matrices)));
+        self.matrices = Some(matrices);
+    }
+
+    /// Moves positions (m) along with the skin, from one pose, or from rest, to another.
+    pub fn carry(&self, positions: &mut [Vec3], from: Option<&[Affine3A]>, to: &[Affine3A]) {
+        for (position, particle) in positions.iter_mut().zip(&self.particles) {
+            let before = from.map_or(Affine3A::IDENTITY, |from| particle.matrix(from));
+            let after = particle.matrix(to);
+            let bound = before.inverse().transform_point3(*position);
+            let moved = after.transform_point3(bound);
+            // The blend of two opposite turns has no inverse.
+            *position = if moved.is_finite() { moved } else { particle.place(to).position };
+        }
+    }
+
+    /// Whether all pins are in their places at the start of the tick, to within a distance in m.
+    pub fn are_pins_in_place(&self, positions: &[Vec3], tolerance: f32) -> bool {
+        self.pins.iter().all(|&pin| {
+            let pin = pin as usize;
+            positions[pin].distance(self.places[0][pin].position) < tolerance
+        })
+    }
+
+    /// Place of a particle at the end of the tick, m.
+    pub fn place(&self, particle: u32) -> Vec3 {
+        self.places[1][particle as usize].position
+    }
+
+    /// The motions of the pins in this tick.
+    pub fn motions(&self) -> Vec<MovingPin> {
+        let [from, to] = &self.places;
+        let motion = |&particle: &u32| MovingPin {
+            particle,
+            from: from[particle as usize].position,
+            to: to[particle as usize].position,
+        };
+        self.pins.iter().map(motion).filter(|pin| pin.from != pin.to).collect()
+    }
+
+    /// The guides of all particles in this tick; empty if there is no limit.
+    pub fn guides(&self) -> Vec<Guide> {
+        if !self.has_limits {
+            return Vec::new();
+        }
+        let [from, to] = &self.places;
+        let places = self.particles.iter().zip(from).zip(to);
+        let guides = places.map(|((particle, from), to)| Guide {
+            places: [from.position, to.position],
+            normals: [from.normal, to.normal],
+            max_distance: particle.max_distance,
+            backstop: particle.backstop,
+        });
+        guides.collect()
+    }
+
+    /// Blends simulated positions (m) and normals of a level's particles with their places at the end of the tick.
+    pub fn blend(&self, level: usize, positions: &mut [Vec3], normals: &mut [Vec3]) {
+        if self.of.as_ref().is_none_or(|(_, of)| *of != level) {
+            return;
+        }
+        let shown = positions.iter_mut().zip(normals);
+        let particles = self.particles.iter().zip(&self.places[1]);
+        for ((position, normal), (particle, place)) in shown.zip(particles) {
+            if particle.simulated < 1.0 {
+                *position = place.position.lerp(*position, particle.simulated);
+                *normal = place.normal.lerp(*normal, particle.simulated).normalize_or_zero();
+            }
+        }
+    }
+
+    /// Moves positions (m) that are shown at a fraction of the tick along with the skin to a pose.
+    pub fn show(&self, level: usize, fraction: f32, pose: &[Affine3A], shown: &mut [Vec3]) {
+        let [from, to] = &self.places;
+        if self.of.as_ref().is_none_or(|(_, of)| *of != level) || to.len() != shown.len() {
+            return;
+        }
+        for (index, (position, particle)) in shown.iter_mut().zip(&self.particles).enumerate() {
+            let place = from[index].position.lerp(to[index].position, fraction);
+            *position += particle.place(pose).position - place;
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! The plugin that leads cloths by skeletons.
+
+use bevy_app::prelude::*;
+use bevy_app::{AnimationSystems, RunFixedMainLoop, RunFixedMainLoopSystems};
+use bevy_ecs::prelude::*;
+use bevy_transform::TransformSystems;
+
+use crate::batch::publish::{publish_states, reset_diverged};
+use crate::environment::drive::drive_cloths;
+use crate::fabric::prepare::change_materials;
+use crate::motion::lead::lead_pins;
+use crate::motion::observe::{observe_frames, observe_ticks};
+#[cfg(feature = "render")]
+use crate::render::plugin::ClothRenderSystems;
+use crate::schedule::{ClothSystems, ClothTick};
+use crate::skeleton::by_vertex::ByVertex;
+use crate::skeleton::check::{bare, check_skins, free, release};
+use crate::skeleton::joints::{observe_joints_in_frames, observe_joints_in_ticks};
+use crate::skeleton::lead::{blend_skins, lead_skins};
+use crate::skeleton::limits::SkinLimits;
+use crate::skeleton::show::show_poses;
+use crate::skeleton::skin::ClothSkin;
+
+/// Leads cloths by the skeletons that their [`ClothSkin`]s name.
+#[derive(Debug, Default)]
+pub struct SkeletonPlugin;
+
+impl Plugin for SkeletonPlugin {
+    fn build(&self, app: &mut App) {
+        app.register_type::<ClothSkin>()
+            .register_type::<SkinLimits>()
+            .register_type::<ByVertex>()
+            .add_observer(bare)
+            .add_observer(release)
+            .add_observer(free)
+            .add_systems(
+                RunFixedMainLoop,
+                observe_joints_in_frames::<true>
+                    .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop)
+                    .before(observe_frames::<true>),
+            )
+            .add_systems(
+                ClothTick,
+                (
+                    (check_skins, observe_joints_in_ticks)
+                        .chain()
+                        .in_set(ClothSystems::Prepare)
+                        .after(change_materials)
+                        .before(observe_ticks),
+                    lead_skins.in_set(ClothSystems::Drive).after(lead_pins).before(drive_cloths),
+                    blend_skins
+                        .in_set(ClothSystems::Publish)
+                        .after(publish_states)
+                        .before(reset_diverged),
+                ),
+            );
+        let show = (observe_joints_in_frames::<false>.before(observe_frames::<false>), show_poses)
+            .chain()
+            .after(AnimationSystems)
+            .before(TransformSystems::Propagate);
+        #[cfg(feature = "render")]
+        let show = show.before(ClothRenderSystems::UpdateMeshes);
+        app.add_systems(PostUpdate, show);
+    }
+}

@@ -1,0 +1,37 @@
+//! Moves displayed surfaces to the pose of the frame that is shown.
+
+use bevy_ecs::prelude::*;
+use bevy_time::{Time, Virtual};
+use bevy_transform::helper::TransformHelper;
+
+use crate::display::surface::{ClothSurface, LastTick};
+use crate::motion::attachment::Attachment;
+use crate::motion::frame::{frame_of, is_finite};
+use crate::skeleton::joints::JointPoses;
+use crate::skeleton::particles::SkinnedParticles;
+
+type ShownCloth = (
+    Entity,
+    Option<&'static Attachment>,
+    &'static JointPoses,
+    &'static SkinnedParticles,
+    &'static mut ClothSurface,
+);
+
+/// Moves every particle by as much as its animated place has moved since the time that the surface shows: pins come to lie
+/// on the shown joints exactly.
+pub(super) fn show_poses(
+    mut cloths: Query<ShownCloth>,
+    transforms: TransformHelper,
+    tick: Res<LastTick>,
+    time: Res<Time<Virtual>>,
+) {
+    let fraction = tick.fraction(&time);
+    for (entity, attachment, joints, particles, mut surface) in &mut cloths {
+        let frame = frame_of(entity, attachment, &transforms).filter(is_finite);
+        let (Some(frame), true) = (frame, joints.may_move()) else { continue };
+        let pose = joints.present_matrices(frame, &transforms);
+        let level = surface.level;
+        particles.show(level, fraction, &pose, &mut surface.positions);
+    }
+}

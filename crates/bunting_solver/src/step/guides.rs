@@ -1,0 +1,177 @@
+//! Guides: where an animation would have each particle, and how far the particle may go from there.
+
+use glam::Vec3;
+
+use crate::batch::BatchError;
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::layout::Layout;
+use crate::simd::lane::Pack;
+use crate::simd::vec3::{Pack3, set_lane3, splat3};
+
+/// The animated place of a particle during a tick, and the limits that hold a free particle near it. Between start and
+/// end, place and limits move evenly along straight lines in the cloth's frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guide {
+    /// Place at the start and at the end of the tick, each in the frame at that time, m.
+    pub places: [Vec3; 2],
+    /// Unit normal at the start and at the end of the tick, each in the frame at that time.
+    pub normals: [Vec3; 2],
+    /// Greatest distance from the place, m; infinite where there is no limit.
+    pub max_distance: f32,
+    /// The sphere behind the place that the particle cannot enter.
+    pub backstop: Backstop,
+}
+
+impl Guide {
+    /// Whether the numbers can be simulated.
+    fn is_valid(&self) -> bool {
+        let Backstop { distance, radius } = self.backstop;
+        self.places.iter().chain(&self.normals).all(|vector| vector.is_finite())
+            && self.max_distance >= 0.0
+            && distance.is_finite()
+            && radius.is_finite()
+            && radius >= 0.0
+    }
+
+    /// Centres of the backstop, m.
+    fn behind(&self) -> [Vec3; 2] {
+        let depth = self.backstop.distance + self.backstop.radius;
+        [0, 1].map(|end| self.places[end] - self.normals[end] * depth)
+    }
+}
+
+/// A sphere behind the animated place of a particle, on the line of the animated normal, that the particle cannot enter: a
+/// cheap stand-in for the body under the cloth.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
+pub struct Backstop {
+    /// Distance of the sphere's surface behind the place, m; negative for a sphere that reaches in front of it.
+    pub distance: f32,
+    /// Radius, m; zero where there is none.
+    pub radius: f32,
+}
+
+/// The guides of one cloth.
+#[derive(Clone, Debug)]
+pub(crate) struct ClothGuides {
+    guides: Vec<Guide>,
+    phase: Phase,
+}
+
+/// Where the guides of a cloth are in their tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Phase {
+    /// Their tick has not begun.
+    Ahead,
+    /// They move in this tick.
+    Moving,
+    /// They stay where they were at the end of their tick.
+    Resting,
+}
+
+/// The guides of a batch, one for each pack of particles.
+#[derive(Clone, Debug)]
+pub(crate) struct Guides<P: Pack> {
+    pub packs: Vec<GuidePack<P>>,
+    /// Whether each cloth has guides.
+    guided: Vec<bool>,
+}
+
+/// The guides of a pack of particles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GuidePack<P: Pack> {
+    /// Places at the start and at the end of the tick, m.
+    pub places: [Pack3<P>; 2],
+    /// Centres of the backstops at the start and at the end of the tick, m.
+    pub behind: [Pack3<P>; 2],
+    /// Greatest distances from the places, m; infinite where there is no limit.
+    pub max_distance: P,
+    /// Radii of the backstops, m; zero where there is none.
+    pub radius: P,
+}
+
+impl<P: Pack> GuidePack<P> {
+    fn unlimited() -> Self {
+        Self {
+            places: [splat3(Vec3::ZERO); 2],
+            behind: [splat3(Vec3::ZERO); 2],
+            max_distance: P::splat(f32::INFINITY),
+            radius: P::splat(0.0),
+        }
+    }
+
+    /// Writes the limits of one lane.
+    fn set(&mut self, lane: usize, max_distance: f32, radius: f32) {
+        self.max_distance.lanes_mut()[lane] = max_distance;
+        self.radius.lanes_mut()[lane] = radius;
+    }
+}
+
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Sets the guides of a cloth in the next tick, one for each particle; none if the list is empty.
+    pub fn set_guides(&mut self, cloth: usize, guides: Vec<Guide>) -> Result<(), BatchError> {
+        let expected = self.fabrics[Y::fabric_of(cloth)].fabric.particle_count();
+        if !guides.is_empty() && guides.len() != expected {
+            return Err(BatchError::ParticleCount { given: guides.len(), expected });
+        }
+        if let Some(bad) = guides.iter().position(|guide| !guide.is_valid()) {
+            return Err(BatchError::Guide { particle: bad as u32 });
+        }
+        if let Some(state) = &mut self.lanes[cloth] {
+            state.guides =
+                (!guides.is_empty()).then_some(ClothGuides { guides, phase: Phase::Ahead });
+        }
+        Ok(())
+    }
+
+    /// Begins a tick: guides of this tick begin their motion, and those of earlier ticks come to rest.
+    pub fn begin_guides(&mut self) {
+        let is_guided = self.lanes.iter().flatten().any(|cloth| cloth.guides.is_some());
+        if !is_guided {
+            self.guides = None;
+            return;
+        }
+        let (count, lanes) = (self.layout.pack_count(), self.lanes.len());
+        let guides = self.guides.get_or_insert_with(|| {
+            Box::new(Guides {
+                packs: vec![GuidePack::unlimited(); count],
+                guided: vec![false; lanes],
+            })
+        });
+        for cloth in 0..lanes {
+            let fabric = &self.fabrics[Y::fabric_of(cloth)].fabric;
+            match self.lanes[cloth].as_mut().and_then(|state| state.guides.as_mut()) {
+                Some(ClothGuides { phase: Phase::Resting, .. }) => {}
+                Some(ClothGuides { guides: of_cloth, phase }) => {
+                    let (from, next) = match phase {
+                        Phase::Ahead => (0, Phase::Moving),
+                        Phase::Moving | Phase::Resting => (1, Phase::Resting),
+                    };
+                    *phase = next;
+                    guides.guided[cloth] = true;
+                    for (particle, guide) in of_cloth.iter().enumerate() {
+                        let (pack, lane) = self.layout.locate(particle, cloth);
+                        let pack = &mut guides.packs[pack];
+                        let behind = guide.behind();
+                        for (end, source) in [from, 1].into_iter().enumerate() {
+                            set_lane3(&mut pack.places[end], lane, guide.places[source]);
+                            set_lane3(&mut pack.behind[end], lane, behind[source]);
+                        }
+                        // A pinned particle is where it is held.
+                        if !fabric.is_pinned(particle) {
+                            pack.set(lane, guide.max_distance, guide.backstop.radius);
+                        }
+                    }
+                }
+                None if guides.guided[cloth] => {
+                    guides.guided[cloth] = false;
+                    for particle in 0..fabric.particle_count() {
+                        let (pack, lane) = self.layout.locate(particle, cloth);
+                        guides.packs[pack].set(lane, f32::INFINITY, 0.0);
+                    }
+                }
+                None => {}
+            }
+        }
+    }
+}
