@@ -183,6 +183,8 @@ pub use render::debug::{ClothDebugPlugin, ClothGizmos};
 pub use render::painted_weights::{ColorChannel, PaintedWeights, VertexPaint};
 #[cfg(feature = "render")]
 pub use render::plugin::{ClothRenderPlugin, ClothRenderSystems};
+#[cfg(feature = "render")]
+pub use render::subdivision::ClothSubdivision;
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
@@ -202,7 +204,7 @@ pub mod prelude {
         WindWake,
     };
     #[cfg(feature = "render")]
-    pub use crate::{ClothFromMesh, ColorChannel, PaintedWeights, VertexPaint};
+    pub use crate::{ClothFromMesh, ClothSubdivision, ColorChannel, PaintedWeights, VertexPaint};
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 

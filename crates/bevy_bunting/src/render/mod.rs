@@ -11,6 +11,10 @@ pub mod level_mesh;
 pub mod level_meshes;
 pub mod painted_weights;
 pub mod plugin;
+pub mod subdivide;
+pub mod subdivided_mesh;
+pub mod subdivision;
+pub mod subdivisions;
 pub mod tangents;
 pub mod write;
 

@@ -7,6 +7,7 @@ mod given;
 mod levels;
 mod parts;
 mod reflect;
+mod subdivided;
 mod written;
 
 use std::time::Duration;
@@ -49,8 +50,10 @@ fn app(frame: Duration) -> App {
     app
 }
 
+/// A flag that is drawn as it is simulated.
 fn spawn(app: &mut App, more: impl Bundle) -> Entity {
-    app.world_mut().spawn((FLAG, Attachment::in_place(ClothEdge::Left), more)).id()
+    let none = ClothSubdivision::NONE;
+    app.world_mut().spawn((FLAG, Attachment::in_place(ClothEdge::Left), none, more)).id()
 }
 
 fn run(app: &mut App, updates: usize) {
