@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy_asset::Assets;
 use bevy_camera::primitives::Aabb;
-use bevy_camera::visibility::ViewVisibility;
+use bevy_camera::visibility::InheritedVisibility;
 use bevy_ecs::prelude::*;
 use bevy_mesh::Mesh;
 use bevy_transform::components::GlobalTransform;
@@ -21,14 +21,15 @@ use crate::render::subdivisions::Subdivisions;
 type DrawnCloth = (
     &'static ClothSubdivision,
     &'static ClothSurface,
-    &'static ViewVisibility,
+    &'static InheritedVisibility,
     &'static GlobalTransform,
     &'static Aabb,
     &'static mut LevelMeshes,
 );
 
-/// Chooses the number of halvings of visible cloths, and makes meshes that are new. While a subdivision is built, the
-/// cloth keeps the mesh that it has.
+/// Chooses the number of halvings of the cloths on the screen, and makes meshes that are new. While a subdivision is
+/// built, the cloth keeps the mesh that it has. Cloth in the picture of a camera that is switched off counts as well, so
+/// that it is right in the first frame of a cut to this camera.
 pub fn subdivide_cloths(
     mut cloths: Query<DrawnCloth>,
     viewers: Query<(&LodViewer, &GlobalTransform)>,
@@ -41,15 +42,16 @@ pub fn subdivide_cloths(
     for (wanted, surface, visibility, pose, bounds, mut level_meshes) in &mut cloths {
         let (level, present) = (surface.level(), level_meshes.halvings);
         let levels = &level_meshes.levels;
-        let is_drawn = visibility.get()
+        let centre = pose.transform_point(bounds.center.into());
+        let sighting = Sighting::of(&views, centre, bounds.half_extents.length());
+        let is_drawn = sighting.pixels_per_metre > 0.0
+            && visibility.get()
             && level_meshes.origin != MeshOrigin::Refused
             && levels.rigid().vertices.is_empty()
             && surface.positions.len() == levels.fabric(level).particle_count();
         if !is_drawn {
             continue;
         }
-        let centre = pose.transform_point(bounds.center.into());
-        let sighting = Sighting::of(&views, centre, bounds.half_extents.length());
         let length = sighting.pixels_per_metre * edge_length(levels.fabric(level));
         let halvings = wanted.halvings_for(length, present);
         if halvings > 0 && level_meshes.subdivided(level, halvings).is_none() {

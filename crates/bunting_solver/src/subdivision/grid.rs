@@ -84,6 +84,13 @@ impl GridScheme {
             .collect()
     }
 
+    /// Number of drawn vertices over which differences are taken on either side, for `count` of them: one cell of the
+    /// particles. Normals at particles then hardly depend on how finely the surface is drawn, and the shading does
+    /// not show what lies between particles by chance.
+    fn reach(&self, count: usize) -> usize {
+        (1 << self.steps).min((count - 1) / 2)
+    }
+
     /// Writes positions and normals of the drawn vertices.
     pub fn evaluate(
         &self,
@@ -132,14 +139,17 @@ impl GridScheme {
                 at * width..(at + 1) * width
             };
             for ((plane, along), across) in planes.iter().zip(&mut *along).zip(&mut *across) {
-                differences_along(&plane[row(plane, at)], along);
+                differences_along(&plane[row(plane, at)], self.reach(width), along);
                 let of = |at: usize| &plane[row(plane, at)];
+                let (reach, last) = (self.reach(height), height - 1);
                 if at == 0 {
-                    one_sided([of(0), of(1), of(2)], 1.0, across);
-                } else if at + 1 == height {
-                    one_sided([of(at), of(at - 1), of(at - 2)], -1.0, across);
+                    one_sided([of(0), of(reach), of(2 * reach)], 1.0, across);
+                } else if at == last {
+                    one_sided([of(last), of(last - reach), of(last - 2 * reach)], -1.0, across);
                 } else {
-                    for ((to, before), after) in across.iter_mut().zip(of(at - 1)).zip(of(at + 1)) {
+                    let near = reach.min(at).min(last - at);
+                    let ends = of(at - near).iter().zip(of(at + near));
+                    for (to, (before, after)) in across.iter_mut().zip(ends) {
                         *to = after - before;
                     }
                 }
@@ -210,18 +220,23 @@ fn parabola(end: f32, middle: f32, far: f32) -> f32 {
     0.375 * end + 0.75 * middle - 0.125 * far
 }
 
-/// Twice the slopes of a row by central differences, and at its ends by those of a parabola.
+/// Slopes along a row, each times a length: central differences, and at its ends the slopes of a parabola.
 #[inline(always)]
-fn differences_along(row: &[f32], to: &mut [f32]) {
+fn differences_along(row: &[f32], reach: usize, to: &mut [f32]) {
     let last = row.len() - 1;
-    for (to, near) in to[1..last].iter_mut().zip(row.windows(3)) {
-        *to = near[2] - near[0];
+    let ends = row.iter().zip(&row[2 * reach..]);
+    for (to, (before, after)) in to[reach..].iter_mut().zip(ends) {
+        *to = after - before;
     }
-    to[0] = 4.0 * row[1] - 3.0 * row[0] - row[2];
-    to[last] = 3.0 * row[last] - 4.0 * row[last - 1] + row[last - 2];
+    for at in 1..reach {
+        to[at] = row[2 * at] - row[0];
+        to[last - at] = row[last] - row[last - 2 * at];
+    }
+    to[0] = 4.0 * row[reach] - 3.0 * row[0] - row[2 * reach];
+    to[last] = 3.0 * row[last] - 4.0 * row[last - reach] + row[last - 2 * reach];
 }
 
-/// Twice the slopes at the first of three rows, times a sign.
+/// Slopes at the first of three rows, times a length and a sign.
 #[inline(always)]
 fn one_sided([first, second, third]: [&[f32]; 3], sign: f32, to: &mut [f32]) {
     for (to, ((a, b), c)) in to.iter_mut().zip(first.iter().zip(second).zip(third)) {

@@ -110,7 +110,7 @@ impl Subdivision {
     }
 
     /// Writes positions (m) and unit normals of the drawn vertices, from positions of the particles. The normals are
-    /// those of the drawn surface.
+    /// those of the drawn surface; on grids they are means over a cell.
     ///
     /// # Panics
     ///
