@@ -180,6 +180,8 @@ pub use render::cloth_from_mesh::ClothFromMesh;
 #[cfg(feature = "render")]
 pub use render::debug::{ClothDebugPlugin, ClothGizmos};
 #[cfg(feature = "render")]
+pub use render::deformer::ClothDeformer;
+#[cfg(feature = "render")]
 pub use render::painted_weights::{ColorChannel, PaintedWeights, VertexPaint};
 #[cfg(feature = "render")]
 pub use render::plugin::{ClothRenderPlugin, ClothRenderSystems};

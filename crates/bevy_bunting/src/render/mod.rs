@@ -1,10 +1,12 @@
 //! Shows cloth: meshes, bounds, viewers on cameras, gizmos.
 
 pub mod assign_meshes;
+pub mod binding;
 pub mod bounds;
 pub mod camera_lens;
 pub mod cloth_from_mesh;
 pub mod debug;
+pub mod deformer;
 mod from_mesh;
 pub mod hidden;
 pub mod level_mesh;

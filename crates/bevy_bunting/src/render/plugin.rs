@@ -12,6 +12,7 @@ use crate::render::assign_meshes::assign_meshes;
 use crate::render::bounds::bound_cloths;
 use crate::render::camera_lens::{add_viewer, follow_cameras};
 use crate::render::cloth_from_mesh::{ClothFromMesh, make_cloths};
+use crate::render::deformer::{ClothDeformer, bind_meshes, carry_meshes};
 use crate::render::hidden::hide_cloths;
 use crate::render::level_meshes::show_level;
 use crate::render::subdivide::subdivide_cloths;
@@ -73,6 +74,7 @@ impl Plugin for ClothRenderPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<ClothFromMesh>()
             .register_type::<ClothSubdivision>()
+            .register_type::<ClothDeformer>()
             .init_resource::<Subdivisions>()
             .add_observer(add_viewer)
             .add_systems(
@@ -101,7 +103,15 @@ impl Plugin for ClothRenderPlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    (assign_meshes, subdivide_cloths, show_level, bound_cloths, write_visible)
+                    (
+                        assign_meshes,
+                        bind_meshes,
+                        subdivide_cloths,
+                        show_level,
+                        bound_cloths,
+                        write_visible,
+                        carry_meshes,
+                    )
                         .chain()
                         .in_set(ClothRenderSystems::UpdateMeshes),
                     write_newly_visible.in_set(ClothRenderSystems::WriteNewlyVisible),

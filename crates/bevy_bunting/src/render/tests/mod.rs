@@ -1,6 +1,7 @@
 //! Tests of rendering without a renderer: with assets, cameras and visibility only.
 
 mod cost;
+mod deformer;
 mod first_hour;
 mod from_mesh;
 mod given;
