@@ -62,6 +62,10 @@ fn cloth_at_rest_is_not_written_and_out_of_view_nothing_is_made() {
     modified(&mut app);
     run(&mut app, 3);
     assert_eq!(modified(&mut app), 0);
+    // Out of view it keeps its mesh.
+    app.world_mut().entity_mut(cloth).insert(Transform::from_xyz(0.0, 0.0, 50.0));
+    run(&mut app, 3);
+    assert_eq!(halvings(&app, cloth), 2);
 }
 
 #[test]
