@@ -71,7 +71,7 @@ fn planes_stay_planes_and_particles_stay_in_place() {
             assert!((at.z - slope(at.truncate())).abs() < ROUNDING, "{at}");
             assert!((*normal - up).length() < 1e-4, "{normal}");
         }
-        let wavy = lifted(&fabric, |at| (5.0 * at.x).sin() * (3.0 * at.y).cos());
+        let wavy = lifted(&fabric, |at| libm::sinf(5.0 * at.x) * libm::cosf(3.0 * at.y));
         let [drawn, _] = surface(&subdivision, &wavy);
         for (vertex, &particle) in fabric.particle_of_vertex().iter().enumerate() {
             assert_eq!(drawn[subdivision.kept()[vertex] as usize], wavy[particle as usize]);
@@ -105,7 +105,7 @@ fn parabolas_stay_parabolas_on_grids_and_inside_regular_meshes() {
 fn the_border_does_not_depend_on_the_interior() {
     for (fabric, indices) in [grid(7, 5), disc(), triangles()] {
         let subdivision = Subdivision::new(&fabric, &indices, STEPS);
-        let mut positions = lifted(&fabric, |at| (4.0 * at.x + at.y).sin());
+        let mut positions = lifted(&fabric, |at| libm::sinf(4.0 * at.x + at.y));
         let [before, _] = surface(&subdivision, &positions);
         let border = border(subdivision.triangles());
         assert!(border.len() > 20);
@@ -137,7 +137,7 @@ fn border(triangles: &[[u32; 3]]) -> Vec<u32> {
 #[test]
 fn a_fold_becomes_smooth() {
     for (fabric, indices) in [grid(9, 9), triangles()] {
-        let positions = lifted(&fabric, |at| (6.0 * at.x).sin() * 0.2);
+        let positions = lifted(&fabric, |at| libm::sinf(6.0 * at.x) * 0.2);
         let turn = |steps: u32| {
             let subdivision = Subdivision::new(&fabric, &indices, steps);
             let [drawn, _] = surface(&subdivision, &positions);
@@ -150,7 +150,7 @@ fn a_fold_becomes_smooth() {
             let cosine = |([a, b], normal): (&[u32; 2], &Vec3)| {
                 sides.get(&[*b, *a]).map(|other| other.dot(*normal))
             };
-            sides.iter().filter_map(cosine).fold(1.0, f32::min).acos()
+            libm::acosf(sides.iter().filter_map(cosine).fold(1.0, f32::min))
         };
         let (one, three) = (turn(1), turn(3));
         assert!(three < 0.5 * one, "{three} rad after {one} rad");
@@ -182,7 +182,7 @@ fn triangles_face_to_the_front_and_attributes_keep_their_place() {
 fn every_instruction_set_gives_the_same_bits() {
     let (fabric, indices) = grid(17, 13);
     let subdivision = Subdivision::new(&fabric, &indices, STEPS);
-    let positions = lifted(&fabric, |at| (7.0 * at.x).sin() * (5.0 * at.y).cos());
+    let positions = lifted(&fabric, |at| libm::sinf(7.0 * at.x) * libm::cosf(5.0 * at.y));
     let all = with_every_instruction_set(|| surface(&subdivision, &positions));
     assert!(all.iter().all(|one| *one == all[0]));
 }
@@ -203,7 +203,7 @@ fn time_of_a_subdivided_flag() {
         let began = std::time::Instant::now();
         let subdivision = Subdivision::new(&fabric, &indices, 1);
         let built = began.elapsed();
-        let positions = lifted(&fabric, |at| (7.0 * at.x).sin() * (5.0 * at.y).cos());
+        let positions = lifted(&fabric, |at| libm::sinf(7.0 * at.x) * libm::cosf(5.0 * at.y));
         let count = subdivision.attributes().rows().len();
         let (mut drawn, mut normals) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
         let mut buffers = SubdivisionBuffers::default();
