@@ -6,7 +6,7 @@ use bevy_asset::{AssetId, Assets, RenderAssetUsages};
 use bevy_camera::primitives::Aabb;
 use bevy_camera::visibility::{InheritedVisibility, NoAutoAabb};
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3A;
+use bevy_math::{Vec3, Vec3A};
 use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
 use bevy_reflect::Reflect;
 use bunting_solver::{Subdivision, SubdivisionBuffers};
@@ -76,6 +76,8 @@ enum CarriedState {
 struct Bound {
     subdivision: Subdivision,
     binding: Binding,
+    /// Positions of the finest level's particles when the mesh was last written, m.
+    written: Vec<Vec3>,
 }
 
 type Unbound = (Entity, &'static ClothDeformer, &'static Mesh3d, Option<&'static Carried>);
@@ -150,12 +152,12 @@ fn bind(levels: &ClothLevels, mesh: &SurfaceVertices) -> Option<Bound> {
     let buffers = &mut SubdivisionBuffers::default();
     evaluate(&subdivision, fabric.rest_positions(), buffers, &mut surface);
     let binding = Binding::new(&surface, &subdivision, mesh).ok()?;
-    Some(Bound { subdivision, binding })
+    Some(Bound { subdivision, binding, written: Vec::new() })
 }
 
 fn evaluate(
     subdivision: &Subdivision,
-    positions: &[bevy_math::Vec3],
+    positions: &[Vec3],
     buffers: &mut SubdivisionBuffers,
     surface: &mut SurfaceVertices,
 ) {
@@ -193,7 +195,7 @@ pub fn carry_meshes(
         {
             carried.state = CarriedState::Bound(Box::new(bound));
         }
-        let CarriedState::Bound(bound) = &carried.state else { continue };
+        let CarriedState::Bound(bound) = &mut carried.state else { continue };
         let Ok((surface, of_cloth)) = cloths.get(carried.cloth) else { continue };
         let fits =
             surface.positions.len() == carried.levels.fabric(surface.level()).particle_count();
@@ -205,12 +207,16 @@ pub fn carry_meshes(
         if !visibility.get() {
             continue;
         }
+        let finest = carried.levels.interpolate(surface.positions.clone(), surface.level(), 0);
+        if bound.written == finest {
+            continue;
+        }
         let Some(mut mesh) = meshes.get_mut(shown.id()) else { continue };
         let CarryBuffers { subdivision, surface: vertices, tangents } = &mut *buffers;
-        let finest = carried.levels.interpolate(surface.positions.clone(), surface.level(), 0);
         evaluate(&bound.subdivision, &finest, subdivision, vertices);
         write(&mut mesh, &bound.binding, vertices);
         tangents.write_tangents(&mut mesh);
+        bound.written = finest;
     }
 }
 

@@ -58,6 +58,11 @@ fn a_carried_mesh_follows_its_cloth_at_every_level() {
     let radius = 0.005 * 3.0_f32.sqrt();
     assert!(sizes.iter().all(|size| (size / radius - 1.0).abs() < 0.3), "{sizes:?}");
     assert!(failures(&app).is_empty());
+    app.world_mut().entity_mut(cloth).insert(ClothPaused);
+    run(&mut app, 3);
+    modified(&mut app);
+    run(&mut app, 3);
+    assert_eq!(modified(&mut app), 0, "at rest nothing is written");
 }
 
 #[test]
