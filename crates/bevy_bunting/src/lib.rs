@@ -183,9 +183,13 @@ pub use render::cloth_from_mesh::ClothFromMesh;
 #[cfg(feature = "render")]
 pub use render::debug::{ClothDebugPlugin, ClothGizmos};
 #[cfg(feature = "render")]
+pub use render::deformer::ClothDeformer;
+#[cfg(feature = "render")]
 pub use render::painted_weights::{ColorChannel, PaintedDistance, PaintedWeights, VertexPaint};
 #[cfg(feature = "render")]
 pub use render::plugin::{ClothRenderPlugin, ClothRenderSystems};
+#[cfg(feature = "render")]
+pub use render::subdivision::ClothSubdivision;
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
@@ -209,7 +213,10 @@ pub mod prelude {
         WindInfluence, WindRegion, WindShape, WindWake,
     };
     #[cfg(feature = "render")]
-    pub use crate::{ClothFromMesh, ColorChannel, PaintedDistance, PaintedWeights, VertexPaint};
+    pub use crate::{
+        ClothDeformer, ClothFromMesh, ClothSubdivision, ColorChannel, PaintedDistance,
+        PaintedWeights, VertexPaint,
+    };
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 

@@ -71,6 +71,7 @@ mod geometry;
 mod simd;
 mod stability;
 mod step;
+mod subdivision;
 mod transfer;
 
 pub use batch::lane_count::LaneCount;
@@ -89,4 +90,5 @@ pub use step::effort::{Effort, EffortCause, EffortClass, Loads};
 pub use step::frame::FrameMotion;
 pub use step::limits::StepLimits;
 pub use step::{Backstop, Drive, Guide, MovingPin, Scheme, StepSettings};
+pub use subdivision::{Stencils, Subdivision, SubdivisionBuffers};
 pub use transfer::{LevelTransfer, TransferError};

@@ -16,6 +16,7 @@ use crate::display::surface::ClothSurface;
 use crate::fabric::levels::ClothLevels;
 use crate::render::level_mesh;
 use crate::render::level_meshes::{LevelMeshes, MeshOrigin, check_mesh};
+use crate::render::subdivision::ClothSubdivision;
 
 type ShownCloth = (
     Entity,
@@ -65,11 +66,19 @@ pub fn assign_meshes(
         let mut cloth = commands.entity(entity);
         cloth.insert((
             Mesh3d(level_mesh),
-            LevelMeshes { cloth: entity, levels: Arc::clone(levels), meshes: all, origin },
+            LevelMeshes {
+                cloth: entity,
+                levels: Arc::clone(levels),
+                meshes: all,
+                origin,
+                halvings: 0,
+                subdivided: Vec::new(),
+            },
         ));
         if origin != MeshOrigin::Refused {
             cloth.insert(NoAutoAabb).insert_if_new((
                 ClothSurface::default(),
+                ClothSubdivision::default(),
                 Aabb::default(),
                 Visibility::default(),
             ));

@@ -8,6 +8,7 @@ use bevy_math::Vec3A;
 use crate::cloth::state::ClothState;
 use crate::display::easing::ClothEasing;
 use crate::render::level_meshes::LevelMeshes;
+use crate::render::subdivide::edge_length;
 
 type BoundedCloth = (
     &'static ClothState,
@@ -16,6 +17,17 @@ type BoundedCloth = (
     &'static mut Aabb,
 );
 type IsStale = Or<(Changed<ClothState>, Changed<ClothEasing>, Changed<LevelMeshes>)>;
+
+/// Length of an edge that the drawn surface may lie beyond the box of the particles: the negative weights at the middle of
+/// a cell add up to 0.28, and its sixteen particles are at most three diagonals apart.
+const BEYOND: f32 = 1.2;
+
+/// Distance by which the drawn surface may lie beyond the box of the particles, m.
+fn beyond_particles(meshes: &LevelMeshes) -> f32 {
+    // The coarsest level has the longest edges.
+    let coarsest = meshes.levels.fabric(meshes.levels.count() - 1);
+    if meshes.halvings == 0 { 0.0 } else { BEYOND * edge_length(coarsest) }
+}
 
 /// Bounds the rigid part and the surfaces before and after the last tick, between which the shown surface
 /// lies. Cloths that are not visible are bounded, too, as they may come into view.
@@ -36,7 +48,9 @@ pub fn bound_cloths(mut cloths: Query<BoundedCloth, (With<NoAutoAabb>, IsStale)>
                 (low.min(position), high.max(position))
             });
         if low.cmple(high).all() {
-            let bound = Aabb { center: 0.5 * (low + high), half_extents: 0.5 * (high - low) };
+            let beyond = level_meshes.map_or(0.0, beyond_particles);
+            let half_extents = 0.5 * (high - low) + Vec3A::splat(beyond);
+            let bound = Aabb { center: 0.5 * (low + high), half_extents };
             bounds.set_if_neq(bound);
         }
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use bevy_asset::{AssetId, Handle, RenderAssetUsages};
 use bevy_ecs::prelude::*;
 use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
+use bunting_solver::Subdivision;
 
 use crate::cloth::error::ClothError;
 use crate::display::surface::ClothSurface;
@@ -21,6 +22,23 @@ pub struct LevelMeshes {
     pub meshes: Vec<Handle<Mesh>>,
     /// Origin of the finest mesh.
     pub origin: MeshOrigin,
+    /// Number of times that the edges of the shown mesh are halved.
+    pub halvings: u32,
+    /// Subdivided meshes that have been shown.
+    pub subdivided: Vec<Arc<SubdividedMesh>>,
+}
+
+/// The mesh that shows a level whose edges are halved.
+#[derive(Debug)]
+pub struct SubdividedMesh {
+    /// The level.
+    pub level: usize,
+    /// Number of halvings, at least 1.
+    pub halvings: u32,
+    /// The smooth surface.
+    pub subdivision: Arc<Subdivision>,
+    /// Its mesh.
+    pub mesh: Handle<Mesh>,
 }
 
 /// Origin of the finest mesh of a cloth.
@@ -37,14 +55,27 @@ pub enum MeshOrigin {
 impl LevelMeshes {
     /// Whether a mesh is one of these meshes.
     pub fn contains(&self, mesh: AssetId<Mesh>) -> bool {
-        self.meshes.iter().any(|own| own.id() == mesh)
+        self.meshes.iter().any(|own| own.id() == mesh) || self.subdivided_mesh(mesh).is_some()
+    }
+
+    /// The subdivided mesh of a level, if it has been made.
+    pub fn subdivided(&self, level: usize, halvings: u32) -> Option<&Arc<SubdividedMesh>> {
+        self.subdivided.iter().find(|it| it.level == level && it.halvings == halvings)
+    }
+
+    /// The subdivision that a mesh shows; none if it shows the particles.
+    pub fn subdivided_mesh(&self, mesh: AssetId<Mesh>) -> Option<&Arc<SubdividedMesh>> {
+        self.subdivided.iter().find(|it| it.mesh.id() == mesh)
     }
 }
 
-/// Shows each cloth with the mesh of its surface's level.
+/// Shows each cloth with the mesh of its surface's level, subdivided if there is such a mesh.
 pub fn show_level(mut cloths: Query<(&ClothSurface, &LevelMeshes, &mut Mesh3d)>) {
     for (surface, level_meshes, mut shown) in &mut cloths {
-        if let Some(mesh) = level_meshes.meshes.get(surface.level())
+        let level = surface.level();
+        let subdivided = level_meshes.subdivided(level, level_meshes.halvings);
+        let mesh = subdivided.map(|it| &it.mesh).or_else(|| level_meshes.meshes.get(level));
+        if let Some(mesh) = mesh
             && shown.0 != *mesh
             && level_meshes.contains(shown.id())
         {

@@ -1,10 +1,12 @@
 //! Shows cloth: meshes, bounds, viewers on cameras, gizmos.
 
 pub mod assign_meshes;
+pub mod binding;
 pub mod bounds;
 pub mod camera_lens;
 pub mod cloth_from_mesh;
 pub mod debug;
+pub mod deformer;
 mod from_mesh;
 mod from_skin;
 pub mod hidden;
@@ -12,6 +14,10 @@ pub mod level_mesh;
 pub mod level_meshes;
 pub mod painted_weights;
 pub mod plugin;
+pub mod subdivide;
+pub mod subdivided_mesh;
+pub mod subdivision;
+pub mod subdivisions;
 pub mod tangents;
 pub mod write;
 

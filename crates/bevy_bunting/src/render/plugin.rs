@@ -12,8 +12,12 @@ use crate::render::assign_meshes::assign_meshes;
 use crate::render::bounds::bound_cloths;
 use crate::render::camera_lens::{add_viewer, follow_cameras};
 use crate::render::cloth_from_mesh::{ClothFromMesh, make_cloths};
+use crate::render::deformer::{ClothDeformer, bind_meshes, carry_meshes};
 use crate::render::hidden::hide_cloths;
 use crate::render::level_meshes::show_level;
+use crate::render::subdivide::subdivide_cloths;
+use crate::render::subdivision::ClothSubdivision;
+use crate::render::subdivisions::Subdivisions;
 use crate::render::write::{write_newly_visible, write_visible};
 use crate::schedule::{ClothSystems, ClothTick};
 
@@ -39,10 +43,14 @@ pub enum ClothRenderSystems {
 /// levels take all other attributes from the finest mesh. A mesh that cannot be written is reported in a
 /// [`ClothFailed`](crate::ClothFailed) event and left alone until the `Mesh3d` is replaced.
 ///
+/// The mesh that is shown is subdivided as finely as its size on the screen asks for, see
+/// [`ClothSubdivision`](crate::ClothSubdivision); the given mesh is then shown, and written, only while its edges are
+/// short on the screen.
+///
 /// Rigid vertices, of weight 0, are written only when a cloth gets its meshes.
 ///
-/// Meshes are made when a cloth is new. Later frames allocate nothing, except for cloths that change their
-/// level, which are eased with the mesh of the finer level. Only meshes of cloths that move and are visible
+/// Meshes are made when a cloth is new, and subdivided ones when they are first shown. Later frames allocate nothing,
+/// except for cloths that change their level, which are eased with the mesh of the finer level. Only meshes of cloths that move and are visible
 /// to a camera or a light are written. The `Aabb` is updated whether the cloth is visible or not.
 ///
 /// # Materials
@@ -65,6 +73,9 @@ pub struct ClothRenderPlugin;
 impl Plugin for ClothRenderPlugin {
     fn build(&self, app: &mut App) {
         app.register_type::<ClothFromMesh>()
+            .register_type::<ClothSubdivision>()
+            .register_type::<ClothDeformer>()
+            .init_resource::<Subdivisions>()
             .add_observer(add_viewer)
             .add_systems(
                 RunFixedMainLoop,
@@ -92,7 +103,15 @@ impl Plugin for ClothRenderPlugin {
             .add_systems(
                 PostUpdate,
                 (
-                    (assign_meshes, show_level, bound_cloths, write_visible)
+                    (
+                        assign_meshes,
+                        bind_meshes,
+                        subdivide_cloths,
+                        show_level,
+                        bound_cloths,
+                        write_visible,
+                        carry_meshes,
+                    )
                         .chain()
                         .in_set(ClothRenderSystems::UpdateMeshes),
                     write_newly_visible.in_set(ClothRenderSystems::WriteNewlyVisible),

@@ -7,13 +7,15 @@ use bevy_camera::visibility::ViewVisibility;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
+use bunting_solver::{Subdivision, SubdivisionBuffers};
 
 use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::cloth::state::ClothState;
 use crate::display::surface::ClothSurface;
 use crate::fabric::levels::ClothLevels;
-use crate::render::level_meshes::{LevelMeshes, MeshOrigin, check_mesh};
+use crate::render::level_meshes::{LevelMeshes, MeshOrigin, SubdividedMesh, check_mesh};
+use crate::render::subdivided_mesh;
 use crate::render::tangents::TangentSums;
 
 type WrittenCloth = (
@@ -30,14 +32,17 @@ type WrittenCloth = (
 pub fn write_visible(
     mut cloths: Query<WrittenCloth>,
     mut meshes: ResMut<Assets<Mesh>>,
-    mut tangents: Local<TangentSums>,
+    mut buffers: Local<WriteBuffers>,
     mut commands: Commands,
 ) {
     for (entity, state, surface, visibility, mut level_meshes, shown) in &mut cloths {
         let levels = levels_to_write(state, surface, visibility, &level_meshes);
         let Some(levels) = levels else { continue };
+        let subdivided = level_meshes.subdivided_mesh(shown.id()).cloned();
+        let to_write =
+            ToWrite { entity, levels: &levels, subdivided: subdivided.as_deref(), surface };
         let Some(mut mesh) = meshes.get_mut(shown.id()) else { continue };
-        match write(entity, mesh.bypass_change_detection(), &levels, surface, &mut tangents) {
+        match to_write.write(mesh.bypass_change_detection(), &mut buffers) {
             Ok(true) => {
                 mesh.into_inner();
             }
@@ -53,14 +58,17 @@ pub fn write_newly_visible(
     mut cloths: Query<WrittenCloth, Changed<ViewVisibility>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut events: MessageWriter<AssetEvent<Mesh>>,
-    mut tangents: Local<TangentSums>,
+    mut buffers: Local<WriteBuffers>,
     mut commands: Commands,
 ) {
     for (entity, state, surface, visibility, mut level_meshes, mut shown) in &mut cloths {
         let levels = levels_to_write(state, surface, visibility, &level_meshes);
         let Some(levels) = levels else { continue };
+        let subdivided = level_meshes.subdivided_mesh(shown.id()).cloned();
+        let to_write =
+            ToWrite { entity, levels: &levels, subdivided: subdivided.as_deref(), surface };
         let Some(mesh) = meshes.get_mut_untracked(shown.id()) else { continue };
-        match write(entity, mesh, &levels, surface, &mut tangents) {
+        match to_write.write(mesh, &mut buffers) {
             Ok(true) => {
                 events.write(AssetEvent::Modified { id: shown.id() });
                 shown.set_changed();
@@ -95,30 +103,71 @@ fn refuse(
     ClothFailed::report(commands, entity, error);
 }
 
-/// Writes the positions and normals of a surface into a mesh, and tangents if it has any. Returns whether
-/// the mesh has changed.
-fn write(
+/// Buffers that are kept from frame to frame.
+#[derive(Debug, Default)]
+pub struct WriteBuffers {
+    tangents: TangentSums,
+    subdivision: SubdivisionBuffers,
+}
+
+/// A surface, and the mesh that shows it.
+struct ToWrite<'a> {
     entity: Entity,
-    mesh: &mut Mesh,
-    levels: &ClothLevels,
-    surface: &ClothSurface,
-    tangents: &mut TangentSums,
-) -> Result<bool, ClothError> {
-    let (fabric, topology) = (levels.fabric(surface.level()), levels.topology(surface.level()));
-    check_mesh(entity, mesh, topology.vertex_count())?;
-    let vertices = || topology.simulated.iter().zip(fabric.particle_of_vertex());
-    let mut changed = false;
-    for (attribute, source) in
-        [(Mesh::ATTRIBUTE_POSITION, &surface.positions), (Mesh::ATTRIBUTE_NORMAL, &surface.normals)]
-    {
-        if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(attribute) {
-            changed |= copy_to_vertices(source, vertices(), values);
+    levels: &'a ClothLevels,
+    /// The subdivision that the mesh shows; none if it shows the particles.
+    subdivided: Option<&'a SubdividedMesh>,
+    surface: &'a ClothSurface,
+}
+
+impl ToWrite<'_> {
+    /// Writes positions and normals into the mesh, and tangents if it has any. Returns whether the mesh has
+    /// changed.
+    fn write(&self, mesh: &mut Mesh, buffers: &mut WriteBuffers) -> Result<bool, ClothError> {
+        let changed = match self.subdivided {
+            Some(subdivided) => {
+                self.write_subdivided(mesh, &subdivided.subdivision, &mut buffers.subdivision)?
+            }
+            None => self.write_particles(mesh)?,
+        };
+        if changed {
+            buffers.tangents.write_tangents(mesh);
         }
+        Ok(changed)
     }
-    if changed {
-        tangents.write_tangents(mesh);
+
+    fn write_particles(&self, mesh: &mut Mesh) -> Result<bool, ClothError> {
+        let Self { entity, levels, surface, .. } = *self;
+        let (fabric, topology) = (levels.fabric(surface.level()), levels.topology(surface.level()));
+        check_mesh(entity, mesh, topology.vertex_count())?;
+        let vertices = || topology.simulated.iter().zip(fabric.particle_of_vertex());
+        let mut changed = false;
+        for (attribute, source) in [
+            (Mesh::ATTRIBUTE_POSITION, &surface.positions),
+            (Mesh::ATTRIBUTE_NORMAL, &surface.normals),
+        ] {
+            if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(attribute)
+            {
+                changed |= copy_to_vertices(source, vertices(), values);
+            }
+        }
+        Ok(changed)
     }
-    Ok(changed)
+
+    fn write_subdivided(
+        &self,
+        mesh: &mut Mesh,
+        subdivision: &Subdivision,
+        buffers: &mut SubdivisionBuffers,
+    ) -> Result<bool, ClothError> {
+        check_mesh(self.entity, mesh, subdivision.attributes().rows().len())?;
+        let (fabric, positions) =
+            (self.levels.fabric(self.surface.level()), &self.surface.positions);
+        if subdivided_mesh::is_current(mesh, subdivision, fabric.particle_of_vertex(), positions) {
+            return Ok(false);
+        }
+        subdivided_mesh::write(mesh, subdivision, positions, buffers);
+        Ok(true)
+    }
 }
 
 /// Copies values of particles to vertices, given as pairs of indices. Returns whether any value has changed.

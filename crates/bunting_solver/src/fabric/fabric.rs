@@ -236,7 +236,8 @@ impl Fabric {
     }
 
     /// The grid that the fabric was made from; none for other meshes.
-    pub(crate) fn grid(&self) -> Option<&Grid> {
+    #[must_use]
+    pub fn grid(&self) -> Option<&Grid> {
         self.grid.as_ref()
     }
 

@@ -25,7 +25,7 @@ fn colors(mesh: &Mesh) -> &[[f32; 4]] {
 }
 
 fn spawn_from(app: &mut App, mesh: &Mesh3d, from: ClothFromMesh) -> Entity {
-    app.world_mut().spawn((mesh.clone(), from)).id()
+    app.world_mut().spawn((mesh.clone(), from, ClothSubdivision::NONE)).id()
 }
 
 fn shape(app: &App, cloth: Entity) -> Option<&ClothMesh> {

@@ -49,7 +49,7 @@ fn a_seam_is_written_on_both_sides() {
     );
     let mut app = app(TICK);
     let attachment = Attachment::in_place(AttachedVertices::List(vec![0, 2]));
-    let cloth = app.world_mut().spawn((shape, attachment)).id();
+    let cloth = app.world_mut().spawn((shape, attachment, ClothSubdivision::NONE)).id();
     run(&mut app, 20);
     let at = positions(&app, cloth);
     assert_eq!((at.len(), surface(&app, cloth).positions.len()), (8, 6));

@@ -44,7 +44,7 @@ fn any_mesh_has_a_mesh_for_each_level() {
     let shape = ClothMesh::triangles(grid.rest_positions().to_vec(), indices, grid.uvs().to_vec());
     let levels = LodSet::new([10.0]).pinned_to(0);
     let attachment = Attachment::in_place(ClothEdge::Top);
-    let cloth = app.world_mut().spawn((shape, attachment, levels)).id();
+    let cloth = app.world_mut().spawn((shape, attachment, levels, ClothSubdivision::NONE)).id();
     run(&mut app, 10);
     assert_eq!(positions(&app, cloth).len(), 169);
     app.world_mut().get_mut::<LodSet>(cloth).expect("levels").pinned = Some(1);

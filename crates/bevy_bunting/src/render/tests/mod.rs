@@ -1,6 +1,7 @@
 //! Tests of rendering without a renderer: with assets, cameras and visibility only.
 
 mod cost;
+mod deformer;
 mod first_hour;
 mod from_mesh;
 mod from_skin;
@@ -8,6 +9,7 @@ mod given;
 mod levels;
 mod parts;
 mod reflect;
+mod subdivided;
 mod written;
 
 use std::time::Duration;
@@ -50,8 +52,10 @@ fn app(frame: Duration) -> App {
     app
 }
 
+/// A flag that is drawn as it is simulated.
 fn spawn(app: &mut App, more: impl Bundle) -> Entity {
-    app.world_mut().spawn((FLAG, Attachment::in_place(ClothEdge::Left), more)).id()
+    let none = ClothSubdivision::NONE;
+    app.world_mut().spawn((FLAG, Attachment::in_place(ClothEdge::Left), none, more)).id()
 }
 
 fn run(app: &mut App, updates: usize) {

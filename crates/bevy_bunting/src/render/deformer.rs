@@ -1,0 +1,235 @@
+//! Detailed meshes that a cloth carries.
+
+use std::sync::Arc;
+
+use bevy_asset::{AssetId, Assets, RenderAssetUsages};
+use bevy_camera::primitives::Aabb;
+use bevy_camera::visibility::{InheritedVisibility, NoAutoAabb};
+use bevy_ecs::prelude::*;
+use bevy_math::{Vec3, Vec3A};
+use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
+use bevy_reflect::Reflect;
+use bunting_solver::{Subdivision, SubdivisionBuffers};
+
+use crate::background::Background;
+use crate::cloth::error::ClothError;
+use crate::cloth::events::ClothFailed;
+use crate::cloth::instance::ClothInstance;
+use crate::display::surface::ClothSurface;
+use crate::fabric::levels::ClothLevels;
+use crate::render::binding::{Binding, SurfaceVertices};
+use crate::render::tangents::TangentSums;
+
+/// Number of halvings of the finest level's edges in the surface that carries meshes.
+const HALVINGS: u32 = 1;
+
+/// Makes a cloth carry the entity's `Mesh3d`: a detailed mesh with hems, eyelets, fringe, thickness or lining, which is
+/// bound to the smooth surface of the finest level at rest. Positions, normals and tangents follow; what is not on the
+/// surface keeps its distance from it. Levels of the simulation do not show in it.
+///
+/// The mesh lies around the [`ClothMesh`](crate::ClothMesh), in the same frame: make the entity a child of the cloth
+/// without a transform of its own. The mesh that is shown is a copy; other entities with the same asset stay as they
+/// are. It is drawn as it is until another thread has bound it. The cloth itself is drawn only if it has a material.
+///
+/// # Errors
+///
+/// A [`ClothFailed`] event tells that the mesh is kept in the render world only, or that the cloth has rigid
+/// parts, which carry nothing. The mesh is then shown as it is.
+///
+/// ```
+/// use bevy_bunting::ClothDeformer;
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+/// use bevy_mesh::Mesh3d;
+///
+/// fn spawn(mut commands: Commands, fringe: Mesh3d) {
+///     let carpet = commands.spawn(ClothMesh::grid(33, 33, 1.5, 1.0)).id();
+///     commands.spawn((fringe, ClothDeformer { cloth: carpet }, ChildOf(carpet)));
+/// }
+/// ```
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[reflect(Component, Debug, PartialEq, Clone)]
+pub struct ClothDeformer {
+    /// The cloth.
+    #[entities]
+    pub cloth: Entity,
+}
+
+/// A mesh bound to a cloth.
+#[derive(Component, Debug)]
+pub struct Carried {
+    cloth: Entity,
+    levels: Arc<ClothLevels>,
+    /// The mesh that is shown: a copy or, if the mesh cannot be carried, the given one.
+    shown: AssetId<Mesh>,
+    state: CarriedState,
+}
+
+#[derive(Debug)]
+enum CarriedState {
+    Awaited(Background<Option<Bound>>),
+    Bound(Box<Bound>),
+    Refused,
+}
+
+#[derive(Debug)]
+struct Bound {
+    subdivision: Subdivision,
+    binding: Binding,
+    /// Positions of the finest level's particles when the mesh was last written, m.
+    written: Vec<Vec3>,
+}
+
+type Unbound = (Entity, &'static ClothDeformer, &'static Mesh3d, Option<&'static Carried>);
+
+/// Begins to bind meshes that are new, changed or have another cloth.
+pub fn bind_meshes(
+    deformers: Query<Unbound>,
+    cloths: Query<&ClothInstance>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut commands: Commands,
+) {
+    for (entity, deformer, shown, carried) in &deformers {
+        let levels = cloths.get(deformer.cloth).ok().and_then(|cloth| cloth.levels.as_ref());
+        let Some(levels) = levels else { continue };
+        let is_known = carried.is_some_and(|carried| {
+            carried.cloth == deformer.cloth
+                && carried.shown == shown.id()
+                && Arc::ptr_eq(&carried.levels, levels)
+        });
+        if is_known {
+            continue;
+        }
+        let Some(mesh) = meshes.get(shown.id()) else { continue };
+        let bound = |shown: AssetId<Mesh>, state: CarriedState| Carried {
+            cloth: deformer.cloth,
+            levels: Arc::clone(levels),
+            shown,
+            state,
+        };
+        let refusal = if !levels.rigid().vertices.is_empty() {
+            Some(ClothError::CarriedByRigid { entity, cloth: deformer.cloth })
+        } else if at_rest(mesh).is_none() {
+            Some(ClothError::MeshUnreadable { entity })
+        } else {
+            None
+        };
+        if let Some(error) = refusal {
+            commands.entity(entity).insert(bound(shown.id(), CarriedState::Refused));
+            ClothFailed::report(&mut commands, entity, error);
+            continue;
+        }
+        let copy = mesh.clone();
+        let Some(rest) = at_rest(&copy) else { continue };
+        let of = Arc::clone(levels);
+        let work = Background::begin(move || bind(&of, &rest));
+        let copy = meshes.add(copy);
+        let carried = bound(copy.id(), CarriedState::Awaited(work));
+        commands.entity(entity).insert((carried, Mesh3d(copy), NoAutoAabb));
+        commands.entity(entity).insert_if_new(Aabb::default());
+    }
+}
+
+/// Positions and normals of a mesh; none if they cannot be read. Where it has no normals they are zero.
+fn at_rest(mesh: &Mesh) -> Option<SurfaceVertices> {
+    if !mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD) {
+        return None;
+    }
+    let read = |attribute| match mesh.try_attribute(attribute) {
+        Ok(VertexAttributeValues::Float32x3(values)) => Some(values.clone()),
+        _ => None,
+    };
+    let positions = read(Mesh::ATTRIBUTE_POSITION)?;
+    let normals = read(Mesh::ATTRIBUTE_NORMAL).unwrap_or_else(|| vec![[0.0; 3]; positions.len()]);
+    Some(SurfaceVertices { positions, normals })
+}
+
+/// Binds a mesh to the finest level at rest.
+fn bind(levels: &ClothLevels, mesh: &SurfaceVertices) -> Option<Bound> {
+    let fabric = levels.fabric(0);
+    let subdivision = Subdivision::new(fabric, &levels.topology(0).indices, HALVINGS);
+    let mut surface = SurfaceVertices::default();
+    let buffers = &mut SubdivisionBuffers::default();
+    evaluate(&subdivision, fabric.rest_positions(), buffers, &mut surface);
+    let binding = Binding::new(&surface, &subdivision, mesh).ok()?;
+    Some(Bound { subdivision, binding, written: Vec::new() })
+}
+
+fn evaluate(
+    subdivision: &Subdivision,
+    positions: &[Vec3],
+    buffers: &mut SubdivisionBuffers,
+    surface: &mut SurfaceVertices,
+) {
+    let count = subdivision.attributes().rows().len();
+    surface.positions.resize(count, [0.0; 3]);
+    surface.normals.resize(count, [0.0; 3]);
+    subdivision.evaluate(positions, buffers, &mut surface.positions, &mut surface.normals);
+}
+
+/// Buffers that are kept from frame to frame.
+#[derive(Debug, Default)]
+pub struct CarryBuffers {
+    subdivision: SubdivisionBuffers,
+    surface: SurfaceVertices,
+    tangents: TangentSums,
+}
+
+type CarriedMesh =
+    (&'static Mesh3d, &'static InheritedVisibility, &'static mut Carried, &'static mut Aabb);
+
+/// Writes carried meshes of cloths that have moved, and their bounds.
+pub fn carry_meshes(
+    mut carried: Query<CarriedMesh, Without<ClothSurface>>,
+    cloths: Query<(Ref<ClothSurface>, &Aabb), With<ClothInstance>>,
+    mut meshes: ResMut<Assets<Mesh>>,
+    mut buffers: Local<CarryBuffers>,
+) {
+    for (shown, visibility, mut carried, mut bounds) in &mut carried {
+        let carried = carried.bypass_change_detection();
+        if let CarriedState::Awaited(work) = &carried.state
+            && work.is_done()
+            && let CarriedState::Awaited(work) =
+                core::mem::replace(&mut carried.state, CarriedState::Refused)
+            && let Some(bound) = work.take()
+        {
+            carried.state = CarriedState::Bound(Box::new(bound));
+        }
+        let CarriedState::Bound(bound) = &mut carried.state else { continue };
+        let Ok((surface, of_cloth)) = cloths.get(carried.cloth) else { continue };
+        let fits =
+            surface.positions.len() == carried.levels.fabric(surface.level()).particle_count();
+        if !fits || shown.id() != carried.shown {
+            continue;
+        }
+        let half_extents = of_cloth.half_extents + Vec3A::splat(bound.binding.reach);
+        bounds.set_if_neq(Aabb { center: of_cloth.center, half_extents });
+        if !visibility.get() {
+            continue;
+        }
+        let finest = carried.levels.interpolate(surface.positions.clone(), surface.level(), 0);
+        if bound.written == finest {
+            continue;
+        }
+        let Some(mut mesh) = meshes.get_mut(shown.id()) else { continue };
+        let CarryBuffers { subdivision, surface: vertices, tangents } = &mut *buffers;
+        evaluate(&bound.subdivision, &finest, subdivision, vertices);
+        write(&mut mesh, &bound.binding, vertices);
+        tangents.write_tangents(&mut mesh);
+        bound.written = finest;
+    }
+}
+
+fn write(mesh: &mut Mesh, binding: &Binding, surface: &SurfaceVertices) {
+    let (mut positions, mut normals) = (None, None);
+    for (attribute, values) in mesh.attributes_mut() {
+        let VertexAttributeValues::Float32x3(values) = values else { continue };
+        if attribute.id == Mesh::ATTRIBUTE_POSITION.id {
+            positions = Some(values);
+        } else if attribute.id == Mesh::ATTRIBUTE_NORMAL.id {
+            normals = Some(values);
+        }
+    }
+    let Some(positions) = positions.filter(|it| it.len() == binding.vertex_count()) else { return };
+    binding.carry(surface, positions, normals.map(Vec::as_mut_slice));
+}

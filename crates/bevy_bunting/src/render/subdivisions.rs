@@ -1,0 +1,59 @@
+//! The subdivisions in use, shared by cloths of the same levels.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Weak};
+
+use bevy_ecs::prelude::*;
+use bunting_solver::Subdivision;
+
+use crate::background::Background;
+use crate::fabric::levels::ClothLevels;
+
+/// The subdivisions in use.
+#[derive(Resource, Debug, Default)]
+pub struct Subdivisions {
+    /// By the address of the levels, the level and the number of halvings. An address is not used again as long as a
+    /// weak pointer to it is here.
+    known: HashMap<(usize, usize, u32), (Weak<ClothLevels>, Known)>,
+}
+
+#[derive(Debug)]
+enum Known {
+    Built(Arc<Subdivision>),
+    Awaited(Background<Subdivision>),
+}
+
+impl Subdivisions {
+    /// The subdivision of a level; none while another thread builds it. That of a grid is built at once.
+    pub fn find(
+        &mut self,
+        levels: &Arc<ClothLevels>,
+        level: usize,
+        halvings: u32,
+    ) -> Option<Arc<Subdivision>> {
+        let key = (Arc::as_ptr(levels).addr(), level, halvings);
+        if let Some((_, known)) = self.known.get_mut(&key) {
+            if let Known::Awaited(work) = known
+                && work.is_done()
+                && let Some((users, Known::Awaited(work))) = self.known.remove(&key)
+            {
+                self.known.insert(key, (users, Known::Built(Arc::new(work.take()))));
+            }
+        } else {
+            self.known.retain(|_, (users, _)| users.strong_count() > 0);
+            self.known.insert(key, (Arc::downgrade(levels), begin(levels, level, halvings)));
+        }
+        match &self.known.get(&key)?.1 {
+            Known::Built(subdivision) => Some(Arc::clone(subdivision)),
+            Known::Awaited(_) => None,
+        }
+    }
+}
+
+fn begin(levels: &Arc<ClothLevels>, level: usize, halvings: u32) -> Known {
+    let levels = Arc::clone(levels);
+    let is_grid = levels.fabric(level).grid().is_some();
+    let build =
+        move || Subdivision::new(levels.fabric(level), &levels.topology(level).indices, halvings);
+    if is_grid { Known::Built(Arc::new(build())) } else { Known::Awaited(Background::begin(build)) }
+}
