@@ -16,6 +16,7 @@ mod inertia;
 mod levels;
 mod lifecycle;
 mod order;
+mod reactions;
 mod rest;
 mod substep;
 mod thread_probe;

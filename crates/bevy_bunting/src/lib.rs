@@ -97,6 +97,7 @@
 //! cloths nor on the number of threads. Only [`LodSet::automatic`] shares a budget among all cloths, and
 //! by default measures their costs; with [`LodCosts::Fixed`] its choice, too, is the same on every machine.
 
+mod anchors;
 mod background;
 mod batch;
 mod cloth;
@@ -119,6 +120,8 @@ use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::intern::Interned;
 use bevy_ecs::schedule::ScheduleLabel;
 
+pub use anchors::plugin::AnchorPlugin;
+pub use anchors::reactions::{AnchorReaction, AnchorReactions};
 pub use batch::assign::LanePlugin;
 pub use batch::batches::ClothBatches;
 pub use batch::particles::{ClothParticles, SubstepParticles};
@@ -192,8 +195,8 @@ pub use timings::ClothTimings;
 /// The items that most apps need.
 pub mod prelude {
     pub use crate::{
-        Anchor, AttachedVertices, Attachment, ClothAcceleration, ClothActivity, ClothBudget,
-        ClothCollider, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
+        Anchor, AnchorReactions, AttachedVertices, Attachment, ClothAcceleration, ClothActivity,
+        ClothBudget, ClothCollider, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
         ClothFeatures, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged, ClothMaterial,
         ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll, ClothReactions, ClothSeed,
         ClothSettings, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick,
@@ -241,6 +244,7 @@ impl PluginGroup for ClothPlugins {
             .add(WindPlugin)
             .add(ForcePlugin)
             .add(AttachmentPlugin)
+            .add(AnchorPlugin)
             .add(TeleportPlugin)
             .add(DrivePlugin)
             .add(ColliderPlugin)

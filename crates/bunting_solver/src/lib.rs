@@ -62,6 +62,7 @@
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
+mod anchors;
 mod batch;
 mod constants;
 mod constraints;
@@ -73,6 +74,7 @@ mod stability;
 mod step;
 mod transfer;
 
+pub use anchors::{PinGroups, PinReaction};
 pub use batch::lane_count::LaneCount;
 pub use batch::snapshot::ClothSnapshot;
 pub use batch::{BatchError, ClothBatch, Entering, LaneSurface, ParticlesMut};

@@ -8,7 +8,7 @@ use bevy_platform::time::Instant;
 use bevy_tasks::ComputeTaskPool;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, ContactReaction, Fabric, LaneCount, LaneSurface,
-    ParticlesMut, StepSettings,
+    ParticlesMut, PinReaction, StepSettings,
 };
 use parry3d::bounding_volume::Aabb;
 
@@ -117,6 +117,11 @@ impl ClothBatches {
     /// What the cloth in a lane did in the last tick to colliders that asked for it.
     pub(crate) fn reactions(&self, lane: LaneHandle) -> impl Iterator<Item = ContactReaction> {
         self.groups[lane.group].batches[lane.batch].batch.reactions(lane.lane)
+    }
+
+    /// What the cloth in a lane did to each group of its pins in the last tick, if that was asked for.
+    pub(crate) fn pin_reactions(&self, lane: LaneHandle) -> &[PinReaction] {
+        self.batch(lane).pin_reactions(lane.lane)
     }
 
     /// Removes a cloth from its lane.

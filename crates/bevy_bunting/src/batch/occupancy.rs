@@ -4,9 +4,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, LaneCount, LaneSurface,
-    MovingPin, SelfCollision,
+    MovingPin, PinGroups, SelfCollision,
 };
 use parry3d::bounding_volume::Aabb;
 
@@ -187,6 +188,11 @@ impl LaneMut<'_> {
     /// Moves pins of the cloth in the next tick. None moves if a position is not finite.
     pub fn move_pins(&mut self, pins: Vec<MovingPin>) {
         let _ = self.occupied.batch.move_pins(self.lane, pins);
+    }
+
+    /// Reports what the cloth does to its pins in the next ticks, or ceases to.
+    pub fn report_pins(&mut self, groups: Option<(&Arc<PinGroups>, Vec<[Vec3; 2]>)>) {
+        self.occupied.batch.report_pins(self.lane, groups).expect("an occupied lane");
     }
 
     /// Sets the shapes that the cloth may touch in the next tick. Shapes with numbers that are not finite are

@@ -7,6 +7,7 @@ mod anchors;
 mod blast;
 mod impossible;
 mod impulse;
+mod reactions;
 mod turbulence;
 
 use crate::contacts::Row;
@@ -15,8 +16,9 @@ use crate::contacts::Row;
 pub type Family = fn(quick: bool) -> Vec<Row>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 5] = [
+pub const ALL: [(&str, Family); 6] = [
     ("anchors", anchors::rows),
+    ("reactions", reactions::rows),
     ("impulse", impulse::rows),
     ("turbulence", turbulence::rows),
     ("blast", blast::rows),

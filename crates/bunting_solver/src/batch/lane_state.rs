@@ -1,5 +1,6 @@
 //! The state of a cloth in a batch besides its particles.
 
+use crate::anchors::pin_reports::PinReports;
 use crate::contact::candidates::Candidates;
 use crate::contact::collider::Collider;
 use crate::contact::itself::state::SelfContacts;
@@ -30,6 +31,8 @@ pub(crate) struct LaneState {
     pub history: IntegratorHistory,
     pub pin_strain: PinStrain,
     pub moving_pins: MovingPins,
+    /// What the cloth does to its pins, if that is asked for.
+    pub pin_reports: Option<Box<PinReports>>,
     /// Inputs of the lane's parameters; none if the parameters must be computed.
     pub inputs: Option<ParameterInputs>,
     /// Inputs of the lane's inverse masses besides the substep; none if the masses must be computed.
@@ -50,6 +53,7 @@ impl LaneState {
             history: IntegratorHistory::default(),
             pin_strain: PinStrain::default(),
             moving_pins: MovingPins::default(),
+            pin_reports: None,
             inputs: None,
             added_mass: None,
         }

@@ -1,7 +1,12 @@
 //! What acts on the cloths of a batch from outside, and what they touch.
 
+use std::sync::Arc;
+
+use glam::Vec3;
 use parry3d::bounding_volume::Aabb;
 
+use crate::anchors::pin_groups::PinGroups;
+use crate::anchors::pin_reports::{PinReaction, PinReports};
 use crate::batch::cloth_batch::{ClothBatch, Lanes, with_batch};
 use crate::batch::error::BatchError;
 use crate::contact::collider::Collider;
@@ -37,6 +42,41 @@ impl ClothBatch {
     pub fn move_pins(&mut self, lane: usize, pins: Vec<MovingPin>) -> Result<(), BatchError> {
         self.check_lane(lane)?;
         with_batch!(&mut self.0, batch => batch.set_pin_motion(lane, pins))
+    }
+
+    /// Reports what a lane's cloth does to its pins from the next tick on, or ceases to; at first it does not. `pivots` are
+    /// for each group the points about which torque is taken, at the start and at the end of the next tick, each in the
+    /// frame at that time, m. An empty lane stays empty.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane.
+    pub fn report_pins(
+        &mut self,
+        lane: usize,
+        groups: Option<(&Arc<PinGroups>, Vec<[Vec3; 2]>)>,
+    ) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        with_batch!(&mut self.0, batch => {
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                cloth.pin_reports = groups.map(|(groups, pivots)| match cloth.pin_reports.take() {
+                    Some(mut reports) if Arc::ptr_eq(&reports.groups, groups) => {
+                        reports.pivots = pivots;
+                        reports
+                    }
+                    _ => Box::new(PinReports::new(Arc::clone(groups), pivots)),
+                });
+            }
+        });
+        Ok(())
+    }
+
+    /// What a lane's cloth did to each group of its pins in the last tick; empty unless that
+    /// [is asked for](Self::report_pins).
+    #[must_use]
+    pub fn pin_reactions(&self, lane: usize) -> &[PinReaction] {
+        let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
+        cloth.and_then(|cloth| cloth.pin_reports.as_ref()).map_or(&[], |reports| &reports.sums)
     }
 
     /// Sets the shapes that a lane's cloth cannot enter, from the next tick on. An empty lane stays empty.

@@ -65,6 +65,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             self.sweep_mesh();
         }
         self.solve_tethers();
+        self.sum_reactions();
         self.solve_contacts();
     }
 

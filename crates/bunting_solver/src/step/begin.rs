@@ -36,6 +36,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.lanes.iter_mut().flatten().for_each(|cloth| cloth.added_mass = None);
         }
         self.begin_pin_motion();
+        self.begin_pin_reports();
         self.gather_contacts(tick);
     }
 

@@ -24,6 +24,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let feels_air = self.parameters.any_feels_air();
         if feels_air {
             self.gather_air();
+            self.sum_air_on_pins();
         }
         let sums = self.predict(feels_air);
         self.assess_motion(&sums);
