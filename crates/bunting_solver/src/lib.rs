@@ -74,7 +74,7 @@ mod stability;
 mod step;
 mod transfer;
 
-pub use anchors::{PinGroups, PinReaction};
+pub use anchors::{Hold, Holder, PinGroups, PinReaction};
 pub use batch::lane_count::LaneCount;
 pub use batch::snapshot::ClothSnapshot;
 pub use batch::{BatchError, ClothBatch, Entering, LaneSurface, ParticlesMut};

@@ -18,6 +18,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             if let Some(reports) = &mut state.pin_reports {
                 reports.begin_tick();
             }
+            if let Some(holds) = &mut state.holds {
+                holds.begin_tick();
+            }
         }
     }
 
@@ -38,6 +41,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// after all of them, and before the contacts, which come from outside. At the end of the tick, weight and inertia of
     /// the pins themselves are added.
     pub fn sum_reactions(&mut self) {
+        self.finish_holds();
         for cloth in 0..self.lanes.len() {
             self.with_reports(cloth, |batch, state, reports| {
                 batch.add_corrections(cloth, state, reports);
@@ -130,14 +134,24 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         // A steady force acts for the whole substep, of which the formula takes β.
         let rate = state.material.area_density * step / (effective * effective);
         let positions = self.positions.packs();
+        let pole = self.fabric_of(cloth).pole;
+        let turn = state.history.pole_turn.angle;
         for particle in 0..fabric.particle_count() {
             let (pack, lane) = self.layout.locate(particle, cloth);
             let at = lane3(&positions[pack], lane);
-            let predicted =
-                lane3(&self.scratch[pack], lane) + lane3(&self.displacement[pack], lane);
+            let start = lane3(&self.scratch[pack], lane);
+            // A spurious turn of the substep before is undone by the prediction, and by no force.
+            let undone = pole.map_or(Vec3::ZERO, |pole| pole.turned(start, turn));
+            let predicted = start + lane3(&self.displacement[pack], lane) + undone;
             let inertia = self.masses.inertia[pack].lanes()[lane];
             let share = |group: usize| groups.shares.get(group).map_or(1.0, |of| of[particle]);
             add(&share, at, (predicted - at) * (inertia * rate));
+        }
+        // What holds do to the free particles comes from outside.
+        for (hold, given) in state.holds.iter().flat_map(|holds| holds.given()) {
+            let at = self.vector(positions, hold as usize, cloth);
+            let share = |group: usize| groups.shares.get(group).map_or(1.0, |of| of[hold as usize]);
+            add(&share, at, given * rate);
         }
         if groups.count > 1 {
             for link in carrying_links(fabric, &state.material) {

@@ -1,5 +1,6 @@
 //! The state of a cloth in a batch besides its particles.
 
+use crate::anchors::holds::Holds;
 use crate::anchors::pin_reports::PinReports;
 use crate::contact::candidates::Candidates;
 use crate::contact::collider::Collider;
@@ -31,6 +32,8 @@ pub(crate) struct LaneState {
     pub history: IntegratorHistory,
     pub pin_strain: PinStrain,
     pub moving_pins: MovingPins,
+    /// Springs and rails that hold particles, if any do.
+    pub holds: Option<Box<Holds>>,
     /// What the cloth does to its pins, if that is asked for.
     pub pin_reports: Option<Box<PinReports>>,
     /// Inputs of the lane's parameters; none if the parameters must be computed.
@@ -53,6 +56,7 @@ impl LaneState {
             history: IntegratorHistory::default(),
             pin_strain: PinStrain::default(),
             moving_pins: MovingPins::default(),
+            holds: None,
             pin_reports: None,
             inputs: None,
             added_mass: None,

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::Vec3;
 use parry3d::bounding_volume::Aabb;
 
+use crate::anchors::hold::Hold;
 use crate::anchors::pin_groups::PinGroups;
 use crate::anchors::pin_reports::{PinReaction, PinReports};
 use crate::batch::cloth_batch::{ClothBatch, Lanes, with_batch};
@@ -77,6 +78,41 @@ impl ClothBatch {
     pub fn pin_reactions(&self, lane: usize) -> &[PinReaction] {
         let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
         cloth.and_then(|cloth| cloth.pin_reports.as_ref()).map_or(&[], |reports| &reports.sums)
+    }
+
+    /// Holds free particles of a lane's cloth by springs or on rails, from the next tick on. Their motion is repeated in
+    /// every tick until they are set again. Of several holds of one particle the first one holds. An empty lane stays empty.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane or particle, or a number is not finite or is negative. The lane keeps its former holds.
+    pub fn hold(&mut self, lane: usize, holds: Vec<Hold>) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        let count = self.fabric().particle_count();
+        let is_bad = |hold: &&Hold| hold.particle as usize >= count || !hold.is_valid();
+        if let Some(&Hold { particle, .. }) = holds.iter().find(is_bad) {
+            return Err(BatchError::Hold { particle });
+        }
+        with_batch!(&mut self.0, batch => {
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                // Particles that are no longer held get their own masses back.
+                cloth.added_mass = None;
+                cloth.holds = (!holds.is_empty()).then(|| {
+                    let mut list = cloth.holds.take().unwrap_or_default();
+                    list.set(holds);
+                    list
+                });
+            }
+        });
+        Ok(())
+    }
+
+    /// Impulse of a lane's cloth in the last tick on that which holds each particle, N·s, along the axes of the cloth's
+    /// frame at the end of the tick, in the order in which the holds were given.
+    #[must_use]
+    pub fn hold_impulses(&self, lane: usize) -> &[Vec3] {
+        let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
+        cloth.and_then(|cloth| cloth.holds.as_ref()).map_or(&[], |holds| &holds.impulses)
     }
 
     /// Sets the shapes that a lane's cloth cannot enter, from the next tick on. An empty lane stays empty.
