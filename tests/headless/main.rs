@@ -3,6 +3,7 @@
 mod anchors;
 mod any_order;
 mod attachment;
+mod bad_anchors;
 mod broad_phase;
 mod contacts;
 mod determinism;
@@ -12,6 +13,7 @@ mod errors;
 mod first_hour;
 mod forces;
 mod governor;
+mod holds;
 mod inertia;
 mod levels;
 mod lifecycle;

@@ -1,6 +1,7 @@
 //! Tests of the forces that cloths exert on their anchors.
 
 use bevy_app::App;
+use bevy_bunting::WakeCloth;
 use bevy_bunting::bunting_solver::LaneCount;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
@@ -54,6 +55,7 @@ fn a_flag_at_rest_weighs_and_turns_its_pole_asleep_or_awake_at_every_level() {
     let flag = flag(&mut app, at);
     for level in [0, 1] {
         app.world_mut().entity_mut(flag).insert(LodSet::new([10.0]).pinned_to(level));
+        app.world_mut().trigger(WakeCloth { entity: flag });
         run(&mut app, REST);
         assert_eq!(state(&app, flag).activity(), ClothActivity::AtRest);
         let (force, torque) = weight(&app, flag, at);

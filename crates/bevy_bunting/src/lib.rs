@@ -120,6 +120,7 @@ use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::intern::Interned;
 use bevy_ecs::schedule::ScheduleLabel;
 
+pub use anchors::grab::{ClothGrab, Grabbed, GrabbedVertices};
 pub use anchors::plugin::AnchorPlugin;
 pub use anchors::reactions::{AnchorReaction, AnchorReactions};
 pub use batch::assign::LanePlugin;
@@ -130,7 +131,7 @@ pub use batch::solve::SolverPlugin;
 pub use bunting_solver;
 pub use cloth::activity::{ClothActivity, ClothPaused};
 pub use cloth::error::ClothError;
-pub use cloth::events::{ClothFailed, ClothLevelChanged, ClothTargetLost};
+pub use cloth::events::{ClothAnchorBroke, ClothFailed, ClothLevelChanged, ClothTargetLost};
 pub use cloth::imperfection::ClothSeed;
 pub use cloth::material::ClothMaterial;
 pub use cloth::mesh::ClothMesh;
@@ -171,6 +172,7 @@ pub use lod::report::{ClothCounts, LodReport};
 pub use lod::select::LodPlugin;
 pub use lod::sleep::{SleepPlugin, WakeCloth};
 pub use lod::viewer::{Lens, LodViewer};
+pub use motion::anchor_hold::AnchorHold;
 pub use motion::attachment::{
     Anchor, AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost,
 };
@@ -195,14 +197,14 @@ pub use timings::ClothTimings;
 /// The items that most apps need.
 pub mod prelude {
     pub use crate::{
-        Anchor, AnchorReactions, AttachedVertices, Attachment, ClothAcceleration, ClothActivity,
-        ClothBudget, ClothCollider, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
-        ClothFeatures, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged, ClothMaterial,
-        ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll, ClothReactions, ClothSeed,
-        ClothSettings, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick,
-        ClothTouched, LodSet, LodViewer, SelfCollision, TargetLost, TeleportCloth, TeleportMode,
-        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindRegion, WindShape,
-        WindWake,
+        Anchor, AnchorHold, AnchorReactions, AttachedVertices, Attachment, ClothAcceleration,
+        ClothActivity, ClothAnchorBroke, ClothBudget, ClothCollider, ClothControl, ClothCorner,
+        ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothGrab, ClothImpulse, ClothInertia,
+        ClothLayers, ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted, ClothPaused,
+        ClothPlugins, ClothPreroll, ClothReactions, ClothSeed, ClothSettings, ClothState,
+        ClothSurface, ClothSystems, ClothTargetLost, ClothTick, ClothTouched, GrabbedVertices,
+        LodSet, LodViewer, SelfCollision, TargetLost, TeleportCloth, TeleportMode, WeightsError,
+        WindBlast, WindFan, WindField, WindInfluence, WindRegion, WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{ClothFromMesh, ColorChannel, PaintedWeights, VertexPaint};

@@ -4,10 +4,13 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_time::Time;
 
+use crate::anchors::grab::Grabbed;
+use crate::anchors::holds::{ClothHolds, Owner};
 use crate::anchors::reactions::{AnchorReaction, AnchorReactions, PinReporting};
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
+use crate::cloth::state::ClothState;
 use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::attachment::Attachment;
 use crate::motion::pose::PoseHistory;
@@ -30,7 +33,7 @@ pub(super) fn ask_for_reactions(
         let (Some(lane), Some(levels)) = (instance.lane(), &instance.levels) else { continue };
         let is_changed = attachment.as_ref().is_some_and(|attachment| attachment.is_changed());
         if is_changed || !reporting.fits(levels, instance.level) {
-            let held = attachment.as_ref().map(|attachment| attachment.groups(&mesh.uvs()));
+            let held = attachment.as_ref().map(|attachment| attachment.pinned_groups(&mesh.uvs()));
             reporting.find(levels, instance.level, &held.unwrap_or_default());
         }
         let anchors = attachment.map_or(0, |attachment| attachment.anchors.len());
@@ -52,23 +55,59 @@ fn pivot(frame: &PoseHistory, poses: Option<&AnchorPoses>, anchor: usize) -> [Ve
     [place(frame.start(), from), place(frame.end(), to)]
 }
 
+/// A cloth that is held, and its reactions.
+type HeldCloth = (
+    &'static ClothInstance,
+    &'static ClothState,
+    &'static PoseHistory,
+    Option<&'static mut AnchorReactions>,
+    Option<&'static ClothHolds>,
+    Option<&'static AnchorPoses>,
+);
+
 /// Writes the reactions of the last tick. A cloth that has no lane keeps its own.
 pub(super) fn publish_reactions(
-    mut cloths: Query<(&ClothInstance, &PoseHistory, &mut AnchorReactions)>,
+    mut cloths: Query<HeldCloth, Or<(With<AnchorReactions>, With<ClothHolds>)>>,
+    mut hands: Query<&mut Grabbed>,
     batches: Res<ClothBatches>,
     time: Res<Time>,
 ) {
     let tick = time.delta_secs();
-    for (instance, frame, mut reactions) in &mut cloths {
+    hands.iter_mut().for_each(|mut hand| hand.force = Vec3::ZERO);
+    for (instance, state, frame, mut reactions, holds, poses) in &mut cloths {
         let Some(lane) = instance.lane() else { continue };
-        let rotation = frame.end().rotation;
-        let mut means = batches.pin_reactions(lane).iter().map(|reaction| AnchorReaction {
-            force: rotation * reaction.impulse / tick,
-            torque: rotation * reaction.angular_impulse / tick,
-        });
-        reactions.target = means.next().unwrap_or_default();
-        reactions.anchors.clear();
-        reactions.anchors.extend(means);
+        let frame = frame.end();
+        if let Some(reactions) = &mut reactions {
+            let mut means = batches.pin_reactions(lane).iter().map(|reaction| AnchorReaction {
+                force: frame.rotation * reaction.impulse / tick,
+                torque: frame.rotation * reaction.angular_impulse / tick,
+            });
+            reactions.target = means.next().unwrap_or_default();
+            reactions.anchors.clear();
+            reactions.anchors.extend(means);
+        }
+        let owners = holds.iter().flat_map(|holds| &holds.owners);
+        for (owner, &impulse) in owners.zip(batches.hold_impulses(lane)) {
+            let force = frame.rotation * impulse / tick;
+            match *owner {
+                Owner::Grab(hand) => {
+                    if let Ok(mut hand) = hands.get_mut(hand) {
+                        hand.force += force;
+                    }
+                }
+                Owner::Anchor { index, particle } => {
+                    let Some((_, pose)) = poses.and_then(|poses| poses.span(index)) else {
+                        continue;
+                    };
+                    let anchors = reactions.iter_mut().map(|reactions| &mut reactions.anchors);
+                    for anchor in anchors.flat_map(|anchors| anchors.get_mut(index)) {
+                        let at = frame * state.positions()[particle as usize];
+                        anchor.force += force;
+                        anchor.torque += (at - Vec3::from(pose.translation)).cross(force);
+                    }
+                }
+            }
+        }
     }
 }
 

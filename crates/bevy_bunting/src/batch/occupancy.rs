@@ -6,8 +6,8 @@ use std::time::Duration;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, LaneCount, LaneSurface,
-    MovingPin, PinGroups, SelfCollision,
+    ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, Hold, LaneCount,
+    LaneSurface, MovingPin, PinGroups, SelfCollision,
 };
 use parry3d::bounding_volume::Aabb;
 
@@ -188,6 +188,14 @@ impl LaneMut<'_> {
     /// Moves pins of the cloth in the next tick. None moves if a position is not finite.
     pub fn move_pins(&mut self, pins: Vec<MovingPin>) {
         let _ = self.occupied.batch.move_pins(self.lane, pins);
+    }
+
+    /// Holds particles of the cloth. None is held if a number is not finite.
+    pub fn hold(&mut self, holds: Vec<Hold>) {
+        let batch = &mut self.occupied.batch;
+        if batch.hold(self.lane, holds).is_err() {
+            batch.hold(self.lane, Vec::new()).expect("an occupied lane");
+        }
     }
 
     /// Reports what the cloth does to its pins in the next ticks, or ceases to.

@@ -5,6 +5,7 @@
 
 mod anchors;
 mod blast;
+mod holds;
 mod impossible;
 mod impulse;
 mod reactions;
@@ -16,9 +17,10 @@ use crate::contacts::Row;
 pub type Family = fn(quick: bool) -> Vec<Row>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 6] = [
+pub const ALL: [(&str, Family); 7] = [
     ("anchors", anchors::rows),
     ("reactions", reactions::rows),
+    ("holds", holds::rows),
     ("impulse", impulse::rows),
     ("turbulence", turbulence::rows),
     ("blast", blast::rows),

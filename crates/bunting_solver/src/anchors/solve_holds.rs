@@ -19,6 +19,10 @@ use crate::constraints::background::node_inverse_masses;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
 
+/// Speed at which rings that are off their rail come to it, m/s. Smaller: rings of cloth that is flung leave the rail.
+/// Larger: cloth that is put on a rail jumps.
+const REACH_SPEED: f32 = 2.0;
+
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Gives held particles their own masses for the prediction.
     pub fn free_held(&mut self) {
@@ -84,7 +88,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 continue;
             }
             let predicted = lane3(&self.positions.packs_mut()[pack], lane);
-            let place = hold.by.place(part, predicted);
+            let mut place = hold.by.place(part, predicted);
+            if matches!(hold.by, Holder::Ring { .. }) {
+                place = towards(predicted, place, REACH_SPEED * self.clock.step);
+            }
             let added = match hold.by {
                 Holder::Spring { stiffness, max_force, .. } => {
                     let stretch = place.distance(lane3(&self.scratch[pack], lane));
@@ -128,7 +135,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             if let Holder::Ring { rail, friction, .. } = &hold.by {
                 let (at, orientation) = hold.by.pose(part);
                 let (local, along) = nearest(rail, orientation.inverse() * (solved - at));
-                end = at + orientation * local;
+                end = towards(solved, at + orientation * local, REACH_SPEED * self.clock.step);
                 let along = orientation * along;
                 let (at_before, before) = hold.by.pose(before);
                 // The point of the rail where the ring was at the start of the substep.
@@ -154,6 +161,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             holds.note(at, given, turn * (by_holder * -rate));
         }
     }
+}
+
+/// The point on the way from one to another, at most at a distance (m).
+fn towards(from: Vec3, to: Vec3, distance: f32) -> Vec3 {
+    from + (to - from).clamp_length_max(distance)
 }
 
 /// One over an inertia; zero if that is zero.

@@ -1,0 +1,60 @@
+//! Cloths that are held by springs and rails, or whose anchors may break, get the components that this needs.
+
+use bevy_ecs::prelude::*;
+
+use crate::anchors::grab::ClothGrab;
+use crate::anchors::holds::ClothHolds;
+use crate::anchors::reactions::AnchorReactions;
+use crate::cloth::error::ClothError;
+use crate::cloth::events::ClothFailed;
+use crate::cloth::instance::ClothInstance;
+use crate::motion::attachment::Attachment;
+
+/// Gives cloths with springs or rails [`ClothHolds`], and those with anchors that may break [`AnchorReactions`]. Reports
+/// anchors that cannot be used.
+pub(super) fn follow_holds(
+    attachments: Query<(Entity, &Attachment), Changed<Attachment>>,
+    mut commands: Commands,
+) {
+    for (entity, attachment) in &attachments {
+        let anchors = &attachment.anchors;
+        if anchors.iter().any(|anchor| !anchor.hold.is_rigid()) {
+            commands.entity(entity).insert_if_new(ClothHolds::default());
+        }
+        if anchors.iter().any(|anchor| anchor.break_force < f32::INFINITY) {
+            commands.entity(entity).insert_if_new(AnchorReactions::default());
+        }
+        for (anchor, its) in anchors.iter().enumerate() {
+            if !its.is_valid() {
+                let error = ClothError::Anchor { entity, anchor };
+                ClothFailed::report(&mut commands, entity, error);
+            }
+        }
+    }
+}
+
+/// Gives cloths that are grabbed [`ClothHolds`], and wakes them. Reports grabs that cannot be used.
+pub(super) fn follow_grabs(
+    grabs: Query<(Entity, Ref<ClothGrab>)>,
+    mut cloths: Query<(&mut ClothInstance, Has<ClothHolds>)>,
+    mut commands: Commands,
+) {
+    for (hand, grab) in &grabs {
+        let entity = grab.cloth;
+        let cloth = cloths.get_mut(entity).ok().filter(|_| grab.is_valid());
+        match cloth {
+            None if grab.is_changed() => {
+                ClothFailed::report(&mut commands, entity, ClothError::Grab { entity, hand });
+            }
+            None => {}
+            Some((mut instance, has_holds)) => {
+                if grab.is_changed() {
+                    instance.wake();
+                }
+                if !has_holds {
+                    commands.entity(entity).insert(ClothHolds::default());
+                }
+            }
+        }
+    }
+}
