@@ -7,7 +7,7 @@ use crate::cloth::events::ClothAnchorBroke;
 use crate::cloth::instance::ClothInstance;
 use crate::motion::attachment::Attachment;
 
-/// Removes anchors on which cloths pulled too hard in the last tick, and triggers events.
+/// Removes anchors on which cloths pulled too hard in the tick before, and triggers events.
 pub(super) fn break_anchors(
     mut cloths: Query<(Entity, &mut Attachment, &AnchorReactions, &ClothInstance)>,
     mut commands: Commands,

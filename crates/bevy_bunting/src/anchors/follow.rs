@@ -7,7 +7,8 @@ use crate::anchors::holds::ClothHolds;
 use crate::anchors::reactions::AnchorReactions;
 use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
-use crate::cloth::instance::ClothInstance;
+use crate::cloth::mesh::ClothMesh;
+use crate::lod::sleep::WakeCloth;
 use crate::motion::attachment::Attachment;
 
 /// Gives cloths with springs or rails [`ClothHolds`], and those with anchors that may break [`AnchorReactions`]. Reports
@@ -36,25 +37,23 @@ pub(super) fn follow_holds(
 /// Gives cloths that are grabbed [`ClothHolds`], and wakes them. Reports grabs that cannot be used.
 pub(super) fn follow_grabs(
     grabs: Query<(Entity, Ref<ClothGrab>)>,
-    mut cloths: Query<(&mut ClothInstance, Has<ClothHolds>)>,
+    cloths: Query<Has<ClothHolds>, With<ClothMesh>>,
     mut commands: Commands,
 ) {
     for (hand, grab) in &grabs {
         let entity = grab.cloth;
-        let cloth = cloths.get_mut(entity).ok().filter(|_| grab.is_valid());
-        match cloth {
-            None if grab.is_changed() => {
-                ClothFailed::report(&mut commands, entity, ClothError::Grab { entity, hand });
-            }
-            None => {}
-            Some((mut instance, has_holds)) => {
-                if grab.is_changed() {
-                    instance.wake();
-                }
-                if !has_holds {
-                    commands.entity(entity).insert(ClothHolds::default());
+        let has_holds = cloths.get(entity).ok().filter(|_| grab.is_valid());
+        if grab.is_changed() {
+            match has_holds {
+                Some(_) => commands.trigger(WakeCloth { entity }),
+                None => {
+                    let error = ClothError::Grab { entity, hand };
+                    ClothFailed::report(&mut commands, entity, error);
                 }
             }
+        }
+        if has_holds == Some(false) {
+            commands.entity(entity).insert(ClothHolds::default());
         }
     }
 }

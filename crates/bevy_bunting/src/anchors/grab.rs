@@ -1,5 +1,6 @@
 //! Cloth that is grabbed at run time.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use bevy_ecs::entity::EntityMapper;
@@ -14,11 +15,14 @@ use crate::motion::pose::PoseHistory;
 /// Stiffness with which a hand grabs unless another is given, N/m.
 const STIFFNESS: f32 = 200.0;
 
+/// Distance at rest within which particles of two levels are the same vertex, m.
+const SHARED: f32 = 1e-4;
+
 /// Holds vertices of a cloth where they are now, relative to the entity with this component: a hand, a hook, a cursor.
 ///
 /// Insert it to grab and remove it (or despawn the entity) to let go: neither makes the cloth jump, and no fabric is built.
-/// The vertices are chosen in the first tick in which the cloth is simulated, and again after a change of level. Changing
-/// the component grabs anew. Vertices that the cloth's attachment pins are not grabbed.
+/// The vertices are chosen in the first tick in which the cloth is simulated; another level holds those of them that it
+/// has. Changing the component grabs anew. Vertices that the cloth's attachment pins are not grabbed.
 #[derive(Component, Clone, Debug, Reflect)]
 #[component(map_entities = map_cloth)]
 #[reflect(Component, Debug, Clone)]
@@ -40,7 +44,7 @@ pub struct ClothGrab {
 pub enum GrabbedVertices {
     /// Vertices of the [`ClothMesh`](crate::ClothMesh) by index. A coarser level holds those that it has.
     List(Vec<u32>),
-    /// All vertices in a ball. Where a coarser level has none, the nearest one that is not more than twice as far.
+    /// All vertices in a ball.
     Ball {
         /// Centre in the frame of the entity, m.
         centre: Vec3,
@@ -89,7 +93,9 @@ fn map_cloth<M: EntityMapper>(grab: &mut ClothGrab, mapper: &mut M) {
 pub struct Grabbed {
     /// The levels and the level of the particles.
     of: Option<(Arc<ClothLevels>, usize)>,
-    /// The particles that are held, and their places in the frame of the entity, m.
+    /// Positions at rest of the particles that were grabbed, and their places in the frame of the entity, m.
+    grabbed: Vec<(Vec3, Vec3)>,
+    /// The particles that are held at the present level, and their places in the frame of the entity, m.
     pub(crate) held: Vec<(u32, Vec3)>,
     /// Mean force of the cloth in the last tick, N, in the world.
     pub(crate) force: Vec3,
@@ -108,13 +114,18 @@ impl Grabbed {
         self.held.len()
     }
 
+    /// Whether nothing was chosen yet.
+    pub(crate) fn is_new(&self) -> bool {
+        self.of.is_none()
+    }
+
     /// Whether the particles are those of a level.
     pub(crate) fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
         self.of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, levels) && *at == level)
     }
 
-    /// Chooses the particles at a level, given the places of all particles in the frame of the entity, m.
-    pub(crate) fn choose(
+    /// Grabs: chooses the particles at the present level, given the places of all particles in the frame of the entity, m.
+    pub(crate) fn grab(
         &mut self,
         grab: &ClothGrab,
         levels: &Arc<ClothLevels>,
@@ -122,28 +133,49 @@ impl Grabbed {
         places: &[Vec3],
     ) {
         let fabric = levels.fabric(level);
-        let free = (0..places.len()).filter(|&particle| !fabric.is_pinned(particle));
-        let particles: Vec<usize> = match &grab.vertices {
+        let is_chosen: Box<dyn Fn(usize) -> bool> = match &grab.vertices {
             GrabbedVertices::List(vertices) => {
                 let particles = vertices.iter().filter_map(|&it| levels.particle(level, it));
-                let mut particles: Vec<usize> =
-                    particles.filter(|&particle| !fabric.is_pinned(particle)).collect();
-                particles.sort_unstable();
-                particles.dedup();
-                particles
+                let particles: HashSet<usize> = particles.collect();
+                Box::new(move |particle| particles.contains(&particle))
             }
             GrabbedVertices::Ball { centre, radius } => {
-                let distance = |particle: usize| places[particle].distance(*centre);
-                let within: Vec<usize> =
-                    free.clone().filter(|&particle| distance(particle) <= *radius).collect();
-                let nearest = || {
-                    let nearest = free.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
-                    nearest.filter(|&particle| distance(particle) <= 2.0 * radius)
-                };
-                if within.is_empty() { nearest().into_iter().collect() } else { within }
+                Box::new(move |particle| places[particle].distance(*centre) <= *radius)
             }
         };
-        self.held = particles.into_iter().map(|at| (at as u32, places[at])).collect();
+        let free = (0..places.len()).filter(|&particle| !fabric.is_pinned(particle));
+        let chosen = free.filter(|&particle| is_chosen(particle));
+        self.held = chosen.map(|at| (at as u32, places[at])).collect();
+        let rest = fabric.rest_positions();
+        let at_rest = |&(at, place): &(u32, Vec3)| (rest[at as usize], place);
+        self.grabbed = self.held.iter().map(at_rest).collect();
+        self.of = Some((Arc::clone(levels), level));
+    }
+
+    /// Chooses the particles at another level that were grabbed, and holds them at their places; if it has none of them, the
+    /// one that is nearest at rest, where it is.
+    pub(crate) fn change_level(
+        &mut self,
+        levels: &Arc<ClothLevels>,
+        level: usize,
+        places: &[Vec3],
+    ) {
+        let fabric = levels.fabric(level);
+        let rest = fabric.rest_positions();
+        let free = (0..rest.len()).filter(|&particle| !fabric.is_pinned(particle));
+        let nearest = |to: Vec3| {
+            let distance = |&at: &usize| rest[at].distance_squared(to);
+            free.clone().min_by(|one, other| distance(one).total_cmp(&distance(other)))
+        };
+        let shared = self.grabbed.iter().filter_map(|&(at_rest, place)| {
+            let particle = nearest(at_rest)?;
+            (rest[particle].distance(at_rest) < SHARED).then_some((particle as u32, place))
+        });
+        self.held = shared.collect();
+        if self.held.is_empty() {
+            let particle = self.grabbed.first().and_then(|&(at_rest, _)| nearest(at_rest));
+            self.held.extend(particle.map(|at| (at as u32, places[at])));
+        }
         self.of = Some((Arc::clone(levels), level));
     }
 }

@@ -91,11 +91,16 @@ pub(super) fn hold_cloths(
             }
             timer.ticks = 0;
             let pose = (pose.start(), pose.end());
-            if grab.is_changed() || !grabbed.fits(levels, instance.level) {
+            let is_new = grab.is_changed() || grabbed.is_new();
+            if is_new || !grabbed.fits(levels, instance.level) {
                 let to_hand = pose.0.inverse() * frame.0;
                 let positions = batches.lane(lane).snapshot().positions;
                 let places: Vec<Vec3> = positions.into_iter().map(|at| to_hand * at).collect();
-                grabbed.choose(&grab, levels, instance.level, &places);
+                if is_new {
+                    grabbed.grab(&grab, levels, instance.level, &places);
+                } else {
+                    grabbed.change_level(levels, instance.level, &places);
+                }
             }
             let share = 1.0 / grabbed.held.len().max(1) as f32;
             for &(particle, place) in &grabbed.held {

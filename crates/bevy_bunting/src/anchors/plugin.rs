@@ -10,11 +10,13 @@ use crate::anchors::hold::hold_cloths;
 use crate::anchors::reactions::AnchorReactions;
 use crate::anchors::report::{ask_for_reactions, publish_reactions, stop_reporting};
 use crate::batch::publish::reset_diverged;
+use crate::display::ease::ease_surfaces;
 use crate::environment::drive::drive_cloths;
 use crate::fabric::prepare::change_materials;
 use crate::lod::sleep::send_to_sleep;
 use crate::motion::anchor_hold::AnchorHold;
 use crate::motion::lead::lead_pins;
+use crate::motion::lost_target::handle_lost_targets;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// Holds cloths by springs and rails, and reports what cloths do to that which holds them.
@@ -31,6 +33,7 @@ impl Plugin for AnchorPlugin {
             .add_systems(
                 ClothTick,
                 (
+                    break_anchors.in_set(ClothSystems::Prepare).before(handle_lost_targets),
                     (follow_holds, follow_grabs)
                         .chain()
                         .in_set(ClothSystems::Prepare)
@@ -40,10 +43,10 @@ impl Plugin for AnchorPlugin {
                         .in_set(ClothSystems::Drive)
                         .after(lead_pins)
                         .before(drive_cloths),
-                    (publish_reactions, break_anchors)
-                        .chain()
+                    publish_reactions
                         .in_set(ClothSystems::Publish)
                         .after(reset_diverged)
+                        .before(ease_surfaces)
                         .before(send_to_sleep),
                 ),
             );
