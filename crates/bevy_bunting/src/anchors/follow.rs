@@ -2,7 +2,7 @@
 
 use bevy_ecs::prelude::*;
 
-use crate::anchors::grab::ClothGrab;
+use crate::anchors::grab::{ClothGrab, Grabbed};
 use crate::anchors::holds::ClothHolds;
 use crate::anchors::reactions::AnchorReactions;
 use crate::cloth::error::ClothError;
@@ -36,14 +36,15 @@ pub(super) fn follow_holds(
 
 /// Gives cloths that are grabbed [`ClothHolds`], and wakes them. Reports grabs that cannot be used.
 pub(super) fn follow_grabs(
-    grabs: Query<(Entity, Ref<ClothGrab>)>,
+    mut grabs: Query<(Entity, Ref<ClothGrab>, &mut Grabbed)>,
     cloths: Query<Has<ClothHolds>, With<ClothMesh>>,
     mut commands: Commands,
 ) {
-    for (hand, grab) in &grabs {
+    for (hand, grab, mut grabbed) in &mut grabs {
         let entity = grab.cloth;
         let has_holds = cloths.get(entity).ok().filter(|_| grab.is_valid());
         if grab.is_changed() {
+            *grabbed = Grabbed::default();
             match has_holds {
                 Some(_) => commands.trigger(WakeCloth { entity }),
                 None => {
@@ -56,4 +57,9 @@ pub(super) fn follow_grabs(
             commands.entity(entity).insert(ClothHolds::default());
         }
     }
+}
+
+/// Forgets what was grabbed when a hand lets go.
+pub(super) fn let_go(removed: On<Remove, ClothGrab>, mut commands: Commands) {
+    commands.entity(removed.entity).try_remove::<Grabbed>();
 }

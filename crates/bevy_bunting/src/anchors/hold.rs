@@ -31,7 +31,7 @@ type HeldCloth = (
 );
 
 /// An entity that grabs a cloth.
-type Hand = (Entity, Ref<'static, ClothGrab>, &'static mut Grabbed, &'static PoseHistory);
+type Hand = (Entity, &'static ClothGrab, &'static mut Grabbed, &'static PoseHistory);
 
 /// Gives the solver all holds of this tick.
 pub(super) fn hold_cloths(
@@ -91,13 +91,13 @@ pub(super) fn hold_cloths(
             }
             timer.ticks = 0;
             let pose = (pose.start(), pose.end());
-            let is_new = grab.is_changed() || grabbed.is_new();
+            let is_new = grabbed.is_new();
             if is_new || !grabbed.fits(levels, instance.level) {
                 let to_hand = pose.0.inverse() * frame.0;
                 let positions = batches.lane(lane).snapshot().positions;
                 let places: Vec<Vec3> = positions.into_iter().map(|at| to_hand * at).collect();
                 if is_new {
-                    grabbed.grab(&grab, levels, instance.level, &places);
+                    grabbed.grab(grab, levels, instance.level, &places);
                 } else {
                     grabbed.change_level(levels, instance.level, &places);
                 }

@@ -4,7 +4,7 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
 use crate::anchors::breaking::break_anchors;
-use crate::anchors::follow::{follow_grabs, follow_holds};
+use crate::anchors::follow::{follow_grabs, follow_holds, let_go};
 use crate::anchors::grab::{ClothGrab, GrabbedVertices};
 use crate::anchors::hold::hold_cloths;
 use crate::anchors::reactions::AnchorReactions;
@@ -30,6 +30,7 @@ impl Plugin for AnchorPlugin {
             .register_type::<ClothGrab>()
             .register_type::<GrabbedVertices>()
             .add_observer(stop_reporting)
+            .add_observer(let_go)
             .add_systems(
                 ClothTick,
                 (
