@@ -65,9 +65,12 @@ type HeldCloth = (
     Option<&'static AnchorPoses>,
 );
 
+/// Filter of cloths that are held or report.
+type HoldsOrReports = Or<(With<AnchorReactions>, With<ClothHolds>)>;
+
 /// Writes the reactions of the last tick. A cloth that has no lane keeps its own.
 pub(super) fn publish_reactions(
-    mut cloths: Query<HeldCloth, Or<(With<AnchorReactions>, With<ClothHolds>)>>,
+    mut cloths: Query<HeldCloth, HoldsOrReports>,
     mut hands: Query<&mut Grabbed>,
     batches: Res<ClothBatches>,
     time: Res<Time>,
