@@ -15,11 +15,11 @@ const PITCH: u32 = 8;
 pub const WIDTH: f32 = 2.6;
 pub const HEIGHT: f32 = 1.95;
 
-/// Length of the rail, m: a part of the width, so that the curtain hangs in folds.
-pub const RAIL: f32 = 2.2;
+/// Length of the rail, m.
+pub const RAIL: f32 = 2.65;
 
 /// Left end of the rail, where the first ring is fixed, m.
-pub const END: Vec3 = Vec3::new(-1.1, 2.1, 0.0);
+pub const END: Vec3 = Vec3::new(-1.3, 2.1, 0.0);
 
 /// Mass of a ring, kg.
 const RING_MASS: f32 = 0.012;

@@ -21,7 +21,7 @@ const SHARED: f32 = 1e-4;
 /// Holds vertices of a cloth where they are now, relative to the entity with this component: a hand, a hook, a cursor.
 ///
 /// Insert it to grab and remove it (or despawn the entity) to let go: neither makes the cloth jump, and no fabric is built.
-/// The vertices are chosen in the first tick in which the cloth is simulated; another level holds those of them that it
+/// The vertices are chosen in the first tick in which the cloth is simulated and any is within reach; another level holds those of them that it
 /// has. Changing the component grabs anew. Vertices that the cloth's attachment pins are not grabbed.
 #[derive(Component, Clone, Debug, Reflect)]
 #[component(map_entities = map_cloth)]
@@ -114,9 +114,9 @@ impl Grabbed {
         self.held.len()
     }
 
-    /// Whether nothing was chosen yet.
+    /// Whether nothing was grabbed yet.
     pub(crate) fn is_new(&self) -> bool {
-        self.of.is_none()
+        self.grabbed.is_empty()
     }
 
     /// Whether the particles are those of a level.
