@@ -5,11 +5,11 @@ use bevy_bunting::prelude::*;
 use bunting_scenes::Design;
 
 /// Vertices in a row and in a column.
-const COLUMNS: u32 = 97;
-const ROWS: u32 = 49;
+const COLUMNS: u32 = 65;
+const ROWS: u32 = 33;
 
 /// Vertices from one ring to the next.
-const PITCH: u32 = 8;
+const PITCH: u32 = 4;
 
 /// Width and height of the curtain, m.
 pub const WIDTH: f32 = 2.6;
@@ -22,7 +22,7 @@ pub const RAIL: f32 = 2.65;
 pub const END: Vec3 = Vec3::new(-1.3, 2.1, 0.0);
 
 /// Mass of a ring, kg.
-const RING_MASS: f32 = 0.012;
+const RING_MASS: f32 = 0.01;
 
 /// Friction coefficient of the rings on the rail.
 const FRICTION: f32 = 0.12;
@@ -46,6 +46,7 @@ pub fn spawn(commands: &mut Commands) -> Entity {
         ClothMaterial(FabricMaterial { area_density: 0.2, ..FabricMaterial::COTTON }),
         Attachment::new(rail, first).with_anchor(rings),
         LodSet { pinned: Some(0), ..LodSet::default() },
+        SelfCollision::default(),
         Design::Bars(vec![LINEN]),
     );
     commands.spawn(cloth).id()

@@ -139,7 +139,7 @@ fn targets_and_hands_may_be_despawned_within_a_tick() {
                         commands.entity(hand).despawn();
                     }
                 })
-                .before(set.clone()),
+                .before(set),
             );
             Some(banner)
         });
