@@ -116,8 +116,10 @@ impl FabricLibrary {
     ) -> Result<Found, ClothError> {
         lods.validate(entity)?;
         let groups = |attachment: &Attachment| {
-            let is_held = !attachment.groups(&mesh.uvs()).concat().is_empty();
-            (attachment.pinned_groups(&mesh.uvs()).concat(), is_held)
+            let mut groups = attachment.groups(&mesh.uvs());
+            let is_held = groups.iter().any(|group| !group.is_empty());
+            attachment.keep_pinned(&mut groups);
+            (groups.concat(), is_held)
         };
         let attached = attachment.map(groups);
         check_weights(mesh.weights(), mesh.vertex_count())

@@ -183,12 +183,17 @@ impl Attachment {
     /// The vertices that are pinned on each target, in the order of [`groups`](Self::groups).
     pub(crate) fn pinned_groups(&self, uv: &[Vec2]) -> Vec<Vec<u32>> {
         let mut groups = self.groups(uv);
+        self.keep_pinned(&mut groups);
+        groups
+    }
+
+    /// Removes those [`groups`](Self::groups) that are held by springs or on a rail.
+    pub(crate) fn keep_pinned(&self, groups: &mut [Vec<u32>]) {
         for (group, anchor) in groups[1..].iter_mut().zip(&self.anchors) {
             if !anchor.hold.is_rigid() {
                 group.clear();
             }
         }
-        groups
     }
 
     /// The vertices that each anchor holds by springs or on a rail.
