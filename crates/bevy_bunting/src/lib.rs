@@ -99,6 +99,7 @@
 //! cloths nor on the number of threads. Only [`LodSet::automatic`] shares a budget among all cloths, and
 //! by default measures their costs; with [`LodCosts::Fixed`] its choice, too, is the same on every machine.
 
+mod anchors;
 mod background;
 mod batch;
 mod cloth;
@@ -122,6 +123,9 @@ use bevy_app::{FixedPostUpdate, PluginGroup, PluginGroupBuilder};
 use bevy_ecs::intern::Interned;
 use bevy_ecs::schedule::ScheduleLabel;
 
+pub use anchors::grab::{ClothGrab, Grabbed, GrabbedVertices};
+pub use anchors::plugin::AnchorPlugin;
+pub use anchors::reactions::{AnchorReaction, AnchorReactions};
 pub use batch::assign::LanePlugin;
 pub use batch::batches::ClothBatches;
 pub use batch::particles::{ClothParticles, SubstepParticles};
@@ -130,7 +134,7 @@ pub use batch::solve::SolverPlugin;
 pub use bunting_solver;
 pub use cloth::activity::{ClothActivity, ClothPaused};
 pub use cloth::error::ClothError;
-pub use cloth::events::{ClothFailed, ClothLevelChanged, ClothTargetLost};
+pub use cloth::events::{ClothAnchorBroke, ClothFailed, ClothLevelChanged, ClothTargetLost};
 pub use cloth::imperfection::ClothSeed;
 pub use cloth::material::ClothMaterial;
 pub use cloth::mesh::ClothMesh;
@@ -171,6 +175,7 @@ pub use lod::report::{ClothCounts, LodReport};
 pub use lod::select::LodPlugin;
 pub use lod::sleep::{SleepPlugin, WakeCloth};
 pub use lod::viewer::{Lens, LodViewer};
+pub use motion::anchor_hold::AnchorHold;
 pub use motion::attachment::{
     Anchor, AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost,
 };
@@ -203,14 +208,15 @@ pub use timings::ClothTimings;
 /// The items that most apps need.
 pub mod prelude {
     pub use crate::{
-        Anchor, AttachedVertices, Attachment, ByVertex, ClothAcceleration, ClothActivity,
-        ClothBudget, ClothCollider, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
-        ClothFeatures, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged, ClothMaterial,
-        ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll, ClothReactions, ClothSeed,
+        Anchor, AnchorHold, AnchorReactions, AttachedVertices, Attachment, ByVertex,
+        ClothAcceleration, ClothActivity, ClothAnchorBroke, ClothBudget, ClothCollider,
+        ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothGrab,
+        ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged, ClothMaterial, ClothMesh,
+        ClothParted, ClothPaused, ClothPlugins, ClothPreroll, ClothReactions, ClothSeed,
         ClothSettings, ClothSkin, ClothState, ClothSurface, ClothSystems, ClothTargetLost,
-        ClothTick, ClothTouched, LodSet, LodViewer, SelfCollision, SkinError, SkinLimits,
-        TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan, WindField,
-        WindInfluence, WindRegion, WindShape, WindWake,
+        ClothTick, ClothTouched, GrabbedVertices, LodSet, LodViewer, SelfCollision, SkinError,
+        SkinLimits, TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan,
+        WindField, WindInfluence, WindRegion, WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{
@@ -255,6 +261,7 @@ impl PluginGroup for ClothPlugins {
             .add(WindPlugin)
             .add(ForcePlugin)
             .add(AttachmentPlugin)
+            .add(AnchorPlugin)
             .add(TeleportPlugin)
             .add(SkeletonPlugin)
             .add(DrivePlugin)

@@ -62,6 +62,7 @@
 
 #![cfg_attr(not(test), deny(clippy::disallowed_methods))]
 
+mod anchors;
 mod batch;
 mod constants;
 mod constraints;
@@ -74,6 +75,7 @@ mod step;
 mod subdivision;
 mod transfer;
 
+pub use anchors::{Hold, Holder, PinGroups, PinReaction};
 pub use batch::lane_count::LaneCount;
 pub use batch::snapshot::ClothSnapshot;
 pub use batch::{BatchError, ClothBatch, Entering, LaneSurface, ParticlesMut};

@@ -4,11 +4,12 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
 use bevy_platform::time::Instant;
 use bevy_tasks::ComputeTaskPool;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, ContactReaction, Fabric, LaneCount, LaneSurface,
-    ParticlesMut, StepSettings,
+    ParticlesMut, PinReaction, StepSettings,
 };
 use parry3d::bounding_volume::Aabb;
 
@@ -117,6 +118,16 @@ impl ClothBatches {
     /// What the cloth in a lane did in the last tick to colliders that asked for it.
     pub(crate) fn reactions(&self, lane: LaneHandle) -> impl Iterator<Item = ContactReaction> {
         self.groups[lane.group].batches[lane.batch].batch.reactions(lane.lane)
+    }
+
+    /// What the cloth in a lane did to each group of its pins in the last tick, if that was asked for.
+    pub(crate) fn pin_reactions(&self, lane: LaneHandle) -> &[PinReaction] {
+        self.batch(lane).pin_reactions(lane.lane)
+    }
+
+    /// Impulse of the cloth in a lane in the last tick on each of its holds, N·s.
+    pub(crate) fn hold_impulses(&self, lane: LaneHandle) -> &[Vec3] {
+        self.batch(lane).hold_impulses(lane.lane)
     }
 
     /// Removes a cloth from its lane.

@@ -4,9 +4,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, Guide, LaneCount,
-    LaneSurface, MovingPin, SelfCollision,
+    ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, Guide, Hold, LaneCount,
+    LaneSurface, MovingPin, PinGroups, SelfCollision,
 };
 use parry3d::bounding_volume::Aabb;
 
@@ -193,6 +194,19 @@ impl LaneMut<'_> {
     /// not finite.
     pub fn set_guides(&mut self, guides: Vec<Guide>) {
         let _ = self.occupied.batch.set_guides(self.lane, guides);
+    }
+
+    /// Holds particles of the cloth. None is held if a number is not finite.
+    pub fn hold(&mut self, holds: Vec<Hold>) {
+        let batch = &mut self.occupied.batch;
+        if batch.hold(self.lane, holds).is_err() {
+            batch.hold(self.lane, Vec::new()).expect("an occupied lane");
+        }
+    }
+
+    /// Reports what the cloth does to its pins in the next ticks, or ceases to.
+    pub fn report_pins(&mut self, groups: Option<(&Arc<PinGroups>, Vec<[Vec3; 2]>)>) {
+        self.occupied.batch.report_pins(self.lane, groups).expect("an occupied lane");
     }
 
     /// Sets the shapes that the cloth may touch in the next tick. Shapes with numbers that are not finite are

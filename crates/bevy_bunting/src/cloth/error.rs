@@ -139,6 +139,28 @@ pub enum ClothError {
         /// The cloth.
         entity: Entity,
     },
+    /// A number of an [`Anchor`](crate::Anchor) is not finite, or not positive where it must be, or its rail has no point.
+    /// The anchor does not hold.
+    #[error(
+        "anchor {anchor} of cloth {entity} needs a positive stiffness, or a rail with points and a positive ring mass; its greatest force, breaking force and friction must not be negative"
+    )]
+    Anchor {
+        /// The cloth.
+        entity: Entity,
+        /// Index of the anchor.
+        anchor: usize,
+    },
+    /// A number of a [`ClothGrab`](crate::ClothGrab) of this cloth is not finite, or not positive where it must be, or there is
+    /// no such cloth. Nothing is held.
+    #[error(
+        "the grab by {hand} needs a cloth, not {entity}, a positive stiffness, a finite place and a greatest force that is not negative"
+    )]
+    Grab {
+        /// The cloth.
+        entity: Entity,
+        /// The entity that grabs.
+        hand: Entity,
+    },
     /// The [`ClothAcceleration`](crate::ClothAcceleration) is not finite. It counts as zero.
     #[error("the ClothAcceleration of cloth {entity} must be finite")]
     Acceleration {

@@ -1,6 +1,7 @@
 //! Events that are triggered on cloths.
 
 use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
 
 use crate::cloth::error::ClothError;
 use crate::motion::attachment::TargetLost;
@@ -31,6 +32,20 @@ pub struct ClothLevelChanged {
     pub from: usize,
     /// The level from now on.
     pub to: usize,
+}
+
+/// An [`Anchor`](crate::Anchor) of a cloth was torn off: the cloth pulled with more than its
+/// [`break_force`](crate::Anchor::break_force). Triggered on the cloth.
+#[derive(EntityEvent, Clone, Copy, Debug, PartialEq)]
+pub struct ClothAnchorBroke {
+    /// The cloth.
+    pub entity: Entity,
+    /// The target of the anchor.
+    pub target: Entity,
+    /// Index that the anchor had in [`Attachment::anchors`](crate::Attachment::anchors) in the tick in which it broke.
+    pub anchor: usize,
+    /// The force, N, in the world.
+    pub force: Vec3,
 }
 
 /// The target of a cloth's [`Attachment`](crate::Attachment) was despawned. Triggered once.

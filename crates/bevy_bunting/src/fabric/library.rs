@@ -115,14 +115,20 @@ impl FabricLibrary {
         lods: &LodSet,
     ) -> Result<Found, ClothError> {
         lods.validate(entity)?;
-        let attached = attachment.map(|attachment| attachment.groups(&mesh.uvs()).concat());
+        let groups = |attachment: &Attachment| {
+            let mut groups = attachment.groups(&mesh.uvs());
+            let is_held = groups.iter().any(|group| !group.is_empty());
+            attachment.keep_pinned(&mut groups);
+            (groups.concat(), is_held)
+        };
+        let attached = attachment.map(groups);
         check_weights(mesh.weights(), mesh.vertex_count())
             .map_err(|source| ClothError::Weights { entity, source })?;
-        let holds = |attached: &Vec<u32>| !attached.is_empty() || mesh.weights().contains(&0.0);
+        let holds = |(_, is_held): &(Vec<u32>, bool)| *is_held || mesh.weights().contains(&0.0);
         if !attached.as_ref().is_none_or(holds) {
             return Err(ClothError::NoVertices { entity, level: 0 });
         }
-        let attached = attached.unwrap_or_default();
+        let attached = attached.map(|(pinned, _)| pinned).unwrap_or_default();
         let key = content_key(mesh, &attached, lods.levels());
         if let Some(levels) = self.cut.get(&key).and_then(Weak::upgrade) {
             return Ok(Found::Levels(levels));

@@ -8,6 +8,7 @@ use bevy_ecs::query::QueryData;
 use bevy_math::{Isometry3d, Mat3};
 use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
+use bunting_solver::Fabric;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::activity::ClothPaused;
@@ -231,9 +232,20 @@ impl CutClothItem<'_, '_> {
         if let Some(shortage) = levels.shortage(self.entity, self.mesh.as_grid()) {
             ClothFailed::report(commands, self.entity, shortage);
         }
-        let was_free = instance.fabric().is_some_and(|fabric| !fabric.has_pins());
+        let former = instance.fabric().cloned();
+        let was_free = former.as_ref().is_some_and(|fabric| !fabric.has_pins());
         let keeps_state = instance.replace_levels(levels, batches);
+        let under_way = instance.taking_up.take();
         instance.taking_up = match (instance.fabric().cloned(), &mut instance.storage) {
+            // Pins that are only let go do not move those that stay.
+            (Some(fabric), StateStorage::Snapshot(state))
+                if keeps_state
+                    && change == Isometry3d::IDENTITY
+                    && former.is_some_and(|former| has_pins_of(&fabric, &former)) =>
+            {
+                *state = core::mem::take(state).without_history();
+                under_way.map(|way| way.of_pins(&fabric))
+            }
             (Some(fabric), StateStorage::Snapshot(state)) if keeps_state => {
                 TakingUp::begin(state, &fabric, change, was_free)
             }
@@ -268,6 +280,15 @@ impl CutClothItem<'_, '_> {
         let change = before.zip(frame).map(|(before, now)| now.inverse() * before);
         change.filter(is_finite).unwrap_or_default()
     }
+}
+
+/// Whether all pins of a fabric are pins of the former one, with as many particles, and some are no longer.
+fn has_pins_of(fabric: &Fabric, former: &Fabric) -> bool {
+    let pinned = |fabric: &Fabric, particle| fabric.is_pinned(particle);
+    let count = fabric.particle_count();
+    count == former.particle_count()
+        && (0..count).all(|at| !pinned(fabric, at) || pinned(former, at))
+        && (0..count).any(|at| pinned(fabric, at) != pinned(former, at))
 }
 
 /// Changes materials from this tick on. An invalid material is reported, and the last valid one is kept.

@@ -37,18 +37,19 @@ impl AnchorPoses {
         self.0.iter_mut().for_each(|pose| pose.history.teleport_next(last));
     }
 
-    /// Forgets the poses of targets that are no longer those of the anchors.
+    /// Forgets the poses of targets that are no longer those of the anchors. An anchor that moves up in the list, since one
+    /// before it was removed, keeps its poses.
     fn fit(&mut self, anchors: &[Anchor]) {
-        self.0.truncate(anchors.len());
-        for (pose, anchor) in self.0.iter_mut().zip(anchors) {
-            if pose.target != anchor.target {
-                *pose = AnchorPose { target: anchor.target, history: PoseHistory::default() };
-            }
+        let is_of = |(pose, anchor): (&AnchorPose, &Anchor)| pose.target == anchor.target;
+        if self.0.len() == anchors.len() && self.0.iter().zip(anchors).all(is_of) {
+            return;
         }
-        let new = anchors.iter().skip(self.0.len());
-        self.0.extend(
-            new.map(|anchor| AnchorPose { target: anchor.target, history: PoseHistory::default() }),
-        );
+        let mut former = core::mem::take(&mut self.0);
+        self.0.extend(anchors.iter().map(|anchor| {
+            let index = former.iter().position(|pose| pose.target == anchor.target);
+            let known = index.map(|index| former.remove(index));
+            known.unwrap_or(AnchorPose { target: anchor.target, history: PoseHistory::default() })
+        }));
     }
 
     /// Calls `observe` with the history of each anchor and its present pose, if it has one.

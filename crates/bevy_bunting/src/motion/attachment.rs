@@ -1,15 +1,17 @@
 //! Attachments: chosen vertices of a cloth stay on another entity.
 
 use std::collections::HashSet;
+use std::sync::Arc;
 
 use bevy_ecs::entity::EntityMapper;
 use bevy_ecs::prelude::*;
-use bevy_math::Vec2;
+use bevy_math::{Vec2, Vec3};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
 
 use crate::cloth::mesh::ClothMesh;
+use crate::motion::anchor_hold::AnchorHold;
 
 /// Default of [`Attachment::teleport_speed`], m/s: no vehicle changes its velocity by as much between two
 /// frames. Smaller: hard manoeuvres count as teleports and do not swing the cloth. Larger: jumps whip it.
@@ -68,13 +70,50 @@ pub struct Anchor {
     pub vertices: AttachedVertices,
     /// Pose of the vertices' frame relative to the target; the scale is ignored.
     pub offset: Transform,
+    /// How the vertices are held: exactly, by springs or on a rail.
+    pub hold: AnchorHold,
+    /// Force of the cloth on the anchor, N, as the mean over a tick, at which the anchor lets go: it is removed from the
+    /// [`Attachment`], and [`ClothAnchorBroke`](crate::ClothAnchorBroke) is triggered on the cloth. Infinite by default.
+    pub break_force: f32,
 }
 
 impl Anchor {
     /// Holds vertices on a target, in the target's own frame.
     #[must_use]
     pub fn new(target: Entity, vertices: impl Into<AttachedVertices>) -> Self {
-        Self { target, vertices: vertices.into(), offset: Transform::IDENTITY }
+        Self {
+            target,
+            vertices: vertices.into(),
+            offset: Transform::IDENTITY,
+            hold: AnchorHold::Rigid,
+            break_force: f32::INFINITY,
+        }
+    }
+
+    /// The anchor with springs of a stiffness (N/m), all of them together.
+    #[must_use]
+    pub fn with_stiffness(mut self, stiffness: f32) -> Self {
+        self.hold = AnchorHold::Spring { stiffness, max_force: f32::INFINITY };
+        self
+    }
+
+    /// The anchor with another [`hold`](Self::hold).
+    #[must_use]
+    pub fn with_hold(mut self, hold: AnchorHold) -> Self {
+        self.hold = hold;
+        self
+    }
+
+    /// The anchor that lets go at a force, N.
+    #[must_use]
+    pub fn breaking_at(mut self, force: f32) -> Self {
+        self.break_force = force;
+        self
+    }
+
+    /// Whether all numbers can be used.
+    pub(crate) fn is_valid(&self) -> bool {
+        self.hold.is_valid() && self.break_force >= 0.0
     }
 
     /// The anchor with another [`offset`](Self::offset).
@@ -139,6 +178,42 @@ impl Attachment {
             group
         };
         core::iter::once(&self.vertices).chain(anchored).map(&mut of_group).collect()
+    }
+
+    /// The vertices that are pinned on each target, in the order of [`groups`](Self::groups).
+    pub(crate) fn pinned_groups(&self, uv: &[Vec2]) -> Vec<Vec<u32>> {
+        let mut groups = self.groups(uv);
+        self.keep_pinned(&mut groups);
+        groups
+    }
+
+    /// Removes those [`groups`](Self::groups) that are held by springs or on a rail.
+    pub(crate) fn keep_pinned(&self, groups: &mut [Vec<u32>]) {
+        for (group, anchor) in groups[1..].iter_mut().zip(&self.anchors) {
+            if !anchor.hold.is_rigid() {
+                group.clear();
+            }
+        }
+    }
+
+    /// The vertices that each anchor holds by springs or on a rail.
+    pub(crate) fn sprung_groups(&self, uv: &[Vec2]) -> Vec<Vec<u32>> {
+        let mut groups = self.groups(uv).split_off(1);
+        for (group, anchor) in groups.iter_mut().zip(&self.anchors) {
+            if anchor.hold.is_rigid() || !anchor.hold.is_valid() {
+                group.clear();
+            }
+        }
+        groups
+    }
+
+    /// The rail of each anchor; none for one without a rail.
+    pub(crate) fn rails(&self) -> Vec<Option<Arc<[Vec3]>>> {
+        let rail = |anchor: &Anchor| match &anchor.hold {
+            AnchorHold::Rail { points, .. } => Some(Arc::from(points.as_slice())),
+            _ => None,
+        };
+        self.anchors.iter().map(rail).collect()
     }
 
     /// The target of the attachment of `cloth`, unless it is the cloth itself.

@@ -40,7 +40,7 @@ pub(crate) fn lead_pins(
         if let Some((mesh, attachment, poses, pins)) = &mut anchors {
             let positions = || lane.snapshot().positions;
             if attachment.is_changed() || !pins.fits(&levels, instance.level) {
-                let groups = attachment.groups(&mesh.uvs());
+                let groups = attachment.pinned_groups(&mesh.uvs());
                 pins.find(&levels, instance.level, &groups[1..], &positions());
             }
             let are_in_place = pins.find_places(fabric, poses, (frame.start(), frame.end()));

@@ -1,5 +1,6 @@
 //! The motion of a cloth's frame: attachments, the poses of their targets, teleports.
 
+pub mod anchor_hold;
 pub mod anchor_pins;
 pub mod anchor_poses;
 pub mod attachment;

@@ -89,6 +89,12 @@ impl TakingUp {
         Self { pins, velocity: Vec3::ZERO, passed: 0.0 }
     }
 
+    /// The motion of those pins that are still pins of a fabric.
+    pub fn of_pins(mut self, fabric: &Fabric) -> Self {
+        self.pins.retain(|way| fabric.is_pinned(way.particle as usize));
+        self
+    }
+
     /// Moves the pins for `tick` seconds towards their places (m), and returns their motions.
     pub fn go_on(&mut self, tick: f32, place: impl Fn(u32) -> Vec3) -> Vec<MovingPin> {
         self.passed += tick;

@@ -6,8 +6,10 @@
 mod anchors;
 mod blast;
 mod guides;
+mod holds;
 mod impossible;
 mod impulse;
+mod reactions;
 mod turbulence;
 
 use crate::contacts::Row;
@@ -16,9 +18,11 @@ use crate::contacts::Row;
 pub type Family = fn(quick: bool) -> Vec<Row>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 6] = [
+pub const ALL: [(&str, Family); 8] = [
     ("anchors", anchors::rows),
     ("guides", guides::rows),
+    ("reactions", reactions::rows),
+    ("holds", holds::rows),
     ("impulse", impulse::rows),
     ("turbulence", turbulence::rows),
     ("blast", blast::rows),

@@ -52,6 +52,14 @@ pub enum BatchError {
         /// Index of the particle.
         particle: u32,
     },
+    /// A number of a hold is infinite or not a number, or negative, or its rail has no points.
+    #[error(
+        "the place, stiffness, mass or friction of the hold of particle {particle} is not finite, or negative"
+    )]
+    Hold {
+        /// Index of the particle.
+        particle: u32,
+    },
     /// A number of a collider is infinite or not a number.
     #[error("the pose, margin or friction of collider {index} is not finite")]
     Collider {

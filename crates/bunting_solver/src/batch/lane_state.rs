@@ -1,5 +1,7 @@
 //! The state of a cloth in a batch besides its particles.
 
+use crate::anchors::holds::Holds;
+use crate::anchors::pin_reports::PinReports;
 use crate::contact::candidates::Candidates;
 use crate::contact::collider::Collider;
 use crate::contact::itself::state::SelfContacts;
@@ -34,6 +36,10 @@ pub(crate) struct LaneState {
     pub are_pins_at_rest: bool,
     pub moving_pins: MovingPins,
     pub guides: Option<ClothGuides>,
+    /// Springs and rails that hold particles, if any do.
+    pub holds: Option<Box<Holds>>,
+    /// What the cloth does to its pins, if that is asked for.
+    pub pin_reports: Option<Box<PinReports>>,
     /// Inputs of the lane's parameters; none if the parameters must be computed.
     pub inputs: Option<ParameterInputs>,
     /// Inputs of the lane's inverse masses besides the substep; none if the masses must be computed.
@@ -56,6 +62,8 @@ impl LaneState {
             are_pins_at_rest: true,
             moving_pins: MovingPins::default(),
             guides: None,
+            holds: None,
+            pin_reports: None,
             inputs: None,
             added_mass: None,
         }

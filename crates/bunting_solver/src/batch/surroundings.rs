@@ -1,7 +1,13 @@
 //! What acts on the cloths of a batch from outside, and what they touch.
 
+use std::sync::Arc;
+
+use glam::Vec3;
 use parry3d::bounding_volume::Aabb;
 
+use crate::anchors::hold::Hold;
+use crate::anchors::pin_groups::PinGroups;
+use crate::anchors::pin_reports::{PinReaction, PinReports};
 use crate::batch::cloth_batch::{ClothBatch, Lanes, with_batch};
 use crate::batch::error::BatchError;
 use crate::contact::collider::Collider;
@@ -49,6 +55,76 @@ impl ClothBatch {
     pub fn set_guides(&mut self, lane: usize, guides: Vec<Guide>) -> Result<(), BatchError> {
         self.check_lane(lane)?;
         with_batch!(&mut self.0, batch => batch.set_guides(lane, guides))
+    }
+
+    /// Reports what a lane's cloth does to its pins from the next tick on, or ceases to; at first it does not. `pivots` are
+    /// for each group the points about which torque is taken, at the start and at the end of the next tick, each in the
+    /// frame at that time, m. An empty lane stays empty.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane.
+    pub fn report_pins(
+        &mut self,
+        lane: usize,
+        groups: Option<(&Arc<PinGroups>, Vec<[Vec3; 2]>)>,
+    ) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        with_batch!(&mut self.0, batch => {
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                cloth.pin_reports = groups.map(|(groups, pivots)| match cloth.pin_reports.take() {
+                    Some(mut reports) if Arc::ptr_eq(&reports.groups, groups) => {
+                        reports.pivots = pivots;
+                        reports
+                    }
+                    _ => Box::new(PinReports::new(Arc::clone(groups), pivots)),
+                });
+            }
+        });
+        Ok(())
+    }
+
+    /// What a lane's cloth did to each group of its pins in the last tick; empty unless that
+    /// [is asked for](Self::report_pins).
+    #[must_use]
+    pub fn pin_reactions(&self, lane: usize) -> &[PinReaction] {
+        let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
+        cloth.and_then(|cloth| cloth.pin_reports.as_ref()).map_or(&[], |reports| &reports.sums)
+    }
+
+    /// Holds free particles of a lane's cloth by springs or on rails, from the next tick on. Their motion is repeated in
+    /// every tick until they are set again. Of several holds of one particle the first one holds. An empty lane stays empty.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane or particle, or a number is not finite or is negative. The lane keeps its former holds.
+    pub fn hold(&mut self, lane: usize, holds: Vec<Hold>) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        let count = self.fabric().particle_count();
+        let is_bad = |hold: &&Hold| hold.particle as usize >= count || !hold.is_valid();
+        if let Some(&Hold { particle, .. }) = holds.iter().find(is_bad) {
+            return Err(BatchError::Hold { particle });
+        }
+        with_batch!(&mut self.0, batch => {
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                // Particles that are no longer held get their own masses back.
+                cloth.added_mass = None;
+                cloth.holds = (!holds.is_empty()).then(|| {
+                    let mut list = cloth.holds.take().unwrap_or_default();
+                    list.set(holds);
+                    list
+                });
+            }
+        });
+        Ok(())
+    }
+
+    /// Impulse of a lane's cloth in the last tick on that which holds each particle, N·s, along the axes of the cloth's
+    /// frame at the end of the tick, in the order in which the holds were given.
+    #[must_use]
+    pub fn hold_impulses(&self, lane: usize) -> &[Vec3] {
+        let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
+        cloth.and_then(|cloth| cloth.holds.as_ref()).map_or(&[], |holds| &holds.impulses)
     }
 
     /// Sets the shapes that a lane's cloth cannot enter, from the next tick on. An empty lane stays empty.

@@ -105,6 +105,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             self.sweep_mesh();
         }
         self.solve_tethers();
+        self.sum_reactions();
         self.solve_guides();
         self.solve_contacts();
     }

@@ -38,6 +38,7 @@ impl LaneBatch<Pack8, SingleMesh> {
         grid.place_particles(self.positions.vectors_mut());
         self.positions.write_vectors();
         self.solve_tethers();
+        self.sum_reactions();
         self.solve_guides();
         self.solve_contacts();
     }

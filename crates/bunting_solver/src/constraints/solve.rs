@@ -48,6 +48,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             Scheme::Yarns => {
                 self.solve_chains_both_ways(self.clock.settings.passes);
                 self.solve_tethers();
+                self.sum_reactions();
                 self.solve_guides();
                 self.solve_contacts();
             }
@@ -89,6 +90,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.solve_stretch_of_grid();
         // This call copies the positions back from the constraints' arrays.
         self.positions.packs_mut();
+        self.sum_reactions();
         self.solve_guides();
         self.solve_contacts();
     }

@@ -63,6 +63,11 @@ impl Pole {
         libm::roundf(STEPS * gravity.normalize_or_zero().dot(self.along).abs()) / STEPS
     }
 
+    /// Displacement of a point, m, by a turn about the pole, rad.
+    pub fn turned(&self, point: Vec3, angle: f32) -> Vec3 {
+        self.along.cross(point - self.at) * angle
+    }
+
     /// Moment about the pole of a particle's correction, m⁴, given its inertia, m², its corrected position, m,
     /// and the correction, m.
     pub fn moment(&self, inertia: f32, at: Vec3, correction: Vec3) -> f32 {

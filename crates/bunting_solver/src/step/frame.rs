@@ -66,6 +66,15 @@ impl FrameMotion {
         now.inverse() * (self.rotation * direction)
     }
 
+    /// The turn that leads from coordinates of a direction along the axes after substep `index` of `count` to those at the
+    /// end of the tick.
+    pub(crate) fn turn_to_end(&self, index: u32, count: u32) -> Quat {
+        if self.is_none() {
+            return Quat::IDENTITY;
+        }
+        self.rotation.inverse() * self.rotation_at((index + 1) as f32 / count as f32)
+    }
+
     /// Change of coordinates in substep `index` of `count`: the frame turns at a constant rate while its
     /// origin moves along a straight line.
     pub(crate) fn substep(&self, index: u32, count: u32) -> FrameStep {

@@ -21,11 +21,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.carry_state();
         }
         self.move_pins();
+        self.free_held();
         let feels_air = self.parameters.any_feels_air();
         if feels_air {
             self.gather_air();
+            self.sum_air_on_pins();
         }
         let sums = self.predict(feels_air);
+        self.draw_held();
         self.assess_motion(&sums);
         self.clock.begun += 1;
         self.clock.predicted = true;

@@ -15,9 +15,12 @@ impl<P: Pack> LaneBatch<P> {
             }
             self.layout.hinge_multiplier.fill(P::splat(0.0));
         }
-        for _ in 0..passes {
+        for pass in 1..=passes {
             self.solve_dihedral(accumulate);
             self.solve_distance(accumulate);
+            if pass == passes {
+                self.sum_reactions();
+            }
             self.solve_guides();
             self.solve_contacts();
         }

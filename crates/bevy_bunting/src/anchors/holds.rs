@@ -1,0 +1,75 @@
+//! The springs and rails that hold a cloth.
+
+use std::sync::Arc;
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+
+use crate::fabric::levels::ClothLevels;
+
+/// A cloth that is held by springs or rails, of anchors or of grabs.
+#[derive(Component, Debug, Default)]
+pub(crate) struct ClothHolds {
+    /// The levels and the level of the particles.
+    of: Option<(Arc<ClothLevels>, usize)>,
+    /// The anchor, the particle and its place at rest (m) of each hold of an anchor.
+    pub anchored: Vec<(usize, u32, Vec3)>,
+    /// Number of particles of each anchor.
+    pub counts: Vec<usize>,
+    /// Rails of anchors, shared with the solver; none for springs.
+    pub rails: Vec<Option<Arc<[Vec3]>>>,
+    /// That which holds, in the order of the holds given to the solver.
+    pub owners: Vec<Owner>,
+}
+
+/// That which holds a particle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Owner {
+    /// An anchor of the cloth's attachment.
+    Anchor { index: usize, particle: u32 },
+    /// An entity with a [`ClothGrab`](crate::ClothGrab).
+    Grab(Entity),
+}
+
+impl ClothHolds {
+    /// Whether the holds are those of a level.
+    pub fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
+        self.of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, levels) && *at == level)
+    }
+
+    /// Finds the particles of a level, given the vertices that each anchor holds by springs or on a rail, and the rails.
+    /// A level without any of an anchor's vertices is held where it is nearest to the first one.
+    pub fn find(
+        &mut self,
+        levels: &Arc<ClothLevels>,
+        level: usize,
+        groups: &[Vec<u32>],
+        rails: Vec<Option<Arc<[Vec3]>>>,
+    ) {
+        self.of = Some((Arc::clone(levels), level));
+        self.rails = rails;
+        self.anchored.clear();
+        self.counts.clear();
+        let rest = levels.fabric(level).rest_positions();
+        for (anchor, group) in groups.iter().enumerate() {
+            let particles = group.iter().filter_map(|&vertex| levels.particle(level, vertex));
+            let mut particles: Vec<usize> = particles.collect();
+            particles.sort_unstable();
+            particles.dedup();
+            if particles.is_empty() {
+                particles.extend(group.first().and_then(|&vertex| nearest(levels, level, vertex)));
+            }
+            self.counts.push(particles.len());
+            let holds = particles.into_iter().map(|at| (anchor, at as u32, rest[at]));
+            self.anchored.extend(holds);
+        }
+    }
+}
+
+/// The particle of a level that is at rest nearest to a vertex of the finest one.
+fn nearest(levels: &ClothLevels, level: usize, vertex: u32) -> Option<usize> {
+    let at = levels.fabric(0).rest_positions()[levels.particle(0, vertex)?];
+    let rest = levels.fabric(level).rest_positions();
+    let distance = |particle: usize| rest[particle].distance_squared(at);
+    (0..rest.len()).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))
+}

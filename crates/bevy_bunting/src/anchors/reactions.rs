@@ -1,0 +1,64 @@
+//! Forces and torques of anchors.
+
+use std::sync::Arc;
+
+use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
+use bevy_reflect::Reflect;
+use bevy_reflect::std_traits::ReflectDefault;
+use bunting_solver::PinGroups;
+
+use crate::fabric::levels::ClothLevels;
+
+/// What a cloth does to that which holds it: insert this component beside its [`Attachment`](crate::Attachment), and read
+/// it after each tick. Cloths without it cost nothing for it.
+///
+/// A reaction is the tension of the cloth, and the weight, drag and inertia of the held vertices themselves. Its mean over
+/// the tick is what a rigid body that carries the cloth needs. A cloth that sleeps at rest does what it did before it
+/// fell asleep; after a change of level or of the attachment, inertia of the held vertices is missing for a tick.
+#[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[require(PinReporting)]
+pub struct AnchorReactions {
+    /// The reaction on the target of the attachment; on the cloth's own transform, if it has none.
+    pub target: AnchorReaction,
+    /// The reaction on each of [`Attachment::anchors`](crate::Attachment::anchors).
+    pub anchors: Vec<AnchorReaction>,
+}
+
+/// What a cloth does to one entity that holds it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[reflect(Default, Debug, PartialEq, Clone)]
+pub struct AnchorReaction {
+    /// Mean force over the last tick, N, in the world.
+    pub force: Vec3,
+    /// Mean torque over the last tick, N·m, in the world, about the place of the mesh's origin: the target's pose times the
+    /// offset.
+    pub torque: Vec3,
+}
+
+/// The pins whose reactions are wanted, at the cloth's present level.
+#[derive(Component, Debug, Default)]
+pub(crate) struct PinReporting {
+    /// The levels and the level that the groups are those of.
+    of: Option<(Arc<ClothLevels>, usize)>,
+    pub groups: Option<Arc<PinGroups>>,
+}
+
+impl PinReporting {
+    /// Whether the groups are those of a level.
+    pub fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
+        self.of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, levels) && *at == level)
+    }
+
+    /// Finds the groups of a level, given the vertices that are held on each target.
+    pub fn find(&mut self, levels: &Arc<ClothLevels>, level: usize, held: &[Vec<u32>]) {
+        let particles = |group: &Vec<u32>| -> Vec<u32> {
+            let particles = group.iter().filter_map(|&vertex| levels.particle(level, vertex));
+            particles.map(|particle| particle as u32).collect()
+        };
+        let groups: Vec<Vec<u32>> = held.iter().map(particles).collect();
+        self.groups = Some(Arc::new(PinGroups::new(levels.fabric(level), &groups)));
+        self.of = Some((Arc::clone(levels), level));
+    }
+}
