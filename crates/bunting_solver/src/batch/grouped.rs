@@ -50,8 +50,8 @@ impl ClothBatch {
         lane: usize,
         member: &Member,
         particles: &mut Particles,
-    ) {
-        with_batch!(&mut self.0, batch => batch.touch_colliders(lane, member, particles));
+    ) -> bool {
+        with_batch!(&mut self.0, batch => batch.touch_colliders(lane, member, particles))
     }
 
     pub(crate) fn end_grouped(&mut self, lane: usize, near: impl Iterator<Item = usize>) {

@@ -12,6 +12,10 @@ use crate::contact::itself::mesh::ContactMesh;
 use crate::contact::itself::pairs::EdgeTriangle;
 use crate::contact::itself::place::Pose;
 
+/// Number of times that cloths and then their contacts with colliders are solved. One: sheets that are pressed on a floor
+/// come to lie in one plane.
+const ROUNDS: usize = 2;
+
 /// Access to the lanes of a group's cloths.
 pub trait GroupLanes {
     /// The batch of a member, given its index, and its lane, which must hold a cloth.
@@ -109,13 +113,23 @@ impl ClothGroup {
         layers.particles.touched.fill(false);
         let meet = layers.find(mesh, thickness, &rules);
         if meet {
-            read_velocities(members, lanes, layers);
-            layers.separate(mesh, step, &rules);
-            write(members, lanes, layers);
+            layers.untangle(mesh, step);
         }
-        for (index, member) in members.iter().enumerate() {
-            let (batch, lane) = lanes.lane(index);
-            batch.touch_colliders(lane, member, &mut layers.particles);
+        for _ in 0..ROUNDS {
+            if meet {
+                read_velocities(members, lanes, layers);
+                layers.separate(step, &rules);
+                write(members, lanes, layers);
+                layers.particles.touched.fill(false);
+            }
+            let mut has_pushed = false;
+            for (index, member) in members.iter().enumerate() {
+                let (batch, lane) = lanes.lane(index);
+                has_pushed |= batch.touch_colliders(lane, member, &mut layers.particles);
+            }
+            if !meet || !has_pushed {
+                break;
+            }
         }
         if meet && let Some(mut zones) = layers.return_zones(mesh, thickness, &rules) {
             read_velocities(members, lanes, layers);

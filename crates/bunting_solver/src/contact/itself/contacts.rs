@@ -32,10 +32,19 @@ impl LayerContacts {
         true
     }
 
+    /// Whether particles have moved since such that pairs may be missing.
+    pub fn are_outdated(&self, mesh: &ContactMesh, thickness: f32) -> bool {
+        self.search.is_outdated(Cloth { mesh, particles: &self.particles, thickness })
+    }
+
+    /// Moves features that pass through one another at the start of a substep of the length `step`, s.
+    pub fn untangle(&mut self, mesh: &ContactMesh, step: f32) {
+        untangle(mesh, &self.pairs, &mut self.particles, step, &mut self.tangles);
+    }
+
     /// Moves these features apart in a substep of the length `step`, s. Velocities of their particles must be known.
-    pub fn separate(&mut self, mesh: &ContactMesh, step: f32, rules: &impl Rules) {
+    pub fn separate(&mut self, step: f32, rules: &impl Rules) {
         let Self { pairs, particles, contacts, tangles, .. } = self;
-        untangle(mesh, pairs, particles, step, tangles);
         Spacing { rules, step, tangles }.separate(pairs, particles, contacts);
     }
 

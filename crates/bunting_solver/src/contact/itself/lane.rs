@@ -54,7 +54,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if layers.find(mesh, thickness, &rules) {
             let part = Part { cloth, range: 0..layers.particles.end.len(), place: &InItsFrame };
             self.gather_velocities(&part, &mut layers.particles);
-            layers.separate(mesh, self.clock.step, &rules);
+            layers.untangle(mesh, self.clock.step);
+            layers.separate(self.clock.step, &rules);
             self.scatter_particles(&part, &layers.particles);
         }
     }

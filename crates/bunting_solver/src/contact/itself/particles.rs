@@ -21,6 +21,8 @@ pub(crate) struct Particles {
     pub past_velocity: Vec<Vec3>,
     /// Changes of velocity by impacts, which stop an approach of the particles at the start of the substep, m/s.
     pub impact: Vec<Vec3>,
+    /// Scratch array of positions of a cloth, m.
+    pub after: Vec<Vec3>,
     /// Whether a contact has changed the particle.
     pub touched: Vec<bool>,
 }
