@@ -4,6 +4,7 @@ mod anchors;
 mod any_order;
 mod attachment;
 mod broad_phase;
+mod cloth_collision;
 mod contacts;
 mod determinism;
 mod effort;

@@ -138,6 +138,7 @@ pub use diagnostics::ClothDiagnosticsPlugin;
 pub use display::ease::EasingPlugin;
 pub use display::lift::LiftPlugin;
 pub use display::surface::{ClothSurface, SurfacePlugin};
+pub use environment::cloth_collision::ClothCollision;
 pub use environment::collider::{ClothCollider, ColliderError};
 pub use environment::drive::DrivePlugin;
 pub use environment::drive_colliders::ColliderPlugin;
@@ -146,6 +147,7 @@ pub use environment::forces::acceleration::ClothAcceleration;
 pub use environment::forces::control::{ClothControl, ControlError, ControlledCloth};
 pub use environment::forces::impulse::{ClothImpulse, Push};
 pub use environment::forces::plugin::ForcePlugin;
+pub use environment::group_cloths::ClothCollisionPlugin;
 pub use environment::layers::{ClothFeatures, ClothLayers};
 pub use environment::reactions::{
     ClothParted, ClothReaction, ClothReactions, ClothTouched, ReactionPlugin,
@@ -193,7 +195,7 @@ pub use timings::ClothTimings;
 pub mod prelude {
     pub use crate::{
         Anchor, AttachedVertices, Attachment, ClothAcceleration, ClothActivity, ClothBudget,
-        ClothCollider, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
+        ClothCollider, ClothCollision, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
         ClothFeatures, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged, ClothMaterial,
         ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll, ClothReactions, ClothSeed,
         ClothSettings, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick,
@@ -246,6 +248,7 @@ impl PluginGroup for ClothPlugins {
             .add(ColliderPlugin)
             .add(ReactionPlugin)
             .add(SelfCollisionPlugin)
+            .add(ClothCollisionPlugin)
             .add(SolverPlugin)
             .add(PublishPlugin)
             .add(EasingPlugin)

@@ -111,10 +111,8 @@ impl ClothGroup {
         let rules = OfGroup { members, of_patch, of_particle };
         let thickness = rules.greatest_thickness();
         layers.particles.touched.fill(false);
-        let meet = layers.find(mesh, thickness, &rules);
-        if meet {
-            layers.untangle(mesh, step);
-        }
+        let mut meet = layers.find(mesh, thickness, &rules);
+        layers.untangle(mesh, step);
         for _ in 0..ROUNDS {
             if meet {
                 read_velocities(members, lanes, layers);
@@ -127,8 +125,11 @@ impl ClothGroup {
                 let (batch, lane) = lanes.lane(index);
                 has_pushed |= batch.touch_colliders(lane, member, &mut layers.particles);
             }
-            if !meet || !has_pushed {
+            if !has_pushed {
                 break;
+            }
+            if layers.are_outdated(mesh, thickness) {
+                meet = layers.find(mesh, thickness, &rules);
             }
         }
         if meet && let Some(mut zones) = layers.return_zones(mesh, thickness, &rules) {
