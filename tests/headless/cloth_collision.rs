@@ -153,7 +153,7 @@ fn a_cloth_that_fails_leaves_the_others_finite() {
 
 #[test]
 fn zz_speed() {
-  for case in 0..3 {
+  for case in 1..2 {
     let (mut app, sheets) = scene(BOTH);
     if case == 1 {
         app.world_mut().get_mut::<Transform>(sheets[0]).unwrap().translation += Vec3::new(0.013, 0.0, 0.017);
@@ -161,7 +161,7 @@ fn zz_speed() {
     if case == 2 {
         app.world_mut().entity_mut(sheets[0]).insert((ClothMesh::grid(13, 13, 0.4, 0.4), Transform::from_xyz(-0.2, 0.06, -0.2).with_rotation(Quat::from_rotation_x(0.5 * PI))));
     }
-    for second in 0..8 {
+    for second in 0..4 {
         run(&mut app, 64);
         let mut line = String::new();
         for (sheet, n) in sheets.into_iter().zip([13usize, 17]) {
@@ -169,6 +169,8 @@ fn zz_speed() {
             let speeds: Vec<f32> = s.positions().iter().zip(s.previous_positions()).map(|(a, b)| a.distance(*b) * 64.0).collect();
             let rms = (speeds.iter().map(|v| v * v).sum::<f32>() / speeds.len() as f32).sqrt();
             let inner = speeds.iter().enumerate().filter(|(i, _)| { let (c, r) = (i % n, i / n); c > 1 && r > 1 && c < n - 2 && r < n - 2 }).map(|(_, v)| *v).fold(0.0, f32::max);
+            let flat = s.positions().iter().zip(s.previous_positions()).map(|(a, b)| (a.z - b.z).abs() * 64.0).fold(0.0, f32::max);
+            line += &format!("vertical {flat:.2e} ");
             let worst = speeds.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
             line += &format!("rms {rms:.2e} inner {inner:.2e} worst {worst:?} height {:.4}; ", height(&app, sheet));
         }

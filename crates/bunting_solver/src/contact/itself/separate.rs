@@ -42,6 +42,10 @@ pub(in crate::contact) struct Contact {
     factors: [f32; 4],
     /// Sum of the depths by which the features were moved apart, m.
     depth: f32,
+    /// Sum of the approaches that were stopped, m/s.
+    stopped: f32,
+    /// Part of this that was an impact.
+    impact: f32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,8 +88,8 @@ impl<R: Rules> Spacing<'_, R> {
                 contact.project(particles);
             }
         }
-        for _ in 0..2 {
-            for contact in contacts.iter().filter(|contact| contact.depth > 0.0) {
+        for _ in 0..SWEEPS {
+            for contact in contacts.iter_mut().filter(|contact| contact.depth > 0.0) {
                 contact.stop(particles);
             }
         }
@@ -113,6 +117,8 @@ impl<R: Rules> Spacing<'_, R> {
             normal: Vec3::ZERO,
             factors: [0.0; 4],
             depth: 0.0,
+            stopped: 0.0,
+            impact: 0.0,
         };
         // Other contacts move particles by about the thickness.
         contact.near(particles).filter(|near| near.gap < 2.0 * thickness)?;
@@ -139,8 +145,8 @@ impl Contact {
     /// Moves the features apart.
     fn project(&mut self, particles: &mut Particles) {
         let Some(Near { normal, factors, gap }) = self.near(particles) else { return };
-        let depth = self.distance - gap;
-        if depth <= 0.0 {
+        let depth = (self.distance - gap).max(-self.depth);
+        if depth == 0.0 {
             return;
         }
         let inverse = self.inverse_mass(particles, factors);
@@ -150,7 +156,7 @@ impl Contact {
         let slide = relative(&particles.end, self.particles, factors)
             - relative(&particles.start, self.particles, factors);
         let slide = slide - normal * slide.dot(normal);
-        let held = (self.friction * depth / slide.length().max(LEAST_LENGTH)).min(1.0);
+        let held = (self.friction * depth.max(0.0) / slide.length().max(LEAST_LENGTH)).min(1.0);
         let by = (normal * depth - slide * held) / inverse;
         for (&particle, factor) in self.particles.iter().zip(factors) {
             let particle = particle as usize;
@@ -162,20 +168,26 @@ impl Contact {
         self.depth += depth;
     }
 
-    /// Stops the approach of the features, and slows their slide.
-    fn stop(&self, particles: &mut Particles) {
+    /// Stops the approach of the features, and slows their slide. What it gave before it takes back where other contacts
+    /// have given too much: else features would leave each other in each substep, and layers at rest would tremble.
+    fn stop(&mut self, particles: &mut Particles) {
         let velocity = relative(&particles.velocity, self.particles, self.factors);
-        let approach = -velocity.dot(self.normal);
-        if approach <= 0.0 {
+        let approach = (-velocity.dot(self.normal)).max(-self.stopped);
+        if approach == 0.0 {
             return;
         }
-        let slide = velocity + self.normal * approach;
-        let held = (self.friction * approach / slide.length().max(LEAST_LENGTH)).min(1.0);
+        let slide = velocity - self.normal * velocity.dot(self.normal);
+        let most = self.friction * approach.max(0.0);
+        let held = (most / slide.length().max(LEAST_LENGTH)).min(1.0);
         let inverse = self.inverse_mass(particles, self.factors);
         let change = (self.normal * approach - slide * held) / inverse;
+        self.stopped += approach;
         // As far as the features approached each other at the start of the substep, this is an impact.
-        let past = relative(&particles.past_velocity, self.particles, self.factors);
-        let impact = (-past.dot(self.normal) / approach).clamp(0.0, 1.0);
+        if approach > 0.0 {
+            let past = relative(&particles.past_velocity, self.particles, self.factors);
+            self.impact = (-past.dot(self.normal) / approach).clamp(0.0, 1.0);
+        }
+        let impact = self.impact;
         for (&particle, factor) in self.particles.iter().zip(self.factors) {
             let particle = particle as usize;
             let change = change * (particles.inverse_mass[particle] * factor);
