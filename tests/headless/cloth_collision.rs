@@ -34,7 +34,8 @@ fn height(app: &App, sheet: Entity) -> f32 {
 /// A floor, and two sheets of different meshes above it, the higher one first.
 fn scene(collision: [Option<ClothCollision>; 2]) -> (App, [Entity; 2]) {
     let mut app = app();
-    let floor = (ClothCollider::cuboid(Vec3::new(2.0, 0.5, 2.0)), Transform::from_xyz(0.0, -0.5, 0.0));
+    let floor =
+        (ClothCollider::cuboid(Vec3::new(2.0, 0.5, 2.0)), Transform::from_xyz(0.0, -0.5, 0.0));
     app.world_mut().spawn(floor);
     let sheets = [spawn_sheet(&mut app, 13, 0.06), spawn_sheet(&mut app, 17, 0.01)];
     for (sheet, collision) in sheets.iter().zip(collision) {
@@ -45,8 +46,7 @@ fn scene(collision: [Option<ClothCollision>; 2]) -> (App, [Entity; 2]) {
     (app, sheets)
 }
 
-const BOTH: [Option<ClothCollision>; 2] =
-    [Some(ClothCollision { thickness: 5e-3, levels: 1 }); 2];
+const BOTH: [Option<ClothCollision>; 2] = [Some(ClothCollision { thickness: 5e-3, levels: 1 }); 2];
 
 #[test]
 fn cloths_lie_on_one_another_if_both_ask_for_it_and_their_layers_touch() {
@@ -142,39 +142,16 @@ fn a_bad_thickness_is_reported_and_other_cloths_are_not_affected() {
 #[test]
 fn a_cloth_that_fails_leaves_the_others_finite() {
     let (mut app, [upper, lower]) = scene(BOTH);
+    app.init_resource::<Failures>();
+    app.add_observer(|failed: On<ClothFailed>, mut failures: ResMut<Failures>| {
+        failures.0.push(failed.error);
+    });
     run(&mut app, 20);
     // A speed at which the positions overflow.
     let blow = ClothImpulse::velocity(Vec3::ZERO, f32::INFINITY, f32::MAX * Vec3::X);
     app.world_mut().trigger(blow.on(upper));
     run(&mut app, 60);
+    assert!(!app.world().resource::<Failures>().0.is_empty());
     assert!(state(&app, lower).positions().iter().all(|at| at.is_finite()));
     assert!(height(&app, lower) > 1e-3);
-}
-
-#[test]
-fn zz_speed() {
-  for case in 1..2 {
-    let (mut app, sheets) = scene(BOTH);
-    if case == 1 {
-        app.world_mut().get_mut::<Transform>(sheets[0]).unwrap().translation += Vec3::new(0.013, 0.0, 0.017);
-    }
-    if case == 2 {
-        app.world_mut().entity_mut(sheets[0]).insert((ClothMesh::grid(13, 13, 0.4, 0.4), Transform::from_xyz(-0.2, 0.06, -0.2).with_rotation(Quat::from_rotation_x(0.5 * PI))));
-    }
-    for second in 0..4 {
-        run(&mut app, 64);
-        let mut line = String::new();
-        for (sheet, n) in sheets.into_iter().zip([13usize, 17]) {
-            let s = state(&app, sheet);
-            let speeds: Vec<f32> = s.positions().iter().zip(s.previous_positions()).map(|(a, b)| a.distance(*b) * 64.0).collect();
-            let rms = (speeds.iter().map(|v| v * v).sum::<f32>() / speeds.len() as f32).sqrt();
-            let inner = speeds.iter().enumerate().filter(|(i, _)| { let (c, r) = (i % n, i / n); c > 1 && r > 1 && c < n - 2 && r < n - 2 }).map(|(_, v)| *v).fold(0.0, f32::max);
-            let flat = s.positions().iter().zip(s.previous_positions()).map(|(a, b)| (a.z - b.z).abs() * 64.0).fold(0.0, f32::max);
-            line += &format!("vertical {flat:.2e} ");
-            let worst = speeds.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap();
-            line += &format!("rms {rms:.2e} inner {inner:.2e} worst {worst:?} height {:.4}; ", height(&app, sheet));
-        }
-        println!("{second}: {line}");
-    }
-  }
 }

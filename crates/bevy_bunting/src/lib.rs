@@ -195,13 +195,13 @@ pub use timings::ClothTimings;
 pub mod prelude {
     pub use crate::{
         Anchor, AttachedVertices, Attachment, ClothAcceleration, ClothActivity, ClothBudget,
-        ClothCollider, ClothCollision, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
-        ClothFeatures, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged, ClothMaterial,
-        ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll, ClothReactions, ClothSeed,
-        ClothSettings, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick,
-        ClothTouched, LodSet, LodViewer, SelfCollision, TargetLost, TeleportCloth, TeleportMode,
-        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindRegion, WindShape,
-        WindWake,
+        ClothCollider, ClothCollision, ClothControl, ClothCorner, ClothEdge, ClothError,
+        ClothFailed, ClothFeatures, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged,
+        ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
+        ClothReactions, ClothSeed, ClothSettings, ClothState, ClothSurface, ClothSystems,
+        ClothTargetLost, ClothTick, ClothTouched, LodSet, LodViewer, SelfCollision, TargetLost,
+        TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan, WindField, WindInfluence,
+        WindRegion, WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{ClothFromMesh, ColorChannel, PaintedWeights, VertexPaint};

@@ -81,13 +81,13 @@ fn member(frame: (Vec3, Quat)) -> GroupMember {
     }
 }
 
-/// Pins cannot be moved by a snapshot of an insertion, so the lower sheet is held in a plane of its own frame: xy.
+/// The frame of the lower sheet, whose pins are in its own plane: xy.
 fn lying() -> (Vec3, Quat) {
     (Vec3::ZERO, Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2))
 }
 
-/// Lets a sheet fall on one of another fabric, material, frame and width, whose border is held. Returns the height of the
-/// lowest particle of the upper one over the highest of the lower one, and the positions of both in the world.
+/// Lets a sheet fall on one of another fabric, material, frame and width, whose border is held. Returns the positions of
+/// both in the world.
 fn fall(lanes: LaneCount, filters: u32) -> [Vec<Vec3>; 2] {
     let (lower, upper) = (sheet(17, true), sheet(13, false));
     let turned = (Vec3::new(3.0, -1.0, 2.0), Quat::from_rotation_y(0.6));
@@ -113,7 +113,7 @@ fn fall(lanes: LaneCount, filters: u32) -> [Vec<Vec3>; 2] {
     })
 }
 
-/// Least distance of the middle particles of the upper sheet from particles of the lower one along y, m, by the nearest.
+/// Heights of the upper sheet's particles over the nearest ones of the lower sheet, m.
 fn heights([lower, upper]: &[Vec<Vec3>; 2]) -> Vec<f32> {
     let over = |at: &Vec3| {
         let flat = |it: &Vec3| (it.x - at.x).powi(2) + (it.z - at.z).powi(2);

@@ -125,7 +125,9 @@ pub enum ClothError {
     },
     /// The thickness of the [`ClothCollision`](crate::ClothCollision) is not finite and greater than zero. The cloth passes
     /// through other cloths.
-    #[error("the thickness of the ClothCollision of cloth {entity} must be finite and greater than zero")]
+    #[error(
+        "the thickness of the ClothCollision of cloth {entity} must be finite and greater than zero"
+    )]
     Collision {
         /// The cloth.
         entity: Entity,

@@ -176,9 +176,8 @@ impl CollidingClothItem<'_, '_> {
 fn unite(cloths: &mut [Awake]) {
     (0..cloths.len()).for_each(|index| cloths[index].group = index);
     let mut by_start: Vec<usize> = (0..cloths.len()).collect();
-    by_start.sort_by(|&one, &other| {
-        cloths[one].around.mins.x.total_cmp(&cloths[other].around.mins.x)
-    });
+    by_start
+        .sort_by(|&one, &other| cloths[one].around.mins.x.total_cmp(&cloths[other].around.mins.x));
     for (rank, &one) in by_start.iter().enumerate() {
         for &other in &by_start[rank + 1..] {
             let [first, second] = [&cloths[one], &cloths[other]];

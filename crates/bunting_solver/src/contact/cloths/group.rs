@@ -16,6 +16,9 @@ use crate::contact::itself::place::Pose;
 /// come to lie in one plane.
 const ROUNDS: usize = 2;
 
+/// Number of sweeps over all contacts. Fewer: cloth that lies on cloth trembles and does not fall asleep. More: costs more.
+const SWEEPS: usize = 8;
+
 /// Access to the lanes of a group's cloths.
 pub trait GroupLanes {
     /// The batch of a member, given its index, and its lane, which must hold a cloth.
@@ -116,7 +119,7 @@ impl ClothGroup {
         for _ in 0..ROUNDS {
             if meet {
                 read_velocities(members, lanes, layers);
-                layers.separate(step, &rules);
+                layers.separate(step, SWEEPS, &rules);
                 write(members, lanes, layers);
                 layers.particles.touched.fill(false);
             }

@@ -81,19 +81,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             *inverse_mass = self.masses.inverse[pack].lanes()[lane] * scale;
         }
         let finite = |positions: &[Vec3]| positions[range.clone()].iter().all(|it| it.is_finite());
-        member.is_finite = member.settings.is_valid()
-            && finite(&particles.start)
-            && finite(&particles.end);
+        member.is_finite =
+            member.settings.is_valid() && finite(&particles.start) && finite(&particles.end);
         if member.moves { self.clock.step } else { 0.0 }
     }
 
     /// Copies velocities of particles near others out of the lane. Cloth that does not move has none.
-    pub fn read_velocities(
-        &mut self,
-        cloth: usize,
-        member: &Member,
-        particles: &mut Particles,
-    ) {
+    pub fn read_velocities(&mut self, cloth: usize, member: &Member, particles: &mut Particles) {
         let range = member.range.clone();
         if member.moves {
             self.gather_velocities(&Part { cloth, range, place: &member.pose }, particles);

@@ -17,9 +17,10 @@ pub(super) struct OfGroup<'a> {
 impl OfGroup<'_> {
     /// Greatest distance that any two layers keep, m.
     pub fn greatest_thickness(&self) -> f32 {
-        let all = self.members.iter().map(|member| {
-            member.settings.thickness.max(member.own_thickness.unwrap_or(0.0))
-        });
+        let all = self
+            .members
+            .iter()
+            .map(|member| member.settings.thickness.max(member.own_thickness.unwrap_or(0.0)));
         all.fold(0.0, f32::max)
     }
 }

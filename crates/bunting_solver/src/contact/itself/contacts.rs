@@ -42,10 +42,11 @@ impl LayerContacts {
         untangle(mesh, &self.pairs, &mut self.particles, step, &mut self.tangles);
     }
 
-    /// Moves these features apart in a substep of the length `step`, s. Velocities of their particles must be known.
-    pub fn separate(&mut self, step: f32, rules: &impl Rules) {
+    /// Moves these features apart in a substep of the length `step`, s, in some sweeps over all. Velocities of their
+    /// particles must be known.
+    pub fn separate(&mut self, step: f32, sweeps: usize, rules: &impl Rules) {
         let Self { pairs, particles, contacts, tangles, .. } = self;
-        Spacing { rules, step, tangles }.separate(pairs, particles, contacts);
+        Spacing { rules, sweeps, step, tangles }.separate(pairs, particles, contacts);
     }
 
     /// Returns features that pass through one another to where they began in the substep, and marks their particles.

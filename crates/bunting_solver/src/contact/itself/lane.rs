@@ -16,6 +16,10 @@ use crate::contact::itself::settings::SelfCollision;
 use crate::contact::itself::state::SelfContacts;
 use crate::simd::lane::Pack;
 
+/// Number of sweeps over all contacts. Fewer: piles of layers are pressed through one another, and return by rigid zones.
+/// More: costs more.
+const SWEEPS: usize = 4;
+
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Keeps a cloth from passing through itself, or lets it.
     pub fn set_self_collision(&mut self, cloth: usize, settings: Option<SelfCollision>) {
@@ -55,7 +59,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let part = Part { cloth, range: 0..layers.particles.end.len(), place: &InItsFrame };
             self.gather_velocities(&part, &mut layers.particles);
             layers.untangle(mesh, self.clock.step);
-            layers.separate(self.clock.step, &rules);
+            layers.separate(self.clock.step, SWEEPS, &rules);
             self.scatter_particles(&part, &layers.particles);
         }
     }

@@ -55,7 +55,11 @@ impl Particles {
 
 /// Sum of four particles' vectors with the factors of a contact: those of one side are positive and sum up to one, those
 /// of the other side are negative and sum up to minus one.
-pub(in crate::contact) fn relative(vectors: &[Vec3], particles: [u32; 4], factors: [f32; 4]) -> Vec3 {
+pub(in crate::contact) fn relative(
+    vectors: &[Vec3],
+    particles: [u32; 4],
+    factors: [f32; 4],
+) -> Vec3 {
     let terms = particles.iter().zip(factors);
     terms.fold(Vec3::ZERO, |sum, (&particle, factor)| sum + vectors[particle as usize] * factor)
 }

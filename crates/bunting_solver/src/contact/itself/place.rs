@@ -51,7 +51,7 @@ pub(in crate::contact) struct Pose {
 
 impl Pose {
     /// Common coordinates of a point of the frame, m.
-    pub fn to_common(&self, point: Vec3) -> Vec3 {
+    pub fn to_common(self, point: Vec3) -> Vec3 {
         self.origin + self.rotation * point
     }
 }

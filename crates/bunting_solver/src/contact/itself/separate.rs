@@ -13,10 +13,6 @@ use crate::contact::itself::particles::{Particles, relative};
 use crate::contact::itself::rules::{Keep, Rules};
 use crate::contact::itself::untangle::Tangles;
 
-/// Number of times that all contacts are solved, one after the other. Fewer: piles of layers are pressed through one
-/// another, and return by rigid zones. More: costs more.
-const SWEEPS: usize = 4;
-
 /// Speed at which features that are too near at the start of a substep move apart, m/s. Smaller: layers stay pressed
 /// together for long. Larger: links beside them are stretched.
 const RECOVERY: f32 = 0.5;
@@ -66,6 +62,8 @@ struct Near {
 /// The distances of contacts.
 pub(in crate::contact) struct Spacing<'a, R> {
     pub rules: &'a R,
+    /// Number of times that all contacts are solved, one after the other.
+    pub sweeps: usize,
     /// Length of the substep, s.
     pub step: f32,
     /// Features that pass through one another at the start of the substep.
@@ -83,12 +81,12 @@ impl<R: Rules> Spacing<'_, R> {
                 contacts.push(contact);
             }
         }
-        for _ in 0..SWEEPS {
+        for _ in 0..self.sweeps {
             for contact in contacts.iter_mut() {
                 contact.project(particles);
             }
         }
-        for _ in 0..SWEEPS {
+        for _ in 0..self.sweeps {
             for contact in contacts.iter_mut().filter(|contact| contact.depth > 0.0) {
                 contact.stop(particles);
             }
