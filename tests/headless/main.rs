@@ -5,6 +5,7 @@ mod any_order;
 mod attachment;
 mod bad_anchors;
 mod broad_phase;
+mod cloth_collision;
 mod contacts;
 mod determinism;
 mod effort;

@@ -145,6 +145,7 @@ pub use diagnostics::ClothDiagnosticsPlugin;
 pub use display::ease::EasingPlugin;
 pub use display::lift::LiftPlugin;
 pub use display::surface::{ClothSurface, SurfacePlugin};
+pub use environment::cloth_collision::ClothCollision;
 pub use environment::collider::{ClothCollider, ColliderError};
 pub use environment::drive::DrivePlugin;
 pub use environment::drive_colliders::ColliderPlugin;
@@ -153,6 +154,7 @@ pub use environment::forces::acceleration::ClothAcceleration;
 pub use environment::forces::control::{ClothControl, ControlError, ControlledCloth};
 pub use environment::forces::impulse::{ClothImpulse, Push};
 pub use environment::forces::plugin::ForcePlugin;
+pub use environment::group_cloths::ClothCollisionPlugin;
 pub use environment::layers::{ClothFeatures, ClothLayers};
 pub use environment::reactions::{
     ClothParted, ClothReaction, ClothReactions, ClothTouched, ReactionPlugin,
@@ -210,13 +212,14 @@ pub mod prelude {
     pub use crate::{
         Anchor, AnchorHold, AnchorReactions, AttachedVertices, Attachment, ByVertex,
         ClothAcceleration, ClothActivity, ClothAnchorBroke, ClothBudget, ClothCollider,
-        ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed, ClothFeatures, ClothGrab,
-        ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged, ClothMaterial, ClothMesh,
-        ClothParted, ClothPaused, ClothPlugins, ClothPreroll, ClothReactions, ClothSeed,
-        ClothSettings, ClothSkin, ClothState, ClothSurface, ClothSystems, ClothTargetLost,
-        ClothTick, ClothTouched, GrabbedVertices, LodSet, LodViewer, SelfCollision, SkinError,
-        SkinLimits, TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan,
-        WindField, WindInfluence, WindRegion, WindShape, WindWake,
+        ClothCollision, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
+        ClothFeatures, ClothGrab, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged,
+        ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
+        ClothReactions, ClothSeed, ClothSettings, ClothSkin, ClothState, ClothSurface,
+        ClothSystems, ClothTargetLost, ClothTick, ClothTouched, GrabbedVertices, LodSet, LodViewer,
+        SelfCollision, SkinError, SkinLimits, TargetLost, TeleportCloth, TeleportMode,
+        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindRegion, WindShape,
+        WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{
@@ -268,6 +271,7 @@ impl PluginGroup for ClothPlugins {
             .add(ColliderPlugin)
             .add(ReactionPlugin)
             .add(SelfCollisionPlugin)
+            .add(ClothCollisionPlugin)
             .add(SolverPlugin)
             .add(PublishPlugin)
             .add(EasingPlugin)

@@ -79,6 +79,8 @@ pub use anchors::{Hold, Holder, PinGroups, PinReaction};
 pub use batch::lane_count::LaneCount;
 pub use batch::snapshot::ClothSnapshot;
 pub use batch::{BatchError, ClothBatch, Entering, LaneSurface, ParticlesMut};
+pub use contact::cloths::group::{ClothGroup, GroupLanes};
+pub use contact::cloths::member::GroupMember;
 pub use contact::collider::Collider;
 pub use contact::itself::settings::SelfCollision;
 pub use contact::lift::SurfaceLift;

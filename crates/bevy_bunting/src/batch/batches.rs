@@ -16,6 +16,7 @@ use parry3d::bounding_volume::Aabb;
 use crate::batch::group::Group;
 use crate::batch::lane_handle::LaneHandle;
 use crate::batch::occupancy::{LaneMut, OccupiedBatch, PendingCloth};
+use crate::batch::touching::{TouchingCloth, TouchingCloths};
 
 /// Number of particles in all lanes from which a phase of a substep is spread over threads: its time then
 /// outweighs the 30 µs of waking them. Fewer: small crowds are slowed down.
@@ -25,6 +26,8 @@ const PARALLEL_PARTICLES: usize = 64 * 1024;
 #[derive(Resource, Debug, Default)]
 pub struct ClothBatches {
     groups: Vec<Group>,
+    /// Cloths that may touch one another in this tick.
+    touching: Vec<TouchingCloths>,
     /// Time that the last [`assign_lanes`](Self::assign_lanes) took.
     pub(crate) assignment_time: Duration,
     /// Whether the time of each batch is measured in this tick.
@@ -102,6 +105,31 @@ impl ClothBatches {
     /// Computes the boxes around all cloths in a tick of `tick` seconds.
     pub(crate) fn update_bounds(&mut self, tick: f32) {
         self.spread(|_| true, |batch| batch.bounds = batch.batch.swept_bounds(tick));
+    }
+
+    /// Computes the boxes around all cloths in the batches of some lanes, in a tick of `tick` seconds.
+    pub(crate) fn update_bounds_of(&mut self, lanes: &[LaneHandle], tick: f32) {
+        let mut batches: Vec<_> = lanes.iter().map(|lane| (lane.group, lane.batch)).collect();
+        batches.sort_unstable();
+        batches.dedup();
+        for (group, batch) in batches {
+            let batch = &mut self.groups[group].batches[batch];
+            batch.bounds = batch.batch.swept_bounds(tick);
+        }
+    }
+
+    /// Sets the cloths that may touch one another in this tick, each group by itself.
+    pub(crate) fn set_touching(&mut self, groups: &[Vec<TouchingCloth>]) {
+        if !self.touching.is_empty() {
+            self.groups.iter_mut().for_each(Group::forget_touching);
+        }
+        self.touching.resize_with(groups.len(), TouchingCloths::default);
+        for (touching, cloths) in self.touching.iter_mut().zip(groups) {
+            touching.set(cloths);
+            for lane in touching.lanes() {
+                self.groups[lane.group].batches[lane.batch].touches = true;
+            }
+        }
     }
 
     /// The box around all positions that the particles of a cloth reach in this tick, relative to its frame at the
@@ -227,6 +255,7 @@ impl ClothBatches {
                 batch.batch.begin_tick(tick, settings);
             }
         }
+        self.touching.iter_mut().for_each(|cloths| cloths.begin_tick(&mut self.groups));
     }
 
     /// Begins substep `index` of `count`. A batch with fewer substeps takes part in as many of them as it
@@ -244,6 +273,16 @@ impl ClothBatches {
         }
     }
 
+    /// Notes where cloths are that may touch one another, before any batch integrates.
+    pub(crate) fn begin_touching(&mut self) {
+        self.touching.iter_mut().for_each(|cloths| cloths.begin_substep(&mut self.groups));
+    }
+
+    /// Keeps cloths apart that may touch one another, after the batches have solved their constraints.
+    pub(crate) fn solve_touching(&mut self) {
+        self.touching.iter_mut().for_each(|cloths| cloths.solve(&mut self.groups));
+    }
+
     /// Runs a phase on all batches that take part in the current substep.
     pub(crate) fn for_each_joining(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
         self.for_each_where(|batch| batch.joins, |batch| phase(&mut batch.batch));
@@ -254,12 +293,34 @@ impl ClothBatches {
         self.for_each_where(|_| true, |batch| phase(&mut batch.batch));
     }
 
-    /// Runs all substeps of the tick, batch by batch.
-    pub(crate) fn for_each_substep(&mut self, substep: impl Fn(&mut ClothBatch) + Sync) {
-        let all = |batch: &mut OccupiedBatch| {
-            (0..batch.substeps).for_each(|_| substep(&mut batch.batch));
-        };
-        self.for_each_where(|_| true, all);
+    /// Runs all substeps of the tick: batch by batch where no cloth may touch another, then those of the others, each
+    /// substep of all of them before the next one.
+    pub(crate) fn run_substeps(&mut self) {
+        self.for_each_where(
+            |batch| !batch.touches,
+            |batch| {
+                for _ in 0..batch.substeps {
+                    batch.batch.integrate();
+                    batch.batch.solve_constraints();
+                    batch.batch.update_velocities();
+                }
+            },
+        );
+        if self.touching.is_empty() {
+            return;
+        }
+        let joins = |batch: &OccupiedBatch| batch.touches && batch.joins;
+        let count = self.substeps();
+        for index in 0..count {
+            self.begin_substep(index, count);
+            self.begin_touching();
+            self.for_each_where(joins, |batch| {
+                batch.batch.integrate();
+                batch.batch.solve_constraints();
+            });
+            self.solve_touching();
+            self.for_each_where(joins, |batch| batch.batch.update_velocities());
+        }
     }
 
     /// Runs a phase on some batches, and adds its time to theirs if times are measured.

@@ -92,6 +92,11 @@ impl Group {
         &batch.batch
     }
 
+    /// Forgets which batches have cloths that may touch others.
+    pub fn forget_touching(&mut self) {
+        self.batches.iter_mut().chain(&mut self.spare).for_each(|batch| batch.touches = false);
+    }
+
     /// Number of particles of each cloth.
     pub fn particle_count(&self) -> usize {
         self.fabrics[0].fabric.particle_count()

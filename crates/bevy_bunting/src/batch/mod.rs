@@ -9,3 +9,4 @@ pub mod occupancy;
 pub mod particles;
 pub mod publish;
 pub mod solve;
+pub(crate) mod touching;

@@ -47,6 +47,8 @@ pub(crate) struct OccupiedBatch {
     pub substeps: u32,
     /// Whether the batch takes part in the current substep.
     pub joins: bool,
+    /// Whether a cloth of the batch may touch another cloth in this tick, so that all their batches take each substep together.
+    pub touches: bool,
     /// Fraction of the tick that has passed for the batch at the end of its current substep.
     pub covered: f32,
     /// Time that the batch has taken in this tick, if it is measured.
@@ -70,6 +72,7 @@ impl OccupiedBatch {
             width,
             substeps: 0,
             joins: true,
+            touches: false,
             covered: 0.0,
             time: Duration::ZERO,
         }

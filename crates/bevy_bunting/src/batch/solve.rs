@@ -46,11 +46,7 @@ fn run_substeps(world: &mut World) {
         if schedule.systems_len() == OWN_SYSTEMS {
             // Without systems of the user, all substeps run batch by batch, so that each batch stays in the
             // cache.
-            world.resource_mut::<ClothBatches>().for_each_substep(|batch| {
-                batch.integrate();
-                batch.solve_constraints();
-                batch.update_velocities();
-            });
+            world.resource_mut::<ClothBatches>().run_substeps();
             return;
         }
         for index in 0..count {
@@ -61,11 +57,13 @@ fn run_substeps(world: &mut World) {
 }
 
 fn integrate(mut batches: ResMut<ClothBatches>) {
+    batches.begin_touching();
     batches.for_each_joining(ClothBatch::integrate);
 }
 
 fn solve_constraints(mut batches: ResMut<ClothBatches>) {
     batches.for_each_joining(ClothBatch::solve_constraints);
+    batches.solve_touching();
 }
 
 fn update_velocities(mut batches: ResMut<ClothBatches>) {

@@ -133,6 +133,15 @@ pub enum ClothError {
         /// The cloth.
         entity: Entity,
     },
+    /// The thickness of the [`ClothCollision`](crate::ClothCollision) is not finite and greater than zero. The cloth passes
+    /// through other cloths.
+    #[error(
+        "the thickness of the ClothCollision of cloth {entity} must be finite and greater than zero"
+    )]
+    Collision {
+        /// The cloth.
+        entity: Entity,
+    },
     /// A part of the [`ClothInertia`](crate::ClothInertia) is not within 0 to 1. The cloth feels everything.
     #[error("the parts of the ClothInertia of cloth {entity} must lie within 0 to 1")]
     Inertia {

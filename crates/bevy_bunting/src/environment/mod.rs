@@ -1,5 +1,6 @@
 //! Wind, gravity and colliders: everything that acts on a cloth besides its attachment.
 
+pub(crate) mod cloth_collision;
 pub mod collider;
 mod collider_tree;
 pub mod drive;
@@ -7,6 +8,7 @@ pub mod drive_colliders;
 pub mod drive_self_collisions;
 mod falloff;
 pub mod forces;
+pub mod group_cloths;
 pub(crate) mod layers;
 pub(crate) mod reactions;
 pub(crate) mod self_collision;

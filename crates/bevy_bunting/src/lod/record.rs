@@ -53,6 +53,8 @@ impl LodRecord {
 pub(crate) struct RestTimer {
     /// Number of ticks for which the cloth has been at rest.
     pub ticks: u32,
+    /// First of the cloths that the cloth may touch in this tick, which come to rest together; none without them.
+    pub group: Option<Entity>,
     /// Pose of the frame at the end of the last tick.
     pub pose: Option<Isometry3d>,
 }

@@ -1,6 +1,7 @@
 //! Sleep at rest: cloths at rest fall asleep, and wake when anything that acts on them changes.
 
 use bevy_app::{App, Plugin};
+use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_time::Time;
@@ -10,6 +11,7 @@ use crate::cloth::activity::ClothActivity;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
 use crate::display::lift::lift_surfaces;
+use crate::environment::cloth_collision::ClothCollision;
 use crate::environment::collider::ClothCollider;
 use crate::environment::forces::acceleration::ClothAcceleration;
 use crate::environment::layers::{ClothFeatures, ClothLayers};
@@ -133,11 +135,17 @@ fn wake_exposed(mut cloths: Query<(&mut ClothInstance, &mut RestTimer), HasNewEx
 }
 
 /// Filter of cloths and colliders that touch others than before.
-type HasNewLayers = Or<(Changed<ClothLayers>, Changed<ClothFeatures>, Changed<SelfCollision>)>;
+type HasNewLayers = Or<(
+    Changed<ClothLayers>,
+    Changed<ClothFeatures>,
+    Changed<SelfCollision>,
+    Changed<ClothCollision>,
+)>;
 
 fn note_changes(
     colliders: Query<(Ref<ClothCollider>, Ref<PoseHistory>)>,
     mut removed: RemovedComponents<ClothCollider>,
+    mut freed: RemovedComponents<ClothCollision>,
     layers: Query<(), HasNewLayers>,
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
@@ -146,6 +154,7 @@ fn note_changes(
     let changes = &mut *changes;
     changes.everywhere = settings.is_changed() || wind.changed_everywhere(&changes.wind);
     changes.everywhere |= removed.read().count() > 0 || !layers.is_empty();
+    changes.everywhere |= freed.read().count() > 0;
     changes.disturbed.clear();
     changes.disturbed.extend(wind.changed_balls(&changes.wind));
     changes.wind.clone_from(&wind);
@@ -202,6 +211,8 @@ pub(crate) fn send_to_sleep(
         return;
     }
     let tick = time.delta_secs();
+    // Cloths that may touch one another fall asleep together: one without a lane would let the others through.
+    let mut rested: EntityHashMap<bool> = EntityHashMap::default();
     for (mut instance, state, frame, anchors, joints, mut timer, record) in &mut cloths {
         if instance.lane().is_none() {
             continue;
@@ -214,10 +225,25 @@ pub(crate) fn send_to_sleep(
         timer.pose = Some(pose);
         let is_still = !is_disturbed && speed(state, tick) <= REST_SPEED;
         timer.ticks = if is_still { timer.ticks + 1 } else { 0 };
-        if timer.ticks.min(changes.unchanged_ticks) as f32 * tick > REST_TIME {
-            timer.ticks = 0;
-            instance.activity = ClothActivity::AtRest;
-            changes.asleep += 1;
+        let rests = timer.ticks.min(changes.unchanged_ticks) as f32 * tick > REST_TIME;
+        match timer.group {
+            Some(group) => *rested.entry(group).or_insert(true) &= rests,
+            None if rests => {
+                timer.ticks = 0;
+                instance.activity = ClothActivity::AtRest;
+                changes.asleep += 1;
+            }
+            None => {}
+        }
+    }
+    if rested.values().any(|&rests| rests) {
+        for (mut instance, .., mut timer, _) in &mut cloths {
+            let rests = |group: Entity| instance.lane().is_some() && rested[&group];
+            if timer.group.is_some_and(rests) {
+                timer.ticks = 0;
+                instance.activity = ClothActivity::AtRest;
+                changes.asleep += 1;
+            }
         }
     }
 }

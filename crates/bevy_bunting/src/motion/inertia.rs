@@ -73,7 +73,7 @@ impl ClothInertia {
     }
 
     /// Velocity of the carrier (m/s) at a point in the frame (m).
-    fn carrier(self, point: Vec3, motion: &FrameMotion, tick: f32) -> Vec3 {
+    pub(crate) fn carrier(self, point: Vec3, motion: &FrameMotion, tick: f32) -> Vec3 {
         if self.is_full() {
             return Vec3::ZERO;
         }

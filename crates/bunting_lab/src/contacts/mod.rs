@@ -3,6 +3,7 @@
 //! Every row is one figure of the product with default passes, and one limit.
 
 mod capstan;
+mod cloths;
 mod drape;
 mod fast;
 mod intersections;
@@ -20,7 +21,7 @@ pub use row::Row;
 pub type Family = fn(quick: bool) -> Vec<Row>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 7] = [
+pub const ALL: [(&str, Family); 8] = [
     ("slope", slope::rows),
     ("capstan", capstan::rows),
     ("turntable", turntable::rows),
@@ -28,4 +29,5 @@ pub const ALL: [(&str, Family); 7] = [
     ("fast", fast::rows),
     ("drape", drape::rows),
     ("itself", itself::rows),
+    ("cloths", cloths::rows),
 ];

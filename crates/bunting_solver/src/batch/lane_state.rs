@@ -25,6 +25,8 @@ pub(crate) struct LaneState {
     pub contacts: Vec<Candidates>,
     /// Contacts of the cloth with itself, if it has any.
     pub self_contacts: Option<Box<SelfContacts>>,
+    /// Whether the contacts of the present substep are solved together with those of other cloths, after the batch's.
+    pub is_grouped: bool,
     /// What the cloth has done to each collider in this tick; empty if none reports it.
     pub reactions: Vec<ReactionSum>,
     /// Moment about the pole of this substep's corrections from outside the cloth, by contacts and by users, in
@@ -55,6 +57,7 @@ impl LaneState {
             colliders: Vec::new(),
             contacts: Vec::new(),
             self_contacts: None,
+            is_grouped: false,
             reactions: Vec::new(),
             external_moment: 0.0,
             history: IntegratorHistory::default(),

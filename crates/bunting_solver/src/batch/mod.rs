@@ -4,6 +4,7 @@ pub(crate) mod background_grid;
 mod cloth_batch;
 mod error;
 pub(crate) mod exchange;
+mod grouped;
 pub(crate) mod lane_batch;
 pub(crate) mod lane_count;
 pub(crate) mod lane_fabric;

@@ -2,6 +2,7 @@
 
 mod bounds;
 pub(crate) mod candidates;
+pub(crate) mod cloths;
 pub(crate) mod collider;
 mod gather;
 mod ground;

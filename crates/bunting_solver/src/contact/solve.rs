@@ -26,23 +26,28 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         for cloth in 0..self.lanes.len() {
             // The lane's state is taken out, so that the particles of the batch can be written.
             let touches = |state: &mut LaneState| {
-                !state.colliders.is_empty() || state.self_contacts.is_some()
+                (!state.colliders.is_empty() || state.self_contacts.is_some()) && !state.is_grouped
             };
             if let Some(mut state) = self.lanes[cloth].take_if(touches) {
                 self.separate_layers(cloth, &mut state);
-                let mut reactions = core::mem::take(&mut state.reactions);
-                let mut sums = reactions.iter_mut();
-                for (collider, candidates) in state.colliders.iter().zip(&state.contacts) {
-                    let reaction = sums.next().filter(|_| collider.reports_as.is_some());
-                    let mut outcome = Outcome { moment: 0.0, reaction };
-                    self.solve_candidates(cloth, &state, (collider, candidates), &mut outcome);
-                    state.external_moment += outcome.moment;
-                }
-                state.reactions = reactions;
+                self.solve_colliders(cloth, &mut state);
                 self.return_layers(cloth, &mut state);
                 self.lanes[cloth] = Some(state);
             }
         }
+    }
+
+    /// Projects every candidate of a cloth's contacts with colliders once.
+    pub(in crate::contact) fn solve_colliders(&mut self, cloth: usize, state: &mut LaneState) {
+        let mut reactions = core::mem::take(&mut state.reactions);
+        let mut sums = reactions.iter_mut();
+        for (collider, candidates) in state.colliders.iter().zip(&state.contacts) {
+            let reaction = sums.next().filter(|_| collider.reports_as.is_some());
+            let mut outcome = Outcome { moment: 0.0, reaction };
+            self.solve_candidates(cloth, state, (collider, candidates), &mut outcome);
+            state.external_moment += outcome.moment;
+        }
+        state.reactions = reactions;
     }
 
     /// Projects everything that may touch one collider.

@@ -11,7 +11,7 @@ use crate::simd::vec3::V3;
 
 /// Paths of the triangles of a cell in a substep.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct TrianglePaths {
+pub(in crate::contact) struct TrianglePaths {
     /// Corners at the start and at the end, m.
     corners: [Corners; 2],
     /// Boxes around the paths, widened by half of the thickness.
@@ -40,7 +40,7 @@ impl TrianglePaths {
 
 /// Gathers the corners of a cell's triangles.
 #[inline(always)]
-pub(super) fn gather(cell: &Cell, positions: &[Vec3], into: &mut Corners) {
+pub(in crate::contact) fn gather(cell: &Cell, positions: &[Vec3], into: &mut Corners) {
     for (corner, lanes) in into.iter_mut().zip(&cell.corners) {
         for (lane, &particle) in lanes.iter().enumerate() {
             let position = positions[particle as usize];
@@ -53,7 +53,7 @@ pub(super) fn gather(cell: &Cell, positions: &[Vec3], into: &mut Corners) {
 
 /// Two triangles that may touch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Meeting {
+pub(in crate::contact) struct Meeting {
     /// The lane of each.
     pub lanes: [usize; 2],
     /// Whether they do not touch if they have a corner in common: whether a plane through a point of both is between them.
@@ -62,7 +62,7 @@ pub(super) struct Meeting {
 
 /// Finds the triangles of two cells that may touch: all but those that a plane keeps farther than the thickness from each
 /// other, at the start and at the end of the substep.
-pub(super) fn find_meetings(
+pub(in crate::contact) fn find_meetings(
     cells: [&TrianglePaths; 2],
     around: &Swept,
     thickness: f32,

@@ -6,11 +6,11 @@ use crate::simd::registers::Pack8;
 use crate::simd::vec3::{Pack3, V3, set_lane3};
 
 /// Corners of the triangles of a cell, one triangle in each lane; the last in those without one.
-pub(super) type Corners = [Pack3<Pack8>; 3];
+pub(in crate::contact) type Corners = [Pack3<Pack8>; 3];
 
 /// Boxes around paths, like [`Swept`], one in each lane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Boxes {
+pub(in crate::contact) struct Boxes {
     low: [Pack3<Pack8>; 2],
     high: [Pack3<Pack8>; 2],
 }
@@ -47,7 +47,7 @@ impl Boxes {
 }
 
 /// A box around paths, in all lanes.
-pub(super) struct Splat<L> {
+pub(in crate::contact) struct Splat<L> {
     low: [V3<L>; 2],
     high: [V3<L>; 2],
 }
@@ -79,7 +79,7 @@ fn overlap<L: Lane>(low: &[V3<L>; 2], high: &[V3<L>; 2]) -> L::Mask {
 }
 
 /// Computes boxes around triangles, given the corners at the start and at the end, m.
-pub(super) struct Around<'a> {
+pub(in crate::contact) struct Around<'a> {
     pub corners: &'a [Corners; 2],
     /// Distance by which the boxes are widened, m.
     pub by: f32,
@@ -101,7 +101,7 @@ impl Kernel<Pack8> for Around<'_> {
 }
 
 /// Finds the boxes that meet another.
-pub(super) struct FindMeeting<'a> {
+pub(in crate::contact) struct FindMeeting<'a> {
     pub one: &'a Boxes,
     /// The lane of the box.
     pub lane: usize,

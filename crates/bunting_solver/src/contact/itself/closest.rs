@@ -9,7 +9,7 @@ use crate::constants::{LEAST_AREA_SQUARED, LEAST_LENGTH};
 const LEAST_SQUARED_SINE: f32 = 1e-6;
 
 /// Parameters from 0 to 1 of the closest points of two edges (Ericson 2005, "Real-time collision detection", 5.1.9).
-pub(super) fn edges([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> [f32; 2] {
+pub(in crate::contact) fn edges([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> [f32; 2] {
     let (one, other, between) = (b - a, d - c, a - c);
     let (squared_one, squared_other) = (one.length_squared(), other.length_squared());
     let (along_one, along_other) = (one.dot(between), other.dot(between));
@@ -34,7 +34,7 @@ pub(super) fn edges([a, b]: [Vec3; 2], [c, d]: [Vec3; 2]) -> [f32; 2] {
 }
 
 /// A point over or under a triangle.
-pub(super) struct Over {
+pub(in crate::contact) struct Over {
     /// Unit normal of the triangle.
     pub normal: Vec3,
     /// Signed distance of the point from the plane, m.
@@ -51,7 +51,7 @@ impl Over {
 }
 
 /// A point relative to a triangle; none of a collapsed triangle.
-pub(super) fn over(point: Vec3, [a, b, c]: [Vec3; 3]) -> Option<Over> {
+pub(in crate::contact) fn over(point: Vec3, [a, b, c]: [Vec3; 3]) -> Option<Over> {
     let (first, second, from) = (b - a, c - a, point - a);
     let normal = first.cross(second);
     let squared_area = normal.length_squared();

@@ -5,7 +5,7 @@ use crate::contact::itself::particles::Particles;
 
 /// A cloth that may touch itself.
 #[derive(Clone, Copy)]
-pub(super) struct Cloth<'a> {
+pub(in crate::contact) struct Cloth<'a> {
     pub mesh: &'a ContactMesh,
     pub particles: &'a Particles,
     /// Distance of layers, m.

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::contact::itself::pairs::EdgeTriangle;
 
 /// Where an edge passes through a triangle.
-pub(super) struct Crossing {
+pub(in crate::contact) struct Crossing {
     /// Fraction of the edge's length.
     pub along: f32,
     /// Barycentric coordinates in the triangle.
@@ -13,7 +13,7 @@ pub(super) struct Crossing {
 }
 
 /// Where an edge passes through a triangle, given the positions of all particles; none if it does not.
-pub(super) fn crossing(pair: &EdgeTriangle, positions: &[Vec3]) -> Option<Crossing> {
+pub(in crate::contact) fn crossing(pair: &EdgeTriangle, positions: &[Vec3]) -> Option<Crossing> {
     let [p, q] = pair.edge.map(|end| positions[end as usize]);
     let [a, b, c] = pair.triangle.map(|corner| positions[corner as usize]);
     let (first, second, from) = (b - a, c - a, p - a);

@@ -17,7 +17,7 @@ const LEAST_COSINE: f32 = 0.2;
 
 /// Unit normals of the triangles of each cell; zero of collapsed triangles.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Normals {
+pub(in crate::contact) struct Normals {
     /// The normals of each cell, one in each lane.
     cells: Vec<Pack3<Pack8>>,
     /// Sum of each cell's normals.

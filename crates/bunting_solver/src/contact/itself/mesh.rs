@@ -7,7 +7,7 @@ use crate::fabric::Fabric;
 
 /// An edge and the triangles beside it.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Edge {
+pub(in crate::contact) struct Edge {
     pub ends: [u32; 2],
     /// The third corner of each triangle beside the edge; none beside a border.
     pub wings: [Option<u32>; 2],
@@ -19,22 +19,22 @@ pub(super) struct Edge {
 /// though several triangles share each (Curtis 2008, "Fast collision detection for deformable models using
 /// representative-triangles").
 #[derive(Clone, Debug, Default)]
-pub(super) struct Represented {
+pub(in crate::contact) struct Represented {
     pub particles: Vec<u32>,
     /// Indices of edges.
     pub edges: Vec<u32>,
 }
 
 /// The features of a fabric that may touch, and the patches in which they are looked up.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct ContactMesh {
     /// Triangles, in the order of the cells.
-    pub(super) triangles: Vec<[u32; 3]>,
-    pub(super) edges: Vec<Edge>,
+    pub(in crate::contact) triangles: Vec<[u32; 3]>,
+    pub(in crate::contact) edges: Vec<Edge>,
     /// For each triangle, the features that it stands for.
-    pub(super) represented: Vec<Represented>,
-    pub(super) patches: Vec<Patch>,
-    pub(super) cells: Vec<Cell>,
+    pub(in crate::contact) represented: Vec<Represented>,
+    pub(in crate::contact) patches: Vec<Patch>,
+    pub(in crate::contact) cells: Vec<Cell>,
 }
 
 impl ContactMesh {
@@ -71,8 +71,34 @@ impl ContactMesh {
         Self { triangles, edges, represented, patches, cells }
     }
 
+    /// The features of several cloths, the particles of each after those of the one before.
+    pub(in crate::contact) fn joined<'a>(parts: impl Iterator<Item = (&'a Self, u32)>) -> Self {
+        let mut all = Self::default();
+        let mut first = 0;
+        for (part, particles) in parts {
+            let [triangles, edges, patches, cells] =
+                [all.triangles.len(), all.edges.len(), all.patches.len(), all.cells.len()]
+                    .map(|count| count as u32);
+            let moved = |particle: u32| particle + first;
+            all.triangles.extend(part.triangles.iter().map(|it| it.map(moved)));
+            all.edges.extend(part.edges.iter().map(|edge| Edge {
+                ends: edge.ends.map(moved),
+                wings: edge.wings.map(|wing| wing.map(moved)),
+                ..*edge
+            }));
+            all.represented.extend(part.represented.iter().map(|it| Represented {
+                particles: it.particles.iter().map(|&particle| moved(particle)).collect(),
+                edges: it.edges.iter().map(|edge| edge + edges).collect(),
+            }));
+            all.patches.extend(part.patches.iter().map(|patch| patch.moved(patches, cells)));
+            all.cells.extend(part.cells.iter().map(|cell| cell.moved(cells, triangles, first)));
+            first += particles;
+        }
+        all
+    }
+
     /// Whether two triangles have a number of corners in common, or more.
-    pub(super) fn share_corners(&self, triangles: [usize; 2], count: usize) -> bool {
+    pub(in crate::contact) fn share_corners(&self, triangles: [usize; 2], count: usize) -> bool {
         let [one, other] = triangles.map(|triangle| self.triangles[triangle]);
         one.iter().filter(|corner| other.contains(corner)).nth(count - 1).is_some()
     }

@@ -1,13 +1,13 @@
 //! Pairs of features whose paths come near one another in a substep.
 
 /// A particle and a triangle: the particle, then the corners.
-pub(super) type ParticleTriangle = [u32; 4];
+pub(in crate::contact) type ParticleTriangle = [u32; 4];
 /// Two edges: the ends of one, then those of the other.
-pub(super) type EdgeEdge = [u32; 4];
+pub(in crate::contact) type EdgeEdge = [u32; 4];
 
 /// An edge and a triangle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct EdgeTriangle {
+pub(in crate::contact) struct EdgeTriangle {
     /// Index of the edge.
     pub index: u32,
     pub edge: [u32; 2],
@@ -23,7 +23,7 @@ impl EdgeTriangle {
 
 /// Pairs of features whose paths come near one another in a substep.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Pairs {
+pub(in crate::contact) struct Pairs {
     pub particles_triangles: Vec<ParticleTriangle>,
     pub edges_edges: Vec<EdgeEdge>,
     pub edges_triangles: Vec<EdgeTriangle>,

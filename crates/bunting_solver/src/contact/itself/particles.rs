@@ -6,13 +6,11 @@ use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
 
 /// The particles of a cloth in a substep.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Particles {
+pub(crate) struct Particles {
     /// Positions at the start of the substep, m.
     pub start: Vec<Vec3>,
     /// Positions, corrected so far, m.
     pub end: Vec<Vec3>,
-    /// Positions before the corrections of this phase of the substep, m.
-    pub before: Vec<Vec3>,
     /// Whether a contact may change the particle. Velocities are known of these alone.
     pub is_near: Vec<bool>,
     /// Inverse masses per unit area density, 1/m²; zero of pins.
@@ -23,6 +21,8 @@ pub(super) struct Particles {
     pub past_velocity: Vec<Vec3>,
     /// Changes of velocity by impacts, which stop an approach of the particles at the start of the substep, m/s.
     pub impact: Vec<Vec3>,
+    /// Scratch array of positions of a cloth, m.
+    pub after: Vec<Vec3>,
     /// Whether a contact has changed the particle.
     pub touched: Vec<bool>,
 }
@@ -32,7 +32,6 @@ impl Particles {
         for vectors in [
             &mut self.start,
             &mut self.end,
-            &mut self.before,
             &mut self.velocity,
             &mut self.past_velocity,
             &mut self.impact,
@@ -45,7 +44,7 @@ impl Particles {
     }
 
     /// Marks the particles of pairs as near others.
-    pub fn mark_near(&mut self, pairs: &Pairs) {
+    pub(in crate::contact) fn mark_near(&mut self, pairs: &Pairs) {
         self.is_near.fill(false);
         let fours = pairs.particles_triangles.iter().chain(&pairs.edges_edges);
         fours.flatten().for_each(|&particle| self.is_near[particle as usize] = true);
@@ -56,7 +55,11 @@ impl Particles {
 
 /// Sum of four particles' vectors with the factors of a contact: those of one side are positive and sum up to one, those
 /// of the other side are negative and sum up to minus one.
-pub(super) fn relative(vectors: &[Vec3], particles: [u32; 4], factors: [f32; 4]) -> Vec3 {
+pub(in crate::contact) fn relative(
+    vectors: &[Vec3],
+    particles: [u32; 4],
+    factors: [f32; 4],
+) -> Vec3 {
     let terms = particles.iter().zip(factors);
     terms.fold(Vec3::ZERO, |sum, (&particle, factor)| sum + vectors[particle as usize] * factor)
 }

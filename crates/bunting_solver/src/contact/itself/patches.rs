@@ -17,7 +17,7 @@ const LARGEST_CELL: usize = Pack8::WIDTH;
 
 /// Neighbouring triangles, in cells.
 #[derive(Clone, Debug)]
-pub(super) struct Patch {
+pub(in crate::contact) struct Patch {
     pub neighbours: Vec<Neighbour>,
     /// Indices of its cells.
     pub cells: Range<u32>,
@@ -25,7 +25,7 @@ pub(super) struct Patch {
 
 /// A few neighbouring triangles of a patch.
 #[derive(Clone, Debug)]
-pub(super) struct Cell {
+pub(in crate::contact) struct Cell {
     pub triangles: Range<u32>,
     pub particles: Vec<u32>,
     /// Corners of its triangles, one triangle in each lane; the last in those without one.
@@ -33,8 +33,31 @@ pub(super) struct Cell {
     pub neighbours: Vec<Neighbour>,
 }
 
+impl Patch {
+    /// The patch among others, with larger indices of patches and cells.
+    pub(in crate::contact) fn moved(&self, patches: u32, cells: u32) -> Self {
+        Self {
+            neighbours: self.neighbours.iter().map(|it| it.moved(patches)).collect(),
+            cells: self.cells.start + cells..self.cells.end + cells,
+        }
+    }
+}
+
+impl Cell {
+    /// The cell among others, with larger indices of cells, triangles and particles.
+    pub(in crate::contact) fn moved(&self, cells: u32, triangles: u32, particles: u32) -> Self {
+        let moved = |particle: u32| particle + particles;
+        Self {
+            triangles: self.triangles.start + triangles..self.triangles.end + triangles,
+            particles: self.particles.iter().map(|&it| moved(it)).collect(),
+            corners: self.corners.map(|corners| corners.map(moved)),
+            neighbours: self.neighbours.iter().map(|it| it.moved(cells)).collect(),
+        }
+    }
+}
+
 /// The patches of a fabric, their cells, and the triangles in the order of these.
-pub(super) fn patches_of(fabric: &Fabric) -> (Vec<Patch>, Vec<Cell>, Vec<[u32; 3]>) {
+pub(in crate::contact) fn patches_of(fabric: &Fabric) -> (Vec<Patch>, Vec<Cell>, Vec<[u32; 3]>) {
     let (mut patches, mut cells) = (Vec::new(), Vec::new());
     for triangles in split(fabric, (0..fabric.triangles().len() as u32).collect(), LARGEST_PATCH) {
         let particles = particles_of(fabric, &triangles);
@@ -66,10 +89,17 @@ pub(super) fn patches_of(fabric: &Fabric) -> (Vec<Patch>, Vec<Cell>, Vec<[u32; 3
 
 /// A neighbour of a patch or a cell.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Neighbour {
+pub(in crate::contact) struct Neighbour {
     pub index: u32,
     /// A neighbour of both along edges if they have a single particle in common. About a single particle they can turn.
     pub bridge: Option<u32>,
+}
+
+impl Neighbour {
+    /// The neighbour among others, with larger indices.
+    fn moved(self, by: u32) -> Self {
+        Self { index: self.index + by, bridge: self.bridge.map(|bridge| bridge + by) }
+    }
 }
 
 /// For each set of particles, its neighbours in the order of their indices: those with several common particles, and

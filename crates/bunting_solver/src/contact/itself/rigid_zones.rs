@@ -38,7 +38,7 @@ impl Zones {
 }
 
 /// The zones of a cloth in a substep.
-pub(super) struct RigidZones {
+pub(in crate::contact) struct RigidZones {
     zones: Zones,
     /// Positions before any zone returned, m.
     corrected: Vec<Vec3>,
@@ -113,7 +113,9 @@ struct Sums {
     mass: Vec<f32>,
     vector: Vec<Vec3>,
     members: Vec<u32>,
-    holds_pin: Vec<bool>,
+    pins: Vec<u32>,
+    /// Sum over the pins.
+    of_pins: Vec<Vec3>,
 }
 
 impl Sums {
@@ -124,14 +126,16 @@ impl Sums {
             mass: vec![0.0; count],
             vector: vec![Vec3::ZERO; count],
             members: vec![0; count],
-            holds_pin: vec![false; count],
+            pins: vec![0; count],
+            of_pins: vec![Vec3::ZERO; count],
         };
         for particle in 0..count {
             let root = zones.root(particle as u32) as usize;
             let inverse_mass = particles.inverse_mass[particle];
             sums.members[root] += 1;
             if inverse_mass == 0.0 {
-                sums.holds_pin[root] = true;
+                sums.pins[root] += 1;
+                sums.of_pins[root] += vector(particle);
             } else {
                 sums.mass[root] += 1.0 / inverse_mass;
                 sums.vector[root] += vector(particle) / inverse_mass;
@@ -140,11 +144,14 @@ impl Sums {
         sums
     }
 
-    /// The mean vector of a zone; zero if it holds a pin, and none of a single particle.
+    /// The mean vector of a zone, or of its pins if it holds any; none of a single particle.
     fn mean(&self, root: usize) -> Option<Vec3> {
         if self.members[root] < 2 {
             return None;
         }
-        Some(if self.holds_pin[root] { Vec3::ZERO } else { self.vector[root] / self.mass[root] })
+        Some(match self.pins[root] {
+            0 => self.vector[root] / self.mass[root],
+            pins => self.of_pins[root] / pins as f32,
+        })
     }
 }

@@ -11,13 +11,14 @@ use crate::contact::itself::cloth::Cloth;
 use crate::contact::itself::flat::Normals;
 use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
 use crate::contact::itself::patches::Neighbour;
+use crate::contact::itself::rules::Rules;
 use crate::contact::itself::swept::{Path, Swept};
 use crate::simd::lane::Pack;
 use crate::simd::registers::Pack8;
 
 /// Scratch arrays of the search.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Search {
+pub(in crate::contact) struct Search {
     /// Paths of all particles when pairs were found.
     paths: Vec<Path>,
     /// Normals of the cells at the end of the substep.
@@ -44,20 +45,22 @@ impl Search {
         ends.any(|([_, searched], &end)| Vec3::from(*searched).distance_squared(end) > far * far)
     }
 
-    /// Finds all pairs of a cloth that come nearer than the thickness.
-    pub fn find(&mut self, cloth: Cloth, pairs: &mut Pairs) {
+    /// Finds all pairs that are kept apart and come nearer than the thickness.
+    pub fn find(&mut self, cloth: Cloth, rules: &impl Rules, pairs: &mut Pairs) {
         pairs.clear();
         self.bound(cloth);
         let cells_of = |patch: usize| cloth.mesh.patches[patch].cells.clone();
         for (one, patch) in cloth.mesh.patches.iter().enumerate() {
-            if !self.normals.are_flat([cells_of(one)]) {
+            if rules.compare([one, one]) && !self.normals.are_flat([cells_of(one)]) {
                 self.compare_patches(cloth, [one, one], pairs);
             }
             self.find_patches(one);
             let mut met = core::mem::take(&mut self.met);
             for &other in met.iter().filter(|&&other| other > one) {
-                let are_flat = self.are_neighbours_flat(cells_of, &patch.neighbours, [one, other]);
-                if !are_flat {
+                let parts = [one, other];
+                if rules.compare(parts)
+                    && !self.are_neighbours_flat(cells_of, &patch.neighbours, parts)
+                {
                     self.compare_patches(cloth, [one, other], pairs);
                 }
             }

@@ -10,11 +10,8 @@ use crate::constants::LEAST_LENGTH;
 use crate::contact::itself::closest::{edges, over};
 use crate::contact::itself::pairs::Pairs;
 use crate::contact::itself::particles::{Particles, relative};
+use crate::contact::itself::rules::{Keep, Rules};
 use crate::contact::itself::untangle::Tangles;
-
-/// Number of times that all contacts are solved, one after the other. Fewer: piles of layers are pressed through one
-/// another, and return by rigid zones. More: costs more.
-const SWEEPS: usize = 4;
 
 /// Speed at which features that are too near at the start of a substep move apart, m/s. Smaller: layers stay pressed
 /// together for long. Larger: links beside them are stretched.
@@ -24,13 +21,15 @@ const RECOVERY: f32 = 0.5;
 /// are pushed by rounding errors.
 const REST_PART: f32 = 0.8;
 
-/// Two features of a cloth that touch, or may touch in later sweeps.
+/// Two features that touch, or may touch in later sweeps.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Contact {
+pub(in crate::contact) struct Contact {
     particles: [u32; 4],
     kind: Kind,
     /// Distance that the features keep, m.
     distance: f32,
+    /// Coulomb friction coefficient.
+    friction: f32,
     /// Sign of the height, or of the volume, at the start of the substep, if the features have passed through one
     /// another since; else zero.
     passed: f32,
@@ -39,6 +38,10 @@ pub(super) struct Contact {
     factors: [f32; 4],
     /// Sum of the depths by which the features were moved apart, m.
     depth: f32,
+    /// Sum of the approaches that were stopped, m/s.
+    stopped: f32,
+    /// Part of this that was an impact.
+    impact: f32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,21 +59,18 @@ struct Near {
     gap: f32,
 }
 
-/// The distances of the contacts of a cloth.
-pub(super) struct Spacing<'a> {
-    /// Distance of layers, m.
-    pub thickness: f32,
-    /// Coulomb friction coefficient.
-    pub friction: f32,
+/// The distances of contacts.
+pub(in crate::contact) struct Spacing<'a, R> {
+    pub rules: &'a R,
+    /// Number of times that all contacts are solved, one after the other.
+    pub sweeps: usize,
     /// Length of the substep, s.
     pub step: f32,
-    /// Positions at rest, m.
-    pub rest: &'a [Vec3],
     /// Features that pass through one another at the start of the substep.
     pub tangles: &'a Tangles,
 }
 
-impl Spacing<'_> {
+impl<R: Rules> Spacing<'_, R> {
     /// Moves all features apart that are too near, and stops their approach.
     pub fn separate(&self, pairs: &Pairs, particles: &mut Particles, contacts: &mut Vec<Contact>) {
         contacts.clear();
@@ -81,14 +81,14 @@ impl Spacing<'_> {
                 contacts.push(contact);
             }
         }
-        for _ in 0..SWEEPS {
+        for _ in 0..self.sweeps {
             for contact in contacts.iter_mut() {
-                contact.project(particles, self.friction);
+                contact.project(particles);
             }
         }
-        for _ in 0..2 {
-            for contact in contacts.iter().filter(|contact| contact.depth > 0.0) {
-                contact.stop(particles, self.friction);
+        for _ in 0..self.sweeps {
+            for contact in contacts.iter_mut().filter(|contact| contact.depth > 0.0) {
+                contact.stop(particles);
             }
         }
     }
@@ -105,25 +105,27 @@ impl Spacing<'_> {
             Kind::ParticleTriangle => passed_triangle(start, end),
             Kind::EdgeEdge => passed_edge(start, end),
         };
+        let Keep { distance: thickness, friction, rest } = self.rules.keep(pair);
         let mut contact = Contact {
             particles: pair,
             kind,
-            distance: self.thickness,
+            distance: thickness,
+            friction,
             passed,
             normal: Vec3::ZERO,
             factors: [0.0; 4],
             depth: 0.0,
+            stopped: 0.0,
+            impact: 0.0,
         };
         // Other contacts move particles by about the thickness.
-        contact.near(particles).filter(|near| near.gap < 2.0 * self.thickness)?;
+        contact.near(particles).filter(|near| near.gap < 2.0 * thickness)?;
         let distance = match kind {
             Kind::ParticleTriangle => height_or_far,
             Kind::EdgeEdge => distance_of_edges,
         };
-        contact.distance = contact
-            .distance
-            .min(REST_PART * distance(of(self.rest)))
-            .min(distance(start) + RECOVERY * self.step);
+        let at_rest = rest.map_or(f32::INFINITY, |rest| REST_PART * distance(rest));
+        contact.distance = thickness.min(at_rest).min(distance(start) + RECOVERY * self.step);
         Some(contact)
     }
 }
@@ -139,10 +141,10 @@ impl Contact {
     }
 
     /// Moves the features apart.
-    fn project(&mut self, particles: &mut Particles, friction: f32) {
+    fn project(&mut self, particles: &mut Particles) {
         let Some(Near { normal, factors, gap }) = self.near(particles) else { return };
-        let depth = self.distance - gap;
-        if depth <= 0.0 {
+        let depth = (self.distance - gap).max(-self.depth);
+        if depth == 0.0 {
             return;
         }
         let inverse = self.inverse_mass(particles, factors);
@@ -152,7 +154,7 @@ impl Contact {
         let slide = relative(&particles.end, self.particles, factors)
             - relative(&particles.start, self.particles, factors);
         let slide = slide - normal * slide.dot(normal);
-        let held = (friction * depth / slide.length().max(LEAST_LENGTH)).min(1.0);
+        let held = (self.friction * depth.max(0.0) / slide.length().max(LEAST_LENGTH)).min(1.0);
         let by = (normal * depth - slide * held) / inverse;
         for (&particle, factor) in self.particles.iter().zip(factors) {
             let particle = particle as usize;
@@ -164,20 +166,26 @@ impl Contact {
         self.depth += depth;
     }
 
-    /// Stops the approach of the features, and slows their slide.
-    fn stop(&self, particles: &mut Particles, friction: f32) {
+    /// Stops the approach of the features, and slows their slide. What it gave before it takes back where other contacts
+    /// have given too much: else features would leave each other in each substep, and layers at rest would tremble.
+    fn stop(&mut self, particles: &mut Particles) {
         let velocity = relative(&particles.velocity, self.particles, self.factors);
-        let approach = -velocity.dot(self.normal);
-        if approach <= 0.0 {
+        let approach = (-velocity.dot(self.normal)).max(-self.stopped);
+        if approach == 0.0 {
             return;
         }
-        let slide = velocity + self.normal * approach;
-        let held = (friction * approach / slide.length().max(LEAST_LENGTH)).min(1.0);
+        let slide = velocity - self.normal * velocity.dot(self.normal);
+        let most = self.friction * approach.max(0.0);
+        let held = (most / slide.length().max(LEAST_LENGTH)).min(1.0);
         let inverse = self.inverse_mass(particles, self.factors);
         let change = (self.normal * approach - slide * held) / inverse;
+        self.stopped += approach;
         // As far as the features approached each other at the start of the substep, this is an impact.
-        let past = relative(&particles.past_velocity, self.particles, self.factors);
-        let impact = (-past.dot(self.normal) / approach).clamp(0.0, 1.0);
+        if approach > 0.0 {
+            let past = relative(&particles.past_velocity, self.particles, self.factors);
+            self.impact = (-past.dot(self.normal) / approach).clamp(0.0, 1.0);
+        }
+        let impact = self.impact;
         for (&particle, factor) in self.particles.iter().zip(self.factors) {
             let particle = particle as usize;
             let change = change * (particles.inverse_mass[particle] * factor);

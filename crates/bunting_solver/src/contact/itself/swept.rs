@@ -3,11 +3,11 @@
 use glam::Vec3A;
 
 /// Positions of a particle at the start and at the end of a substep, m.
-pub(super) type Path = [Vec3A; 2];
+pub(in crate::contact) type Path = [Vec3A; 2];
 
 /// Boxes around some particles at the start and at the end of a substep, m. Particles move along straight lines.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Swept {
+pub(in crate::contact) struct Swept {
     pub low: [Vec3A; 2],
     pub high: [Vec3A; 2],
 }

@@ -18,7 +18,7 @@ const LEAST_COSINE: f32 = 0.1;
 
 /// The particles of features that pass through one another at the start of a substep.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Tangles(Vec<bool>);
+pub(in crate::contact) struct Tangles(Vec<bool>);
 
 impl Tangles {
     /// Whether any of some particles is of a tangled feature.
@@ -28,7 +28,7 @@ impl Tangles {
 }
 
 /// Finds all features that pass through one another at the start of the substep, and moves them.
-pub(super) fn untangle(
+pub(in crate::contact) fn untangle(
     mesh: &ContactMesh,
     pairs: &Pairs,
     particles: &mut Particles,

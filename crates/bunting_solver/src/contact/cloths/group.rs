@@ -1,0 +1,165 @@
+//! A group of cloths that may touch one another.
+
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use crate::batch::ClothBatch;
+use crate::contact::cloths::member::{GroupMember, Member};
+use crate::contact::cloths::rules::OfGroup;
+use crate::contact::itself::contacts::LayerContacts;
+use crate::contact::itself::mesh::ContactMesh;
+use crate::contact::itself::pairs::EdgeTriangle;
+use crate::contact::itself::place::Pose;
+
+/// Number of times that cloths and then their contacts with colliders are solved. One: sheets that are pressed on a floor
+/// come to lie in one plane.
+const ROUNDS: usize = 2;
+
+/// Number of sweeps over all contacts. Fewer: cloth that lies on cloth trembles and does not fall asleep. More: costs more.
+const SWEEPS: usize = 8;
+
+/// Access to the lanes of a group's cloths.
+pub trait GroupLanes {
+    /// The batch of a member, given its index, and its lane, which must hold a cloth.
+    fn lane(&mut self, member: usize) -> (&mut ClothBatch, usize);
+}
+
+/// A group of cloths of any fabrics, materials, batches and frames, which do not pass through one another.
+///
+/// In each substep, [`begin_substep`](Self::begin_substep) comes before [`ClothBatch::integrate`] of all batches, and
+/// [`solve`](Self::solve) after [`ClothBatch::solve_constraints`]. Contacts of the cloths with colliders and with
+/// themselves are solved there, too. A cloth whose batch does not take part in a substep is held in it.
+#[derive(Clone, Debug, Default)]
+pub struct ClothGroup {
+    members: Vec<Member>,
+    /// The features of each member, and of all.
+    meshes: Vec<Arc<ContactMesh>>,
+    mesh: ContactMesh,
+    /// Index of each patch's member, and of each particle's.
+    of_patch: Vec<u32>,
+    of_particle: Vec<u32>,
+    layers: LayerContacts,
+    /// Origin of the group's frame in the world, m.
+    origin: Vec3,
+}
+
+impl ClothGroup {
+    /// Sets the members, in a tick after [`ClothBatch::begin_tick`] of their batches. Members whose numbers are not valid
+    /// touch nothing. The first call for cloths of certain fabrics computes their features, which takes longer than a
+    /// tick.
+    pub fn set_members(&mut self, members: &[GroupMember], lanes: &mut impl GroupLanes) {
+        self.members.clear();
+        let mut meshes = Vec::with_capacity(members.len());
+        let mut first = 0;
+        for (index, &settings) in members.iter().enumerate() {
+            let (batch, lane) = lanes.lane(index);
+            let shape = batch.lane_shape(lane);
+            let count = shape.fabric.particle_count();
+            self.members.push(Member {
+                settings,
+                range: first..first + count,
+                own_thickness: None,
+                friction: 0.0,
+                fabric: shape.fabric,
+                moves: false,
+                is_finite: settings.is_valid(),
+                pose: Pose::default(),
+            });
+            meshes.push(shape.mesh);
+            first += count;
+        }
+        self.origin = members.iter().find(|it| it.is_valid()).map_or(Vec3::ZERO, |it| it.start.0);
+        let same = |(one, other): (&Arc<ContactMesh>, &Arc<ContactMesh>)| Arc::ptr_eq(one, other);
+        if meshes.len() != self.meshes.len() || !meshes.iter().zip(&self.meshes).all(same) {
+            self.join(meshes);
+        }
+    }
+
+    /// Joins the features of all members.
+    fn join(&mut self, meshes: Vec<Arc<ContactMesh>>) {
+        let counts = || self.members.iter().map(|member| member.range.len());
+        self.mesh = ContactMesh::joined(
+            meshes.iter().zip(counts()).map(|(mesh, count)| (&**mesh, count as u32)),
+        );
+        let repeated = |counts: &mut dyn Iterator<Item = usize>| {
+            let each = counts.enumerate();
+            each.flat_map(|(member, count)| core::iter::repeat_n(member as u32, count)).collect()
+        };
+        self.of_patch = repeated(&mut meshes.iter().map(|mesh| mesh.patches.len()));
+        self.of_particle = repeated(&mut counts());
+        self.layers.particles.resize(self.of_particle.len());
+        self.meshes = meshes;
+    }
+
+    /// Begins a substep: leaves the contacts of the members to the group, and notes where they are.
+    pub fn begin_substep(&mut self, lanes: &mut impl GroupLanes) {
+        for (index, member) in self.members.iter_mut().enumerate() {
+            let (batch, lane) = lanes.lane(index);
+            let start = &mut self.layers.particles.start[member.range.clone()];
+            batch.begin_grouped(lane, member, self.origin, start);
+        }
+    }
+
+    /// Keeps the members apart, and each from its colliders.
+    pub fn solve(&mut self, lanes: &mut impl GroupLanes) {
+        let mut step = 0.0_f32;
+        for (index, member) in self.members.iter_mut().enumerate() {
+            let (batch, lane) = lanes.lane(index);
+            let of_member =
+                batch.read_grouped(lane, member, self.origin, &mut self.layers.particles);
+            step = step.max(of_member);
+        }
+        let Self { members, mesh, of_patch, of_particle, layers, .. } = self;
+        let rules = OfGroup { members, of_patch, of_particle };
+        let thickness = rules.greatest_thickness();
+        layers.particles.touched.fill(false);
+        let mut meet = layers.find(mesh, thickness, &rules);
+        layers.untangle(mesh, step);
+        for _ in 0..ROUNDS {
+            if meet {
+                read_velocities(members, lanes, layers);
+                layers.separate(step, SWEEPS, &rules);
+                write(members, lanes, layers);
+                layers.particles.touched.fill(false);
+            }
+            let mut has_pushed = false;
+            for (index, member) in members.iter().enumerate() {
+                let (batch, lane) = lanes.lane(index);
+                has_pushed |= batch.touch_colliders(lane, member, &mut layers.particles);
+            }
+            if !has_pushed {
+                break;
+            }
+            if layers.are_outdated(mesh, thickness) {
+                meet = layers.find(mesh, thickness, &rules);
+            }
+        }
+        if meet && let Some(mut zones) = layers.return_zones(mesh, thickness, &rules) {
+            read_velocities(members, lanes, layers);
+            zones.stop(&mut layers.particles);
+            write(members, lanes, layers);
+        }
+        let near = || layers.pairs.edges_triangles.iter().flat_map(EdgeTriangle::particles);
+        for (index, member) in members.iter().enumerate() {
+            let (batch, lane) = lanes.lane(index);
+            let range = &member.range;
+            let own = near().map(|at| at as usize).filter(|at| range.contains(at));
+            batch.end_grouped(lane, own.map(|at| at - range.start));
+        }
+    }
+}
+
+fn read_velocities(members: &[Member], lanes: &mut impl GroupLanes, layers: &mut LayerContacts) {
+    for (index, member) in members.iter().enumerate() {
+        let (batch, lane) = lanes.lane(index);
+        batch.read_velocities(lane, member, &mut layers.particles);
+    }
+}
+
+fn write(members: &[Member], lanes: &mut impl GroupLanes, layers: &LayerContacts) {
+    for (index, member) in members.iter().enumerate() {
+        let (batch, lane) = lanes.lane(index);
+        batch.write_grouped(lane, member, &layers.particles);
+    }
+}

@@ -1,0 +1,78 @@
+//! The contacts of layers, of one cloth or of several, from one phase of a substep to another.
+
+use crate::contact::itself::cloth::Cloth;
+use crate::contact::itself::mesh::ContactMesh;
+use crate::contact::itself::pairs::Pairs;
+use crate::contact::itself::particles::Particles;
+use crate::contact::itself::rigid_zones::RigidZones;
+use crate::contact::itself::rules::Rules;
+use crate::contact::itself::search::Search;
+use crate::contact::itself::separate::{Contact, Spacing};
+use crate::contact::itself::untangle::{Tangles, untangle};
+
+/// The contacts of layers: scratch arrays of a substep.
+#[derive(Clone, Debug, Default)]
+pub(in crate::contact) struct LayerContacts {
+    search: Search,
+    pub pairs: Pairs,
+    pub particles: Particles,
+    contacts: Vec<Contact>,
+    tangles: Tangles,
+}
+
+impl LayerContacts {
+    /// Finds the features that come nearer than a thickness, m, and marks their particles. Returns whether there are any.
+    pub fn find(&mut self, mesh: &ContactMesh, thickness: f32, rules: &impl Rules) -> bool {
+        let Self { search, pairs, particles, .. } = self;
+        search.find(Cloth { mesh, particles, thickness }, rules, pairs);
+        if pairs.is_empty() {
+            return false;
+        }
+        particles.mark_near(pairs);
+        true
+    }
+
+    /// Whether particles have moved since such that pairs may be missing.
+    pub fn are_outdated(&self, mesh: &ContactMesh, thickness: f32) -> bool {
+        self.search.is_outdated(Cloth { mesh, particles: &self.particles, thickness })
+    }
+
+    /// Moves features that pass through one another at the start of a substep of the length `step`, s.
+    pub fn untangle(&mut self, mesh: &ContactMesh, step: f32) {
+        untangle(mesh, &self.pairs, &mut self.particles, step, &mut self.tangles);
+    }
+
+    /// Moves these features apart in a substep of the length `step`, s, in some sweeps over all. Velocities of their
+    /// particles must be known.
+    pub fn separate(&mut self, step: f32, sweeps: usize, rules: &impl Rules) {
+        let Self { pairs, particles, contacts, tangles, .. } = self;
+        Spacing { rules, sweeps, step, tangles }.separate(pairs, particles, contacts);
+    }
+
+    /// Returns features that pass through one another to where they began in the substep, and marks their particles.
+    /// Returns the zones, if there are any, whose velocities must become their means.
+    pub fn return_zones(
+        &mut self,
+        mesh: &ContactMesh,
+        thickness: f32,
+        rules: &impl Rules,
+    ) -> Option<RigidZones> {
+        let Self { search, pairs, particles, tangles, .. } = self;
+        particles.touched.fill(false);
+        if search.is_outdated(Cloth { mesh, particles, thickness }) {
+            search.find(Cloth { mesh, particles, thickness }, rules, pairs);
+        }
+        let mut zones = RigidZones::new(particles);
+        let mut grew = false;
+        while zones.grow(pairs, tangles, particles) {
+            grew = true;
+            let cloth = Cloth { mesh, particles, thickness };
+            if !search.is_outdated(cloth) {
+                break;
+            }
+            search.find(cloth, rules, pairs);
+        }
+        particles.is_near.clone_from(&particles.touched);
+        grew.then_some(zones)
+    }
+}

@@ -1,0 +1,102 @@
+//! Particles between the lanes of a batch and the contacts of layers.
+
+use core::ops::Range;
+
+use glam::Vec3;
+
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::layout::{Layout, Positions};
+use crate::contact::itself::particles::Particles;
+use crate::contact::itself::place::Place;
+use crate::simd::lane::Pack;
+use crate::simd::vec3::{lane3, set_lane3};
+
+/// The particles of a cloth among those of all that touch.
+pub(in crate::contact) struct Part<'a, S> {
+    /// The cloth's lane.
+    pub cloth: usize,
+    pub range: Range<usize>,
+    pub place: &'a S,
+}
+
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Copies velocities of particles that are near others out of the lanes, with the corrections to the positions so far.
+    /// A pin has the velocity of its motion.
+    pub(in crate::contact) fn gather_velocities<S: Place>(
+        &mut self,
+        part: &Part<S>,
+        particles: &mut Particles,
+    ) {
+        let inverse_step = self.inverse_step(part.cloth);
+        let positions = self.positions.packs_mut();
+        for at in part.range.clone() {
+            particles.impact[at] = Vec3::ZERO;
+            let is_pin = particles.inverse_mass[at] == 0.0;
+            if !particles.is_near[at] && !is_pin {
+                continue;
+            }
+            let (pack, lane) = self.layout.locate(at - part.range.start, part.cloth);
+            let mut velocity = lane3(&self.velocity[pack], lane);
+            if !is_pin {
+                let predicted =
+                    lane3(&self.scratch[pack], lane) + lane3(&self.displacement[pack], lane);
+                let correction = lane3(&positions[pack], lane) - predicted;
+                velocity += correction * inverse_step;
+            }
+            particles.velocity[at] = part.place.velocity_to_common(velocity);
+            let past = lane3(&self.older_velocity[pack], lane);
+            particles.past_velocity[at] = part.place.velocity_to_common(past);
+        }
+    }
+
+    /// Copies what contacts have changed back into the lanes. A correction of the position is no velocity: that of a
+    /// particle is the one that the contacts gave to it. An impact is not extrapolated, so the velocities of the last
+    /// substeps change by the same amount.
+    pub(in crate::contact) fn scatter_particles<S: Place>(
+        &mut self,
+        part: &Part<S>,
+        particles: &Particles,
+    ) {
+        let inverse_step = self.inverse_step(part.cloth);
+        for at in part.range.clone() {
+            if !particles.touched[at] || particles.inverse_mass[at] == 0.0 {
+                continue;
+            }
+            let (pack, lane) = self.layout.locate(at - part.range.start, part.cloth);
+            let predicted =
+                lane3(&self.scratch[pack], lane) + lane3(&self.displacement[pack], lane);
+            let end = part.place.to_frame(particles.end[at]);
+            set_lane3(&mut self.positions.packs_mut()[pack], lane, end);
+            let velocity = part.place.velocity_to_frame(particles.velocity[at]);
+            set_lane3(&mut self.velocity[pack], lane, velocity - (end - predicted) * inverse_step);
+            let impact = part.place.direction_to_frame(particles.impact[at]);
+            for past in [&mut self.older_velocity[pack], &mut self.oldest_velocity[pack]] {
+                let changed = lane3(past, lane) + impact;
+                set_lane3(past, lane, changed);
+            }
+        }
+    }
+
+    /// Exempts particles that are near other features from under-relaxation, which would move them after the contacts:
+    /// sets their factors to one, and their oldest velocities such that they have not reversed.
+    pub(in crate::contact) fn suspend_relaxation(
+        &mut self,
+        cloth: usize,
+        particles: impl Iterator<Item = usize>,
+    ) {
+        if !self.parameters.is_near_rest(Y::lanes(cloth)) {
+            return;
+        }
+        for particle in particles {
+            let (pack, lane) = self.layout.locate(particle, cloth);
+            self.relaxation[pack].lanes_mut()[lane] = 1.0;
+            let velocity = lane3(&self.older_velocity[pack], lane);
+            set_lane3(&mut self.oldest_velocity[pack], lane, velocity);
+        }
+    }
+
+    /// Rate at which corrections of positions become velocities, 1/s.
+    fn inverse_step(&self, cloth: usize) -> f32 {
+        1.0 / self.parameters.step.lanes()[Y::lanes(cloth).start]
+    }
+}

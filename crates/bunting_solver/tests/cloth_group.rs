@@ -1,0 +1,150 @@
+//! Tests of contacts of cloths with one another.
+
+use std::sync::Arc;
+
+use bunting_solver::{
+    ClothBatch, ClothGroup, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial,
+    FrameMotion, Grid, GroupLanes, GroupMember, LaneCount, StepSettings,
+};
+use glam::{Quat, Vec3};
+
+const TICK: f32 = 1.0 / 60.0;
+const SETTINGS: StepSettings = StepSettings { passes: 2, ..StepSettings::yarns(2) };
+/// Distance of cloths, m.
+const THICKNESS: f32 = 5e-3;
+
+/// Cloths in a batch each.
+struct Batches(Vec<ClothBatch>);
+
+impl GroupLanes for Batches {
+    fn lane(&mut self, member: usize) -> (&mut ClothBatch, usize) {
+        (&mut self.0[member], 0)
+    }
+}
+
+impl Batches {
+    /// Advances by a tick.
+    fn step(&mut self, group: &mut ClothGroup, members: &[GroupMember]) {
+        self.0.iter_mut().for_each(|batch| batch.begin_tick(TICK, SETTINGS));
+        group.set_members(members, self);
+        for _ in 0..SETTINGS.substeps {
+            group.begin_substep(self);
+            self.0.iter_mut().for_each(ClothBatch::integrate);
+            self.0.iter_mut().for_each(ClothBatch::solve_constraints);
+            group.solve(self);
+            self.0.iter_mut().for_each(ClothBatch::update_velocities);
+        }
+    }
+
+    fn positions(&self, cloth: usize) -> Vec<Vec3> {
+        let mut positions = Vec::new();
+        self.0[cloth].copy_positions(0, &mut positions);
+        positions
+    }
+}
+
+/// A sheet of half a metre in the plane y = 0 of its frame.
+fn sheet(particles: u32, is_held: bool) -> (Arc<Fabric>, ClothSnapshot) {
+    let mut grid = FabricBuilder::grid(Grid::new(particles, particles, 0.5, 0.5));
+    if is_held {
+        grid = grid.pin_where(|_, uv| uv.x == 0.0 || uv.x == 1.0 || uv.y == 0.0 || uv.y == 1.0);
+    }
+    let fabric = Arc::new(grid.build().expect("a good fabric"));
+    let mut start = ClothSnapshot::at_rest(&fabric);
+    start.positions.iter_mut().for_each(|at| *at = Vec3::new(at.x, 0.0, -at.y));
+    (fabric, start)
+}
+
+fn batch(
+    (fabric, start): &(Arc<Fabric>, ClothSnapshot),
+    material: FabricMaterial,
+    lanes: LaneCount,
+    frame: (Vec3, Quat),
+) -> ClothBatch {
+    let mut batch = ClothBatch::new(Arc::clone(fabric), lanes);
+    let mut start = start.clone();
+    start.positions.iter_mut().for_each(|at| *at = frame.1.inverse() * (*at - frame.0));
+    let lane = batch.insert(&start, material).expect("a good cloth");
+    let gravity = frame.1.inverse() * (-9.81 * Vec3::Y);
+    batch.drive(lane, Drive { gravity, ..Drive::NONE }).expect("a good drive");
+    batch
+}
+
+fn member(frame: (Vec3, Quat)) -> GroupMember {
+    GroupMember {
+        thickness: THICKNESS,
+        memberships: 1,
+        filters: 1,
+        start: frame,
+        motion: FrameMotion::NONE,
+        carrier: Vec3::ZERO,
+    }
+}
+
+/// The frame of the lower sheet, whose pins are in its own plane: xy.
+fn lying() -> (Vec3, Quat) {
+    (Vec3::ZERO, Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2))
+}
+
+/// Lets a sheet fall on one of another fabric, material, frame and width, whose border is held. Returns the positions of
+/// both in the world.
+fn fall(lanes: LaneCount, filters: u32) -> [Vec<Vec3>; 2] {
+    let (lower, upper) = (sheet(17, true), sheet(13, false));
+    let turned = (Vec3::new(3.0, -1.0, 2.0), Quat::from_rotation_y(0.6));
+    let frames = [lying(), turned];
+    let mut upper = upper;
+    upper.1.positions.iter_mut().for_each(|at| *at += Vec3::new(0.013, 0.03, 0.017));
+    let held = ClothSnapshot::at_rest(&lower.0);
+    let mut low = ClothBatch::new(Arc::clone(&lower.0), lanes);
+    low.insert(&held, FabricMaterial::COTTON).expect("a good cloth");
+    let gravity = frames[0].1.inverse() * (-9.81 * Vec3::Y);
+    low.drive(0, Drive { gravity, ..Drive::NONE }).expect("a good drive");
+    let silk = FabricMaterial { area_density: 0.06, ..FabricMaterial::FLAG_POLYESTER };
+    let mut batches = Batches(vec![low, batch(&upper, silk, LaneCount::One, frames[1])]);
+    let mut members = frames.map(member);
+    members[1].filters = filters;
+    let mut group = ClothGroup::default();
+    for _ in 0..90 {
+        batches.step(&mut group, &members);
+    }
+    [0, 1].map(|cloth| {
+        let (origin, turn) = frames[cloth];
+        batches.positions(cloth).iter().map(|&at| origin + turn * at).collect()
+    })
+}
+
+/// Heights of the upper sheet's particles over the nearest ones of the lower sheet, m.
+fn heights([lower, upper]: &[Vec<Vec3>; 2]) -> Vec<f32> {
+    let over = |at: &Vec3| {
+        let flat = |it: &Vec3| (it.x - at.x).powi(2) + (it.z - at.z).powi(2);
+        let nearest = lower.iter().min_by(|a, b| flat(a).total_cmp(&flat(b))).expect("a particle");
+        at.y - nearest.y
+    };
+    upper.iter().map(over).collect()
+}
+
+fn median(mut values: Vec<f32>) -> f32 {
+    values.sort_by(f32::total_cmp);
+    values[values.len() / 2]
+}
+
+#[test]
+fn a_sheet_comes_to_rest_on_another_if_their_layers_touch() {
+    let on = median(heights(&fall(LaneCount::One, 1)));
+    assert!((0.5 * THICKNESS..1.5 * THICKNESS).contains(&on), "{on}");
+    let through = median(heights(&fall(LaneCount::One, 2)));
+    assert!(through < -1.0, "{through}");
+}
+
+#[test]
+fn cloths_have_the_same_bits_at_every_width() {
+    let bits = |lanes| {
+        fall(lanes, 1).map(|sheet| -> Vec<[u32; 3]> {
+            sheet.iter().map(|at| at.to_array().map(f32::to_bits)).collect()
+        })
+    };
+    let one = bits(LaneCount::One);
+    for &lanes in LaneCount::available() {
+        assert!(bits(lanes) == one, "{lanes:?}");
+    }
+}
