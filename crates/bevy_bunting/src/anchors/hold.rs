@@ -34,7 +34,7 @@ type HeldCloth = (
 type Hand = (Entity, &'static ClothGrab, &'static mut Grabbed, &'static PoseHistory);
 
 /// Gives the solver all holds of this tick.
-pub(super) fn hold_cloths(
+pub(crate) fn hold_cloths(
     mut cloths: Query<HeldCloth>,
     mut hands: Query<Hand, Without<ClothHolds>>,
     mut batches: ResMut<ClothBatches>,

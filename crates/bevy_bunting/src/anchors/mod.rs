@@ -3,7 +3,7 @@
 mod breaking;
 mod follow;
 pub(crate) mod grab;
-mod hold;
+pub(crate) mod hold;
 pub(crate) mod holds;
 pub(crate) mod plugin;
 pub(crate) mod reactions;

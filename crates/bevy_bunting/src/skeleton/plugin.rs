@@ -5,8 +5,8 @@ use bevy_app::{AnimationSystems, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::prelude::*;
 use bevy_transform::TransformSystems;
 
+use crate::anchors::hold::hold_cloths;
 use crate::batch::publish::{publish_states, reset_diverged};
-use crate::environment::drive::drive_cloths;
 use crate::fabric::prepare::change_materials;
 use crate::motion::lead::lead_pins;
 use crate::motion::observe::{observe_frames, observe_ticks};
@@ -47,7 +47,7 @@ impl Plugin for SkeletonPlugin {
                         .in_set(ClothSystems::Prepare)
                         .after(change_materials)
                         .before(observe_ticks),
-                    lead_skins.in_set(ClothSystems::Drive).after(lead_pins).before(drive_cloths),
+                    lead_skins.in_set(ClothSystems::Drive).after(lead_pins).before(hold_cloths),
                     blend_skins
                         .in_set(ClothSystems::Publish)
                         .after(publish_states)

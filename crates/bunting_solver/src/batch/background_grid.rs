@@ -1,6 +1,8 @@
 //! The background grids of the cloths of a batch: side by side, as the cloths are, or that of a single mesh across the
 //! lanes of a vector. Both have the same bits.
 
+use glam::Vec3;
+
 use crate::batch::lane_batch::{BackgroundGrid, LaneBatch, SingleGrid};
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::single_cloth::SingleCloth;
@@ -9,6 +11,7 @@ use crate::batch::snapshot::ClothSnapshot;
 use crate::fabric::{Background, Fabric, GridTransfer};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
+use crate::simd::vec3::{lane3, set_lane3};
 use crate::step::Drive;
 use crate::step::bdf::IntegratorHistory;
 use crate::step::clock::Clock;
@@ -75,6 +78,17 @@ impl<P: Pack> BackgroundGrid<P> {
     /// Overwrites the state of a cloth's nodes.
     pub fn restore(&mut self, cloth: usize, nodes: &ClothSnapshot) {
         with_grid!(self, batch => batch.restore(&[(cloth, nodes)]));
+    }
+
+    /// Moves a node of a cloth by a vector over its mass, m³.
+    pub fn push_node(&mut self, cloth: usize, node: usize, by: Vec3) {
+        with_grid!(self, batch => {
+            let (pack, lane) = batch.layout.locate(node, cloth);
+            let inverse_mass = batch.masses.inverse[pack].lanes()[lane];
+            let position = &mut batch.positions.packs_mut()[pack];
+            let from = lane3(position, lane);
+            set_lane3(position, lane, from + by * inverse_mass);
+        });
     }
 
     /// Sets the inverse masses of a cloth's nodes, 1/m².

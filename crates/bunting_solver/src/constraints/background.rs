@@ -122,6 +122,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         let nodes = grid.positions.packs_mut();
         P::run(Interpolate { rows: &transfer.held, from: particles, to: nodes });
         project(transfer, particles, &mut self.stretch_shift, nodes);
+        self.draw_nodes();
     }
 
     /// Interpolates the positions of the free particles from the nodes.

@@ -25,6 +25,8 @@ impl LaneBatch<Pack8, SingleMesh> {
         let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
         grid.batch.predict_nodes(self.clock, self.parameters.any_frame_moved);
         grid.project(self.positions.read_vectors());
+        self.draw_nodes();
+        let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
         grid.batch.solve_bending_before_stretch();
     }
 

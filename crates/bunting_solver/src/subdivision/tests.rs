@@ -186,33 +186,3 @@ fn every_instruction_set_gives_the_same_bits() {
     let all = with_every_instruction_set(|| surface(&subdivision, &positions));
     assert!(all.iter().all(|one| *one == all[0]));
 }
-
-/// Prints the time of a flag of 65 × 65 drawn vertices: `cargo test --release -p bunting_solver --lib -- --ignored
-/// --nocapture subdivision`.
-#[test]
-#[ignore = "it measures"]
-fn time_of_a_subdivided_flag() {
-    for (name, (fabric, indices)) in [
-        ("grid", grid(33, 33)),
-        ("mesh", {
-            let (grid, indices) = grid(33, 33);
-            let builder = FabricBuilder::new(grid.rest_positions().to_vec(), indices.clone());
-            (builder.build().expect("a mesh"), indices)
-        }),
-    ] {
-        let began = std::time::Instant::now();
-        let subdivision = Subdivision::new(&fabric, &indices, 1);
-        let built = began.elapsed();
-        let positions = lifted(&fabric, |at| libm::sinf(7.0 * at.x) * libm::cosf(5.0 * at.y));
-        let count = subdivision.attributes().rows().len();
-        let (mut drawn, mut normals) = (vec![[0.0; 3]; count], vec![[0.0; 3]; count]);
-        let mut buffers = SubdivisionBuffers::default();
-        let mut least = std::time::Duration::MAX;
-        for _ in 0..2000 {
-            let began = std::time::Instant::now();
-            subdivision.evaluate(&positions, &mut buffers, &mut drawn, &mut normals);
-            least = least.min(began.elapsed());
-        }
-        println!("{name}: {count} vertices in {least:?}, built in {built:?}");
-    }
-}

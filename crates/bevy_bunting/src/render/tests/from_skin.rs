@@ -52,7 +52,7 @@ fn a_skinned_mesh_becomes_a_cloth_that_its_skeleton_leads() {
         at_one: 0.3,
     };
     let from = ClothFromMesh { max_distance: Some(play), ..ClothFromMesh::painted() };
-    let cloth = app.world_mut().spawn((given.clone(), skin, from)).id();
+    let cloth = app.world_mut().spawn((given.clone(), skin, from, ClothSubdivision::NONE)).id();
     run(&mut app, 3);
     assert!(app.world().get::<ClothMesh>(cloth).is_none(), "its bind poses are not loaded");
     let mut assets = app.world_mut().resource_mut::<Assets<SkinnedMeshInverseBindposes>>();

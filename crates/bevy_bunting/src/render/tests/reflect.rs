@@ -11,8 +11,15 @@ use bevy_reflect::{TypeInfo, TypeRegistry};
 use super::*;
 
 /// Results, which are no part of a scene.
-const RESULTS: [&str; 6] =
-    ["ClothState", "ClothEffort", "ClothTimings", "ClothBatches", "ClothCounts", "ClothGizmos"];
+const RESULTS: [&str; 7] = [
+    "ClothState",
+    "ClothEffort",
+    "ClothTimings",
+    "ClothBatches",
+    "ClothCounts",
+    "ClothGizmos",
+    "Grabbed",
+];
 
 /// Opaque values that the feature `serialize` serialises.
 const SERIALIZED: [&str; 1] = ["SharedShapeReflect"];

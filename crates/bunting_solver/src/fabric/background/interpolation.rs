@@ -80,9 +80,15 @@ impl Interpolation {
         !self.rows[row].is_empty()
     }
 
+    /// The terms of a row.
+    pub fn row(&self, row: usize) -> &[Term] {
+        let Range { start, end } = self.rows[row].clone();
+        &self.terms[start as usize..end as usize]
+    }
+
     /// The rows, in order.
     pub fn rows(&self) -> impl Iterator<Item = &[Term]> {
-        self.rows.iter().map(|range| &self.terms[range.start as usize..range.end as usize])
+        (0..self.len()).map(|row| self.row(row))
     }
 
     /// The same rows, with those of equal length grouped. Rows without terms are in no group.
