@@ -19,10 +19,11 @@ pub(super) fn intersecting_pairs(triangles: &[[u32; 3]], positions: &[Vec3]) -> 
     let mut count = 0;
     for (index, (low, high, triangle)) in boxes.iter().enumerate() {
         for (other_low, other_high, other) in &boxes[index + 1..] {
-            if other_low.x > high.x {
+            if other_low.x >= high.x {
                 break;
             }
-            let apart = low.cmpgt(*other_high) | other_low.cmpgt(*high);
+            // Boxes that only touch are apart, too.
+            let apart = low.cmpge(*other_high) | other_low.cmpge(*high);
             if !apart.any() && intersect(*triangle, *other, positions) {
                 count += 1;
             }
@@ -47,6 +48,9 @@ fn intersect(one: [u32; 3], other: [u32; 3], positions: &[Vec3]) -> bool {
 /// Whether an edge passes through a triangle: its ends lie on different sides of the plane, and its line turns the same
 /// way about all three sides.
 fn passes(edge: [u32; 2], triangle: [u32; 3], positions: &[Vec3]) -> bool {
+    if is_beside(edge, triangle, positions) {
+        return false;
+    }
     let at = |corner: u32| {
         let [x, y, z] = positions[corner as usize].as_dvec3().to_array();
         Coord3D { x, y, z }
@@ -57,6 +61,21 @@ fn passes(edge: [u32; 2], triangle: [u32; 3], positions: &[Vec3]) -> bool {
     }
     let turns = [orient3d(p, q, a, b), orient3d(p, q, b, c), orient3d(p, q, c, a)];
     turns.iter().all(|turn| *turn >= 0.0) || turns.iter().all(|turn| *turn <= 0.0)
+}
+
+/// Whether an edge lies beyond one side of a triangle, seen along the normal, by more than rounding. Exact predicates take
+/// long on triangles in one plane, which most neighbours are.
+fn is_beside(edge: [u32; 2], triangle: [u32; 3], positions: &[Vec3]) -> bool {
+    /// Least distance from the side, m.
+    const LEAST: f64 = 1e-9;
+    let at = |corner: u32| positions[corner as usize].as_dvec3();
+    let ([p, q], [a, b, c]) = (edge.map(at), triangle.map(at));
+    let normal = (b - a).cross(c - a);
+    [(a, b), (b, c), (c, a)].into_iter().any(|(from, to)| {
+        let outwards = (to - from).cross(normal);
+        let least = LEAST * outwards.length();
+        (p - from).dot(outwards) > least && (q - from).dot(outwards) > least
+    })
 }
 
 #[cfg(test)]
