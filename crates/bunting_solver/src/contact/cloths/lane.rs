@@ -101,7 +101,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn write_grouped(&mut self, cloth: usize, member: &Member, particles: &Particles) {
         let range = member.range.clone();
         if member.moves && member.is_finite {
-            self.scatter_particles(&Part { cloth, range, place: &member.pose }, particles);
+            let part = Part { cloth, range, place: &member.pose };
+            let moment = self.scatter_particles(&part, particles);
+            if let Some(state) = &mut self.lanes[cloth] {
+                state.external_moment += moment;
+            }
         }
     }
 

@@ -51,13 +51,16 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Copies what contacts have changed back into the lanes. A correction of the position is no velocity: that of a
     /// particle is the one that the contacts gave to it. An impact is not extrapolated, so the velocities of the last
-    /// substeps change by the same amount.
+    /// substeps change by the same amount. Returns the moment of the corrections about the pole, m⁴.
+    #[must_use]
     pub(in crate::contact) fn scatter_particles<S: Place>(
         &mut self,
         part: &Part<S>,
         particles: &Particles,
-    ) {
+    ) -> f32 {
         let inverse_step = self.inverse_step(part.cloth);
+        let pole = self.fabric_of(part.cloth).pole;
+        let mut sum = 0.0;
         for at in part.range.clone() {
             if !particles.touched[at] || particles.inverse_mass[at] == 0.0 {
                 continue;
@@ -66,7 +69,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let predicted =
                 lane3(&self.scratch[pack], lane) + lane3(&self.displacement[pack], lane);
             let end = part.place.to_frame(particles.end[at]);
-            set_lane3(&mut self.positions.packs_mut()[pack], lane, end);
+            let position = &mut self.positions.packs_mut()[pack];
+            if let Some(pole) = &pole {
+                let inertia = self.masses.inertia[pack].lanes()[lane];
+                let moment = |at: Vec3| pole.moment(inertia, at, at - predicted);
+                sum += moment(end) - moment(lane3(position, lane));
+            }
+            set_lane3(position, lane, end);
             let velocity = part.place.velocity_to_frame(particles.velocity[at]);
             set_lane3(&mut self.velocity[pack], lane, velocity - (end - predicted) * inverse_step);
             let impact = part.place.direction_to_frame(particles.impact[at]);
@@ -75,6 +84,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 set_lane3(past, lane, changed);
             }
         }
+        sum
     }
 
     /// Exempts particles that are near other features from under-relaxation, which would move them after the contacts:

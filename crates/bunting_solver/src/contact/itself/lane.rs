@@ -60,7 +60,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.gather_velocities(&part, &mut layers.particles);
             layers.untangle(mesh, self.clock.step);
             layers.separate(self.clock.step, SWEEPS, &rules);
-            self.scatter_particles(&part, &layers.particles);
+            state.external_moment += self.scatter_particles(&part, &layers.particles);
         }
     }
 
@@ -82,7 +82,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let part = Part { cloth, range: 0..layers.particles.end.len(), place: &InItsFrame };
             self.gather_velocities(&part, &mut layers.particles);
             zones.stop(&mut layers.particles);
-            self.scatter_particles(&part, &layers.particles);
+            state.external_moment += self.scatter_particles(&part, &layers.particles);
         }
         let near = layers.pairs.edges_triangles.iter().flat_map(EdgeTriangle::particles);
         self.suspend_relaxation(cloth, near.map(|particle| particle as usize));

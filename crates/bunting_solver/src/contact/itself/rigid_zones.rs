@@ -28,12 +28,21 @@ impl Zones {
         particle
     }
 
-    /// Unites the zones of a pair's particles; returns whether they were several.
-    fn unite(&mut self, pair: &EdgeTriangle) -> bool {
-        let roots = pair.particles().map(|particle| self.root(particle));
+    /// Unites the zones of particles; returns whether they were several.
+    fn unite(&mut self, particles: &[u32; 5]) -> bool {
+        let roots = particles.map(|particle| self.root(particle));
         let least = roots.into_iter().min().unwrap_or_default();
         roots.iter().for_each(|&root| self.0[root as usize] = least);
         roots.iter().any(|&root| root != least)
+    }
+
+    /// Unites the zones of all particles.
+    fn unite_all(&mut self, mut particles: impl Iterator<Item = u32>) {
+        let Some(first) = particles.next() else { return };
+        for particle in particles {
+            let roots = [first, particle].map(|particle| self.root(particle));
+            self.0[roots[0].max(roots[1]) as usize] = roots[0].min(roots[1]);
+        }
     }
 }
 
@@ -59,22 +68,28 @@ impl RigidZones {
     /// Returns whether any zone grew. Tangled features are left alone.
     pub fn grow(&mut self, pairs: &Pairs, tangles: &Tangles, particles: &mut Particles) -> bool {
         let before = self.growths;
-        while self.growths < GROWTHS {
-            let mut grew = false;
-            for pair in &pairs.edges_triangles {
-                let is_tangled =
-                    || tangles.contain_any(&pair.edge) && tangles.contain_any(&pair.triangle);
-                if crossing(pair, &particles.end).is_some() && !is_tangled() {
-                    grew |= self.zones.unite(pair);
-                }
-            }
-            if !grew {
-                break;
-            }
+        while self.unite_crossing(pairs, tangles, &particles.end) {
             self.growths += 1;
+            if self.growths >= GROWTHS {
+                self.zones
+                    .unite_all(pairs.edges_triangles.iter().flat_map(EdgeTriangle::particles));
+            }
             self.move_zones(particles);
         }
         self.growths > before
+    }
+
+    /// Unites the zones of features that pass through one another; returns whether there were any.
+    fn unite_crossing(&mut self, pairs: &Pairs, tangles: &Tangles, ends: &[Vec3]) -> bool {
+        let mut grew = false;
+        for pair in &pairs.edges_triangles {
+            let is_tangled =
+                || tangles.contain_any(&pair.edge) && tangles.contain_any(&pair.triangle);
+            if crossing(pair, ends).is_some() && !is_tangled() {
+                grew |= self.zones.unite(&pair.particles());
+            }
+        }
+        grew
     }
 
     /// Moves the particles of each zone to their starts, moved by the mean of their displacements.

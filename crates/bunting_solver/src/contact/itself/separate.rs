@@ -40,7 +40,7 @@ pub(in crate::contact) struct Contact {
     depth: f32,
     /// Sum of the approaches that were stopped, m/s.
     stopped: f32,
-    /// Part of this that was an impact.
+    /// What of this was an impact, m/s.
     impact: f32,
 }
 
@@ -181,16 +181,15 @@ impl Contact {
         let change = (self.normal * approach - slide * held) / inverse;
         self.stopped += approach;
         // As far as the features approached each other at the start of the substep, this is an impact.
-        if approach > 0.0 {
-            let past = relative(&particles.past_velocity, self.particles, self.factors);
-            self.impact = (-past.dot(self.normal) / approach).clamp(0.0, 1.0);
-        }
-        let impact = self.impact;
+        let past = relative(&particles.past_velocity, self.particles, self.factors);
+        let impact = (-past.dot(self.normal)).max(0.0).min(self.stopped);
+        let part = (impact - self.impact) / approach;
+        self.impact = impact;
         for (&particle, factor) in self.particles.iter().zip(self.factors) {
             let particle = particle as usize;
             let change = change * (particles.inverse_mass[particle] * factor);
             particles.velocity[particle] += change;
-            particles.impact[particle] += change * impact;
+            particles.impact[particle] += change * part;
         }
     }
 
