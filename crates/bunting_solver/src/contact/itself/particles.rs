@@ -11,6 +11,8 @@ pub(crate) struct Particles {
     pub start: Vec<Vec3>,
     /// Positions, corrected so far, m.
     pub end: Vec<Vec3>,
+    /// Length of the path along which contacts have moved each particle in the sweeps so far, m.
+    pub travel: Vec<f32>,
     /// Whether a contact may change the particle. Velocities are known of these alone.
     pub is_near: Vec<bool>,
     /// Inverse masses per unit area density, 1/m²; zero of pins.

@@ -38,6 +38,9 @@ pub(in crate::contact) struct Contact {
     factors: [f32; 4],
     /// Sum of the depths by which the features were moved apart, m.
     depth: f32,
+    /// The [`travel`](Particles::travel) of the four particles, m, up to which the features stay farther apart than they
+    /// must.
+    reach: f32,
     /// Sum of the approaches that were stopped, m/s.
     stopped: f32,
     /// What of this was an impact, m/s.
@@ -81,6 +84,8 @@ impl<R: Rules> Spacing<'_, R> {
                 contacts.push(contact);
             }
         }
+        particles.travel.clear();
+        particles.travel.resize(particles.end.len(), 0.0);
         for _ in 0..self.sweeps {
             for contact in contacts.iter_mut() {
                 contact.project(particles);
@@ -115,6 +120,7 @@ impl<R: Rules> Spacing<'_, R> {
             normal: Vec3::ZERO,
             factors: [0.0; 4],
             depth: 0.0,
+            reach: 0.0,
             stopped: 0.0,
             impact: 0.0,
         };
@@ -142,11 +148,17 @@ impl Contact {
 
     /// Moves the features apart.
     fn project(&mut self, particles: &mut Particles) {
+        let travel: f32 = self.particles.iter().map(|&at| particles.travel[at as usize]).sum();
+        if travel < self.reach {
+            return;
+        }
         let Some(Near { normal, factors, gap }) = self.near(particles) else { return };
         let depth = (self.distance - gap).max(-self.depth);
         if depth == 0.0 {
+            self.reach = travel + (gap - self.distance);
             return;
         }
+        self.reach = 0.0;
         let inverse = self.inverse_mass(particles, factors);
         if inverse <= 0.0 {
             return;
@@ -159,7 +171,9 @@ impl Contact {
         for (&particle, factor) in self.particles.iter().zip(factors) {
             let particle = particle as usize;
             let factor = particles.inverse_mass[particle] * factor;
-            particles.end[particle] += by * factor;
+            let by = by * factor;
+            particles.end[particle] += by;
+            particles.travel[particle] += by.length();
             particles.touched[particle] |= factor != 0.0;
         }
         (self.normal, self.factors) = (normal, factors);
