@@ -32,7 +32,11 @@ impl<'a> ParticlesMut<'a> {
         lane: usize,
     ) -> Option<Self> {
         let exists = batch.clock.predicted && batch.lanes.get(lane)?.is_some();
-        exists.then_some(Self { batch, lane })
+        if !exists {
+            return None;
+        }
+        batch.access_particles(lane);
+        Some(Self { batch, lane })
     }
 
     /// Number of particles.
