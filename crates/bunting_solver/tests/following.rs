@@ -155,6 +155,18 @@ fn impulses_and_forces_of_users_move_the_cloth() {
         assert!(moved.distance(expected) < 0.02 * expected.length(), "{moved} for {expected}");
     }
     let mut batch = in_space(&fabric);
+    for _ in 0..3 {
+        batch.step(TICK, SETTINGS);
+    }
+    let mut state = batch.snapshot(0);
+    (0..fabric.particle_count()).for_each(|at| state.add_velocity(at, Vec3::Z));
+    batch.restore(0, &state).expect("its own state");
+    for _ in 0..30 {
+        batch.step(TICK, SETTINGS);
+    }
+    let moved = mean_velocity(&batch);
+    assert!(moved.distance(Vec3::Z) < 1e-3, "{moved} after an impulse between ticks");
+    let mut batch = in_space(&fabric);
     for _ in 0..30 {
         tick_with(&mut batch, |batch| {
             let mut particles = batch.particles_mut(0).expect("a substep");
