@@ -4,6 +4,7 @@
 use glam::Vec3;
 
 use crate::batch::lane_batch::{BackgroundGrid, LaneBatch, SingleGrid};
+use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::single_mesh::pack_count;
@@ -12,6 +13,7 @@ use crate::fabric::{Background, Fabric, GridTransfer};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::{lane3, set_lane3};
+use crate::stability::added_mass::inertias;
 use crate::step::Drive;
 use crate::step::bdf::IntegratorHistory;
 use crate::step::clock::Clock;
@@ -43,7 +45,9 @@ impl<P: Pack> BackgroundGrid<P> {
             None => Self::SideBySide(Box::new(LaneBatch::side_by_side(grid.clone()))),
         };
         // The particles undo what the corrections turn.
-        with_grid!(&mut batch, nodes => nodes.numbers.pole = None);
+        if !background.transfer.is_whole {
+            with_grid!(&mut batch, nodes => nodes.numbers.pole = None);
+        }
         Some(batch)
     }
 
@@ -65,6 +69,26 @@ impl<P: Pack> BackgroundGrid<P> {
     /// Sets what acts on a cloth in the substep that `clock` is about to begin.
     pub fn set_drive(&mut self, cloth: usize, drive: &Drive, clock: &Clock) {
         with_grid!(self, batch => batch.set_drive(cloth, drive, clock));
+    }
+
+    /// Sets how the nodes of a cloth are stabilised: see [`LaneBatch::begin_nodes`].
+    pub fn begin_nodes(&mut self, cloth: usize, state: &LaneState, damping_factor: f32) {
+        with_grid!(self, batch => batch.begin_nodes(cloth, state, damping_factor));
+    }
+
+    /// Predicts the positions of the nodes: see [`LaneBatch::predict_nodes`].
+    pub fn predict_nodes(
+        &mut self,
+        clock: Clock,
+        frame_moved: bool,
+        cloths: &mut [Option<LaneState>],
+    ) {
+        with_grid!(self, batch => batch.predict_nodes(clock, frame_moved, cloths));
+    }
+
+    /// Sets whether the nodes of a cloth are under-relaxed.
+    pub fn set_nodes_near_rest(&mut self, cloth: usize, near_rest: bool) {
+        with_grid!(self, batch => batch.set_nodes_near_rest(cloth, near_rest));
     }
 
     /// The state of a cloth's nodes, whose history is that of the particles.
@@ -95,6 +119,7 @@ impl<P: Pack> BackgroundGrid<P> {
     pub fn set_inverse_masses(&mut self, cloth: usize, of_nodes: &[f32]) {
         with_grid!(self, batch => {
             batch.layout.write_numbers(of_nodes, cloth, &mut batch.masses.inverse);
+            batch.layout.write_numbers(&inertias(of_nodes), cloth, &mut batch.masses.inertia);
             batch.positions.set_inverse_masses(of_nodes);
         });
     }

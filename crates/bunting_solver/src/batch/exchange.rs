@@ -129,6 +129,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             }
         }
         if let Some(cloth) = &mut self.lanes[lane] {
+            // The nodes take over what the particles' state has beyond their own.
+            cloth.follows_nodes = false;
             cloth.history =
                 history.map_or_else(IntegratorHistory::default, |history| history.integrator);
             cloth.are_pins_at_rest = fabric.are_pins_at_rest(positions);

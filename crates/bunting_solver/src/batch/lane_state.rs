@@ -10,7 +10,7 @@ use crate::fabric::FabricMaterial;
 use crate::stability::added_mass::AddedMass;
 use crate::stability::pin_strain::PinStrain;
 use crate::step::Drive;
-use crate::step::bdf::IntegratorHistory;
+use crate::step::bdf::{IntegratorHistory, MotionSums};
 use crate::step::guides::ClothGuides;
 use crate::step::moving_pins::MovingPins;
 use crate::step::parameters::ParameterInputs;
@@ -42,6 +42,10 @@ pub(crate) struct LaneState {
     pub holds: Option<Box<Holds>>,
     /// What the cloth does to its pins, if that is asked for.
     pub pin_reports: Option<Box<PinReports>>,
+    /// Whether the particles follow the nodes of a background grid in this tick (`step/follow.rs`).
+    pub follows_nodes: bool,
+    /// Sums over the nodes of a background grid.
+    pub motion_of_nodes: MotionSums<f32>,
     /// Inputs of the lane's parameters; none if the parameters must be computed.
     pub inputs: Option<ParameterInputs>,
     /// Inputs of the lane's inverse masses besides the substep; none if the masses must be computed.
@@ -67,6 +71,8 @@ impl LaneState {
             guides: None,
             holds: None,
             pin_reports: None,
+            follows_nodes: false,
+            motion_of_nodes: MotionSums::default(),
             inputs: None,
             added_mass: None,
         }

@@ -20,6 +20,9 @@ use crate::simd::vec3::{Pack3, lane3, set_lane3};
 /// Vectors are along the axes of the cloth's frame in this substep. Particles are numbered as in the
 /// [`Fabric`](crate::Fabric); methods panic if there is no particle with the given number. Pinned particles
 /// cannot be moved: values written to them are ignored.
+///
+/// A mesh whose particles are asked for takes up to half more time in this tick and in the next: its particles, which
+/// otherwise follow a grid, then move by themselves.
 pub struct ParticlesMut<'a> {
     batch: &'a mut dyn ParticleAccess,
     lane: usize,
@@ -32,7 +35,11 @@ impl<'a> ParticlesMut<'a> {
         lane: usize,
     ) -> Option<Self> {
         let exists = batch.clock.predicted && batch.lanes.get(lane)?.is_some();
-        exists.then_some(Self { batch, lane })
+        if !exists {
+            return None;
+        }
+        batch.access_particles(lane);
+        Some(Self { batch, lane })
     }
 
     /// Number of particles.

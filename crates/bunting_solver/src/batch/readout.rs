@@ -20,15 +20,26 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// The state of a lane, with its history if the integrator has one.
     pub fn snapshot_with(&self, lane: usize, integrator: IntegratorHistory) -> ClothSnapshot {
-        let read = |packs| self.read(packs, lane);
+        let read = |packs: &Vec<Pack3<P>>| self.read(packs, lane);
         let nodes = |grid: &BackgroundGrid<P>| Box::new(grid.snapshot(lane, integrator));
-        let history = integrator.exists().then(|| SnapshotHistory {
-            integrator,
-            displacements: [read(&self.displacement), read(&self.older_displacement)],
-            older_velocities: [read(&self.older_velocity), read(&self.oldest_velocity)],
-            relaxation: self.relaxation_of(lane),
-            nodes: self.background.as_ref().map(nodes),
-        });
+        let own = || {
+            [
+                &self.displacement,
+                &self.older_displacement,
+                &self.older_velocity,
+                &self.oldest_velocity,
+            ]
+            .map(read)
+        };
+        let history = || self.followed_history(lane).unwrap_or_else(own);
+        let history =
+            integrator.exists().then(history).map(|[last, older, newer, oldest]| SnapshotHistory {
+                integrator,
+                displacements: [last, older],
+                older_velocities: [newer, oldest],
+                relaxation: self.relaxation_of(lane),
+                nodes: self.background.as_ref().map(nodes),
+            });
         ClothSnapshot { history, ..self.snapshot_without_history(lane) }
     }
 

@@ -1,7 +1,8 @@
 //! Stretch, shear and bending of a mesh on its background grid.
 //!
 //! The nodes are integrated as the particles are (`step/nodes.rs`), and take over whatever else acts on the particles:
-//! air, contacts and forces of users. The grid is solved as any other grid, and the particles follow: x = P X, where P
+//! contacts and forces of users, and air where the grid does not feel it itself. Where nothing does, particles only follow
+//! (`step/follow.rs`). The grid is solved as any other grid, and the particles follow: x = P X, where P
 //! interpolates between nodes. A node takes over what its displacement moves: X ← X + R (x − P X) with
 //! R = (Pᵀ m)⁻¹ Pᵀ m, which is Galerkin's method with lumped masses. What the grid does not resolve is taken off.
 //!
@@ -20,7 +21,7 @@ use crate::constraints::interpolate::{AddInterpolated, Interpolate, Remainder};
 use crate::fabric::{Background, Fabric, GridTransfer, Height};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::registers::Pack1;
-use crate::simd::vec3::{Pack3, V3, lane3, splat3};
+use crate::simd::vec3::{Pack3, V3, lane3, set_lane3, splat3};
 
 /// Steps towards the orthogonal projection for nodes that are read from the particles alone. Fewer: rows of nodes zigzag.
 const READING_STEPS: usize = 2;
@@ -58,21 +59,24 @@ fn interpolated(transfer: &GridTransfer, of_particles: &[Vec3], outside: &[Vec3]
     Pack1::run(Interpolate { rows: &transfer.nodes, from: &particles, to: &mut nodes });
     let mut unresolved = Vec::new();
     for _ in 0..READING_STEPS {
-        project(transfer, &particles, &mut unresolved, &mut nodes);
+        project(transfer, &particles, &mut unresolved, &mut nodes, |_| {});
     }
     nodes.iter().map(|node| lane3(node, 0)).collect()
 }
 
 /// Moves nodes by R (x − P X), one step towards the places at which the particles are interpolated from them best.
+/// `leave_out` may change what is left of x.
 fn project<P: Pack>(
     GridTransfer { particles: rows, means, heights, .. }: &GridTransfer,
     particles: &[Pack3<P>],
     unresolved: &mut Vec<Pack3<P>>,
     nodes: &mut [Pack3<P>],
+    leave_out: impl Fn(&mut [Pack3<P>]),
 ) {
     unresolved.resize(particles.len(), splat3(Vec3::ZERO));
     P::run(Remainder { rows, from: nodes, of: particles, to: unresolved });
     P::run(AddHeights { heights, sign: -1.0, nodes, to: unresolved });
+    leave_out(unresolved);
     P::run(AddInterpolated { rows: means, from: unresolved, to: nodes });
 }
 
@@ -101,43 +105,57 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             grid.solve_stretch_of_grid();
         }
         self.place_particles();
+        // A grid that the mesh fills has tethers of its own.
         if self.fabric.background().is_some_and(|grid| !grid.transfer.is_whole) {
             self.sweep_mesh();
+            self.solve_tethers();
         }
-        self.solve_tethers();
         self.sum_reactions();
         self.solve_guides();
         self.solve_contacts();
     }
 
-    /// Moves the nodes as the particles have moved since the last substep.
+    /// Moves the nodes as the particles have moved since the last substep, but for those that particles follow.
     fn move_nodes(&mut self) {
+        if !self.integrates_particles() {
+            return;
+        }
         let (Some(BackgroundGrid::SideBySide(grid)), Some(background)) =
             (&mut self.background, self.fabric.background())
         else {
             return;
         };
-        grid.predict_nodes(self.clock, self.parameters.any_frame_moved);
         let (transfer, particles) = (&background.transfer, self.positions.packs());
         let nodes = grid.positions.packs_mut();
         P::run(Interpolate { rows: &transfer.held, from: particles, to: nodes });
-        project(transfer, particles, &mut self.stretch_shift, nodes);
+        project(transfer, particles, &mut self.stretch_shift, nodes, |unresolved| {
+            for (cloth, state) in self.lanes.iter().enumerate() {
+                if state.as_ref().is_some_and(|state| state.follows_nodes) {
+                    unresolved.iter_mut().for_each(|pack| set_lane3(pack, cloth, Vec3::ZERO));
+                }
+            }
+        });
         self.draw_nodes();
     }
 
-    /// Interpolates the positions of the free particles from the nodes.
+    /// Interpolates the positions of the free particles from the nodes, and their velocities at the end of a tick if all
+    /// follow them.
     fn place_particles(&mut self) {
+        let integrates = self.integrates_particles();
         let (Some(BackgroundGrid::SideBySide(grid)), Some(background)) =
             (&mut self.background, self.fabric.background())
         else {
             return;
         };
-        grid.update_node_velocities();
+        grid.update_node_velocities(&mut self.lanes);
         let GridTransfer { particles: rows, heights, .. } = &background.transfer;
         let to = self.positions.packs_mut();
         let nodes = grid.positions.packs_mut();
         P::run(Interpolate { rows, from: nodes, to });
         P::run(AddHeights { heights, sign: 1.0, nodes, to });
+        if !integrates && self.clock.begun == self.clock.settings.substeps {
+            P::run(Interpolate { rows, from: &grid.velocity, to: &mut self.velocity });
+        }
     }
 }
 

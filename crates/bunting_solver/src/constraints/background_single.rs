@@ -9,6 +9,7 @@ use crate::constraints::interpolate::{AddInterpolated, Interpolate, Remainder};
 use crate::fabric::GridTransfer;
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
+use crate::simd::vec3::Pack3;
 
 impl LaneBatch<Pack8, SingleMesh> {
     /// Projects the predicted positions onto all constraints.
@@ -22,10 +23,14 @@ impl LaneBatch<Pack8, SingleMesh> {
         if self.clock.stands_still() {
             return;
         }
-        let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
-        grid.batch.predict_nodes(self.clock, self.parameters.any_frame_moved);
-        grid.project(self.positions.read_vectors());
-        self.draw_nodes();
+        if self.integrates_particles() {
+            let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
+            grid.project(self.positions.read_vectors());
+            if self.lanes[0].as_ref().is_some_and(|state| !state.moving_pins.is_empty()) {
+                grid.batch.update_tethered_pins(0);
+            }
+            self.draw_nodes();
+        }
         let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
         grid.batch.solve_bending_before_stretch();
     }
@@ -35,11 +40,19 @@ impl LaneBatch<Pack8, SingleMesh> {
         if self.clock.stands_still() {
             return;
         }
+        let integrates = self.integrates_particles();
         let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
         grid.batch.solve_stretch_of_grid();
+        grid.batch.update_node_velocities(&mut self.lanes);
+        if !integrates {
+            // The particles' own vectors are those of pins alone.
+            self.positions.read_vectors();
+        }
         grid.place_particles(self.positions.vectors_mut());
         self.positions.write_vectors();
-        self.solve_tethers();
+        if !integrates && self.clock.begun == self.clock.settings.substeps {
+            grid.give_velocities(&mut self.velocity, self.layout.velocities_mut());
+        }
         self.sum_reactions();
         self.solve_guides();
         self.solve_contacts();
@@ -62,7 +75,15 @@ impl SingleGrid {
     fn place_particles(&mut self, particles: &mut [Pack4]) {
         let Self { batch, nodes, transfer, .. } = self;
         read_vectors(batch.positions.packs_mut(), nodes);
-        batch.update_node_velocities();
         Pack4::run(Interpolate { rows: &transfer.particles, from: nodes, to: particles });
+    }
+
+    /// Interpolates the velocities of the free particles from the nodes, m/s, by way of vectors.
+    fn give_velocities(&mut self, particles: &mut [Pack3<Pack8>], vectors: &mut [Pack4]) {
+        let Self { batch, nodes, transfer, .. } = self;
+        read_vectors(particles, vectors);
+        read_vectors(&batch.velocity, nodes);
+        Pack4::run(Interpolate { rows: &transfer.particles, from: nodes, to: vectors });
+        write_vectors(vectors, particles);
     }
 }

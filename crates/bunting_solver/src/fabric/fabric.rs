@@ -17,6 +17,7 @@ use super::normals::vertex_normals;
 use super::patches::{self, Patch};
 use super::strip::{self, StripRow};
 use super::tethers::{self, Pin, Tether, Tethers};
+use super::topology;
 use super::twist::{Ribbon, RibbonProfile, Twist};
 use super::yarns::{Yarn, Yarns};
 
@@ -58,9 +59,9 @@ pub(crate) struct Background {
 }
 
 impl Background {
-    fn of(mesh: BackgroundMesh) -> Self {
+    fn of(mesh: BackgroundMesh, tethered: bool) -> Self {
         let warp_cos2 = mesh.warp_cos2;
-        let (fabric, transfer) = Fabric::of_background(mesh);
+        let (fabric, transfer) = Fabric::of_background(mesh, tethered);
         Self { fabric: Arc::new(fabric), transfer, warp_cos2 }
     }
 }
@@ -75,7 +76,7 @@ impl Fabric {
     ) -> Self {
         let background = match &grid {
             Some(_) => None,
-            None => BackgroundMesh::of(&mesh, surface).map(Background::of),
+            None => BackgroundMesh::of(&mesh, surface).map(|grid| Background::of(grid, tethered)),
         };
         let mut patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
         let cells = grid.filter(|grid| patches::are_cells(&patches, grid));
@@ -120,24 +121,27 @@ impl Fabric {
         fabric
     }
 
-    /// The constraints of a background grid, whose nodes have no triangles, hinges or tethers.
-    fn of_background(background: BackgroundMesh) -> (Self, GridTransfer) {
+    /// The constraints of a background grid, whose nodes have no hinges, and have cells and tethers only where the mesh fills
+    /// the grid.
+    fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
         let BackgroundMesh { grid, mesh, coverage, transfer, .. } = background;
         let links = Links::of(&mesh, Some(&grid), Some(&coverage), &[]);
         let yarns = Yarns::of(&mesh.positions, &links.list);
         let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid));
         let whole = transfer.is_whole.then_some(grid);
+        let patches = whole.map(|grid| patches::cells(&mesh.triangles, &grid)).unwrap_or_default();
+        let edges = topology::edges(&mesh.triangles).unwrap_or_default();
         let inverse_areas = &mesh.inverse_areas;
         let fabric = Self {
             bending: whole.map(|grid| Bending::of(&grid, inverse_areas)).unwrap_or_default(),
             twist: whole.map(|grid| Twist::of(&grid, inverse_areas)).unwrap_or_default(),
             hinges: Hinges::of(&mesh, &[]),
-            tethers: Tethers::of(&mesh, &[], true, false),
+            tethers: Tethers::of(&mesh, &edges, true, tethered && whole.is_some()),
             tautness: 0.0,
             shortest: 0.0,
             probes: Vec::new(),
-            patches: Vec::new(),
-            patch_grid_columns: None,
+            patches,
+            patch_grid_columns: whole.map(|grid| grid.columns as usize),
             background: None,
             strips: Vec::new(),
             topology: None,

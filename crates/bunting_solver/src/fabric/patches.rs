@@ -43,6 +43,14 @@ pub(super) fn are_cells(patches: &[Patch], grid: &Grid) -> bool {
     cells.eq(patches.iter().map(|patch| patch.corners))
 }
 
+/// The cells of a grid, row by row.
+pub(super) fn cells(triangles: &[[u32; 3]], grid: &Grid) -> Vec<Patch> {
+    let mut cells = patches(triangles, &vec![0.0; triangles.len()]);
+    debug_assert!(are_cells(&cells, grid));
+    quarter(&mut cells, grid);
+    cells
+}
+
 /// Makes the corner areas of a grid's cells quarters.
 pub(super) fn quarter(patches: &mut [Patch], grid: &Grid) {
     let cells = (grid.columns - 1) as f32 * (grid.rows - 1) as f32;

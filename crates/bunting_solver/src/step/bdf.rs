@@ -1,6 +1,7 @@
 //! The backward differentiation formula of a substep, and the history from which it is selected.
 
 use crate::constants::GRAVITY;
+use crate::simd::lane::Pack;
 use crate::stability::pole::PoleTurn;
 use crate::step::Scheme;
 
@@ -95,6 +96,9 @@ pub(crate) struct IntegratorHistory {
     substeps: u32,
     /// Turn of the cloth about its pole by the last substep's corrections, which the next prediction undoes.
     pub pole_turn: PoleTurn,
+    /// Whether something could act on single particles of a mesh with a background grid in this tick. What acts on them in
+    /// the last substep reaches the nodes in the next one.
+    pub was_acted_on: bool,
 }
 
 impl IntegratorHistory {
@@ -153,6 +157,18 @@ pub(crate) struct MotionSums<T> {
     pub first_difference: T,
     /// Sum of |Δ²v|², with Δ²v the change of Δv.
     pub second_difference: T,
+}
+
+impl<P: Pack> MotionSums<P> {
+    /// The sums in a lane.
+    pub fn of_lane(&self, lane: usize) -> MotionSums<f32> {
+        let of_lane = |sum: &P| sum.lanes()[lane];
+        MotionSums {
+            velocity: of_lane(&self.velocity),
+            first_difference: of_lane(&self.first_difference),
+            second_difference: of_lane(&self.second_difference),
+        }
+    }
 }
 
 #[cfg(test)]

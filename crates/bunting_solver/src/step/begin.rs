@@ -19,6 +19,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// candidates.
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
         let step = tick / settings.substeps as f32;
+        let before = self.clock.settings.scheme;
         self.clock = Clock { settings, step, begun: 0, predicted: false };
         self.note_probes(tick);
         if self.clock.stands_still() {
@@ -39,6 +40,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.begin_guides();
         self.begin_pin_reports();
         self.gather_contacts(tick);
+        self.begin_following(before);
     }
 
     /// Computes all values that are constant over the coming substep.
@@ -83,6 +85,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.parameters.set_drive(Y::lanes(cloth), &state.drive, &self.clock);
         if let Some(background) = &mut self.background {
             background.set_drive(cloth, &state.drive, &self.clock);
+            let damping = self.parameters.internal_damping_factor.lanes()[Y::lanes(cloth).start];
+            background.begin_nodes(cloth, state, damping);
         }
         let fabric = &self.fabric_of(cloth).fabric;
         let reach = match fabric.grid() {

@@ -20,6 +20,19 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if self.parameters.any_frame_moved {
             self.carry_state();
         }
+        let sums = self.integrates_particles().then(|| self.predict_particles());
+        self.clock.begun += 1;
+        self.clock.predicted = true;
+        if self.clock.settings.scheme == Scheme::Yarns
+            && let Some(grid) = &mut self.background
+        {
+            grid.predict_nodes(self.clock, self.parameters.any_frame_moved, &mut self.lanes);
+        }
+        self.assess_motion(sums.as_ref());
+    }
+
+    /// Predicts the particles, and sums their motion.
+    fn predict_particles(&mut self) -> MotionSums<P> {
         self.move_pins();
         self.free_held();
         let feels_air = self.parameters.any_feels_air();
@@ -29,9 +42,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         let sums = self.predict(feels_air);
         self.draw_held();
-        self.assess_motion(&sums);
-        self.clock.begun += 1;
-        self.clock.predicted = true;
+        sums
     }
 
     /// Predicts positions and velocities, and sums the squares of velocities and of their differences. The
@@ -66,23 +77,31 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 
     /// Restarts the integrator of cloths whose motion is rough, and finds which cloths are near rest.
-    fn assess_motion(&mut self, sums: &MotionSums<P>) {
-        let particles = self.fabric.particle_count();
+    /// `sums` are those over particles, if any are integrated.
+    fn assess_motion(&mut self, sums: Option<&MotionSums<P>>) {
         let relaxes = self.clock.settings.scheme == Scheme::Yarns;
         for cloth in 0..self.lanes.len() {
             let Some(state) = &mut self.lanes[cloth] else { continue };
-            let of_cloth = |sum: &P| sum.lanes()[Y::lanes(cloth).start];
-            let sums = MotionSums {
-                velocity: of_cloth(&sums.velocity),
-                first_difference: of_cloth(&sums.first_difference),
-                second_difference: of_cloth(&sums.second_difference),
+            let (sums, particles) = match (sums, self.fabric.background()) {
+                (_, Some(grid)) if state.follows_nodes => {
+                    (state.motion_of_nodes, grid.fabric.particle_count())
+                }
+                (Some(sums), _) => {
+                    (sums.of_lane(Y::lanes(cloth).start), self.fabric.particle_count())
+                }
+                (None, _) => continue,
             };
             let near_rest = relaxes && state.history.is_near_rest(sums, particles);
             state.history.restart_if_rough(sums, particles);
-            if self.parameters.is_near_rest(Y::lanes(cloth)) && !near_rest {
+            let of_nodes = near_rest && state.follows_nodes;
+            let of_particles = near_rest && !state.follows_nodes;
+            if let Some(grid) = &mut self.background {
+                grid.set_nodes_near_rest(cloth, of_nodes);
+            }
+            if self.parameters.is_near_rest(Y::lanes(cloth)) && !of_particles {
                 self.reset_relaxation(cloth);
             }
-            self.parameters.set_near_rest(Y::lanes(cloth), near_rest);
+            self.parameters.set_near_rest(Y::lanes(cloth), of_particles);
         }
     }
 }

@@ -5,6 +5,7 @@
 //! smaller than that.
 
 use crate::batch::lane_batch::LaneBatch;
+use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Pack};
@@ -20,6 +21,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if self.clock.stands_still() {
             return;
         }
+        if self.integrates_particles() {
+            self.update_particle_velocities();
+        }
+        self.end_following();
+        self.clock.predicted = false;
+    }
+
+    fn update_particle_velocities(&mut self) {
         let has_chains = self.clock.settings.scheme == Scheme::Yarns;
         let turns = has_chains && self.numbers.pole.is_some();
         let mut turn = self.external_moments();
@@ -28,7 +37,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.store_pole_turn(&turn);
         }
         self.damp_internally();
-        self.clock.predicted = false;
     }
 
     /// Computes velocities from the corrected positions. `turn` is that of [`UpdateVelocities`], if the turn about the
@@ -65,16 +73,24 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Stores the turns of the cloths about the pole by the corrections, rad.
     fn store_pole_turn(&mut self, turn: &P) {
         for (cloth, state) in self.lanes.iter_mut().enumerate() {
-            if let Some(state) = state {
+            // Nodes that are followed have stored their own.
+            if let Some(state) = state.as_mut().filter(|state| !state.follows_nodes) {
                 let lane = Y::lanes(cloth).start;
-                // The pole is that of pins in their places at rest, and guides turn the cloth from outside.
-                let rests = state.moving_pins.is_empty() && state.are_pins_at_rest;
-                let turns = rests && state.guides.is_none();
-                let angle = if turns { turn.lanes()[lane] } else { 0.0 };
-                let rate = angle * self.parameters.inverse_step.lanes()[lane];
-                state.history.pole_turn = PoleTurn { angle, rate };
+                let rate = self.parameters.inverse_step.lanes()[lane];
+                state.store_pole_turn(turn.lanes()[lane], rate);
             }
         }
+    }
+}
+
+impl LaneState {
+    /// Stores the turn about the pole by the corrections, rad, given the rate at which corrections become velocities, 1/s.
+    pub fn store_pole_turn(&mut self, angle: f32, inverse_step: f32) {
+        // The pole is that of pins in their places at rest, and guides turn the cloth from outside.
+        let rests = self.moving_pins.is_empty() && self.are_pins_at_rest;
+        let turns = rests && self.guides.is_none();
+        let angle = if turns { angle } else { 0.0 };
+        self.history.pole_turn = PoleTurn { angle, rate: angle * inverse_step };
     }
 }
 

@@ -42,6 +42,13 @@ pub(crate) struct SingleMesh {
     velocity: Vec<Pack4>,
 }
 
+impl SingleMesh {
+    /// Velocities as vectors, m/s, of which nothing is kept.
+    pub fn velocities_mut(&mut self) -> &mut [Pack4] {
+        &mut self.velocity
+    }
+}
+
 /// The pack and the lane of a particle.
 #[inline]
 fn locate(particle: usize) -> (usize, usize) {
