@@ -107,6 +107,8 @@ mod diagnostics;
 mod display;
 mod environment;
 mod fabric;
+#[cfg(feature = "gltf")]
+mod gltf;
 #[cfg(doctest)]
 mod guide;
 mod lod;
@@ -169,6 +171,10 @@ pub use environment::wind::region::{WindRegion, WindShape};
 pub use environment::wind::tick_wind::TickWind;
 pub use environment::wind::wake::{WakeTrail, WindWake};
 pub use fabric::prepare::PreparePlugin;
+#[cfg(feature = "gltf")]
+pub use gltf::error::{GltfComponentError, GltfComponentFailed};
+#[cfg(feature = "gltf")]
+pub use gltf::plugin::ClothGltfPlugin;
 pub use lod::budget::{ClothBudget, LodCosts};
 pub use lod::cost_table::CostTable;
 pub use lod::effort::ClothEffort;
@@ -280,6 +286,8 @@ impl PluginGroup for ClothPlugins {
             .add(ClothDiagnosticsPlugin);
         #[cfg(feature = "render")]
         let group = group.add(ClothRenderPlugin);
+        #[cfg(feature = "gltf")]
+        let group = group.add(ClothGltfPlugin);
         group
     }
 }

@@ -10,6 +10,7 @@ use bevy_reflect::Reflect;
 use bevy_transform::components::Transform;
 
 use crate::fabric::levels::ClothLevels;
+use crate::motion::anchor_hold::infinite_force;
 use crate::motion::pose::PoseHistory;
 
 /// Stiffness with which a hand grabs unless another is given, N/m.
@@ -33,8 +34,10 @@ pub struct ClothGrab {
     /// The vertices that are held.
     pub vertices: GrabbedVertices,
     /// Stiffness of the hold, N/m, of all vertices together.
+    #[reflect(default = "stiffness")]
     pub stiffness: f32,
     /// Greatest force, N, of all vertices together: cloth that pulls harder is drawn along no further. May be infinite.
+    #[reflect(default = "infinite_force")]
     pub max_force: f32,
 }
 
@@ -51,6 +54,11 @@ pub enum GrabbedVertices {
         /// Radius, m.
         radius: f32,
     },
+}
+
+/// Stiffness of a grab in a file that names none, N/m.
+fn stiffness() -> f32 {
+    STIFFNESS
 }
 
 impl ClothGrab {

@@ -16,6 +16,7 @@ pub enum AnchorHold {
         /// Stiffness of all springs together, N/m.
         stiffness: f32,
         /// Greatest force of all springs together, N: those that would pull harder yield. May be infinite.
+        #[reflect(default = "infinite_force")]
         max_force: f32,
     },
     /// By rings on a rail, one for each vertex, which slide.
@@ -29,6 +30,11 @@ pub enum AnchorHold {
         /// Coulomb friction coefficient of rings on the rail.
         friction: f32,
     },
+}
+
+/// Force in a file that names none, N: JSON cannot write infinity.
+pub(crate) fn infinite_force() -> f32 {
+    f32::INFINITY
 }
 
 impl AnchorHold {

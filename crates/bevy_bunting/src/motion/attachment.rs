@@ -11,7 +11,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
 
 use crate::cloth::mesh::ClothMesh;
-use crate::motion::anchor_hold::AnchorHold;
+use crate::motion::anchor_hold::{AnchorHold, infinite_force};
 
 /// Default of [`Attachment::teleport_speed`], m/s: no vehicle changes its velocity by as much between two
 /// frames. Smaller: hard manoeuvres count as teleports and do not swing the cloth. Larger: jumps whip it.
@@ -39,20 +39,25 @@ const EDGE_TOLERANCE: f32 = 1e-4;
 pub struct Attachment {
     /// Entity that the vertices stay on. [`Entity::PLACEHOLDER`] and the cloth itself hold the vertices on
     /// the cloth's own [`Transform`].
+    #[reflect(default = "placeholder")]
     pub target: Entity,
     /// The vertices that are held.
     pub vertices: AttachedVertices,
     /// Pose of the cloth's frame relative to the target. The scale is baked into the cloth when it is attached.
+    #[reflect(default)]
     pub offset: Transform,
     /// Fate of the cloth when the target is despawned.
+    #[reflect(default)]
     pub on_lost: TargetLost,
     /// Change of the target's velocity between two frames or ticks, in m/s, above which the target was
     /// teleported: the cloth then moves with it rigidly, without being accelerated. At 60 frames a second, 25
     /// m/s is a departure of 0.4 m from the extrapolated motion. Where the next change has the same velocity, the target
     /// is not teleported but fast: the cloth gets its velocity (up to 100 m/s) and flies on with it. A turn counts by the change of velocity of a
     /// point 1 m away, and any turn of more than 90° is a teleport.
+    #[reflect(default = "teleport_speed")]
     pub teleport_speed: f32,
     /// Further vertices, held on further entities: the other mast of a banner, the other shoulder of a cape.
+    #[reflect(default)]
     pub anchors: Vec<Anchor>,
 }
 
@@ -69,11 +74,14 @@ pub struct Anchor {
     /// The vertices that are held.
     pub vertices: AttachedVertices,
     /// Pose of the vertices' frame relative to the target; the scale is ignored.
+    #[reflect(default)]
     pub offset: Transform,
     /// How the vertices are held: exactly, by springs or on a rail.
+    #[reflect(default)]
     pub hold: AnchorHold,
     /// Force of the cloth on the anchor, N, as the mean over a tick, at which the anchor lets go: it is removed from the
     /// [`Attachment`], and [`ClothAnchorBroke`](crate::ClothAnchorBroke) is triggered on the cloth. Infinite by default.
+    #[reflect(default = "infinite_force")]
     pub break_force: f32,
 }
 
@@ -122,6 +130,16 @@ impl Anchor {
         self.offset = offset;
         self
     }
+}
+
+/// Target of an attachment in a file that names none.
+fn placeholder() -> Entity {
+    Entity::PLACEHOLDER
+}
+
+/// Greatest change of velocity of an attachment in a file that names none, m/s.
+fn teleport_speed() -> f32 {
+    TELEPORT_SPEED
 }
 
 /// Maps the targets when a scene is loaded. The placeholder is no entity of a scene and stays.
