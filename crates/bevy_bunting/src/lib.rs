@@ -238,6 +238,16 @@ pub mod prelude {
 /// All plugins that cloth needs, one for each concern.
 ///
 /// Bevy's `TimePlugin` and `TransformPlugin` must be added, too; `DefaultPlugins` contains both.
+///
+/// ```
+/// use bevy_app::prelude::*;
+/// use bevy_bunting::ClothPlugins;
+/// use bevy_time::TimePlugin;
+/// use bevy_transform::TransformPlugin;
+///
+/// // A tick in each frame, instead of a fixed step.
+/// App::new().add_plugins((TimePlugin, TransformPlugin, ClothPlugins::new(PostUpdate)));
+/// ```
 #[derive(Debug)]
 pub struct ClothPlugins {
     host: Interned<dyn ScheduleLabel>,

@@ -8,6 +8,15 @@ use crate::cloth::place::place;
 use crate::motion::attachment::TargetLost;
 
 /// A cloth cannot be simulated or shown as asked. Triggered and logged once, when the error is found.
+///
+/// ```
+/// use bevy_app::prelude::*;
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+///
+/// let mut app = App::new();
+/// app.add_observer(|failed: On<ClothFailed>| println!("{}", failed.error));
+/// ```
 #[derive(EntityEvent, Clone, Copy, Debug)]
 pub struct ClothFailed {
     /// The cloth.

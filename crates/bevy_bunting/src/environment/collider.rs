@@ -13,6 +13,16 @@ use crate::motion::pose::PoseHistory;
 
 /// A shape that no cloth enters. It moves with its entity and pushes cloth; cloth does not push it. A
 /// heightfield is solid below its surface. Scene files can contain it with the feature `serialize`.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_transform::prelude::*;
+///
+/// // A body, and a table with a smooth top.
+/// let body = (ClothCollider::capsule(0.5, 0.25), Transform::from_xyz(0.0, 1.0, 0.0));
+/// let table = ClothCollider { friction: 0.2, margin: 0.005, ..ClothCollider::cylinder(0.4, 0.6) };
+/// # assert!(table.features && body.0.friction == 1.0);
+/// ```
 #[derive(Component, Clone, Reflect)]
 #[reflect(Component, Clone)]
 #[require(Transform, PoseHistory)]

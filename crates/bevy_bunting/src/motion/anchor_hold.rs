@@ -5,6 +5,16 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
 /// How an [`Anchor`](crate::Anchor) holds its vertices. Frames are those of the anchor: its target's pose times the offset.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_math::Vec3;
+///
+/// // Rings of 10 g on a rail of 2 m.
+/// let points = vec![Vec3::ZERO, Vec3::new(2.0, 0.0, 0.0)];
+/// let rail = AnchorHold::Rail { points, ring_mass: 0.01, friction: 0.1 };
+/// # assert_ne!(rail, AnchorHold::default());
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum AnchorHold {

@@ -33,6 +33,17 @@ const EDGE_TOLERANCE: f32 = 1e-4;
 ///
 /// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. The target's scale scales
 /// the offset's translation and is otherwise ignored.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+/// use bevy_transform::prelude::*;
+///
+/// let mut world = World::new();
+/// let pole = world.spawn(Transform::default()).id();
+/// let held = Attachment::new(pole, ClothEdge::Left);
+/// world.spawn((ClothMesh::grid(33, 23, 1.5, 1.0), held));
+/// ```
 #[derive(Component, Clone, Debug, Reflect)]
 #[component(map_entities = map_target)]
 #[reflect(Component, Debug, Clone)]
@@ -66,6 +77,19 @@ pub struct Attachment {
 ///
 /// They move relative to the cloth's frame, which is that of the attachment's target, evenly in the substeps of a tick.
 /// A vertex that is held more than once is held by the attachment, or else by the first anchor that names it.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+/// use bevy_transform::prelude::*;
+///
+/// let mut world = World::new();
+/// let mast = world.spawn(Transform::from_xyz(2.0, 0.0, 0.0)).id();
+/// // The right edge of a banner, 2 m from its origin, is on another mast.
+/// let offset = Transform::from_xyz(-2.0, 0.0, 0.0);
+/// let anchor = Anchor::new(mast, ClothEdge::Right).with_offset(offset);
+/// world.spawn(Attachment::in_place(ClothEdge::Left).with_anchor(anchor));
+/// ```
 #[derive(Clone, Debug, Reflect)]
 #[reflect(Debug, Clone)]
 pub struct Anchor {
@@ -283,6 +307,14 @@ pub enum ClothCorner {
 /// The vertices that an [`Attachment`] holds.
 ///
 /// A coarser level of detail holds those of the vertices that it has.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // Every fourth vertex along the top of a grid of 33 columns.
+/// let rings = AttachedVertices::List((0..33).step_by(4).collect());
+/// # Attachment::in_place(rings);
+/// ```
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum AttachedVertices {
@@ -369,26 +401,5 @@ fn nearest(uv: &[Vec2], corner: Vec2) -> Option<u32> {
 }
 
 #[cfg(test)]
-mod tests {
-    use bunting_solver::Grid;
-
-    use super::*;
-
-    #[test]
-    fn edges_corners_and_predicates() {
-        let uv = Grid::new(3, 2, 1.0, 1.0).uvs();
-        let choose = |vertices: AttachedVertices| vertices.choose(&uv);
-        assert_eq!(choose(ClothEdge::Left.into()), [0, 3]);
-        assert_eq!(choose(ClothEdge::Right.into()), [2, 5]);
-        assert_eq!(choose(ClothEdge::Top.into()), [0, 1, 2]);
-        assert_eq!(choose(ClothEdge::Bottom.into()), [3, 4, 5]);
-        assert_eq!(choose(ClothCorner::TopRight.into()), [2]);
-        assert_eq!(choose(ClothCorner::BottomLeft.into()), [3]);
-        let within = AttachedVertices::Within { low: Vec2::splat(0.5), high: Vec2::ONE };
-        assert_eq!(choose(within), [4, 5]);
-        let mesh = ClothMesh::grid(3, 2, 1.0, 1.0);
-        let list = AttachedVertices::list_where(&mesh, |uv| uv.x > 0.4 && uv.y > 0.5);
-        assert_eq!(choose(list), [4, 5]);
-        assert_eq!(choose(AttachedVertices::List(vec![4])), [4]);
-    }
-}
+#[path = "attachment_tests.rs"]
+mod tests;

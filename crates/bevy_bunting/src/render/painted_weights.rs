@@ -41,6 +41,16 @@ pub struct PaintedWeights {
 
 /// Greatest distances of particles from their animated places, see [`SkinLimits::max_distance`](crate::SkinLimits), read from
 /// values that an artist has painted into the mesh. They grow evenly with the value, also beyond 0 and 1.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // Green is play: none at 0, half a metre at 1.
+/// let paint = VertexPaint::Color(ColorChannel::Green);
+/// let max_distance = Some(PaintedDistance { paint, at_zero: 0.0, at_one: 0.5 });
+/// let cape = ClothFromMesh { max_distance, ..ClothFromMesh::painted() };
+/// # assert!(cape.weights.is_some());
+/// ```
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(Debug, PartialEq, Clone)]
 pub struct PaintedDistance {
