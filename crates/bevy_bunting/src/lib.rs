@@ -107,6 +107,8 @@ mod diagnostics;
 mod display;
 mod environment;
 mod fabric;
+#[cfg(feature = "gltf")]
+mod gltf;
 #[cfg(doctest)]
 mod guide;
 mod lod;
@@ -169,6 +171,10 @@ pub use environment::wind::region::{WindRegion, WindShape};
 pub use environment::wind::tick_wind::TickWind;
 pub use environment::wind::wake::{WakeTrail, WindWake};
 pub use fabric::prepare::PreparePlugin;
+#[cfg(feature = "gltf")]
+pub use gltf::error::{GltfComponentError, GltfComponentFailed};
+#[cfg(feature = "gltf")]
+pub use gltf::plugin::ClothGltfPlugin;
 pub use lod::budget::{ClothBudget, LodCosts};
 pub use lod::cost_table::CostTable;
 pub use lod::effort::ClothEffort;
@@ -232,6 +238,16 @@ pub mod prelude {
 /// All plugins that cloth needs, one for each concern.
 ///
 /// Bevy's `TimePlugin` and `TransformPlugin` must be added, too; `DefaultPlugins` contains both.
+///
+/// ```
+/// use bevy_app::prelude::*;
+/// use bevy_bunting::ClothPlugins;
+/// use bevy_time::TimePlugin;
+/// use bevy_transform::TransformPlugin;
+///
+/// // A tick in each frame, instead of a fixed step.
+/// App::new().add_plugins((TimePlugin, TransformPlugin, ClothPlugins::new(PostUpdate)));
+/// ```
 #[derive(Debug)]
 pub struct ClothPlugins {
     host: Interned<dyn ScheduleLabel>,
@@ -280,6 +296,8 @@ impl PluginGroup for ClothPlugins {
             .add(ClothDiagnosticsPlugin);
         #[cfg(feature = "render")]
         let group = group.add(ClothRenderPlugin);
+        #[cfg(feature = "gltf")]
+        let group = group.add(ClothGltfPlugin);
         group
     }
 }

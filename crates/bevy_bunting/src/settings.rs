@@ -7,6 +7,16 @@ use bevy_reflect::std_traits::ReflectDefault;
 use bunting_solver::{Drive, LaneCount, StepLimits};
 
 /// Settings for all cloths. The settings may be changed at any time.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_math::Vec3;
+///
+/// // On the moon; insert it as a resource.
+/// let gravity = Vec3::new(0.0, -1.62, 0.0);
+/// let settings = ClothSettings { gravity, air_density: 0.0, ..ClothSettings::default() };
+/// # assert_eq!(settings.steps.len(), 2);
+/// ```
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct ClothSettings {

@@ -10,6 +10,7 @@ use bevy_reflect::Reflect;
 use bevy_transform::components::Transform;
 
 use crate::fabric::levels::ClothLevels;
+use crate::motion::anchor_hold::infinite_force;
 use crate::motion::pose::PoseHistory;
 
 /// Stiffness with which a hand grabs unless another is given, N/m.
@@ -23,6 +24,19 @@ const SHARED: f32 = 1e-4;
 /// Insert it to grab and remove it (or despawn the entity) to let go: neither makes the cloth jump, and no fabric is built.
 /// The vertices are chosen in the first tick in which the cloth is simulated and any is within reach; another level holds those of them that it
 /// has. Changing the component grabs anew. Vertices that the cloth's attachment pins are not grabbed.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+/// use bevy_transform::prelude::*;
+///
+/// let mut world = World::new();
+/// let cloth = world.spawn(ClothMesh::grid(17, 17, 1.0, 1.0)).id();
+/// // A hand that holds what is within 10 cm of it, with at most 30 N.
+/// let grab = ClothGrab::within(cloth, 0.1).with_strength(200.0, 30.0);
+/// let hand = world.spawn((grab, Transform::from_xyz(0.5, 0.0, 0.0))).id();
+/// world.entity_mut(hand).remove::<ClothGrab>();
+/// ```
 #[derive(Component, Clone, Debug, Reflect)]
 #[component(map_entities = map_cloth)]
 #[reflect(Component, Debug, Clone)]
@@ -33,8 +47,10 @@ pub struct ClothGrab {
     /// The vertices that are held.
     pub vertices: GrabbedVertices,
     /// Stiffness of the hold, N/m, of all vertices together.
+    #[reflect(default = "stiffness")]
     pub stiffness: f32,
     /// Greatest force, N, of all vertices together: cloth that pulls harder is drawn along no further. May be infinite.
+    #[reflect(default = "infinite_force")]
     pub max_force: f32,
 }
 
@@ -51,6 +67,11 @@ pub enum GrabbedVertices {
         /// Radius, m.
         radius: f32,
     },
+}
+
+/// Stiffness of a grab in a file that names none, N/m.
+fn stiffness() -> f32 {
+    STIFFNESS
 }
 
 impl ClothGrab {

@@ -16,6 +16,19 @@ use crate::fabric::levels::ClothLevels;
 /// A reaction is the tension of the cloth, and the weight, drag and inertia of the held vertices themselves. Its mean over
 /// the tick is what a rigid body that carries the cloth needs. A cloth that sleeps at rest does what it did before it
 /// fell asleep; after a change of level or of the attachment, inertia of the held vertices is missing for a tick.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+///
+/// let mut world = World::new();
+/// let flag = ClothMesh::grid(17, 17, 1.0, 1.0);
+/// let held = Attachment::in_place(ClothEdge::Left);
+/// let flag = world.spawn((flag, held, AnchorReactions::default())).id();
+/// // After a tick, the force on the pole, N.
+/// let force = world.get::<AnchorReactions>(flag).unwrap().target.force;
+/// # assert_eq!(force.length(), 0.0);
+/// ```
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(PinReporting)]

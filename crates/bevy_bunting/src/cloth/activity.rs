@@ -7,6 +7,15 @@ use bevy_reflect::std_traits::ReflectDefault;
 /// Stops the simulation of a cloth for as long as the entity has this component: the cloth keeps its shape,
 /// moves rigidly with its frame, and costs no simulation time. When the component is removed, the cloth
 /// continues with the positions and velocities that it had.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+///
+/// let mut world = World::new();
+/// let flag = world.spawn((ClothMesh::grid(17, 17, 1.0, 1.0), ClothPaused)).id();
+/// world.entity_mut(flag).remove::<ClothPaused>();
+/// ```
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothPaused;

@@ -251,11 +251,13 @@ pub enum ClothError {
     /// cloth is made until its `Mesh3d` or `ClothFromMesh` changes.
     #[cfg(feature = "render")]
     #[error(
-        "the mesh of {entity} lacks the painted weights that its ClothFromMesh names: give it vertex colours of four floats, or an attribute of this name and of the format Float32"
+        "the mesh of {entity} lacks {key}, which its ClothFromMesh names: paint the mesh; an attribute of your own must be registered at Bevy's GltfPlugin, with this name and the format Float32"
     )]
     NotPainted {
         /// The entity with the mesh.
         entity: Entity,
+        /// Name of the attribute, as in `MeshVertexAttribute::name`.
+        key: &'static str,
     },
     /// The cloth of a [`ClothDeformer`](crate::ClothDeformer) has rigid parts, which carry nothing. The mesh is shown as
     /// it is.

@@ -4,9 +4,19 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 
 use crate::cloth::error::ClothError;
+use crate::cloth::place::place;
 use crate::motion::attachment::TargetLost;
 
 /// A cloth cannot be simulated or shown as asked. Triggered and logged once, when the error is found.
+///
+/// ```
+/// use bevy_app::prelude::*;
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+///
+/// let mut app = App::new();
+/// app.add_observer(|failed: On<ClothFailed>| println!("{}", failed.error));
+/// ```
 #[derive(EntityEvent, Clone, Copy, Debug)]
 pub struct ClothFailed {
     /// The cloth.
@@ -18,8 +28,18 @@ pub struct ClothFailed {
 impl ClothFailed {
     /// Logs the error and triggers the event.
     pub(crate) fn report(commands: &mut Commands, entity: Entity, error: ClothError) {
-        log::error!("{error}");
-        commands.trigger(Self { entity, error });
+        let failed = Self { entity, error };
+        commands.queue(move |world: &mut World| {
+            log::error!("{}", failed.message(world));
+            world.trigger(failed);
+        });
+    }
+
+    /// The error's message as it is logged: after the file that the cloth is from, if it is from one, and the names of the
+    /// cloth's entity and of all above it, if they have any.
+    #[must_use]
+    pub fn message(&self, world: &World) -> String {
+        format!("{}{}", place(world, self.entity), self.error)
     }
 }
 

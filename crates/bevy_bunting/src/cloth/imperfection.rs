@@ -25,6 +25,15 @@ const WAVES: [f32; 4] = [1.3, 2.1, 3.4, 5.5];
 /// is first simulated.
 ///
 /// Read when the cloth is first simulated; later changes have no effect.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // Two flags with the same folds, wherever they hang.
+/// let flag = || (ClothMesh::grid(17, 17, 1.0, 1.0), ClothSeed(1));
+/// let flags = [flag(), flag()];
+/// # assert_eq!(flags[0], flags[1]);
+/// ```
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothSeed(pub u32);

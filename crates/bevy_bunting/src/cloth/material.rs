@@ -13,6 +13,15 @@ use crate::cloth::reflect::FabricMaterialReflect;
 /// The material may be changed at any time, and may differ between cloths that share a fabric. A material
 /// that cannot be simulated is reported in a [`ClothFailed`](crate::ClothFailed) event, and the cloth keeps
 /// its last valid one.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // Silk that is heavier and stiffer in bending.
+/// let silk = FabricMaterial { area_density: 0.1, bend_stiffness: 2e-5, ..FabricMaterial::SILK };
+/// let scarf = (ClothMesh::grid(9, 65, 0.2, 1.6), ClothMaterial(silk));
+/// # assert_eq!(scarf.1.0.warp_stiffness, ClothMaterial::SILK.0.warp_stiffness);
+/// ```
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothMaterial(

@@ -57,13 +57,16 @@ pub enum ClothMesh {
         /// Three vertices a triangle, counter-clockwise seen from the front.
         indices: Vec<u32>,
         /// Texture coordinates, one for each vertex or none at all: the warp runs along u.
+        #[reflect(default)]
         uv: Vec<Vec2>,
         /// Weights from 0 (rigid) to 1 (simulated), one for each vertex. An empty list simulates all
         /// vertices. See [`with_weights`](ClothMesh::with_weights).
+        #[reflect(default)]
         weights: Vec<f32>,
         /// For each vertex a number that it shares with those of the same particle. An empty list merges
         /// vertices at one position. A [repaired](ClothMesh::repaired) mesh has numbers: vertices that were
         /// split lie at one position.
+        #[reflect(default)]
         merged: Vec<u32>,
     },
 }

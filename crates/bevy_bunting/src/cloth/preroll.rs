@@ -35,6 +35,14 @@ const STEPS_PER_TICK: u64 = 1 << 18;
 /// on a frame at rest, without colliders. The simulation runs on another thread where there are threads.
 /// Until it is done the cloth has no [`ClothState`]; this component is then removed. The tick in which this
 /// happens follows from the amount of work, not from the machine's speed.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // A curtain that hangs in folds when it is first seen.
+/// let curtain = (ClothMesh::grid(33, 33, 2.0, 2.0), ClothPreroll { seconds: 2.0 });
+/// # assert_eq!(curtain.1.seconds, 2.0);
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothPreroll {

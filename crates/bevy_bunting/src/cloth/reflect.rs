@@ -1,13 +1,14 @@
 //! Reflected forms of other crates' types that components contain, for inspectors and scene files.
 
 use bevy_reflect::reflect_remote;
+use bevy_reflect::std_traits::ReflectDefault;
 use bunting_solver::FabricMaterial;
 use parry3d::shape::SharedShape;
 
 /// Reflected form of [`FabricMaterial`], field by field.
 #[reflect_remote(FabricMaterial)]
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[reflect(Debug, PartialEq, Clone)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[reflect(Default, Debug, PartialEq, Clone)]
 pub struct FabricMaterialReflect {
     pub area_density: f32,
     pub warp_stiffness: f32,

@@ -22,6 +22,19 @@ use crate::fabric::levels::ClothLevels;
 /// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights): this component holds the blended surface.
 ///
 /// [`ClothSystems::Publish`]: crate::ClothSystems::Publish
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+///
+/// /// Prints how low each cloth hangs in its frame.
+/// fn lowest(cloths: Query<(Entity, &ClothState)>) {
+///     for (cloth, state) in &cloths {
+///         println!("{cloth}: {:?}", state.positions().iter().map(|at| at.y).reduce(f32::min));
+///     }
+/// }
+/// # bevy_ecs::system::assert_is_system(lowest);
+/// ```
 #[derive(Component, Clone, Debug, Default)]
 pub struct ClothState {
     pub(crate) positions: Vec<Vec3>,

@@ -12,6 +12,14 @@ use bevy_reflect::std_traits::ReflectDefault;
 /// boxes alone; the more cloth lies upon cloth, the more it costs. A cloth that is paused, or asleep outside of the
 /// picture, touches no other. A thickness that is not finite and greater than zero is reported as
 /// [`ClothError::Collision`](crate::ClothError::Collision), and the cloth passes through others.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// let towel = (ClothMesh::grid(17, 17, 0.5, 0.5), ClothCollision::default());
+/// let tablecloth = (ClothMesh::grid(33, 33, 1.5, 1.5), ClothCollision::default());
+/// # assert_eq!(towel.1, tablecloth.1);
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothCollision {

@@ -13,6 +13,16 @@ use crate::motion::pose::PoseHistory;
 
 /// A shape that no cloth enters. It moves with its entity and pushes cloth; cloth does not push it. A
 /// heightfield is solid below its surface. Scene files can contain it with the feature `serialize`.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_transform::prelude::*;
+///
+/// // A body, and a table with a smooth top.
+/// let body = (ClothCollider::capsule(0.5, 0.25), Transform::from_xyz(0.0, 1.0, 0.0));
+/// let table = ClothCollider { friction: 0.2, margin: 0.005, ..ClothCollider::cylinder(0.4, 0.6) };
+/// # assert!(table.features && body.0.friction == 1.0);
+/// ```
 #[derive(Component, Clone, Reflect)]
 #[reflect(Component, Clone)]
 #[require(Transform, PoseHistory)]
@@ -22,12 +32,28 @@ pub struct ClothCollider {
     pub shape: SharedShape,
     /// Distance that cloth keeps from the shape in addition to its thickness, m. A margin rounds edges: a box
     /// with a margin is a round box, and cheaper than parry's round cuboid, whose projections are iterative.
+    #[reflect(default)]
     pub margin: f32,
     /// Coulomb friction coefficient. A contact uses the geometric mean of this value and the material's.
+    #[reflect(default = "friction")]
     pub friction: f32,
     /// Whether edges, corners and parts smaller than the cloth's mesh are felt between its particles, at the levels of
     /// [`ClothFeatures`](crate::ClothFeatures). Without, only particles touch, which costs less.
+    #[reflect(default = "features")]
     pub features: bool,
+}
+
+/// Coulomb friction coefficient of colliders unless another is given.
+const FRICTION: f32 = 1.0;
+
+/// Friction of a collider in a file that names none.
+fn friction() -> f32 {
+    FRICTION
+}
+
+/// Whether a collider in a file that does not say it has features.
+fn features() -> bool {
+    true
 }
 
 /// Triangles cannot be a collider.
@@ -51,7 +77,7 @@ impl ClothCollider {
     /// A collider of any parry shape, without a margin, with a friction coefficient of 1.
     #[must_use]
     pub const fn new(shape: SharedShape) -> Self {
-        Self { shape, margin: 0.0, friction: 1.0, features: true }
+        Self { shape, margin: 0.0, friction: FRICTION, features: true }
     }
 
     /// A ball of the given radius (m).

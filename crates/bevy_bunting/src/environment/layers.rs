@@ -8,6 +8,16 @@ use bevy_reflect::std_traits::ReflectDefault;
 /// contain. Without this component, an entity is a member of all layers and touches all.
 ///
 /// The bits are those of avian's `CollisionLayers` and of rapier's `CollisionGroups`.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// const PEOPLE: u32 = 1;
+/// const CLOTHES: u32 = 2;
+/// let body = (ClothCollider::capsule(0.5, 0.2), ClothLayers::new(PEOPLE, CLOTHES));
+/// let cape = (ClothMesh::grid(17, 33, 0.8, 1.2), ClothLayers::new(CLOTHES, PEOPLE));
+/// assert!(cape.1.touch(body.1));
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Hash, Clone)]
 pub struct ClothLayers {
@@ -43,6 +53,14 @@ impl Default for ClothLayers {
 /// The levels of detail at which a cloth feels features of shapes between its particles, such as the corner of a box or
 /// a peg thinner than its mesh. At coarser levels, and so at a distance, only its particles touch, which costs less.
 /// Without this component, a cloth has the default.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // Corners are felt at the finest level only.
+/// let tablecloth = (ClothMesh::grid(33, 33, 1.5, 1.5), ClothFeatures { levels: 1 });
+/// # assert_ne!(tablecloth.1, ClothFeatures::default());
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Hash, Clone)]
 pub struct ClothFeatures {

@@ -21,6 +21,18 @@ use crate::schedule::{ClothSystems, ClothTick};
 /// tick. Colliders without it cost nothing for it.
 ///
 /// [`ClothTouched`] and [`ClothParted`] are triggered on the collider.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+///
+/// let mut world = World::new();
+/// let ball = world.spawn((ClothCollider::ball(0.3), ClothReactions::default())).id();
+/// world.add_observer(|touched: On<ClothTouched>| println!("{} touches", touched.cloth));
+/// // After a tick, the force of all cloth on the ball, N.
+/// let force = world.get::<ClothReactions>(ball).unwrap().force;
+/// # assert_eq!(force.length(), 0.0);
+/// ```
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothReactions {

@@ -8,6 +8,13 @@ use bevy_reflect::std_traits::ReflectDefault;
 /// `surface_friction`.
 ///
 /// A cloth that hardly folds pays for the search alone; the more layers lie upon one another, the more it costs.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// let towel = (ClothMesh::grid(17, 33, 0.5, 1.0), SelfCollision::default());
+/// # assert!(towel.1.thickness > 0.0);
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct SelfCollision {

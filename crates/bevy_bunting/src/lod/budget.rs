@@ -10,6 +10,15 @@ use crate::lod::cost_table::CostTable;
 
 /// Time that all cloths together may take in a tick, and thresholds of the automatic choice of levels, see
 /// [`LodSet::automatic`](crate::LodSet::automatic). The budget may be changed at any time.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use std::time::Duration;
+///
+/// // One millisecond a tick for all cloths with `LodSet::automatic`; insert it as a resource.
+/// let budget = ClothBudget { tick: Duration::from_millis(1), ..ClothBudget::default() };
+/// # assert!(budget.refine_above > budget.coarsen_below);
+/// ```
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct ClothBudget {

@@ -18,6 +18,15 @@ const HYSTERESIS: f32 = 0.1;
 /// The level is chosen before each tick from the positions and lenses of the
 /// [`LodViewer`](crate::LodViewer)s. Without a viewer every cloth counts as being at distance 0 and on the
 /// screen.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // Three levels that switch at 10 m and 30 m; and four that are chosen within the budget.
+/// let by_distance = (ClothMesh::grid(33, 33, 1.0, 1.0), LodSet::new([10.0, 30.0]));
+/// let automatic = (ClothMesh::grid(33, 33, 1.0, 1.0), LodSet::automatic(4));
+/// assert_eq!((by_distance.1.levels(), automatic.1.levels()), (3, 4));
+/// ```
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct LodSet {

@@ -41,6 +41,16 @@ const CLEARANCE: f32 = 0.5;
 /// Wakes a cloth that sleeps at rest. Trigger this event when something unknown to the plugin begins to act
 /// on the cloth, such as a force or a constraint of the user. A cloth that sleeps because no viewer sees it
 /// is not woken.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_bunting::WakeCloth;
+/// use bevy_ecs::prelude::*;
+///
+/// let mut world = World::new();
+/// let entity = world.spawn(ClothMesh::grid(17, 17, 1.0, 1.0)).id();
+/// world.trigger(WakeCloth { entity });
+/// ```
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WakeCloth {
     /// The cloth.

@@ -10,6 +10,16 @@ use bevy_transform::components::Transform;
 ///
 /// A viewer looks along −z of its [`Transform`]. With the feature `render`, cameras get a viewer, whose
 /// lens and size follow the camera's projection and viewport.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_transform::prelude::*;
+///
+/// // A viewer in a server without cameras, who sees 100 m far.
+/// let viewer = LodViewer { range: 100.0, ..LodViewer::default() };
+/// let viewer = (viewer, Transform::from_xyz(0.0, 2.0, 10.0));
+/// # assert_eq!(viewer.0.range, 100.0);
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform)]

@@ -5,6 +5,16 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
 /// How an [`Anchor`](crate::Anchor) holds its vertices. Frames are those of the anchor: its target's pose times the offset.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_math::Vec3;
+///
+/// // Rings of 10 g on a rail of 2 m.
+/// let points = vec![Vec3::ZERO, Vec3::new(2.0, 0.0, 0.0)];
+/// let rail = AnchorHold::Rail { points, ring_mass: 0.01, friction: 0.1 };
+/// # assert_ne!(rail, AnchorHold::default());
+/// ```
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum AnchorHold {
@@ -16,6 +26,7 @@ pub enum AnchorHold {
         /// Stiffness of all springs together, N/m.
         stiffness: f32,
         /// Greatest force of all springs together, N: those that would pull harder yield. May be infinite.
+        #[reflect(default = "infinite_force")]
         max_force: f32,
     },
     /// By rings on a rail, one for each vertex, which slide.
@@ -29,6 +40,11 @@ pub enum AnchorHold {
         /// Coulomb friction coefficient of rings on the rail.
         friction: f32,
     },
+}
+
+/// Force in a file that names none, N: JSON cannot write infinity.
+pub(crate) fn infinite_force() -> f32 {
+    f32::INFINITY
 }
 
 impl AnchorHold {

@@ -11,7 +11,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
 
 use crate::cloth::mesh::ClothMesh;
-use crate::motion::anchor_hold::AnchorHold;
+use crate::motion::anchor_hold::{AnchorHold, infinite_force};
 
 /// Default of [`Attachment::teleport_speed`], m/s: no vehicle changes its velocity by as much between two
 /// frames. Smaller: hard manoeuvres count as teleports and do not swing the cloth. Larger: jumps whip it.
@@ -33,26 +33,42 @@ const EDGE_TOLERANCE: f32 = 1e-4;
 ///
 /// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. The target's scale scales
 /// the offset's translation and is otherwise ignored.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+/// use bevy_transform::prelude::*;
+///
+/// let mut world = World::new();
+/// let pole = world.spawn(Transform::default()).id();
+/// let held = Attachment::new(pole, ClothEdge::Left);
+/// world.spawn((ClothMesh::grid(33, 23, 1.5, 1.0), held));
+/// ```
 #[derive(Component, Clone, Debug, Reflect)]
 #[component(map_entities = map_target)]
 #[reflect(Component, Debug, Clone)]
 pub struct Attachment {
     /// Entity that the vertices stay on. [`Entity::PLACEHOLDER`] and the cloth itself hold the vertices on
     /// the cloth's own [`Transform`].
+    #[reflect(default = "placeholder")]
     pub target: Entity,
     /// The vertices that are held.
     pub vertices: AttachedVertices,
     /// Pose of the cloth's frame relative to the target. The scale is baked into the cloth when it is attached.
+    #[reflect(default)]
     pub offset: Transform,
     /// Fate of the cloth when the target is despawned.
+    #[reflect(default)]
     pub on_lost: TargetLost,
     /// Change of the target's velocity between two frames or ticks, in m/s, above which the target was
     /// teleported: the cloth then moves with it rigidly, without being accelerated. At 60 frames a second, 25
     /// m/s is a departure of 0.4 m from the extrapolated motion. Where the next change has the same velocity, the target
     /// is not teleported but fast: the cloth gets its velocity (up to 100 m/s) and flies on with it. A turn counts by the change of velocity of a
     /// point 1 m away, and any turn of more than 90° is a teleport.
+    #[reflect(default = "teleport_speed")]
     pub teleport_speed: f32,
     /// Further vertices, held on further entities: the other mast of a banner, the other shoulder of a cape.
+    #[reflect(default)]
     pub anchors: Vec<Anchor>,
 }
 
@@ -61,6 +77,19 @@ pub struct Attachment {
 ///
 /// They move relative to the cloth's frame, which is that of the attachment's target, evenly in the substeps of a tick.
 /// A vertex that is held more than once is held by the attachment, or else by the first anchor that names it.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+/// use bevy_transform::prelude::*;
+///
+/// let mut world = World::new();
+/// let mast = world.spawn(Transform::from_xyz(2.0, 0.0, 0.0)).id();
+/// // The right edge of a banner, 2 m from its origin, is on another mast.
+/// let offset = Transform::from_xyz(-2.0, 0.0, 0.0);
+/// let anchor = Anchor::new(mast, ClothEdge::Right).with_offset(offset);
+/// world.spawn(Attachment::in_place(ClothEdge::Left).with_anchor(anchor));
+/// ```
 #[derive(Clone, Debug, Reflect)]
 #[reflect(Debug, Clone)]
 pub struct Anchor {
@@ -69,11 +98,14 @@ pub struct Anchor {
     /// The vertices that are held.
     pub vertices: AttachedVertices,
     /// Pose of the vertices' frame relative to the target; the scale is ignored.
+    #[reflect(default)]
     pub offset: Transform,
     /// How the vertices are held: exactly, by springs or on a rail.
+    #[reflect(default)]
     pub hold: AnchorHold,
     /// Force of the cloth on the anchor, N, as the mean over a tick, at which the anchor lets go: it is removed from the
     /// [`Attachment`], and [`ClothAnchorBroke`](crate::ClothAnchorBroke) is triggered on the cloth. Infinite by default.
+    #[reflect(default = "infinite_force")]
     pub break_force: f32,
 }
 
@@ -122,6 +154,16 @@ impl Anchor {
         self.offset = offset;
         self
     }
+}
+
+/// Target of an attachment in a file that names none.
+fn placeholder() -> Entity {
+    Entity::PLACEHOLDER
+}
+
+/// Greatest change of velocity of an attachment in a file that names none, m/s.
+fn teleport_speed() -> f32 {
+    TELEPORT_SPEED
 }
 
 /// Maps the targets when a scene is loaded. The placeholder is no entity of a scene and stays.
@@ -265,6 +307,14 @@ pub enum ClothCorner {
 /// The vertices that an [`Attachment`] holds.
 ///
 /// A coarser level of detail holds those of the vertices that it has.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // Every fourth vertex along the top of a grid of 33 columns.
+/// let rings = AttachedVertices::List((0..33).step_by(4).collect());
+/// # Attachment::in_place(rings);
+/// ```
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum AttachedVertices {
@@ -351,26 +401,5 @@ fn nearest(uv: &[Vec2], corner: Vec2) -> Option<u32> {
 }
 
 #[cfg(test)]
-mod tests {
-    use bunting_solver::Grid;
-
-    use super::*;
-
-    #[test]
-    fn edges_corners_and_predicates() {
-        let uv = Grid::new(3, 2, 1.0, 1.0).uvs();
-        let choose = |vertices: AttachedVertices| vertices.choose(&uv);
-        assert_eq!(choose(ClothEdge::Left.into()), [0, 3]);
-        assert_eq!(choose(ClothEdge::Right.into()), [2, 5]);
-        assert_eq!(choose(ClothEdge::Top.into()), [0, 1, 2]);
-        assert_eq!(choose(ClothEdge::Bottom.into()), [3, 4, 5]);
-        assert_eq!(choose(ClothCorner::TopRight.into()), [2]);
-        assert_eq!(choose(ClothCorner::BottomLeft.into()), [3]);
-        let within = AttachedVertices::Within { low: Vec2::splat(0.5), high: Vec2::ONE };
-        assert_eq!(choose(within), [4, 5]);
-        let mesh = ClothMesh::grid(3, 2, 1.0, 1.0);
-        let list = AttachedVertices::list_where(&mesh, |uv| uv.x > 0.4 && uv.y > 0.5);
-        assert_eq!(choose(list), [4, 5]);
-        assert_eq!(choose(AttachedVertices::List(vec![4])), [4]);
-    }
-}
+#[path = "attachment_tests.rs"]
+mod tests;

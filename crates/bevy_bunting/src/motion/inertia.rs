@@ -17,6 +17,14 @@ use bunting_solver::{ClothSnapshot, Drive, FrameMotion};
 /// Where a part is less than 1, [`ClothControl`](crate::ClothControl) and [`ClothParticles`](crate::ClothParticles) give
 /// velocities relative to the motion that is not felt. A part outside of 0 to 1 is reported as [`ClothError::Inertia`](crate::ClothError::Inertia), and
 /// the cloth feels everything.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // The cape of a hero who dashes stays a cape.
+/// let cape = (ClothMesh::grid(17, 33, 0.8, 1.2), ClothInertia { linear: 0.3, angular: 0.5 });
+/// # assert_eq!(ClothInertia::default(), ClothInertia { linear: 1.0, angular: 1.0 });
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothInertia {

@@ -18,6 +18,16 @@ use crate::skeleton::joints::JointPoses;
 ///
 /// A change of velocity above [`Attachment::teleport_speed`](crate::Attachment::teleport_speed) is a teleport
 /// without this event.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+///
+/// let mut world = World::new();
+/// let entity = world.spawn(ClothMesh::grid(17, 17, 1.0, 1.0)).id();
+/// // Before the cloth's target is moved.
+/// world.trigger(TeleportCloth { entity, mode: TeleportMode::Keep });
+/// ```
 #[derive(EntityEvent, Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TeleportCloth {
     /// The cloth.

@@ -86,6 +86,13 @@ pub struct SourceMesh {
     skin: Option<SkinnedMesh>,
 }
 
+impl SourceMesh {
+    /// The mesh that the cloth is made of.
+    pub(crate) fn source(&self) -> &Handle<Mesh> {
+        &self.source
+    }
+}
+
 /// Marks a cloth whose mesh is not loaded yet.
 #[derive(Component, Clone, Copy, Debug)]
 pub struct AwaitsMesh;

@@ -22,4 +22,4 @@ pub mod tangents;
 pub mod write;
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

@@ -1,11 +1,15 @@
 //! Weights of vertices that an artist has painted into a mesh.
 
+use bevy_ecs::intern::Interner;
 use bevy_ecs::prelude::*;
 use bevy_mesh::{Mesh, VertexAttributeValues};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
 use crate::cloth::error::ClothError;
+
+/// Names of attributes in errors.
+static KEYS: Interner<str> = Interner::new();
 
 /// Weights of a cloth's vertices, see [`ClothMesh::with_weights`](crate::ClothMesh::with_weights), read from
 /// values that an artist has painted into the mesh.
@@ -37,6 +41,16 @@ pub struct PaintedWeights {
 
 /// Greatest distances of particles from their animated places, see [`SkinLimits::max_distance`](crate::SkinLimits), read from
 /// values that an artist has painted into the mesh. They grow evenly with the value, also beyond 0 and 1.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // Green is play: none at 0, half a metre at 1.
+/// let paint = VertexPaint::Color(ColorChannel::Green);
+/// let max_distance = Some(PaintedDistance { paint, at_zero: 0.0, at_one: 0.5 });
+/// let cape = ClothFromMesh { max_distance, ..ClothFromMesh::painted() };
+/// # assert!(cape.weights.is_some());
+/// ```
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(Debug, PartialEq, Clone)]
 pub struct PaintedDistance {
@@ -55,7 +69,7 @@ impl PaintedDistance {
     ///
     /// The mesh does not have the values in a format that can be read.
     pub(super) fn read(&self, entity: Entity, mesh: &Mesh) -> Result<Vec<f32>, ClothError> {
-        let values = self.paint.values(mesh).ok_or(ClothError::NotPainted { entity })?;
+        let values = self.paint.values(entity, mesh)?;
         let distance = |value: f32| self.at_zero + (self.at_one - self.at_zero) * value;
         Ok(values.into_iter().map(distance).collect())
     }
@@ -113,7 +127,7 @@ impl PaintedWeights {
     ///
     /// The mesh does not have the values in a format that can be read.
     pub(super) fn read(&self, entity: Entity, mesh: &Mesh) -> Result<Vec<f32>, ClothError> {
-        let values = self.paint.values(mesh).ok_or(ClothError::NotPainted { entity })?;
+        let values = self.paint.values(entity, mesh)?;
         Ok(values.into_iter().map(|value| self.weight(value)).collect())
     }
 
@@ -126,8 +140,25 @@ impl PaintedWeights {
 }
 
 impl VertexPaint {
-    /// The value of each vertex; none if the mesh does not have them.
-    pub(super) fn values(&self, mesh: &Mesh) -> Option<Vec<f32>> {
+    /// The value of each vertex.
+    ///
+    /// # Errors
+    ///
+    /// The mesh does not have the values in a format that can be read.
+    fn values(&self, entity: Entity, mesh: &Mesh) -> Result<Vec<f32>, ClothError> {
+        let missing = || ClothError::NotPainted { entity, key: self.key() };
+        self.find(mesh).ok_or_else(missing)
+    }
+
+    /// Name of the attribute that has the values. Names are kept for good, so that errors can be copied.
+    fn key(&self) -> &'static str {
+        match self {
+            Self::Color(_) => Mesh::ATTRIBUTE_COLOR.name,
+            Self::Attribute(name) => KEYS.intern(name).0,
+        }
+    }
+
+    fn find(&self, mesh: &Mesh) -> Option<Vec<f32>> {
         match self {
             Self::Color(channel) => match mesh.try_attribute(Mesh::ATTRIBUTE_COLOR).ok()? {
                 VertexAttributeValues::Float32x4(colors) => {

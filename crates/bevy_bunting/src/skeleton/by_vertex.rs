@@ -4,6 +4,16 @@ use bevy_math::Vec2;
 use bevy_reflect::Reflect;
 
 /// A number of each vertex of a [`ClothMesh`](crate::ClothMesh).
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // 2 cm at the collar, 60 cm at the hem; and the same for all.
+/// let play = ByVertex::AlongV { top: 0.02, bottom: 0.6 };
+/// let backstop = ByVertex::from(0.03);
+/// # assert_eq!(backstop, ByVertex::Same(0.03));
+/// # let _ = SkinLimits { max_distance: play, ..SkinLimits::default() };
+/// ```
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum ByVertex {

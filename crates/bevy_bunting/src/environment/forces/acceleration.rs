@@ -11,6 +11,15 @@ use crate::cloth::events::ClothFailed;
 /// An acceleration of the whole cloth besides gravity, along the world's axes, m/s²: the negative of gravity makes a cloth
 /// weightless. The solver treats both alike. One that is not finite is reported as [`ClothError::Acceleration`] and counts
 /// as zero.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_math::Vec3;
+///
+/// // A balloon's silk, which the hot air lifts.
+/// let envelope = (ClothMesh::grid(33, 33, 4.0, 4.0), ClothAcceleration(Vec3::new(0.0, 12.0, 0.0)));
+/// # assert!(envelope.1.0.y > 9.81);
+/// ```
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothAcceleration(pub Vec3);

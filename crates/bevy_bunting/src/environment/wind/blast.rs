@@ -21,6 +21,15 @@ const LEAST_SPEED: f32 = 0.05;
 /// Cloth feels the mean over a tick, so that it gets the whole gust whatever the ticks are. The component is removed when
 /// the blast is over. A value that is not finite, and a duration or a speed of the front that is not positive, make no
 /// wind.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_transform::prelude::*;
+///
+/// // 60 m/s at 2 m from here, once.
+/// let blast = (WindBlast::new(60.0, 2.0), Transform::from_xyz(5.0, 0.0, 0.0));
+/// # assert_eq!(blast.0.speed, 60.0);
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, PoseHistory)]

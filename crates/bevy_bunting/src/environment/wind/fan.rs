@@ -29,6 +29,15 @@ const END_FALL: f32 = 0.25;
 
 /// A fan that blows forwards, along the entity's −z: a round jet as a nozzle makes it, steady and without swirl. On the
 /// axis the velocity stays for six diameters and then falls with the distance; the jet widens by one tenth of it.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_transform::prelude::*;
+///
+/// // A fan of half a metre that blows at 8 m/s along its -z.
+/// let fan = (WindFan::new(8.0, 0.25), Transform::from_xyz(0.0, 1.0, 2.0));
+/// # assert_eq!(fan.0.radius, 0.25);
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, PoseHistory)]

@@ -19,6 +19,15 @@ const LEAST_GUST_LENGTH: f32 = 2.0;
 /// 1/`gust_frequency`, at least 2 m, and a cloth downwind feels a gust later. Gusts depend on position, time
 /// and seed, and not on the frame rate. After a change of the mean velocity, gusts travel at the new
 /// velocity. A cloth feels the air at its middle. A field that is not finite is logged and left out.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_math::Vec3;
+///
+/// // 6 m/s along x, with gusts of up to 1.5 m/s, every two seconds or so, from seed 1.
+/// let wind = WindField::steady(Vec3::new(6.0, 0.0, 0.0)).with_gusts(1.5, 0.5, 1);
+/// # assert_eq!(wind.seed, 1);
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(GustTravel)]

@@ -13,6 +13,14 @@ use crate::cloth::events::ClothFailed;
 /// 1 makes the cloth feel more wind than there is.
 ///
 /// A factor that is not finite, or negative, is reported as [`ClothError::Influence`] and counts as 1.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // In the lee of a wall.
+/// let washing = (ClothMesh::grid(17, 17, 0.5, 0.5), WindInfluence(0.2));
+/// # assert_eq!(washing.1.0, 0.2);
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct WindInfluence(pub f32);

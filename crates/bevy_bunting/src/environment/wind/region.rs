@@ -11,6 +11,16 @@ use crate::motion::pose::PoseHistory;
 
 /// Bounds the [`WindField`](crate::WindField) of the same entity to a shape, which is placed and moved by the entity's
 /// transform. The entity's scale is ignored, and the velocity stays along the world's axes.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_math::Vec3;
+///
+/// // A draught in a gateway, which falls to zero in the outer metre.
+/// let gate = WindRegion::cuboid(Vec3::new(2.0, 3.0, 5.0), 1.0);
+/// let draught = (WindField::steady(4.0 * Vec3::Z), gate);
+/// assert_eq!(gate.weight_at(Vec3::ZERO), 1.0);
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, PoseHistory)]

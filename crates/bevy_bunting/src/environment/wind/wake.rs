@@ -31,6 +31,15 @@ const JUMP: f32 = 1.0;
 /// seconds. The body loses as much momentum to the air as its drag is; on the axis the air moves with the body where the
 /// body is, and the more slowly the farther the body has gone on. The air itself is at rest: other winds do not carry the
 /// wake away.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_transform::prelude::*;
+///
+/// // The air behind a truck of 6 square metres of drag area.
+/// let truck = (WindWake::new(6.0), Transform::default());
+/// # assert_eq!(truck.0.drag_area, 6.0);
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, PoseHistory, WakeTrail)]

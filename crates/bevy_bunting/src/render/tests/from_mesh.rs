@@ -84,7 +84,7 @@ fn weights_are_read_from_a_named_attribute() {
     assert_ne!(Vec3::from(positions(&app, cloth)[44]), rest[44], "the copy is written");
     let weights = shape(&app, cloth).expect("a cloth").weights();
     assert!((0..45).all(|vertex| (weights[vertex] == 0.0) == (vertex % 9 == 0)));
-    assert_eq!(failures(&app), [ClothError::NotPainted { entity: missing }]);
+    assert_eq!(failures(&app), [ClothError::NotPainted { entity: missing, key: "pin" }]);
     assert_eq!(shape(&app, missing), None);
     // A change makes the cloth, from the mesh that was given.
     app.world_mut().entity_mut(missing).insert(by_name("Pin"));

@@ -8,7 +8,7 @@ mod from_skin;
 mod given;
 mod levels;
 mod parts;
-mod reflect;
+pub(crate) mod reflect;
 mod subdivided;
 mod written;
 

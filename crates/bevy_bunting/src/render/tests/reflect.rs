@@ -42,7 +42,7 @@ fn sources() -> Vec<String> {
 }
 
 /// Names of the public types of the crate with this derive, from its source.
-fn public_types(derive: &str) -> BTreeSet<String> {
+pub(crate) fn public_types(derive: &str) -> BTreeSet<String> {
     let exports = include_str!("../../lib.rs");
     let exported: BTreeSet<&str> =
         exports.split(|letter: char| !letter.is_alphanumeric()).collect();

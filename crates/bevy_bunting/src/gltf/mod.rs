@@ -1,0 +1,10 @@
+//! Reads components that an artist has written into a glTF file.
+
+mod components;
+pub mod error;
+mod nodes;
+pub mod plugin;
+mod reader;
+
+#[cfg(test)]
+mod tests;

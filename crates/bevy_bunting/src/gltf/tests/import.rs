@@ -1,0 +1,76 @@
+//! The two files that were made for these tests.
+
+use bevy_mesh::Mesh;
+
+use super::*;
+
+/// Departure of a pinned vertex from its place, m: rounding.
+const ROUNDING: f32 = 1e-5;
+
+#[test]
+fn the_flag_flies_as_its_file_says() {
+    let mut app = app(&assets());
+    let flag = spawn(&mut app, "cloths/flag.gltf", "FlagCloth.Red");
+    let halyard = find(&mut app, "Halyard").expect("a node");
+    run(&mut app, 60);
+    assert_eq!(messages(&app), [""; 0]);
+    let world = app.world();
+    let material = world.get::<ClothMaterial>(flag).expect("a cloth").0;
+    assert_eq!(material, FabricMaterial { area_density: 0.25, ..FabricMaterial::FLAG_POLYESTER });
+    assert_eq!(world.resource::<ClothSettings>().air_density, 1.1);
+    let held = world.get::<Attachment>(flag).expect("it is held");
+    assert_eq!(held.target, halyard);
+    assert_eq!(held.teleport_speed, Attachment::in_place(ClothEdge::Left).teleport_speed);
+    let wind = find(&mut app, "Wind").expect("a node");
+    assert_eq!(app.world().get::<WindField>(wind).expect("a wind").velocity.x, 5.0);
+    // The left column is pinned to the halyard, and the rest flies.
+    let rest = rest(&app, flag);
+    let at = app.world().get::<ClothState>(flag).expect("it is simulated").positions();
+    assert_eq!(at.len(), 17 * 11);
+    for (vertex, at) in at.iter().enumerate() {
+        let moved = at.distance(rest[vertex]);
+        assert_eq!(moved < ROUNDING, vertex.is_multiple_of(17), "vertex {vertex}: {moved} m");
+    }
+    let place = |app: &App| app.world().get::<Transform>(flag).expect("placed").translation;
+    assert!(place(&app).abs_diff_eq(Vec3::new(0.0, 3.0, 0.0), ROUNDING));
+    // It goes where the halyard goes.
+    let pole = find(&mut app, "Pole").expect("a node");
+    app.world_mut().get_mut::<Transform>(pole).expect("a node").translation.x = 0.1;
+    run(&mut app, 10);
+    assert!(place(&app).abs_diff_eq(Vec3::new(0.1, 3.0, 0.0), ROUNDING));
+    assert_eq!(messages(&app), [""; 0]);
+}
+
+#[test]
+fn the_cape_hangs_on_its_skeleton_with_the_artists_pins_and_play() {
+    let mut app = app(&assets());
+    let cape = spawn(&mut app, "cloths/cape.gltf", "CapeCloth.Wool");
+    run(&mut app, 90);
+    assert_eq!(messages(&app), [""; 0]);
+    let chest = find(&mut app, "Chest").expect("a node");
+    let world = app.world();
+    let collider = world.get::<ClothCollider>(chest).expect("a collider");
+    assert!(collider.shape.as_capsule().is_some_and(|it| it.radius == 0.15));
+    let skin = world.get::<crate::ClothSkin>(cape).expect("a skin");
+    assert_eq!(skin.joints[1], chest);
+    assert_eq!(world.get::<ClothMaterial>(cape).expect("a cloth").0.area_density, 0.3);
+    let mesh = world.get::<ClothMesh>(cape).expect("a cloth");
+    let play = &world.get::<SkinLimits>(cape).expect("limits").max_distance;
+    let ByVertex::Each(play) = play else { panic!("{play:?}") };
+    let at = world.get::<ClothState>(cape).expect("it is simulated").positions();
+    let rest = rest(&app, cape);
+    let mut farthest: f32 = 0.0;
+    for vertex in 0..13 * 17 {
+        let is_pinned = vertex < 13;
+        let v = (vertex / 13) as f32 / 16.0;
+        assert_eq!(mesh.weights()[vertex] == 0.0, is_pinned, "vertex {vertex}");
+        assert!((play[vertex] - (0.01 + 0.49 * v)).abs() < ROUNDING, "{}", play[vertex]);
+        let moved = at[vertex].distance(rest[vertex]);
+        farthest = farthest.max(moved);
+        assert!(if is_pinned { moved < ROUNDING } else { moved < play[vertex] + ROUNDING });
+    }
+    assert!(farthest > 0.01, "the hem falls, not only by {farthest} m");
+    let shown = app.world().get::<Mesh3d>(cape).expect("it is shown");
+    let meshes = app.world().resource::<bevy_asset::Assets<Mesh>>();
+    assert!(meshes.get(&shown.0).is_some());
+}
