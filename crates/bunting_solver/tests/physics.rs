@@ -92,6 +92,33 @@ fn gauss_seidel_falls_as_backward_euler() {
     }
 }
 
+/// A fall has the same acceleration in every tick, whatever its substeps, since the formulas are of second order.
+#[test]
+fn a_change_of_substeps_does_not_jerk_a_fall() {
+    let grid = square(12, |_| false);
+    let triangles = grid.triangles().iter().flatten().copied().collect();
+    let mesh = FabricBuilder::new(grid.rest_positions().to_vec(), triangles);
+    let mesh = Arc::new(mesh.build().expect("a good fabric"));
+    for fabric in [grid, mesh] {
+        let drive = Drive { gravity: Vec3::NEG_Z * GRAVITY, ..Drive::NONE };
+        let mut batch = lone(&fabric, STANDARD, drive);
+        let mut heights = Vec::new();
+        for substeps in [8, 8, 4, 4, 2, 4, 2, 2] {
+            batch.begin_tick(TICK, StepSettings::yarns(substeps));
+            for _ in 0..substeps {
+                batch.integrate();
+                batch.solve_constraints();
+                batch.update_velocities();
+            }
+            heights.push(batch.snapshot(0).positions[7].z);
+        }
+        for fall in heights.windows(3).skip(1) {
+            let acceleration = (2.0 * fall[1] - fall[0] - fall[2]) / (TICK * TICK);
+            assert!((acceleration / GRAVITY - 1.0).abs() < 1e-2, "{acceleration} {heights:?}");
+        }
+    }
+}
+
 #[test]
 fn a_hanging_sheet_stretches_as_its_material_says() {
     let soft = FabricMaterial {

@@ -91,6 +91,11 @@ impl<P: Pack> BackgroundGrid<P> {
         with_grid!(self, batch => batch.set_nodes_near_rest(cloth, near_rest));
     }
 
+    /// Makes one substep of a cloth's last two.
+    pub fn join_last_substeps(&mut self, cloth: usize) {
+        with_grid!(self, batch => batch.join_last_substeps(cloth));
+    }
+
     /// The state of a cloth's nodes, whose history is that of the particles.
     pub fn snapshot(&self, cloth: usize, integrator: IntegratorHistory) -> ClothSnapshot {
         match self {

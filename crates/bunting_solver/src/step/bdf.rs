@@ -68,7 +68,8 @@ impl Formula {
 const MOST_GROWTH: f32 = 2.4;
 
 /// Greatest ratio of a substep's length to that of the one before at which BDF3 is part of the formula: BDF3
-/// by itself is stable up to 1.534 (Calvo, Grande and Grigorieff 1990).
+/// by itself is stable up to 1.534 (Calvo, Grande and Grigorieff 1990). Beyond, the last two substeps count as one, and
+/// BDF2 follows: it amplifies the changes of short substeps less.
 const MOST_GROWTH_OF_BDF3: f32 = 1.5;
 
 /// Ratio of the squared first or second difference of velocities, summed over the particles, to the squared
@@ -110,6 +111,19 @@ impl IntegratorHistory {
     /// Whether any substep has been recorded.
     pub fn exists(&self) -> bool {
         self.steps[0] > 0.0
+    }
+
+    /// Counts the last two substeps as one if the next one, of `step` seconds, is too long beside the last for BDF3.
+    /// Returns whether it does so: displacements and velocities must then be joined, too.
+    pub fn join_last_substeps(&mut self, step: f32, scheme: Scheme) -> bool {
+        let [last, before] = self.steps;
+        let is_long = step > MOST_GROWTH_OF_BDF3 * last && step <= MOST_GROWTH * last;
+        let joins = scheme == Scheme::Yarns && self.substeps >= 2 && is_long;
+        if joins {
+            self.steps = [last + before, 0.0];
+            self.substeps = 1;
+        }
+        joins
     }
 
     /// Begins a substep of `step` seconds, and returns the formula of the highest order that the history allows.
@@ -248,6 +262,21 @@ mod tests {
             assert_eq!(history.begin_substep(growth * STEP, Scheme::Yarns), formula, "{growth}");
         }
         assert_eq!(history.begin_substep(2.0 * STEP, Scheme::GaussSeidel), Formula::BACKWARD_EULER);
+    }
+
+    #[test]
+    fn short_substeps_are_joined_before_a_long_one() {
+        let joined = |substeps, growth: f32| {
+            let mut history = after(substeps);
+            let joins = history.join_last_substeps(growth * STEP, Scheme::Yarns);
+            (joins, history.begin_substep(growth * STEP, Scheme::Yarns))
+        };
+        assert_eq!(joined(4, 2.0), (true, BDF2), "two substeps as long as the next");
+        assert_eq!(joined(4, 1.6), (true, Formula::bdf2(1.6 * STEP, 2.0 * STEP)));
+        assert_eq!(joined(4, 2.5), (false, Formula::BACKWARD_EULER));
+        assert_eq!(joined(4, 1.5), (false, Formula::bdf2_opt(1.5 * STEP, STEP, STEP)));
+        assert_eq!(joined(1, 2.0), (false, Formula::bdf2(2.0 * STEP, STEP)), "one is known");
+        assert!(!after(4).join_last_substeps(2.0 * STEP, Scheme::GaussSeidel));
     }
 
     #[test]

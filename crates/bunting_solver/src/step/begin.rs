@@ -69,6 +69,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     fn begin_substep_of(&mut self, cloth: usize, state: &mut LaneState) {
         let Clock { settings, step, .. } = self.clock;
         state.external_moment = 0.0;
+        if state.history.join_last_substeps(step, settings.scheme) {
+            self.join_last_substeps(cloth);
+            if let Some(background) = &mut self.background {
+                background.join_last_substeps(cloth);
+            }
+        }
         let formula = state.history.begin_substep(step, settings.scheme);
         self.parameters.set_pole_turn(Y::lanes(cloth), state.history.pole_turn);
         let inputs = ParameterInputs {
@@ -103,6 +109,22 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.parameters.set_load_stretch(Y::lanes(cloth), &stretch);
         if let Some(background) = &mut self.background {
             background.set_load_stretch(cloth, &stretch);
+        }
+    }
+
+    /// Makes one substep of a cloth's last two: the displacements of both, and the velocities before both.
+    pub fn join_last_substeps(&mut self, cloth: usize) {
+        let lanes = Y::lanes(cloth);
+        let displacements = self.displacement.iter_mut().zip(&self.older_displacement);
+        for (last, before) in displacements.flat_map(|(last, before)| last.iter_mut().zip(before)) {
+            let before = &before.lanes()[lanes.clone()];
+            let last = &mut last.lanes_mut()[lanes.clone()];
+            last.iter_mut().zip(before).for_each(|(last, before)| *last += before);
+        }
+        let velocities = self.older_velocity.iter_mut().zip(&self.oldest_velocity);
+        for (older, oldest) in velocities.flat_map(|(older, oldest)| older.iter_mut().zip(oldest)) {
+            let oldest = &oldest.lanes()[lanes.clone()];
+            older.lanes_mut()[lanes.clone()].copy_from_slice(oldest);
         }
     }
 
@@ -144,6 +166,57 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if let Some(background) = &mut self.background {
             let nodes = node_inverse_masses(&self.fabric, &inverse_masses);
             background.set_inverse_masses(cloth, &nodes);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::Vec3;
+
+    use super::*;
+    use crate::batch::exchange::Entering;
+    use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
+    use crate::fabric::{FabricBuilder, FabricMaterial, Grid};
+    use crate::simd::registers::Pack1;
+    use crate::step::Drive;
+
+    #[test]
+    fn substeps_of_particles_and_nodes_are_joined_before_a_long_one() {
+        let grid = Grid::new(12, 12, 1.0, 1.0);
+        let mesh = FabricBuilder::new(grid.positions(), grid.triangles(false).into_flattened());
+        let mesh = mesh.pin_where(|at, _| at.x == 0.0).build().expect("a good fabric");
+        let fabric = &Arc::new(mesh);
+        let snapshot = &ClothSnapshot::at_rest(fabric);
+        let mut batch = LaneBatch::<Pack1>::side_by_side(Arc::clone(fabric));
+        let material = FabricMaterial::NYLON;
+        batch.exchange(&[], &[Entering { lane: 0, fabric, snapshot, material }]);
+        if let Some(cloth) = &mut batch.lanes[0] {
+            cloth.drive = Drive { gravity: Vec3::NEG_Z * 9.81, ..Drive::NONE };
+        }
+        batch.begin_tick(1.0 / 60.0, StepSettings::yarns(4));
+        for _ in 0..4 {
+            batch.integrate();
+            batch.solve_constraints();
+            batch.update_velocities();
+        }
+        let histories = |batch: &LaneBatch<Pack1>| -> [SnapshotHistory; 2] {
+            let of_particles = batch.snapshot(0).history.expect("a history");
+            let nodes = of_particles.nodes.clone().expect("a background grid");
+            [of_particles, nodes.history.expect("a history")]
+        };
+        let before = histories(&batch);
+        batch.begin_tick(1.0 / 60.0, StepSettings::yarns(2));
+        batch.begin_substep();
+        for (before, after) in before.iter().zip(histories(&batch)) {
+            let [last, older] = &before.displacements;
+            assert!(older.iter().any(|displacement| displacement.length() > 1e-6));
+            for (at, joined) in after.displacements[0].iter().enumerate() {
+                assert_eq!(*joined, last[at] + older[at]);
+                assert_eq!(after.older_velocities[0][at], before.older_velocities[1][at]);
+            }
         }
     }
 }
