@@ -2,6 +2,7 @@
 
 use std::f32::consts::FRAC_PI_2;
 
+use avian3d::prelude::Collider;
 use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
@@ -10,7 +11,7 @@ use bunting_examples::render::{print, stage};
 
 use crate::ground::{Ground, LENGTH, WIDTH, height, places};
 use crate::suspension::{RADIUS, Wheel};
-use crate::vehicle::{Load, Part, Pole};
+use crate::vehicle::{Load, Part, Pole, Vehicle};
 
 /// Sky, ground and light of a wide field.
 pub const STAGE: Stage = Stage {
@@ -73,21 +74,26 @@ fn draw_posts(
 
 fn draw_vehicles(
     mut commands: Commands,
-    parts: Query<(Entity, &Part, Has<Load>)>,
+    vehicles: Query<Entity, With<Vehicle>>,
+    parts: Query<(Entity, &Collider, Has<Load>), With<Part>>,
     wheels: Query<Entity, With<Wheel>>,
-    poles: Query<(Entity, &Pole)>,
+    poles: Query<Entity, With<Pole>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut materials: ResMut<Assets<StandardMaterial>>,
 ) {
+    for vehicle in &vehicles {
+        commands.entity(vehicle).insert(Visibility::default());
+    }
     let paint = materials.add(StandardMaterial {
         base_color: Color::srgb(0.27, 0.35, 0.40),
         perceptual_roughness: 0.6,
         ..default()
     });
     let wood = materials.add(Color::srgb(0.55, 0.40, 0.24));
-    for (part, &Part(size), is_load) in &parts {
+    for (part, collider, is_load) in &parts {
+        let Some(shape) = collider.shape().as_cuboid() else { continue };
         let material = if is_load { wood.clone() } else { paint.clone() };
-        let mesh = Mesh3d(meshes.add(Cuboid::from_size(size)));
+        let mesh = Mesh3d(meshes.add(Cuboid::from_size(2.0 * shape.half_extents)));
         commands.entity(part).insert((mesh, MeshMaterial3d(material)));
     }
     let tyre = meshes
@@ -102,8 +108,8 @@ fn draw_vehicles(
         commands.entity(wheel).insert(look);
     }
     let white = materials.add(stage::paint());
-    for (pole, &Pole(length)) in &poles {
-        let shaft = meshes.add(Cylinder::new(0.03, length));
-        commands.entity(pole).insert((Mesh3d(shaft), MeshMaterial3d(white.clone())));
+    let shaft = meshes.add(Cylinder::new(0.03, Pole::LENGTH));
+    for pole in &poles {
+        commands.entity(pole).insert((Mesh3d(shaft.clone()), MeshMaterial3d(white.clone())));
     }
 }

@@ -32,9 +32,8 @@ const CHASSIS: [Vec3; 2] = [Vec3::ZERO, Vec3::new(2.0, 0.4, 4.6)];
 const CAB: [Vec3; 2] = [Vec3::new(0.0, 0.65, -1.6), Vec3::new(1.9, 0.9, 1.2)];
 const LOAD: [Vec3; 2] = [Vec3::new(0.0, 0.6, 0.75), Vec3::new(1.4, 0.8, 2.3)];
 
-/// Foot of the pole in a vehicle, and its length, m.
-const POLE: Vec3 = Vec3::new(0.0, 0.2, 2.2);
-const POLE_LENGTH: f32 = 2.6;
+/// Foot of the pole in a vehicle, m.
+const FOOT: Vec3 = Vec3::new(0.0, 0.2, 2.2);
 
 /// Width of the tarpaulin across the vehicle and its length, m; it hangs over the load by some centimetres.
 const TARPAULIN: Vec2 = Vec2::new(3.1, 2.5);
@@ -49,9 +48,9 @@ pub struct Vehicle {
     pub lane: f32,
 }
 
-/// A box, with its size, m.
+/// A box.
 #[derive(Component, Clone, Copy, Debug)]
-pub struct Part(pub Vec3);
+pub struct Part;
 
 /// The load of the first vehicle.
 #[derive(Component, Clone, Copy, Debug)]
@@ -61,9 +60,14 @@ pub struct Load;
 #[derive(Component, Clone, Copy, Debug)]
 pub struct Tarpaulin;
 
-/// A flag's pole, with its length, m.
+/// A flag's pole, along y.
 #[derive(Component, Clone, Copy, Debug)]
-pub struct Pole(pub f32);
+pub struct Pole;
+
+impl Pole {
+    /// Length, m.
+    pub const LENGTH: f32 = 2.6;
+}
 
 /// Spawns the vehicles.
 pub fn spawn(commands: &mut Commands) {
@@ -73,7 +77,7 @@ pub fn spawn(commands: &mut Commands) {
         let pose = Transform::from_translation(at).looking_to(Vec3::X, Vec3::Y);
         let body = (RigidBody::Dynamic, Mass(MASS), LinearVelocity(SPEED * Vec3::X));
         let vehicle = (Vehicle { lane: start.y }, body, FeelsCloth::default(), pose);
-        let vehicle = commands.spawn((vehicle, Visibility::default())).id();
+        let vehicle = commands.spawn(vehicle).id();
         for [middle, size] in [CHASSIS, CAB] {
             commands.spawn((part(middle, size), ChildOf(vehicle)));
         }
@@ -91,15 +95,15 @@ pub fn spawn(commands: &mut Commands) {
 /// A box of a vehicle.
 fn part(middle: Vec3, size: Vec3) -> impl Bundle {
     let collider = Collider::cuboid(size.x, size.y, size.z);
-    (Part(size), collider, Transform::from_translation(middle))
+    (Part, collider, Transform::from_translation(middle))
 }
 
 /// A flag on a pole, which flies backwards.
 fn spawn_flag(commands: &mut Commands, vehicle: Entity, colour: [u8; 3]) {
-    let middle = POLE + 0.5 * POLE_LENGTH * Vec3::Y;
-    let pole = (Pole(POLE_LENGTH), Transform::from_translation(middle), ChildOf(vehicle));
+    let middle = FOOT + 0.5 * Pole::LENGTH * Vec3::Y;
+    let pole = (Pole, Transform::from_translation(middle), ChildOf(vehicle));
     let pole = commands.spawn(pole).id();
-    let top = Transform::from_xyz(0.0, 0.5 * POLE_LENGTH, 0.0)
+    let top = Transform::from_xyz(0.0, 0.5 * Pole::LENGTH, 0.0)
         .with_rotation(Quat::from_rotation_y(-FRAC_PI_2));
     commands.spawn((
         ClothMesh::grid(33, 23, 1.5, 1.0),

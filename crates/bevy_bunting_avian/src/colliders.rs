@@ -34,6 +34,9 @@ type AvianCollider = (
 /// Filter of the colliders that bodies collide with.
 type Touches = (Without<Sensor>, Without<ColliderDisabled>);
 
+/// Filter of entities that they do not collide with.
+type TouchesNoLonger = Or<(Without<Collider>, With<Sensor>, With<ColliderDisabled>)>;
+
 /// Makes [`ClothCollider`]s of avian's colliders that are new or have another shape, and copies their friction. A
 /// `ClothCollider` of the user's is left alone.
 pub(crate) fn copy_colliders(
@@ -86,10 +89,7 @@ pub(crate) fn copy_colliders(
 
 /// Removes the [`ClothCollider`]s of which the avian collider was removed, or does not collide any longer.
 pub(crate) fn forget_colliders(
-    colliders: Query<
-        Entity,
-        (With<FromAvian>, Or<(Without<Collider>, With<Sensor>, With<ColliderDisabled>)>),
-    >,
+    colliders: Query<Entity, (With<FromAvian>, TouchesNoLonger)>,
     mut commands: Commands,
 ) {
     for entity in &colliders {

@@ -6,12 +6,12 @@ use bevy_ecs::prelude::*;
 
 use crate::colliders::FromAvian;
 
+/// Filter of cloths, and of colliders that cloth may touch.
+type TouchesCloth = Or<(With<ClothMesh>, With<FromAvian>)>;
+
 /// Keeps the layers of cloths, and of colliders that cloth may touch, those of avian.
 pub(crate) fn copy_layers(
-    mut entities: Query<
-        (Entity, &CollisionLayers, Option<&mut ClothLayers>),
-        Or<(With<ClothMesh>, With<FromAvian>)>,
-    >,
+    mut entities: Query<(Entity, &CollisionLayers, Option<&mut ClothLayers>), TouchesCloth>,
     mut commands: Commands,
 ) {
     for (entity, layers, cloth_layers) in &mut entities {

@@ -15,19 +15,16 @@ fn failures(app: &App) -> &[ClothColliderFailed] {
     &app.world().resource::<Seen<ClothColliderFailed>>().0
 }
 
-/// Reports that a collider causes. A flag beside it has the bits that it has without it.
-fn reported(spawn: impl FnOnce(&mut App) -> Entity) -> (Entity, Vec<ClothColliderFailed>) {
-    let flag_beside = |spawn: Option<Box<dyn FnOnce(&mut App) -> Entity + '_>>| {
-        let mut app = app();
-        let flag = spawn_flag(&mut app, Vec3::new(20.0, 0.0, 0.0));
-        let collider = spawn.map(|spawn| spawn(&mut app));
-        run(&mut app, 30);
-        (collider, failures(&app).to_vec(), bits(&app, flag))
-    };
-    let (_, none, alone) = flag_beside(None);
-    let (collider, reports, beside) = flag_beside(Some(Box::new(spawn)));
-    assert_eq!((none.len(), beside), (0, alone));
-    (collider.expect("a collider"), reports)
+/// Reports of a collider, which a flag beside it does not notice: it has the bits that it has alone.
+fn reported(collider: impl Bundle) -> (Entity, Vec<ClothColliderFailed>) {
+    let flag = |app: &mut App| spawn_flag(app, Vec3::new(20.0, 0.0, 0.0));
+    let (mut alone, mut beside) = (app(), app());
+    let flags = [flag(&mut alone), flag(&mut beside)];
+    let collider = beside.world_mut().spawn(collider).id();
+    run(&mut alone, 30);
+    run(&mut beside, 30);
+    assert_eq!(bits(&beside, flags[1]), bits(&alone, flags[0]));
+    (collider, failures(&beside).to_vec())
 }
 
 #[test]
@@ -38,8 +35,7 @@ fn shapes_without_a_surface_are_reported_once() {
     ];
     for shape in shapes {
         let kind = shape.shape().shape_type();
-        let spawn = |app: &mut App| app.world_mut().spawn((shape, Transform::default())).id();
-        let (entity, reports) = reported(spawn);
+        let (entity, reports) = reported((shape, Transform::default()));
         let error = ClothColliderError::Shape { entity, shape: kind };
         assert_eq!(reports, [ClothColliderFailed { entity, error }]);
         assert!(error.to_string().contains(&entity.to_string()));
@@ -68,8 +64,7 @@ fn a_refused_collider_that_gets_another_shape_is_felt() {
 #[test]
 fn a_pose_that_is_not_finite_is_reported_and_is_not_at_the_origin() {
     let nan = Transform::from_xyz(0.0, f32::NAN, 0.0);
-    let spawn = |app: &mut App| app.world_mut().spawn((Collider::sphere(0.5), nan)).id();
-    let (entity, reports) = reported(spawn);
+    let (entity, reports) = reported((Collider::sphere(0.5), nan));
     let error = ClothColliderError::Pose { entity };
     assert_eq!(reports, [ClothColliderFailed { entity, error }]);
     assert!(error.to_string().contains(&entity.to_string()));

@@ -121,9 +121,12 @@ fn layers_of_avian_say_what_touches() {
     assert!(middle(&app, cloth).y < CARRIED);
 }
 
+/// What ends that cloth touches a collider.
+type End = fn(&mut App, Entity);
+
 #[test]
 fn a_collider_is_forgotten_when_it_is_removed_despawned_disabled_or_a_sensor() {
-    let fates: [(&str, fn(&mut App, Entity)); 4] = [
+    let fates: [(&str, End); 4] = [
         ("removed", |app, it| _ = app.world_mut().entity_mut(it).remove::<Collider>()),
         ("despawned", |app, it| _ = app.world_mut().despawn(it)),
         ("disabled", |app, it| _ = app.world_mut().entity_mut(it).insert(ColliderDisabled)),
