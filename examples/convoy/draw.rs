@@ -24,6 +24,10 @@ pub const STAGE: Stage = Stage {
 /// Distance of the posts from the middle of the way and from one another, m.
 const POSTS: (f32, f32) = (-5.0, 8.0);
 
+/// Distance of the load's drawn surface from that which the tarpaulin lies on, m: the tarpaulin is drawn as a smooth
+/// surface, which cuts edges.
+const INSET: f32 = 0.03;
+
 /// Draws the scene.
 pub fn plugin(app: &mut App) {
     app.add_plugins(print::plugin(stage::flag_cloth()))
@@ -93,7 +97,8 @@ fn draw_vehicles(
     for (part, collider, is_load) in &parts {
         let Some(shape) = collider.shape().as_cuboid() else { continue };
         let material = if is_load { wood.clone() } else { paint.clone() };
-        let mesh = Mesh3d(meshes.add(Cuboid::from_size(2.0 * shape.half_extents)));
+        let inset = if is_load { INSET } else { 0.0 };
+        let mesh = Mesh3d(meshes.add(Cuboid::from_size(2.0 * (shape.half_extents - inset))));
         commands.entity(part).insert((mesh, MeshMaterial3d(material)));
     }
     let tyre = meshes

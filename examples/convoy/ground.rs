@@ -18,8 +18,8 @@ pub struct Ground;
 
 /// Height of the ground at a place, m: waves of 56 m and 18 m across the way, and bumps of 7 m.
 pub fn height(x: f32, z: f32) -> f32 {
-    let waves = 0.6 + 0.3 * (x / 9.0).sin() + 0.1 * (x / 2.9 + z / 4.0).sin();
-    let bumps = 0.04 * (0.9 * z).sin() * (0.9 * x).sin();
+    let waves = 0.6 + 0.3 * (x / 9.0).sin() + 0.04 * (x / 2.9 + z / 4.0).sin();
+    let bumps = 0.015 * (0.9 * z).sin() * (0.9 * x).sin();
     let fallen = ((z.abs() - SHOULDER[0]) / (SHOULDER[1] - SHOULDER[0])).clamp(0.0, 1.0);
     (waves + bumps) * (1.0 - fallen * fallen * (3.0 - 2.0 * fallen)) - 0.05 * fallen
 }

@@ -30,8 +30,8 @@ use clap::Parser;
 use crate::vehicle::{Load, SPEED, Tarpaulin, Vehicle};
 
 /// Position of the viewer relative to the middle of the convoy, m, and the point at which it looks.
-const EYE: Vec3 = Vec3::new(7.5, 2.6, 9.0);
-const CENTRE: Vec3 = Vec3::new(0.5, 1.7, 0.0);
+const EYE: Vec3 = Vec3::new(12.8, 2.8, 7.6);
+const CENTRE: Vec3 = Vec3::new(3.0, 1.5, -0.5);
 
 /// Greatest mean strain of a cloth. Cloths that do not go along with their vehicles are stretched further.
 const STRAIN_LIMIT: f32 = 0.03;

@@ -2,7 +2,7 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use avian3d::prelude::{Collider, LinearVelocity, Mass, RigidBody};
+use avian3d::prelude::{Collider, ColliderDensity, LinearVelocity, RigidBody};
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bevy_bunting_avian::FeelsCloth;
@@ -14,7 +14,7 @@ use crate::suspension::{Wheel, mounts};
 /// Speed of the convoy, m/s.
 pub const SPEED: f32 = 25.0;
 
-/// Mass of a vehicle, kg.
+/// Mass of a vehicle, kg: that of its chassis.
 pub const MASS: f32 = 2_500.0;
 
 /// Half of the distances of the wheels across and along the vehicle, m.
@@ -75,12 +75,13 @@ pub fn spawn(commands: &mut Commands) {
     for (index, (start, colour)) in STARTS.into_iter().zip(colours).enumerate() {
         let at = Vec3::new(start.x, ground::height(start.x, start.y) + RIDE, start.y);
         let pose = Transform::from_translation(at).looking_to(Vec3::X, Vec3::Y);
-        let body = (RigidBody::Dynamic, Mass(MASS), LinearVelocity(SPEED * Vec3::X));
+        let body = (RigidBody::Dynamic, LinearVelocity(SPEED * Vec3::X));
         let vehicle = (Vehicle { lane: start.y }, body, FeelsCloth::default(), pose);
         let vehicle = commands.spawn(vehicle).id();
-        for [middle, size] in [CHASSIS, CAB] {
-            commands.spawn((part(middle, size), ChildOf(vehicle)));
-        }
+        let [middle, size] = CHASSIS;
+        let heavy = ColliderDensity(MASS / size.element_product());
+        commands.spawn((part(middle, size), heavy, ChildOf(vehicle)));
+        commands.spawn((part(CAB[0], CAB[1]), ChildOf(vehicle)));
         for mount in mounts() {
             commands.spawn((Wheel(mount), Transform::from_translation(mount), ChildOf(vehicle)));
         }
