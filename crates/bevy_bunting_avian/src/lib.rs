@@ -9,28 +9,21 @@
 //! use bevy_app::prelude::*;
 //! use bevy_bunting::prelude::*;
 //! use bevy_bunting_avian::{ClothAvianPlugin, FeelsCloth};
-//! use bevy_math::Vec3;
-//! use bevy_time::TimePlugin;
+//! use bevy_time::{TimePlugin, TimeUpdateStrategy};
 //! use bevy_transform::prelude::*;
 //!
 //! let mut app = App::new();
-//! app.add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin))
+//! app.insert_resource(TimeUpdateStrategy::FixedTimesteps(1))
+//!     .add_plugins((TaskPoolPlugin::default(), TimePlugin, TransformPlugin))
 //!     .add_plugins((PhysicsPlugins::default(), ClothPlugins::default(), ClothAvianPlugin::default()));
 //! # app.finish();
 //!
-//! // A ball falls on a sheet that is held by two edges, and is carried by it.
-//! let sheet = ClothMesh::grid(33, 33, 2.0, 2.0);
-//! let edges = AttachedVertices::from(ClothEdge::Top);
-//! let flat = Transform::from_rotation(bevy_math::Quat::from_rotation_x(-1.57));
-//! app.world_mut().spawn((sheet, Attachment::in_place(edges), flat));
-//! app.world_mut().spawn((
-//!     RigidBody::Dynamic,
-//!     Collider::sphere(0.2),
-//!     Mass(2.0),
-//!     FeelsCloth::default(),
-//!     Transform::from_translation(Vec3::new(0.0, 1.0, 0.0)),
-//! ));
+//! // A ball falls past a flag, which it pushes aside and by which it is slowed.
+//! app.world_mut().spawn((ClothMesh::grid(33, 23, 1.5, 1.0), Attachment::in_place(ClothEdge::Left)));
+//! let ball = (RigidBody::Dynamic, Collider::sphere(0.2), Mass(0.3), FeelsCloth::default());
+//! let ball = app.world_mut().spawn((ball, Transform::from_xyz(0.7, 1.0, 0.0))).id();
 //! (0..10).for_each(|_| app.update());
+//! assert!(app.world().get::<ClothReactions>(ball).is_some());
 //! ```
 //!
 //! # Colliders

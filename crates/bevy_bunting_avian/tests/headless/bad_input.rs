@@ -69,3 +69,21 @@ fn a_pose_that_is_not_finite_is_reported_and_is_not_at_the_origin() {
     assert_eq!(reports, [ClothColliderFailed { entity, error }]);
     assert!(error.to_string().contains(&entity.to_string()));
 }
+
+#[test]
+fn a_pose_that_ceases_to_be_finite_is_reported_each_time_and_the_collider_stays() {
+    let mut app = app();
+    let ball = (Collider::sphere(0.5), Transform::default());
+    let ball = app.world_mut().spawn(ball).id();
+    let cloth = app.world_mut().spawn(sheet(1.0)).id();
+    run(&mut app, 4 * SECOND);
+    for times in 1..=2 {
+        app.world_mut().entity_mut(ball).insert(Transform::from_xyz(f32::NAN, 0.0, 0.0));
+        run(&mut app, SECOND);
+        let error = ClothColliderError::Pose { entity: ball };
+        assert_eq!(failures(&app), vec![ClothColliderFailed { entity: ball, error }; times]);
+        assert!(middle(&app, cloth).y > -1.5);
+        app.world_mut().entity_mut(ball).insert(Transform::default());
+        run(&mut app, 10);
+    }
+}

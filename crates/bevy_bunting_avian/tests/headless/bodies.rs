@@ -57,6 +57,16 @@ fn a_ball_falls_freely_through_a_sheet_that_it_does_not_feel() {
     }
 }
 
+#[test]
+fn a_ball_falls_when_it_ceases_to_feel_the_sheet_that_carries_it() {
+    let (mut app, ball) = ball_on_sheet(Some(FeelsCloth::default()));
+    run(&mut app, 2 * SECOND);
+    assert!(position(&app, ball).y > -0.7);
+    app.world_mut().entity_mut(ball).insert(FeelsCloth { contacts: false, anchors: true });
+    run(&mut app, SECOND);
+    assert!(position(&app, ball).y < -3.0, "{}", position(&app, ball));
+}
+
 /// A banner of 8 kg that hangs on an arm of a body of 100 kg, which floats: no gravity acts on it.
 fn vehicle(app: &mut App, feels: bool) -> (Entity, Entity) {
     let body = (RigidBody::Dynamic, Mass(100.0), AngularInertia::new(Vec3::splat(5000.0)));
@@ -131,4 +141,15 @@ fn a_body_does_not_feel_a_banner_unless_it_asks_to() {
     app.world_mut().entity_mut(body).insert(FeelsCloth { contacts: true, anchors: false });
     run(&mut app, SECOND);
     assert_eq!(velocity(&app, body), Vec3::ZERO);
+}
+
+#[test]
+fn a_kinematic_body_moves_as_it_is_told_to_with_a_banner_that_it_asks_to_feel() {
+    let mut app = app();
+    let (body, cloth) = vehicle(&mut app, true);
+    let told = (RigidBody::Kinematic, LinearVelocity(Vec3::X));
+    app.world_mut().entity_mut(body).insert(told);
+    run(&mut app, SECOND);
+    assert!(app.world().get::<AnchorReactions>(cloth).is_some());
+    assert_eq!(velocity(&app, body), Vec3::X);
 }
