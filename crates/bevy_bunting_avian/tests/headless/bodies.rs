@@ -111,7 +111,7 @@ fn a_body_and_the_banner_that_it_carries_have_the_momentum_that_gravity_gives() 
     let gained = momentum(&mut app) - before;
     let given = Vec3::NEG_Y * (8.0 * GRAVITY * 2.0);
     let error = gained.distance(given) / given.length();
-    assert!(error < 0.02, "{gained} of {given}: {error}");
+    assert!(error < 0.005, "{gained} of {given}: {error}");
     assert!(velocity(&app, body).y < -0.9, "{}", velocity(&app, body));
 }
 
