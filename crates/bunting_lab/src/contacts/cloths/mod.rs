@@ -2,6 +2,7 @@
 
 mod flags;
 mod stack;
+mod taut;
 mod together;
 
 use super::row::Row;
@@ -9,5 +10,6 @@ use super::row::Row;
 pub(super) fn rows(quick: bool) -> Vec<Row> {
     let mut rows = stack::rows();
     rows.push(flags::row(quick));
+    rows.push(taut::row());
     rows
 }

@@ -131,6 +131,13 @@ impl Together {
         f64::from(self.with_any) / f64::from(self.ticks.max(1))
     }
 
+    /// Greatest speed of a particle, m/s.
+    pub fn speed(&self) -> f64 {
+        let of = |batch: &ClothBatch| batch.snapshot(0).velocities;
+        let speeds = self.batches.0.iter().flat_map(of).map(|velocity| velocity.length());
+        f64::from(speeds.fold(0.0, f32::max))
+    }
+
     /// Mean time of a tick, µs.
     pub fn us(&self) -> f64 {
         1e6 * self.time.as_secs_f64() / f64::from(self.ticks.max(1))
