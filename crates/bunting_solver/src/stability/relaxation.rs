@@ -26,6 +26,9 @@ const UNSEEN: f32 = 5e-4;
 /// Ratio of the factor to the one before in each substep in which a particle reverses.
 const REDUCED: f32 = 0.5;
 
+/// The factor of a particle that is not relaxed in a substep: a reversal makes it one.
+pub(crate) const EXEMPT: f32 = 1.0 / REDUCED;
+
 /// Ratio of the factor to the one before in each other substep. Smaller: cloth is slow to move again. Larger:
 /// oscillation returns.
 const RECOVERED: f32 = 1.0 + 1.0 / 32.0;

@@ -9,7 +9,6 @@ use crate::contact::cloths::member::{GroupMember, Member};
 use crate::contact::cloths::rules::OfGroup;
 use crate::contact::itself::contacts::LayerContacts;
 use crate::contact::itself::mesh::ContactMesh;
-use crate::contact::itself::pairs::EdgeTriangle;
 use crate::contact::itself::place::Pose;
 
 /// Number of times that cloths and then their contacts with colliders are solved. One: sheets that are pressed on a floor
@@ -140,11 +139,11 @@ impl ClothGroup {
             zones.stop(&mut layers.particles);
             write(members, lanes, layers);
         }
-        let near = || layers.pairs.edges_triangles.iter().flat_map(EdgeTriangle::particles);
+        let pressed: Vec<usize> = layers.pressed_particles().collect();
         for (index, member) in members.iter().enumerate() {
             let (batch, lane) = lanes.lane(index);
             let range = &member.range;
-            let own = near().map(|at| at as usize).filter(|at| range.contains(at));
+            let own = pressed.iter().filter(|at| range.contains(at));
             batch.end_grouped(lane, own.map(|at| at - range.start));
         }
     }

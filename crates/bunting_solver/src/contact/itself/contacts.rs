@@ -23,9 +23,10 @@ pub(in crate::contact) struct LayerContacts {
 impl LayerContacts {
     /// Finds the features that come nearer than a thickness, m, and marks their particles. Returns whether there are any.
     pub fn find(&mut self, mesh: &ContactMesh, thickness: f32, rules: &impl Rules) -> bool {
-        let Self { search, pairs, particles, .. } = self;
+        let Self { search, pairs, particles, contacts, .. } = self;
         search.find(Cloth { mesh, particles, thickness }, rules, pairs);
         if pairs.is_empty() {
+            contacts.clear();
             return false;
         }
         particles.mark_near(pairs);
@@ -47,6 +48,12 @@ impl LayerContacts {
     pub fn separate(&mut self, step: f32, sweeps: usize, rules: &impl Rules) {
         let Self { pairs, particles, contacts, tangles, .. } = self;
         Spacing { rules, sweeps, step, tangles }.separate(pairs, particles, contacts);
+    }
+
+    /// Particles of features that are still much nearer than they must be.
+    pub fn pressed_particles(&self) -> impl Iterator<Item = usize> {
+        let pressed = self.contacts.iter().filter(|contact| contact.is_pressed(&self.particles));
+        pressed.flat_map(Contact::particles)
     }
 
     /// Returns features that pass through one another to where they began in the substep, and marks their particles.

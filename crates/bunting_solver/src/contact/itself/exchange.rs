@@ -10,6 +10,7 @@ use crate::contact::itself::particles::Particles;
 use crate::contact::itself::place::Place;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
+use crate::stability::relaxation::EXEMPT;
 
 /// The particles of a cloth among those of all that touch.
 pub(in crate::contact) struct Part<'a, S> {
@@ -87,8 +88,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         sum
     }
 
-    /// Exempts particles that are near other features from under-relaxation, which would move them after the contacts:
-    /// sets their factors to one, and their oldest velocities such that they have not reversed.
+    /// Exempts particles from under-relaxation, which would move them after the contacts.
     pub(in crate::contact) fn suspend_relaxation(
         &mut self,
         cloth: usize,
@@ -99,9 +99,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         for particle in particles {
             let (pack, lane) = self.layout.locate(particle, cloth);
-            self.relaxation[pack].lanes_mut()[lane] = 1.0;
-            let velocity = lane3(&self.older_velocity[pack], lane);
-            set_lane3(&mut self.oldest_velocity[pack], lane, velocity);
+            self.relaxation[pack].lanes_mut()[lane] = EXEMPT;
         }
     }
 

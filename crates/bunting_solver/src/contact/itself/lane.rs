@@ -8,7 +8,6 @@ use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::contact::itself::exchange::Part;
 use crate::contact::itself::mesh::ContactMesh;
-use crate::contact::itself::pairs::EdgeTriangle;
 use crate::contact::itself::particles::Particles;
 use crate::contact::itself::place::InItsFrame;
 use crate::contact::itself::rules::OfOneCloth;
@@ -84,8 +83,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             zones.stop(&mut layers.particles);
             state.external_moment += self.scatter_particles(&part, &layers.particles);
         }
-        let near = layers.pairs.edges_triangles.iter().flat_map(EdgeTriangle::particles);
-        self.suspend_relaxation(cloth, near.map(|particle| particle as usize));
+        self.suspend_relaxation(cloth, layers.pressed_particles());
     }
 
     /// Copies positions and masses of a cloth out of the lanes.

@@ -21,6 +21,10 @@ const RECOVERY: f32 = 0.5;
 /// are pushed by rounding errors.
 const REST_PART: f32 = 0.8;
 
+/// Part of their distance below which features are pressed together. Larger: layers at rest tremble. Smaller: they pass
+/// through one another by under-relaxation.
+const PRESSED: f32 = 0.5;
+
 /// Two features that touch, or may touch in later sweeps.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::contact) struct Contact {
@@ -144,6 +148,16 @@ impl Contact {
             Kind::ParticleTriangle => over_triangle(at, self.passed),
             Kind::EdgeEdge => between_edges(at, self.passed),
         }
+    }
+
+    /// The particles of both features.
+    pub fn particles(&self) -> impl Iterator<Item = usize> + use<> {
+        self.particles.into_iter().map(|particle| particle as usize)
+    }
+
+    /// Whether the features are still much nearer than they must be.
+    pub fn is_pressed(&self, particles: &Particles) -> bool {
+        self.near(particles).is_some_and(|near| near.gap < PRESSED * self.distance)
     }
 
     /// Moves the features apart.
