@@ -243,3 +243,20 @@ fn a_mesh_moves_alike_in_a_moving_frame() {
     let apart = apart.fold(0.0, f32::max);
     assert!(apart < 1e-3, "{apart} m");
 }
+
+#[test]
+fn gauss_seidel_holds_a_mesh_with_a_background_grid() {
+    let fabric = Arc::new(irregular(13, 0.0));
+    for lanes in [LaneCount::One, LaneCount::Eight] {
+        let mut batch = ClothBatch::new(Arc::clone(&fabric), lanes);
+        batch.insert(&ClothSnapshot::at_rest(&fabric), ISOTROPIC).expect("room");
+        for _ in 0..60 {
+            batch.step(TICK, StepSettings::gauss_seidel(8));
+        }
+        let positions = batch.snapshot(0).positions;
+        let moved =
+            positions.iter().zip(fabric.rest_positions()).map(|(at, rest)| at.distance(*rest));
+        let farthest = moved.fold(0.0, f32::max);
+        assert!(farthest < 0.1, "{farthest} m, {lanes:?}");
+    }
+}
