@@ -221,7 +221,7 @@ impl Flag {
 }
 
 /// At rest but for a tenth of a millimetre, as a perfect plane would not leave its plane.
-fn almost_at_rest(fabric: &Fabric) -> ClothSnapshot {
+pub(crate) fn almost_at_rest(fabric: &Fabric) -> ClothSnapshot {
     let mut state = ClothSnapshot::at_rest(fabric);
     for (particle, at) in state.positions.iter_mut().enumerate() {
         if !fabric.is_pinned(particle) {

@@ -1,5 +1,6 @@
 //! A cloth among colliders, with the time that its ticks take.
 
+use std::f32::consts::TAU;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -9,6 +10,7 @@ use bunting_solver::{
 };
 use glam::{Quat, Vec3};
 
+use crate::flight::almost_at_rest;
 use crate::product::{DEFAULT, TICK};
 
 /// Acceleration of gravity, m/s².
@@ -33,6 +35,22 @@ pub(super) fn cotton(friction: f32) -> FabricMaterial {
 pub(super) fn sheet(columns: u32, rows: u32, width: f32, height: f32) -> Arc<Fabric> {
     let grid = FabricBuilder::grid(Grid::new(columns, rows, width, height));
     Arc::new(grid.build().expect("a good grid"))
+}
+
+/// A flag of 33² on a pole, almost at rest.
+pub(super) fn hoisted() -> (Arc<Fabric>, ClothSnapshot) {
+    let grid = FabricBuilder::grid(Grid::new(33, 33, 1.0, 1.0));
+    let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build().expect("a good grid"));
+    let start = almost_at_rest(&fabric);
+    (fabric, start)
+}
+
+/// Wind of 10 m/s that turns and fades for moments, m/s, given how far it turns slowly and quickly, rad.
+pub(super) fn turning_wind(time: f32, [slowly, quickly]: [f32; 2]) -> Vec3 {
+    let wave = |frequency: f32| (TAU * frequency * time).sin();
+    let strength = 10.0 * (0.6 + 0.4 * wave(0.37));
+    let angle = slowly * wave(0.23) + quickly * wave(0.61);
+    strength * Vec3::new(angle.cos(), 0.15 * wave(0.83), angle.sin())
 }
 
 /// The default settings with another number of substeps.

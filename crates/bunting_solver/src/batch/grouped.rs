@@ -54,7 +54,7 @@ impl ClothBatch {
         with_batch!(&mut self.0, batch => batch.touch_colliders(lane, member, particles))
     }
 
-    pub(crate) fn end_grouped(&mut self, lane: usize, near: impl Iterator<Item = usize>) {
-        with_batch!(&mut self.0, batch => batch.end_grouped(lane, near));
+    pub(crate) fn end_grouped(&mut self, lane: usize, pressed: impl Iterator<Item = usize>) {
+        with_batch!(&mut self.0, batch => batch.end_grouped(lane, pressed));
     }
 }

@@ -161,8 +161,7 @@ impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
             let predicted =
                 lane3(&self.scratch[pack], lane) + lane3(&self.displacement[pack], lane);
             let inertia = self.masses.inertia[pack].lanes()[lane];
-            let moment = |at: Vec3| pole.moment(inertia, at, at - predicted);
-            state.external_moment += moment(position) - moment(before);
+            state.external_moment += pole.gained(inertia, predicted, [before, position]);
         }
     }
 

@@ -162,8 +162,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         let inertia = self.masses.inertia[pack].lanes()[lane];
         if let Some(pole) = &self.fabric_of(cloth).pole {
-            let moment = |at: Vec3| pole.moment(inertia, at, at - predicted);
-            outcome.moment += moment(after) - moment(before);
+            outcome.moment += pole.gained(inertia, predicted, [before, after]);
         }
         if let Some(reaction) = &mut outcome.reaction {
             // A steady force acts for the whole substep, of which the formula takes β; an impact changes the velocity

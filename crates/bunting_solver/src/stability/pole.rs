@@ -73,6 +73,13 @@ impl Pole {
     pub fn moment(&self, inertia: f32, at: Vec3, correction: Vec3) -> f32 {
         inertia * self.along.cross(at - self.at).dot(correction)
     }
+
+    /// Change of this moment, m⁴, where something from outside has moved a particle, m, in a substep for which its position
+    /// was predicted, m.
+    pub fn gained(&self, inertia: f32, predicted: Vec3, [before, after]: [Vec3; 2]) -> f32 {
+        let moment = |at: Vec3| self.moment(inertia, at, at - predicted);
+        moment(after) - moment(before)
+    }
 }
 
 /// A turn about the pole by the corrections of a substep.

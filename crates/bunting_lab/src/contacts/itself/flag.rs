@@ -1,13 +1,11 @@
 //! A flag in gusts of 10 m/s.
 
-use std::{f32::consts::TAU, sync::Arc};
-
-use bunting_solver::{ClothSnapshot, Drive, FabricBuilder, FabricMaterial, Grid};
+use bunting_solver::{Drive, FabricMaterial};
 use glam::Vec3;
 
 use super::{
     super::{
-        rig::{GRAVITY, Trial},
+        rig::{GRAVITY, Trial, hoisted, turning_wind},
         row::Row,
     },
     LAYERS,
@@ -23,33 +21,19 @@ pub(super) fn row(quick: bool) -> Row {
 
 /// Flies the flag for some seconds; returns the mean time of a tick, too, µs.
 fn flown(layers: Option<f32>, seconds: f32) -> (Watch, f64) {
-    let grid = FabricBuilder::grid(Grid::new(33, 33, 1.0, 1.0));
-    let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build().expect("a good grid"));
-    let mut start = ClothSnapshot::at_rest(&fabric);
-    for (particle, at) in start.positions.iter_mut().enumerate() {
-        if !fabric.is_pinned(particle) {
-            at.z += 1e-4 * ((particle * 7919 % 1000) as f32 / 1000.0 - 0.5);
-        }
-    }
+    let (fabric, start) = hoisted();
     let material = FabricMaterial::FLAG_POLYESTER;
     let mut cloth = Trial::from(&fabric, &start, material, -GRAVITY * Vec3::Y);
     cloth.keep_layers_apart(layers);
     let mut watch = Watch::default();
     for tick in 0..(seconds / TICK) as usize {
-        let drive = Drive { wind: wind(tick as f32 * TICK), ..Drive::default() };
+        let drive =
+            Drive { wind: turning_wind(tick as f32 * TICK, [0.6, 0.4]), ..Drive::default() };
         cloth.batch.drive(0, drive).expect("a good drive");
         cloth.tick();
         watch.note(&cloth);
     }
     (watch, cloth.us())
-}
-
-/// Wind of 10 m/s that turns and fades for moments, m/s.
-fn wind(time: f32) -> Vec3 {
-    let wave = |frequency: f32| (TAU * frequency * time).sin();
-    let strength = 10.0 * (0.6 + 0.4 * wave(0.37));
-    let angle = 0.6 * wave(0.23) + 0.4 * wave(0.61);
-    strength * Vec3::new(angle.cos(), 0.15 * wave(0.83), angle.sin())
 }
 
 #[cfg(test)]

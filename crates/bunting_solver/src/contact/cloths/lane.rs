@@ -141,9 +141,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         has_pushed
     }
 
-    /// Ends the substep of a group, given the particles that were near others.
-    pub fn end_grouped(&mut self, cloth: usize, near: impl Iterator<Item = usize>) {
-        self.suspend_relaxation(cloth, near);
+    /// Ends the substep of a group, given the particles that are still pressed against others.
+    pub fn end_grouped(&mut self, cloth: usize, pressed: impl Iterator<Item = usize>) {
+        self.suspend_relaxation(cloth, pressed);
         if let Some(state) = &mut self.lanes[cloth] {
             state.is_grouped = false;
         }

@@ -73,8 +73,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let position = &mut self.positions.packs_mut()[pack];
             if let Some(pole) = &pole {
                 let inertia = self.masses.inertia[pack].lanes()[lane];
-                let moment = |at: Vec3| pole.moment(inertia, at, at - predicted);
-                sum += moment(end) - moment(lane3(position, lane));
+                sum += pole.gained(inertia, predicted, [lane3(position, lane), end]);
             }
             set_lane3(position, lane, end);
             let velocity = part.place.velocity_to_frame(particles.velocity[at]);

@@ -29,20 +29,15 @@ impl Zones {
     }
 
     /// Unites the zones of particles; returns whether they were several.
-    fn unite(&mut self, particles: &[u32; 5]) -> bool {
-        let roots = particles.map(|particle| self.root(particle));
-        let least = roots.into_iter().min().unwrap_or_default();
-        roots.iter().for_each(|&root| self.0[root as usize] = least);
-        roots.iter().any(|&root| root != least)
-    }
-
-    /// Unites the zones of all particles.
-    fn unite_all(&mut self, mut particles: impl Iterator<Item = u32>) {
-        let Some(first) = particles.next() else { return };
+    fn unite(&mut self, mut particles: impl Iterator<Item = u32>) -> bool {
+        let Some(first) = particles.next() else { return false };
+        let mut were_several = false;
         for particle in particles {
-            let roots = [first, particle].map(|particle| self.root(particle));
-            self.0[roots[0].max(roots[1]) as usize] = roots[0].min(roots[1]);
+            let [one, other] = [first, particle].map(|particle| self.root(particle));
+            self.0[one.max(other) as usize] = one.min(other);
+            were_several |= one != other;
         }
+        were_several
     }
 }
 
@@ -71,8 +66,7 @@ impl RigidZones {
         while self.unite_crossing(pairs, tangles, &particles.end) {
             self.growths += 1;
             if self.growths >= GROWTHS {
-                self.zones
-                    .unite_all(pairs.edges_triangles.iter().flat_map(EdgeTriangle::particles));
+                self.zones.unite(pairs.edges_triangles.iter().flat_map(EdgeTriangle::particles));
             }
             self.move_zones(particles);
         }
@@ -86,7 +80,7 @@ impl RigidZones {
             let is_tangled =
                 || tangles.contain_any(&pair.edge) && tangles.contain_any(&pair.triangle);
             if crossing(pair, ends).is_some() && !is_tangled() {
-                grew |= self.zones.unite(&pair.particles());
+                grew |= self.zones.unite(pair.particles().into_iter());
             }
         }
         grew
