@@ -1,7 +1,8 @@
-//! Time of a tick of an irregular mesh beside that of the grid of as many particles, in turn: a lone cloth, and eight.
+//! Time of a tick of an irregular mesh, flat or bent and without texture, beside that of the grid of as many particles, in
+//! turn: a lone cloth, and eight.
 //!
 //! ```sh
-//! cargo run --release -p bunting_lab --example mesh_ticks -- COLUMNS TICKS grid|mesh|both one|eight
+//! cargo run --release -p bunting_lab --example mesh_ticks -- COLUMNS TICKS grid|mesh|both|bent one|eight
 //! ```
 
 use std::{sync::Arc, time::Instant};
@@ -68,16 +69,21 @@ impl Timed {
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [columns, ticks, kinds, lanes] = &arguments[..] else {
-        bail!("COLUMNS TICKS grid|mesh|both one|eight")
+        bail!("COLUMNS TICKS grid|mesh|both|bent one|eight")
     };
     let n: usize = columns.parse().context("COLUMNS")?;
     let lanes = if lanes == "one" { LaneCount::One } else { LaneCount::Eight };
     let mut timed = Vec::new();
-    if kinds != "mesh" {
+    if kinds == "bent" {
+        let sheet = Sheet::new(Triangulation::Quads, [n, n], DVec2::ONE, 1);
+        let mesh = FabricBuilder::new(sheet.bent(0.5), sheet.indices);
+        timed.push(Timed::new("bent", mesh.pin_where(|at, _| at.y == 0.0).build()?, lanes)?);
+    }
+    if kinds == "grid" || kinds == "both" {
         let grid = FabricBuilder::grid(Grid::new(n as u32, n as u32, 1.0, 1.0));
         timed.push(Timed::new("grid", grid.pin_where(|at, _| at.x == 0.0).build()?, lanes)?);
     }
-    if kinds != "grid" {
+    if kinds == "mesh" || kinds == "both" {
         let sheet = Sheet::new(Triangulation::Delaunay, [n, n], DVec2::ONE, 1);
         let mesh = FabricBuilder::new(sheet.positions, sheet.indices);
         timed.push(Timed::new("mesh", mesh.pin_where(|at, _| at.x == 0.0).build()?, lanes)?);

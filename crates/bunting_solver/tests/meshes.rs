@@ -59,16 +59,25 @@ fn a_hanging_mesh_has_its_materials_strain() {
     }
 }
 
+/// A material that stretches as cloth does, damped.
+const CLOTH: FabricMaterial =
+    FabricMaterial { warp_stiffness: 1e3, weft_stiffness: 1e3, shear_stiffness: 50.0, ..ISOTROPIC };
+
 /// A mesh of a square metre that is bent about a vertical axis, and closed where the radius is 1 m/2π: there its
 /// texture has a seam.
 fn bent(flat: &Fabric, radius: f32) -> Fabric {
+    bent_with(flat, radius, flat.uvs().to_vec())
+}
+
+/// The same with another texture, or none.
+fn bent_with(flat: &Fabric, radius: f32, uv: Vec<Vec2>) -> Fabric {
     let around = |at: &Vec3| {
         let (sin, cos) = libm::sincosf(at.x / radius);
         Vec3::new(radius * sin, at.y, radius * cos)
     };
     let positions = flat.rest_positions().iter().map(around).collect();
     let builder = FabricBuilder::new(positions, flat.triangles().as_flattened().to_vec());
-    let builder = builder.uv(flat.uvs().to_vec()).weld_distance(1e-5);
+    let builder = builder.uv(uv).weld_distance(1e-5);
     builder.pin_where(|at, _| at.y == 0.0).build().expect("a good fabric")
 }
 
@@ -84,6 +93,69 @@ fn a_curved_mesh_with_a_texture_rests_with_its_materials_strain() {
         assert!(speed < 1e-3, "{n} × {n}, radius {radius} m: {speed} m/s");
         assert!(error.abs() < 0.03, "{n} × {n}, radius {radius} m: {error}");
     }
+}
+
+#[test]
+fn a_curved_mesh_without_texture_hangs_with_its_materials_strain() {
+    let expected = CLOTH.area_density * GRAVITY / (2.0 * CLOTH.weft_stiffness);
+    for (n, radius) in [(17, 0.5), (25, 0.3), (25, 1.0 / core::f32::consts::TAU)] {
+        let fabric = Arc::new(bent_with(&irregular(n, 0.0), radius, Vec::new()));
+        let [sunk, speed] = hung(&fabric, CLOTH);
+        let error = sunk / expected - 1.0;
+        assert!(speed < 1e-3, "{n} × {n}, radius {radius} m: {speed} m/s");
+        assert!(error.abs() < 0.06, "{n} × {n}, radius {radius} m: {error}");
+    }
+}
+
+/// A flat mesh of a square metre of two pieces that share a seam halfway down; the warp of the lower one runs down.
+fn of_two_pieces(flat: &Fabric, is_pinned: fn(Vec3) -> bool) -> Fabric {
+    let (mut positions, mut uv) = (Vec::new(), Vec::new());
+    for corners in flat.triangles() {
+        let corners = corners.map(|corner| flat.rest_positions()[corner as usize]);
+        let is_low = corners.iter().map(|at| at.y).sum::<f32>() < -1.5;
+        for at in corners {
+            positions.push(at);
+            uv.push(if is_low { Vec2::new(3.0 + at.y, at.x) } else { Vec2::new(at.x, at.y) });
+        }
+    }
+    let indices = (0..positions.len() as u32).collect();
+    let builder = FabricBuilder::new(positions, indices).uv(uv).weld_distance(1e-6);
+    builder.pin_where(|at, _| is_pinned(at)).build().expect("a good fabric")
+}
+
+#[test]
+fn a_load_crosses_a_seam_of_pieces_with_different_warps() {
+    let expected = CLOTH.area_density * GRAVITY / (2.0 * CLOTH.weft_stiffness);
+    for n in [17, 33] {
+        let [sunk, speed] =
+            hung(&Arc::new(of_two_pieces(&irregular(n, 0.0), |at| at.y == 0.0)), CLOTH);
+        let error = sunk / expected - 1.0;
+        assert!(speed < 1e-3 && error.abs() < 0.05, "{n} × {n}: {error}, {speed} m/s");
+    }
+}
+
+#[test]
+fn a_flag_without_a_background_grid_keeps_its_edges_in_wind() {
+    let fabric = Arc::new(of_two_pieces(&irregular(17, 0.0), |at| at.x == 0.0));
+    let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
+    let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
+    batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::FLAG_POLYESTER).expect("room");
+    let wind = Vec3::new(5.0, 0.0, 3.0);
+    batch.drive(0, Drive { wind, ..Drive::default() }).expect("a lane");
+    let (mut positions, mut strains) = (Vec::new(), Vec::new());
+    let length = |of: &[Vec3], [a, b]: [u32; 2]| of[a as usize].distance(of[b as usize]);
+    for tick in 0..480 {
+        batch.step(TICK, settings);
+        if tick > 120 {
+            batch.copy_positions(0, &mut positions);
+            let sides = fabric.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+            let rest = fabric.rest_positions();
+            strains.extend(sides.map(|ends| length(&positions, ends) / length(rest, ends) - 1.0));
+        }
+    }
+    strains.sort_by(f32::total_cmp);
+    let (large, greatest) = (strains[strains.len() * 999 / 1000], strains[strains.len() - 1]);
+    assert!(large < 0.08 && greatest < 0.35, "99.9 %: {large}, greatest: {greatest}");
 }
 
 #[test]
@@ -141,7 +213,13 @@ fn a_mesh_has_the_same_bits_at_every_width() {
     // Stiff enough to be bent at positions that contain the displacement by stretch, and to resist twist.
     let stiff = FabricMaterial { bend_stiffness: 10.0, ..limp };
     let flat = irregular(21, 0.0);
-    let fabrics = [irregular(13, 0.0), irregular(30, 0.5), with_a_hole(&flat), bent(&flat, 0.3)];
+    let fabrics = [
+        irregular(13, 0.0),
+        irregular(30, 0.5),
+        with_a_hole(&flat),
+        bent(&flat, 0.3),
+        bent_with(&irregular(12, 0.0), 0.3, Vec::new()),
+    ];
     for fabric in fabrics.map(Arc::new) {
         for material in [limp, stiff] {
             let alone = flown(&fabric, material, LaneCount::One, &[6.0]);
@@ -156,7 +234,9 @@ fn a_mesh_has_the_same_bits_at_every_width() {
 #[test]
 fn a_mesh_that_moves_to_another_batch_keeps_its_bits() {
     let flat = irregular(21, 0.0);
-    for fabric in [irregular(13, 0.0), with_a_hole(&flat), bent(&flat, 0.3)].map(Arc::new) {
+    let untextured = bent_with(&irregular(12, 0.0), 0.3, Vec::new());
+    let fabrics = [irregular(13, 0.0), with_a_hole(&flat), bent(&flat, 0.3), untextured];
+    for fabric in fabrics.map(Arc::new) {
         let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
         let wind = Vec3::new(6.0, 0.0, 4.0);
         let drive = || Drive { wind, ..Drive::default() };

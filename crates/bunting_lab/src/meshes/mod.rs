@@ -90,6 +90,33 @@ impl Sheet {
         Self { positions: positions.collect(), indices: front.map(|at| at as u32).collect() }
     }
 
+    /// The sheet as a fabric of two pieces that share a seam halfway down, with pins. The warp of the upper one runs along
+    /// the rows, that of the lower one down the columns.
+    ///
+    /// # Panics
+    ///
+    /// When it is not a cloth.
+    #[must_use]
+    pub fn of_two_pieces(&self, is_pinned: impl Fn(Vec3) -> bool) -> Arc<Fabric> {
+        let height = self.positions.iter().map(|at| -at.y).fold(0.0, f32::max);
+        let (mut positions, mut uv) = (Vec::new(), Vec::new());
+        for corners in self.indices.chunks_exact(3) {
+            let corners = [0, 1, 2].map(|corner| self.positions[corners[corner] as usize]);
+            let is_low = corners.iter().map(|at| -at.y).sum::<f32>() > 1.5 * height;
+            for at in corners {
+                positions.push(at);
+                uv.push(if is_low {
+                    Vec2::new(at.y - height, at.x)
+                } else {
+                    Vec2::new(at.x, at.y)
+                });
+            }
+        }
+        let indices = (0..positions.len() as u32).collect();
+        let builder = FabricBuilder::new(positions, indices).uv(uv).weld_distance(1e-6 * height);
+        Arc::new(builder.pin_where(|at, _| is_pinned(at)).build().expect("a cloth"))
+    }
+
     /// The sheet as a fabric whose warp runs at an angle to its rows, rad, with pins.
     ///
     /// # Panics
@@ -106,6 +133,16 @@ impl Sheet {
 }
 
 impl Sheet {
+    /// The positions of the sheet bent about a vertical axis, to a radius, m.
+    #[must_use]
+    pub fn bent(&self, radius: f32) -> Vec<Vec3> {
+        let around = |at: &Vec3| {
+            let (sin, cos) = (at.x / radius).sin_cos();
+            Vec3::new(radius * sin, at.y, radius * cos)
+        };
+        self.positions.iter().map(around).collect()
+    }
+
     /// The sheet rolled up about a vertical axis until its sides meet, where its texture has a seam; with pins.
     ///
     /// # Panics
@@ -114,12 +151,7 @@ impl Sheet {
     #[must_use]
     pub fn rolled_up(&self, is_pinned: impl Fn(Vec3) -> bool) -> Arc<Fabric> {
         let width = self.positions.iter().map(|at| at.x).fold(0.0, f32::max);
-        let radius = width / TAU;
-        let around = |at: &Vec3| {
-            let (sin, cos) = (at.x / radius).sin_cos();
-            Vec3::new(radius * sin, at.y, radius * cos)
-        };
-        let positions = self.positions.iter().map(around).collect();
+        let positions = self.bent(width / TAU);
         let uv = self.positions.iter().map(|at| Vec2::new(at.x, -at.y)).collect();
         let builder = FabricBuilder::new(positions, self.indices.clone()).uv(uv);
         let builder = builder.weld_distance(1e-5 * width).pin_where(|at, _| is_pinned(at));

@@ -12,9 +12,10 @@ use crate::batch::mixed::Mixed;
 use crate::batch::probe_motion::ProbeMotion;
 use crate::batch::side_by_side::SideBySide;
 use crate::batch::single_cloth::SingleCloth;
+use crate::constraints::laid_yarns::BandRow;
 use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
-use crate::fabric::{CHAINS_PER_PAIR, Fabric, GridTransfer};
+use crate::fabric::{BAND, CHAINS_PER_PAIR, Fabric, GridTransfer};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::{Pack3, set_lane3, splat3};
@@ -69,6 +70,11 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub stretch_shift: Vec<Pack3<P>>,
     /// Scratch array of the tridiagonal systems of a pair of chains.
     pub rows: Vec<TridiagonalRow<P>>,
+    /// For each link of laid yarns the sums of inverse masses that couple its row to itself and to the rows before, in the
+    /// substep.
+    pub couplings: Vec<[P; BAND + 1]>,
+    /// Scratch array of the system of a laid yarn.
+    pub band_rows: Vec<BandRow<P>>,
     /// Scratch array of the block tridiagonal system of a strip.
     pub strip_blocks: Vec<StripBlock<P>>,
     /// Scratch array of the bending moments of a line, or the twisting moments of a ribbon.
@@ -154,8 +160,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             stretch_shift: Vec::new(),
             velocity: zero,
             relaxation: vec![P::splat(1.0); layout.pack_count()],
-            link_target: vec![P::splat(0.0); chains.target_count()],
+            link_target: vec![
+                P::splat(0.0);
+                chains.target_count() + fabric.laid_yarns().link_count()
+            ],
             rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
+            couplings: vec![[P::splat(0.0); BAND + 1]; fabric.laid_yarns().link_count()],
+            band_rows: vec![BandRow::new(); fabric.laid_yarns().longest()],
             strip_blocks: Vec::new(),
             moments: vec![splat3(Vec3::ZERO); longest_line],
             masses: Masses::new(

@@ -1,8 +1,9 @@
-//! A Gauss–Seidel sweep over the links of a mesh that is curved, or does not fill its background grid.
+//! A Gauss–Seidel sweep over the links of a mesh that does not fill a background grid.
 //!
-//! Where cloth snaps like a whip, such links may be far longer than the grid's, as their particles are raised above the
-//! nodes, or extrapolated from them. The links have a small part of the material's stiffness, so that the grid carries
-//! the load. The constraint is that of `gauss_seidel/distance.rs`.
+//! Where cloth snaps like a whip, such links may be far longer than those of the grid, as their particles are raised above
+//! the nodes, or extrapolated from them; or longer than those of laid yarns, between which they lie. The links have a small
+//! part of the material's stiffness, so that grid or yarns carry the load. The constraint is that of
+//! `gauss_seidel/distance.rs`.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
@@ -13,10 +14,11 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
-    /// Solves each link of the mesh once.
-    pub(super) fn sweep_mesh(&mut self) {
+    /// Solves each link of the mesh once, from the first to the last or backwards.
+    pub(super) fn sweep_mesh(&mut self, is_backwards: bool) {
         P::run(SweepMesh {
             links: self.fabric.links(),
+            is_backwards,
             inverse_masses: &self.masses.inverse,
             compliance: &self.layout.factors().link_compliance,
             position: self.positions.packs_mut(),
@@ -26,6 +28,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
 
 struct SweepMesh<'a, P: Pack> {
     links: &'a [Link],
+    is_backwards: bool,
     inverse_masses: &'a [P],
     compliance: &'a [P],
     position: &'a mut [Pack3<P>],
@@ -35,7 +38,9 @@ impl<P: Pack> Kernel<P> for SweepMesh<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let least = L::splat(token, LEAST_LENGTH);
-        for link in self.links {
+        let count = self.links.len();
+        for at in 0..count {
+            let link = &self.links[if self.is_backwards { count - 1 - at } else { at }];
             let [a, b] = link.particles.map(|particle| particle as usize);
             let mass_a = L::load(token, &self.inverse_masses[a]);
             let mass_b = L::load(token, &self.inverse_masses[b]);

@@ -17,6 +17,7 @@ pub(crate) mod factors;
 mod gauss_seidel;
 mod guide;
 mod interpolate;
+pub(crate) mod laid_yarns;
 mod mesh_sweep;
 mod overlong;
 pub(crate) mod shear;

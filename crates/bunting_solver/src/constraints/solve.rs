@@ -12,8 +12,8 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// Projects the predicted positions onto all constraints.
     ///
     /// A mesh that is flat at rest is solved on its background grid (`background.rs`). The hinges of other meshes are
-    /// solved forwards and backwards, and so are their chains. Each solve of a colour is a projection, self-adjoint in
-    /// the metric of the masses, with eigenvalues from 0 to 1. A sequence of solves that reads the same backwards is
+    /// solved forwards and backwards, and so are the yarns that are laid across them (`laid_yarns.rs`). Each solve of a
+    /// yarn is a projection, self-adjoint in the metric of the masses, with eigenvalues from 0 to 1. A sequence of solves that reads the same backwards is
     /// self-adjoint, too, and a product of two such sequences still has real eigenvalues from 0 to 1, like an implicit
     /// step of a stiffer cloth. A product of three different projections has complex eigenvalues: circulatory forces,
     /// which make a mesh at rest vibrate and spin.
@@ -46,13 +46,23 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             Scheme::Yarns if self.fabric.has_shear_cells() => self.solve_grid_and_contacts(),
             Scheme::Yarns if self.background.is_some() => self.solve_stretch_on_background(),
             Scheme::Yarns => {
-                self.solve_chains_both_ways(self.clock.settings.passes);
+                self.solve_stretch_of_mesh(self.clock.settings.passes);
                 self.solve_tethers();
                 self.sum_reactions();
                 self.solve_guides();
                 self.solve_contacts();
             }
         }
+    }
+}
+
+impl<P: Pack> LaneBatch<P, SideBySide<P>> {
+    /// Solves the laid yarns of a mesh. A sweep over its links, forwards before them and backwards after, holds particles
+    /// that few yarns move.
+    fn solve_stretch_of_mesh(&mut self, passes: u32) {
+        self.sweep_mesh(false);
+        self.solve_laid_yarns(passes);
+        self.sweep_mesh(true);
     }
 }
 
@@ -119,7 +129,6 @@ mod tests {
 
     use crate::batch::lane_batch::LaneBatch;
     use crate::constraints::bench::{cloth_at, positions};
-    use crate::constraints::chain::Pass;
     use crate::fabric::{Fabric, FabricBuilder, FabricMaterial};
     use crate::simd::registers::Pack1;
 
@@ -183,10 +192,11 @@ mod tests {
         let bending = asymmetry(|batch| batch.solve_dihedral_both_ways());
         let one_way = asymmetry(|batch| batch.solve_dihedral(false));
         assert!(bending < 2e-3 && one_way > 1e-2, "bending {bending}, one way {one_way}");
-        let chains = asymmetry(|batch| batch.solve_chains_both_ways(2));
+        let stretch = asymmetry(|batch| batch.solve_stretch_of_mesh(2));
         let one_way = asymmetry(|batch| {
-            batch.solve_colours(Pass::First, |_| true);
+            batch.sweep_mesh(false);
+            batch.solve_laid_yarns(2);
         });
-        assert!(chains < 2e-3 && one_way > 1e-2, "chains {chains}, one way {one_way}");
+        assert!(stretch < 2e-3 && one_way > 1e-2, "stretch {stretch}, one way {one_way}");
     }
 }

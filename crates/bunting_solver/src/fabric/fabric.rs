@@ -10,6 +10,7 @@ use super::chains::Chains;
 use super::colour::Colours;
 use super::grid::Grid;
 use super::hinges::{Hinge, HingeClass, Hinges};
+use super::laid_yarns::LaidYarns;
 use super::links::{Link, LinkClass, Links, Probe};
 use super::material::FabricMaterial;
 use super::mesh::{RestMesh, Surface};
@@ -35,6 +36,7 @@ pub struct Fabric {
     links: Links,
     yarns: Yarns,
     chains: Chains,
+    laid_yarns: LaidYarns,
     strips: Vec<Vec<StripRow>>,
     hinges: Hinges,
     bending: Bending,
@@ -85,10 +87,11 @@ impl Fabric {
             patches::quarter(&mut patches, grid);
         }
         let links = Links::of(&mesh, grid.as_ref(), None, &surface.corner_uv);
-        // A mesh with a background grid is not solved along its own links.
-        let yarns = match &background {
-            Some(_) => Yarns::default(),
-            None => Yarns::of(&mesh.positions, &links.list),
+        // Only a grid is solved along its own links.
+        let (yarns, laid_yarns) = match (&grid, &background) {
+            (Some(_), _) => (Yarns::of(&mesh.positions, &links.list), LaidYarns::default()),
+            (None, Some(_)) => Default::default(),
+            (None, None) => (Yarns::default(), LaidYarns::of(&mesh, surface)),
         };
         let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref());
         let strips =
@@ -97,7 +100,10 @@ impl Fabric {
         let bending = grid.map(|grid| Bending::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
         let twist = grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
         let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
-        let shortest = background.as_ref().map_or(&links, |grid| &grid.fabric.links).shortest();
+        let shortest = match (&grid, &background) {
+            (None, None) => laid_yarns.least_spacing,
+            (_, of_mesh) => of_mesh.as_ref().map_or(&links, |grid| &grid.fabric.links).shortest(),
+        };
         let mut fabric = Self {
             patch_grid_columns: cells.map(|grid| grid.columns as usize),
             tautness: tethers.reach.sqrt() / shortest,
@@ -109,6 +115,7 @@ impl Fabric {
             links,
             yarns,
             chains,
+            laid_yarns,
             strips,
             hinges,
             bending,
@@ -143,6 +150,7 @@ impl Fabric {
             patches,
             patch_grid_columns: whole.map(|grid| grid.columns as usize),
             background: None,
+            laid_yarns: LaidYarns::default(),
             strips: Vec::new(),
             topology: None,
             grid: Some(grid),
@@ -279,6 +287,11 @@ impl Fabric {
     /// The chains of the yarns, for cloths side by side.
     pub(crate) fn chains(&self) -> &Chains {
         &self.chains
+    }
+
+    /// Yarns laid across the triangles of a mesh; none of grids, and of meshes with a background grid.
+    pub(crate) fn laid_yarns(&self) -> &LaidYarns {
+        &self.laid_yarns
     }
 
     /// Whether diagonals resist shear alone (`constraints/shear.rs`): on grids with diagonals of the family

@@ -1,7 +1,7 @@
-//! Yarns: long straight paths of links, of any mesh.
+//! Yarns: long straight paths of links of a grid.
 //!
-//! At each particle the straightest pairs of links are joined; a path ends where no link continues it. On a
-//! grid the paths are the rows, the columns and both diagonals. Every link belongs to exactly one yarn. The
+//! At each particle the straightest pairs of links are joined; a path ends where no link continues it. The paths
+//! are the rows, the columns and both diagonals. Every link belongs to exactly one yarn. The
 //! links of one yarn are solved together, exactly, as a tridiagonal system (`constraints/chain.rs`).
 
 use glam::Vec3;
@@ -96,15 +96,11 @@ fn continuations(rest: &[Vec3], links: &[Link]) -> Continuations {
     next
 }
 
-/// The end at which the path through a link begins: found by following the path backwards, or once around a
-/// ring.
+/// The end at which the path through a link begins: found by following the path backwards.
 fn first_end(next: &Continuations, start: usize) -> End {
     let mut first = End { link: start, side: 0 };
     while let Some(before) = next[first.link][first.side] {
         first = End { link: before.link, side: 1 - before.side };
-        if first.link == start {
-            break;
-        }
     }
     first
 }
@@ -121,17 +117,8 @@ fn follow(
         Yarn { particles: vec![links[first.link].particles[first.side]], links: Vec::new() };
     let mut entry = Some(first);
     while let Some(End { link, side }) = entry {
-        if in_yarn[link] {
-            break;
-        }
         in_yarn[link] = true;
         let far = links[link].particles[1 - side];
-        // A ring is opened: its last link, which would close it, is a yarn of its own.
-        if yarn.particles.contains(&far) {
-            let closing = links[link].particles.to_vec();
-            yarns.push(Yarn { particles: closing, links: vec![link as u32] });
-            break;
-        }
         yarn.links.push(link as u32);
         yarn.particles.push(far);
         entry = next[link][1 - side];
@@ -141,8 +128,6 @@ fn follow(
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
-
     use crate::fabric::{Fabric, FabricBuilder, Grid, LinkFamily};
 
     fn covers_each_link_once(fabric: &Fabric) {
@@ -192,26 +177,5 @@ mod tests {
         let grid = FabricBuilder::grid(Grid::new(5, 5, 1.0, 1.0));
         let fabric = grid.pin_where(|_, uv| uv.y == 0.0).build().expect("a good fabric");
         covers_each_link_once(&fabric);
-    }
-
-    #[test]
-    fn a_tube_is_cut_open() {
-        let around = 12;
-        let ring = |height: f32| {
-            (0..around).map(move |i| {
-                let angle = core::f32::consts::TAU * i as f32 / around as f32;
-                Vec3::new(libm::cosf(angle), height, libm::sinf(angle))
-            })
-        };
-        let positions: Vec<Vec3> = ring(0.0).chain(ring(0.5)).collect();
-        let indices = (0..around)
-            .flat_map(|i| {
-                let next = (i + 1) % around;
-                [i, next, i + around, next, next + around, i + around]
-            })
-            .collect();
-        let fabric = FabricBuilder::new(positions, indices).build().expect("a good fabric");
-        covers_each_link_once(&fabric);
-        assert!(fabric.yarns().iter().any(|yarn| yarn.links.len() == around as usize - 1));
     }
 }

@@ -22,6 +22,10 @@ const TIGHTER: f32 = 1e-4;
 /// cos of the angle to the warp or the weft up to which a row runs along it: 3°.
 const ALONG: f32 = 0.9986;
 
+/// Mean of cos² of the angle between the warp and its mean direction below which a mesh is of pieces with different warps.
+/// Larger: textures that are distorted a little count as pieces.
+const ONE_WARP: f32 = 0.9;
+
 /// A mesh in the plane.
 pub(super) struct Chart {
     /// Places in the plane, m, from the corner of their bounding rectangle.
@@ -47,11 +51,15 @@ pub(super) struct Plane {
 }
 
 impl Chart {
-    /// The chart of a mesh; none if it is folded, or curved and without a texture that is like it.
+    /// The chart of a mesh; none if it is folded, or curved and without a texture that is like it, or flat and of pieces
+    /// with different warps.
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         let Some(normal) = plane_normal(mesh) else { return Self::by_texture(mesh, surface) };
-        let warp = mean_warp(mesh, surface);
-        let warp = warp.unwrap_or_else(|| normal.any_orthonormal_vector());
+        let warps = Warps::of(mesh, surface);
+        let warp = warps.mean().unwrap_or_else(|| normal.any_orthonormal_vector());
+        if !warps.are_along(warp) {
+            return None;
+        }
         let area: f32 = surface.triangle_areas.iter().sum();
         let mut best = Self::along(mesh, area, normal, warp);
         let filled = |chart: &Self| area / chart.extent.element_product();
@@ -126,14 +134,34 @@ fn plane_normal(mesh: &RestMesh) -> Option<Vec3> {
     (is_flat && is_front).then_some(normal)
 }
 
-/// The mean direction of the warp; none if the texture does not say.
-fn mean_warp(mesh: &RestMesh, surface: &Surface) -> Option<Vec3> {
-    let has_texture = |[a, b, c]: &[Vec2; 3]| (*b - *a).perp_dot(*c - *a) != 0.0;
-    let triangles = mesh.triangles.iter().zip(&surface.corner_uv).zip(&surface.triangle_areas);
-    let directions = triangles
-        .filter(|((_, uv), _)| has_texture(uv))
-        .map(|((&triangle, &uv), &area)| warp_direction(mesh.positions_of(triangle), uv) * area);
-    directions.sum::<Vec3>().try_normalize()
+/// The warps of a mesh's triangles that have texture, times their areas.
+struct Warps(Vec<Vec3>);
+
+impl Warps {
+    fn of(mesh: &RestMesh, surface: &Surface) -> Self {
+        let has_texture = |[a, b, c]: &[Vec2; 3]| (*b - *a).perp_dot(*c - *a) != 0.0;
+        let triangles = mesh.triangles.iter().zip(&surface.corner_uv).zip(&surface.triangle_areas);
+        let directions =
+            triangles.filter(|((_, uv), _)| has_texture(uv)).map(|((&triangle, &uv), &area)| {
+                warp_direction(mesh.positions_of(triangle), uv) * area
+            });
+        Self(directions.collect())
+    }
+
+    /// The mean direction, where u may run either way; none if the texture does not say.
+    fn mean(&self) -> Option<Vec3> {
+        let first = *self.0.first()?;
+        let one_way = |warp: &Vec3| if warp.dot(first) < 0.0 { -*warp } else { *warp };
+        self.0.iter().map(one_way).sum::<Vec3>().try_normalize()
+    }
+
+    /// Whether nearly all of the cloth has its warp along a direction.
+    fn are_along(&self, direction: Vec3) -> bool {
+        let areas = self.0.iter().map(|warp| warp.length());
+        let along = self.0.iter().zip(areas.clone()).filter(|(_, area)| *area > 0.0);
+        let along: f32 = along.map(|(warp, area)| warp.dot(direction).powi(2) / area).sum();
+        along >= ONE_WARP * areas.sum::<f32>()
+    }
 }
 
 /// The chart along that edge of the border whose bounding rectangle is the smallest.

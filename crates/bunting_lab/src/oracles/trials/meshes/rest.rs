@@ -3,9 +3,10 @@
 use std::{
     f32::consts::{FRAC_PI_4, PI},
     f64::consts::FRAC_PI_2,
+    sync::Arc,
 };
 
-use bunting_solver::{Drive, FabricMaterial};
+use bunting_solver::{Drive, FabricBuilder, FabricMaterial};
 use glam::{DVec2, Vec3};
 
 use super::{Cloth, ISOTROPIC, REST, STANDARD, at_top, bound, square};
@@ -19,6 +20,8 @@ use crate::{
 const STRETCH: [f64; 2] = [0.03, 0.05];
 /// Error of a cantilever that passes.
 const DROOP: f64 = 0.05;
+/// Radius of the arc without texture, m.
+const ARC_RADIUS: f32 = 0.3;
 /// Γ = σgL³/B of the strips whose warp is turned.
 const TURNED_GAMMA: f64 = 10.0;
 
@@ -36,6 +39,7 @@ pub(super) fn cases(triangulation: Triangulation) -> Vec<Case> {
     cases.push(turned_cantilever(triangulation));
     cases.extend(two_corners(triangulation));
     cases.extend(cylinder(triangulation));
+    cases.extend(without_background(triangulation));
     cases
 }
 
@@ -81,6 +85,35 @@ fn cylinder(triangulation: Triangulation) -> [Case; 2] {
         Case::new(name.clone(), expected, stretch, STRETCH[0]),
         bound(format!("{name}, speed at rest, m/s"), REST[0], speed),
     ]
+}
+
+/// δ/L of two meshes that have no background grid and hang from their tops, of a cloth that stretches by a thousandth, and
+/// their speeds at rest: an arc without texture, and two pieces whose warps are at right angles.
+fn without_background(triangulation: Triangulation) -> [Case; 4] {
+    let material = FabricMaterial {
+        warp_stiffness: 1e3,
+        weft_stiffness: 1e3,
+        shear_stiffness: 50.0,
+        ..ISOTROPIC
+    };
+    let sheet = Sheet::new(triangulation, [33, 33], DVec2::ONE, 1);
+    let arc = FabricBuilder::new(sheet.bent(ARC_RADIUS), sheet.indices.clone());
+    let arc = Arc::new(arc.pin_where(|at, _| at_top(at)).build().expect("a cloth"));
+    let expected = hung_strip(f64::from(material.area_density), GRAVITY, 1.0, 1e3);
+    let of_cloth = |(name, fabric)| {
+        let mut cloth = Cloth::new(fabric, material, |at| at);
+        cloth.run(4.0);
+        let stretch = -1.0 - cloth.mean(|at| at.y == -1.0).y;
+        let name = format!("{name}, hung from its top, {triangulation:?}");
+        let speed = cloth.speed();
+        [
+            Case::new(name.clone(), expected, stretch, STRETCH[1]),
+            bound(format!("{name}, speed at rest, m/s"), REST[0], speed),
+        ]
+    };
+    let [[a, b], [c, d]] =
+        [("arc without texture", arc), ("two pieces", sheet.of_two_pieces(at_top))].map(of_cloth);
+    [a, b, c, d]
 }
 
 /// Drop over reach of a strip of 1 m × 0.25 m, clamped by one more cell, whose warp runs at an angle to it, rad.

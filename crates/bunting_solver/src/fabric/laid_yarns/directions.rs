@@ -1,0 +1,157 @@
+//! The directions of warp and weft in each triangle.
+
+use glam::{Mat3, Vec2, Vec3};
+
+use super::faces::Faces;
+use super::lay::Towards;
+use crate::fabric::links::LinkFamily;
+
+/// Least sine of the angle between a triangle's normal and the axis that warp follows, of meshes without texture. Smaller:
+/// the directions of triangles at right angles to the axis are rounding errors.
+const LEAST_SINE: f32 = 0.1;
+
+/// Least doubled area of a triangle in its texture, as a part of the square of its longest side there. Smaller: its
+/// direction is rounding error.
+const LEAST_TEXTURE: f32 = 1e-4;
+
+/// The directions of warp and weft in each triangle, unit vectors in its plane at right angles to one another.
+pub(super) struct Directions {
+    warps: Vec<Vec3>,
+    wefts: Vec<Vec3>,
+}
+
+impl Directions {
+    pub fn of(faces: &Faces, corner_uv: &[[Vec2; 3]]) -> Self {
+        let warps = warps(faces, corner_uv);
+        let wefts = faces.normals.iter().zip(&warps).map(|(normal, &warp)| normal.cross(warp));
+        Self { wefts: wefts.collect(), warps }
+    }
+
+    /// A direction in a triangle.
+    pub fn of_triangle(&self, triangle: u32, towards: Towards) -> Vec3 {
+        let (warp, weft) = (self.warps[triangle as usize], self.wefts[triangle as usize]);
+        match towards {
+            Towards::Warp => warp,
+            Towards::Weft => weft,
+            Towards::Rising => (warp + weft) * core::f32::consts::FRAC_1_SQRT_2,
+            Towards::Falling => (warp - weft) * core::f32::consts::FRAC_1_SQRT_2,
+        }
+    }
+
+    /// A direction in a triangle, that at right angles to it, and the opposites of both.
+    pub fn all(&self, triangle: u32, towards: Towards) -> [Vec3; 4] {
+        let one = self.of_triangle(triangle, towards);
+        let other = self.of_triangle(triangle, towards.across());
+        [one, other, -one, -other]
+    }
+
+    /// The family of links along a line, which is laid towards `towards`, in a triangle.
+    pub fn family(&self, triangle: u32, direction: Vec3, towards: Towards) -> LinkFamily {
+        match towards {
+            Towards::Rising | Towards::Falling => LinkFamily::Diagonal,
+            Towards::Warp | Towards::Weft => {
+                let along = self.warps[triangle as usize].dot(direction).abs();
+                let across = self.wefts[triangle as usize].dot(direction).abs();
+                if along >= across { LinkFamily::Warp } else { LinkFamily::Weft }
+            }
+        }
+    }
+}
+
+/// Unit vectors along the warp of each triangle.
+///
+/// A triangle with texture has the direction in which u grows. Others have the direction of a neighbour that has one,
+/// laid into their plane. Of a mesh without texture the warp runs along the axis to which its normals are most nearly at
+/// right angles, as the axis of a cylinder.
+fn warps(faces: &Faces, corner_uv: &[[Vec2; 3]]) -> Vec<Vec3> {
+    let mut warps: Vec<Vec3> = (0..faces.count() as u32)
+        .map(|triangle| along_texture(faces, triangle, corner_uv[triangle as usize]))
+        .collect();
+    if warps.iter().all(|warp| *warp == Vec3::ZERO) {
+        let axis = axis(faces);
+        for (warp, normal) in warps.iter_mut().zip(&faces.normals) {
+            let within = axis - *normal * normal.dot(axis);
+            *warp = if within.length() > LEAST_SINE { within.normalize() } else { Vec3::ZERO };
+        }
+    }
+    spread(faces, &mut warps);
+    warps
+}
+
+/// The direction in which u grows; zero if the texture does not tell.
+fn along_texture(faces: &Faces, triangle: u32, uv: [Vec2; 3]) -> Vec3 {
+    let [a, b, c] = faces.corners(triangle);
+    let (e1, e2) = (b - a, c - a);
+    let (t1, t2) = (uv[1] - uv[0], uv[2] - uv[0]);
+    let doubled = t1.perp_dot(t2);
+    let longest = t1.length_squared().max(t2.length_squared());
+    if doubled.abs() <= LEAST_TEXTURE * longest {
+        return Vec3::ZERO;
+    }
+    ((e1 * t2.y - e2 * t1.y) * doubled.signum()).normalize_or_zero()
+}
+
+/// The axis to which the normals, weighted by areas, are most nearly at right angles.
+fn axis(faces: &Faces) -> Vec3 {
+    let mut covariance = Mat3::ZERO;
+    for (triangle, &normal) in faces.normals.iter().enumerate() {
+        let [a, b, c] = faces.corners(triangle as u32);
+        let area = (b - a).cross(c - a).length();
+        covariance +=
+            Mat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z) * area;
+    }
+    // Of a matrix without its trace, powers of trace · 1 − covariance lead to the eigenvector of the least eigenvalue.
+    let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
+    let mut power = Mat3::IDENTITY - covariance * (1.0 / trace);
+    for _ in 0..SQUARINGS {
+        power = power * power;
+        let greatest = power.to_cols_array().into_iter().fold(0.0, f32::max);
+        power *= 1.0 / greatest;
+    }
+    // Where two eigenvalues are alike any of their vectors will do; y is the vertical.
+    let along = [Vec3::Y, Vec3::X, Vec3::Z].map(|axis| power * axis);
+    let longest = |one: Vec3, other: Vec3| {
+        if other.length_squared() > 1.01 * one.length_squared() { other } else { one }
+    };
+    along.into_iter().reduce(longest).unwrap_or(Vec3::Y).normalize_or(Vec3::Y)
+}
+
+/// Squarings of a matrix after which the ratio of eigenvalues that differ by a thousandth is above a thousand.
+const SQUARINGS: u32 = 13;
+
+/// Gives triangles without direction that of a neighbour, breadth first.
+fn spread(faces: &Faces, warps: &mut [Vec3]) {
+    let has = |warp: &Vec3| *warp != Vec3::ZERO;
+    let mut front: Vec<u32> =
+        (0..warps.len() as u32).filter(|&triangle| has(&warps[triangle as usize])).collect();
+    let mut next_start = 0;
+    loop {
+        let mut at = 0;
+        while at < front.len() {
+            let from = front[at];
+            for triangle in faces.neighbours(from) {
+                if !has(&warps[triangle as usize]) {
+                    let normal = faces.normals[triangle as usize];
+                    let warp = warps[from as usize];
+                    let within = warp - normal * normal.dot(warp);
+                    warps[triangle as usize] =
+                        within.try_normalize().unwrap_or_else(|| any_direction(faces, triangle));
+                    front.push(triangle);
+                }
+            }
+            at += 1;
+        }
+        // A piece of the mesh without any direction begins with one of its own.
+        let Some(start) = (next_start..warps.len()).find(|&triangle| !has(&warps[triangle])) else {
+            return;
+        };
+        warps[start] = any_direction(faces, start as u32);
+        front = vec![start as u32];
+        next_start = start + 1;
+    }
+}
+
+fn any_direction(faces: &Faces, triangle: u32) -> Vec3 {
+    let [a, b, _] = faces.corners(triangle);
+    (b - a).normalize_or(Vec3::X)
+}

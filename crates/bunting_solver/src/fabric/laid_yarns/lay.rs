@@ -1,0 +1,208 @@
+//! Lays yarns over a mesh, evenly spaced.
+//!
+//! Streamlines of the directions of warp, weft and both diagonals are placed as by Jobard and Lefer 1997: a line is
+//! followed until it leaves the mesh or comes too near another one, and new lines start beside those that are there.
+
+use glam::Vec3;
+
+use super::directions::Directions;
+use super::faces::{Crossing, Faces, Heading};
+use super::near::{Near, Passing};
+use crate::fabric::links::LinkFamily;
+
+/// Distance of yarns, in mean distances of particles. Smaller: more links, whose families work against one another.
+/// Larger: particles between yarns are not held.
+const SPACING: f32 = 1.0;
+
+/// Least distance from a yarn at which another one begins, in distances of yarns. Smaller: yarns lie closer than asked for,
+/// by rounding. Larger: wider gaps stay open.
+const BEGINS: f32 = 0.95;
+
+/// Distance from a yarn at which another one ends, in distances of yarns. Smaller: yarns that converge get many short
+/// links. Larger: where directions turn, many yarns end.
+const ENDS: f32 = 0.6;
+
+/// Length of a yarn behind its end that it may be near to, in distances of yarns.
+const OWN_TAIL: f32 = 2.0;
+
+/// Most triangles that a line to a neighbouring yarn's start crosses.
+const MOST_STEPS_ASIDE: usize = 64;
+
+/// A piece of a yarn within one triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    pub triangle: u32,
+    pub family: LinkFamily,
+    /// m.
+    pub length: f32,
+}
+
+/// A line across triangles: its crossings, and the pieces between them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Line {
+    pub crossings: Vec<Crossing>,
+    pub pieces: Vec<Piece>,
+    /// Whether the line came back to its beginning.
+    pub is_ring: bool,
+}
+
+/// Lays lines in the direction of a family and, across seams, of the family that continues it.
+pub(super) struct Layer<'a> {
+    faces: &'a Faces<'a>,
+    directions: &'a Directions,
+    /// Distance of lines in each triangle, m.
+    spacing: &'a [f32],
+    near: Near,
+}
+
+impl<'a> Layer<'a> {
+    pub fn new(faces: &'a Faces<'a>, directions: &'a Directions, spacing: &'a [f32]) -> Self {
+        let mean = spacing.iter().sum::<f32>() / spacing.len() as f32;
+        Self { faces, directions, spacing, near: Near::new(mean * SPACING) }
+    }
+
+    /// All lines in one direction.
+    pub fn lay(&mut self, towards: Towards) -> Vec<Line> {
+        let mut lines = Vec::new();
+        for triangle in 0..self.faces.count() as u32 {
+            let at = self.faces.centre(triangle);
+            let mut starts = vec![(triangle, at)];
+            let mut next = 0;
+            while let Some(&(triangle, at)) = starts.get(next) {
+                next += 1;
+                let direction = self.directions.of_triangle(triangle, towards);
+                let start = Heading { triangle, side: None, at, direction };
+                if self.is_near(&start, BEGINS, f32::INFINITY) {
+                    continue;
+                }
+                let (line, headings) = self.follow_both_ways(start, towards);
+                starts.extend(
+                    headings.iter().flat_map(|heading| self.beside(heading, towards)).flatten(),
+                );
+                if line.crossings.len() > 1 {
+                    lines.push(line);
+                }
+            }
+        }
+        lines
+    }
+
+    fn distance(&self, triangle: u32) -> f32 {
+        SPACING * self.spacing[triangle as usize]
+    }
+
+    /// Whether a line passes within a part of the distance of lines; `before` is the length along the own line up to which
+    /// it counts, m.
+    fn is_near(&self, heading: &Heading, part: f32, before: f32) -> bool {
+        let normal = self.faces.normals[heading.triangle as usize];
+        let within = part * self.distance(heading.triangle);
+        self.near.is_near(heading.at, heading.direction, normal, within, before)
+    }
+
+    fn follow_both_ways(&mut self, start: Heading, towards: Towards) -> (Line, Vec<Heading>) {
+        self.near.begin_line();
+        let mut headings = vec![start];
+        let forwards = self.follow(start, towards, &mut headings);
+        let back = Heading { direction: -start.direction, ..start };
+        let backwards = if forwards.is_ring {
+            Line::default()
+        } else {
+            self.follow(back, towards, &mut headings)
+        };
+        // The piece within the first triangle is the first of both ways.
+        let mut line = Line { is_ring: forwards.is_ring, ..Line::default() };
+        line.crossings.extend(backwards.crossings.iter().rev());
+        line.crossings.extend(&forwards.crossings);
+        line.pieces.extend(backwards.pieces.iter().skip(1).rev());
+        if let (Some(one), Some(other)) = (backwards.pieces.first(), forwards.pieces.first()) {
+            line.pieces.push(Piece { length: one.length + other.length, ..*other });
+        }
+        line.pieces.extend(forwards.pieces.iter().skip(1));
+        (line, headings)
+    }
+
+    /// Follows the directions from a start, up to a border or another line.
+    fn follow(&mut self, start: Heading, towards: Towards, headings: &mut Vec<Heading>) -> Line {
+        let mut line = Line::default();
+        let mut heading = start;
+        let mut length = 0.0;
+        loop {
+            let exit @ (crossing, _) = self.faces.exit(&heading);
+            let passed = crossing.at - heading.at;
+            let distance = self.distance(heading.triangle);
+            let at_end = Heading { at: crossing.at, ..heading };
+            if self.is_near(&at_end, ENDS, length + passed.length() - OWN_TAIL * distance) {
+                line.is_ring = self.near.is_own(crossing.at, ENDS * distance);
+                return line;
+            }
+            let family = self.directions.family(heading.triangle, heading.direction, towards);
+            line.pieces.push(Piece { triangle: heading.triangle, family, length: passed.length() });
+            // Long pieces are marked all along.
+            let marks = (2.0 * passed.length() / distance).ceil().max(1.0);
+            for mark in 0..marks as u32 {
+                let at = heading.at + passed * ((mark as f32 + 0.5) / marks);
+                headings.push(Heading { at, side: None, ..heading });
+                self.near.add(Passing {
+                    at,
+                    direction: heading.direction,
+                    normal: self.faces.normals[heading.triangle as usize],
+                    before: length,
+                });
+            }
+            length += passed.length();
+            line.crossings.push(crossing);
+            let directions = |triangle| self.directions.all(triangle, towards);
+            match self.faces.cross(&heading, exit, directions) {
+                Some(next) => heading = next,
+                None => return line,
+            }
+        }
+    }
+
+    /// Points to both sides of a line, at the distance of lines.
+    fn beside(&self, heading: &Heading, towards: Towards) -> [Option<(u32, Vec3)>; 2] {
+        let normal = self.faces.normals[heading.triangle as usize];
+        [1.0, -1.0].map(|sign| {
+            let direction = normal.cross(heading.direction) * sign;
+            let mut aside = Heading { direction, ..*heading };
+            let mut left = self.distance(heading.triangle);
+            for _ in 0..MOST_STEPS_ASIDE {
+                let exit @ (crossing, _) = self.faces.exit(&aside);
+                let passed = (crossing.at - aside.at).length();
+                if passed > left {
+                    return Some((aside.triangle, aside.at + aside.direction * left));
+                }
+                left -= passed;
+                aside = self.faces.cross(&aside, exit, |triangle| {
+                    self.directions.all(triangle, towards.across())
+                })?;
+            }
+            None
+        })
+    }
+}
+
+/// The direction in which lines are laid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Towards {
+    Warp,
+    Weft,
+    /// Between warp and weft.
+    Rising,
+    /// Between warp and minus weft.
+    Falling,
+}
+
+impl Towards {
+    pub const ALL: [Self; 4] = [Self::Warp, Self::Weft, Self::Rising, Self::Falling];
+
+    /// The direction at right angles to this one.
+    pub fn across(self) -> Self {
+        match self {
+            Self::Warp => Self::Weft,
+            Self::Weft => Self::Warp,
+            Self::Rising => Self::Falling,
+            Self::Falling => Self::Rising,
+        }
+    }
+}

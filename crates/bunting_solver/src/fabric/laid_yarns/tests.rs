@@ -1,0 +1,80 @@
+use std::collections::HashMap;
+
+use glam::Vec3;
+
+use super::{BAND, LaidYarn};
+use crate::fabric::{Fabric, FabricBuilder, LinkFamily};
+
+/// A mesh of `n` × `n` vertices in uneven cells, rolled around a vertical axis.
+fn rolled(n: u32, radius: f32) -> Fabric {
+    let place = |index: u32| {
+        let (column, row) = ((index % n) as f32, (index / n) as f32);
+        let shift = 0.2 * libm::sinf(7.0 * column + 11.0 * row);
+        let is_inside = column > 0.0 && column < (n - 1) as f32;
+        let across = (column + if is_inside { shift } else { 0.0 }) / (n - 1) as f32;
+        let (sin, cos) = libm::sincosf(across / radius);
+        Vec3::new(radius * sin, -row / (n - 1) as f32, radius * cos)
+    };
+    let cells = (0..n - 1).flat_map(|row| (0..n - 1).map(move |column| row * n + column));
+    let indices = cells.flat_map(|at| [at, at + n, at + n + 1, at, at + n + 1, at + 1]);
+    let builder = FabricBuilder::new((0..n * n).map(place).collect(), indices.collect());
+    builder.weld_distance(1e-5).build().expect("a good fabric")
+}
+
+fn fabrics() -> [Fabric; 3] {
+    [rolled(9, 0.5), rolled(20, 0.3), rolled(25, 1.0 / core::f32::consts::TAU)]
+}
+
+/// The area that the links of a family stand for.
+fn area(yarns: &[LaidYarn], family: LinkFamily) -> f32 {
+    let links = yarns.iter().flat_map(|yarn| &yarn.links).filter(|link| link.family == family);
+    links.map(|link| link.rest_length * link.rest_length / link.slenderness).sum()
+}
+
+#[test]
+fn links_of_each_direction_stand_for_all_of_the_cloth() {
+    for fabric in fabrics() {
+        let yarns = &fabric.laid_yarns().list;
+        let expected =
+            [(LinkFamily::Warp, 1.0), (LinkFamily::Weft, 1.0), (LinkFamily::Diagonal, 2.0)];
+        for (family, directions) in expected {
+            let error = area(yarns, family) / (directions * fabric.area()) - 1.0;
+            assert!(error.abs() < 0.08, "{family:?}: {error}");
+        }
+    }
+}
+
+#[test]
+fn no_particle_moves_links_that_are_farther_apart_than_the_band() {
+    for fabric in fabrics() {
+        for yarn in &fabric.laid_yarns().list {
+            assert_eq!(yarn.nodes.len(), yarn.links.len() + 1);
+            let mut moved: HashMap<u32, (usize, usize)> = HashMap::new();
+            for (link, ends) in yarn.nodes.windows(2).enumerate() {
+                for particle in ends.iter().flat_map(|node| node.particles) {
+                    moved.entry(particle).or_insert((link, link)).1 = link;
+                }
+            }
+            assert!(moved.values().all(|(first, last)| last - first <= BAND));
+            let couplings: usize =
+                yarn.links.iter().flat_map(|link| link.couplings).map(usize::from).sum();
+            assert_eq!(couplings, yarn.couplings.len());
+        }
+    }
+}
+
+#[test]
+fn yarns_move_each_particle_and_close_rings() {
+    for fabric in fabrics() {
+        let yarns = &fabric.laid_yarns().list;
+        let mut is_moved = vec![false; fabric.particle_count()];
+        for node in yarns.iter().flat_map(|yarn| &yarn.nodes) {
+            node.particles.iter().for_each(|&particle| is_moved[particle as usize] = true);
+        }
+        assert!(is_moved.iter().all(|&is_moved| is_moved));
+    }
+    // Around the closed cylinder run some 24 rings. Each has one link that closes it.
+    let closed = rolled(25, 1.0 / core::f32::consts::TAU);
+    let closing = closed.laid_yarns().list.iter().filter(|yarn| yarn.links.len() == 1).count();
+    assert!(closing >= 20, "{closing} links close rings");
+}
