@@ -13,14 +13,12 @@ use bunting_solver::{
 };
 use parry3d::bounding_volume::Aabb;
 
+use crate::batch::cost_kind::BatchTiming;
 use crate::batch::group::Group;
 use crate::batch::lane_handle::LaneHandle;
 use crate::batch::occupancy::{LaneMut, OccupiedBatch, PendingCloth};
+use crate::batch::parallel::{Work, pays};
 use crate::batch::touching::{TouchingCloth, TouchingCloths};
-
-/// Number of particles in all lanes from which a phase of a substep is spread over threads: its time then
-/// outweighs the 30 µs of waking them. Fewer: small crowds are slowed down.
-const PARALLEL_PARTICLES: usize = 64 * 1024;
 
 /// The batches that hold the state of all simulated cloths.
 #[derive(Resource, Debug, Default)]
@@ -32,25 +30,6 @@ pub struct ClothBatches {
     pub(crate) assignment_time: Duration,
     /// Whether the time of each batch is measured in this tick.
     pub(crate) is_timed: bool,
-}
-
-/// Time that a batch took in a tick.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct BatchTiming {
-    pub kind: CostKind,
-    /// µs.
-    pub time: f32,
-}
-
-/// Properties of a batch on which its cost depends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct CostKind {
-    /// Particles in a lane.
-    pub particles: usize,
-    pub settings: StepSettings,
-    pub lanes: LaneCount,
-    /// Whether the cloths may have different fabrics.
-    pub mixed: bool,
 }
 
 impl ClothBatches {
@@ -104,7 +83,7 @@ impl ClothBatches {
 
     /// Computes the boxes around all cloths in a tick of `tick` seconds.
     pub(crate) fn update_bounds(&mut self, tick: f32) {
-        self.spread(|_| true, |batch| batch.bounds = batch.batch.swept_bounds(tick));
+        self.spread(Work::Pass, |_| true, |batch| batch.bounds = batch.batch.swept_bounds(tick));
     }
 
     /// Computes the boxes around all cloths in the batches of some lanes, in a tick of `tick` seconds.
@@ -209,7 +188,7 @@ impl ClothBatches {
 
     /// Copies the surfaces of all lanes from the batches.
     pub(crate) fn copy_surfaces(&mut self) {
-        self.spread(|_| true, |batch| batch.batch.copy_surfaces(&mut batch.surfaces));
+        self.spread(Work::Pass, |_| true, |batch| batch.batch.copy_surfaces(&mut batch.surfaces));
     }
 
     /// The batch of a lane.
@@ -234,12 +213,7 @@ impl ClothBatches {
     pub(crate) fn timings(&self) -> impl Iterator<Item = BatchTiming> + '_ {
         self.groups.iter().flat_map(|group| {
             group.batches.iter().map(|batch| BatchTiming {
-                kind: CostKind {
-                    particles: group.particle_count(),
-                    settings: group.settings,
-                    lanes: batch.width,
-                    mixed: batch.batch.is_mixed(),
-                },
+                kind: group.cost_kind(batch),
                 time: batch.time.as_secs_f32() * 1e6,
             })
         })
@@ -285,18 +259,19 @@ impl ClothBatches {
 
     /// Runs a phase on all batches that take part in the current substep.
     pub(crate) fn for_each_joining(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
-        self.for_each_where(|batch| batch.joins, |batch| phase(&mut batch.batch));
+        self.for_each_where(Work::Phase, |batch| batch.joins, |batch| phase(&mut batch.batch));
     }
 
-    /// Runs a phase on all batches.
-    pub(crate) fn for_each(&mut self, phase: impl Fn(&mut ClothBatch) + Sync) {
-        self.for_each_where(|_| true, |batch| phase(&mut batch.batch));
+    /// Computes the normals of all cloths.
+    pub(crate) fn compute_normals(&mut self) {
+        self.for_each_where(Work::Pass, |_| true, |batch| batch.batch.compute_normals());
     }
 
     /// Runs all substeps of the tick: batch by batch where no cloth may touch another, then those of the others, each
     /// substep of all of them before the next one.
     pub(crate) fn run_substeps(&mut self) {
         self.for_each_where(
+            Work::Tick,
             |batch| !batch.touches,
             |batch| {
                 for _ in 0..batch.substeps {
@@ -314,23 +289,24 @@ impl ClothBatches {
         for index in 0..count {
             self.begin_substep(index, count);
             self.begin_touching();
-            self.for_each_where(joins, |batch| {
+            self.for_each_where(Work::Phase, joins, |batch| {
                 batch.batch.integrate();
                 batch.batch.solve_constraints();
             });
             self.solve_touching();
-            self.for_each_where(joins, |batch| batch.batch.update_velocities());
+            self.for_each_where(Work::Phase, joins, |batch| batch.batch.update_velocities());
         }
     }
 
     /// Runs a phase on some batches, and adds its time to theirs if times are measured.
     fn for_each_where(
         &mut self,
+        work: Work,
         takes_part: impl Fn(&OccupiedBatch) -> bool,
         phase: impl Fn(&mut OccupiedBatch) + Sync,
     ) {
         let is_timed = self.is_timed;
-        self.spread(takes_part, |batch| {
+        self.spread(work, takes_part, |batch| {
             if is_timed {
                 let began = Instant::now();
                 phase(batch);
@@ -341,28 +317,32 @@ impl ClothBatches {
         });
     }
 
-    /// Runs work on some batches, on all threads if there are enough particles. The order does not matter,
-    /// since batches share no mutable state.
+    /// Runs work on some batches, on all threads if there is enough of it. The order does not matter, since batches
+    /// share no mutable state.
     fn spread(
         &mut self,
+        work: Work,
         takes_part: impl Fn(&OccupiedBatch) -> bool,
-        work: impl Fn(&mut OccupiedBatch) + Sync,
+        run: impl Fn(&mut OccupiedBatch) + Sync,
     ) {
-        let batches = self.batches_where(&takes_part);
-        let particles: usize = batches.map(|batch| batch.particle_count()).sum();
         let pool = ComputeTaskPool::try_get().filter(|pool| pool.thread_num() > 1);
+        let pool = pool.filter(|pool| {
+            let times = self.groups.iter().flat_map(|group| {
+                let batches = group.batches.iter().filter(|batch| takes_part(batch));
+                batches.map(|batch| work.time(group.cost_kind(batch)))
+            });
+            pays(times, pool.thread_num())
+        });
         match pool {
-            Some(pool) if particles >= PARALLEL_PARTICLES => {
-                let work = &work;
+            Some(pool) => {
+                let run = &run;
                 pool.scope(|scope| {
                     for batch in self.batches_where(&takes_part) {
-                        scope.spawn(async move { work(batch) });
+                        scope.spawn(async move { run(batch) });
                     }
                 });
             }
-            _ => {
-                self.batches_where(&takes_part).for_each(work);
-            }
+            None => self.batches_where(&takes_part).for_each(run),
         }
     }
 

@@ -7,6 +7,7 @@ use bunting_solver::{ClothBatch, Fabric, LaneCount, Scheme, StepSettings};
 
 use crate::background::Background;
 use crate::batch::batch_kind::{BatchKind, FabricCount, wanted_batches};
+use crate::batch::cost_kind::CostKind;
 use crate::batch::occupancy::{OccupiedBatch, PendingCloth};
 
 /// Number of empty batches of each width that are kept as spares, since making a batch takes longer than a
@@ -95,6 +96,16 @@ impl Group {
     /// Forgets which batches have cloths that may touch others.
     pub fn forget_touching(&mut self) {
         self.batches.iter_mut().chain(&mut self.spare).for_each(|batch| batch.touches = false);
+    }
+
+    /// What the cost of one of the batches depends on.
+    pub fn cost_kind(&self, batch: &OccupiedBatch) -> CostKind {
+        CostKind {
+            particles: self.particle_count(),
+            settings: self.settings,
+            lanes: batch.width,
+            mixed: batch.batch.is_mixed(),
+        }
     }
 
     /// Number of particles of each cloth.

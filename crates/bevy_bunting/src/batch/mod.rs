@@ -3,9 +3,11 @@
 pub mod assign;
 pub mod batch_kind;
 pub mod batches;
+pub(crate) mod cost_kind;
 pub mod group;
 pub mod lane_handle;
 pub mod occupancy;
+pub(crate) mod parallel;
 pub mod particles;
 pub mod publish;
 pub mod solve;

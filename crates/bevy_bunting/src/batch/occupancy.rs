@@ -98,11 +98,6 @@ impl OccupiedBatch {
             && (mixed[0] || Arc::ptr_eq(self.batch.fabric(), other.batch.fabric()))
     }
 
-    /// Number of particles in all lanes, whether occupied or not.
-    pub fn particle_count(&self) -> usize {
-        self.batch.fabric().particle_count() * self.batch.lane_count()
-    }
-
     /// The occupied lanes and their cloths.
     pub fn occupied(&self) -> impl Iterator<Item = (usize, Occupant)> + '_ {
         let lanes = self.occupants.iter().enumerate();

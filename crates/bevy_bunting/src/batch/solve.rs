@@ -71,5 +71,5 @@ fn update_velocities(mut batches: ResMut<ClothBatches>) {
 }
 
 fn compute_normals(mut batches: ResMut<ClothBatches>) {
-    batches.for_each(ClothBatch::compute_normals);
+    batches.compute_normals();
 }

@@ -171,8 +171,8 @@ impl ClothInstance {
                 StateStorage::Snapshot(snapshot) => Some(snapshot.of(&shared)),
                 StateStorage::Lane(lane) => Some(batches.remove_particles(*lane, &shared)),
             };
-            let settled = |state| StateStorage::Snapshot(levels.settle(state, to, &self.material));
-            self.storage = state.map_or(StateStorage::None, settled);
+            let relaxed = |state| StateStorage::Snapshot(levels.relax(state, to));
+            self.storage = state.map_or(StateStorage::None, relaxed);
         }
         self.level = to;
     }

@@ -40,18 +40,11 @@ impl ClothLevels {
         particles
     }
 
-    /// Settles a state of a level whose positions and velocities were copied from a finer level: removes the
+    /// Relaxes a state of a level whose positions and velocities were copied from a finer level: removes the
     /// strain that leaving out the other particles brings.
-    pub fn settle(
-        &self,
-        snapshot: ClothSnapshot,
-        level: usize,
-        material: &FabricMaterial,
-    ) -> ClothSnapshot {
+    pub fn relax(&self, snapshot: ClothSnapshot, level: usize) -> ClothSnapshot {
         match self.between(0, level).last() {
-            Some(transfer) if !snapshot.is_at_rest(self.fabric(level)) => {
-                transfer.settle(snapshot, material)
-            }
+            Some(transfer) if !snapshot.is_at_rest(self.fabric(level)) => transfer.relax(snapshot),
             _ => snapshot,
         }
     }

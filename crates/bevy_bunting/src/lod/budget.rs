@@ -32,8 +32,8 @@ pub struct ClothBudget {
     pub coarsen_below: f32,
     /// Least number of ticks between two changes of a cloth's level, unless the budget is exceeded.
     pub dwell: u32,
-    /// Greatest number of cloths on a screen that change their level in a tick. The same number of cloths off
-    /// the screen may change in addition.
+    /// Greatest number of cloths on a screen that change their level in a tick, unless the budget is exceeded. The same
+    /// number of cloths off the screen may change in addition.
     pub switches: usize,
     /// Angle beside the screen within which cloth is simulated, so that it has settled when it comes into
     /// view, rad.

@@ -45,7 +45,7 @@ pub(crate) struct Limits {
     /// Error of a coarser level below which that level is wanted, px.
     pub coarsen_below: f32,
     /// Greatest number of changes in a tick of cloths on a screen, and also of cloths on no screen, whose
-    /// changes cost little.
+    /// changes cost little, unless the budget is exceeded.
     pub switches: usize,
 }
 

@@ -2,7 +2,7 @@
 
 use bunting_solver::{LaneCount, StepSettings};
 
-use crate::batch::batches::{BatchTiming, CostKind};
+use crate::batch::cost_kind::{BatchTiming, CostKind};
 use crate::lod::batch_costs::{BatchCosts, Pool};
 use crate::lod::cost_table::CostTable;
 

@@ -4,7 +4,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bunting_solver::LaneCount;
 
-use crate::batch::batches::CostKind;
+use crate::batch::cost_kind::CostKind;
 
 /// Costs of cloth; where the width of the batch matters, for one, eight and sixteen lanes. A partly filled
 /// batch costs as much as a full one.

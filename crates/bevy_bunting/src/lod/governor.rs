@@ -12,6 +12,8 @@
 //!    last change; changes to coarser levels come first, and finer ones only while the budget has room. A change
 //!    costs time, too: as long as any is due, the levels leave room for the dearest. Cloths that have not been
 //!    simulated yet start at these levels.
+//! 4. Where the budget is exceeded, as when a storm raises the substeps of all cloths at once, more cloths become coarser
+//!    in a tick: as many as cost no more than the excess, which every tick of waiting would cost again.
 
 use crate::lod::candidate::{Candidate, LevelTable, Limits};
 use crate::lod::level_counts::LevelCounts;
@@ -254,21 +256,25 @@ impl Governor {
         let most = limits.budget - reserve;
         let budget = if has_fresh { most } else { limits.budget };
         cost = self.start_fresh(tables, cloths, budget, cost);
+        // Waiting costs this much in each tick.
+        let excess = (cost - budget).max(0.0);
         let switches = &mut self.choice.switches;
         for (index, (cloth, &to)) in cloths.iter().zip(&self.chosen).enumerate() {
             if cloth.fresh {
                 continue;
             }
             let exceeds = cost > budget;
+            let change = cloth.cost_of_change(tables, to);
             let left = &mut left[usize::from(cloth.on_screen)];
-            if to <= cloth.level || *left == 0 || !(cloth.ready || exceeds) {
+            let may = *left > 0 || (exceeds && changes + change <= excess);
+            if to <= cloth.level || !may || !(cloth.ready || exceeds) {
                 continue;
             }
             let more = self.counts.difference(tables, cloth.table, cloth.level, to);
             // A coarser level costs more where it needs another batch, and none becomes empty.
             if exceeds || more <= 0.0 || cost + more <= most {
-                *left -= 1;
-                changes += cloth.cost_of_change(tables, to);
+                *left = left.saturating_sub(1);
+                changes += change;
                 cost += more;
                 self.counts.shift(tables, cloth.table, cloth.level, to);
                 switches.push((index, to as usize));

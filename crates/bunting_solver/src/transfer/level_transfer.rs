@@ -10,6 +10,7 @@ use super::error::TransferError;
 use super::interpolation::Interpolation;
 use super::mesh::RestOffsets;
 use super::motion::{free_areas, internal_motion, limit_internal_motion, match_momentum};
+use super::relax::relax;
 use super::settle::Settler;
 use super::{grid, mesh};
 use crate::batch::snapshot::ClothSnapshot;
@@ -187,17 +188,13 @@ impl LevelTransfer {
         &self.shared
     }
 
-    /// Settles a coarse state with the shared particles' positions and velocities: removes strain until the
-    /// elastic energy hardly exceeds a fraction of the kinetic energy. This is much cheaper than
-    /// [`restrict`](Self::restrict), but conserves neither momentum nor energy, and is meant for cloth that
-    /// no viewer sees.
+    /// Relaxes a coarse state with the shared particles' positions and velocities: removes nearly all strain of
+    /// warp and weft. This is much cheaper than [`restrict`](Self::restrict), but conserves neither
+    /// momentum nor energy, and is meant for cloth that no viewer sees.
     #[must_use]
-    pub fn settle(&self, coarse: ClothSnapshot, material: &FabricMaterial) -> ClothSnapshot {
+    pub fn relax(&self, coarse: ClothSnapshot) -> ClothSnapshot {
         let ClothSnapshot { mut positions, velocities, .. } = coarse;
-        let kinetic = 0.5
-            * f64::from(material.area_density)
-            * internal_motion(self.coarse.fabric(), &velocities);
-        self.coarse.settle(material, &mut positions, ALLOWED_STRAIN * kinetic, true);
+        relax(self.coarse.fabric(), &mut positions);
         ClothSnapshot::new(positions, velocities)
     }
 

@@ -15,6 +15,7 @@ mod interpolation;
 mod level_transfer;
 mod mesh;
 mod motion;
+mod relax;
 mod settle;
 #[cfg(test)]
 mod tests;

@@ -168,6 +168,36 @@ fn little_strain_is_left() {
     assert!(down < 0.1 * elastic(&coarse, &MATERIAL, &bare), "{down}");
 }
 
+/// Cloth that no viewer sees is relaxed by sweeps: it stays nearly where it was, and is not thrown when it is simulated
+/// again.
+#[test]
+fn relaxed_cloth_is_not_thrown() {
+    let fabrics =
+        [(33, 33), (17, 17), (9, 9), (5, 5)].map(|(columns, rows)| fabric(columns, rows, true));
+    let between =
+        |pair: &[Arc<Fabric>]| LevelTransfer::between(&pair[0], &pair[1]).expect("nested");
+    let chain: Vec<LevelTransfer> = fabrics.windows(2).map(between).collect();
+    let [finest, .., coarsest] = &fabrics;
+    let before = flown(finest);
+    let mut bare = ClothSnapshot::new(before.positions, before.velocities);
+    for transfer in &chain {
+        bare = bare.of(transfer.shared());
+    }
+    let relaxed = chain[2].relax(bare.clone());
+    assert_eq!(relaxed.velocities, bare.velocities);
+    for (at, was) in relaxed.positions.iter().zip(&bare.positions) {
+        assert!(at.distance(*was) < 0.2, "{at} {was}");
+    }
+    let thrown = |state: &ClothSnapshot| {
+        let mut batch = batch_of(coarsest, state);
+        batch.step(TICK, StepSettings { passes: 2, ..StepSettings::yarns(1) });
+        let [had, has] = [state, &batch.snapshot(0)].map(|state| energies(coarsest, state)[0]);
+        has / had
+    };
+    let ratios = [&bare, &relaxed].map(thrown);
+    assert!(ratios[0] > 2.0 && ratios[1] < 1.2, "{ratios:?}");
+}
+
 /// Soft cloth that is stretched by its weight keeps its stretch in a change of level.
 #[test]
 fn stretch_by_weight_is_kept() {
