@@ -44,6 +44,7 @@
 //! | [`ClothSkin`] | a cloth | the joints of a skeleton that lead it |
 //! | [`SkinLimits`] | a cloth | how far it may go from where its skeleton would have it |
 //! | [`WindInfluence`] | a cloth | the part of the wind that it feels |
+//! | [`WindPerParticle`] | a cloth | it feels the wind at each of its particles |
 //! | [`ClothInertia`] | a cloth | the part of its frame's acceleration that it feels |
 //! | [`ClothAcceleration`] | a cloth | an acceleration besides gravity |
 //! | [`WindField`] | any entity | velocity of the air, with gusts |
@@ -166,6 +167,7 @@ pub use environment::wind::blast::WindBlast;
 pub use environment::wind::fan::WindFan;
 pub use environment::wind::field::{GustTravel, WindField};
 pub use environment::wind::influence::WindInfluence;
+pub use environment::wind::per_particle::{WindPerParticle, WindPerParticlePlugin};
 pub use environment::wind::plugin::WindPlugin;
 pub use environment::wind::region::{WindRegion, WindShape};
 pub use environment::wind::tick_wind::TickWind;
@@ -224,15 +226,15 @@ pub mod prelude {
         ClothReactions, ClothSeed, ClothSettings, ClothSkin, ClothState, ClothSurface,
         ClothSystems, ClothTargetLost, ClothTick, ClothTouched, GrabbedVertices, LodSet, LodViewer,
         SelfCollision, SkinError, SkinLimits, TargetLost, TeleportCloth, TeleportMode,
-        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindRegion, WindShape,
-        WindWake,
+        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindPerParticle, WindRegion,
+        WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{
         ClothDeformer, ClothFromMesh, ClothSubdivision, ColorChannel, PaintedDistance,
         PaintedWeights, VertexPaint,
     };
-    pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
+        pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 
 /// All plugins that cloth needs, one for each concern.
@@ -278,6 +280,7 @@ impl PluginGroup for ClothPlugins {
             .add(PrerollPlugin)
             .add(LanePlugin)
             .add(WindPlugin)
+            .add(WindPerParticlePlugin)
             .add(ForcePlugin)
             .add(AttachmentPlugin)
             .add(AnchorPlugin)
