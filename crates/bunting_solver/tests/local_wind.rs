@@ -1,5 +1,8 @@
 //! Tests of wind that differs from particle to particle.
 
+#[path = "common/irregular.rs"]
+mod irregular;
+
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -8,19 +11,19 @@ use bunting_solver::{
 };
 use glam::Vec3;
 
+use irregular::irregular;
+
 const TICK: f32 = 1.0 / 60.0;
 
-const WIND: Vec3 = Vec3::new(0.5, 0.0, 4.0);
+const WIND: Vec3 = Vec3::new(0.2, 0.0, 1.5);
 
-/// A curtain of 1 m as a grid, or as a mesh of its triangles that has a background grid.
+/// A curtain of 1 m as a grid, or as an irregular mesh.
 fn curtain(is_grid: bool) -> Arc<Fabric> {
-    let grid = Grid::new(17, 17, 1.0, 1.0);
-    let builder = if is_grid {
-        FabricBuilder::grid(grid)
-    } else {
-        FabricBuilder::new(grid.positions(), grid.triangles(false).into_flattened())
-    };
-    Arc::new(builder.pin_where(|at, _| at.y == 0.0).build().expect("a good fabric"))
+    if !is_grid {
+        return Arc::new(irregular(17, 0.0));
+    }
+    let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0));
+    Arc::new(grid.pin_where(|at, _| at.y == 0.0).build().expect("a good fabric"))
 }
 
 /// Positions of a curtain after some ticks, in the last of the given lanes, in a wind, and in another at each particle.
@@ -39,9 +42,7 @@ fn after(
         last = batch.insert(&start, FabricMaterial::COTTON).expect("a free lane");
         batch.drive(last, Drive { wind, ..Drive::default() }).expect("a good drive");
     }
-    if winds.iter().any(|wind| *wind != Vec3::ZERO) {
-        batch.set_local_wind(last, winds).expect("good winds");
-    }
+    batch.set_local_wind(last, winds).expect("good winds");
     (0..ticks).for_each(|_| batch.step(TICK, StepSettings::default()));
     batch.snapshot(last).positions
 }
@@ -77,7 +78,7 @@ fn a_wind_at_one_half_moves_that_half() {
         let blown = after(30, fabric, lanes, Vec3::ZERO, right);
         let corner = |particle: usize| blown[particle].z.abs();
         let (left, right) = (corner(16 * 17), corner(17 * 17 - 1));
-        assert!(right > 0.05 && left < 0.2 * right, "{left} and {right} m, grid {is_grid}");
+        assert!(right > 0.05 && left < 0.4 * right, "{left} and {right} m, grid {is_grid}");
     }
 }
 
