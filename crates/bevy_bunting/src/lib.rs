@@ -114,6 +114,8 @@ mod gltf;
 mod guide;
 mod lod;
 mod motion;
+#[cfg(feature = "picking")]
+mod picking;
 #[cfg(feature = "render")]
 mod render;
 mod schedule;
@@ -193,6 +195,10 @@ pub use motion::inertia::ClothInertia;
 pub use motion::plugin::AttachmentPlugin;
 pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
+#[cfg(feature = "picking")]
+pub use picking::drag::{ClothDrag, ClothDragSettings};
+#[cfg(feature = "picking")]
+pub use picking::plugin::ClothDragPlugin;
 #[cfg(feature = "render")]
 pub use render::cloth_from_mesh::ClothFromMesh;
 #[cfg(feature = "render")]
@@ -234,7 +240,9 @@ pub mod prelude {
         ClothDeformer, ClothFromMesh, ClothSubdivision, ColorChannel, PaintedDistance,
         PaintedWeights, VertexPaint,
     };
-        pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
+    #[cfg(feature = "picking")]
+    pub use crate::{ClothDragPlugin, ClothDragSettings};
+    pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 
 /// All plugins that cloth needs, one for each concern.
