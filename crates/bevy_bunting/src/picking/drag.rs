@@ -42,12 +42,14 @@ impl Default for ClothDragSettings {
 
 /// The hand of a pointer that drags a cloth, spawned where the pointer has pressed, with a [`ClothGrab`]; despawned when it
 /// lets go. It moves in the plane through itself that is parallel to the picture of the camera.
-#[derive(Component, Clone, Copy, Debug)]
+#[derive(Component, Clone, Copy, Debug, Reflect)]
+#[reflect(Component, Debug, Clone)]
 #[require(Transform)]
 pub struct ClothDrag {
     /// The pointer.
     pub pointer: PointerId,
-    /// The camera under whose picture the pointer is.
+    /// The camera in whose picture the pointer is.
+    #[entities]
     pub camera: Entity,
 }
 

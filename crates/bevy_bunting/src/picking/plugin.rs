@@ -6,7 +6,7 @@ use bevy_picking::backend::ray::RayMap;
 use bevy_picking::{PickingPlugin, PickingSystems};
 
 use crate::picking::backend::find_cloths;
-use crate::picking::drag::{ClothDragSettings, drag, grab};
+use crate::picking::drag::{ClothDrag, ClothDragSettings, drag, grab};
 
 /// Lets pointers (mouse, touch, or the user's own) drag cloths: the vertices under the pointer are grabbed when its primary
 /// button is pressed, follow it in a plane parallel to the picture, and are let go with the button.
@@ -31,6 +31,7 @@ impl Plugin for ClothDragPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<ClothDragSettings>()
             .register_type::<ClothDragSettings>()
+            .register_type::<ClothDrag>()
             .add_observer(grab)
             .add_systems(
                 PreUpdate,
