@@ -188,8 +188,75 @@ fn what_is_not_felt_takes_no_substeps() {
 }
 
 #[test]
+fn accelerations_are_felt_up_to_their_limit() {
+    // Speeds up by 12 m/s².
+    let speeds_up = |time: f32| Transform::from_xyz(0.0, 0.0, 6.0 * time * time);
+    let limited = ClothInertia { max_acceleration: 6.0, ..ClothInertia::default() };
+    let felt = after(SETTLING, limited, false, speeds_up);
+    let (mut app, cloth) = curtain(false, still);
+    app.world_mut().entity_mut(cloth).insert(ClothAcceleration(Vec3::Z * -6.0));
+    run(&mut app, SETTLING);
+    let tilted = state(&app, cloth).positions();
+    assert!(apart(&felt, tilted) < 5e-3, "{} m", apart(&felt, tilted));
+    assert!(felt[76].z < -0.2, "{}", felt[76]);
+}
+
+#[test]
+fn speeds_are_felt_up_to_their_limit_as_wind_and_as_they_change() {
+    let rides = |speed: f32| move |time: f32| Transform::from_xyz(0.0, 0.0, speed * time);
+    let no_faster_than = |max_speed: f32| ClothInertia { max_speed, ..ClothInertia::default() };
+    let calm = after(SETTLING, ClothInertia::default(), true, still);
+    let shut = after(SETTLING, no_faster_than(0.0), true, rides(20.0));
+    assert!(apart(&shut, &calm) < 1e-3, "{} m", apart(&shut, &calm));
+    // At half a metre a second the curtain leans and does not flutter.
+    let slow = after(SETTLING, no_faster_than(f32::MAX), true, rides(0.5));
+    let limited = after(SETTLING, no_faster_than(0.5), true, rides(20.0));
+    assert!(apart(&limited, &slow) < 0.01, "{} m", apart(&limited, &slow));
+    assert!(apart(&slow, &calm) > 0.025, "{} m", apart(&slow, &calm));
+    // Of the dash from 0 to 20 m/s, only the first metre a second is felt.
+    let calm = after(60, ClothInertia::default(), false, still);
+    let dashed = after(60, no_faster_than(1.0), false, dash);
+    let natural = after(60, ClothInertia::default(), false, dash);
+    let [dashed, natural] = [dashed, natural].map(|positions| apart(&positions, &calm));
+    assert!(dashed < 0.3 && natural > 0.5, "{dashed} and {natural} m");
+}
+
+#[test]
+fn turns_are_felt_up_to_their_limit() {
+    let limited = ClothInertia { max_turn_rate: 4.0, ..ClothInertia::default() };
+    let felt = after(SETTLING, limited, false, spin);
+    let slower = |time: f32| Transform::from_rotation(Quat::from_rotation_y(4.0 * time));
+    let slow = after(SETTLING, ClothInertia::default(), false, slower);
+    assert!(apart(&felt, &slow) < 1e-3, "{} m", apart(&felt, &slow));
+    let calm = after(SETTLING, ClothInertia::default(), false, still);
+    assert!(apart(&slow, &calm) > 5e-3, "{} m", apart(&slow, &calm));
+}
+
+#[test]
+fn what_exceeds_a_limit_takes_no_substeps() {
+    let load = |inertia: ClothInertia| {
+        let (mut app, cloth) = curtain(false, dash);
+        app.world_mut().entity_mut(cloth).insert(inertia);
+        run(&mut app, 45);
+        app.world().get::<ClothEffort>(cloth).expect("an effort").loads().frame
+    };
+    // The dash speeds up by 80 m/s².
+    let limited = load(ClothInertia { max_acceleration: 6.0, ..ClothInertia::default() });
+    assert!((limited - 6.0).abs() < 0.1, "{limited} m/s²");
+    let slow = load(ClothInertia { max_speed: 1.0, ..ClothInertia::default() });
+    assert!(slow < 0.1, "{slow} m/s²");
+}
+
+#[test]
 fn bad_parts_are_reported_and_everything_is_felt() {
-    for bad in [ClothInertia::new(f32::NAN, 1.0), ClothInertia::new(1.0, 1.5)] {
+    let limited = |max_speed: f32| ClothInertia { max_speed, ..ClothInertia::default() };
+    let bad = [
+        ClothInertia::new(f32::NAN, 1.0),
+        ClothInertia::new(1.0, 1.5),
+        limited(-1.0),
+        limited(f32::NAN),
+    ];
+    for bad in bad {
         let flown = |inertia: Option<ClothInertia>| {
             let (mut app, cloth) = curtain(true, dash);
             if let Some(inertia) = inertia {

@@ -4,7 +4,7 @@ use bevy_app::prelude::*;
 use bevy_bunting::TickWind;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
-use bevy_math::{Quat, Vec3};
+use bevy_math::{Quat, Vec2, Vec3};
 use bevy_time::Time;
 use bevy_transform::prelude::*;
 use bunting_tests::{Bits, Seen, TICK, app, assert_finite, bits, run, spawn_flag, state};
@@ -223,4 +223,78 @@ fn impossible_winds_are_left_out_or_limited_and_change_no_other_cloth() {
         assert_finite(&app, hit);
         assert!(air(&app, FAR).length() < 340.1, "wind {index}");
     }
+}
+
+/// A curtain of 2 m that hangs at the origin, at whose right half a wind blows.
+fn half_blown(curtain: impl Bundle, mesh: ClothMesh) -> (App, Entity) {
+    let mut app = app();
+    let held = Attachment::in_place(ClothEdge::Top);
+    let at = Transform::from_xyz(-1.0, 1.0, 0.0);
+    let curtain = app.world_mut().spawn((mesh, held, at, curtain)).id();
+    let region = WindRegion::cuboid(Vec3::new(0.8, 2.0, 3.0), 0.0);
+    let right = Transform::from_xyz(1.0, 0.0, 0.0);
+    app.world_mut().spawn((WindField::steady(Vec3::Z * 0.6), region, right));
+    run(&mut app, 120);
+    assert_finite(&app, curtain);
+    (app, curtain)
+}
+
+/// How far the left and the right lower corners of a curtain of 2 m lean along z, m.
+fn leans(app: &App, curtain: Entity) -> [f32; 2] {
+    let state = state(app, curtain);
+    let rest = state.fabric().expect("a fabric").rest_positions();
+    [0.0, 2.0].map(|x| {
+        let corner = Vec3::new(x, -2.0, 0.0);
+        let corner = rest.iter().position(|at| at.distance(corner) < 1e-3).expect("a corner");
+        state.positions()[corner].z
+    })
+}
+
+/// A square of 2 m of 17 × 17 vertices that are not on a grid.
+fn irregular() -> ClothMesh {
+    let corners = (0..17 * 17).map(|vertex| [vertex % 17, vertex / 17].map(|at| at as f32 / 8.0));
+    let positions = corners.map(|[x, y]| {
+        let is_inner = x > 0.0 && x < 2.0 && y > 0.0 && y < 2.0;
+        let shift = if is_inner { 0.02 } else { 0.0 };
+        Vec3::new(x + shift * (37.0 * y).sin(), -y + shift * (29.0 * x).sin(), 0.0)
+    });
+    let positions: Vec<Vec3> = positions.collect();
+    let uv = positions.iter().map(|at| Vec2::new(at.x, -at.y) / 2.0).collect();
+    let cells = (0..16 * 16_u32).map(|cell| cell / 16 * 17 + cell % 16);
+    let indices = cells.flat_map(|a| [a, a + 17, a + 1, a + 1, a + 17, a + 18]).collect();
+    ClothMesh::triangles(positions, indices, uv)
+}
+
+#[test]
+fn a_wind_at_half_a_curtain_moves_that_half_only_if_it_feels_each_particle() {
+    let (app, curtain) = half_blown((), ClothMesh::grid(17, 17, 2.0, 2.0));
+    // The middle is in still air.
+    let whole = leans(&app, curtain);
+    assert!(whole.iter().all(|lean| lean.abs() < 0.01), "{whole:?} m");
+    for mesh in [ClothMesh::grid(17, 17, 2.0, 2.0), irregular()] {
+        let (mut app, curtain) = half_blown(WindPerParticle, mesh);
+        let [left, right] = leans(&app, curtain);
+        assert!(right > 0.1 && left.abs() < 0.4 * right, "{left} and {right} m");
+        app.world_mut().entity_mut(curtain).remove::<WindPerParticle>();
+        run(&mut app, 1000);
+        let settled = leans(&app, curtain);
+        assert!(settled.iter().all(|lean| lean.abs() < 0.3 * right), "{settled:?} of {right} m");
+    }
+}
+
+#[test]
+fn one_wind_everywhere_is_the_same_at_each_particle() {
+    let flown = |per_particle: bool| {
+        flag_with(60, |world| {
+            world.spawn(WindField::steady(Vec3::new(5.0, 0.0, 3.0)));
+            let flags: Vec<Entity> =
+                world.query_filtered::<Entity, With<ClothMesh>>().iter(world).collect();
+            for flag in flags {
+                if per_particle {
+                    world.entity_mut(flag).insert(WindPerParticle);
+                }
+            }
+        })
+    };
+    assert_eq!(flown(true), flown(false));
 }

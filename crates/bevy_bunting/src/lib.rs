@@ -44,6 +44,7 @@
 //! | [`ClothSkin`] | a cloth | the joints of a skeleton that lead it |
 //! | [`SkinLimits`] | a cloth | how far it may go from where its skeleton would have it |
 //! | [`WindInfluence`] | a cloth | the part of the wind that it feels |
+//! | [`WindPerParticle`] | a cloth | it feels the wind at each of its particles |
 //! | [`ClothInertia`] | a cloth | the part of its frame's acceleration that it feels |
 //! | [`ClothAcceleration`] | a cloth | an acceleration besides gravity |
 //! | [`WindField`] | any entity | velocity of the air, with gusts |
@@ -113,6 +114,8 @@ mod gltf;
 mod guide;
 mod lod;
 mod motion;
+#[cfg(feature = "picking")]
+mod picking;
 #[cfg(feature = "render")]
 mod render;
 mod schedule;
@@ -166,6 +169,7 @@ pub use environment::wind::blast::WindBlast;
 pub use environment::wind::fan::WindFan;
 pub use environment::wind::field::{GustTravel, WindField};
 pub use environment::wind::influence::WindInfluence;
+pub use environment::wind::per_particle::{WindPerParticle, WindPerParticlePlugin};
 pub use environment::wind::plugin::WindPlugin;
 pub use environment::wind::region::{WindRegion, WindShape};
 pub use environment::wind::tick_wind::TickWind;
@@ -191,6 +195,10 @@ pub use motion::inertia::ClothInertia;
 pub use motion::plugin::AttachmentPlugin;
 pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
+#[cfg(feature = "picking")]
+pub use picking::drag::{ClothDrag, ClothDragSettings};
+#[cfg(feature = "picking")]
+pub use picking::plugin::ClothDragPlugin;
 #[cfg(feature = "render")]
 pub use render::cloth_from_mesh::ClothFromMesh;
 #[cfg(feature = "render")]
@@ -224,14 +232,16 @@ pub mod prelude {
         ClothReactions, ClothSeed, ClothSettings, ClothSkin, ClothState, ClothSurface,
         ClothSystems, ClothTargetLost, ClothTick, ClothTouched, GrabbedVertices, LodSet, LodViewer,
         SelfCollision, SkinError, SkinLimits, TargetLost, TeleportCloth, TeleportMode,
-        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindRegion, WindShape,
-        WindWake,
+        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindPerParticle, WindRegion,
+        WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{
         ClothDeformer, ClothFromMesh, ClothSubdivision, ColorChannel, PaintedDistance,
         PaintedWeights, VertexPaint,
     };
+    #[cfg(feature = "picking")]
+    pub use crate::{ClothDragPlugin, ClothDragSettings};
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 
@@ -278,6 +288,7 @@ impl PluginGroup for ClothPlugins {
             .add(PrerollPlugin)
             .add(LanePlugin)
             .add(WindPlugin)
+            .add(WindPerParticlePlugin)
             .add(ForcePlugin)
             .add(AttachmentPlugin)
             .add(AnchorPlugin)

@@ -194,6 +194,11 @@ impl LaneMut<'_> {
         let _ = self.occupied.batch.set_guides(self.lane, guides);
     }
 
+    /// Sets the wind at each particle of the cloth less that of its drive, m/s. It stays as it is if a number is not finite.
+    pub fn set_local_wind(&mut self, winds: Vec<Vec3>) {
+        let _ = self.occupied.batch.set_local_wind(self.lane, winds);
+    }
+
     /// Holds particles of the cloth. None is held if a number is not finite.
     pub fn hold(&mut self, holds: Vec<Hold>) {
         let batch = &mut self.occupied.batch;

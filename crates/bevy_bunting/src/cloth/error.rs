@@ -142,8 +142,11 @@ pub enum ClothError {
         /// The cloth.
         entity: Entity,
     },
-    /// A part of the [`ClothInertia`](crate::ClothInertia) is not within 0 to 1. The cloth feels everything.
-    #[error("the parts of the ClothInertia of cloth {entity} must lie within 0 to 1")]
+    /// A part of the [`ClothInertia`](crate::ClothInertia) is not within 0 to 1, or a limit is negative. The cloth feels
+    /// everything.
+    #[error(
+        "the parts of the ClothInertia of cloth {entity} must lie within 0 to 1, and its limits must not be negative"
+    )]
     Inertia {
         /// The cloth.
         entity: Entity,

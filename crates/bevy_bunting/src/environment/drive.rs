@@ -60,10 +60,10 @@ pub(crate) fn drive_cloths(
             inertia.reduce(&mut drive, &effort.motion(), tick);
         }
         let air = Loads::of_air(&drive, &instance.material, tick);
-        effort.note_drive(motion, air, exposure.acceleration().length(), inertia.greatest());
+        effort.note_drive(motion, air, exposure.acceleration().length(), inertia);
         let mut lane = batches.lane(lane);
         if let Some(velocity) = frame.launch() {
-            launch(&mut lane, frame.end().rotation.inverse() * (inertia.linear * velocity));
+            launch(&mut lane, frame.end().rotation.inverse() * inertia.felt_launch(velocity, tick));
         }
         lane.drive(drive);
     }

@@ -55,11 +55,23 @@ impl Surroundings<'_> {
         if exposure.acceleration.is_some() {
             gravity += exposure.acceleration();
         }
-        let mut wind = inverse * self.wind.at(frame * rest_middle);
-        if let Some(influence) = exposure.influence {
-            wind = influence.felt(wind, ride(&motion, self.tick()));
-        }
+        let wind = self.wind_at(rest_middle, frame, &motion, exposure);
         Drive { motion, gravity: inverse * gravity, wind, air_density }
+    }
+
+    /// The wind that a cloth feels at a point of its frame (m), m/s, along the axes of the frame.
+    pub fn wind_at(
+        &self,
+        point: Vec3,
+        frame: Isometry3d,
+        motion: &FrameMotion,
+        exposure: &ExposureItem,
+    ) -> Vec3 {
+        let wind = frame.rotation.inverse() * self.wind.at(frame * point);
+        match exposure.influence {
+            Some(influence) => influence.felt(wind, ride(motion, self.tick())),
+            None => wind,
+        }
     }
 
     /// Gravity (m/s²) and the density of the air (kg/m³). A value that is not finite, or a negative density, counts as

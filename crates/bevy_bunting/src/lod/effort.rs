@@ -4,6 +4,7 @@ use bevy_ecs::prelude::*;
 use bunting_solver::{Effort, EffortCause, EffortClass, FrameMotion, Loads, StepSettings};
 
 use crate::cloth::instance::ClothInstance;
+use crate::motion::inertia::ClothInertia;
 use crate::motion::pose::PoseHistory;
 
 /// The substeps of a cloth, and the reason for them; read only.
@@ -19,8 +20,8 @@ pub struct ClothEffort {
     motion: FrameMotion,
     /// Acceleration of the cloth's own in the last tick, m/s².
     acceleration: f32,
-    /// The part of the frame's acceleration that the cloth did not feel in the last tick.
-    unfelt: f32,
+    /// What the cloth feels of its frame's acceleration.
+    inertia: ClothInertia,
     pub(crate) settings: StepSettings,
 }
 
@@ -61,9 +62,9 @@ impl ClothEffort {
             0.0
         } else {
             let Some(fabric) = instance.fabric() else { return false };
-            Loads::of_frame(&self.motion, &frame.motion(), fabric, tick)
+            self.inertia.load(&self.motion, &frame.motion(), fabric, tick)
         };
-        self.loads.frame = (1.0 - self.unfelt) * of_frame + self.acceleration;
+        self.loads.frame = of_frame + self.acceleration;
         let before = self.effort.class();
         self.effort.update(&self.loads, tick) != before
     }
@@ -73,16 +74,16 @@ impl ClothEffort {
         self.motion
     }
 
-    /// Notes the motion of the frame in this tick, the accelerations by air and of the cloth's own, m/s², and the part of
-    /// the frame's acceleration that the cloth feels.
+    /// Notes the motion of the frame in this tick, the accelerations by air and of the cloth's own, m/s², and what the
+    /// cloth feels of the frame's acceleration.
     pub(crate) fn note_drive(
         &mut self,
         motion: FrameMotion,
         air: f32,
         acceleration: f32,
-        felt: f32,
+        inertia: ClothInertia,
     ) {
-        self.unfelt = 1.0 - felt;
+        self.inertia = inertia;
         self.acceleration = acceleration;
         self.motion = motion;
         self.loads.air = air;

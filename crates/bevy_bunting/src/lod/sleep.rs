@@ -17,6 +17,7 @@ use crate::environment::forces::acceleration::ClothAcceleration;
 use crate::environment::layers::{ClothFeatures, ClothLayers};
 use crate::environment::self_collision::SelfCollision;
 use crate::environment::wind::influence::WindInfluence;
+use crate::environment::wind::per_particle::WindPerParticle;
 use crate::environment::wind::tick_wind::TickWind;
 use crate::lod::record::{LodRecord, RestTimer};
 use crate::lod::select::select_levels;
@@ -66,6 +67,7 @@ impl Plugin for SleepPlugin {
         app.init_resource::<Changes>()
             .add_observer(wake)
             .add_observer(wake_bared::<WindInfluence>)
+            .add_observer(wake_bared::<WindPerParticle>)
             .add_observer(wake_bared::<ClothAcceleration>);
         app.add_systems(
             ClothTick,
@@ -135,7 +137,8 @@ fn wake_bared<C: Component>(
 }
 
 /// Filter of cloths on which their surroundings act otherwise than before.
-type HasNewExposure = Or<(Changed<WindInfluence>, Changed<ClothAcceleration>)>;
+type HasNewExposure =
+    Or<(Changed<WindInfluence>, Changed<WindPerParticle>, Changed<ClothAcceleration>)>;
 
 fn wake_exposed(mut cloths: Query<(&mut ClothInstance, &mut RestTimer), HasNewExposure>) {
     for (mut instance, mut timer) in &mut cloths {

@@ -109,6 +109,11 @@ impl<P: Pack> BackgroundGrid<P> {
         with_grid!(self, batch => batch.restore(&[(cloth, nodes)]));
     }
 
+    /// Sets the wind at each node of some cloths less that of their drives, m/s.
+    pub fn spread_local_wind(&mut self, of_cloths: &[(usize, Vec<Vec3>)]) {
+        with_grid!(self, batch => batch.spread_local_wind(of_cloths));
+    }
+
     /// Moves a node of a cloth by a vector over its mass, m³.
     pub fn push_node(&mut self, cloth: usize, node: usize, by: Vec3) {
         with_grid!(self, batch => {

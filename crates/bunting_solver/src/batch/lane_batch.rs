@@ -21,6 +21,7 @@ use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::{Pack3, set_lane3, splat3};
 use crate::step::clock::Clock;
 use crate::step::guides::Guides;
+use crate::step::local_wind::LocalWind;
 use crate::step::parameters::Parameters;
 
 /// Cloths of one fabric, or of one topology, in the lanes of packs of `P`, in the layout `Y`.
@@ -88,6 +89,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub probe_motion: ProbeMotion<P>,
     /// The guides of the cloths, if any cloth has them.
     pub guides: Option<Box<Guides<P>>>,
+    /// Wind at the particles, where it differs from particle to particle.
+    pub local_wind: Option<Box<LocalWind<P>>>,
     /// The background grids of the cloths, if the fabric has one.
     pub background: Option<BackgroundGrid<P>>,
 }
@@ -179,6 +182,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             clock: Clock::default(),
             probe_motion: ProbeMotion::default(),
             guides: None,
+            local_wind: None,
             background: BackgroundGrid::of(&fabric, P::WIDTH > 1 && Y::CLOTHS == 1),
             fabric,
             layout,

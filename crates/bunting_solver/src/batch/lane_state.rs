@@ -1,5 +1,7 @@
 //! The state of a cloth in a batch besides its particles.
 
+use glam::Vec3;
+
 use crate::anchors::holds::Holds;
 use crate::anchors::pin_reports::PinReports;
 use crate::contact::candidates::Candidates;
@@ -38,6 +40,8 @@ pub(crate) struct LaneState {
     pub are_pins_at_rest: bool,
     pub moving_pins: MovingPins,
     pub guides: Option<ClothGuides>,
+    /// Wind at each particle less that of the drive, m/s, along the frame's axes at the end of the tick.
+    pub local_wind: Option<Vec<Vec3>>,
     /// Springs and rails that hold particles, if any do.
     pub holds: Option<Box<Holds>>,
     /// What the cloth does to its pins, if that is asked for.
@@ -69,6 +73,7 @@ impl LaneState {
             are_pins_at_rest: true,
             moving_pins: MovingPins::default(),
             guides: None,
+            local_wind: None,
             holds: None,
             pin_reports: None,
             follows_nodes: false,

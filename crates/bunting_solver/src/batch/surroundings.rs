@@ -57,6 +57,19 @@ impl ClothBatch {
         with_batch!(&mut self.0, batch => batch.set_guides(lane, guides))
     }
 
+    /// Sets the wind at each particle of a lane's cloth, from the next tick on: its velocity less that of the
+    /// [`Drive`], m/s, along the frame's axes at the end of the tick. Without any, the wind is the same at all particles. An
+    /// empty lane stays empty.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane, the number of winds is neither zero nor that of the particles, or a number is not finite. The
+    /// lane keeps its winds.
+    pub fn set_local_wind(&mut self, lane: usize, winds: Vec<Vec3>) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        with_batch!(&mut self.0, batch => batch.set_local_wind(lane, winds))
+    }
+
     /// Reports what a lane's cloth does to its pins from the next tick on, or ceases to; at first it does not. `pivots` are
     /// for each group the points about which torque is taken, at the start and at the end of the next tick, each in the
     /// frame at that time, m. An empty lane stays empty.

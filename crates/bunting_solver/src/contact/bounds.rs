@@ -43,7 +43,8 @@ impl<P: Pack> Extent<P> {
 
 /// Greatest distance over which gravity and wind move a particle within a tick of `tick` seconds, m.
 pub(super) fn moved_by_forces(state: &LaneState, tick: f32) -> f32 {
-    state.drive.gravity.length() * tick * tick + state.drive.wind.length() * tick
+    let wind = state.drive.wind.length() + state.greatest_local_wind();
+    state.drive.gravity.length() * tick * tick + wind * tick
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {

@@ -11,6 +11,7 @@ use crate::contact::collider::Collider;
 use crate::contact::near::swept_box;
 use crate::contact::obstacle::Obstacle;
 use crate::contact::reaction::ReactionSum;
+use crate::contact::swept_boxes::SweptBoxes;
 use crate::fabric::Fabric;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::lane3;
@@ -19,7 +20,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Gathers, for a tick of `tick` seconds, what may touch each collider.
     pub fn gather_contacts(&mut self, tick: f32) {
         let positions = self.positions.packs();
-        let mut boxes: Vec<Aabb> = Vec::new();
+        let mut boxes = SweptBoxes::default();
         for (cloth, state) in self.lanes.iter_mut().enumerate() {
             let Some(state) = state else { continue };
             let by_forces = moved_by_forces(state, tick);
@@ -31,48 +32,50 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             if colliders.is_empty() {
                 continue;
             }
-            // Velocities are relative to the world. The frame's motion is added, and the greatest speed that
-            // gravity and wind can give to a particle within the tick.
-            let common = material.thickness + drive.motion.translation.length() + by_forces;
+            // Particles reach what lies within their way in the moving frame, in any direction, since other particles
+            // turn them, and within the greatest way that gravity and wind can add in the tick.
+            let common = material.thickness + by_forces;
+            let into_new = drive.motion.rotation.inverse();
             boxes.clear();
-            boxes.extend((0..self.fabric.particle_count()).map(|particle| {
+            for particle in 0..self.fabric.particle_count() {
                 let (pack, lane) = self.layout.locate(particle, cloth);
-                let reach = common + lane3(&self.velocity[pack], lane).length() * tick;
                 let at = lane3(&positions[pack], lane);
-                Aabb::new(at - reach, at + reach)
-            }));
-            let around = boxes.iter().copied().reduce(|one, other| one.merged(&other));
+                // Velocities are relative to the world.
+                let in_world = lane3(&self.velocity[pack], lane) * tick;
+                let moved = into_new * (at + in_world - drive.motion.translation);
+                boxes.push(at, common + moved.distance(at));
+            }
             for (collider, candidates) in colliders.iter().zip(contacts) {
-                gather_candidates(&self.fabric, collider, &boxes, around, candidates);
+                gather_candidates(&self.fabric, collider, &boxes, candidates);
             }
         }
     }
 }
 
 /// Gathers what may touch a collider: particles within reach of the box that the collider sweeps, and triangles whose
-/// boxes are. `boxes` contain all positions that particles reach, and `around` all boxes.
+/// boxes are.
 fn gather_candidates(
     fabric: &Fabric,
     collider: &Collider,
-    boxes: &[Aabb],
-    around: Option<Aabb>,
+    boxes: &SweptBoxes,
     candidates: &mut Candidates,
 ) {
     candidates.clear();
     // Particles that the collider hits pull others along.
     let by_neighbours = collider.from.0.distance(collider.to.0);
     let reach = collider.margin + by_neighbours;
-    let all = || around.map(|around| Aabb::new(around.mins - reach, around.maxs + reach));
+    let all = || boxes.around().map(|all| Aabb::new(all.mins - reach, all.maxs + reach));
     let Some(swept) = swept_box(collider, all) else { return };
     let swept = Aabb::new(swept.mins - reach, swept.maxs + reach);
-    let is_near = |particle: &u32| {
-        swept.intersects(&boxes[*particle as usize]) && !fabric.is_pinned(*particle as usize)
-    };
-    candidates.particles.extend((0..boxes.len() as u32).filter(is_near));
+    boxes.meeting(&swept, &mut candidates.particles);
+    candidates.particles.retain(|&particle| !fabric.is_pinned(particle as usize));
     if collider.features && Obstacle::can_cut(&*collider.shape.0) {
-        let around = |[a, b, c]: [usize; 3]| boxes[a].merged(&boxes[b]).merged(&boxes[c]);
+        let is_near = |[a, b, c]: [usize; 3]| {
+            let around = boxes.get(a).merged(&boxes.get(b)).merged(&boxes.get(c));
+            swept.intersects(&around)
+        };
         if all().is_some_and(|all| all.intersects(&swept)) {
-            candidates.gather_triangles(fabric, |triangle| swept.intersects(&around(triangle)));
+            candidates.gather_triangles(fabric, is_near);
         }
     }
 }

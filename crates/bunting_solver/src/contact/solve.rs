@@ -11,6 +11,7 @@ use crate::contact::candidates::Candidates;
 use crate::contact::collider::Collider;
 use crate::contact::ground::RISE_SPEED;
 use crate::contact::obstacle::Obstacle;
+use crate::contact::reach::Reach;
 use crate::contact::reaction::ReactionSum;
 use crate::contact::surface::{Projection, Surface};
 use crate::contact::sweep::{Corner, Touch, solve_triangles};
@@ -207,6 +208,7 @@ struct Contact<'a> {
     /// Area density of the cloth, kg/m².
     density: f32,
     surface: Surface<'a>,
+    reach: Reach,
     /// The collider's poses at the beginning and at the end of the substep, each in the cloth's frame as it
     /// was then.
     old_pose: Pose,
@@ -222,6 +224,9 @@ impl<'a> Contact<'a> {
         let index = begun - 1;
         let pose_after =
             |substeps: u32| collider.pose_at(substeps as f32 / settings.substeps as f32);
+        let (old_pose, pose) = (pose_after(index), pose_after(begun));
+        let frame = cloth.drive.motion.substep(index, settings.substeps);
+        let clearance = (cloth.material.thickness + collider.margin).max(LEAST_CLEARANCE);
         Self {
             collider,
             thickness: cloth.material.thickness,
@@ -230,12 +235,13 @@ impl<'a> Contact<'a> {
                 shape: &*collider.shape.0,
                 ground: collider.shape.as_heightfield(),
                 rise: RISE_SPEED * clock.step,
-                clearance: (cloth.material.thickness + collider.margin).max(LEAST_CLEARANCE),
+                clearance,
                 friction: (cloth.material.surface_friction * collider.friction).sqrt(),
             },
-            old_pose: pose_after(index),
-            pose: pose_after(begun),
-            frame: cloth.drive.motion.substep(index, settings.substeps),
+            reach: Reach::new(collider, [&old_pose, &pose], &frame, clearance),
+            old_pose,
+            pose,
+            frame,
         }
     }
 
@@ -248,6 +254,9 @@ impl<'a> Contact<'a> {
 
     /// Projects a particle that moves between two points in the cloth's frame, m.
     fn project(&self, start: Vec3, end: Vec3) -> Option<Projection> {
+        if self.reach.is_missed(start, end) {
+            return None;
+        }
         let (from, to) = self.path(start, end);
         self.surface.project(from, to)
     }

@@ -43,6 +43,7 @@ impl PinStrain {
         let [at, at_rest] = [positions, rest].map(of_pins);
         // Straight distances at rest are no longer than distances along the cloth, and decide most cases.
         if at == at_rest
+            || are_near(&at, &at_rest)
             || too_far(&at, |one, other| at_rest[one].distance(at_rest[other])).is_empty()
         {
             return Self::default();
@@ -71,6 +72,18 @@ impl PinStrain {
             of_particles: (0..rest.len()).map(|particle| stretch_about(particle) - 1.0).collect(),
         }
     }
+}
+
+/// Whether no pair of pins is farther apart than at rest by almost [`LEAST_STRAIN`]: pins that a skeleton moves are mostly
+/// nearer, which squares tell without roots and divisions.
+fn are_near(at: &[Vec3], at_rest: &[Vec3]) -> bool {
+    let most = (1.0 + 0.99 * LEAST_STRAIN) * (1.0 + 0.99 * LEAST_STRAIN);
+    (0..at.len()).all(|other| {
+        (0..other).all(|one| {
+            let at_rest = at_rest[one].distance_squared(at_rest[other]);
+            at[one].distance_squared(at[other]) <= most * at_rest
+        })
+    })
 }
 
 /// The pairs of pins that are too far apart, given their positions, m, and the length of the cloth between

@@ -30,7 +30,19 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Computes for each particle the sum over its triangles of corner area times the change of their
     /// velocity by air in this substep, m³/s, and writes it into `scratch`.
     pub fn gather_air(&mut self) {
-        let (triangles, velocity) = self.layout.moving_triangles(&self.fabric, &self.velocity);
+        match self.local_wind.take() {
+            None => self.sum_air(None),
+            Some(mut local) => {
+                self.gather_local_air(&mut local);
+                self.local_wind = Some(local);
+            }
+        }
+    }
+
+    /// The same, with the given velocities (m/s) in place of the particles' own, if there are any.
+    pub(super) fn sum_air(&mut self, velocity: Option<&[Pack3<P>]>) {
+        let velocity = velocity.unwrap_or(&self.velocity);
+        let (triangles, velocity) = self.layout.moving_triangles(&self.fabric, velocity);
         P::run(Air {
             triangles,
             parameters: &self.parameters,

@@ -38,6 +38,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         self.begin_pin_motion();
         self.begin_guides();
+        self.begin_local_wind();
         self.begin_pin_reports();
         self.gather_contacts(tick);
         self.begin_following(before);

@@ -3,7 +3,7 @@
 //! Where a mesh fills its grid, and nothing acts on single particles, the nodes carry all of the motion, air included. The
 //! particles are then neither integrated nor projected onto the nodes, but interpolated from them: positions in each
 //! substep, velocities at the end of a tick. In a tick in which something may act on particles (contacts, holds, guides,
-//! moving pins, users, reports of what acts on pins) they take the nodes' motion over, and are integrated themselves.
+//! moving pins, local wind, users, reports of what acts on pins) they take the nodes' motion over, and are integrated themselves.
 
 use core::mem;
 
@@ -35,6 +35,7 @@ impl LaneState {
         self.contacts.iter().any(|candidates| !candidates.is_empty())
             || self.self_contacts.is_some()
             || self.guides.is_some()
+            || self.local_wind.is_some()
             || self.holds.is_some()
             || self.pin_reports.is_some()
             || !self.moving_pins.is_empty()

@@ -13,6 +13,7 @@ pub(crate) mod guides;
 mod integrate;
 pub(crate) mod limits;
 pub(crate) mod load_stretch;
+pub(crate) mod local_wind;
 mod move_pins;
 pub(crate) mod moving_pins;
 mod nodes;

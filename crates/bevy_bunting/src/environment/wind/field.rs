@@ -113,6 +113,11 @@ impl MovingAir {
         Self { velocity, gusts: (gust_strength != 0.0).then(gusts) }
     }
 
+    /// The velocity that this air has everywhere (m/s), unless it has gusts.
+    pub fn steady(&self) -> Option<Vec3> {
+        self.gusts.is_none().then_some(self.velocity)
+    }
+
     /// Velocity (m/s) at a position in the world (m).
     pub fn at(&self, position: Vec3) -> Vec3 {
         self.velocity + self.gusts.map_or(Vec3::ZERO, |gusts| gusts.at(position))

@@ -5,6 +5,7 @@ pub mod fan;
 pub mod field;
 mod gusts;
 pub mod influence;
+pub mod per_particle;
 pub mod plugin;
 pub mod region;
 pub mod tick_wind;

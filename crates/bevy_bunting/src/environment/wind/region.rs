@@ -85,6 +85,12 @@ impl WindRegion {
     pub fn weight_at(&self, position: Vec3) -> f32 {
         falloff(self.shape.depth(position), self.falloff)
     }
+
+    /// Radius of the ball around the origin in which the whole wind blows, m; not positive where there is none. The depth
+    /// changes by at most a metre a metre.
+    pub(super) fn depth_of_core(&self) -> f32 {
+        self.shape.depth(Vec3::ZERO) - self.falloff.max(0.0)
+    }
 }
 
 impl Default for WindRegion {

@@ -48,6 +48,7 @@ const COMPONENTS: [(&str, &str); 32] = [
     ("WindFan", "{}"),
     ("WindField", r#"{"velocity": [4.0, 0.0, 0.0]}"#),
     ("WindInfluence", "0.5"),
+    ("WindPerParticle", "{}"),
     ("WindRegion", r#"{"shape": {"Box": {"half_extents": [2.0, 3.0, 5.0]}}, "falloff": 1.0}"#),
     ("WindWake", "{}"),
 ];

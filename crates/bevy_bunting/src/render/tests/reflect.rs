@@ -10,14 +10,16 @@ use bevy_reflect::{TypeInfo, TypeRegistry};
 
 use super::*;
 
-/// Results, which are no part of a scene.
-const RESULTS: [&str; 7] = [
+/// Results, which are no part of a scene, and the types of a plugin that the user adds.
+const RESULTS: [&str; 9] = [
     "ClothState",
     "ClothEffort",
     "ClothTimings",
     "ClothBatches",
     "ClothCounts",
     "ClothGizmos",
+    "ClothDrag",
+    "ClothDragSettings",
     "Grabbed",
 ];
 

@@ -112,7 +112,7 @@ fn of_lanes_in<'a, P: Pack, T>(of_lanes: &LaneIndices, list: &'a [T]) -> Vec<Opt
 /// The pack and the lane of a particle.
 #[inline]
 fn locate<P: Pack>(shape: GridShape, particle: usize) -> (usize, usize) {
-    let (row, column) = (particle / shape.columns, particle % shape.columns);
+    let (row, column) = shape.place(particle);
     (row * shape.packs_in_row::<P>() + column / P::WIDTH, column % P::WIDTH)
 }
 

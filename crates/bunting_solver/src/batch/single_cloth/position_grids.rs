@@ -48,7 +48,7 @@ impl<P: Pack> PositionGrids<P> {
 
     /// Moves the positions to the arrays of an order.
     fn bring(&mut self, order: Order) {
-        let GridShape { columns, rows, row_stride, column_stride } = self.shape;
+        let GridShape { columns, rows, row_stride, column_stride, .. } = self.shape;
         let Self { row_major, column_major, .. } = self;
         if self.order.is_none() {
             row_major.position.read(&self.packs);
