@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use bevy::app::PluginGroupBuilder;
 use bevy::camera::RenderTarget;
+use bevy::core_pipeline::tonemapping::DebandDither;
 use bevy::log::{Level, LogPlugin};
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
@@ -49,6 +50,12 @@ pub struct PictureOptions {
 }
 
 impl PictureOptions {
+    /// These options for one picture at a time (s).
+    #[must_use]
+    pub fn at(&self, time: f64) -> Self {
+        Self { at: vec![time], ..self.clone() }
+    }
+
     /// Prepares pictures whose names begin with `name`. None if no pictures are wanted, or if none can be
     /// written; the reason is then printed.
     #[must_use]
@@ -65,7 +72,7 @@ impl PictureOptions {
         let mut times = self.at.clone();
         times.sort_by(|a, b| b.total_cmp(a));
         let size = UVec2::new(self.width, self.width * 9 / 16);
-        Some(Pictures { directory, name: name.to_lowercase(), times, size })
+        Some(Pictures { directory, name: name.to_lowercase().replace(' ', "_"), times, size })
     }
 }
 
@@ -143,7 +150,9 @@ impl Pictures {
         let UVec2 { x: width, y: height } = self.size;
         let target = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
         let target = RenderTarget::Image(world.resource_mut::<Assets<Image>>().add(target).into());
-        let camera = (camera, Camera { is_active: false, ..default() }, target);
+        // Noise against banding would make the files half as large again.
+        let plain = DebandDither::Disabled;
+        let camera = (camera, plain, Camera { is_active: false, ..default() }, target);
         world.entity_mut(viewer).insert(camera);
         let models = world.query::<&Model>().iter(world).count();
         draw_until(app, |world| world.resource::<LoadedModels>().0 == models);
