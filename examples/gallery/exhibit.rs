@@ -1,7 +1,6 @@
 //! The examples of the gallery.
 
 use std::process::ExitCode;
-use std::time::Duration;
 
 use bevy_bunting::prelude::*;
 use bunting_examples::scenes::cape::Cape;
@@ -12,14 +11,12 @@ use bunting_examples::scenes::drape::Drape;
 use bunting_examples::scenes::flags::Flags;
 use bunting_examples::scenes::parasol::Parasols;
 use bunting_examples::scenes::storm::Storm;
+use bunting_examples::scenes::swatches::Swatches;
 use bunting_examples::{Example, Options};
 use clap::ValueEnum;
 
 /// Number of cloths of the crowd.
 const CROWD: usize = 1000;
-
-/// Budget of the crowd: all cloths get the levels that they want, so that the picture is the same on every machine.
-const BUDGET: Duration = Duration::from_secs(1);
 
 /// An example.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -30,6 +27,7 @@ pub enum Exhibit {
     Parasol,
     Drape,
     Curtain,
+    Swatches,
     Cape,
     CustomConstraint,
 }
@@ -44,6 +42,7 @@ impl Exhibit {
             Self::Parasol => 3.0,
             Self::Drape => 4.4,
             Self::Curtain => 5.0,
+            Self::Swatches => 2.5,
             Self::Cape => 8.0,
             Self::CustomConstraint => 2.0,
         }
@@ -65,6 +64,7 @@ impl Exhibit {
             Self::Parasol => show(&Parasols, &options),
             Self::Drape => show(&Drape, &options),
             Self::Curtain => show(&Curtain, &options),
+            Self::Swatches => show(&Swatches, &options),
             Self::Cape => show(&Cape, &options),
             Self::CustomConstraint => show(&CustomConstraint, &options),
         }
@@ -74,7 +74,7 @@ impl Exhibit {
 fn crowd() -> Crowd {
     Crowd {
         cloths: CROWD,
-        budget: ClothBudget { tick: BUDGET, ..ClothBudget::default() },
+        budget: ClothBudget::default(),
         #[cfg(feature = "render")]
         levels: false,
     }

@@ -8,3 +8,4 @@ pub mod drape;
 pub mod flags;
 pub mod parasol;
 pub mod storm;
+pub mod swatches;
