@@ -26,6 +26,7 @@ use bunting_solver::{ClothSnapshot, Drive, FrameMotion};
 /// # assert_eq!(ClothInertia::default(), ClothInertia { linear: 1.0, angular: 1.0 });
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothInertia {
     /// The part of the acceleration of the frame's origin.

@@ -16,6 +16,7 @@ pub(crate) const FASTEST: f32 = 340.0;
 
 /// Air in this tick: the sum of all winds, of which those with a place are felt only there.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct TickWind {
     pub(super) everywhere: Vec<MovingAir>,
@@ -26,6 +27,7 @@ pub struct TickWind {
 
 /// A ball in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 struct Ball {
     /// Its centre, m.
     centre: Vec3,
@@ -39,6 +41,7 @@ struct Ball {
     reason = "regions are the common case, and boxes cannot be reflected"
 )]
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 pub(super) enum LocalAir {
     /// A field bounded to a region, and the region's pose.
     Region(MovingAir, WindRegion, Isometry3d),
