@@ -1,7 +1,7 @@
 //! Reflected forms of other crates' types that components contain, for inspectors and scene files.
 
-use bevy_reflect::{impl_type_path, reflect_remote};
 use bevy_reflect::std_traits::ReflectDefault;
+use bevy_reflect::{impl_type_path, reflect_remote};
 use bunting_solver::FabricMaterial;
 use parry3d::shape::SharedShape;
 

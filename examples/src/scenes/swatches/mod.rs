@@ -73,8 +73,8 @@ const SWATCHES: [Swatch; 3] = [
             bend_stiffness: 3e-4,
             ..FabricMaterial::COTTON
         },
-        colour: [0.62, 0.18, 0.16],
-        threads: 120.0,
+        colour: [0.82, 0.46, 0.30],
+        threads: 90.0,
         relief: 0.3,
         gaps: 0.2,
         transmission: 0.08,
