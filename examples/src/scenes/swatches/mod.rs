@@ -73,9 +73,9 @@ const SWATCHES: [Swatch; 3] = [
             bend_stiffness: 3e-4,
             ..FabricMaterial::COTTON
         },
-        colour: [0.82, 0.46, 0.30],
+        colour: [0.90, 0.66, 0.46],
         threads: 90.0,
-        relief: 0.3,
+        relief: 0.4,
         gaps: 0.2,
         transmission: 0.08,
     },
