@@ -144,7 +144,7 @@ def cape():
             {
                 "name": "Chest",
                 "translation": [0.0, 1.2, 0.0],
-                "extras": {"skein": [{"bevy_bunting::environment::collider::ClothCollider": back}]},
+                "extras": {"skein": [{"bevy_bunting::ClothCollider": back}]},
             },
             {"name": "Cape", "mesh": 0, "skin": 0},
         ],

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
-use clap::Args;
+use clap::{Args, Parser};
 
 use crate::headless;
 #[cfg(feature = "render")]
@@ -69,12 +69,42 @@ pub struct Options {
     pub(crate) pictures: PictureOptions,
 }
 
+/// Runs an example as the command line says. It has no options but those that all examples share.
+#[must_use]
+pub fn run(example: &impl Example) -> ExitCode {
+    Arguments::parse().options.run(example)
+}
+
+/// An example of bevy_bunting.
+#[derive(Debug, Parser)]
+struct Arguments {
+    #[command(flatten)]
+    options: Options,
+}
+
 fn positive(text: &str) -> Result<f64, String> {
     let value: f64 = text.parse().map_err(|error| format!("{error}"))?;
     if value > 0.0 && value.is_finite() { Ok(value) } else { Err("must be positive".to_owned()) }
 }
 
 impl Options {
+    /// Whether there is no window.
+    #[must_use]
+    pub fn headless(&self) -> bool {
+        self.headless
+    }
+
+    /// These options, but headless runs end after a time (s), of which pictures are written.
+    #[must_use]
+    pub fn until(&self, time: f64) -> Self {
+        Self {
+            seconds: Some(time),
+            #[cfg(feature = "render")]
+            pictures: self.pictures.at(time),
+            ..self.clone()
+        }
+    }
+
     /// Runs an example headless, with or without pictures, or in a window.
     #[cfg(feature = "render")]
     pub fn run<E: Example>(&self, example: &E) -> ExitCode {

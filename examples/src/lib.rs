@@ -1,6 +1,7 @@
-//! Code shared by the examples of `bevy_bunting`, which live beside this folder, one folder each.
+//! Scenes and shared code of the examples of `bevy_bunting`. The programs that run them are beside this folder.
 //!
-//! An [`Example`] is simulated by [`headless`] and, with the feature `render`, drawn by `render`.
+//! An [`Example`], such as those of [`scenes`], is simulated by [`headless`] and, with the feature `render`, drawn by
+//! `render`.
 
 pub mod durations;
 mod example;
@@ -8,10 +9,11 @@ pub mod headless;
 pub mod limits;
 #[cfg(feature = "render")]
 pub mod render;
+pub mod scenes;
 pub mod strain;
 pub mod table;
 
-pub use example::{Example, Options, Record};
+pub use example::{Example, Options, Record, run};
 
 /// Folder of scenes and models.
 pub const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets");
@@ -25,12 +27,12 @@ pub struct Readme;
 mod tests {
     #[test]
     fn the_readme_shows_the_example_that_is_compiled() {
-        let example = include_str!("../hello_flag/main.rs");
+        let example = include_str!("../hello_flag.rs");
         let (_, code) = example.split_once("\n\n").expect("a header");
         let readme = include_str!("../../README.md");
         assert!(
             readme.contains(code),
-            "README.md shows another hello_flag than examples/hello_flag"
+            "README.md shows another hello_flag than examples/hello_flag.rs"
         );
     }
 }

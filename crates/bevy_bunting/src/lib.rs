@@ -92,7 +92,7 @@
 //!
 //! With the feature `render`, a cloth with a material is drawn: `ClothRenderPlugin` gives it a mesh
 //! for each level, updates its bounds, and puts a [`LodViewer`] on cameras. Its documentation says which
-//! settings the material needs. `ClothDebugPlugin`, which is not among [`ClothPlugins`], draws gizmos.
+//! settings the material needs. With the feature `weave`, `WovenMaterial` is one that shows threads. `ClothDebugPlugin`, which is not among [`ClothPlugins`], draws gizmos.
 //!
 //! # Determinism
 //!
@@ -211,6 +211,8 @@ pub use render::painted_weights::{ColorChannel, PaintedDistance, PaintedWeights,
 pub use render::plugin::{ClothRenderPlugin, ClothRenderSystems};
 #[cfg(feature = "render")]
 pub use render::subdivision::ClothSubdivision;
+#[cfg(feature = "weave")]
+pub use render::weave::{Weave, WeavePlugin, WovenMaterial};
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
@@ -242,6 +244,8 @@ pub mod prelude {
     };
     #[cfg(feature = "picking")]
     pub use crate::{ClothDragPlugin, ClothDragSettings};
+    #[cfg(feature = "weave")]
+    pub use crate::{Weave, WeavePlugin, WovenMaterial};
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
 }
 

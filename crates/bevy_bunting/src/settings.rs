@@ -18,6 +18,7 @@ use bunting_solver::{Drive, LaneCount, StepLimits};
 /// # assert_eq!(settings.steps.len(), 2);
 /// ```
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct ClothSettings {
     /// Acceleration of gravity, m/s².

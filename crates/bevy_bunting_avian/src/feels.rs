@@ -20,6 +20,7 @@ use crate::push::FormerReaction;
 /// The push of cloth that touches a body is limited, so that cloth carries a body and slows it, but throws it back with at most
 /// 0.3 of the speed at which it came; cloth that itself moves up faster than that does not lift it.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting_avian"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(RigidBody)]
 pub struct FeelsCloth {

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use bevy::app::PluginGroupBuilder;
 use bevy::camera::RenderTarget;
+use bevy::core_pipeline::tonemapping::DebandDither;
 use bevy::log::{Level, LogPlugin};
 use bevy::prelude::*;
 use bevy::render::RenderPlugin;
@@ -18,6 +19,8 @@ use bevy::time::TimeUpdateStrategy;
 use bevy::window::ExitCondition;
 use bevy::winit::WinitPlugin;
 use bevy::world_serialization::WorldInstanceReady;
+use bevy_bunting::prelude::*;
+use bevy_bunting::{CostTable, LodCosts};
 use bunting_scenes::Model;
 use clap::Args;
 
@@ -49,6 +52,12 @@ pub struct PictureOptions {
 }
 
 impl PictureOptions {
+    /// These options for one picture at a time (s).
+    #[must_use]
+    pub fn at(&self, time: f64) -> Self {
+        Self { at: vec![time], ..self.clone() }
+    }
+
     /// Prepares pictures whose names begin with `name`. None if no pictures are wanted, or if none can be
     /// written; the reason is then printed.
     #[must_use]
@@ -65,7 +74,7 @@ impl PictureOptions {
         let mut times = self.at.clone();
         times.sort_by(|a, b| b.total_cmp(a));
         let size = UVec2::new(self.width, self.width * 9 / 16);
-        Some(Pictures { directory, name: name.to_lowercase(), times, size })
+        Some(Pictures { directory, name: name.to_lowercase().replace(' ', "_"), times, size })
     }
 }
 
@@ -136,14 +145,18 @@ pub struct Pictures {
 }
 
 impl Pictures {
-    /// Gives the viewer a camera and waits until all models are loaded.
+    /// Makes the levels of detail the same on every machine, gives the viewer a camera, and waits until all models are loaded.
     fn set_up(&self, app: &mut App, camera: impl Bundle) {
         let viewer = viewer(app);
         let world = app.world_mut();
+        // With measured costs, levels of detail and the ticks in which new cloths begin depend on the machine's load.
+        world.resource_mut::<ClothBudget>().costs = LodCosts::Fixed(CostTable::default());
         let UVec2 { x: width, y: height } = self.size;
         let target = Image::new_target_texture(width, height, TextureFormat::Rgba8UnormSrgb, None);
         let target = RenderTarget::Image(world.resource_mut::<Assets<Image>>().add(target).into());
-        let camera = (camera, Camera { is_active: false, ..default() }, target);
+        // Noise against banding would make the files half as large again.
+        let plain = DebandDither::Disabled;
+        let camera = (camera, plain, Camera { is_active: false, ..default() }, target);
         world.entity_mut(viewer).insert(camera);
         let models = world.query::<&Model>().iter(world).count();
         draw_until(app, |world| world.resource::<LoadedModels>().0 == models);

@@ -12,26 +12,39 @@ const RESOLUTION: f32 = 128.0;
 /// Size of a print on a cloth of triangles, m: large enough for sharp stripes.
 const TRIANGLES_SIZE: Vec2 = Vec2::new(8.0, 0.1);
 
-/// Gives each cloth with a [`Design`] this material, printed with the design. The mesh comes from the cloth's
-/// plugin.
+/// Threads in a metre of a printed cloth: a fine canvas.
+const THREADS: f32 = 1000.0;
+
+/// Gives each cloth with a [`Design`] this material, printed with the design, and grids a weave. The mesh comes from the
+/// cloth's plugin.
 pub fn plugin(material: StandardMaterial) -> impl Plugin {
     move |app: &mut App| {
         let material = material.clone();
         let print = move |mut commands: Commands,
                           cloths: Query<(Entity, &ClothMesh, &Design), Added<Design>>,
                           mut images: ResMut<Assets<Image>>,
+                          mut woven: ResMut<Assets<WovenMaterial>>,
                           mut materials: ResMut<Assets<StandardMaterial>>| {
             for (cloth, mesh, design) in &cloths {
-                let size = match *mesh {
-                    ClothMesh::Grid { width, height, .. } => Vec2::new(width, height),
-                    ClothMesh::Triangles { .. } => TRIANGLES_SIZE,
+                let mut printed = |size| {
+                    let base_color_texture = Some(images.add(image(design, size)));
+                    StandardMaterial { base_color_texture, ..material.clone() }
                 };
-                let base_color_texture = Some(images.add(image(design, size)));
-                let printed = StandardMaterial { base_color_texture, ..material.clone() };
-                commands.entity(cloth).insert(MeshMaterial3d(materials.add(printed)));
+                let mut cloth = commands.entity(cloth);
+                match *mesh {
+                    ClothMesh::Grid { width, height, .. } => {
+                        let size = Vec2::new(width, height);
+                        let printed = Weave::new(size, THREADS).on(printed(size));
+                        cloth.insert(MeshMaterial3d(woven.add(printed)));
+                    }
+                    ClothMesh::Triangles { .. } => {
+                        let printed = printed(TRIANGLES_SIZE);
+                        cloth.insert(MeshMaterial3d(materials.add(printed)));
+                    }
+                }
             }
         };
-        app.add_systems(Update, print);
+        app.add_plugins(WeavePlugin).add_systems(Update, print);
     }
 }
 

@@ -8,7 +8,7 @@ use bevy_bunting::prelude::*;
 use crate::render::{keys, title, viewer};
 use crate::{ASSETS, Example};
 
-/// Shows an example until its window is closed. Fails if no display can be opened.
+/// Shows an example until its app ends, and returns the app's exit code. Fails if no display can be opened.
 pub fn run<E: Example>(example: &E) -> ExitCode {
     if !any_display() {
         eprintln!("no display can be opened: use --headless");
@@ -30,7 +30,10 @@ pub fn run<E: Example>(example: &E) -> ExitCode {
     app.world_mut().entity_mut(viewer).insert(camera);
     example.draw(&mut app);
     example.control(&mut app);
-    if app.run().is_success() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    match app.run() {
+        AppExit::Success => ExitCode::SUCCESS,
+        AppExit::Error(code) => ExitCode::from(code.get()),
+    }
 }
 
 /// Whether a window can be opened: winit would panic otherwise.

@@ -38,6 +38,7 @@ const SHARED: f32 = 1e-4;
 /// world.entity_mut(hand).remove::<ClothGrab>();
 /// ```
 #[derive(Component, Clone, Debug, Reflect)]
+#[type_path = "bevy_bunting"]
 #[component(map_entities = map_cloth)]
 #[reflect(Component, Debug, Clone)]
 #[require(Transform, PoseHistory, Grabbed)]
@@ -56,6 +57,7 @@ pub struct ClothGrab {
 
 /// The vertices that a [`ClothGrab`] holds.
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum GrabbedVertices {
     /// Vertices of the [`ClothMesh`](crate::ClothMesh) by index. A coarser level holds those that it has.

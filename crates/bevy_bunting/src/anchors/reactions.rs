@@ -30,6 +30,7 @@ use crate::fabric::levels::ClothLevels;
 /// # assert_eq!(force.length(), 0.0);
 /// ```
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(PinReporting)]
 pub struct AnchorReactions {
@@ -41,6 +42,7 @@ pub struct AnchorReactions {
 
 /// What a cloth does to one entity that holds it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub struct AnchorReaction {
     /// Mean force over the last tick, N, in the world.

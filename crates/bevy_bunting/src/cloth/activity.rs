@@ -17,12 +17,14 @@ use bevy_reflect::std_traits::ReflectDefault;
 /// world.entity_mut(flag).remove::<ClothPaused>();
 /// ```
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothPaused;
 
 /// Whether a cloth is simulated or asleep. A sleeping cloth keeps its shape, moves rigidly with its
 /// frame, and costs no simulation time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum ClothActivity {
     /// The cloth is simulated.

@@ -35,6 +35,7 @@ const WAVES: [f32; 4] = [1.3, 2.1, 3.4, 5.5];
 /// # assert_eq!(flags[0], flags[1]);
 /// ```
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothSeed(pub u32);
 

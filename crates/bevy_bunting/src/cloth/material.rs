@@ -23,6 +23,7 @@ use crate::cloth::reflect::FabricMaterialReflect;
 /// # assert_eq!(scarf.1.0.warp_stiffness, ClothMaterial::SILK.0.warp_stiffness);
 /// ```
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothMaterial(
     /// The material's values, in SI units.

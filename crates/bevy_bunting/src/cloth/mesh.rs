@@ -25,6 +25,7 @@ use crate::motion::pose::PoseHistory;
 ///
 /// A mesh that cannot be simulated is reported in a [`ClothFailed`](crate::ClothFailed) event.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Debug, PartialEq, Clone)]
 #[require(
     Transform,

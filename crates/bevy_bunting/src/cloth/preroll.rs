@@ -44,6 +44,7 @@ const STEPS_PER_TICK: u64 = 1 << 18;
 /// # assert_eq!(curtain.1.seconds, 2.0);
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothPreroll {
     /// Simulated time, s; at most 60.

@@ -27,6 +27,7 @@ use crate::schedule::{ClothSystems, ClothTick};
 /// Optional: only cloths with this component are interpolated. It is written in each frame, in
 /// `RunFixedMainLoopSystems::AfterFixedMainLoop`.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(ClothEasing, ClothLift)]
 pub struct ClothSurface {

@@ -21,6 +21,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 /// # assert_eq!(towel.1, tablecloth.1);
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothCollision {
     /// Distance that the cloth keeps from others, m: two keep the mean of theirs.

@@ -24,6 +24,7 @@ use crate::motion::pose::PoseHistory;
 /// # assert!(table.features && body.0.friction == 1.0);
 /// ```
 #[derive(Component, Clone, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Clone)]
 #[require(Transform, PoseHistory)]
 pub struct ClothCollider {

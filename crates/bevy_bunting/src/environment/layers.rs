@@ -19,6 +19,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 /// assert!(cape.1.touch(body.1));
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Hash, Clone)]
 pub struct ClothLayers {
     /// Layers that the entity is a member of, one a bit.
@@ -62,6 +63,7 @@ impl Default for ClothLayers {
 /// # assert_ne!(tablecloth.1, ClothFeatures::default());
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Hash, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Hash, Clone)]
 pub struct ClothFeatures {
     /// Number of levels that feel features: the finest ones. Zero: none.

@@ -34,6 +34,7 @@ use crate::schedule::{ClothSystems, ClothTick};
 /// # assert_eq!(force.length(), 0.0);
 /// ```
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothReactions {
     /// Mean force of all cloths on the collider over the last tick, N, in the world.
@@ -48,6 +49,7 @@ pub struct ClothReactions {
 
 /// What one cloth does to a collider.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 pub struct ClothReaction {
     /// The cloth.
     pub cloth: Entity,

@@ -16,6 +16,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 /// # assert!(towel.1.thickness > 0.0);
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct SelfCollision {
     /// Distance that layers keep, m; less where the mesh's own layers are nearer at rest.

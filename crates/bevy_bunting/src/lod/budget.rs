@@ -20,6 +20,7 @@ use crate::lod::cost_table::CostTable;
 /// # assert!(budget.refine_above > budget.coarsen_below);
 /// ```
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct ClothBudget {
     /// Time that a tick of all cloths may take on one core.
@@ -56,6 +57,7 @@ impl Default for ClothBudget {
 
 /// Source of the costs by which levels are chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum LodCosts {
     /// Costs are measured while the app runs, so that the budget holds on this machine. The chosen levels

@@ -9,6 +9,7 @@ use crate::batch::cost_kind::CostKind;
 /// Costs of cloth; where the width of the batch matters, for one, eight and sixteen lanes. A partly filled
 /// batch costs as much as a full one.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub struct CostTable {
     /// One particle in all lanes, in a substep of one pass, ns.

@@ -28,6 +28,7 @@ const HYSTERESIS: f32 = 0.1;
 /// assert_eq!((by_distance.1.levels(), automatic.1.levels()), (3, 4));
 /// ```
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct LodSet {
     /// Number of levels, and the rule by which one is chosen.
@@ -44,6 +45,7 @@ pub struct LodSet {
 
 /// Rule by which the level of a cloth is chosen.
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum LodChoice {
     /// The level follows the distance to the nearest viewer, regardless of cost. Each level switches to the

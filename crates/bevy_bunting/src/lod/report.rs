@@ -11,6 +11,7 @@ use crate::cloth::activity::ClothActivity;
 
 /// Results of the choice of levels within the [`ClothBudget`](crate::ClothBudget) in the last tick.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct LodReport {
     /// Time of the tick that the governor expected.

@@ -21,6 +21,7 @@ use bevy_transform::components::Transform;
 /// # assert_eq!(viewer.0.range, 100.0);
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform)]
 pub struct LodViewer {
@@ -48,6 +49,7 @@ impl Default for LodViewer {
 
 /// The projection of the world onto a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum Lens {
     /// Sizes in the picture are inversely proportional to the distance.

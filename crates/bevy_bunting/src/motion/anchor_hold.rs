@@ -16,6 +16,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 /// # assert_ne!(rail, AnchorHold::default());
 /// ```
 #[derive(Clone, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum AnchorHold {
     /// At their places, exactly.

@@ -45,6 +45,7 @@ const EDGE_TOLERANCE: f32 = 1e-4;
 /// world.spawn((ClothMesh::grid(33, 23, 1.5, 1.0), held));
 /// ```
 #[derive(Component, Clone, Debug, Reflect)]
+#[type_path = "bevy_bunting"]
 #[component(map_entities = map_target)]
 #[reflect(Component, Debug, Clone)]
 pub struct Attachment {
@@ -91,6 +92,7 @@ pub struct Attachment {
 /// world.spawn(Attachment::in_place(ClothEdge::Left).with_anchor(anchor));
 /// ```
 #[derive(Clone, Debug, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Debug, Clone)]
 pub struct Anchor {
     /// Entity that the vertices stay on.
@@ -266,6 +268,7 @@ impl Attachment {
 
 /// Fate of a cloth whose target is despawned.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum TargetLost {
     /// The cloth is paused: it gets [`ClothPaused`](crate::ClothPaused). If that component is removed,
@@ -278,6 +281,7 @@ pub enum TargetLost {
 
 /// An edge of a cloth, by texture coordinate: u grows to the right and v down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum ClothEdge {
     /// Least u.
@@ -292,6 +296,7 @@ pub enum ClothEdge {
 
 /// A corner of a cloth, by texture coordinate: u grows to the right and v down.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum ClothCorner {
     /// Least u and v.
@@ -316,6 +321,7 @@ pub enum ClothCorner {
 /// # Attachment::in_place(rings);
 /// ```
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum AttachedVertices {
     /// All vertices on an edge.

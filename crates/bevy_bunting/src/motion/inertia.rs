@@ -28,6 +28,7 @@ use bunting_solver::{ClothSnapshot, Drive, Fabric, FrameMotion, Loads};
 /// # assert_eq!(ClothInertia::default(), ClothInertia::new(1.0, 1.0));
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothInertia {
     /// The part of the acceleration of the frame's origin.

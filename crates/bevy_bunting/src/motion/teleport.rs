@@ -38,6 +38,7 @@ pub struct TeleportCloth {
 
 /// Whether a cloth keeps its shape when it is teleported.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum TeleportMode {
     /// The cloth keeps its shape and its velocities relative to its frame.

@@ -24,6 +24,7 @@ use crate::picking::backend::ClothHit;
 /// # assert_eq!(weak.radius, 0.05);
 /// ```
 #[derive(Resource, Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct ClothDragSettings {
     /// Radius within which vertices are grabbed, m; those of the triangle under the pointer always are.
@@ -43,6 +44,7 @@ impl Default for ClothDragSettings {
 /// The hand of a pointer that drags a cloth, spawned where the pointer has pressed, with a [`ClothGrab`]; despawned when it
 /// lets go. It moves in the plane through itself that is parallel to the picture of the camera.
 #[derive(Component, Clone, Copy, Debug, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Debug, Clone)]
 #[require(Transform)]
 pub struct ClothDrag {

@@ -52,6 +52,7 @@ use crate::skeleton::limits::SkinLimits;
 /// }
 /// ```
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothFromMesh {
     /// Whether the mesh is [repaired](ClothMesh::repaired) before. Vertices are then numbered anew, which matters

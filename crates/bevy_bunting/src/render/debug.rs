@@ -38,6 +38,7 @@ const LEVEL_COLOURS: [Srgba; 4] = [LIME, YELLOW, ORANGE, RED];
 /// Choice of the gizmos that are drawn. As a group in Bevy's `GizmoConfigStore` it holds for all cloths; as a
 /// component it holds for one cloth and overrides the group. By default no gizmos are drawn.
 #[derive(Component, GizmoConfigGroup, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothGizmos {
     /// Crosses on the particles that are attached.

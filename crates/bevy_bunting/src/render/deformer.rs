@@ -48,6 +48,7 @@ const HALVINGS: u32 = 1;
 /// }
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Debug, PartialEq, Clone)]
 pub struct ClothDeformer {
     /// The cloth.

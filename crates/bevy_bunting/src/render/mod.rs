@@ -19,6 +19,8 @@ pub mod subdivided_mesh;
 pub mod subdivision;
 pub mod subdivisions;
 pub mod tangents;
+#[cfg(feature = "weave")]
+pub mod weave;
 pub mod write;
 
 #[cfg(test)]

@@ -29,6 +29,7 @@ static KEYS: Interner<str> = Interner::new();
 /// # assert_eq!((by_attribute.free, by_attribute.pinned), (0.5, 0.5));
 /// ```
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub struct PaintedWeights {
     /// Where the mesh has the values.
@@ -52,6 +53,7 @@ pub struct PaintedWeights {
 /// # assert!(cape.weights.is_some());
 /// ```
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
 pub struct PaintedDistance {
     /// Where the mesh has the values.
@@ -77,6 +79,7 @@ impl PaintedDistance {
 
 /// Values that a mesh has for each vertex.
 #[derive(Clone, Debug, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum VertexPaint {
     /// A channel of the vertex colours, `Mesh::ATTRIBUTE_COLOR`. Bevy's `StandardMaterial` multiplies its
@@ -88,6 +91,7 @@ pub enum VertexPaint {
 
 /// A channel of vertex colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
 pub enum ColorChannel {
     /// Red.

@@ -30,6 +30,7 @@ const HYSTERESIS: f32 = 1.2;
 /// let banner = (ClothMesh::grid(33, 33, 2.0, 2.0), ClothSubdivision::NONE);
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothSubdivision {
     /// Length of an edge on the screen above which it is halved, px. Shorter: rounder folds, more vertices.

@@ -15,6 +15,7 @@ use bevy_reflect::Reflect;
 /// # let _ = SkinLimits { max_distance: play, ..SkinLimits::default() };
 /// ```
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum ByVertex {
     /// The same number for all vertices.

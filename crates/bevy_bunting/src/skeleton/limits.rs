@@ -24,6 +24,7 @@ use crate::skeleton::skin::SkinError;
 /// # assert_eq!(limits.simulated, ByVertex::Same(1.0));
 /// ```
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct SkinLimits {
     /// Greatest distance of a free particle from its animated place, m; infinite where there is no limit.

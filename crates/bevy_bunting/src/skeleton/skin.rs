@@ -31,6 +31,7 @@ const SNAP_SPEED: f32 = 15.0;
 /// without it. A joint that is despawned is reported as [`ClothError::MissingJoint`](crate::ClothError::MissingJoint), and
 /// stays where it was in the cloth's frame.
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothSkin {
     /// The joints.

@@ -13,6 +13,7 @@ const MOST_IN_SIXTEEN: usize = 65 * 65;
 #[cfg_attr(
     feature = "bevy_reflect",
     derive(bevy_reflect::Reflect),
+    type_path = "bunting_solver",
     reflect(Debug, PartialEq, Hash, Clone)
 )]
 pub enum LaneCount {

@@ -46,7 +46,7 @@ impl Guide {
 /// A sphere behind the animated place of a particle, on the line of the animated normal, that the particle cannot enter: a
 /// cheap stand-in for the body under the cloth.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect))]
+#[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect), type_path = "bunting_solver")]
 pub struct Backstop {
     /// Distance of the sphere's surface behind the place, m; negative for a sphere that reaches in front of it.
     pub distance: f32,

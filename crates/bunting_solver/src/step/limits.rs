@@ -20,6 +20,7 @@ const TOO_LONG: f32 = 1e-3;
 #[cfg_attr(
     feature = "bevy_reflect",
     derive(bevy_reflect::Reflect),
+    type_path = "bunting_solver",
     reflect(Debug, PartialEq, Hash, Clone)
 )]
 pub struct StepLimits {

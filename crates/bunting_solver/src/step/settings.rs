@@ -10,6 +10,7 @@ use crate::step::frame::FrameMotion;
 #[cfg_attr(
     feature = "bevy_reflect",
     derive(bevy_reflect::Reflect),
+    type_path = "bunting_solver",
     reflect(Debug, PartialEq, Hash, Clone)
 )]
 pub enum Scheme {

@@ -21,6 +21,7 @@ use crate::cloth::events::ClothFailed;
 /// # assert!(envelope.1.0.y > 9.81);
 /// ```
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothAcceleration(pub Vec3);
 

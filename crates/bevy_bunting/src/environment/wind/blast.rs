@@ -31,6 +31,7 @@ const LEAST_SPEED: f32 = 0.05;
 /// # assert_eq!(blast.0.speed, 60.0);
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, PoseHistory)]
 pub struct WindBlast {

@@ -39,6 +39,7 @@ const END_FALL: f32 = 0.25;
 /// # assert_eq!(fan.0.radius, 0.25);
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, PoseHistory)]
 pub struct WindFan {

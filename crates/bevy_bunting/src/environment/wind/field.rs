@@ -29,6 +29,7 @@ const LEAST_GUST_LENGTH: f32 = 2.0;
 /// # assert_eq!(wind.seed, 1);
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(GustTravel)]
 pub struct WindField {
@@ -89,6 +90,7 @@ impl WindField {
 /// Distance that the mean wind has carried the gusts of a [`WindField`], in lengths of a gust. The distance
 /// is summed tick by tick, so that gusts stay continuous when the field's velocity changes.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct GustTravel(pub DVec3);
 
@@ -100,6 +102,7 @@ impl Default for WindField {
 
 /// The air of one [`WindField`] in one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 pub(super) struct MovingAir {
     /// Mean velocity, m/s.
     velocity: Vec3,

@@ -27,6 +27,7 @@ const SPECTRUM: [(f32, f32); WAVES] = [
 /// own amplitude, so that the divergence of the sum is zero (kinematic simulation of turbulence, Fung et al.
 /// 1992).
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 pub(crate) struct Gusts {
     /// Wave vectors, 1/m: x, y and z of each wave.
     wave_vectors: [[f32; WAVES]; 3],

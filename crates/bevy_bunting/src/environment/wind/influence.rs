@@ -22,6 +22,7 @@ use crate::cloth::events::ClothFailed;
 /// # assert_eq!(washing.1.0, 0.2);
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct WindInfluence(pub f32);
 

@@ -30,6 +30,7 @@ use crate::schedule::{ClothSystems, ClothTick};
 /// # let _ = curtain;
 /// ```
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct WindPerParticle;
 

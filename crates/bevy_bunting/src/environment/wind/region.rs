@@ -22,6 +22,7 @@ use crate::motion::pose::PoseHistory;
 /// assert_eq!(gate.weight_at(Vec3::ZERO), 1.0);
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, PoseHistory)]
 pub struct WindRegion {
@@ -33,6 +34,7 @@ pub struct WindRegion {
 
 /// Shape of a [`WindRegion`]. Lengths are in m.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum WindShape {
     /// A box around the origin.

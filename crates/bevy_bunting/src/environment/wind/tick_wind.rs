@@ -19,6 +19,7 @@ const CORE: f32 = 0.999;
 
 /// Air in this tick: the sum of all winds, of which those with a place are felt only there.
 #[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct TickWind {
     pub(super) everywhere: Vec<MovingAir>,
@@ -29,6 +30,7 @@ pub struct TickWind {
 
 /// A ball in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 struct Ball {
     /// Its centre, m.
     centre: Vec3,
@@ -46,6 +48,7 @@ struct Ball {
     reason = "regions are the common case, and boxes cannot be reflected"
 )]
 #[derive(Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 pub(super) enum LocalAir {
     /// A field bounded to a region, and the region's pose.
     Region(MovingAir, WindRegion, Isometry3d),

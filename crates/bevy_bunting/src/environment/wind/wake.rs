@@ -41,6 +41,7 @@ const JUMP: f32 = 1.0;
 /// # assert_eq!(truck.0.drag_area, 6.0);
 /// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, PoseHistory, WakeTrail)]
 pub struct WindWake {
@@ -65,11 +66,13 @@ impl Default for WindWake {
 
 /// The path of a [`WindWake`]'s body in the last seconds.
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct WakeTrail(VecDeque<TrailPoint>);
 
 /// A place that the body has passed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
 struct TrailPoint {
     /// In the world, m.
     at: Vec3,

@@ -148,3 +148,15 @@ fn a_cloth_of_a_mesh_makes_the_round_trip() {
     component.insert(&mut app.world_mut().entity_mut(copy), &*saved, &types);
     assert_eq!(app.world().get::<ClothFromMesh>(copy), Some(&asked));
 }
+
+#[test]
+fn names_in_scene_files_have_no_private_modules() {
+    let app = app(TICK);
+    let types = app.world().resource::<AppTypeRegistry>().read();
+    let paths = types.iter().map(|it| it.type_info().type_path()).filter(|it| !it.contains('<'));
+    let ours: Vec<&str> = paths.filter(|it| it.contains("bunting")).collect();
+    assert!(ours.len() > 40, "{ours:?}");
+    for path in ours {
+        assert_eq!(path.matches("::").count(), 1, "{path} names a module");
+    }
+}

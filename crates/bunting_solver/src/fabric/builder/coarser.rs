@@ -1,20 +1,7 @@
 //! The next coarser mesh of a chain of levels of detail.
 
-use meshopt::{SimplifyOptions, VertexDataAdapter, typed_to_bytes};
-
-use super::slivers::flip_slivers;
 use super::source::FabricBuilder;
 use crate::fabric::grid::Grid;
-
-/// Number of triangles of the finer mesh for each triangle of the simplified one.
-const REDUCTION: usize = 4;
-
-/// Fraction of the triangles above which a simplified mesh is no level of its own.
-const WORTHWHILE: f32 = 0.75;
-
-/// Cost of the texture's distortion in the simplification, 1/m: units of texture coordinates that weigh as
-/// much as a metre of shape.
-const UV_COST: f32 = 1.0;
 
 /// A mesh with some of the vertices of a finer mesh.
 #[derive(Clone, Debug)]
@@ -28,14 +15,18 @@ pub struct CoarserMesh {
 impl FabricBuilder {
     /// Builds the next coarser level: every second column and row of a grid; of other meshes about a quarter
     /// of the triangles, with all vertices of the border and all pinned vertices (simplification by quadric
-    /// error metrics with `meshoptimizer`, which takes the texture into account).
+    /// error metrics with `meshoptimizer`, which takes the texture into account). Without the feature `mesh_levels` only
+    /// grids have coarser levels.
     ///
     /// None if a grid cannot be halved, or if hardly any triangle can be removed.
     #[must_use]
     pub fn coarser(&self) -> Option<CoarserMesh> {
         match &self.grid {
             Some(grid) => self.every_second(grid),
+            #[cfg(feature = "mesh_levels")]
             None => self.simplified(),
+            #[cfg(not(feature = "mesh_levels"))]
+            None => None,
         }
     }
 
@@ -50,63 +41,8 @@ impl FabricBuilder {
         Some(CoarserMesh { builder, vertices })
     }
 
-    fn simplified(&self) -> Option<CoarserMesh> {
-        self.validate().ok()?;
-        let kept = self.simplified_triangles()?;
-        let mut vertices = kept.clone();
-        vertices.sort_unstable();
-        vertices.dedup();
-        let index = |vertex: &u32| vertices.binary_search(vertex).ok().map(|at| at as u32);
-        let finer = || vertices.iter().map(|&vertex| vertex as usize);
-        let builder = Self {
-            positions: finer().map(|vertex| self.positions[vertex]).collect(),
-            indices: kept.iter().filter_map(index).collect(),
-            uv: finer().filter_map(|vertex| self.uv.get(vertex).copied()).collect(),
-            pinned: self.pins_among(&vertices).collect(),
-            weld_distance: Some(self.effective_weld_distance()),
-            merged: self
-                .merged
-                .as_ref()
-                .map(|merged| finer().map(|vertex| merged[vertex]).collect()),
-            pinned_before_uv: false,
-            tethered: self.tethered,
-            grid: None,
-        };
-        Some(CoarserMesh { builder, vertices })
-    }
-
-    /// Triangles of the simplified mesh, as three vertices of this mesh each.
-    fn simplified_triangles(&self) -> Option<Vec<u32>> {
-        let positions: Vec<[f32; 3]> = self.positions.iter().map(|at| at.to_array()).collect();
-        let adapter =
-            VertexDataAdapter::new(typed_to_bytes(&positions), size_of::<[f32; 3]>(), 0).ok()?;
-        let uv: Vec<f32> = self.uv.iter().flat_map(|uv| uv.to_array()).collect();
-        let costs = if uv.is_empty() { &[][..] } else { &[UV_COST; 2] };
-        let locked: Vec<bool> =
-            (0..positions.len()).map(|vertex| self.pinned.contains(&(vertex as u32))).collect();
-        let kept = meshopt::simplify_with_attributes_and_locks(
-            &self.indices,
-            &adapter,
-            &uv,
-            costs,
-            size_of_val(costs),
-            &locked,
-            self.indices.len() / REDUCTION,
-            f32::MAX,
-            SimplifyOptions::LockBorder | SimplifyOptions::Regularize,
-            None,
-        );
-        if kept.is_empty() || kept.len() as f32 > WORTHWHILE * self.indices.len() as f32 {
-            return None;
-        }
-        let corners = kept.chunks_exact(3);
-        let mut triangles: Vec<[u32; 3]> = corners.map(|at| [at[0], at[1], at[2]]).collect();
-        flip_slivers(&self.positions, &mut triangles);
-        Some(triangles.into_flattened())
-    }
-
     /// Indices of the pinned vertices within a list of vertices.
-    fn pins_among(&self, vertices: &[u32]) -> impl Iterator<Item = u32> {
+    pub(super) fn pins_among(&self, vertices: &[u32]) -> impl Iterator<Item = u32> {
         (0..).zip(vertices).filter(|(_, vertex)| self.pinned.contains(vertex)).map(|(at, _)| at)
     }
 }

@@ -4,6 +4,9 @@ mod build;
 mod coarser;
 mod repair;
 mod rest_normals;
+#[cfg(feature = "mesh_levels")]
+mod simplified;
+#[cfg(feature = "mesh_levels")]
 mod slivers;
 mod source;
 mod validate;

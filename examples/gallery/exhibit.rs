@@ -1,0 +1,91 @@
+//! The examples of the gallery.
+
+use std::process::ExitCode;
+
+use bevy_bunting::prelude::*;
+use bunting_examples::scenes::cape::Cape;
+use bunting_examples::scenes::crowd::Crowd;
+use bunting_examples::scenes::curtain::Curtain;
+use bunting_examples::scenes::custom_constraint::CustomConstraint;
+use bunting_examples::scenes::drape::Drape;
+use bunting_examples::scenes::flags::Flags;
+use bunting_examples::scenes::parasol::Parasols;
+use bunting_examples::scenes::storm::Storm;
+use bunting_examples::scenes::swatches::Swatches;
+use bunting_examples::{Example, Options};
+use clap::ValueEnum;
+
+/// Number of cloths of the crowd.
+const CROWD: usize = 1000;
+
+/// An example.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Exhibit {
+    Flags,
+    Crowd,
+    Storm,
+    Parasol,
+    Drape,
+    Curtain,
+    Swatches,
+    Cape,
+    CustomConstraint,
+}
+
+impl Exhibit {
+    /// Simulated time at which the picture shows the example, s.
+    fn time(self) -> f64 {
+        match self {
+            Self::Flags => 8.5,
+            Self::Crowd => 5.0,
+            Self::Storm => 3.8,
+            Self::Parasol => 3.0,
+            Self::Drape => 4.4,
+            Self::Curtain => 5.0,
+            Self::Swatches => 2.5,
+            Self::Cape => 8.0,
+            Self::CustomConstraint => 2.0,
+        }
+    }
+
+    /// Runs it in a window, or headless until the time of its picture.
+    pub fn run(self, options: &Options) -> ExitCode {
+        let options = options.until(self.time());
+        match self {
+            Self::Flags => match Flags::load() {
+                Ok(flags) => show(&flags, &options),
+                Err(error) => {
+                    eprintln!("{error}");
+                    ExitCode::FAILURE
+                }
+            },
+            Self::Crowd => show(&crowd(), &options),
+            Self::Storm => show(&Storm, &options),
+            Self::Parasol => show(&Parasols, &options),
+            Self::Drape => show(&Drape, &options),
+            Self::Curtain => show(&Curtain, &options),
+            Self::Swatches => show(&Swatches, &options),
+            Self::Cape => show(&Cape, &options),
+            Self::CustomConstraint => show(&CustomConstraint, &options),
+        }
+    }
+}
+
+fn crowd() -> Crowd {
+    Crowd {
+        cloths: CROWD,
+        budget: ClothBudget::default(),
+        #[cfg(feature = "render")]
+        levels: false,
+    }
+}
+
+#[cfg(feature = "render")]
+fn show<E: Example>(example: &E, options: &Options) -> ExitCode {
+    options.run(&crate::hall::Hall(example))
+}
+
+#[cfg(not(feature = "render"))]
+fn show(example: &impl Example, options: &Options) -> ExitCode {
+    options.run(example)
+}

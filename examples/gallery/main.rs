@@ -1,0 +1,83 @@
+//! All examples but `convoy`, which needs avian, and `hello_flag`, which has no scene of its own.
+//!
+//! `cargo run --release --example gallery --features render` shows one after the other in a window: → and ← go to
+//! the next and the previous one, and each has its own keys.
+//!
+//! `cargo run --release --example gallery --features render -- --headless --pictures DIR` writes one picture of each.
+//!
+//! Each example has its own process, since it is a whole app: it adds systems, and sets resources.
+
+mod exhibit;
+#[cfg(feature = "render")]
+mod hall;
+
+use std::env;
+use std::io;
+use std::process::{Command, ExitCode};
+
+use bunting_examples::Options;
+use clap::{Parser, ValueEnum};
+
+use crate::exhibit::Exhibit;
+
+/// Exit codes of a window in which a key asked for another example; others end the gallery.
+const NEXT: u8 = 10;
+const PREVIOUS: u8 = 11;
+
+/// All examples, one after the other.
+#[derive(Debug, Parser)]
+struct Gallery {
+    /// Run this example alone.
+    #[arg(long)]
+    only: Option<Exhibit>,
+    #[command(flatten)]
+    options: Options,
+}
+
+fn main() -> ExitCode {
+    let gallery = Gallery::parse();
+    let shown = match gallery.only {
+        Some(exhibit) => return exhibit.run(&gallery.options),
+        None if gallery.options.headless() => run_all(),
+        None => tour(),
+    };
+    shown.unwrap_or_else(|error| {
+        eprintln!("{error}");
+        ExitCode::FAILURE
+    })
+}
+
+/// Runs each example without a window. Fails if one of them does.
+fn run_all() -> io::Result<ExitCode> {
+    let mut code = ExitCode::SUCCESS;
+    for exhibit in Exhibit::value_variants() {
+        println!("{exhibit:?}");
+        if run(*exhibit)? != Some(0) {
+            code = ExitCode::FAILURE;
+        }
+    }
+    Ok(code)
+}
+
+/// Shows examples in windows, until one is closed.
+fn tour() -> io::Result<ExitCode> {
+    let exhibits = Exhibit::value_variants();
+    let mut shown = 0;
+    loop {
+        let step = match run(exhibits[shown])?.map(u8::try_from) {
+            Some(Ok(NEXT)) => 1,
+            Some(Ok(PREVIOUS)) => exhibits.len() - 1,
+            Some(Ok(0)) => return Ok(ExitCode::SUCCESS),
+            _ => return Ok(ExitCode::FAILURE),
+        };
+        shown = (shown + step) % exhibits.len();
+    }
+}
+
+/// Runs an example in a process of its own with this process's options. Returns its exit code.
+fn run(exhibit: Exhibit) -> io::Result<Option<i32>> {
+    let mut command = Command::new(env::current_exe()?);
+    let name = exhibit.to_possible_value().expect("no example is skipped");
+    command.args(env::args_os().skip(1)).args(["--only", name.get_name()]);
+    command.status().map(|status| status.code())
+}

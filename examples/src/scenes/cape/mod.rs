@@ -1,0 +1,97 @@
+//! A figure that stands, walks, turns and runs in a cape.
+
+mod body;
+mod cloak;
+#[cfg(feature = "render")]
+mod draw;
+mod gait;
+mod skeleton;
+
+use crate::limits::{Limit, LimitRecord, greatest};
+use crate::strain::Strain;
+use crate::{Example, Record};
+use bevy::ecs::schedule::ScheduleLabel;
+use bevy::prelude::*;
+use bevy_bunting::prelude::*;
+use bunting_solver::LinkFamily;
+
+/// Position of the viewer seen from the figure's feet, m.
+const EYE: Vec3 = Vec3::new(2.6, 1.5, 2.9);
+
+/// The point at which the viewer looks, seen from the figure's feet, m.
+const CENTRE: Vec3 = Vec3::new(0.0, 0.9, 0.25);
+
+/// Limit of the mean strain of the cape: larger strain would be visible.
+const STRAIN_LIMIT: f32 = 0.03;
+
+/// Limit of a particle's depth in the body, m: where an arm squeezes the cape against the side.
+const DEPTH_LIMIT: f32 = 0.015;
+
+/// Limit of the distance of the collar from its pose, m: rounding.
+const COLLAR_LIMIT: f32 = 1e-4;
+
+/// A figure in a cape.
+#[derive(Clone, Copy, Debug)]
+pub struct Cape;
+
+impl Example for Cape {
+    const NAME: &'static str = "Cape";
+    const SECONDS: f64 = 14.0;
+
+    fn build(&self, app: &mut App, schedule: impl ScheduleLabel) {
+        app.add_systems(schedule, (gait::walk, follow).chain());
+        let mut commands = app.world_mut().commands();
+        let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
+        commands.spawn((LodViewer::default(), view));
+        let joints = skeleton::spawn(&mut commands);
+        body::spawn(&mut commands, &joints);
+        cloak::spawn(&mut commands, &joints);
+    }
+
+    fn record(&self, _ticks_per_second: usize) -> impl Record {
+        LimitRecord::new(measure)
+    }
+
+    #[cfg(feature = "render")]
+    fn stage(&self) -> crate::render::stage::Stage {
+        crate::render::stage::Stage { field_of_view: 0.62, ..crate::render::stage::Stage::SMALL }
+    }
+
+    #[cfg(feature = "render")]
+    fn draw(&self, app: &mut App) {
+        app.add_plugins(draw::plugin);
+    }
+
+    #[cfg(feature = "render")]
+    fn control(&self, app: &mut App) {
+        app.add_plugins(crate::render::keys::gizmos);
+    }
+}
+
+/// Keeps the viewer beside the figure.
+fn follow(
+    figure: Single<&Transform, (With<gait::Walker>, Without<LodViewer>)>,
+    mut viewers: Query<&mut Transform, With<LodViewer>>,
+) {
+    for mut viewer in &mut viewers {
+        viewer.translation = figure.translation * Vec3::new(1.0, 0.0, 1.0) + EYE;
+    }
+}
+
+/// Strain of the cape, distance of its collar from the pose, and depth in the body.
+fn measure(world: &mut World) -> Vec<Limit> {
+    let mut strain = 0.0_f32;
+    for state in world.query::<&ClothState>().iter(world) {
+        let mut cloth = Strain::default();
+        cloth.add(state, LinkFamily::Warp);
+        cloth.add(state, LinkFamily::Weft);
+        strain = greatest([strain, cloth.mean() as f32]);
+    }
+    let off = cloak::off(world);
+    let depth = body::depth(world);
+    vec![
+        Limit { name: "mean strain of the cape", value: strain, limit: STRAIN_LIMIT },
+        Limit { name: "distance of the collar from the pose, m", value: off, limit: COLLAR_LIMIT },
+        Limit { name: "depth of the cape in the body, m", value: depth, limit: DEPTH_LIMIT },
+    ]
+}

@@ -1,0 +1,11 @@
+//! The scenes of the examples, one folder each.
+
+pub mod cape;
+pub mod crowd;
+pub mod curtain;
+pub mod custom_constraint;
+pub mod drape;
+pub mod flags;
+pub mod parasol;
+pub mod storm;
+pub mod swatches;

@@ -1,0 +1,136 @@
+//! Parasols in the wind, of which only the moving parts are simulated.
+
+mod canopy;
+#[cfg(feature = "render")]
+mod draw;
+
+use std::f32::consts::TAU;
+
+use crate::limits::{Limit, LimitRecord, greatest};
+use crate::{Example, Record};
+use bevy::ecs::schedule::ScheduleLabel;
+use bevy::prelude::*;
+use bevy_bunting::prelude::*;
+use bunting_scenes::Design;
+
+/// Position of the viewer, m.
+const EYE: Vec3 = Vec3::new(1.0, 2.45, 3.9);
+
+/// The point at which the viewer looks, m.
+const CENTRE: Vec3 = Vec3::new(-0.15, 1.75, 0.0);
+
+/// Height of the top of the canopy, m.
+const HEIGHT: f32 = 2.5;
+
+/// Feet of the parasols, m, and the colour of every second panel.
+const PARASOLS: [(Vec3, [u8; 3]); 3] = [
+    (Vec3::new(0.0, 0.0, 0.0), [196, 52, 44]),
+    (Vec3::new(-3.9, 0.0, -2.6), [36, 86, 140]),
+    (Vec3::new(3.6, 0.0, -3.4), [222, 160, 40]),
+];
+
+/// Colour of the other panels.
+const CREAM: [u8; 3] = [238, 232, 214];
+
+/// Cotton canvas: heavier and stiffer than clothes.
+const CANVAS: FabricMaterial =
+    FabricMaterial { area_density: 0.32, bend_stiffness: 6e-5, ..FabricMaterial::COTTON };
+
+/// Amplitude of a parasol's sway, rad.
+const SWAY: f32 = 0.02;
+
+/// Frequency of a parasol's sway, 1/s.
+const SWAY_FREQUENCY: f32 = 0.7;
+
+/// A parasol in the frame of its foot.
+#[derive(Component, Clone, Copy, Debug)]
+struct Parasol;
+
+/// Parasols in the wind.
+#[derive(Clone, Copy, Debug)]
+pub struct Parasols;
+
+impl Example for Parasols {
+    const NAME: &'static str = "Parasol";
+    const SECONDS: f64 = 12.0;
+
+    fn build(&self, app: &mut App, schedule: impl ScheduleLabel) {
+        app.add_systems(schedule, sway);
+        let mut commands = app.world_mut().commands();
+        let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
+        commands.spawn((LodViewer::default(), view));
+        commands.spawn(WindField::steady(Vec3::new(2.4, 0.0, -0.6)).with_gusts(1.8, 0.6, 4));
+        for (foot, colour) in PARASOLS {
+            let parasol = commands.spawn((Parasol, Transform::from_translation(foot))).id();
+            commands.spawn(cloth(parasol, colour));
+        }
+    }
+
+    fn record(&self, _ticks_per_second: usize) -> impl Record {
+        LimitRecord::new(measure)
+    }
+
+    #[cfg(feature = "render")]
+    fn stage(&self) -> crate::render::stage::Stage {
+        crate::render::stage::Stage::SMALL
+    }
+
+    #[cfg(feature = "render")]
+    fn draw(&self, app: &mut App) {
+        app.add_plugins(draw::plugin);
+    }
+
+    #[cfg(feature = "render")]
+    fn control(&self, app: &mut App) {
+        crate::render::control_orbit(app, EYE, CENTRE);
+    }
+}
+
+fn cloth(parasol: Entity, colour: [u8; 3]) -> impl Bundle {
+    let panels = (0..canopy::RIBS).map(|panel| if panel % 2 == 0 { colour } else { CREAM });
+    (
+        canopy::mesh(),
+        ClothMaterial(CANVAS),
+        LodSet::new([14.0]),
+        // The vertices on the ribs have weight 0.
+        Attachment::new(parasol, AttachedVertices::Rigid)
+            .with_offset(Transform::from_xyz(0.0, HEIGHT, 0.0)),
+        Design::Pales(panels.collect()),
+    )
+}
+
+/// Sways the parasols: rigid vertices move with them.
+fn sway(mut parasols: Query<&mut Transform, With<Parasol>>, time: Res<Time>) {
+    for mut parasol in &mut parasols {
+        let phase = TAU * SWAY_FREQUENCY * time.elapsed_secs() + parasol.translation.x;
+        parasol.rotation = Quat::from_euler(
+            EulerRot::XYZ,
+            0.5 * SWAY * (0.6 * phase).sin(),
+            0.0,
+            -SWAY * (1.0 + phase.sin()),
+        );
+    }
+}
+
+/// Distances of vertices from their rest positions: 0 if rigid, and bounded if simulated.
+fn measure(world: &mut World) -> Vec<Limit> {
+    let [mut rigid, mut simulated] = [0.0_f32; 2];
+    for (state, mesh) in world.query::<(&ClothState, &ClothMesh)>().iter(world) {
+        let ClothMesh::Triangles { positions, weights, .. } = mesh else { continue };
+        for (vertex, (rest, weight)) in (0..).zip(positions.iter().zip(weights)) {
+            let Some(particle) = state.particle_of_vertex(vertex) else { continue };
+            let distance = rest.distance(state.positions()[particle]);
+            let worst = if *weight == 0.0 { &mut rigid } else { &mut simulated };
+            *worst = greatest([*worst, distance]);
+        }
+    }
+    vec![
+        Limit { name: "distance of rigid vertices from rest, m", value: rigid, limit: 0.0 },
+        // A valance that is turned inside out is at twice its length from rest.
+        Limit {
+            name: "distance of simulated vertices from rest, m",
+            value: simulated,
+            limit: 2.0 * canopy::VALANCE,
+        },
+    ]
+}

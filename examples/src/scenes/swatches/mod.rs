@@ -1,0 +1,142 @@
+//! Gauze, linen and wool hang on a rail against the sun.
+
+#[cfg(feature = "render")]
+mod draw;
+
+use bevy::ecs::schedule::ScheduleLabel;
+use bevy::prelude::*;
+use bevy_bunting::prelude::*;
+use bunting_solver::LinkFamily;
+
+use crate::limits::{Limit, LimitRecord, greatest};
+use crate::strain::Strain;
+use crate::{Example, Record};
+
+/// Position of the viewer, m.
+const EYE: Vec3 = Vec3::new(0.3, 1.3, 0.95);
+
+/// The point at which the viewer looks, m.
+const CENTRE: Vec3 = Vec3::new(0.05, 1.27, 0.0);
+
+/// Width and height of a cloth, m.
+const SIZE: Vec2 = Vec2::new(0.36, 0.5);
+
+/// Distance from the middle of one cloth to that of the next, m.
+const SPACING: f32 = 0.3;
+
+/// Height of the rail, m.
+const RAIL: f32 = 1.55;
+
+/// Limit of the mean strain of a cloth: larger strain would be visible.
+const STRAIN_LIMIT: f32 = 0.01;
+
+/// A cloth, and how it looks.
+#[cfg_attr(
+    not(feature = "render"),
+    expect(dead_code, reason = "only the fabric counts where nothing is drawn")
+)]
+#[derive(Component, Clone, Copy, Debug)]
+struct Swatch {
+    fabric: FabricMaterial,
+    /// Red, green, blue in sRGB.
+    colour: [f32; 3],
+    /// Threads in a metre: coarse ones, which a camera at a metre's distance can see.
+    threads: f32,
+    /// Height of the threads, in distances of two threads.
+    relief: f32,
+    /// Part of the light that passes through the gaps between threads.
+    gaps: f32,
+    /// Part of the light that passes through the threads.
+    transmission: f32,
+}
+
+const SWATCHES: [Swatch; 3] = [
+    Swatch {
+        fabric: FabricMaterial::SILK,
+        colour: [0.93, 0.86, 0.70],
+        threads: 400.0,
+        relief: 0.15,
+        gaps: 1.0,
+        transmission: 0.5,
+    },
+    Swatch {
+        fabric: FabricMaterial::COTTON,
+        colour: [0.30, 0.48, 0.62],
+        threads: 200.0,
+        relief: 0.25,
+        gaps: 0.5,
+        transmission: 0.3,
+    },
+    Swatch {
+        fabric: FabricMaterial {
+            area_density: 0.3,
+            bend_stiffness: 3e-4,
+            ..FabricMaterial::COTTON
+        },
+        colour: [0.90, 0.66, 0.46],
+        threads: 90.0,
+        relief: 0.4,
+        gaps: 0.2,
+        transmission: 0.08,
+    },
+];
+
+/// Three cloths on a rail.
+#[derive(Clone, Copy, Debug)]
+pub struct Swatches;
+
+impl Example for Swatches {
+    const NAME: &'static str = "Swatches";
+    const SECONDS: f64 = 8.0;
+
+    fn build(&self, app: &mut App, _schedule: impl ScheduleLabel) {
+        let mut commands = app.world_mut().commands();
+        let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
+        commands.spawn((LodViewer::default(), view));
+        commands.spawn(WindField::steady(Vec3::new(0.3, 0.0, 0.3)).with_gusts(0.6, 0.7, 5));
+        let rail = commands.spawn(Transform::from_xyz(0.0, RAIL, 0.0)).id();
+        for (index, swatch) in (0_u8..).zip(SWATCHES) {
+            let left = (f32::from(index) - 1.0) * SPACING - 0.03;
+            commands.spawn((
+                swatch,
+                ClothMesh::grid(37, 51, SIZE.x, SIZE.y),
+                ClothMaterial(swatch.fabric),
+                SelfCollision::default(),
+                Attachment::new(rail, AttachedVertices::Corners(vec![ClothCorner::TopLeft]))
+                    .with_offset(Transform::from_xyz(left, 0.0, 0.0)),
+            ));
+        }
+    }
+
+    fn record(&self, _ticks_per_second: usize) -> impl Record {
+        LimitRecord::new(measure)
+    }
+
+    #[cfg(feature = "render")]
+    fn stage(&self) -> crate::render::stage::Stage {
+        draw::STAGE
+    }
+
+    #[cfg(feature = "render")]
+    fn draw(&self, app: &mut App) {
+        app.add_plugins(draw::plugin);
+    }
+
+    #[cfg(feature = "render")]
+    fn control(&self, app: &mut App) {
+        crate::render::control_orbit(app, EYE, CENTRE);
+    }
+}
+
+/// Greatest mean strain of a cloth.
+fn measure(world: &mut World) -> Vec<Limit> {
+    let mut cloths = world.query::<&ClothState>();
+    let strains = cloths.iter(world).map(|state| {
+        let mut cloth = Strain::default();
+        cloth.add(state, LinkFamily::Warp);
+        cloth.add(state, LinkFamily::Weft);
+        cloth.mean() as f32
+    });
+    let strain = greatest(strains);
+    vec![Limit { name: "mean strain of a cloth", value: strain, limit: STRAIN_LIMIT }]
+}
