@@ -49,6 +49,7 @@ impl ClothGroup {
     /// tick.
     pub fn set_members(&mut self, members: &[GroupMember], lanes: &mut impl GroupLanes) {
         self.members.clear();
+        self.layers.begin_tick();
         let mut meshes = Vec::with_capacity(members.len());
         let mut first = 0;
         for (index, &settings) in members.iter().enumerate() {
@@ -115,10 +116,11 @@ impl ClothGroup {
         layers.particles.touched.fill(false);
         let mut meet = layers.find(mesh, thickness, &rules);
         layers.untangle(mesh, step);
+        layers.gather(step, &rules);
         for _ in 0..ROUNDS {
             if meet {
                 read_velocities(members, lanes, layers);
-                layers.separate(step, SWEEPS, &rules);
+                layers.separate(SWEEPS);
                 write(members, lanes, layers);
                 layers.particles.touched.fill(false);
             }
@@ -132,6 +134,7 @@ impl ClothGroup {
             }
             if layers.are_outdated(mesh, thickness) {
                 meet = layers.find(mesh, thickness, &rules);
+                layers.gather(step, &rules);
             }
         }
         if meet && let Some(mut zones) = layers.return_zones(mesh, thickness, &rules) {
