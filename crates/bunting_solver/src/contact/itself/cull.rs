@@ -139,3 +139,58 @@ fn touch_edges<L: Lane>(token: L::Token, start: &[V3<L>; 4], end: &[V3<L>; 4], f
     let before = (start[1] - start[0]).cross(start[3] - start[2]).dot(start[0] - start[2]);
     is_near | (before * volume).lt(zero)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const THICKNESS: f32 = 0.05;
+
+    /// A number from −0.5 to 0.5.
+    fn noise(index: usize) -> f32 {
+        let mixed = (index as u32 + 1).wrapping_mul(2_654_435_769);
+        let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(2_246_822_519);
+        (mixed >> 8) as f32 / (1 << 24) as f32 - 0.5
+    }
+
+    #[test]
+    fn pairs_that_touch_are_kept_and_most_that_do_not_are_dropped() {
+        const COUNT: usize = 4001;
+        let at =
+            |index: usize| Vec3::new(noise(index), noise(index + 50_000), noise(index + 90_000));
+        let start: Vec<Vec3> = (0..4 * COUNT).map(at).collect();
+        let moved = |(index, &at): (usize, &Vec3)| at + 0.1 * Vec3::splat(noise(index + 7));
+        let end: Vec<Vec3> = start.iter().enumerate().map(moved).collect();
+        let pairs: Vec<[u32; 4]> =
+            (0..COUNT as u32).map(|it| [4 * it, 4 * it + 1, 4 * it + 2, 4 * it + 3]).collect();
+        let particles = Particles { start, end, ..Particles::default() };
+        let mut left = Pairs {
+            particles_triangles: pairs.clone(),
+            edges_edges: pairs.clone(),
+            edges_triangles: Vec::new(),
+        };
+        drop_distant(&mut left, &particles, THICKNESS);
+        let kinds = [
+            (Kind::ParticleTriangle, &left.particles_triangles),
+            (Kind::EdgeEdge, &left.edges_edges),
+        ];
+        for (kind, left) in kinds {
+            let mut touching = 0;
+            for pair in &pairs {
+                let of = |all: &[Vec3]| pair.map(|particle| all[particle as usize]);
+                let (start, end) = (of(&particles.start), of(&particles.end));
+                let passed = kind.passed(start, end);
+                let near = kind.near(end, passed);
+                if near.is_some_and(|near| near.gap < FAR * kind.part() * THICKNESS) {
+                    touching += 1;
+                    assert!(left.contains(pair), "{kind:?}: {pair:?}");
+                }
+            }
+            let kept = left.len();
+            assert!(
+                touching > 100 && kept < 3 * touching,
+                "{kind:?}: {kept} kept, {touching} touch"
+            );
+        }
+    }
+}
