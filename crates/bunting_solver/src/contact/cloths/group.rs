@@ -92,6 +92,21 @@ impl ClothGroup {
         self.meshes = meshes;
     }
 
+    /// The layers of all members.
+    pub(in crate::contact) fn layers(&self) -> &LayerContacts {
+        &self.layers
+    }
+
+    /// Index of a particle's member.
+    pub(in crate::contact) fn member_of(&self, particle: u32) -> usize {
+        self.of_particle[particle as usize] as usize
+    }
+
+    /// Origin of the group's frame in the world, m.
+    pub(in crate::contact) fn origin(&self) -> Vec3 {
+        self.origin
+    }
+
     /// Begins a substep: leaves the contacts of the members to the group, and notes where they are.
     pub fn begin_substep(&mut self, lanes: &mut impl GroupLanes) {
         for (index, member) in self.members.iter_mut().enumerate() {

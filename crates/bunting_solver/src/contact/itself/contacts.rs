@@ -1,5 +1,7 @@
 //! The contacts of layers, of one cloth or of several, from one phase of a substep to another.
 
+use glam::Vec3;
+
 use crate::contact::itself::cloth::Cloth;
 use crate::contact::itself::cull::drop_distant;
 use crate::contact::itself::mesh::ContactMesh;
@@ -66,6 +68,23 @@ impl LayerContacts {
     /// Particles of features that are still much nearer than they must be.
     pub fn pressed_particles(&self) -> impl Iterator<Item = usize> {
         self.contacts.pressed_particles(&self.particles)
+    }
+
+    /// The contacts that moved features apart in the last substep: their particles, a point of the first feature, m, and the
+    /// unit normal on its side.
+    pub fn touching(&self) -> impl Iterator<Item = ([u32; 4], Vec3, Vec3)> {
+        self.contacts.touching().map(|contact| {
+            let first = contact.particles.iter().zip(contact.factors);
+            let first = first.filter(|(_, factor)| *factor > 0.0);
+            let at = |particle: u32| self.particles.end[particle as usize];
+            let point = first.map(|(&particle, factor)| at(particle) * factor).sum();
+            (contact.particles, point, contact.normal)
+        })
+    }
+
+    /// Forgets the contacts of the last substep.
+    pub fn forget(&mut self) {
+        self.contacts.clear();
     }
 
     /// Returns features that pass through one another to where they began in the substep, and marks their particles.

@@ -70,6 +70,11 @@ impl Contacts {
         }
     }
 
+    /// The contacts that have moved features apart.
+    pub fn touching(&self) -> impl Iterator<Item = &Contact> {
+        self.contacts.iter().filter(|contact| contact.depth > 0.0)
+    }
+
     /// Particles of features that are still much nearer than they must be.
     pub fn pressed_particles(&self, particles: &Particles) -> impl Iterator<Item = usize> {
         let pressed = self.contacts.iter().filter(|contact| contact.is_pressed(particles));
