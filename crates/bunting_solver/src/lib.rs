@@ -84,6 +84,7 @@ pub use contact::cloths::member::GroupMember;
 pub use contact::collider::Collider;
 pub use contact::itself::settings::SelfCollision;
 pub use contact::lift::SurfaceLift;
+pub use contact::points::{ContactPoint, Touched};
 pub use contact::reaction::ContactReaction;
 pub use fabric::{
     CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link, LinkFamily,

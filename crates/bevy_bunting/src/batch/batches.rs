@@ -7,6 +7,8 @@ use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_platform::time::Instant;
 use bevy_tasks::ComputeTaskPool;
+#[cfg(feature = "render")]
+use bunting_solver::ContactPoint;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, ContactReaction, Fabric, LaneCount, LaneSurface,
     ParticlesMut, PinReaction, StepSettings,
@@ -120,6 +122,19 @@ impl ClothBatches {
     /// Colliders that the cloth in a lane could touch in the last tick.
     pub(crate) fn near_colliders(&self, lane: LaneHandle) -> impl Iterator<Item = &Collider> {
         self.groups[lane.group].batches[lane.batch].batch.near_colliders(lane.lane)
+    }
+
+    /// Where the cloth in a lane touches colliders, and itself unless it is among several cloths, in its frame.
+    #[cfg(feature = "render")]
+    pub(crate) fn contact_points(&self, lane: LaneHandle) -> Vec<ContactPoint> {
+        self.batch(lane).contact_points(lane.lane)
+    }
+
+    /// Where the cloth in a lane touches itself and others, if it is among several cloths, in the world.
+    #[cfg(feature = "render")]
+    pub(crate) fn touching_points(&self, lane: LaneHandle) -> Vec<ContactPoint> {
+        let found = self.touching.iter().find_map(|cloths| cloths.contact_points(lane));
+        found.unwrap_or_default()
     }
 
     /// What the cloth in a lane did in the last tick to colliders that asked for it.

@@ -1,5 +1,7 @@
 //! Cloths that may touch one another in a tick, wherever their lanes are.
 
+#[cfg(feature = "render")]
+use bunting_solver::ContactPoint;
 use bunting_solver::{ClothBatch, ClothGroup, GroupLanes, GroupMember};
 
 use crate::batch::group::Group;
@@ -27,6 +29,13 @@ impl TouchingCloths {
         self.lanes.extend(cloths.iter().map(|cloth| cloth.lane));
         self.members.clear();
         self.members.extend(cloths.iter().map(|cloth| cloth.member));
+    }
+
+    /// The contacts of the cloth in a lane with itself and with the others, in the world; none if it is not among them.
+    #[cfg(feature = "render")]
+    pub fn contact_points(&self, lane: LaneHandle) -> Option<Vec<ContactPoint>> {
+        let member = self.lanes.iter().position(|&it| it == lane)?;
+        Some(self.group.contact_points(member))
     }
 
     pub fn lanes(&self) -> &[LaneHandle] {

@@ -19,7 +19,8 @@ use bevy_reflect::std_traits::ReflectDefault;
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct SelfCollision {
-    /// Distance that layers keep, m; less where the mesh's own layers are nearer at rest.
+    /// Distance that layers keep, m: particles from triangles. Edges keep half of it from edges. Less where the mesh's own
+    /// layers are nearer at rest.
     pub thickness: f32,
     /// Number of levels of detail that do not pass through themselves: the finest ones. Coarser levels do.
     pub levels: usize,

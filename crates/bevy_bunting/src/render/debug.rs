@@ -1,4 +1,4 @@
-//! Gizmos: attachments, strain, wind and levels of detail of cloths.
+//! Gizmos: attachments, strain, wind, contacts and levels of detail of cloths.
 
 use bevy_app::{App, Plugin, PostUpdate};
 use bevy_camera::visibility::{ViewVisibility, VisibilitySystems};
@@ -15,10 +15,13 @@ use bevy_transform::TransformSystems;
 use bevy_transform::components::GlobalTransform;
 use bunting_solver::{EffortCause, LinkFamily};
 
+use crate::batch::batches::ClothBatches;
+use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
 use crate::display::surface::ClothSurface;
 use crate::environment::wind::tick_wind::TickWind;
 use crate::lod::effort::ClothEffort;
+use crate::render::contact_lines::contact_lines;
 
 /// Half the size of the cross on an attached particle, m.
 const CROSS: f32 = 0.02;
@@ -54,12 +57,22 @@ pub struct ClothGizmos {
     /// A stroke for each substep of a tick, above the cloth's first particle, as many times 5 cm long as there are passes.
     /// The colour tells what needs them: white for weight, aqua for air, orange for the frame, red for motion.
     pub effort: bool,
+    /// A line along the normal, 2 cm long, where a particle touches a collider (aqua), and where a cloth touches itself
+    /// (yellow) or another cloth (orange). Contacts are those at the end of the last tick; a sleeping cloth has none.
+    /// Computing them costs a query of the shape for each particle near it.
+    pub contacts: bool,
 }
 
 impl ClothGizmos {
     /// All gizmos are drawn.
-    pub const ALL: Self =
-        Self { attachments: true, strain: true, wind: true, levels: true, effort: true };
+    pub const ALL: Self = Self {
+        attachments: true,
+        strain: true,
+        wind: true,
+        levels: true,
+        effort: true,
+        contacts: true,
+    };
 }
 
 /// Draws [`ClothGizmos`] of visible cloths. Needs Bevy's `GizmoPlugin`, and
@@ -79,6 +92,7 @@ impl Plugin for ClothDebugPlugin {
 }
 
 type DrawnCloth = (
+    &'static ClothInstance,
     &'static ClothState,
     &'static ClothSurface,
     &'static ClothEffort,
@@ -90,9 +104,10 @@ type DrawnCloth = (
 fn draw_cloths(
     cloths: Query<DrawnCloth>,
     wind: Option<Res<TickWind>>,
+    batches: Option<Res<ClothBatches>>,
     mut gizmos: Gizmos<ClothGizmos>,
 ) {
-    for (state, surface, effort, frame, visibility, own) in &cloths {
+    for (instance, state, surface, effort, frame, visibility, own) in &cloths {
         let drawn = *own.unwrap_or(gizmos.config_ext);
         let Some(fabric) = state.fabric() else { continue };
         if !visibility.get() || surface.positions.len() != fabric.particle_count() {
@@ -120,6 +135,11 @@ fn draw_cloths(
         }
         if drawn.effort {
             draw_effort(effort, position(0), &mut gizmos);
+        }
+        if let (true, Some(batches), Some(lane)) = (drawn.contacts, &batches, instance.lane()) {
+            for (from, to, colour) in contact_lines(batches, lane, frame) {
+                gizmos.line(from, to, colour);
+            }
         }
         if let (true, Some(wind)) = (drawn.wind, &wind) {
             let middle = position(fabric.particle_count() / 2);

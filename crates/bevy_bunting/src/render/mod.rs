@@ -5,6 +5,7 @@ pub mod binding;
 pub mod bounds;
 pub mod camera_lens;
 pub mod cloth_from_mesh;
+mod contact_lines;
 pub mod debug;
 pub mod deformer;
 mod from_mesh;

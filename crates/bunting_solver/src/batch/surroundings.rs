@@ -12,6 +12,7 @@ use crate::batch::cloth_batch::{ClothBatch, Lanes, with_batch};
 use crate::batch::error::BatchError;
 use crate::contact::collider::Collider;
 use crate::contact::itself::settings::SelfCollision;
+use crate::contact::points::ContactPoint;
 use crate::contact::reaction::ContactReaction;
 use crate::step::{Drive, Guide, MovingPin};
 
@@ -201,6 +202,14 @@ impl ClothBatch {
         let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
         let near = cloth.into_iter().flat_map(|cloth| cloth.colliders.iter().zip(&cloth.contacts));
         near.filter(|(_, candidates)| !candidates.is_empty()).map(|(collider, _)| collider)
+    }
+
+    /// The particles of a lane's cloth that touch colliders at the end of the last tick, and where the cloth touched itself in
+    /// its last substep, in the cloth's frame. They are computed by this call. Those of a cloth with itself and with others
+    /// are known to the [`ClothGroup`](crate::ClothGroup) that solved them.
+    #[must_use]
+    pub fn contact_points(&self, lane: usize) -> Vec<ContactPoint> {
+        with_batch!(&self.0, batch => batch.contact_points(lane))
     }
 
     /// What a lane's cloth did in the last tick to each collider that [`reports_as`](Collider::reports_as) a number, in

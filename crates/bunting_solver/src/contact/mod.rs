@@ -11,6 +11,7 @@ pub(crate) mod lift;
 mod near;
 mod nearest;
 mod obstacle;
+pub(crate) mod points;
 mod reach;
 pub(crate) mod reaction;
 mod solve;

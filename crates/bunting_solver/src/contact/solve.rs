@@ -201,7 +201,7 @@ struct Push {
 }
 
 /// A collider and a cloth in a substep.
-struct Contact<'a> {
+pub(super) struct Contact<'a> {
     collider: &'a Collider,
     /// Thickness of the cloth, m.
     thickness: f32,
@@ -218,7 +218,7 @@ struct Contact<'a> {
 }
 
 impl<'a> Contact<'a> {
-    fn new(cloth: &LaneState, collider: &'a Collider, clock: &Clock) -> Self {
+    pub fn new(cloth: &LaneState, collider: &'a Collider, clock: &Clock) -> Self {
         let Clock { settings, begun, .. } = *clock;
         // `integrate` has counted this substep already.
         let index = begun - 1;
@@ -243,6 +243,18 @@ impl<'a> Contact<'a> {
             pose,
             frame,
         }
+    }
+
+    /// The contact with a clearance that is larger by some distance, m.
+    pub fn widened(mut self, by: f32) -> Self {
+        self.surface.clearance += by;
+        self
+    }
+
+    /// Normal of the surface, in the cloth's frame, near a point at the end of the substep, m; none beyond the clearance.
+    pub fn normal_at(&self, at: Vec3) -> Option<Vec3> {
+        let normal = self.surface.normal_at(self.pose.inverse_transform_point(at))?;
+        Some(self.pose.transform_vector(normal))
     }
 
     /// Both ends of a particle's path between two points in the cloth's frame, in the collider's frame, m, so that the

@@ -95,6 +95,11 @@ impl Surface<'_> {
         Some(Projection { to: to + normal * depth - slide * held, normal, sticks: false })
     }
 
+    /// Unit normal of the surface, out of the shape, near a point that is closer than the clearance.
+    pub fn normal_at(&self, at: Vec3) -> Option<Vec3> {
+        Some(self.overlap(at, at)?.normal)
+    }
+
     /// The plane of the surface nearest to `to`, if it is closer than the clearance.
     fn overlap(&self, from: Vec3, to: Vec3) -> Option<Overlap> {
         let nearest = match self.ground {

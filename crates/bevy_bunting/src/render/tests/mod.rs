@@ -1,5 +1,6 @@
 //! Tests of rendering without a renderer: with assets, cameras and visibility only.
 
+mod contact_gizmos;
 mod cost;
 mod deformer;
 mod first_hour;

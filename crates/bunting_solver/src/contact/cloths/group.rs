@@ -49,6 +49,7 @@ impl ClothGroup {
     /// tick.
     pub fn set_members(&mut self, members: &[GroupMember], lanes: &mut impl GroupLanes) {
         self.members.clear();
+        self.layers.begin_tick();
         let mut meshes = Vec::with_capacity(members.len());
         let mut first = 0;
         for (index, &settings) in members.iter().enumerate() {
@@ -91,6 +92,21 @@ impl ClothGroup {
         self.meshes = meshes;
     }
 
+    /// The layers of all members.
+    pub(in crate::contact) fn layers(&self) -> &LayerContacts {
+        &self.layers
+    }
+
+    /// Index of a particle's member.
+    pub(in crate::contact) fn member_of(&self, particle: u32) -> usize {
+        self.of_particle[particle as usize] as usize
+    }
+
+    /// Origin of the group's frame in the world, m.
+    pub(in crate::contact) fn origin(&self) -> Vec3 {
+        self.origin
+    }
+
     /// Begins a substep: leaves the contacts of the members to the group, and notes where they are.
     pub fn begin_substep(&mut self, lanes: &mut impl GroupLanes) {
         for (index, member) in self.members.iter_mut().enumerate() {
@@ -115,10 +131,11 @@ impl ClothGroup {
         layers.particles.touched.fill(false);
         let mut meet = layers.find(mesh, thickness, &rules);
         layers.untangle(mesh, step);
+        layers.gather(step, &rules);
         for _ in 0..ROUNDS {
             if meet {
                 read_velocities(members, lanes, layers);
-                layers.separate(step, SWEEPS, &rules);
+                layers.separate(SWEEPS);
                 write(members, lanes, layers);
                 layers.particles.touched.fill(false);
             }
@@ -132,6 +149,7 @@ impl ClothGroup {
             }
             if layers.are_outdated(mesh, thickness) {
                 meet = layers.find(mesh, thickness, &rules);
+                layers.gather(step, &rules);
             }
         }
         if meet && let Some(mut zones) = layers.return_zones(mesh, thickness, &rules) {

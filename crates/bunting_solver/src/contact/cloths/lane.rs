@@ -51,8 +51,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if let Some(state) = &mut self.lanes[cloth] {
             state.is_grouped = true;
             member.friction = state.material.surface_friction;
-            let own = state.self_contacts.as_ref();
-            member.own_thickness = own.map(|contacts| contacts.settings.thickness);
+            let own = state.self_contacts.as_mut();
+            member.own_thickness = own.map(|contacts| {
+                contacts.layers.forget();
+                contacts.settings.thickness
+            });
         }
     }
 

@@ -1,13 +1,16 @@
 //! The contacts of layers, of one cloth or of several, from one phase of a substep to another.
 
+use glam::Vec3;
+
 use crate::contact::itself::cloth::Cloth;
+use crate::contact::itself::cull::drop_distant;
 use crate::contact::itself::mesh::ContactMesh;
 use crate::contact::itself::pairs::Pairs;
 use crate::contact::itself::particles::Particles;
 use crate::contact::itself::rigid_zones::RigidZones;
 use crate::contact::itself::rules::Rules;
-use crate::contact::itself::search::Search;
-use crate::contact::itself::separate::{Contact, Spacing};
+use crate::contact::itself::search::{Search, Wanted};
+use crate::contact::itself::separate::{Contacts, Spacing};
 use crate::contact::itself::untangle::{Tangles, untangle};
 
 /// The contacts of layers: scratch arrays of a substep.
@@ -16,15 +19,24 @@ pub(in crate::contact) struct LayerContacts {
     search: Search,
     pub pairs: Pairs,
     pub particles: Particles,
-    contacts: Vec<Contact>,
+    contacts: Contacts,
     tangles: Tangles,
 }
 
 impl LayerContacts {
+    /// Begins a tick.
+    pub fn begin_tick(&mut self) {
+        self.search.begin_tick();
+    }
+
     /// Finds the features that come nearer than a thickness, m, and marks their particles. Returns whether there are any.
     pub fn find(&mut self, mesh: &ContactMesh, thickness: f32, rules: &impl Rules) -> bool {
         let Self { search, pairs, particles, contacts, .. } = self;
-        search.find(Cloth { mesh, particles, thickness }, rules, pairs);
+        let cloth = Cloth { mesh, particles, thickness };
+        if !search.is_good(cloth) {
+            search.find(cloth, rules, pairs, Wanted::All);
+            drop_distant(pairs, particles, thickness);
+        }
         if pairs.is_empty() {
             contacts.clear();
             return false;
@@ -43,17 +55,36 @@ impl LayerContacts {
         untangle(mesh, &self.pairs, &mut self.particles, step, &mut self.tangles);
     }
 
-    /// Moves these features apart in a substep of the length `step`, s, in some sweeps over all. Velocities of their
-    /// particles must be known.
-    pub fn separate(&mut self, step: f32, sweeps: usize, rules: &impl Rules) {
+    /// Finds the contacts of the pairs.
+    pub fn gather(&mut self, step: f32, rules: &impl Rules) {
         let Self { pairs, particles, contacts, tangles, .. } = self;
-        Spacing { rules, sweeps, step, tangles }.separate(pairs, particles, contacts);
+        Spacing { rules, step, tangles }.gather(pairs, particles, contacts);
+    }
+
+    pub fn separate(&mut self, sweeps: usize) {
+        self.contacts.separate(&mut self.particles, sweeps);
     }
 
     /// Particles of features that are still much nearer than they must be.
     pub fn pressed_particles(&self) -> impl Iterator<Item = usize> {
-        let pressed = self.contacts.iter().filter(|contact| contact.is_pressed(&self.particles));
-        pressed.flat_map(Contact::particles)
+        self.contacts.pressed_particles(&self.particles)
+    }
+
+    /// The contacts that moved features apart in the last substep: their particles, a point of the first feature, m, and the
+    /// unit normal on its side.
+    pub fn touching(&self) -> impl Iterator<Item = ([u32; 4], Vec3, Vec3)> {
+        self.contacts.touching().map(|contact| {
+            let first = contact.particles.iter().zip(contact.factors);
+            let first = first.filter(|(_, factor)| *factor > 0.0);
+            let at = |particle: u32| self.particles.end[particle as usize];
+            let point = first.map(|(&particle, factor)| at(particle) * factor).sum();
+            (contact.particles, point, contact.normal)
+        })
+    }
+
+    /// Forgets the contacts of the last substep.
+    pub fn forget(&mut self) {
+        self.contacts.clear();
     }
 
     /// Returns features that pass through one another to where they began in the substep, and marks their particles.
@@ -67,7 +98,7 @@ impl LayerContacts {
         let Self { search, pairs, particles, tangles, .. } = self;
         particles.touched.fill(false);
         if search.is_outdated(Cloth { mesh, particles, thickness }) {
-            search.find(Cloth { mesh, particles, thickness }, rules, pairs);
+            search.find(Cloth { mesh, particles, thickness }, rules, pairs, Wanted::Crossings);
         }
         let mut zones = RigidZones::new(particles);
         let mut grew = false;
@@ -77,7 +108,7 @@ impl LayerContacts {
             if !search.is_outdated(cloth) {
                 break;
             }
-            search.find(cloth, rules, pairs);
+            search.find(cloth, rules, pairs, Wanted::Crossings);
         }
         particles.is_near.clone_from(&particles.touched);
         grew.then_some(zones)

@@ -54,11 +54,15 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let fabric = Arc::clone(&self.fabric_of(cloth).fabric);
         let thickness = settings.thickness;
         let rules = OfOneCloth { thickness, friction, rest: fabric.rest_positions() };
+        if self.clock.begun == 1 {
+            layers.begin_tick();
+        }
         if layers.find(mesh, thickness, &rules) {
             let part = Part { cloth, range: 0..layers.particles.end.len(), place: &InItsFrame };
             self.gather_velocities(&part, &mut layers.particles);
             layers.untangle(mesh, self.clock.step);
-            layers.separate(self.clock.step, SWEEPS, &rules);
+            layers.gather(self.clock.step, &rules);
+            layers.separate(SWEEPS);
             state.external_moment += self.scatter_particles(&part, &layers.particles);
         }
     }

@@ -13,6 +13,8 @@ pub(crate) struct Particles {
     pub end: Vec<Vec3>,
     /// Length of the path along which contacts have moved each particle in the sweeps so far, m.
     pub travel: Vec<f32>,
+    /// Longest of these paths, m.
+    pub farthest: f32,
     /// Whether a contact may change the particle. Velocities are known of these alone.
     pub is_near: Vec<bool>,
     /// Inverse masses per unit area density, 1/m²; zero of pins.
@@ -43,6 +45,21 @@ impl Particles {
         self.inverse_mass.resize(count, 0.0);
         self.touched.resize(count, false);
         self.is_near.resize(count, false);
+    }
+
+    /// Counts the paths along which contacts move particles from here on.
+    pub fn forget_travel(&mut self) {
+        self.travel.clear();
+        self.travel.resize(self.end.len(), 0.0);
+        self.farthest = 0.0;
+    }
+
+    /// Moves a particle.
+    #[inline]
+    pub fn shift(&mut self, particle: usize, by: Vec3) {
+        self.end[particle] += by;
+        self.travel[particle] += by.length();
+        self.farthest = self.farthest.max(self.travel[particle]);
     }
 
     /// Marks the particles of pairs as near others.

@@ -46,6 +46,8 @@ pub(in crate::contact) struct RigidZones {
     zones: Zones,
     /// Positions before any zone returned, m.
     corrected: Vec<Vec3>,
+    /// Whether each particle has moved when zones were moved last; empty before.
+    moved: Vec<bool>,
     growths: usize,
 }
 
@@ -55,6 +57,7 @@ impl RigidZones {
         Self {
             zones: Zones((0..particles.start.len() as u32).collect()),
             corrected: particles.end.clone(),
+            moved: Vec::new(),
             growths: 0,
         }
     }
@@ -63,6 +66,8 @@ impl RigidZones {
     /// Returns whether any zone grew. Tangled features are left alone.
     pub fn grow(&mut self, pairs: &Pairs, tangles: &Tangles, particles: &mut Particles) -> bool {
         let before = self.growths;
+        // The pairs may be others than those of the last call.
+        self.moved.clear();
         while self.unite_crossing(pairs, tangles, &particles.end) {
             self.growths += 1;
             if self.growths >= GROWTHS {
@@ -76,7 +81,11 @@ impl RigidZones {
     /// Unites the zones of features that pass through one another; returns whether there were any.
     fn unite_crossing(&mut self, pairs: &Pairs, tangles: &Tangles, ends: &[Vec3]) -> bool {
         let mut grew = false;
+        let moved = |particle: u32| self.moved.get(particle as usize) != Some(&false);
         for pair in &pairs.edges_triangles {
+            if !pair.particles().into_iter().any(moved) {
+                continue;
+            }
             let is_tangled =
                 || tangles.contain_any(&pair.edge) && tangles.contain_any(&pair.triangle);
             if crossing(pair, ends).is_some() && !is_tangled() {
@@ -90,14 +99,17 @@ impl RigidZones {
     fn move_zones(&mut self, particles: &mut Particles) {
         let displacement = |particle: usize| self.corrected[particle] - particles.start[particle];
         let sums = Sums::of(&mut self.zones, particles, displacement);
+        self.moved.resize(self.corrected.len(), false);
         for particle in 0..self.corrected.len() {
             let root = self.zones.root(particle as u32) as usize;
+            let before = particles.end[particle];
             if let Some(mean) = sums.mean(root)
                 && particles.inverse_mass[particle] != 0.0
             {
                 particles.end[particle] = particles.start[particle] + mean;
                 particles.touched[particle] = true;
             }
+            self.moved[particle] = particles.end[particle] != before;
         }
     }
 

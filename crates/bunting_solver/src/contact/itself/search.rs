@@ -3,7 +3,7 @@
 
 use core::ops::Range;
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use crate::contact::itself::apart::{Meeting, TrianglePaths, find_meetings};
 use crate::contact::itself::boxes::{Boxes, FindMeeting};
@@ -16,9 +16,23 @@ use crate::contact::itself::swept::{Path, Swept};
 use crate::simd::lane::Pack;
 use crate::simd::registers::Pack8;
 
+/// Part of the thickness by which particles may move until pairs of an earlier substep of the tick are not used any more.
+/// Larger: layers come nearer before they are found. Smaller: more searches.
+const REUSED: f32 = 0.25;
+
+/// Which pairs a search finds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::contact) enum Wanted {
+    All,
+    /// Edges and triangles that may pass through one another.
+    Crossings,
+}
+
 /// Scratch arrays of the search.
 #[derive(Clone, Debug, Default)]
 pub(in crate::contact) struct Search {
+    /// Whether all pairs have been found in this tick.
+    is_complete: bool,
     /// Paths of all particles when pairs were found.
     paths: Vec<Path>,
     /// Normals of the cells at the end of the substep.
@@ -45,14 +59,29 @@ impl Search {
         ends.any(|([_, searched], &end)| Vec3::from(*searched).distance_squared(end) > far * far)
     }
 
+    /// Whether the pairs that were found earlier in the tick are good in this substep.
+    pub fn is_good(&self, Cloth { particles, thickness, .. }: Cloth) -> bool {
+        let far = REUSED * thickness;
+        let is_near = |from: Vec3A, to: Vec3| Vec3::from(from).distance_squared(to) <= far * far;
+        let paths = self.paths.iter().zip(particles.start.iter().zip(&particles.end));
+        self.is_complete && { paths }
+            .all(|([from, to], (&start, &end))| is_near(*from, start) && is_near(*to, end))
+    }
+
+    /// Begins a tick, so that what is found in it does not depend on the last one.
+    pub fn begin_tick(&mut self) {
+        self.is_complete = false;
+    }
+
     /// Finds all pairs that are kept apart and come nearer than the thickness.
-    pub fn find(&mut self, cloth: Cloth, rules: &impl Rules, pairs: &mut Pairs) {
+    pub fn find(&mut self, cloth: Cloth, rules: &impl Rules, pairs: &mut Pairs, wanted: Wanted) {
         pairs.clear();
+        self.is_complete = wanted == Wanted::All;
         self.bound(cloth);
         let cells_of = |patch: usize| cloth.mesh.patches[patch].cells.clone();
         for (one, patch) in cloth.mesh.patches.iter().enumerate() {
             if rules.compare([one, one]) && !self.normals.are_flat([cells_of(one)]) {
-                self.compare_patches(cloth, [one, one], pairs);
+                self.compare_patches(cloth, [one, one], pairs, wanted);
             }
             self.find_patches(one);
             let mut met = core::mem::take(&mut self.met);
@@ -61,7 +90,7 @@ impl Search {
                 if rules.compare(parts)
                     && !self.are_neighbours_flat(cells_of, &patch.neighbours, parts)
                 {
-                    self.compare_patches(cloth, [one, other], pairs);
+                    self.compare_patches(cloth, [one, other], pairs, wanted);
                 }
             }
             met.clear();
@@ -100,13 +129,19 @@ impl Search {
     }
 
     /// Compares the cells of two patches, or of one with itself.
-    fn compare_patches(&mut self, cloth: Cloth, patches: [usize; 2], pairs: &mut Pairs) {
+    fn compare_patches(
+        &mut self,
+        cloth: Cloth,
+        patches: [usize; 2],
+        pairs: &mut Pairs,
+        wanted: Wanted,
+    ) {
         let [one, other] = patches.map(|patch| cloth.mesh.patches[patch].cells.clone());
         let cells_of = |cell: usize| cell as u32..cell as u32 + 1;
         for first in one {
             let first = first as usize;
             if patches[0] == patches[1] && !self.normals.are_flat([cells_of(first)]) {
-                self.compare_cells(cloth, [first, first], pairs);
+                self.compare_cells(cloth, [first, first], pairs, wanted);
             }
             let neighbours = &cloth.mesh.cells[first].neighbours;
             for second in other.clone() {
@@ -115,14 +150,20 @@ impl Search {
                     && self.cells[first].meets(&self.cells[second])
                     && !self.are_neighbours_flat(cells_of, neighbours, [first, second])
                 {
-                    self.compare_cells(cloth, [first, second], pairs);
+                    self.compare_cells(cloth, [first, second], pairs, wanted);
                 }
             }
         }
     }
 
     /// Compares the triangles of two cells, or of one with itself.
-    fn compare_cells(&mut self, cloth: Cloth, cells: [usize; 2], pairs: &mut Pairs) {
+    fn compare_cells(
+        &mut self,
+        cloth: Cloth,
+        cells: [usize; 2],
+        pairs: &mut Pairs,
+        wanted: Wanted,
+    ) {
         let paths = cells.map(|cell| self.triangles_of(cloth, cell)).map(|at| &self.triangles[at]);
         find_meetings(paths, &self.cells[cells[1]], cloth.thickness, &mut self.meetings);
         let firsts = cells.map(|cell| cloth.mesh.cells[cell].triangles.start as usize);
@@ -131,7 +172,7 @@ impl Search {
             if triangles[0] < triangles[1] || cells[0] != cells[1] {
                 let most_common = if is_hinged { 0 } else { 1 };
                 if !cloth.mesh.share_corners(triangles, most_common + 1) {
-                    add_features(cloth, &self.paths, triangles, pairs);
+                    add_features(cloth, &self.paths, triangles, pairs, wanted);
                 }
             }
         }
@@ -170,7 +211,13 @@ impl Search {
 }
 
 /// Adds the pairs of features that two triangles stand for.
-fn add_features(cloth: Cloth, paths: &[Path], triangles: [usize; 2], pairs: &mut Pairs) {
+fn add_features(
+    cloth: Cloth,
+    paths: &[Path],
+    triangles: [usize; 2],
+    pairs: &mut Pairs,
+    wanted: Wanted,
+) {
     let Cloth { mesh, thickness, .. } = cloth;
     let corners = triangles.map(|triangle| mesh.triangles[triangle]);
     let swept = |particles: &[u32]| Swept::around(particles, paths);
@@ -180,11 +227,6 @@ fn add_features(cloth: Cloth, paths: &[Path], triangles: [usize; 2], pairs: &mut
         let triangle = corners[other];
         let [a, b, c] = triangle;
         let around = swept(&triangle);
-        for &particle in &represented[one].particles {
-            if !triangle.contains(&particle) && near(swept(&[particle]), around) {
-                pairs.particles_triangles.push([particle, a, b, c]);
-            }
-        }
         for &index in &represented[one].edges {
             let edge = mesh.edges[index as usize].ends;
             let apart = edge.iter().all(|end| !triangle.contains(end));
@@ -192,13 +234,23 @@ fn add_features(cloth: Cloth, paths: &[Path], triangles: [usize; 2], pairs: &mut
                 pairs.edges_triangles.push(EdgeTriangle { index, edge, triangle });
             }
         }
+        for &particle in &represented[one].particles {
+            let apart = wanted == Wanted::All && !triangle.contains(&particle);
+            if apart && near(swept(&[particle]), around) {
+                pairs.particles_triangles.push([particle, a, b, c]);
+            }
+        }
+    }
+    if wanted == Wanted::Crossings {
+        return;
     }
     for &one in &represented[0].edges {
         let [a, b] = mesh.edges[one as usize].ends;
+        let around = swept(&[a, b]);
         for &other in &represented[1].edges {
             let [c, d] = mesh.edges[other as usize].ends;
             let apart = a != c && a != d && b != c && b != d;
-            if apart && near(swept(&[a, b]), swept(&[c, d])) {
+            if apart && near(around, swept(&[c, d])) {
                 pairs.edges_edges.push([a, b, c, d]);
             }
         }
