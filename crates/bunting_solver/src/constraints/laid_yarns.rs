@@ -37,9 +37,8 @@ impl<P: Pack> BandRow<P> {
 }
 
 impl<P: Pack> LaneBatch<P> {
-    /// Solves all yarns forwards and then backwards in each pass.
+    /// Solves all yarns forwards and then backwards in each pass, and adds to the sums of corrections.
     pub fn solve_laid_yarns(&mut self, passes: u32) {
-        self.sum_corrections();
         let yarns = &self.fabric.laid_yarns().list;
         let inverse_masses = &self.masses.inverse;
         P::run(SumCouplings { yarns, inverse_masses, sums: &mut self.couplings });
@@ -56,7 +55,6 @@ impl<P: Pack> LaneBatch<P> {
                 correction: &mut self.correction,
             },
         });
-        self.apply_corrections();
     }
 }
 
