@@ -13,6 +13,7 @@
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
+use crate::constraints::corrections::CorrectedParticles;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, ChainLink, ChainPair, LinkFamily};
 use crate::simd::constant::Constant;
@@ -76,6 +77,41 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 }
 
+impl<P: Pack> LaneBatch<P> {
+    /// Solves the chains of all colours of a grid with long cells, diagonals included, forwards and then backwards in each
+    /// pass.
+    pub fn solve_chains_both_ways(&mut self, passes: u32) {
+        self.sum_corrections();
+        let colours = self.layout.chains(&self.fabric).colours.len();
+        for pass in 0..passes {
+            // A pass begins with the colour that ended the pass before, which is not solved again.
+            let (first, forwards) = if pass == 0 { (0, Pass::First) } else { (1, Pass::Again) };
+            (first..colours).for_each(|colour| self.correct_by_colour(colour, forwards));
+            let backwards = (0..colours.saturating_sub(1)).rev();
+            backwards.for_each(|colour| self.correct_by_colour(colour, Pass::Again));
+        }
+        self.apply_corrections();
+    }
+
+    /// Solves the chains of one colour, and adds to the sums of corrections.
+    pub(super) fn correct_by_colour(&mut self, colour: usize, pass: Pass) {
+        let chains = self.fabric.chains();
+        P::run(SolveChainsOfLongCells(SolveChains {
+            pairs: &chains.pairs[chains.colours[colour].pairs.clone()],
+            pass,
+            is_any_overlong: &mut false,
+            compliance: &self.layout.factors().link_compliance,
+            rows: &mut self.rows,
+            target: &mut self.link_target,
+            particles: CorrectedParticles {
+                inverse_masses: &self.masses.inverse,
+                predicted: self.positions.packs(),
+                correction: &mut self.correction,
+            },
+        }));
+    }
+}
+
 /// Position of a pass over chains in a substep, which decides which targets it reads and stores.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pass {
@@ -129,6 +165,22 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
                 (TWO, Pass::Overlong) => self.solve_overlong::<L, TWO>(token, pair),
                 (_, Pass::Overlong) => self.solve_overlong::<L, 1>(token, pair),
                 (_, pass) => self.solve::<L, 1>(token, pair, pass),
+            }
+        }
+    }
+}
+
+/// The chains of one colour of a grid with long cells, without [`Pass::Diagonals`] and [`Pass::Overlong`].
+struct SolveChainsOfLongCells<'a, P: Pack>(SolveChains<'a, P, CorrectedParticles<'a, P>>);
+
+impl<P: Pack> Kernel<P> for SolveChainsOfLongCells<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
+        let (pairs, pass) = (self.0.pairs, self.0.pass);
+        for pair in pairs {
+            match pair.count {
+                CHAINS_PER_PAIR => self.0.solve::<L, CHAINS_PER_PAIR>(token, pair, pass),
+                _ => self.0.solve::<L, 1>(token, pair, pass),
             }
         }
     }

@@ -46,7 +46,11 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             Scheme::Yarns if self.fabric.has_shear_cells() => self.solve_grid_and_contacts(),
             Scheme::Yarns if self.background.is_some() => self.solve_stretch_on_background(),
             Scheme::Yarns => {
-                self.solve_stretch_of_mesh(self.clock.settings.passes);
+                if self.fabric.grid().is_some() {
+                    self.solve_chains_both_ways(self.clock.settings.passes);
+                } else {
+                    self.solve_stretch_of_mesh(self.clock.settings.passes);
+                }
                 self.solve_tethers();
                 self.sum_reactions();
                 self.solve_guides();

@@ -49,8 +49,10 @@ impl Stiffness<'_> {
         let stiffnesses = classes.map(|class| match self.scheme {
             Scheme::Yarns if fabric.has_shear_cells() => class.uncoupled_stiffness(self.material),
             // The background grid, or laid yarns, carry the load.
-            Scheme::Yarns => LINKS_OF_MESH * class.stiffness(self.material),
-            Scheme::GaussSeidel => class.stiffness(self.material),
+            Scheme::Yarns if fabric.grid().is_none() => {
+                LINKS_OF_MESH * class.stiffness(self.material)
+            }
+            _ => class.stiffness(self.material),
         });
         stiffnesses.map(|stiffness| self.compliance(stiffness).max(least)).collect()
     }

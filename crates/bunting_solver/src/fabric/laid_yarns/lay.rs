@@ -10,10 +10,6 @@ use super::faces::{Crossing, Faces, Heading};
 use super::near::{Near, Passing};
 use crate::fabric::links::LinkFamily;
 
-/// Distance of yarns, in mean distances of particles. Smaller: more links, whose families work against one another.
-/// Larger: particles between yarns are not held.
-const SPACING: f32 = 1.0;
-
 /// Least distance from a yarn at which another one begins, in distances of yarns. Smaller: yarns lie closer than asked for,
 /// by rounding. Larger: wider gaps stay open.
 const BEGINS: f32 = 0.95;
@@ -50,19 +46,18 @@ pub(super) struct Line {
 pub(super) struct Layer<'a> {
     faces: &'a Faces<'a>,
     directions: &'a Directions,
-    /// Distance of lines in each triangle, m.
-    spacing: &'a [f32],
     near: Near,
 }
 
 impl<'a> Layer<'a> {
-    pub fn new(faces: &'a Faces<'a>, directions: &'a Directions, spacing: &'a [f32]) -> Self {
-        let mean = spacing.iter().sum::<f32>() / spacing.len() as f32;
-        Self { faces, directions, spacing, near: Near::new(mean * SPACING) }
+    /// No lines as yet; they will be about as far apart as given, m.
+    pub fn new(faces: &'a Faces<'a>, directions: &'a Directions, distance: f32) -> Self {
+        Self { faces, directions, near: Near::new(distance) }
     }
 
-    /// All lines in one direction.
-    pub fn lay(&mut self, towards: Towards) -> Vec<Line> {
+    /// All lines in one direction, with their distances in each triangle, m.
+    pub fn lay(&mut self, towards: Towards, distances: &[f32]) -> Vec<Line> {
+        let way = Way { towards, distances };
         let mut lines = Vec::new();
         for triangle in 0..self.faces.count() as u32 {
             let at = self.faces.centre(triangle);
@@ -72,12 +67,12 @@ impl<'a> Layer<'a> {
                 next += 1;
                 let direction = self.directions.of_triangle(triangle, towards);
                 let start = Heading { triangle, side: None, at, direction };
-                if self.is_near(&start, BEGINS, f32::INFINITY) {
+                if self.is_near(&start, BEGINS * way.distance(triangle), f32::INFINITY) {
                     continue;
                 }
-                let (line, headings) = self.follow_both_ways(start, towards);
+                let (line, headings) = self.follow_both_ways(start, way);
                 starts.extend(
-                    headings.iter().flat_map(|heading| self.beside(heading, towards)).flatten(),
+                    headings.iter().flat_map(|heading| self.beside(heading, way)).flatten(),
                 );
                 if line.crossings.len() > 1 {
                     lines.push(line);
@@ -87,28 +82,19 @@ impl<'a> Layer<'a> {
         lines
     }
 
-    fn distance(&self, triangle: u32) -> f32 {
-        SPACING * self.spacing[triangle as usize]
-    }
-
-    /// Whether a line passes within a part of the distance of lines; `before` is the length along the own line up to which
-    /// it counts, m.
-    fn is_near(&self, heading: &Heading, part: f32, before: f32) -> bool {
+    /// Whether a line passes within a distance, m; `before` is the length along the own line up to which it counts, m.
+    fn is_near(&self, heading: &Heading, within: f32, before: f32) -> bool {
         let normal = self.faces.normals[heading.triangle as usize];
-        let within = part * self.distance(heading.triangle);
         self.near.is_near(heading.at, heading.direction, normal, within, before)
     }
 
-    fn follow_both_ways(&mut self, start: Heading, towards: Towards) -> (Line, Vec<Heading>) {
+    fn follow_both_ways(&mut self, start: Heading, way: Way) -> (Line, Vec<Heading>) {
         self.near.begin_line();
         let mut headings = vec![start];
-        let forwards = self.follow(start, towards, &mut headings);
+        let forwards = self.follow(start, way, &mut headings);
         let back = Heading { direction: -start.direction, ..start };
-        let backwards = if forwards.is_ring {
-            Line::default()
-        } else {
-            self.follow(back, towards, &mut headings)
-        };
+        let backwards =
+            if forwards.is_ring { Line::default() } else { self.follow(back, way, &mut headings) };
         // The piece within the first triangle is the first of both ways.
         let mut line = Line { is_ring: forwards.is_ring, ..Line::default() };
         line.crossings.extend(backwards.crossings.iter().rev());
@@ -122,16 +108,21 @@ impl<'a> Layer<'a> {
     }
 
     /// Follows the directions from a start, up to a border or another line.
-    fn follow(&mut self, start: Heading, towards: Towards, headings: &mut Vec<Heading>) -> Line {
+    fn follow(&mut self, start: Heading, way: Way, headings: &mut Vec<Heading>) -> Line {
+        let towards = way.towards;
         let mut line = Line::default();
         let mut heading = start;
         let mut length = 0.0;
         loop {
             let exit @ (crossing, _) = self.faces.exit(&heading);
             let passed = crossing.at - heading.at;
-            let distance = self.distance(heading.triangle);
+            let distance = way.distance(heading.triangle);
             let at_end = Heading { at: crossing.at, ..heading };
-            if self.is_near(&at_end, ENDS, length + passed.length() - OWN_TAIL * distance) {
+            if self.is_near(
+                &at_end,
+                ENDS * distance,
+                length + passed.length() - OWN_TAIL * distance,
+            ) {
                 line.is_ring = self.near.is_own(crossing.at, ENDS * distance);
                 return line;
             }
@@ -160,12 +151,12 @@ impl<'a> Layer<'a> {
     }
 
     /// Points to both sides of a line, at the distance of lines.
-    fn beside(&self, heading: &Heading, towards: Towards) -> [Option<(u32, Vec3)>; 2] {
+    fn beside(&self, heading: &Heading, way: Way) -> [Option<(u32, Vec3)>; 2] {
         let normal = self.faces.normals[heading.triangle as usize];
         [1.0, -1.0].map(|sign| {
             let direction = normal.cross(heading.direction) * sign;
             let mut aside = Heading { direction, ..*heading };
-            let mut left = self.distance(heading.triangle);
+            let mut left = way.distance(heading.triangle);
             for _ in 0..MOST_STEPS_ASIDE {
                 let exit @ (crossing, _) = self.faces.exit(&aside);
                 let passed = (crossing.at - aside.at).length();
@@ -174,11 +165,25 @@ impl<'a> Layer<'a> {
                 }
                 left -= passed;
                 aside = self.faces.cross(&aside, exit, |triangle| {
-                    self.directions.all(triangle, towards.across())
+                    self.directions.all(triangle, way.towards.across())
                 })?;
             }
             None
         })
+    }
+}
+
+/// How lines are laid.
+#[derive(Clone, Copy)]
+struct Way<'a> {
+    towards: Towards,
+    /// Distance of lines in each triangle, m.
+    distances: &'a [f32],
+}
+
+impl Way<'_> {
+    fn distance(&self, triangle: u32) -> f32 {
+        self.distances[triangle as usize]
     }
 }
 

@@ -24,14 +24,14 @@ use glam::Vec3;
 use self::directions::Directions;
 use self::faces::{Crossing, Faces};
 use self::lay::{Layer, Line, Piece, Towards};
-use self::widths::Widths;
+use self::widths::{Spacing, Widths};
 use super::links::LinkFamily;
 use super::mesh::{RestMesh, Surface};
 
-/// Least distance of two nodes along a yarn, in distances of yarns. Smaller: more links, which differ more in length and
+/// Least distance of two nodes along a yarn, in mean distances of crossings. Smaller: more links, which differ more in length and
 /// stiffness, so that the solution of one family disturbs that of the others. Larger: yarns no longer see all that the
 /// mesh can do, and it stretches too far.
-const LEAST_LINK: f32 = 0.3;
+const LEAST_LINK: f32 = 0.65;
 
 /// Links between which particles couple the rows of a yarn's system: each with the next ones, up to this many.
 pub(crate) const BAND: usize = 3;
@@ -87,13 +87,20 @@ impl LaidYarns {
     pub(in crate::fabric) fn of(mesh: &RestMesh, surface: &Surface) -> Self {
         let faces = Faces::new(&mesh.positions, &mesh.triangles);
         let directions = Directions::of(&faces, &surface.corner_uv);
-        let spacing = widths::spacing(mesh, surface);
-        let mut layer = Layer::new(&faces, &directions, &spacing);
-        let lines: Vec<Line> =
-            Towards::ALL.into_iter().flat_map(|towards| layer.lay(towards)).collect();
-        let widths = Widths::of(mesh, surface, &lines);
-        let least_spacing = spacing.iter().copied().fold(f32::INFINITY, f32::min);
-        let yarns = lines.iter().flat_map(|line| yarns_of(line, mesh, &spacing, &widths));
+        let spacings = Towards::ALL.map(|towards| {
+            Spacing::of(mesh, surface, &faces, |at| directions.of_triangle(at, towards))
+        });
+        let distance = spacings[0].of_lines.iter().sum::<f32>() / faces.count() as f32;
+        let mut layer = Layer::new(&faces, &directions, distance);
+        let lines = Towards::ALL.into_iter().zip(&spacings).map(|(towards, spacing)| {
+            let lines = layer.lay(towards, &spacing.of_lines);
+            lines.into_iter().map(move |line| (line, &spacing.of_crossings[..]))
+        });
+        let lines: Vec<(Line, &[f32])> = lines.flatten().collect();
+        let widths = Widths::of(mesh, surface, lines.iter().map(|(line, _)| line));
+        let yarns = lines.iter().flat_map(|(line, spacing)| yarns_of(line, mesh, spacing, &widths));
+        let along_sides = spacings[..2].iter().flat_map(|spacing| &spacing.of_lines);
+        let least_spacing = along_sides.copied().fold(f32::INFINITY, f32::min);
         Self { list: yarns.collect(), least_spacing }
     }
 
