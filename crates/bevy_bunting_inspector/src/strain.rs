@@ -15,7 +15,8 @@ pub struct ClothStrainPlugin;
 
 impl ClothStrainPlugin {
     /// Greatest strain of any link of yarns or diagonal, %.
-    pub const GREATEST: DiagnosticPath = DiagnosticPath::const_new("cloth/selected/greatest_strain");
+    pub const GREATEST: DiagnosticPath =
+        DiagnosticPath::const_new("cloth/selected/greatest_strain");
 
     /// Root mean square of the strains of all links, %.
     pub const MEAN: DiagnosticPath = DiagnosticPath::const_new("cloth/selected/mean_strain");
@@ -26,8 +27,10 @@ impl Plugin for ClothStrainPlugin {
         for path in [Self::GREATEST, Self::MEAN] {
             app.register_diagnostic(Diagnostic::new(path).with_suffix("%"));
         }
-        app.init_resource::<SelectedCloth>()
-            .add_systems(ClothTick, (forget_last, measure).chain().after(ClothSystems::Publish));
+        app.init_resource::<SelectedCloth>().add_systems(
+            ClothTick,
+            (forget_last.before(ClothSystems::Prepare), measure.after(ClothSystems::Publish)),
+        );
     }
 }
 
@@ -40,11 +43,7 @@ fn forget_last(selected: Res<SelectedCloth>, mut diagnostics: ResMut<Diagnostics
     }
 }
 
-fn measure(
-    selected: Res<SelectedCloth>,
-    cloths: Query<&ClothState>,
-    mut diagnostics: Diagnostics,
-) {
+fn measure(selected: Res<SelectedCloth>, cloths: Query<&ClothState>, mut diagnostics: Diagnostics) {
     let Some(state) = selected.0.and_then(|cloth| cloths.get(cloth).ok()) else { return };
     let Some(strains) = Strains::of(state) else { return };
     diagnostics.add_measurement(&ClothStrainPlugin::GREATEST, || 100.0 * strains.greatest);

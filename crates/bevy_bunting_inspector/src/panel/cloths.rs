@@ -12,13 +12,8 @@ use crate::selection::SelectedCloth;
 /// Height of the list of cloths, points.
 const LIST: f32 = 120.0;
 
-type Listed = (
-    Entity,
-    Option<&'static Name>,
-    &'static ClothState,
-    &'static ClothEffort,
-    Has<ClothPaused>,
-);
+type Listed =
+    (Entity, Option<&'static Name>, &'static ClothState, &'static ClothEffort, Has<ClothPaused>);
 
 /// Lists all cloths with level, activity, substeps and the reason for them. A click selects one.
 pub fn list_cloths(world: &mut World, ui: &mut Ui) {

@@ -18,7 +18,7 @@ const LINE: f32 = 1.0;
 pub fn show_plots(world: &World, ui: &mut Ui) {
     let Some(diagnostics) = world.get_resource::<DiagnosticsStore>() else { return };
     ui.strong("Strain of the selected cloth");
-    let mut show = |paths: &[DiagnosticPath], ui: &mut Ui| {
+    let show = |paths: &[DiagnosticPath], ui: &mut Ui| {
         paths.iter().filter_map(|path| diagnostics.get(path)).for_each(|it| plot(it, ui));
     };
     show(&[ClothStrainPlugin::GREATEST, ClothStrainPlugin::MEAN], ui);
@@ -50,5 +50,8 @@ fn points(values: &[f64], greatest: f64, area: Rect) -> Vec<Pos2> {
         area.bottom() - area.height() * part as f32
     };
     let finite = values.iter().filter(|value| value.is_finite());
-    finite.zip(0..).map(|(&value, at)| pos2(area.left() + apart * at as f32, height(value))).collect()
+    finite
+        .zip(0..)
+        .map(|(&value, at)| pos2(area.left() + apart * at as f32, height(value)))
+        .collect()
 }

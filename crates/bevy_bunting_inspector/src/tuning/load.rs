@@ -51,7 +51,8 @@ struct Change<'a> {
 /// All [`TuningProblem`]s; nothing in the world has changed then.
 pub fn load_tuning(world: &mut World, cloth: Entity, file: &Path) -> Result<(), TuningError> {
     let failed = |failed| TuningError::new(file, cloth, failed);
-    let text = std::fs::read_to_string(file).map_err(|error| failed((String::new(), error.into())))?;
+    let text =
+        std::fs::read_to_string(file).map_err(|error| failed((String::new(), error.into())))?;
     let types = world.resource::<AppTypeRegistry>().clone();
     let types = types.read();
     for change in changes(world, cloth, &text, &types).map_err(failed)? {

@@ -1,6 +1,7 @@
 //! The panel in a context of egui without a window: its text is read, and its buttons are clicked.
 
 use bevy_app::App;
+use bevy_asset::AssetId;
 use bevy_bunting::prelude::*;
 use bevy_bunting_inspector::bevy_egui::egui;
 use bevy_bunting_inspector::{
@@ -8,6 +9,7 @@ use bevy_bunting_inspector::{
 };
 use bevy_ecs::prelude::*;
 use bevy_inspector_egui::DefaultInspectorConfigPlugin;
+use bevy_mesh::Mesh;
 use bunting_tests::run;
 use egui::epaint::{ClippedShape, Shape};
 use egui::{Event, Modifiers, PointerButton, Pos2, RawInput, Rect, Vec2};
@@ -24,6 +26,8 @@ struct Panel {
 impl Panel {
     fn new() -> Self {
         let (mut app, flag) = world_with_flag();
+        // Bevy's asset plugins register handles, and bevy-inspector-egui expects that.
+        app.register_type::<AssetId<Mesh>>();
         app.add_plugins((DefaultInspectorConfigPlugin, ClothSelectionPlugin, ClothStrainPlugin))
             .init_resource::<PanelState>();
         app.world_mut().entity_mut(flag).insert(Name::new("Ensign"));
