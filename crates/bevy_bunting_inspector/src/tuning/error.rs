@@ -30,7 +30,7 @@ pub enum TuningProblem {
     File(#[from] std::io::Error),
     /// The file is not as expected.
     #[error("it must have the form (cloth: {{…}}, winds: {{…}}, resources: {{…}}): {0}")]
-    Form(#[from] ron::error::SpannedError),
+    Form(Box<ron::error::SpannedError>),
     /// There is no such component or resource among the parameters.
     #[error("there is no such parameter: write the name or the whole path of its type")]
     Unknown,
@@ -45,7 +45,7 @@ pub enum TuningProblem {
     NoResource,
     /// A value does not fit, or lacks a field that has no default.
     #[error("{0}")]
-    Value(ron::Error),
+    Value(Box<ron::Error>),
 }
 
 /// What is wrong, at a key.

@@ -72,7 +72,8 @@ fn changes<'a>(
     if world.get::<ClothMesh>(cloth).is_none() {
         return Err((String::new(), TuningProblem::NoCloth));
     }
-    let read: Read = ron::from_str(text).map_err(|error| (String::new(), error.into()))?;
+    let read: Read = ron::from_str(text)
+        .map_err(|error| (String::new(), TuningProblem::Form(Box::new(error))))?;
     let found = winds(world);
     let mut changes = Vec::new();
     for (name, value) in &read.cloth {
@@ -129,7 +130,7 @@ fn change<'a>(
         Err(error) => {
             let path = path.path();
             let inner = path.iter().next().map_or_else(String::new, |_| format!(".{path}"));
-            Err((key + &inner, TuningProblem::Value(error)))
+            Err((key + &inner, TuningProblem::Value(Box::new(error))))
         }
     }
 }

@@ -78,7 +78,7 @@ fn text(world: &mut World, cloth: Entity) -> Result<String, Failed> {
         }
     }
     let text = ron::ser::to_string_pretty(&written, PrettyConfig::new());
-    text.map_err(|error| (String::new(), TuningProblem::Value(error)))
+    text.map_err(|error| (String::new(), TuningProblem::Value(Box::new(error))))
 }
 
 /// The values of an entity that are among parameters.
