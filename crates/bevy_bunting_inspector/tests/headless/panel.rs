@@ -3,9 +3,12 @@
 use bevy_app::App;
 use bevy_asset::AssetId;
 use bevy_bunting::prelude::*;
-use bevy_bunting_inspector::bevy_egui::egui;
+use bevy_bunting_inspector::bevy_egui::{
+    EguiContext, EguiPrimaryContextPass, PrimaryEguiContext, egui,
+};
 use bevy_bunting_inspector::{
-    ClothSelectionPlugin, ClothStrainPlugin, PanelState, SelectedCloth, cloth_panel,
+    ClothInspectorPlugin, ClothSelectionPlugin, ClothStrainPlugin, PanelState, SelectedCloth,
+    cloth_panel,
 };
 use bevy_ecs::prelude::*;
 use bevy_inspector_egui::DefaultInspectorConfigPlugin;
@@ -141,4 +144,29 @@ fn settings_winds_and_plots_are_shown() {
         _ => None,
     });
     assert!(longest.max().is_some_and(|points| points >= 20), "a line through 20 ticks");
+}
+
+#[test]
+fn the_plugin_shows_the_panel_in_the_first_context_while_it_is_open() {
+    let (mut app, _) = world_with_flag();
+    app.register_type::<AssetId<Mesh>>();
+    app.add_plugins(ClothInspectorPlugin);
+    let world = app.world_mut();
+    let entity = world.spawn((EguiContext::default(), PrimaryEguiContext)).id();
+    let context = world.get_mut::<EguiContext>(entity).expect("a context").get_mut().clone();
+    let mut shows = |is_open| {
+        world.resource_mut::<PanelState>().is_open = is_open;
+        let mut texts = Vec::new();
+        // Windows of egui come and go within some frames.
+        for _ in 0..30 {
+            texts.clear();
+            context.begin_pass(RawInput::default());
+            world.run_schedule(EguiPrimaryContextPass);
+            let shapes = context.end_pass().shapes;
+            shapes.iter().for_each(|shape| collect_texts(&shape.shape, &mut texts));
+        }
+        texts.iter().any(|(text, _)| text.contains("1 cloths"))
+    };
+    assert!(shows(true));
+    assert!(!shows(false));
 }
