@@ -9,12 +9,13 @@ use bevy_ecs::prelude::*;
 
 use crate::selection::SelectedCloth;
 
-/// Adds the strains of the [`SelectedCloth`] to Bevy's diagnostics, once a tick. Its other ticks are free of them.
+/// Adds the strains of the [`SelectedCloth`] to Bevy's diagnostics, once a tick. While none is selected,
+/// nothing is measured.
 #[derive(Debug, Default)]
 pub struct ClothStrainPlugin;
 
 impl ClothStrainPlugin {
-    /// Greatest strain of any link of yarns or diagonal, %.
+    /// Greatest strain of any link, diagonals included, %.
     pub const GREATEST: DiagnosticPath =
         DiagnosticPath::const_new("cloth/selected/greatest_strain");
 

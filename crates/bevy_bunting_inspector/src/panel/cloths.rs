@@ -21,7 +21,7 @@ pub fn list_cloths(world: &mut World, ui: &mut Ui) {
     let mut lines: Vec<_> = cloths.iter(world).map(line).collect();
     lines.sort();
     let SelectedCloth(mut selected) = *world.resource();
-    ui.strong(format!("{} cloths", lines.len()));
+    ui.strong(format!("Cloths: {}", lines.len()));
     ScrollArea::vertical().id_salt("cloths").max_height(LIST).show(ui, |ui| {
         for (line, cloth) in &lines {
             if ui.selectable_label(selected == Some(*cloth), line).clicked() {

@@ -15,7 +15,8 @@ use crate::parameters::winds;
 /// own; [`ClothInspectorPlugin`](crate::ClothInspectorPlugin) shows it in a window.
 ///
 /// The world needs [`ClothSelectionPlugin`](crate::ClothSelectionPlugin), [`PanelState`](crate::PanelState) and
-/// `DefaultInspectorConfigPlugin` of bevy-inspector-egui.
+/// `DefaultInspectorConfigPlugin` of bevy-inspector-egui, which expects the types of Bevy's asset plugins to be registered, as
+/// `DefaultPlugins` do.
 pub fn cloth_panel(world: &mut World, ui: &mut Ui) {
     list_cloths(world, ui);
     show_selected(world, ui);

@@ -92,7 +92,7 @@ fn collect_texts(shape: &Shape, texts: &mut Vec<(String, Pos2)>) {
 #[test]
 fn cloths_are_listed_and_selected_and_their_components_shown() {
     let mut panel = Panel::new();
-    assert!(panel.shows("1 cloths") && panel.shows("No cloth is selected"));
+    assert!(panel.shows("Cloths: 1") && panel.shows("No cloth is selected"));
     assert!(panel.shows("Ensign · level 0 · "), "{:?}", panel.texts());
     assert!(panel.shows("substeps by"));
     panel.click("Ensign");
@@ -165,7 +165,7 @@ fn the_plugin_shows_the_panel_in_the_first_context_while_it_is_open() {
             let shapes = context.end_pass().shapes;
             shapes.iter().for_each(|shape| collect_texts(&shape.shape, &mut texts));
         }
-        texts.iter().any(|(text, _)| text.contains("1 cloths"))
+        texts.iter().any(|(text, _)| text.contains("Cloths: 1"))
     };
     assert!(shows(true));
     assert!(!shows(false));
