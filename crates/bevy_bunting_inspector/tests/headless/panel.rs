@@ -61,14 +61,21 @@ impl Panel {
 
     /// Clicks on the first text that contains a part.
     fn click(&mut self, part: &str) {
+        self.drag(part, 0.0);
+    }
+
+    /// Drags the first text that contains a part to the right, points.
+    fn drag(&mut self, part: &str, by: f32) {
         let texts = self.texts();
         let found = texts.iter().find(|(text, _)| text.contains(part));
-        let &(_, pos) = found.unwrap_or_else(|| panic!("no {part} among {texts:?}"));
+        let &(_, from) = found.unwrap_or_else(|| panic!("no {part} among {texts:?}"));
         let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
-        let press = |pressed| Event::PointerButton { pos, button, pressed, modifiers };
-        self.frame(vec![Event::PointerMoved(pos)]);
-        self.frame(vec![press(true)]);
-        self.frame(vec![press(false)]);
+        let press = |pos, pressed| Event::PointerButton { pos, button, pressed, modifiers };
+        let to = from + Vec2::X * by;
+        self.frame(vec![Event::PointerMoved(from)]);
+        self.frame(vec![press(from, true)]);
+        self.frame(vec![Event::PointerMoved(to)]);
+        self.frame(vec![press(to, false)]);
         // What opens is animated.
         (0..30).for_each(|_| drop(self.frame(Vec::new())));
     }
@@ -102,6 +109,27 @@ fn cloths_are_listed_and_selected_and_their_components_shown() {
     assert!(panel.shows("ClothMaterial") && panel.shows("LodSet"), "{:?}", panel.texts());
     panel.app.world_mut().entity_mut(panel.flag).insert(ClothPaused);
     assert!(panel.shows("paused"));
+}
+
+#[test]
+fn a_parameter_is_dragged_and_counts_as_changed() {
+    let mut panel = Panel::new();
+    panel.click("Ensign");
+    panel.click("Selected cloth");
+    panel.click("ClothMaterial");
+    assert!(panel.shows("area_density"), "{:?}", panel.texts());
+    let before = panel.material().0.area_density;
+    let is_changed = |panel: &Panel| {
+        let flag = panel.app.world().entity(panel.flag);
+        flag.get_ref::<ClothMaterial>().expect("a material").is_changed()
+    };
+    panel.app.world_mut().clear_trackers();
+    panel.frame(Vec::new());
+    assert!(!is_changed(&panel), "what is only shown stays as it is");
+    panel.drag("0.113", 20.0);
+    let after = panel.material().0.area_density;
+    assert!(after > before, "{after} kg/m² after {before}");
+    assert!(is_changed(&panel));
 }
 
 #[test]
