@@ -1,0 +1,8 @@
+//! The panel.
+
+mod cloths;
+mod files;
+mod plots;
+pub mod plugin;
+pub mod state;
+pub mod window;

@@ -1,0 +1,50 @@
+//! The plugin of the panel.
+
+use bevy_app::{App, Plugin};
+use bevy_ecs::prelude::*;
+use bevy_egui::{EguiContext, EguiPlugin, EguiPrimaryContextPass, PrimaryEguiContext, egui};
+use bevy_inspector_egui::DefaultInspectorConfigPlugin;
+
+use crate::panel::state::PanelState;
+use crate::panel::window::cloth_panel;
+use crate::selection::ClothSelectionPlugin;
+use crate::strain::ClothStrainPlugin;
+
+/// Shows the panel in a window of egui, on the first camera, while [`PanelState::is_open`]. It adds egui's plugin unless it
+/// is added before.
+///
+/// ```no_run
+/// use bevy_app::prelude::*;
+/// use bevy_bunting::prelude::*;
+/// use bevy_bunting_inspector::ClothInspectorPlugin;
+///
+/// // In an app: App::new().add_plugins((DefaultPlugins, ClothPlugins::default(), ClothDragPlugin, ClothInspectorPlugin));
+/// App::new().add_plugins((ClothPlugins::default(), ClothDragPlugin, ClothInspectorPlugin));
+/// ```
+#[derive(Debug, Default)]
+pub struct ClothInspectorPlugin;
+
+impl Plugin for ClothInspectorPlugin {
+    fn build(&self, app: &mut App) {
+        if !app.is_plugin_added::<EguiPlugin>() {
+            app.add_plugins(EguiPlugin::default());
+        }
+        if !app.is_plugin_added::<DefaultInspectorConfigPlugin>() {
+            app.add_plugins(DefaultInspectorConfigPlugin);
+        }
+        app.add_plugins((ClothSelectionPlugin, ClothStrainPlugin))
+            .init_resource::<PanelState>()
+            .add_systems(EguiPrimaryContextPass, show);
+    }
+}
+
+fn show(world: &mut World) {
+    let mut contexts = world.query_filtered::<&mut EguiContext, With<PrimaryEguiContext>>();
+    let Ok(mut context) = contexts.single_mut(world) else { return };
+    let context = context.get_mut().clone();
+    let mut is_open = world.resource::<PanelState>().is_open;
+    egui::Window::new("Cloth").open(&mut is_open).vscroll(true).show(&context, |ui| {
+        cloth_panel(world, ui);
+    });
+    world.resource_mut::<PanelState>().is_open = is_open;
+}

@@ -1,0 +1,6 @@
+//! Files of parameters.
+
+pub mod error;
+pub mod load;
+mod reader;
+pub mod save;
