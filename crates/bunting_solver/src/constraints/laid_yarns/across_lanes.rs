@@ -10,19 +10,19 @@ use glam::Vec3;
 use super::{BandRow, SolveLaidYarns, YarnLink, YarnParticles, compliance, sum_of_couplings};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Positions;
-use crate::fabric::{Fabric, LaidYarn, LaidYarns, Node};
+use crate::fabric::{Fabric, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::level::dispatch;
 use crate::simd::registers::{Pack1, Pack4, Pack8};
 use crate::simd::transpose::{coordinates, vectors};
 use crate::simd::vec3::{V3, lane3, set_lane3};
 
-/// The laid yarns of a single cloth, in packs of one colour.
+/// The laid yarns of a single cloth, those of each colour in a pack.
 #[derive(Clone, Debug)]
 pub(crate) struct YarnPacks {
-    /// The nodes of each pack of yarns, colour by colour.
+    /// The nodes of each pack of yarns.
     packs: Vec<Vec<NodePack>>,
-    /// The packs of each colour.
+    /// The pack of each colour.
     colours: Vec<Range<usize>>,
     links: Vec<YarnLink<Pack8>>,
     rows: Vec<BandRow<Pack8>>,
@@ -30,6 +30,8 @@ pub(crate) struct YarnPacks {
     /// Inverse masses, 1/m².
     inverse_masses: Vec<Pack1>,
 }
+
+const _: () = assert!(YARNS_AT_ONCE == Pack8::WIDTH);
 
 /// A node of each yarn of a pack. A lane whose yarn has ended repeats its last node, so that its links have no length, and
 /// a lane without a yarn repeats one node.
@@ -57,12 +59,9 @@ impl YarnPacks {
         if yarns.list.is_empty() {
             return None;
         }
-        let (mut packs, mut colours) = (Vec::new(), Vec::new());
-        for colour in yarns.colours.ranges() {
-            let first = packs.len();
-            packs.extend(yarns.list[colour.clone()].chunks(Pack8::WIDTH).map(nodes));
-            colours.push(first..packs.len());
-        }
+        let colours = yarns.colours.ranges().iter();
+        let packs: Vec<Vec<NodePack>> =
+            colours.map(|colour| nodes(&yarns.list[colour.clone()])).collect();
         let zero = Pack4::splat(0.0);
         let particle = VectorParticle { predicted: zero, correction: zero };
         Some(Self {
@@ -70,8 +69,8 @@ impl YarnPacks {
             rows: vec![BandRow::new(); yarns.longest()],
             particles: vec![particle; fabric.particle_count()],
             inverse_masses: vec![Pack1::splat(0.0); fabric.particle_count()],
+            colours: (0..packs.len()).map(|pack| pack..pack + 1).collect(),
             packs,
-            colours,
         })
     }
 }
@@ -95,17 +94,20 @@ impl<P: Pack> LaneBatch<P> {
         let Some(packs) = &mut self.yarn_packs else { return };
         let YarnPacks { packs, colours, links, rows, particles, inverse_masses } = &mut **packs;
         let state = self.positions.packs().iter().zip(&self.masses.inverse);
+        let mut has_new_masses = false;
         let copies = particles.iter_mut().zip(&mut *inverse_masses);
         for ((particle, copy), (position, inverse_mass)) in copies.zip(state) {
             let inverse_mass = inverse_mass.lanes()[0];
             let [x, y, z] = lane3(position, 0).to_array();
             particle.predicted.lanes_mut().copy_from_slice(&[x, y, z, inverse_mass]);
             particle.correction = Pack4::splat(0.0);
+            has_new_masses |= copy.lanes()[0] != inverse_mass;
             *copy = Pack1::splat(inverse_mass);
         }
         Pack1::run(BeginLinks {
             yarns: self.fabric.laid_yarns(),
             inverse_masses,
+            has_new_masses,
             compliance: &self.layout.modulus_compliance.map(|pack| Pack1::splat(pack.lanes()[0])),
             links,
         });
@@ -137,6 +139,8 @@ fn solve_across<S: Simd>(
 struct BeginLinks<'a> {
     yarns: &'a LaidYarns,
     inverse_masses: &'a [Pack1],
+    /// Whether inverse masses differ from those of the substep before.
+    has_new_masses: bool,
     /// Compliance of a square of each family, σ/(Y h²), 1/m².
     compliance: &'a [Pack1; 3],
     links: &'a mut [YarnLink<Pack8>],
@@ -147,23 +151,39 @@ impl Kernel<Pack1> for BeginLinks<'_> {
     fn run<L: Lane<Pack = Pack1>>(self, token: L::Token) {
         let mut first = 0;
         for colour in self.yarns.colours.ranges() {
-            for yarns in self.yarns.list[colour.clone()].chunks(Pack8::WIDTH) {
-                for (lane, yarn) in yarns.iter().enumerate() {
-                    let mut couplings = yarn.couplings.as_slice();
-                    for (laid, link) in yarn.links.iter().zip(&mut self.links[first..]) {
-                        for (&count, sum) in laid.couplings.iter().zip(&mut link.couplings) {
-                            let (of_row, rest) = couplings.split_at(usize::from(count));
-                            couplings = rest;
-                            let of_links: L = sum_of_couplings(token, of_row, self.inverse_masses);
-                            store_lane(of_links, sum, lane);
-                        }
-                        let compliance: L = compliance(token, laid, self.compliance);
-                        store_lane(compliance, &mut link.compliance, lane);
-                        link.target.lanes_mut()[lane] = laid.rest_length;
-                    }
+            let yarns = &self.yarns.list[colour.clone()];
+            for (lane, yarn) in yarns.iter().enumerate() {
+                let links = &mut self.links[first..first + yarn.links.len()];
+                if self.has_new_masses {
+                    couple::<L>(token, lane, yarn, links, self.inverse_masses);
                 }
-                first += yarns[0].links.len();
+                for (laid, link) in yarn.links.iter().zip(links) {
+                    let compliance: L = compliance(token, laid, self.compliance);
+                    store_lane(compliance, &mut link.compliance, lane);
+                    link.target.lanes_mut()[lane] = laid.rest_length;
+                }
             }
+            first += yarns[0].links.len();
+        }
+    }
+}
+
+/// Sums the inverse masses that couple the links of a yarn.
+#[inline(always)]
+fn couple<L: Lane<Pack = Pack1>>(
+    token: L::Token,
+    lane: usize,
+    yarn: &LaidYarn,
+    links: &mut [YarnLink<Pack8>],
+    inverse_masses: &[Pack1],
+) {
+    let mut couplings = yarn.couplings.as_slice();
+    for (laid, link) in yarn.links.iter().zip(links) {
+        for (&count, sum) in laid.couplings.iter().zip(&mut link.couplings) {
+            let (of_row, rest) = couplings.split_at(usize::from(count));
+            couplings = rest;
+            let of_links: L = sum_of_couplings(token, of_row, inverse_masses);
+            store_lane(of_links, sum, lane);
         }
     }
 }
@@ -193,11 +213,7 @@ impl<S: Simd> YarnParticles<f32x8<S>> for VectorParticles<'_> {
         }
         let [a, b, c, d, e, f, g, h] = at;
         let (low, high) = (coordinates([a, b, c, d]), coordinates([e, f, g, h]));
-        V3 {
-            x: low[0].combine(high[0]),
-            y: low[1].combine(high[1]),
-            z: low[2].combine(high[2]),
-        }
+        V3 { x: low[0].combine(high[0]), y: low[1].combine(high[1]), z: low[2].combine(high[2]) }
     }
 
     #[inline(always)]

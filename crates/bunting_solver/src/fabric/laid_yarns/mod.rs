@@ -26,7 +26,7 @@ use self::directions::Directions;
 use self::faces::{Crossing, Faces};
 use self::lay::{Layer, Line, Piece, Towards};
 use self::widths::Widths;
-use super::colour::{Colours, colour};
+use super::colour::{Colours, colour_up_to};
 use super::links::LinkFamily;
 use super::mesh::{RestMesh, Surface};
 
@@ -37,6 +37,9 @@ const LEAST_LINK: f32 = 0.3;
 
 /// Links between which particles couple the rows of a yarn's system: each with the next ones, up to this many.
 pub(crate) const BAND: usize = 3;
+
+/// Yarns that a cloth that is alone solves at once, in the lanes of a vector.
+pub(crate) const YARNS_AT_ONCE: usize = 8;
 
 /// A point on an edge that moves with the particles at its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,7 +90,7 @@ impl AsRef<[Node]> for LaidYarn {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct LaidYarns {
     pub list: Vec<LaidYarn>,
-    /// Yarns of one colour share no particle.
+    /// Yarns of one colour share no particle. A colour has no more than [`YARNS_AT_ONCE`].
     pub colours: Colours,
     /// Least distance of yarns, m.
     pub least_spacing: f32,
@@ -127,7 +130,8 @@ fn coloured(mut yarns: Vec<LaidYarn>, particle_count: usize) -> (Vec<LaidYarn>, 
         yarn.nodes.iter().flat_map(|node| node.particles).collect()
     };
     let yarns = yarns.into_iter().map(|yarn| (particles(&yarn), yarn)).collect();
-    let (yarns, colours) = colour(particle_count, yarns, |(particles, _)| particles, |_| 0);
+    let (yarns, colours) =
+        colour_up_to(YARNS_AT_ONCE, particle_count, yarns, |(particles, _)| particles, |_| 0);
     (yarns.into_iter().map(|(_, yarn)| yarn).collect(), colours)
 }
 
