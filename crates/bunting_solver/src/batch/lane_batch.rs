@@ -12,10 +12,10 @@ use crate::batch::mixed::Mixed;
 use crate::batch::probe_motion::ProbeMotion;
 use crate::batch::side_by_side::SideBySide;
 use crate::batch::single_cloth::SingleCloth;
-use crate::constraints::laid_yarns::BandRow;
+use crate::constraints::laid_yarns::{BandRow, YarnLink, YarnPacks};
 use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
-use crate::fabric::{BAND, CHAINS_PER_PAIR, Fabric, GridTransfer};
+use crate::fabric::{CHAINS_PER_PAIR, Fabric, GridTransfer};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::{Pack3, set_lane3, splat3};
@@ -71,11 +71,12 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub stretch_shift: Vec<Pack3<P>>,
     /// Scratch array of the tridiagonal systems of a pair of chains.
     pub rows: Vec<TridiagonalRow<P>>,
-    /// For each link of laid yarns the sums of inverse masses that couple its row to itself and to the rows before, in the
-    /// substep.
-    pub couplings: Vec<[P; BAND + 1]>,
+    /// The links of laid yarns in the substep; empty if there are `yarn_packs`.
+    pub yarn_links: Vec<YarnLink<P>>,
     /// Scratch array of the system of a laid yarn.
     pub band_rows: Vec<BandRow<P>>,
+    /// The laid yarns across lanes, where the batch holds a single cloth.
+    pub yarn_packs: Option<Box<YarnPacks>>,
     /// Scratch array of the block tridiagonal system of a strip.
     pub strip_blocks: Vec<StripBlock<P>>,
     /// Scratch array of the bending moments of a line, or the twisting moments of a ribbon.
@@ -147,6 +148,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         let chains = layout.chains(&fabric);
         let longest_line = fabric.grid().map_or(0, |grid| grid.columns.max(grid.rows) as usize);
+        let is_lone = P::WIDTH == 1;
+        let yarn_packs = if is_lone { YarnPacks::of(&fabric).map(Box::new) } else { None };
+        let (mut yarn_links, mut band_rows) = (Vec::new(), Vec::new());
+        if yarn_packs.is_none() {
+            yarn_links.resize(fabric.laid_yarns().link_count(), YarnLink::new());
+            band_rows.resize(fabric.laid_yarns().longest(), BandRow::new());
+        }
         let of_lanes = LaneFabric::new(Arc::clone(&fabric), 0.0);
         let mut batch = Self {
             numbers: FabricNumbers::new(&of_lanes),
@@ -163,13 +171,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             stretch_shift: Vec::new(),
             velocity: zero,
             relaxation: vec![P::splat(1.0); layout.pack_count()],
-            link_target: vec![
-                P::splat(0.0);
-                chains.target_count() + fabric.laid_yarns().link_count()
-            ],
+            link_target: vec![P::splat(0.0); chains.target_count()],
             rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
-            couplings: vec![[P::splat(0.0); BAND + 1]; fabric.laid_yarns().link_count()],
-            band_rows: vec![BandRow::new(); fabric.laid_yarns().longest()],
+            yarn_links,
+            band_rows,
+            yarn_packs,
             strip_blocks: Vec::new(),
             moments: vec![splat3(Vec3::ZERO); longest_line],
             masses: Masses::new(

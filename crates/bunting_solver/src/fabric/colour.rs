@@ -24,16 +24,30 @@ pub(super) fn colour<C>(
     particles: impl Fn(&C) -> &[u32],
     rank: impl Fn(&C) -> u32,
 ) -> (Vec<C>, Colours) {
+    colour_up_to(usize::MAX, particle_count, constraints, particles, rank)
+}
+
+/// As [`colour`], but each colour has no more than `most` constraints.
+pub(super) fn colour_up_to<C>(
+    most: usize,
+    particle_count: usize,
+    constraints: Vec<C>,
+    particles: impl Fn(&C) -> &[u32],
+    rank: impl Fn(&C) -> u32,
+) -> (Vec<C>, Colours) {
     let mut taken: Vec<Vec<bool>> = vec![Vec::new(); particle_count];
+    let mut counts: Vec<usize> = Vec::new();
     let mut keyed: Vec<((u32, usize), C)> = constraints
         .into_iter()
         .map(|constraint| {
             let members = particles(&constraint);
             let is_free = |colour: usize| {
                 let has = |&particle: &u32| taken[particle as usize].get(colour) == Some(&true);
-                !members.iter().any(has)
+                counts.get(colour).is_none_or(|&count| count < most) && !members.iter().any(has)
             };
             let colour = (0..).find(|&colour| is_free(colour)).unwrap_or_default();
+            counts.resize(counts.len().max(colour + 1), 0);
+            counts[colour] += 1;
             for &particle in members {
                 let colours = &mut taken[particle as usize];
                 colours.resize(colours.len().max(colour + 1), false);
@@ -58,7 +72,7 @@ pub(super) fn colour<C>(
 
 #[cfg(test)]
 mod tests {
-    use super::colour;
+    use super::{colour, colour_up_to};
 
     #[test]
     fn constraints_of_one_colour_share_no_particle() {
@@ -79,5 +93,13 @@ mod tests {
             particles.dedup();
             assert_eq!(particles.len(), all);
         }
+    }
+
+    #[test]
+    fn a_colour_has_no_more_constraints_than_it_may() {
+        let constraints: Vec<[u32; 2]> = (0..7).map(|at| [2 * at, 2 * at + 1]).collect();
+        let (sorted, colours) = colour_up_to(3, 14, constraints.clone(), |pair| pair, |_| 0);
+        assert_eq!(sorted, constraints);
+        assert_eq!(colours.ranges(), [0..3, 3..6, 6..7]);
     }
 }

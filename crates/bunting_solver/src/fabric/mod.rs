@@ -42,7 +42,7 @@ pub(crate) use bending::{BendLine, BendProfile};
 pub(crate) use chains::{CHAINS_PER_PAIR, Cell, Chain, ChainLink, ChainPair, Chains, SweepLink};
 pub(crate) use fabric::Background;
 pub(crate) use hinges::{Hinge, angle as hinge_angle};
-pub(crate) use laid_yarns::{BAND, LaidYarn};
+pub(crate) use laid_yarns::{BAND, Coupling, LaidLink, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
 pub(crate) use patches::Patch;
 pub(crate) use strip::{StripLink, StripRow};
 pub(crate) use tethers::Tether;

@@ -5,4 +5,5 @@ pub(crate) mod lane;
 pub(crate) mod level;
 pub(crate) mod registers;
 pub(crate) mod sum;
+pub(crate) mod transpose;
 pub(crate) mod vec3;

@@ -5,6 +5,7 @@ use fearless_simd::{Simd, SimdBase, f32x4};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::level::dispatch;
 use crate::simd::registers::{Pack4, Pack8};
+use crate::simd::transpose::{coordinates, vectors};
 use crate::simd::vec3::{Pack3, V3, splat3};
 
 /// Number of vectors that are transposed at once.
@@ -27,7 +28,6 @@ pub(crate) fn write_vectors(vectors: &[Pack4], into: &mut [Pack3<Pack8>]) {
 
 #[inline(always)]
 fn read_all<S: Simd>(token: S, packs: &[Pack3<Pack8>], into: &mut [Pack4]) {
-    let zero = <f32x4<S> as SimdBase<S>>::splat(token, 0.0);
     let (into, _) = into.as_chunks_mut::<{ Pack8::WIDTH }>();
     for ([x, y, z], into) in packs.iter().zip(into) {
         let (into, _) = into.as_chunks_mut::<QUAD>();
@@ -36,12 +36,10 @@ fn read_all<S: Simd>(token: S, packs: &[Pack3<Pack8>], into: &mut [Pack4]) {
             let x = f32x4::from_slice(token, &x.lanes()[first..first + QUAD]);
             let y = f32x4::from_slice(token, &y.lanes()[first..first + QUAD]);
             let z = f32x4::from_slice(token, &z.lanes()[first..first + QUAD]);
-            let (xz_low, xz_high) = (x.zip_low(z), x.zip_high(z));
-            let (yw_low, yw_high) = (y.zip_low(zero), y.zip_high(zero));
-            xz_low.zip_low(yw_low).store_slice(a.lanes_mut());
-            xz_low.zip_high(yw_low).store_slice(b.lanes_mut());
-            xz_high.zip_low(yw_high).store_slice(c.lanes_mut());
-            xz_high.zip_high(yw_high).store_slice(d.lanes_mut());
+            let vectors = vectors(token, [x, y, z]);
+            for (vector, into) in vectors.into_iter().zip([a, b, c, d]) {
+                vector.store_slice(into.lanes_mut());
+            }
         }
     }
 }
@@ -57,11 +55,10 @@ fn write_all<S: Simd>(token: S, vectors: &[Pack4], into: &mut [Pack3<Pack8>]) {
             let b = f32x4::from_slice(token, b.lanes());
             let c = f32x4::from_slice(token, c.lanes());
             let d = f32x4::from_slice(token, d.lanes());
-            let (ac_low, ac_high) = (a.zip_low(c), a.zip_high(c));
-            let (bd_low, bd_high) = (b.zip_low(d), b.zip_high(d));
-            ac_low.zip_low(bd_low).store_slice(&mut x.lanes_mut()[first..first + QUAD]);
-            ac_low.zip_high(bd_low).store_slice(&mut y.lanes_mut()[first..first + QUAD]);
-            ac_high.zip_low(bd_high).store_slice(&mut z.lanes_mut()[first..first + QUAD]);
+            let coordinates = coordinates([a, b, c, d]);
+            for (values, into) in coordinates.into_iter().zip([&mut *x, y, z]) {
+                values.store_slice(&mut into.lanes_mut()[first..first + QUAD]);
+            }
         }
     }
 }

@@ -17,6 +17,7 @@ mod near;
 mod tests;
 mod widths;
 
+use core::cmp::Reverse;
 use std::collections::HashMap;
 
 use glam::Vec3;
@@ -25,6 +26,7 @@ use self::directions::Directions;
 use self::faces::{Crossing, Faces};
 use self::lay::{Layer, Line, Piece, Towards};
 use self::widths::{Spacing, Widths};
+use super::colour::{Colours, colour_up_to};
 use super::links::LinkFamily;
 use super::mesh::{RestMesh, Surface};
 
@@ -35,6 +37,9 @@ const LEAST_LINK: f32 = 0.65;
 
 /// Links between which particles couple the rows of a yarn's system: each with the next ones, up to this many.
 pub(crate) const BAND: usize = 3;
+
+/// Yarns that a cloth that is alone solves at once, in the lanes of a vector.
+pub(crate) const YARNS_AT_ONCE: usize = 8;
 
 /// A point on an edge that moves with the particles at its ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,10 +79,19 @@ pub(crate) struct LaidYarn {
     pub couplings: Vec<Coupling>,
 }
 
-/// All yarns laid across a mesh: first those along warp and weft, then diagonals.
+impl AsRef<[Node]> for LaidYarn {
+    #[inline(always)]
+    fn as_ref(&self) -> &[Node] {
+        &self.nodes
+    }
+}
+
+/// All yarns laid across a mesh, colour by colour, the longest of each colour first.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct LaidYarns {
     pub list: Vec<LaidYarn>,
+    /// Yarns of one colour share no particle. A colour has no more than [`YARNS_AT_ONCE`].
+    pub colours: Colours,
     /// Least distance of yarns, m.
     pub least_spacing: f32,
 }
@@ -101,7 +115,8 @@ impl LaidYarns {
         let yarns = lines.iter().flat_map(|(line, spacing)| yarns_of(line, mesh, spacing, &widths));
         let along_sides = spacings[..2].iter().flat_map(|spacing| &spacing.of_lines);
         let least_spacing = along_sides.copied().fold(f32::INFINITY, f32::min);
-        Self { list: yarns.collect(), least_spacing }
+        let (list, colours) = coloured(yarns.collect(), mesh.positions.len());
+        Self { list, colours, least_spacing }
     }
 
     /// Number of links in the longest yarn.
@@ -113,6 +128,18 @@ impl LaidYarns {
     pub fn link_count(&self) -> usize {
         self.list.iter().map(|yarn| yarn.links.len()).sum()
     }
+}
+
+/// Sorts yarns by colours, which are given to the longest yarns first, so that those of one colour are alike in length.
+fn coloured(mut yarns: Vec<LaidYarn>, particle_count: usize) -> (Vec<LaidYarn>, Colours) {
+    yarns.sort_by_key(|yarn| Reverse(yarn.links.len()));
+    let particles = |yarn: &LaidYarn| -> Vec<u32> {
+        yarn.nodes.iter().flat_map(|node| node.particles).collect()
+    };
+    let yarns = yarns.into_iter().map(|yarn| (particles(&yarn), yarn)).collect();
+    let (yarns, colours) =
+        colour_up_to(YARNS_AT_ONCE, particle_count, yarns, |(particles, _)| particles, |_| 0);
+    (yarns.into_iter().map(|(_, yarn)| yarn).collect(), colours)
 }
 
 /// A node of a line, with the longest piece of the line since the node before.

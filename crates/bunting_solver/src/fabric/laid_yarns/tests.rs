@@ -64,6 +64,27 @@ fn no_particle_moves_links_that_are_farther_apart_than_the_band() {
 }
 
 #[test]
+fn yarns_of_one_colour_share_no_particle_and_are_sorted_by_length() {
+    for fabric in fabrics() {
+        let yarns = fabric.laid_yarns();
+        let mut next = 0;
+        for colour in yarns.colours.ranges() {
+            assert_eq!(colour.start, next);
+            next = colour.end;
+            let yarns = &yarns.list[colour.clone()];
+            assert!(yarns.is_sorted_by(|one, next| one.links.len() >= next.links.len()));
+            let mut moved_by: HashMap<u32, usize> = HashMap::new();
+            for (index, yarn) in yarns.iter().enumerate() {
+                for particle in yarn.nodes.iter().flat_map(|node| node.particles) {
+                    assert_eq!(*moved_by.entry(particle).or_insert(index), index);
+                }
+            }
+        }
+        assert_eq!(next, yarns.list.len());
+    }
+}
+
+#[test]
 fn yarns_move_each_particle_and_close_rings() {
     for fabric in fabrics() {
         let yarns = &fabric.laid_yarns().list;

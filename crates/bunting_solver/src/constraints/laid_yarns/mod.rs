@@ -1,0 +1,267 @@
+//! Yarns laid across the triangles of a mesh: the distance constraints along one yarn solved at once, exactly.
+//!
+//! The system is that of `chain.rs`, (J M⁻¹ Jᵀ + α̃) Δλ = −C − α̃ λ, with rows multiplied by |d| and unknowns λ/|d|. Each
+//! node moves with the two particles of an edge, so that a particle moves up to [`BAND`] + 1 links in succession, and the
+//! matrix is a band. It is factorised as L D Lᵀ while it is assembled.
+//!
+//! Cloths side by side have the same yarn in every lane (`side_by_side`). A cloth that is alone has eight yarns of one
+//! colour in the lanes (`across_lanes`). Both have the same bits.
+
+mod across_lanes;
+mod side_by_side;
+
+use core::ops::Range;
+
+pub(crate) use self::across_lanes::YarnPacks;
+use crate::batch::lane_batch::LaneBatch;
+use crate::fabric::{BAND, Coupling, LaidLink};
+use crate::simd::lane::{Lane, Pack};
+use crate::simd::vec3::{Pack3, V3};
+
+/// Least pivot of a yarn's system, as a part of its diagonal element. Smaller: links whose nodes almost coincide move
+/// particles by rounding errors. Larger: inextensible yarns stretch.
+const LEAST_PIVOT: f32 = 1e-4;
+
+/// A link of a laid yarn in a substep.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct YarnLink<P: Pack> {
+    /// Sums of the inverse masses that couple its row to itself and to the rows before, 1/m².
+    couplings: [P; BAND + 1],
+    /// σ l/(Y w h²), with the width w of cloth that the link stands for, 1/m².
+    compliance: P,
+    /// Length under the tension found so far in the substep, m.
+    target: P,
+}
+
+impl<P: Pack> YarnLink<P> {
+    /// A link that does nothing.
+    pub fn new() -> Self {
+        let zero = P::splat(0.0);
+        Self { couplings: [zero; BAND + 1], compliance: zero, target: zero }
+    }
+}
+
+/// A row of a yarn's system, for one link: values that the elimination stores for the substitution.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct BandRow<P: Pack> {
+    /// Vector d from the link's first node to its second, m.
+    pub along: Pack3<P>,
+    /// Row of L left of its diagonal: the k-th element is that of the link k + 1 links before.
+    pub lower: [P; BAND],
+    /// Unknown of this row, λ/|d|, without its terms in the unknowns after it.
+    pub unknown: P,
+    /// Change of the link's target for a unit change of the unknown, α̃ |d|, m.
+    pub target_change: P,
+}
+
+impl<P: Pack> BandRow<P> {
+    /// A row of zeros.
+    pub fn new() -> Self {
+        let zero = P::splat(0.0);
+        Self { along: [zero; 3], lower: [zero; BAND], unknown: zero, target_change: zero }
+    }
+}
+
+impl<P: Pack> LaneBatch<P> {
+    /// Solves all yarns forwards and then backwards in each pass, and adds to the sums of corrections.
+    pub fn solve_laid_yarns(&mut self, passes: u32) {
+        if self.yarn_packs.is_some() {
+            self.solve_yarns_across_lanes(passes);
+        } else {
+            self.solve_yarns_side_by_side(passes);
+        }
+    }
+}
+
+/// Particles as laid yarns move them.
+trait YarnParticles<L: Lane> {
+    /// A node of a yarn in each lane.
+    type Node;
+
+    /// Positions of a node, m.
+    fn node(&self, token: L::Token, node: &Self::Node) -> V3<L>;
+
+    /// Moves a node's particles by a pull on it.
+    fn pull_node(&mut self, token: L::Token, node: &Self::Node, pull: V3<L>);
+}
+
+/// The sum of inverse masses that couple two links, times their factors.
+#[inline(always)]
+fn sum_of_couplings<L: Lane>(
+    token: L::Token,
+    couplings: &[Coupling],
+    inverse_masses: &[L::Pack],
+) -> L {
+    let mut sum = L::splat(token, 0.0);
+    for coupling in couplings {
+        let inverse_mass = L::load(token, &inverse_masses[coupling.particle as usize]);
+        sum = sum.plus_product(inverse_mass, L::splat(token, coupling.factor));
+    }
+    sum
+}
+
+/// The compliance of a link, given that of a square of each family, 1/m².
+#[inline(always)]
+fn compliance<L: Lane>(token: L::Token, link: &LaidLink, of_squares: &[L::Pack; 3]) -> L {
+    let of_square = L::load(token, &of_squares[link.family as usize]);
+    of_square * L::splat(token, link.slenderness)
+}
+
+/// Solves yarns `Y` that move particles `S`.
+struct SolveLaidYarns<'a, P: Pack, Y, S> {
+    yarns: &'a [Y],
+    /// Yarns of one colour share no particle.
+    colours: &'a [Range<usize>],
+    passes: u32,
+    /// The links, yarn by yarn.
+    links: &'a mut [YarnLink<P>],
+    rows: &'a mut [BandRow<P>],
+    particles: S,
+}
+
+impl<P: Pack, Y, S> SolveLaidYarns<'_, P, Y, S> {
+    #[inline(always)]
+    fn solve_all<L: Lane<Pack = P>>(mut self, token: L::Token)
+    where
+        S: YarnParticles<L>,
+        Y: AsRef<[S::Node]>,
+    {
+        let (yarns, colours) = (self.yarns, self.colours);
+        for pass in 0..self.passes {
+            let mut at = 0;
+            for (index, colour) in colours.iter().enumerate() {
+                for yarn in &yarns[colour.clone()] {
+                    let nodes = yarn.as_ref();
+                    let links = at..at + nodes.len() - 1;
+                    at = links.end;
+                    // A pass begins with the colour that ended the pass before, which is not solved again.
+                    if pass == 0 || index > 0 {
+                        self.solve(token, nodes, links);
+                    }
+                }
+            }
+            for (index, colour) in colours.iter().enumerate().rev() {
+                for yarn in yarns[colour.clone()].iter().rev() {
+                    let nodes = yarn.as_ref();
+                    let links = at + 1 - nodes.len()..at;
+                    at = links.start;
+                    if index + 1 < colours.len() {
+                        self.solve(token, nodes, links);
+                    }
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn solve<L: Lane<Pack = P>>(&mut self, token: L::Token, nodes: &[S::Node], links: Range<usize>)
+    where
+        S: YarnParticles<L>,
+    {
+        self.eliminate(token, nodes, links.clone());
+        self.substitute(token, nodes, links);
+    }
+
+    #[inline(always)]
+    fn eliminate<L: Lane<Pack = P>>(
+        &mut self,
+        token: L::Token,
+        nodes: &[S::Node],
+        links: Range<usize>,
+    ) where
+        S: YarnParticles<L>,
+    {
+        let zero = L::splat(token, 0.0);
+        let least = L::splat(token, f32::MIN_POSITIVE);
+        // Of the rows before, the last one first: directions, rows of L, inverse pivots, right sides.
+        let mut along = [V3::splat(token, 0.0); BAND];
+        let mut lower = [[zero; BAND]; BAND];
+        let mut inverse = [zero; BAND];
+        let mut right_sides = [zero; BAND];
+        let particles = &self.particles;
+        let mut from = particles.node(token, &nodes[0]);
+        let links = nodes[1..].iter().zip(&self.links[links]);
+        for ((node, link), row) in links.zip(self.rows.iter_mut()) {
+            let to = particles.node(token, node);
+            let d = to - from;
+            let squared = d.dot(d);
+            let length = squared.sqrt();
+            let compliance = L::load(token, &link.compliance);
+            let own = L::load(token, &link.couplings[0]) + compliance;
+            let diagonal = least.plus_product(own, squared);
+            // u is the row of L D, from the farthest link to the nearest.
+            let mut u = [zero; BAND];
+            for back in 0..BAND {
+                u[back] = L::load(token, &link.couplings[back + 1]) * d.dot(along[back]);
+            }
+            for back in (0..BAND).rev() {
+                for farther in back + 1..BAND {
+                    u[back] = u[back].minus_product(u[farther], lower[back][farther - back - 1]);
+                }
+            }
+            let mut pivot = diagonal;
+            let mut right = L::load(token, &link.target) * length - squared;
+            let mut of_row = [zero; BAND];
+            for back in 0..BAND {
+                of_row[back] = u[back] * inverse[back];
+                pivot = pivot.minus_product(u[back], of_row[back]);
+                right = right.minus_product(of_row[back], right_sides[back]);
+            }
+            let pivot = pivot.max(diagonal * L::splat(token, LEAST_PIVOT));
+            let one_over = L::splat(token, 1.0) / pivot;
+            d.store(&mut row.along);
+            for (lower, stored) in of_row.into_iter().zip(&mut row.lower) {
+                lower.store(stored);
+            }
+            (right * one_over).store(&mut row.unknown);
+            (compliance * length).store(&mut row.target_change);
+            for back in (1..BAND).rev() {
+                along[back] = along[back - 1];
+                lower[back] = lower[back - 1];
+                inverse[back] = inverse[back - 1];
+                right_sides[back] = right_sides[back - 1];
+            }
+            (along[0], lower[0], inverse[0], right_sides[0]) = (d, of_row, one_over, right);
+            from = to;
+        }
+    }
+
+    /// Substitutes from the last links to the first, and moves the particles of each node by the tensions of its two links.
+    #[inline(always)]
+    fn substitute<L: Lane<Pack = P>>(
+        &mut self,
+        token: L::Token,
+        nodes: &[S::Node],
+        links: Range<usize>,
+    ) where
+        S: YarnParticles<L>,
+    {
+        let zero = L::splat(token, 0.0);
+        let mut unknowns = [zero; BAND];
+        let mut lower = [[zero; BAND]; BAND];
+        let mut next_tension = V3::splat(token, 0.0);
+        let rows = self.rows[..links.len()].iter().zip(&mut self.links[links]);
+        for ((row, link), node) in rows.zip(&nodes[1..]).rev() {
+            let mut unknown = L::load(token, &row.unknown);
+            for after in 0..BAND {
+                unknown = unknown.minus_product(lower[after][after], unknowns[after]);
+            }
+            let change = L::load(token, &row.target_change);
+            let target = L::load(token, &link.target).minus_product(change, unknown);
+            target.store(&mut link.target);
+            let tension = V3::load(token, &row.along) * unknown;
+            self.particles.pull_node(token, node, tension - next_tension);
+            for after in (1..BAND).rev() {
+                unknowns[after] = unknowns[after - 1];
+                lower[after] = lower[after - 1];
+            }
+            unknowns[0] = unknown;
+            for (lower, stored) in lower[0].iter_mut().zip(&row.lower) {
+                *lower = L::load(token, stored);
+            }
+            next_tension = tension;
+        }
+        let pull = V3::splat(token, 0.0) - next_tension;
+        self.particles.pull_node(token, &nodes[0], pull);
+    }
+}

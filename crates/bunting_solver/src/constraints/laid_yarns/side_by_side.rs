@@ -1,0 +1,91 @@
+//! Laid yarns of cloths side by side: the same yarn of each cloth in the lanes.
+
+use super::{SolveLaidYarns, YarnLink, YarnParticles, compliance, sum_of_couplings};
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::layout::{Particles, Positions};
+use crate::constraints::corrections::CorrectedParticles;
+use crate::fabric::{LaidYarn, Node};
+use crate::simd::lane::{Kernel, Lane, Pack};
+use crate::simd::vec3::V3;
+
+impl<P: Pack> LaneBatch<P> {
+    pub(super) fn solve_yarns_side_by_side(&mut self, passes: u32) {
+        let yarns = self.fabric.laid_yarns();
+        P::run(BeginLinks {
+            yarns: &yarns.list,
+            inverse_masses: &self.masses.inverse,
+            compliance: &self.layout.modulus_compliance,
+            links: &mut self.yarn_links,
+        });
+        P::run(SolveLaidYarns {
+            yarns: &yarns.list,
+            colours: yarns.colours.ranges(),
+            passes,
+            links: &mut self.yarn_links,
+            rows: &mut self.band_rows,
+            particles: CorrectedParticles {
+                inverse_masses: &self.masses.inverse,
+                predicted: self.positions.packs(),
+                correction: &mut self.correction,
+            },
+        });
+    }
+}
+
+/// Computes what holds of the links in a substep.
+struct BeginLinks<'a, P: Pack> {
+    yarns: &'a [LaidYarn],
+    inverse_masses: &'a [P],
+    /// Compliance of a square of each family, σ/(Y h²), 1/m².
+    compliance: &'a [P; 3],
+    links: &'a mut [YarnLink<P>],
+}
+
+impl<P: Pack> Kernel<P> for BeginLinks<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let mut links = self.links.iter_mut();
+        for yarn in self.yarns {
+            let mut couplings = yarn.couplings.as_slice();
+            for (laid, link) in yarn.links.iter().zip(&mut links) {
+                for (&count, sum) in laid.couplings.iter().zip(&mut link.couplings) {
+                    let (of_row, rest) = couplings.split_at(usize::from(count));
+                    couplings = rest;
+                    let of_links: L = sum_of_couplings(token, of_row, self.inverse_masses);
+                    of_links.store(sum);
+                }
+                let compliance: L = compliance(token, laid, self.compliance);
+                compliance.store(&mut link.compliance);
+                link.target = P::splat(laid.rest_length);
+            }
+        }
+    }
+}
+
+impl<P: Pack> Kernel<P> for SolveLaidYarns<'_, P, LaidYarn, CorrectedParticles<'_, P>> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        self.solve_all::<L>(token);
+    }
+}
+
+impl<L: Lane> YarnParticles<L> for CorrectedParticles<'_, L::Pack> {
+    type Node = Node;
+
+    #[inline(always)]
+    fn node(&self, token: L::Token, node: &Node) -> V3<L> {
+        let [a, b] = node.particles;
+        let a: V3<L> = self.position(token, a);
+        let b: V3<L> = self.position(token, b);
+        (a * L::splat(token, node.parts[0])).plus_scaled(b, L::splat(token, node.parts[1]))
+    }
+
+    #[inline(always)]
+    fn pull_node(&mut self, token: L::Token, node: &Node, pull: V3<L>) {
+        for (&particle, &part) in node.particles.iter().zip(&node.parts) {
+            let inverse_mass: L = self.inverse_mass(token, particle);
+            let factor = inverse_mass * L::splat(token, part);
+            self.correct(token, particle, pull, (pull, factor));
+        }
+    }
+}

@@ -1,0 +1,25 @@
+//! Four vectors of x, y, z and a fourth number, and the four values of each of their coordinates.
+
+use fearless_simd::{Simd, SimdBase, f32x4};
+
+/// The coordinates x, y and z of four vectors.
+#[inline(always)]
+pub(crate) fn coordinates<S: Simd>([a, b, c, d]: [f32x4<S>; 4]) -> [f32x4<S>; 3] {
+    let (ac_low, ac_high) = (a.zip_low(c), a.zip_high(c));
+    let (bd_low, bd_high) = (b.zip_low(d), b.zip_high(d));
+    [ac_low.zip_low(bd_low), ac_low.zip_high(bd_low), ac_high.zip_low(bd_high)]
+}
+
+/// The four vectors with given coordinates, and zero in the fourth place.
+#[inline(always)]
+pub(crate) fn vectors<S: Simd>(token: S, [x, y, z]: [f32x4<S>; 3]) -> [f32x4<S>; 4] {
+    let zero = <f32x4<S> as SimdBase<S>>::splat(token, 0.0);
+    let (xz_low, xz_high) = (x.zip_low(z), x.zip_high(z));
+    let (yw_low, yw_high) = (y.zip_low(zero), y.zip_high(zero));
+    [
+        xz_low.zip_low(yw_low),
+        xz_low.zip_high(yw_low),
+        xz_high.zip_low(yw_high),
+        xz_high.zip_high(yw_high),
+    ]
+}
