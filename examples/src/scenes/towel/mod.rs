@@ -15,10 +15,10 @@ use bunting_scenes::Design;
 use bunting_solver::LinkFamily;
 
 /// Position of the viewer, m.
-const EYE: Vec3 = Vec3::new(0.5, 1.25, 2.1);
+const EYE: Vec3 = Vec3::new(0.4, 1.1, 1.8);
 
 /// The point at which the viewer looks, m.
-const CENTRE: Vec3 = Vec3::new(0.0, 0.5, 0.0);
+const CENTRE: Vec3 = Vec3::new(-0.1, 0.5, 0.0);
 
 /// Middle of the rail, m, which lies along x.
 const RAIL: Vec3 = Vec3::new(-0.45, 0.95, 0.0);
