@@ -12,6 +12,7 @@ use bunting_examples::scenes::flags::Flags;
 use bunting_examples::scenes::parasol::Parasols;
 use bunting_examples::scenes::storm::Storm;
 use bunting_examples::scenes::swatches::Swatches;
+use bunting_examples::scenes::towel::Towels;
 use bunting_examples::{Example, Options};
 use clap::ValueEnum;
 
@@ -27,6 +28,7 @@ pub enum Exhibit {
     Parasol,
     Drape,
     Curtain,
+    Towel,
     Swatches,
     Cape,
     CustomConstraint,
@@ -42,6 +44,7 @@ impl Exhibit {
             Self::Parasol => 3.0,
             Self::Drape => 4.4,
             Self::Curtain => 5.0,
+            Self::Towel => 4.0,
             Self::Swatches => 2.5,
             Self::Cape => 8.0,
             Self::CustomConstraint => 2.0,
@@ -64,6 +67,7 @@ impl Exhibit {
             Self::Parasol => show(&Parasols, &options),
             Self::Drape => show(&Drape, &options),
             Self::Curtain => show(&Curtain, &options),
+            Self::Towel => show(&Towels, &options),
             Self::Swatches => show(&Swatches, &options),
             Self::Cape => show(&Cape, &options),
             Self::CustomConstraint => show(&CustomConstraint, &options),

@@ -9,3 +9,4 @@ pub mod flags;
 pub mod parasol;
 pub mod storm;
 pub mod swatches;
+pub mod towel;

@@ -1,0 +1,147 @@
+//! Towels that fold on themselves: one over a rail, one on the floor.
+
+#[cfg(feature = "render")]
+mod draw;
+
+use std::f32::consts::FRAC_PI_2;
+
+use crate::limits::{Limit, LimitRecord, greatest};
+use crate::strain::Strain;
+use crate::{Example, Record};
+use bevy::ecs::schedule::ScheduleLabel;
+use bevy::prelude::*;
+use bevy_bunting::prelude::*;
+use bunting_scenes::Design;
+use bunting_solver::LinkFamily;
+
+/// Position of the viewer, m.
+const EYE: Vec3 = Vec3::new(0.4, 1.1, 1.8);
+
+/// The point at which the viewer looks, m.
+const CENTRE: Vec3 = Vec3::new(-0.1, 0.5, 0.0);
+
+/// Middle of the rail, m, which lies along x.
+const RAIL: Vec3 = Vec3::new(-0.45, 0.95, 0.0);
+
+/// Half the length and radius of the rail, m.
+const RAIL_SIZE: [f32; 2] = [0.36, 0.018];
+
+/// Extents of a towel, m.
+const TOWEL: Vec2 = Vec2::new(0.5, 1.0);
+
+/// Particles along the edges of a towel.
+const PARTICLES: [u32; 2] = [21, 41];
+
+/// Distance that layers keep, m.
+const LAYERS: f32 = 5e-3;
+
+/// Height from which the towels fall, m: onto the rail, and onto the floor.
+const DROPS: [f32; 2] = [0.05, 0.05];
+
+/// Angle by which the second towel leans, rad.
+const LEAN: f32 = 0.08;
+
+/// Least number of substeps in a second. Fewer: in each substep the weight presses the layers of a heap into one another, as
+/// far as it falls in a substep, and moving them apart again strains the links. With 120 the towel on the floor is strained
+/// by 2 % at rest.
+const SUBSTEP_RATE: u32 = 720;
+
+/// Limit of the mean strain of each towel: larger strain would be visible.
+const STRAIN_LIMIT: f32 = 0.01;
+
+/// Limit of the part of [`LAYERS`] that particles of different layers are too near.
+const NEARNESS_LIMIT: f32 = 0.7;
+
+/// Two towels.
+#[derive(Clone, Copy, Debug)]
+pub struct Towels;
+
+impl Example for Towels {
+    const NAME: &'static str = "Towel";
+    const SECONDS: f64 = 6.0;
+
+    fn build(&self, app: &mut App, _schedule: impl ScheduleLabel) {
+        let finest = StepLimits { rate: SUBSTEP_RATE, ..StepLimits::default() };
+        app.insert_resource(ClothSettings { steps: vec![finest], ..ClothSettings::default() });
+        let mut commands = app.world_mut().commands();
+        let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
+        commands.spawn((LodViewer::default(), view));
+        commands.spawn((ClothCollider::ground(), Transform::default()));
+        let along_rail = Quat::from_rotation_z(FRAC_PI_2);
+        let rail = ClothCollider::capsule(RAIL_SIZE[0], RAIL_SIZE[1]);
+        commands.spawn((rail, Transform::from_translation(RAIL).with_rotation(along_rail)));
+        // One lies level above the rail, a little askew and off its middle; one stands on its edge.
+        let turn = Quat::from_rotation_y(0.06) * Quat::from_rotation_x(-FRAC_PI_2);
+        let corner = turn * Vec3::new(-0.5 * TOWEL.x, 0.46 * TOWEL.y, 0.0);
+        let above = RAIL + DROPS[0] * Vec3::Y + corner;
+        let level = Transform::from_translation(above).with_rotation(turn);
+        let standing = Transform::from_xyz(0.1, TOWEL.y + DROPS[1], 0.0)
+            .with_rotation(Quat::from_rotation_x(LEAN));
+        for (place, stripe) in [(level, [52, 104, 160]), (standing, [200, 90, 50])] {
+            commands.spawn((
+                ClothMesh::grid(PARTICLES[0], PARTICLES[1], TOWEL.x, TOWEL.y),
+                ClothMaterial(FabricMaterial { area_density: 0.35, ..FabricMaterial::COTTON }),
+                SelfCollision { thickness: LAYERS, ..default() },
+                LodSet { pinned: Some(0), ..default() },
+                place,
+                Design::Chequers { colours: [[238, 236, 230], stripe], rows: 12 },
+            ));
+        }
+    }
+
+    fn record(&self, _ticks_per_second: usize) -> impl Record {
+        LimitRecord::new(measure)
+    }
+
+    #[cfg(feature = "render")]
+    fn stage(&self) -> crate::render::stage::Stage {
+        crate::render::stage::Stage::SMALL
+    }
+
+    #[cfg(feature = "render")]
+    fn draw(&self, app: &mut App) {
+        app.add_plugins(draw::plugin);
+    }
+
+    #[cfg(feature = "render")]
+    fn control(&self, app: &mut App) {
+        crate::render::control_orbit(app, EYE, CENTRE);
+    }
+}
+
+/// Strain of the towels, and how much too near particles of their layers are.
+fn measure(world: &mut World) -> Vec<Limit> {
+    let [mut strain, mut nearness] = [0.0_f32; 2];
+    for state in world.query::<&ClothState>().iter(world) {
+        let Some(fabric) = state.fabric() else { continue };
+        let mut cloth = Strain::default();
+        cloth.add(state, LinkFamily::Warp);
+        cloth.add(state, LinkFamily::Weft);
+        strain = greatest([strain, cloth.mean() as f32]);
+        nearness = greatest([nearness, 1.0 - nearest(state.positions(), fabric.rest_positions())]);
+    }
+    vec![
+        Limit { name: "mean strain of a towel", value: strain, limit: STRAIN_LIMIT },
+        Limit {
+            name: "part of the layers' distance that is lacking",
+            value: nearness,
+            limit: NEARNESS_LIMIT,
+        },
+    ]
+}
+
+/// Distance of the two particles of different layers that are nearest to each other, as a part of [`LAYERS`].
+fn nearest(positions: &[Vec3], rest: &[Vec3]) -> f32 {
+    /// Distance at rest from which on particles may be in different layers, m.
+    const APART: f32 = 0.1;
+    let mut least = 1.0_f32;
+    for (index, (at, at_rest)) in positions.iter().zip(rest).enumerate() {
+        for (other, other_at_rest) in positions[..index].iter().zip(rest) {
+            let distance = at.distance(*other) / LAYERS;
+            if distance < least && at_rest.distance(*other_at_rest) > APART {
+                least = distance;
+            }
+        }
+    }
+    least
+}
