@@ -1,6 +1,6 @@
 //! A user's own force and constraint: a streamer in a swinging glass tube with a vortex of air.
 //!
-//! [`blow`] is a force: it accelerates particles towards the velocity of the vortex. [`hold_inside`] is a
+//! `blow` is a force: it accelerates particles towards the velocity of the vortex. `hold_inside` is a
 //! constraint: it moves particles that have left the tube back to its wall. Both run in each substep, see
 //! [`ClothParticles`].
 
