@@ -21,6 +21,12 @@ const ENDS: f32 = 0.6;
 /// Length of a yarn behind its end that it may be near to, in distances of yarns.
 const OWN_TAIL: f32 = 2.0;
 
+/// Most points of a piece by which lines beside it are found.
+const MOST_MARKS: f32 = 4.0;
+
+/// Least distance of such points on a line, in distances of lines.
+const LEAST_MARK: f32 = 0.25;
+
 /// Most triangles that a line to a neighbouring yarn's start crosses.
 const MOST_STEPS_ASIDE: usize = 64;
 
@@ -112,7 +118,7 @@ impl<'a> Layer<'a> {
         let towards = way.towards;
         let mut line = Line::default();
         let mut heading = start;
-        let mut length = 0.0;
+        let (mut length, mut unmarked) = (0.0, 0.0);
         loop {
             let exit @ (crossing, _) = self.faces.exit(&heading);
             let passed = crossing.at - heading.at;
@@ -128,17 +134,22 @@ impl<'a> Layer<'a> {
             }
             let family = self.directions.family(heading.triangle, heading.direction, towards);
             line.pieces.push(Piece { triangle: heading.triangle, family, length: passed.length() });
-            // Long pieces are marked all along.
-            let marks = (2.0 * passed.length() / distance).ceil().max(1.0);
-            for mark in 0..marks as u32 {
-                let at = heading.at + passed * ((mark as f32 + 0.5) / marks);
-                headings.push(Heading { at, side: None, ..heading });
-                self.near.add(Passing {
-                    at,
-                    direction: heading.direction,
-                    normal: self.faces.normals[heading.triangle as usize],
-                    before: length,
-                });
+            // Long pieces are marked all along, and of short ones some.
+            unmarked += passed.length();
+            if length == 0.0 || unmarked > LEAST_MARK * distance {
+                let marks = (2.0 * passed.length() / distance).ceil().clamp(1.0, MOST_MARKS);
+                for mark in 0..marks as u32 {
+                    let at = heading.at + passed * ((mark as f32 + 0.5) / marks);
+                    headings.push(Heading { at, side: None, ..heading });
+                    self.near.add(Passing {
+                        at,
+                        direction: heading.direction,
+                        normal: self.faces.normals[heading.triangle as usize],
+                        before: length,
+                        reach: unmarked.max(0.5 * passed.length() / marks),
+                    });
+                }
+                unmarked = 0.0;
             }
             length += passed.length();
             line.crossings.push(crossing);

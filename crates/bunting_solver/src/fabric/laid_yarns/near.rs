@@ -18,6 +18,8 @@ pub(super) struct Passing {
     pub normal: Vec3,
     /// Length of the line before this point, m.
     pub before: f32,
+    /// Length of the line to each side that this point stands for, m.
+    pub reach: f32,
 }
 
 /// Points of all lines, in cubic cells.
@@ -26,12 +28,14 @@ pub(super) struct Near {
     /// Points with the number of their line.
     cells: HashMap<IVec3, Vec<(u32, Passing)>>,
     line: u32,
+    /// Greatest reach of any point, m.
+    reach: f32,
 }
 
 impl Near {
     /// No points; cells have sides of this length, m.
     pub fn new(cell: f32) -> Self {
-        Self { cell, cells: HashMap::new(), line: 0 }
+        Self { cell, cells: HashMap::new(), line: 0, reach: 0.0 }
     }
 
     /// Points that are added from now on belong to a new line.
@@ -40,6 +44,7 @@ impl Near {
     }
 
     pub fn add(&mut self, passing: Passing) {
+        self.reach = self.reach.max(passing.reach);
         let cell = (passing.at / self.cell).floor().as_ivec3();
         self.cells.entry(cell).or_default().push((self.line, passing));
     }
@@ -54,12 +59,12 @@ impl Near {
         within: f32,
         before: f32,
     ) -> bool {
-        self.around(at, within).any(|(line, passing)| {
+        self.around(at, within.max(self.reach)).any(|(line, passing)| {
             let away = passing.at - at;
             let along = away.dot(passing.direction);
             let aside = (away - passing.direction * along).length();
             aside < within
-                && along.abs() < within
+                && along.abs() < within.max(passing.reach)
                 && passing.direction.dot(direction).abs() > ALIKE
                 && passing.normal.dot(normal) > ALIKE
                 && (*line != self.line || passing.before < before)
@@ -74,13 +79,18 @@ impl Near {
         })
     }
 
+    /// The points in the cells around a place; all points, if they are fewer than these cells, as in meshes of slivers.
     fn around(&self, at: Vec3, within: f32) -> impl Iterator<Item = &(u32, Passing)> {
         let [low, high] =
             [-within, within].map(|reach| ((at + reach) / self.cell).floor().as_ivec3());
+        let takes_all = (2.0 * within / self.cell + 2.0).powi(3) > self.cells.len() as f32;
+        let all = takes_all.then(|| self.cells.values().flatten());
+        let high = if takes_all { low - 1 } else { high };
         let cells = (low.x..=high.x).flat_map(move |x| {
             (low.y..=high.y).flat_map(move |y| (low.z..=high.z).map(move |z| IVec3::new(x, y, z)))
         });
-        cells.filter_map(|cell| self.cells.get(&cell)).flatten()
+        let near = cells.filter_map(|cell| self.cells.get(&cell)).flatten();
+        all.into_iter().flatten().chain(near)
     }
 }
 

@@ -12,6 +12,10 @@ use crate::fabric::mesh::{RestMesh, Surface};
 /// one another. Larger: particles between lines are held by few; with 1, one of three cylinders sank 9 % too far.
 const SPACING: f32 = 0.9;
 
+/// Least distance of lines, in square roots of the areas of triangles. Smaller: a mesh of slivers has as many lines as slivers,
+/// and takes long to build. Larger: long cells have fewer lines than rows.
+const LEAST: f32 = 0.35;
+
 /// Rounds in which lengths and areas are summed over the triangles around each particle. Fewer: links that happen to lie
 /// where few others do are stiffer. More: a graded mesh has its mean's stiffness.
 const ROUNDS: usize = 2;
@@ -50,9 +54,11 @@ impl Spacing {
             corners.iter().map(around).sum::<f32>() / 3.0
         };
         let widths: Vec<f32> = mesh.triangles.iter().map(|at| mean(&widths, at)).collect();
-        let areas = mesh.triangles.iter().map(|at| mean(&areas, at));
-        let of_crossings = areas.zip(&widths).map(|(area, width)| area / width).collect();
-        Self { of_lines: widths.iter().map(|width| SPACING * width).collect(), of_crossings }
+        let areas: Vec<f32> = mesh.triangles.iter().map(|at| mean(&areas, at)).collect();
+        let both = || widths.iter().zip(&areas);
+        let of_lines = both().map(|(width, area)| (SPACING * width).max(LEAST * area.sqrt()));
+        let of_crossings = both().map(|(width, area)| area / width);
+        Self { of_lines: of_lines.collect(), of_crossings: of_crossings.collect() }
     }
 }
 
