@@ -25,7 +25,7 @@ const OWN_TAIL: f32 = 2.0;
 const MOST_MARKS: f32 = 4.0;
 
 /// Least distance of such points on a line, in distances of lines.
-const LEAST_MARK: f32 = 0.25;
+const LEAST_MARK: f32 = 0.05;
 
 /// Most triangles that a line to a neighbouring yarn's start crosses.
 const MOST_STEPS_ASIDE: usize = 64;
@@ -146,7 +146,7 @@ impl<'a> Layer<'a> {
                         direction: heading.direction,
                         normal: self.faces.normals[heading.triangle as usize],
                         before: length,
-                        reach: unmarked.max(0.5 * passed.length() / marks),
+                        reach: (unmarked - passed.length()).max(0.5 * passed.length() / marks),
                     });
                 }
                 unmarked = 0.0;
