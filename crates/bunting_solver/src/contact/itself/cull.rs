@@ -20,12 +20,12 @@ const BESIDE: f32 = 0.05;
 /// other.
 pub(in crate::contact) fn drop_distant(pairs: &mut Pairs, particles: &Particles, thickness: f32) {
     let positions = [&particles.start[..], &particles.end[..]];
-    let far = |kind: Kind| FAR * kind.part() * thickness;
+    let far = FAR * thickness;
     let Pairs { particles_triangles, edges_edges, .. } = pairs;
     let kind = Kind::ParticleTriangle;
-    Pack8::run(Drop { kind, pairs: particles_triangles, positions, far: far(kind) });
+    Pack8::run(Drop { kind, pairs: particles_triangles, positions, far });
     let kind = Kind::EdgeEdge;
-    Pack8::run(Drop { kind, pairs: edges_edges, positions, far: far(kind) });
+    Pack8::run(Drop { kind, pairs: edges_edges, positions, far });
 }
 
 struct Drop<'a> {
@@ -181,7 +181,7 @@ mod tests {
                 let (start, end) = (of(&particles.start), of(&particles.end));
                 let passed = kind.passed(start, end);
                 let near = kind.near(end, passed);
-                if near.is_some_and(|near| near.gap < FAR * kind.part() * THICKNESS) {
+                if near.is_some_and(|near| near.gap < FAR * THICKNESS) {
                     touching += 1;
                     assert!(left.contains(pair), "{kind:?}: {pair:?}");
                 }

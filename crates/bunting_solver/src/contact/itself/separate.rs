@@ -17,11 +17,6 @@ const RECOVERY: f32 = 0.5;
 /// are pushed by rounding errors.
 const REST_PART: f32 = 0.8;
 
-/// Part of the distance of layers that edges keep from one another. Particles over triangles keep layers apart; edges only
-/// prevent that creases cut through one another between the particles. Larger: layers at rest have several times as many
-/// contacts. Smaller: sharp creases are returned by rigid zones.
-const OF_EDGES: f32 = 0.5;
-
 /// Distance from which on features are no contact, as a multiple of what they keep: other contacts move particles by about
 /// the thickness.
 pub(in crate::contact) const FAR: f32 = 2.0;
@@ -111,13 +106,12 @@ impl<R: Rules> Spacing<'_, R> {
         let (start, end) = (of(&particles.start), of(&particles.end));
         let passed = kind.passed(start, end);
         let Keep { distance, friction, rest } = self.rules.keep(pair);
-        let thickness = kind.part() * distance;
-        let near = kind.near(end, passed).filter(|near| near.gap < FAR * thickness)?;
+        let near = kind.near(end, passed).filter(|near| near.gap < FAR * distance)?;
         let at_rest = rest.map_or(f32::INFINITY, |rest| REST_PART * kind.distance(rest));
         Some(Contact {
             particles: pair,
             kind,
-            distance: thickness.min(at_rest).min(kind.distance(start) + RECOVERY * self.step),
+            distance: distance.min(at_rest).min(kind.distance(start) + RECOVERY * self.step),
             friction,
             passed,
             normal: near.normal,
@@ -128,15 +122,5 @@ impl<R: Rules> Spacing<'_, R> {
             stopped: 0.0,
             impact: 0.0,
         })
-    }
-}
-
-impl Kind {
-    /// Part of the distance of layers that features keep.
-    pub fn part(self) -> f32 {
-        match self {
-            Self::ParticleTriangle => 1.0,
-            Self::EdgeEdge => OF_EDGES,
-        }
     }
 }
