@@ -8,7 +8,7 @@ use crate::contact::cloths::group::ClothGroup;
 use crate::contact::solve::Contact;
 use crate::simd::lane::Pack;
 
-/// Distance beyond the clearance up to which a particle touches a collider, m: other contacts and rounding lift it.
+/// Distance beyond the clearance, or the distance of layers, up to which cloth touches, m: other contacts and rounding lift it.
 const TOUCHING: f32 = 1e-4;
 
 /// What a cloth touches.
@@ -55,7 +55,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             }));
         }
         if let Some(own) = &state.self_contacts {
-            let touching = own.layers.touching();
+            let touching = own.layers.touching(TOUCHING);
             points.extend(touching.map(|(_, at, normal)| ContactPoint {
                 what: Touched::Itself,
                 at,
@@ -71,7 +71,7 @@ impl ClothGroup {
     #[must_use]
     pub fn contact_points(&self, member: usize) -> Vec<ContactPoint> {
         let mut points = Vec::new();
-        for (particles, at, normal) in self.layers().touching() {
+        for (particles, at, normal) in self.layers().touching(TOUCHING) {
             let of = [particles[0], particles[3]].map(|particle| self.member_of(particle));
             let what = if of[0] == of[1] { Touched::Itself } else { Touched::Cloth };
             let normal = if of[0] == member { normal } else { -normal };

@@ -89,9 +89,7 @@ impl Fabric {
         let links = Links::of(&mesh, grid.as_ref(), None, &surface.corner_uv);
         // Only a grid is solved along its own links.
         let (yarns, laid_yarns) = match (&grid, &background) {
-            (Some(_), _) => {
-                (Yarns::of(&mesh.positions, &links.list), LaidYarns::of(&mesh, surface))
-            }
+            (Some(_), _) => (Yarns::of(&mesh.positions, &links.list), LaidYarns::default()),
             (None, Some(_)) => Default::default(),
             (None, None) => (Yarns::default(), LaidYarns::of(&mesh, surface)),
         };

@@ -62,6 +62,11 @@ impl Contact {
         self.is_facing && self.gap(particles) < PRESSED * self.distance
     }
 
+    /// Whether the features are as near as they may be, given what counts as such, m.
+    pub fn is_touching(&self, particles: &Particles, within: f32) -> bool {
+        self.is_facing && self.gap(particles) < self.distance + within
+    }
+
     /// Distance of the features along the normal, m.
     fn gap(&self, particles: &Particles) -> f32 {
         relative(&particles.end, self.particles, self.factors).dot(self.normal)

@@ -70,10 +70,10 @@ impl LayerContacts {
         self.contacts.pressed_particles(&self.particles)
     }
 
-    /// The contacts that moved features apart in the last substep: their particles, a point of the first feature, m, and the
-    /// unit normal on its side.
-    pub fn touching(&self) -> impl Iterator<Item = ([u32; 4], Vec3, Vec3)> {
-        self.contacts.touching().map(|contact| {
+    /// The contacts of features that are as near as they may be, given what counts as such, m: their particles, a point of
+    /// the first feature, m, and the unit normal on its side.
+    pub fn touching(&self, within: f32) -> impl Iterator<Item = ([u32; 4], Vec3, Vec3)> {
+        self.contacts.touching(&self.particles, within).map(|contact| {
             let first = contact.particles.iter().zip(contact.factors);
             let first = first.filter(|(_, factor)| *factor > 0.0);
             let at = |particle: u32| self.particles.end[particle as usize];

@@ -65,9 +65,9 @@ impl Contacts {
         }
     }
 
-    /// The contacts that have moved features apart.
-    pub fn touching(&self) -> impl Iterator<Item = &Contact> {
-        self.contacts.iter().filter(|contact| contact.depth > 0.0)
+    /// The contacts of features that are as near as they may be, given what counts as such, m.
+    pub fn touching(&self, particles: &Particles, within: f32) -> impl Iterator<Item = &Contact> {
+        self.contacts.iter().filter(move |contact| contact.is_touching(particles, within))
     }
 
     /// Particles of features that are still much nearer than they must be.
