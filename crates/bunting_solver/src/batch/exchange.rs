@@ -104,6 +104,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 states.iter().map(|&(lane, state)| (lane, vectors(state))).collect();
             self.layout.write(packs, &of_cloths);
         }
+        if !self.correction.is_empty() {
+            let left_out = |state| Some(&history(state)?.left_out[..]).filter(|it| !it.is_empty());
+            let of_cloths: Vec<OfCloth> =
+                states.iter().map(|&(lane, state)| (lane, left_out(state))).collect();
+            self.layout.write(&mut self.correction, &of_cloths);
+        }
     }
 
     /// Restores the state of a lane besides its vectors.

@@ -63,8 +63,11 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     /// Length that each link has under the tension found so far in the substep, l − α̃ λ, m, in the order in
     /// which the scheme solves links.
     pub link_target: Vec<P>,
-    /// Sums of corrections in a phase of a substep, m; empty unless the fabric is a mesh.
+    /// Corrections that are not yet added to the positions, m, and what the positions' rounding has left out; empty
+    /// unless the fabric [sums corrections](Fabric::sums_corrections).
     pub correction: Vec<Pack3<P>>,
+    /// These when positions had been predicted, m.
+    pub predicted_correction: Vec<Pack3<P>>,
     /// Scratch array of predicted positions, m, for lanes that bend stiffly.
     pub predicted_position: Vec<Pack3<P>>,
     /// Scratch array of displacements by stretch, m, for lanes that bend stiffly.
@@ -155,6 +158,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             yarn_links.resize(fabric.laid_yarns().link_count(), YarnLink::new());
             band_rows.resize(fabric.laid_yarns().longest(), BandRow::new());
         }
+        let correction = if fabric.sums_corrections() { zero.clone() } else { Vec::new() };
         let of_lanes = LaneFabric::new(Arc::clone(&fabric), 0.0);
         let mut batch = Self {
             numbers: FabricNumbers::new(&of_lanes),
@@ -166,7 +170,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             older_displacement: zero.clone(),
             older_velocity: zero.clone(),
             oldest_velocity: zero.clone(),
-            correction: Vec::new(),
+            predicted_correction: correction.clone(),
+            correction,
             predicted_position: Vec::new(),
             stretch_shift: Vec::new(),
             velocity: zero,

@@ -37,6 +37,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 integrator,
                 displacements: [last, older],
                 older_velocities: [newer, oldest],
+                left_out: self.left_out_of(lane),
                 relaxation: self.relaxation_of(lane),
                 nodes: self.background.as_ref().map(nodes),
             });
@@ -55,6 +56,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             located.map(|(pack, lane)| lane3(&packs[pack], lane)).collect()
         };
         ClothSnapshot::new(read(self.positions.packs()), read(&self.velocity))
+    }
+
+    /// What the rounding of a lane's positions has left out, m; empty where it is not kept.
+    fn left_out_of(&self, lane: usize) -> Vec<Vec3> {
+        if self.correction.is_empty() { Vec::new() } else { self.read(&self.correction, lane) }
     }
 
     fn read(&self, packs: &[Pack3<P>], lane: usize) -> Vec<Vec3> {

@@ -81,7 +81,6 @@ impl<P: Pack> LaneBatch<P> {
     /// Solves the chains of all colours of a grid with long cells, diagonals included, forwards and then backwards in each
     /// pass.
     pub fn solve_chains_both_ways(&mut self, passes: u32) {
-        self.sum_corrections();
         let colours = self.layout.chains(&self.fabric).colours.len();
         for pass in 0..passes {
             // A pass begins with the colour that ended the pass before, which is not solved again.

@@ -300,6 +300,15 @@ impl Fabric {
         !self.chains.cells.is_empty()
     }
 
+    /// Whether corrections of particles are summed by themselves (`constraints/corrections.rs`): on grids without such
+    /// cells, and on meshes except where the particles only follow the nodes of a background grid.
+    pub(crate) fn sums_corrections(&self) -> bool {
+        match &self.background {
+            Some(background) => !background.transfer.is_whole,
+            None => !self.has_shear_cells(),
+        }
+    }
+
     /// Strips of a narrow grid, each row by row; none of other fabrics.
     pub(crate) fn strips(&self) -> &[Vec<StripRow>] {
         &self.strips

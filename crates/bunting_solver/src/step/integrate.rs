@@ -41,6 +41,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.sum_air_on_pins();
         }
         let sums = self.predict(feels_air);
+        if self.clock.settings.scheme == Scheme::Yarns {
+            self.begin_corrections();
+        }
         self.draw_held();
         sums
     }

@@ -18,7 +18,7 @@ mod move_pins;
 pub(crate) mod moving_pins;
 mod nodes;
 pub(crate) mod parameters;
-mod predict;
+pub(crate) mod predict;
 mod settings;
 mod velocity;
 

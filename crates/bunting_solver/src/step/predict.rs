@@ -21,7 +21,7 @@ use crate::step::parameters::Parameters;
 /// power of two, the constant rounds both signs alike. Its last place is odd, so that it is half a unit in
 /// the last place of no larger value: a tie to even would change every odd one. Smaller: products of three
 /// values are subnormal. Larger: the rounding is visible in slow motion.
-const ROUNDING: f32 = 1.430_511_6e-6;
+pub(crate) const ROUNDING: f32 = 1.430_511_6e-6;
 
 /// Rounding constant for the change of velocity by air in a substep, m/s, which is squared: it rounds to
 /// multiples of 2⁻⁵³.

@@ -33,6 +33,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let turns = has_chains && self.numbers.pole.is_some();
         let mut turn = self.external_moments();
         self.correct_velocities(turns, &mut turn);
+        if has_chains {
+            self.end_corrections();
+        }
         if turns {
             self.store_pole_turn(&turn);
         }

@@ -1,4 +1,4 @@
-//! Free meshes at rest, without loads and damping: any motion is energy gained by an error.
+//! Meshes at rest, free or held at a vertex, without loads and damping: any motion is energy gained by an error.
 
 use std::f32::consts::TAU;
 use std::sync::Arc;
@@ -16,34 +16,65 @@ use crate::stability::case::HardCase;
 /// Radius of the meshes, m.
 const RADIUS: f32 = 0.3;
 
-/// Bowl and ball, at the default number of substeps and at eight.
+/// Width of the Möbius strip, m.
+const WIDTH: f32 = 0.2;
+
+/// Bowl, ball and Möbius strip, and the strip held at a vertex, at the default number of substeps and at eight.
 pub(super) fn cases(quick: bool) -> Vec<HardCase> {
     let seconds = if quick { 10.0 } else { 30.0 };
     let rings = if quick { 8 } else { 16 };
-    let meshes =
-        [("bowl", sphere(16, 6, [0.2, 1.6])), ("ball", sphere(2 * rings, rings, [0.15, 2.99]))];
+    let meshes = [
+        ("bowl", around(16, 6, false, sphere([0.2, 1.6]))),
+        ("ball", around(2 * rings, rings, false, sphere([0.15, 2.99]))),
+        ("Möbius strip", around(48, 6, true, moebius)),
+        ("Möbius strip held at a vertex", around(48, 6, true, moebius).pin([0])),
+    ];
+    let meshes = meshes.map(|(name, mesh)| (name, Arc::new(mesh.build().expect("a good mesh"))));
     let settings = [DEFAULT, StepSettings { substeps: 8, ..DEFAULT }];
     let cases = meshes.iter().flat_map(|mesh| settings.map(|settings| (mesh, settings)));
     cases.map(|((name, fabric), settings)| at_rest(name, fabric, seconds, settings)).collect()
 }
 
-/// The part of a sphere between two angles (rad) from its axis, of `rings` rings of `around` quads.
-fn sphere(around: u32, rings: u32, [first, last]: [f32; 2]) -> Arc<Fabric> {
-    let vertex = |ring: u32, at: u32| {
-        let polar = first + (last - first) * ring as f32 / rings as f32;
-        let azimuth = TAU * at as f32 / around as f32;
+/// The part of a sphere between two angles (rad) from its axis, of which a ring is given from 0 to 1, and an azimuth, rad.
+fn sphere([first, last]: [f32; 2]) -> impl Fn(f32, f32) -> Vec3 {
+    move |ring, azimuth| {
+        let polar = first + (last - first) * ring;
         let outwards =
             Vec3::new(polar.sin() * azimuth.cos(), polar.cos(), polar.sin() * azimuth.sin());
         RADIUS * outwards
+    }
+}
+
+/// A strip that has made half a turn when it has gone around.
+fn moebius(across: f32, azimuth: f32) -> Vec3 {
+    let aside = WIDTH * (across - 0.5);
+    let away = RADIUS + aside * (0.5 * azimuth).cos();
+    Vec3::new(away * azimuth.cos(), aside * (0.5 * azimuth).sin(), away * azimuth.sin())
+}
+
+/// A mesh of `rings` rings of `columns` quads, given the place of a ring, from 0 to 1, and an azimuth, rad. Where it is
+/// twisted, the first ring goes on as the last.
+fn around(
+    columns: u32,
+    rings: u32,
+    is_twisted: bool,
+    at: impl Fn(f32, f32) -> Vec3,
+) -> FabricBuilder {
+    let vertex =
+        |ring, column| at(ring as f32 / rings as f32, TAU * column as f32 / columns as f32);
+    let vertices = (0..=rings).flat_map(|ring| (0..columns).map(move |column| (ring, column)));
+    let positions = vertices.map(|(ring, column)| vertex(ring, column)).collect();
+    let index = |ring: u32, column: u32| match column {
+        last if last == columns && is_twisted => (rings - ring) * columns,
+        column => ring * columns + column % columns,
     };
-    let quads = |rings: u32| (0..rings).flat_map(move |ring| (0..around).map(move |at| (ring, at)));
-    let positions = quads(rings + 1).map(|(ring, at)| vertex(ring, at)).collect();
-    let triangles = quads(rings).flat_map(|(ring, at)| {
-        let corner = |down: u32, right: u32| (ring + down) * around + (at + right) % around;
+    let quads = (0..rings).flat_map(|ring| (0..columns).map(move |column| (ring, column)));
+    let triangles = quads.flat_map(|(ring, column)| {
+        let corner = |down: u32, right: u32| index(ring + down, column + right);
         let [a, b, c, d] = [corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)];
         [a, b, c, c, b, d]
     });
-    Arc::new(FabricBuilder::new(positions, triangles.collect()).build().expect("a good mesh"))
+    FabricBuilder::new(positions, triangles.collect())
 }
 
 /// Case of a mesh at rest in eight lanes of polyester without damping: its RMS speed, with stretch
@@ -69,6 +100,7 @@ fn at_rest(name: &str, fabric: &Arc<Fabric>, seconds: f32, settings: StepSetting
         batch.drive(lane, Drive::NONE).expect("a good drive");
     }
     advance(&mut batch, seconds, settings);
-    let name = format!("free {name} at rest, {} substeps", settings.substeps);
+    let kind = if fabric.has_pins() { "" } else { "free " };
+    let name = format!("{kind}{name} at rest, {} substeps", settings.substeps);
     HardCase::new(name, 0, "RMS speed, m/s", fastest(&batch), AT_REST)
 }

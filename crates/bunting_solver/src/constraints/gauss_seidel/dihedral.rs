@@ -27,7 +27,6 @@ impl<P: Pack> LaneBatch<P> {
 
     /// Projects every hinge, and once more in the opposite order: a symmetric Gauss–Seidel sweep.
     pub fn solve_dihedral_both_ways(&mut self) {
-        self.sum_corrections();
         self.layout.hinge_multiplier.fill(P::splat(0.0));
         self.correct_by_hinges(false);
         self.correct_by_hinges(true);
@@ -64,7 +63,6 @@ struct Dihedral<'a, P: Pack, S: Particles<P>> {
 impl<P: Pack, S: Particles<P>> Kernel<P> for Dihedral<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
-        let inverse_masses = self.fabric.inverse_areas();
         let hinges = self.fabric.hinges();
         for turn in 0..hinges.len() {
             let index = if self.backwards { hinges.len() - 1 - turn } else { turn };
@@ -73,7 +71,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Dihedral<'_, P, S> {
             let mut masses = [L::splat(token, 0.0); 4];
             for (corner, &particle) in hinge.particles.iter().enumerate() {
                 at[corner] = self.particles.position(token, particle);
-                masses[corner] = L::splat(token, inverse_masses[particle as usize]);
+                masses[corner] = self.particles.inverse_mass(token, particle);
             }
             let Fold { angle, gradient } = fold(token, at);
             let compliance = L::load(token, &self.compliance[hinge.class as usize]);
