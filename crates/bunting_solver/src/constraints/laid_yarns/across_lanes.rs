@@ -7,10 +7,10 @@ use core::ops::Range;
 use fearless_simd::{Simd, SimdCombine, SimdSplit, f32x4, f32x8};
 use glam::Vec3;
 
-use super::{BandRow, SolveLaidYarns, YarnLink, YarnParticles, compliance, sum_of_couplings};
+use super::{BandRow, SolveLaidYarns, YarnLink, YarnParticles, compliance, sum_couplings};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Positions;
-use crate::fabric::{Fabric, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
+use crate::fabric::{BAND, Fabric, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::level::dispatch;
 use crate::simd::registers::{Pack1, Pack4, Pack8};
@@ -33,8 +33,8 @@ pub(crate) struct YarnPacks {
 
 const _: () = assert!(YARNS_AT_ONCE == Pack8::WIDTH);
 
-/// A node of each yarn of a pack. A lane whose yarn has ended repeats its last node, so that its links have no length, and
-/// a lane without a yarn repeats one node.
+/// A node of each yarn of a pack. A lane whose yarn has ended repeats its last node, so that its links have no length,
+/// and a lane without a yarn repeats one node.
 #[derive(Clone, Debug)]
 struct NodePack {
     nodes: [Node; Pack8::WIDTH],
@@ -180,11 +180,9 @@ fn couple<L: Lane<Pack = Pack1>>(
 ) {
     let mut couplings = yarn.couplings.as_slice();
     for (laid, link) in yarn.links.iter().zip(links) {
-        for (&count, sum) in laid.couplings.iter().zip(&mut link.couplings) {
-            let (of_row, rest) = couplings.split_at(usize::from(count));
-            couplings = rest;
-            let of_links: L = sum_of_couplings(token, of_row, inverse_masses);
-            store_lane(of_links, sum, lane);
+        let sums: [L; BAND + 1] = sum_couplings(token, laid, &mut couplings, inverse_masses);
+        for (sum, stored) in sums.into_iter().zip(&mut link.couplings) {
+            store_lane(sum, stored, lane);
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Yarns laid across the triangles of a mesh: the distance constraints along one yarn solved at once, exactly.
 //!
-//! The system is that of `chain.rs`, (J M⁻¹ Jᵀ + α̃) Δλ = −C − α̃ λ, with rows multiplied by |d| and unknowns λ/|d|. Each
-//! node moves with the two particles of an edge, so that a particle moves up to [`BAND`] + 1 links in succession, and the
-//! matrix is a band. It is factorised as L D Lᵀ while it is assembled.
+//! The system is that of `chain.rs`, (J M⁻¹ Jᵀ + α̃) Δλ = −C − α̃ λ, with rows multiplied by |d| and unknowns λ/|d|.
+//! Each node moves with the two particles of an edge, so that a particle moves up to [`BAND`] + 1 links in succession,
+//! and the matrix is a band. It is factorised as L D Lᵀ while it is assembled.
 //!
 //! Cloths side by side have the same yarn in every lane (`side_by_side`). A cloth that is alone has eight yarns of one
 //! colour in the lanes (`across_lanes`). Both have the same bits.
@@ -85,19 +85,25 @@ trait YarnParticles<L: Lane> {
     fn pull_node(&mut self, token: L::Token, node: &Self::Node, pull: V3<L>);
 }
 
-/// The sum of inverse masses that couple two links, times their factors.
+/// Sums of the inverse masses that couple a link to itself and to those before, times their factors. Takes the link's
+/// couplings off the front of those of its yarn.
 #[inline(always)]
-fn sum_of_couplings<L: Lane>(
+fn sum_couplings<L: Lane>(
     token: L::Token,
-    couplings: &[Coupling],
+    link: &LaidLink,
+    of_yarn: &mut &[Coupling],
     inverse_masses: &[L::Pack],
-) -> L {
-    let mut sum = L::splat(token, 0.0);
-    for coupling in couplings {
-        let inverse_mass = L::load(token, &inverse_masses[coupling.particle as usize]);
-        sum = sum.plus_product(inverse_mass, L::splat(token, coupling.factor));
+) -> [L; BAND + 1] {
+    let mut sums = [L::splat(token, 0.0); BAND + 1];
+    for (&count, sum) in link.couplings.iter().zip(&mut sums) {
+        let (couplings, rest) = of_yarn.split_at(usize::from(count));
+        *of_yarn = rest;
+        for coupling in couplings {
+            let inverse_mass = L::load(token, &inverse_masses[coupling.particle as usize]);
+            *sum = sum.plus_product(inverse_mass, L::splat(token, coupling.factor));
+        }
     }
-    sum
+    sums
 }
 
 /// The compliance of a link, given that of a square of each family, 1/m².
@@ -226,7 +232,8 @@ impl<P: Pack, Y, S> SolveLaidYarns<'_, P, Y, S> {
         }
     }
 
-    /// Substitutes from the last links to the first, and moves the particles of each node by the tensions of its two links.
+    /// Substitutes from the last links to the first, and moves the particles of each node by the tensions of its two
+    /// links.
     #[inline(always)]
     fn substitute<L: Lane<Pack = P>>(
         &mut self,

@@ -1,10 +1,10 @@
 //! Laid yarns of cloths side by side: the same yarn of each cloth in the lanes.
 
-use super::{SolveLaidYarns, YarnLink, YarnParticles, compliance, sum_of_couplings};
+use super::{SolveLaidYarns, YarnLink, YarnParticles, compliance, sum_couplings};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Particles, Positions};
 use crate::constraints::corrections::CorrectedParticles;
-use crate::fabric::{LaidYarn, Node};
+use crate::fabric::{BAND, LaidYarn, Node};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
 
@@ -48,11 +48,10 @@ impl<P: Pack> Kernel<P> for BeginLinks<'_, P> {
         for yarn in self.yarns {
             let mut couplings = yarn.couplings.as_slice();
             for (laid, link) in yarn.links.iter().zip(&mut links) {
-                for (&count, sum) in laid.couplings.iter().zip(&mut link.couplings) {
-                    let (of_row, rest) = couplings.split_at(usize::from(count));
-                    couplings = rest;
-                    let of_links: L = sum_of_couplings(token, of_row, self.inverse_masses);
-                    of_links.store(sum);
+                let sums: [L; BAND + 1] =
+                    sum_couplings(token, laid, &mut couplings, self.inverse_masses);
+                for (sum, stored) in sums.into_iter().zip(&mut link.couplings) {
+                    sum.store(stored);
                 }
                 let compliance: L = compliance(token, laid, self.compliance);
                 compliance.store(&mut link.compliance);
