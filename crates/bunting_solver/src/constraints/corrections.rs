@@ -18,10 +18,12 @@ impl<P: Pack> LaneBatch<P> {
     pub(super) fn sum_corrections(&mut self) {
         self.correction.clear();
         self.correction.resize(self.positions.packs().len(), [P::splat(0.0); 3]);
+        self.begin_lone_mesh();
     }
 
     /// Adds the sums of corrections to the positions.
     pub(super) fn apply_corrections(&mut self) {
+        self.end_lone_mesh();
         P::run(ApplyCorrections {
             parameters: &self.parameters,
             correction: &self.correction,

@@ -18,6 +18,7 @@ mod gauss_seidel;
 mod guide;
 mod interpolate;
 pub(crate) mod laid_yarns;
+pub(crate) mod lone_mesh;
 mod mesh_sweep;
 mod overlong;
 pub(crate) mod shear;

@@ -14,6 +14,8 @@ use core::ops::Range;
 
 pub(crate) use self::across_lanes::YarnPacks;
 use crate::batch::lane_batch::LaneBatch;
+use crate::constraints::lone_mesh::LoneMesh;
+use crate::constraints::lone_mesh::vectors::VectorParticles;
 use crate::fabric::{BAND, Coupling, LaidLink};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
@@ -65,8 +67,10 @@ impl<P: Pack> BandRow<P> {
 impl<P: Pack> LaneBatch<P> {
     /// Solves all yarns forwards and then backwards in each pass, and adds to the sums of corrections.
     pub fn solve_laid_yarns(&mut self, passes: u32) {
-        if self.yarn_packs.is_some() {
-            self.solve_yarns_across_lanes(passes);
+        if let Some(LoneMesh { particles, yarns: Some(yarns), .. }) = self.lone_mesh.as_deref_mut()
+        {
+            let compliance = self.layout.modulus_compliance.map(|pack| pack.lanes()[0]);
+            yarns.solve(self.fabric.laid_yarns(), compliance, passes, VectorParticles(particles));
         } else {
             self.solve_yarns_side_by_side(passes);
         }
