@@ -34,6 +34,8 @@ const _: () = assert!(YARNS_AT_ONCE == Pack8::WIDTH);
 #[derive(Clone, Debug)]
 pub(super) struct NodePack {
     nodes: [Node; Pack8::WIDTH],
+    /// Inverse masses of the particles of each node, times their parts, 1/m².
+    factors: [[f32; 2]; Pack8::WIDTH],
     /// Number of lanes whose yarn has this node: the first ones, as yarns are sorted by length.
     count: usize,
 }
@@ -66,9 +68,21 @@ fn nodes(yarns: &[LaidYarn]) -> Vec<NodePack> {
     };
     let pack = |at: usize| NodePack {
         nodes: core::array::from_fn(|lane| node(lane, at)),
+        factors: [[0.0; 2]; Pack8::WIDTH],
         count: yarns.iter().filter(|yarn| at < yarn.nodes.len()).count(),
     };
     (0..yarns[0].nodes.len()).map(pack).collect()
+}
+
+impl NodePack {
+    /// Takes over the inverse masses of the particles, 1/m².
+    fn set_masses(&mut self, inverse_masses: &[Pack1]) {
+        for (node, factors) in self.nodes.iter().zip(&mut self.factors) {
+            for ((particle, part), factor) in node.particles.iter().zip(node.parts).zip(factors) {
+                *factor = inverse_masses[*particle as usize].lanes()[0] * part;
+            }
+        }
+    }
 }
 
 impl YarnPacks {
@@ -87,6 +101,9 @@ impl YarnPacks {
             *copy = Pack1::splat(inverse_mass);
         }
         let Self { packs, colours, links, rows, inverse_masses } = self;
+        if has_new_masses {
+            packs.iter_mut().flatten().for_each(|pack| pack.set_masses(inverse_masses));
+        }
         Pack1::run(BeginLinks {
             yarns,
             inverse_masses,
@@ -184,9 +201,10 @@ impl<S: Simd> YarnParticles<f32x8<S>> for VectorParticles<'_> {
 
     #[inline(always)]
     fn pull_node(&mut self, token: S, pack: &NodePack, pull: V3<f32x8<S>>) {
-        for (node, pull) in pack.nodes[..pack.count].iter().zip(split(token, pull)) {
-            for (&particle, &part) in node.particles.iter().zip(&node.parts) {
-                self.correct(token, particle, pull, self.inverse_mass(particle) * part);
+        let nodes = pack.nodes[..pack.count].iter().zip(&pack.factors);
+        for ((node, factors), pull) in nodes.zip(split(token, pull)) {
+            for (&particle, &factor) in node.particles.iter().zip(factors) {
+                self.correct(token, particle, pull, factor);
             }
         }
     }
