@@ -31,7 +31,7 @@ const SIZE: usize = 33;
 /// Entry of `COMPARED_TICKS` at which the error is taken: 0.4 s.
 const COMPARED: usize = 1;
 /// Runs of which the shortest tick counts, since anything else that runs on the machine adds to it.
-const RUNS: usize = 3;
+const RUNS: usize = 10;
 /// Substeps and passes of yarns.
 const YARNS: [[u32; 2]; 6] = [[1, 2], [2, 1], [2, 2], [4, 2], [8, 2], [16, 4]];
 /// Substeps of Gauss–Seidel, of one pass each.

@@ -6,12 +6,15 @@ use core::ops::Range;
 
 use fearless_simd::{Simd, f32x4, f32x8};
 
-use super::{BandRow, SolveLaidYarns, YarnLink, YarnParticles, compliance, sum_couplings};
-use crate::constraints::lone_mesh::vectors::{VectorParticles, joined, split};
+use super::{
+    BandRow, FARTHER, SolveLaidYarns, TightenLinks, YarnLink, YarnParticles, compliance,
+    sum_couplings,
+};
+use crate::constraints::lone_mesh::vectors::{VectorParticle, VectorParticles, joined, split};
 use crate::fabric::{BAND, Fabric, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::level::dispatch;
-use crate::simd::registers::{Pack1, Pack8};
+use crate::simd::registers::{Pack1, Pack4, Pack8};
 use crate::simd::vec3::V3;
 
 /// The laid yarns of a single cloth, those of each colour in a pack.
@@ -23,6 +26,8 @@ pub(crate) struct YarnPacks {
     colours: Vec<Range<usize>>,
     links: Vec<YarnLink<Pack8>>,
     rows: Vec<BandRow<Pack8>>,
+    /// Scratch array of the sums of corrections before the first pass, m.
+    before: Vec<Pack4>,
     /// Inverse masses of the particles in the substep before, 1/m².
     inverse_masses: Vec<Pack1>,
 }
@@ -53,6 +58,7 @@ impl YarnPacks {
         Some(Self {
             links: vec![YarnLink::new(); packs.iter().map(|nodes| nodes.len() - 1).sum()],
             rows: vec![BandRow::new(); yarns.longest()],
+            before: Vec::new(),
             inverse_masses: vec![Pack1::splat(0.0); fabric.particle_count()],
             colours: (0..packs.len()).map(|pack| pack..pack + 1).collect(),
             packs,
@@ -92,7 +98,7 @@ impl YarnPacks {
         yarns: &LaidYarns,
         compliance: [f32; 3],
         passes: u32,
-        particles: VectorParticles<'_>,
+        mut particles: VectorParticles<'_>,
     ) {
         let mut has_new_masses = false;
         for (at, copy) in (0..).zip(&mut self.inverse_masses) {
@@ -100,7 +106,7 @@ impl YarnPacks {
             has_new_masses |= copy.lanes()[0] != inverse_mass;
             *copy = Pack1::splat(inverse_mass);
         }
-        let Self { packs, colours, links, rows, inverse_masses } = self;
+        let Self { packs, links, inverse_masses, .. } = self;
         if has_new_masses {
             packs.iter_mut().flatten().for_each(|pack| pack.set_masses(inverse_masses));
         }
@@ -111,8 +117,32 @@ impl YarnPacks {
             compliance: &compliance.map(Pack1::splat),
             links,
         });
+        if passes > 1 {
+            self.before.clear();
+            self.before.extend(particles.0.iter().map(|particle| particle.correction));
+            self.run_yarns(1, &mut particles);
+            dispatch!(token => go_farther(token, &self.before, particles.0));
+            Pack8::run(TightenLinks(&mut self.links));
+        }
+        self.run_yarns(passes.max(2) - 1, &mut particles);
+    }
+
+    fn run_yarns(&mut self, passes: u32, VectorParticles(particles): &mut VectorParticles<'_>) {
+        let Self { packs, colours, links, rows, .. } = self;
+        let particles = VectorParticles(particles);
         let solve = SolveLaidYarns { yarns: packs, colours, passes, links, rows, particles };
         dispatch!(token => solve_across(token, solve));
+    }
+}
+
+/// Moves particles farther by a part of what a pass has moved them, given the sums of corrections before it, m.
+#[inline(always)]
+fn go_farther<S: Simd>(token: S, before: &[Pack4], particles: &mut [VectorParticle]) {
+    let farther = <f32x4<S> as Lane>::splat(token, FARTHER);
+    for (VectorParticle { correction, .. }, before) in particles.iter_mut().zip(before) {
+        let now = <f32x4<S> as Lane>::load(token, correction);
+        let moved = now - <f32x4<S> as Lane>::load(token, before);
+        now.plus_product(moved, farther).store(correction);
     }
 }
 
@@ -149,6 +179,7 @@ impl Kernel<Pack1> for BeginLinks<'_> {
                 for (laid, link) in yarn.links.iter().zip(links) {
                     let compliance: L = compliance(token, laid, self.compliance);
                     store_lane(compliance, &mut link.compliance, lane);
+                    link.rest_length.lanes_mut()[lane] = laid.rest_length;
                     link.target.lanes_mut()[lane] = laid.rest_length;
                 }
             }

@@ -17,12 +17,21 @@ use crate::batch::lane_batch::LaneBatch;
 use crate::constraints::lone_mesh::LoneMesh;
 use crate::constraints::lone_mesh::vectors::VectorParticles;
 use crate::fabric::{BAND, Coupling, LaidLink};
-use crate::simd::lane::{Lane, Pack};
+use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
 /// Least pivot of a yarn's system, as a part of its diagonal element. Smaller: links whose nodes almost coincide move
 /// particles by rounding errors. Larger: inextensible yarns stretch.
 const LEAST_PIVOT: f32 = 1e-4;
+
+/// Part by which the first of several passes goes farther than it found.
+///
+/// A pass leaves a part t of a mode's error, 0 ≤ t ≤ 1, and two passes t². With a first pass that goes 1 + f times as far
+/// they leave t ((1 + f) t − f): still nothing of what the yarns solve by themselves (t = 0), and of what the families
+/// hardly agree on (t near 1) as little as 2 + f passes do, in the time of two. Between them the cloth goes too far, by
+/// f²/4 (1 + f) at most. Smaller: stiff curved meshes stretch too far, by 40 to 60 % for 10⁻⁴ with 0. Larger: flat ones
+/// too little, by 12 % with 1.
+const FARTHER: f32 = 0.5;
 
 /// A link of a laid yarn in a substep.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +40,8 @@ pub(crate) struct YarnLink<P: Pack> {
     couplings: [P; BAND + 1],
     /// σ l/(Y w h²), with the width w of cloth that the link stands for, 1/m².
     compliance: P,
+    /// m.
+    rest_length: P,
     /// Length under the tension found so far in the substep, m.
     target: P,
 }
@@ -39,7 +50,7 @@ impl<P: Pack> YarnLink<P> {
     /// A link that does nothing.
     pub fn new() -> Self {
         let zero = P::splat(0.0);
-        Self { couplings: [zero; BAND + 1], compliance: zero, target: zero }
+        Self { couplings: [zero; BAND + 1], compliance: zero, rest_length: zero, target: zero }
     }
 }
 
@@ -65,7 +76,8 @@ impl<P: Pack> BandRow<P> {
 }
 
 impl<P: Pack> LaneBatch<P> {
-    /// Solves all yarns forwards and then backwards in each pass, and adds to the sums of corrections.
+    /// Solves all yarns forwards and then backwards in each pass, the first of which goes farther, and adds to the sums of
+    /// corrections.
     pub fn solve_laid_yarns(&mut self, passes: u32) {
         if let Some(LoneMesh { particles, yarns: Some(yarns), .. }) = self.lone_mesh.as_deref_mut()
         {
@@ -73,6 +85,21 @@ impl<P: Pack> LaneBatch<P> {
             yarns.solve(self.fabric.laid_yarns(), compliance, passes, VectorParticles(particles));
         } else {
             self.solve_yarns_side_by_side(passes);
+        }
+    }
+}
+
+/// The links take up the tension with which a pass goes farther.
+struct TightenLinks<'a, P: Pack>(&'a mut [YarnLink<P>]);
+
+impl<P: Pack> Kernel<P> for TightenLinks<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let farther = L::splat(token, FARTHER);
+        for link in self.0 {
+            let target = L::load(token, &link.target);
+            let stretch = target - L::load(token, &link.rest_length);
+            target.plus_product(stretch, farther).store(&mut link.target);
         }
     }
 }
