@@ -107,8 +107,8 @@ fn a_curved_mesh_without_texture_hangs_with_its_materials_strain() {
     }
 }
 
-/// Nodes lie below a curved surface by different heights, so that the families of yarns agree slowly. Without a first pass
-/// that goes farther the error was 41 %, with it 30 %.
+/// Nodes lie below a curved surface by different heights, so that the families of yarns agree slowly. Without a first
+/// pass that goes farther the error was 41 %, with it 30 %.
 #[test]
 fn the_yarns_of_a_stiff_curved_mesh_come_nearer_to_one_another_in_a_pass_that_goes_farther() {
     let expected = ISOTROPIC.area_density * GRAVITY / (2.0 * ISOTROPIC.weft_stiffness);

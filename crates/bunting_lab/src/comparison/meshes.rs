@@ -1,7 +1,7 @@
 //! Error over time of the grid and of meshes that are no grids, each solved by yarns and by Gauss–Seidel.
 //!
-//! All are the square metre of the scene `swing`, so that one reference holds for all of them: the converged grid, whose
-//! surface is interpolated at the places of a mesh's particles.
+//! All are the square metre of the scene `swing`, so that one reference holds for all of them: the converged grid,
+//! whose surface is interpolated at the places of a mesh's particles.
 
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! Rapier's soft bodies.
 //!
-//! Particles, masses and links are this project's. A link's spring is given by its natural frequency: √(k W)/2π gives it
-//! the material's stiffness k, with W the sum of its inverse masses. Its damping ratio is rapier's default, 1. Bending is
-//! rapier's dihedral constraint with its default softness, 10 Hz, which at 33 × 33 is near the 2·10⁻⁵ N·m of
+//! Particles, masses and links are this project's. A link's spring is given by its natural frequency: √(k W)/2π gives
+//! it the material's stiffness k, with W the sum of its inverse masses. Its damping ratio is rapier's default, 1.
+//! Bending is rapier's dihedral constraint with its default softness, 10 Hz, which at 33 × 33 is near the 2·10⁻⁵ N·m of
 //! the scenes. There is no wind.
 
 use std::f32::consts::TAU;

@@ -64,7 +64,8 @@ impl<P: Pack> Kernel<P> for SweepMesh<'_, P> {
     }
 }
 
-/// −Δλ/|d| of a link along d (m), given the sum of its inverse masses and its compliance (1/m²) and its length at rest (m).
+/// −Δλ/|d| of a link along d (m), given the sum of its inverse masses and its compliance (1/m²) and its length at rest
+/// (m).
 #[inline(always)]
 pub(super) fn link_pull<L: Lane>(
     token: L::Token,

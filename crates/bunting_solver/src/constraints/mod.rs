@@ -33,5 +33,6 @@ mod tether;
 pub(crate) mod tridiagonal;
 mod twist;
 pub(crate) mod twist_factors;
+mod vector_particles;
 
 pub(crate) use stiffness::resists_twist;

@@ -68,6 +68,16 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         self.sweep_mesh(true);
         self.apply_corrections();
     }
+
+    /// Solves all yarns forwards and then backwards in each pass, and adds to the sums of corrections.
+    fn solve_laid_yarns(&mut self, passes: u32) {
+        if let Some(mesh) = &mut self.lone_mesh {
+            let compliance = self.layout.modulus_compliance.map(|pack| pack.lanes()[0]);
+            mesh.solve_yarns(self.fabric.laid_yarns(), compliance, passes);
+        } else {
+            self.solve_yarns_side_by_side(passes);
+        }
+    }
 }
 
 /// A layout of grids that are solved by the scheme of yarns.

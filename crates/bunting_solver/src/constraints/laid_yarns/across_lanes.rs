@@ -10,7 +10,7 @@ use super::{
     BandRow, FARTHER, SolveLaidYarns, TightenLinks, YarnLink, YarnParticles, compliance,
     sum_couplings,
 };
-use crate::constraints::lone_mesh::vectors::{VectorParticle, VectorParticles, joined, split};
+use crate::constraints::vector_particles::{VectorParticle, VectorParticles, joined, split};
 use crate::fabric::{BAND, Fabric, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::level::dispatch;

@@ -13,9 +13,6 @@ mod side_by_side;
 use core::ops::Range;
 
 pub(crate) use self::across_lanes::YarnPacks;
-use crate::batch::lane_batch::LaneBatch;
-use crate::constraints::lone_mesh::LoneMesh;
-use crate::constraints::lone_mesh::vectors::VectorParticles;
 use crate::fabric::{BAND, Coupling, LaidLink};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
@@ -26,11 +23,11 @@ const LEAST_PIVOT: f32 = 1e-4;
 
 /// Part by which the first of several passes goes farther than it found.
 ///
-/// A pass leaves a part t of a mode's error, 0 ≤ t ≤ 1, and two passes t². With a first pass that goes 1 + f times as far
-/// they leave t ((1 + f) t − f): still nothing of what the yarns solve by themselves (t = 0), and of what the families
-/// hardly agree on (t near 1) as little as 2 + f passes do, in the time of two. Between them the cloth goes too far, by
-/// f²/4 (1 + f) at most. Smaller: stiff curved meshes stretch too far, by 40 to 60 % for 10⁻⁴ with 0. Larger: flat ones
-/// too little, by 12 % with 1.
+/// A pass leaves a part t of a mode's error, 0 ≤ t ≤ 1, and two passes t². With a first pass that goes 1 + f times as
+/// far they leave t ((1 + f) t − f): still nothing of what the yarns solve by themselves (t = 0), and of what the
+/// families hardly agree on (t near 1) as little as 2 + f passes do, in the time of two. Between them the cloth goes
+/// too far, by f²/4 (1 + f) at most. Smaller: stiff curved meshes stretch too far, by 40 to 60 % for 10⁻⁴ with 0.
+/// Larger: flat ones too little, by 12 % with 1.
 const FARTHER: f32 = 0.5;
 
 /// A link of a laid yarn in a substep.
@@ -72,20 +69,6 @@ impl<P: Pack> BandRow<P> {
     pub fn new() -> Self {
         let zero = P::splat(0.0);
         Self { along: [zero; 3], lower: [zero; BAND], unknown: zero, target_change: zero }
-    }
-}
-
-impl<P: Pack> LaneBatch<P> {
-    /// Solves all yarns forwards and then backwards in each pass, the first of which goes farther, and adds to the sums of
-    /// corrections.
-    pub fn solve_laid_yarns(&mut self, passes: u32) {
-        if let Some(LoneMesh { particles, yarns: Some(yarns), .. }) = self.lone_mesh.as_deref_mut()
-        {
-            let compliance = self.layout.modulus_compliance.map(|pack| pack.lanes()[0]);
-            yarns.solve(self.fabric.laid_yarns(), compliance, passes, VectorParticles(particles));
-        } else {
-            self.solve_yarns_side_by_side(passes);
-        }
     }
 }
 

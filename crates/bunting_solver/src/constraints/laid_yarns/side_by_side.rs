@@ -11,7 +11,8 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
 impl<P: Pack> LaneBatch<P> {
-    pub(super) fn solve_yarns_side_by_side(&mut self, passes: u32) {
+    /// Solves the yarns of all lanes' cloths.
+    pub(in crate::constraints) fn solve_yarns_side_by_side(&mut self, passes: u32) {
         let yarns = self.fabric.laid_yarns();
         P::run(BeginLinks {
             yarns: &yarns.list,

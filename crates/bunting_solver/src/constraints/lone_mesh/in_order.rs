@@ -1,7 +1,7 @@
 //! Packs of constraints that are solved in the order of a list.
 //!
-//! Solving constraints that share no particle in another order, or at once, does not change a bit. So the constraints of
-//! a list are packed such that of two with a common particle the earlier one lies in an earlier pack. The packs, one
+//! Solving constraints that share no particle in another order, or at once, does not change a bit. So the constraints
+//! of a list are packed such that of two with a common particle the earlier one lies in an earlier pack. The packs, one
 //! after the other, then move particles as the list does, and backwards as the list does backwards.
 
 /// Packs of indices into a list of constraints, given the particles of each. A pack has no more than `most`.

@@ -3,8 +3,8 @@
 use fearless_simd::{Simd, f32x8};
 
 use super::in_order::packs_in_order;
-use super::vectors::VectorParticles;
 use crate::constraints::mesh_sweep::link_pull;
+use crate::constraints::vector_particles::VectorParticles;
 use crate::fabric::Fabric;
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::registers::Pack8;

@@ -1,24 +1,23 @@
 //! The constraints of a lone mesh that no grid fills: eight that share no particle are solved at once, in the lanes.
 //!
-//! Neighbours on a mesh are no neighbours in memory, so particles are vectors (`vectors`), which are gathered and
-//! transposed. Hinges and links are packed such that their order stays that of the scalar code (`in_order`), yarns by
-//! colours (`laid_yarns/across_lanes.rs`): the bits are those of cloths side by side.
+//! Neighbours on a mesh are no neighbours in memory, so particles are vectors (`vector_particles.rs`), which are
+//! gathered and transposed. Hinges and links are packed such that their order stays that of the scalar code
+//! (`in_order`), yarns by colours (`laid_yarns/across_lanes.rs`): the bits are those of cloths side by side.
 
 mod hinges;
 mod in_order;
 mod links;
-pub(super) mod vectors;
 
 use fearless_simd::Simd;
 use glam::Vec3;
 
 use self::hinges::{HingePack, SolveHinges, hinge_packs};
 use self::links::{LinkPack, SweepLinks, link_packs};
-use self::vectors::{VectorParticle, VectorParticles};
 use super::laid_yarns::YarnPacks;
+use super::vector_particles::{VectorParticle, VectorParticles};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Positions;
-use crate::fabric::Fabric;
+use crate::fabric::{Fabric, LaidYarns};
 use crate::simd::lane::Pack;
 use crate::simd::level::dispatch;
 use crate::simd::vec3::{lane3, set_lane3};
@@ -26,11 +25,11 @@ use crate::simd::vec3::{lane3, set_lane3};
 /// The particles and constraints of a lone mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct LoneMesh {
-    pub(super) particles: Vec<VectorParticle>,
+    particles: Vec<VectorParticle>,
     hinges: Vec<HingePack>,
     links: Vec<LinkPack>,
     /// None if the fabric has no laid yarns.
-    pub(super) yarns: Option<YarnPacks>,
+    yarns: Option<YarnPacks>,
     /// Scratch array of the compliances of the classes of hinges, 1/m⁴, or of links, 1/m².
     compliance: Vec<f32>,
 }
@@ -67,6 +66,13 @@ impl LoneMesh {
         self.compliance.clear();
         self.compliance.extend(compliance);
         self.run_links(is_backwards);
+    }
+
+    /// Solves the laid yarns, if there are any, given the compliance of a square of each family, σ/(Y h²), 1/m².
+    pub(super) fn solve_yarns(&mut self, laid: &LaidYarns, compliance: [f32; 3], passes: u32) {
+        if let Some(yarns) = &mut self.yarns {
+            yarns.solve(laid, compliance, passes, VectorParticles(&mut self.particles));
+        }
     }
 
     fn run_hinges(&mut self) {

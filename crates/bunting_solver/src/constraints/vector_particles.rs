@@ -10,7 +10,7 @@ use crate::simd::vec3::V3;
 /// A particle while corrections are summed: vectors of x, y, z and a fourth number.
 #[derive(Clone, Debug)]
 #[repr(C, align(32))]
-pub(in crate::constraints) struct VectorParticle {
+pub(super) struct VectorParticle {
     /// Position before the corrections, m, and the inverse mass, 1/m².
     pub predicted: Pack4,
     /// Sum of the corrections, m, and zero.
@@ -26,7 +26,7 @@ impl VectorParticle {
 }
 
 /// The particles of a mesh.
-pub(in crate::constraints) struct VectorParticles<'a>(pub &'a mut [VectorParticle]);
+pub(super) struct VectorParticles<'a>(pub &'a mut [VectorParticle]);
 
 impl VectorParticles<'_> {
     /// The corrected position of a particle, m.
@@ -81,19 +81,14 @@ impl VectorParticles<'_> {
 
 /// The coordinates of eight vectors.
 #[inline(always)]
-pub(in crate::constraints) fn joined<S: Simd>(
-    [a, b, c, d, e, f, g, h]: [f32x4<S>; Pack8::WIDTH],
-) -> V3<f32x8<S>> {
+pub(super) fn joined<S: Simd>([a, b, c, d, e, f, g, h]: [f32x4<S>; Pack8::WIDTH]) -> V3<f32x8<S>> {
     let (low, high) = (coordinates([a, b, c, d]), coordinates([e, f, g, h]));
     V3 { x: low[0].combine(high[0]), y: low[1].combine(high[1]), z: low[2].combine(high[2]) }
 }
 
 /// The eight vectors of given coordinates.
 #[inline(always)]
-pub(in crate::constraints) fn split<S: Simd>(
-    token: S,
-    by: V3<f32x8<S>>,
-) -> impl Iterator<Item = f32x4<S>> {
+pub(super) fn split<S: Simd>(token: S, by: V3<f32x8<S>>) -> impl Iterator<Item = f32x4<S>> {
     let ((x, x_high), (y, y_high), (z, z_high)) = (by.x.split(), by.y.split(), by.z.split());
     let low = vectors(token, [x, y, z]);
     let high = vectors(token, [x_high, y_high, z_high]);
