@@ -107,6 +107,17 @@ fn a_curved_mesh_without_texture_hangs_with_its_materials_strain() {
     }
 }
 
+/// Nodes lie below a curved surface by different heights, so that the families of yarns agree slowly. Without a first
+/// pass that goes farther the error was 41 %, with it 30 %.
+#[test]
+fn the_yarns_of_a_stiff_curved_mesh_come_nearer_to_one_another_in_a_pass_that_goes_farther() {
+    let expected = ISOTROPIC.area_density * GRAVITY / (2.0 * ISOTROPIC.weft_stiffness);
+    let fabric = Arc::new(bent_with(&irregular(25, 0.0), 0.3, Vec::new()));
+    let [sunk, speed] = hung(&fabric, ISOTROPIC);
+    let error = sunk / expected - 1.0;
+    assert!(speed < 1e-3 && error.abs() < 0.35, "{error}, {speed} m/s");
+}
+
 /// A flat mesh of a square metre of two pieces that share a seam halfway down; the warp of the lower one runs down.
 fn of_two_pieces(flat: &Fabric, is_pinned: fn(Vec3) -> bool) -> Fabric {
     let (mut positions, mut uv) = (Vec::new(), Vec::new());

@@ -14,11 +14,13 @@ use super::{ablation, progress};
 use crate::{
     comparison::{
         measurement::{contenders, measure},
+        meshes,
         row::{COMPARED, LeftOut, Row},
         speed_error,
     },
     output::{
         Outcome,
+        plot::Plot,
         table::{Table, figure, figure_or_dash},
     },
     parallel,
@@ -53,6 +55,9 @@ pub struct Selection {
     /// Also draw error over time of the position-based methods, on the last selected scene, as SVG.
     #[arg(long, value_name = "FILE")]
     figure: Option<PathBuf>,
+    /// Instead compare the grid with meshes of as many particles, on the scene swing; `--figure` then draws these.
+    #[arg(long)]
+    meshes: bool,
 }
 
 impl Selection {
@@ -60,7 +65,7 @@ impl Selection {
     #[must_use]
     pub fn new(scenes: &[&str], sizes: Vec<usize>, time_limit: f64) -> Self {
         let scenes = scenes.iter().map(|&name| name.to_owned()).collect();
-        Self { scenes, sizes, time_limit, figure: None }
+        Self { scenes, sizes, time_limit, figure: None, meshes: false }
     }
 }
 
@@ -84,6 +89,9 @@ fn parse_size(text: &str) -> Result<usize, String> {
 ///
 /// The requested figure cannot be drawn or written.
 pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
+    if selection.meshes {
+        return run_meshes(selection.figure.as_deref());
+    }
     let contenders = contenders(quick);
     let scenes = selected(selection, quick);
     let bar = progress(scenes.len() * contenders.len());
@@ -120,7 +128,7 @@ pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
     if let (Some(path), Some((scene, rows))) =
         (&selection.figure, scenes.iter().zip(&all).next_back())
     {
-        write_figure(path, scene, rows)?;
+        write_figure(path, &speed_error::figure(scene, rows))?;
     }
     bar.set_message("ablation");
     let n = ABLATED[usize::from(quick)];
@@ -138,13 +146,26 @@ pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
     Ok(outcome)
 }
 
-fn write_figure(path: &Path, scene: &Scene, rows: &[Row]) -> Result<()> {
+/// Runs each method on the grid and on meshes of as many particles.
+fn run_meshes(path: Option<&Path>) -> Result<Outcome> {
+    let rows = meshes::rows();
+    let plot = meshes::plot(&rows);
+    if let Some(path) = path {
+        write_figure(path, &plot)?;
+    }
+    Ok(Outcome {
+        json: json!({ "instruction_set": instruction_set(), "rows": rows }),
+        tables: vec![meshes::table(&rows)],
+        plots: vec![plot],
+    })
+}
+
+fn write_figure(path: &Path, plot: &Plot) -> Result<()> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder)
             .with_context(|| format!("cannot create {}", folder.display()))?;
     }
-    fs::write(path, speed_error::figure(scene, rows).svg()?)
-        .with_context(|| format!("cannot write {}", path.display()))
+    fs::write(path, plot.svg()?).with_context(|| format!("cannot write {}", path.display()))
 }
 
 fn selected(selection: &Selection, quick: bool) -> Vec<Scene> {

@@ -1,12 +1,13 @@
 //! Rapier's soft bodies.
 //!
-//! Particles, masses and links are this project's. A link's spring is given by its natural frequency: √(k (w₁
-//! + w₂))/2π gives it the material's stiffness k. Its damping ratio is rapier's default, 1. Bending is
-//! rapier's dihedral constraint with its default softness, 10 Hz, which at 33 × 33 is near the 2·10⁻⁵ N·m of
+//! Particles, masses and links are this project's. A link's spring is given by its natural frequency: √(k W)/2π gives
+//! it the material's stiffness k, with W the sum of its inverse masses. Its damping ratio is rapier's default, 1.
+//! Bending is rapier's dihedral constraint with its default softness, 10 Hz, which at 33 × 33 is near the 2·10⁻⁵ N·m of
 //! the scenes. There is no wind.
 
 use std::f32::consts::TAU;
 
+use bunting_solver::Fabric;
 use glam::Vec3;
 use rapier3d::prelude::*;
 
@@ -49,7 +50,19 @@ impl Rapier {
     /// The scene at its start.
     #[must_use]
     pub fn new(scene: &Scene, elasticity: Elasticity, substeps: usize) -> Self {
-        let fabric = product::fabric(scene);
+        let start: Vec<Vec3> = scene.positions().iter().map(|x| x.as_vec3()).collect();
+        Self::of(&product::fabric(scene), &start, scene, elasticity, substeps)
+    }
+
+    /// A fabric with the material and the surroundings of a scene, from given positions, m.
+    #[must_use]
+    pub fn of(
+        fabric: &Fabric,
+        start: &[Vec3],
+        scene: &Scene,
+        elasticity: Elasticity,
+        substeps: usize,
+    ) -> Self {
         let material = product::material(scene);
         let masses: Vec<f32> =
             fabric.particle_areas().iter().map(|area| area * material.area_density).collect();
@@ -63,8 +76,9 @@ impl Rapier {
             let rate = (stiffness * (inverse(a) + inverse(b))).sqrt();
             SpringCoefficients::new(rate / TAU, DAMPING_RATIO)
         };
-        let positions = scene.positions().iter().map(|x| vector(x.as_vec3())).collect();
-        let pinned: Vec<usize> = (0..scene.vertices()).filter(|&i| scene.is_pinned(i)).collect();
+        let positions = start.iter().copied().map(vector).collect();
+        let pinned: Vec<usize> =
+            (0..fabric.particle_count()).filter(|&particle| fabric.is_pinned(particle)).collect();
         let mut cloth = SoftBodyBuilder::new(positions)
             .edges(fabric.links().iter().map(|link| link.particles).collect())
             .surface(fabric.triangles().to_vec())

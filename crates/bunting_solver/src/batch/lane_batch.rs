@@ -12,7 +12,8 @@ use crate::batch::mixed::Mixed;
 use crate::batch::probe_motion::ProbeMotion;
 use crate::batch::side_by_side::SideBySide;
 use crate::batch::single_cloth::SingleCloth;
-use crate::constraints::laid_yarns::{BandRow, YarnLink, YarnPacks};
+use crate::constraints::laid_yarns::{BandRow, YarnLink};
+use crate::constraints::lone_mesh::LoneMesh;
 use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, Fabric, GridTransfer};
@@ -74,12 +75,12 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub stretch_shift: Vec<Pack3<P>>,
     /// Scratch array of the tridiagonal systems of a pair of chains.
     pub rows: Vec<TridiagonalRow<P>>,
-    /// The links of laid yarns in the substep; empty if there are `yarn_packs`.
+    /// The links of laid yarns in the substep; empty where the batch has a `lone_mesh`.
     pub yarn_links: Vec<YarnLink<P>>,
     /// Scratch array of the system of a laid yarn.
     pub band_rows: Vec<BandRow<P>>,
-    /// The laid yarns across lanes, where the batch holds a single cloth.
-    pub yarn_packs: Option<Box<YarnPacks>>,
+    /// The constraints of a single cloth across the lanes, where its fabric is a mesh that no grid fills.
+    pub lone_mesh: Option<Box<LoneMesh>>,
     /// Scratch array of the block tridiagonal system of a strip.
     pub strip_blocks: Vec<StripBlock<P>>,
     /// Scratch array of the bending moments of a line, or the twisting moments of a ribbon.
@@ -152,9 +153,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let chains = layout.chains(&fabric);
         let longest_line = fabric.grid().map_or(0, |grid| grid.columns.max(grid.rows) as usize);
         let is_lone = P::WIDTH == 1;
-        let yarn_packs = if is_lone { YarnPacks::of(&fabric).map(Box::new) } else { None };
+        let lone_mesh = if is_lone { LoneMesh::of(&fabric).map(Box::new) } else { None };
         let (mut yarn_links, mut band_rows) = (Vec::new(), Vec::new());
-        if yarn_packs.is_none() {
+        if lone_mesh.is_none() {
             yarn_links.resize(fabric.laid_yarns().link_count(), YarnLink::new());
             band_rows.resize(fabric.laid_yarns().longest(), BandRow::new());
         }
@@ -180,7 +181,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
             yarn_links,
             band_rows,
-            yarn_packs,
+            lone_mesh,
             strip_blocks: Vec::new(),
             moments: vec![splat3(Vec3::ZERO); longest_line],
             masses: Masses::new(

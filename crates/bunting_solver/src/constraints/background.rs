@@ -107,6 +107,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         self.place_particles();
         // A grid that the mesh fills has tethers of its own.
         if self.fabric.background().is_some_and(|grid| !grid.transfer.is_whole) {
+            self.begin_lone_mesh();
             self.sweep_mesh(false);
             self.apply_corrections();
             self.solve_tethers();

@@ -47,6 +47,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 impl<P: Pack> LaneBatch<P> {
     /// Adds the corrections to the positions, except for what rounding leaves out.
     pub(super) fn apply_corrections(&mut self) {
+        self.end_lone_mesh();
         P::run(ApplyCorrections {
             correction: &mut self.correction,
             position: self.positions.packs_mut(),

@@ -17,10 +17,15 @@ use crate::simd::vec3::V3;
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// Solves each link of the mesh once, from the first to the last or backwards, and adds to the sums of corrections.
     pub(super) fn sweep_mesh(&mut self, is_backwards: bool) {
+        let compliance = &self.layout.factors().link_compliance;
+        if let Some(mesh) = &mut self.lone_mesh {
+            mesh.sweep_links(is_backwards, compliance.iter().map(|pack| pack.lanes()[0]));
+            return;
+        }
         P::run(SweepMesh {
             links: self.fabric.links(),
             is_backwards,
-            compliance: &self.layout.factors().link_compliance,
+            compliance,
             particles: CorrectedParticles {
                 inverse_masses: &self.masses.inverse,
                 predicted: self.positions.packs(),
@@ -40,7 +45,7 @@ struct SweepMesh<'a, P: Pack> {
 impl<P: Pack> Kernel<P> for SweepMesh<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
-        let (zero, least) = (L::splat(token, 0.0), L::splat(token, LEAST_LENGTH));
+        let zero = L::splat(token, 0.0);
         let count = self.links.len();
         for at in 0..count {
             let link = &self.links[if self.is_backwards { count - 1 - at } else { at }];
@@ -51,12 +56,24 @@ impl<P: Pack> Kernel<P> for SweepMesh<'_, P> {
             let from: V3<L> = self.particles.position(token, a);
             let to: V3<L> = self.particles.position(token, b);
             let along = to - from;
-            let length = along.dot(along).sqrt().max(least);
-            let excess = length - L::splat(token, link.rest_length);
-            // −Δλ/|d| with one division: the length of d is part of the denominator.
-            let pull = excess / ((mass_a + mass_b + compliance) * length);
+            let rest_length = L::splat(token, link.rest_length);
+            let pull = link_pull(token, along, mass_a + mass_b + compliance, rest_length);
             self.particles.correct(token, a, from, (along, pull * mass_a));
             self.particles.correct(token, b, to, (along, zero - pull * mass_b));
         }
     }
+}
+
+/// −Δλ/|d| of a link along d (m), given the sum of its inverse masses and its compliance (1/m²) and its length at rest
+/// (m).
+#[inline(always)]
+pub(super) fn link_pull<L: Lane>(
+    token: L::Token,
+    along: V3<L>,
+    denominator: L,
+    rest_length: L,
+) -> L {
+    let length = along.dot(along).sqrt().max(L::splat(token, LEAST_LENGTH));
+    // One division: the length of d is part of the denominator.
+    (length - rest_length) / (denominator * length)
 }

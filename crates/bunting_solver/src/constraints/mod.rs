@@ -18,6 +18,7 @@ mod gauss_seidel;
 mod guide;
 mod interpolate;
 pub(crate) mod laid_yarns;
+pub(crate) mod lone_mesh;
 mod mesh_sweep;
 mod overlong;
 pub(crate) mod shear;
@@ -32,5 +33,6 @@ mod tether;
 pub(crate) mod tridiagonal;
 mod twist;
 pub(crate) mod twist_factors;
+mod vector_particles;
 
 pub(crate) use stiffness::resists_twist;

@@ -12,11 +12,11 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// Projects the predicted positions onto all constraints.
     ///
     /// A mesh that is flat at rest is solved on its background grid (`background.rs`). The hinges of other meshes are
-    /// solved forwards and backwards, and so are the yarns that are laid across them (`laid_yarns.rs`). Each solve of a
-    /// yarn is a projection, self-adjoint in the metric of the masses, with eigenvalues from 0 to 1. A sequence of solves that reads the same backwards is
-    /// self-adjoint, too, and a product of two such sequences still has real eigenvalues from 0 to 1, like an implicit
-    /// step of a stiffer cloth. A product of three different projections has complex eigenvalues: circulatory forces,
-    /// which make a mesh at rest vibrate and spin.
+    /// solved forwards and backwards, and so are the yarns that are laid across them (`laid_yarns/`). Each solve of a
+    /// yarn is a projection, self-adjoint in the metric of the masses, with eigenvalues from 0 to 1. A sequence of
+    /// solves that reads the same backwards is self-adjoint, too, and a product of two such sequences still has real
+    /// eigenvalues from 0 to 1, like an implicit step of a stiffer cloth. A product of three different projections has
+    /// complex eigenvalues: circulatory forces, which make a mesh at rest vibrate and spin.
     pub fn solve_constraints(&mut self) {
         self.solve_all_bending();
         self.solve_all_but_bending();
@@ -58,16 +58,25 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             }
         }
     }
-}
 
-impl<P: Pack> LaneBatch<P, SideBySide<P>> {
-    /// Solves the laid yarns of a mesh. A sweep over its links, forwards before them and backwards after, holds particles
-    /// that few yarns move.
+    /// Solves the laid yarns of a mesh. A sweep over its links, forwards before them and backwards after, holds
+    /// particles that few yarns move.
     fn solve_stretch_of_mesh(&mut self, passes: u32) {
+        self.begin_lone_mesh();
         self.sweep_mesh(false);
         self.solve_laid_yarns(passes);
         self.sweep_mesh(true);
         self.apply_corrections();
+    }
+
+    /// Solves all yarns forwards and then backwards in each pass, and adds to the sums of corrections.
+    fn solve_laid_yarns(&mut self, passes: u32) {
+        if let Some(mesh) = &mut self.lone_mesh {
+            let compliance = self.layout.modulus_compliance.map(|pack| pack.lanes()[0]);
+            mesh.solve_yarns(self.fabric.laid_yarns(), compliance, passes);
+        } else {
+            self.solve_yarns_side_by_side(passes);
+        }
     }
 }
 
@@ -110,9 +119,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.solve_contacts();
     }
 
-    /// Solves chains and tethers of a grid, of which a background grid has none. For every second pass a sweep over warp
-    /// and weft corrects the overshoot of the chains' frozen directions, and chains that still have overlong links are
-    /// solved again.
+    /// Solves chains and tethers of a grid, of which a background grid has none. For every second pass a sweep over
+    /// warp and weft corrects the overshoot of the chains' frozen directions, and chains that still have overlong links
+    /// are solved again.
     pub fn solve_stretch_of_grid(&mut self) {
         let passes = self.clock.settings.passes;
         if self.is_narrow() {
@@ -199,6 +208,7 @@ mod tests {
         assert!(bending < 2e-3 && one_way > 1e-2, "bending {bending}, one way {one_way}");
         let stretch = asymmetry(|batch| batch.solve_stretch_of_mesh(2));
         let one_way = asymmetry(|batch| {
+            batch.begin_lone_mesh();
             batch.sweep_mesh(false);
             batch.solve_laid_yarns(2);
             batch.apply_corrections();

@@ -54,7 +54,7 @@ impl Hinges {
         let mut table = Vec::new();
         let mut classes = Classes::new();
         let hinge = |edge: &Edge| {
-            let ([a, b], c, d) = (edge.ends, edge.opposite, edge.other_opposite?);
+            let ([a, b], c, d) = (edge.ends, edge.side.opposite, edge.other_side?.opposite);
             let particles = [a, b, c, d];
             if particles.iter().all(|&particle| mesh.is_pinned(particle)) {
                 return None;

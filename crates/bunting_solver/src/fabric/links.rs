@@ -271,11 +271,15 @@ fn add_triangle(
 
 /// Direction in which u grows, in the triangle's plane; the direction of its first edge if the texture does
 /// not determine it.
-pub(super) fn warp_direction([a, b, c]: [Vec3; 3], [uv_a, uv_b, uv_c]: [Vec2; 3]) -> Vec3 {
+pub(super) fn warp_direction(corners: [Vec3; 3], uv: [Vec2; 3]) -> Vec3 {
+    along_u(corners, uv).unwrap_or_else(|| (corners[1] - corners[0]).normalize_or_zero())
+}
+
+/// Direction in which u grows, in the triangle's plane; none if the texture does not determine it.
+pub(super) fn along_u([a, b, c]: [Vec3; 3], [uv_a, uv_b, uv_c]: [Vec2; 3]) -> Option<Vec3> {
     let (e1, e2) = (b - a, c - a);
     let (t1, t2) = (uv_b - uv_a, uv_c - uv_a);
-    let along_u = (e1 * t2.y - e2 * t1.y) * t1.perp_dot(t2).signum();
-    along_u.try_normalize().unwrap_or_else(|| e1.normalize_or_zero())
+    ((e1 * t2.y - e2 * t1.y) * t1.perp_dot(t2).signum()).try_normalize()
 }
 
 #[cfg(test)]

@@ -26,10 +26,7 @@ impl Guide {
     /// Whether the numbers can be simulated.
     fn is_valid(&self) -> bool {
         let Backstop { distance, radius } = self.backstop;
-        // Zero times a number is zero unless the number is infinite or none.
-        let [[at, to], [normal, turned]] = [self.places, self.normals];
-        let zero = at * 0.0 + to * 0.0 + normal * 0.0 + turned * 0.0;
-        zero == Vec3::ZERO
+        self.places.into_iter().chain(self.normals).all(Vec3::is_finite)
             && self.max_distance >= 0.0
             && distance.is_finite()
             && radius.is_finite()

@@ -27,9 +27,14 @@ impl<P: Pack> LaneBatch<P> {
 
     /// Projects every hinge, and once more in the opposite order: a symmetric Gauss–Seidel sweep.
     pub fn solve_dihedral_both_ways(&mut self) {
-        self.layout.hinge_multiplier.fill(P::splat(0.0));
-        self.correct_by_hinges(false);
-        self.correct_by_hinges(true);
+        self.begin_lone_mesh();
+        if let Some(mesh) = &mut self.lone_mesh {
+            mesh.solve_hinges(self.layout.hinge_compliance.iter().map(|pack| pack.lanes()[0]));
+        } else {
+            self.layout.hinge_multiplier.fill(P::splat(0.0));
+            self.correct_by_hinges(false);
+            self.correct_by_hinges(true);
+        }
         self.apply_corrections();
     }
 
@@ -73,20 +78,13 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Dihedral<'_, P, S> {
                 at[corner] = self.particles.position(token, particle);
                 masses[corner] = self.particles.inverse_mass(token, particle);
             }
-            let Fold { angle, gradient } = fold(token, at);
             let compliance = L::load(token, &self.compliance[hinge.class as usize]);
-            let mut excess = shortest_turn(token, angle - L::splat(token, hinge.rest_angle));
-            if self.accumulate {
-                excess = excess + compliance * L::load(token, multiplier);
-            }
-            let mut denominator = compliance;
-            for (w, g) in masses.into_iter().zip(gradient) {
-                denominator = denominator + w * g.dot(g);
-            }
-            // A collapsed hinge has no gradient; without compliance its denominator would be zero.
-            let step = -excess / denominator.max(L::splat(token, f32::MIN_POSITIVE));
-            if self.accumulate {
-                (L::load(token, multiplier) + step).store(multiplier);
+            let rest_angle = L::splat(token, hinge.rest_angle);
+            let so_far = if self.accumulate { Some(L::load(token, multiplier)) } else { None };
+            let HingeStep { step, gradient } =
+                hinge_step(token, at, masses, rest_angle, compliance, so_far);
+            if let Some(so_far) = so_far {
+                (so_far + step).store(multiplier);
             }
             for ((particle, x), (w, g)) in
                 hinge.particles.into_iter().zip(at).zip(masses.into_iter().zip(gradient))
@@ -95,6 +93,39 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Dihedral<'_, P, S> {
             }
         }
     }
+}
+
+/// The change of a hinge's multiplier.
+pub(in crate::constraints) struct HingeStep<L> {
+    /// Change of the multiplier.
+    pub step: L,
+    /// Gradient of the angle for each particle, rad/m.
+    pub gradient: [V3<L>; 4],
+}
+
+/// Projects a hinge, given its corners (m), their inverse masses (1/m²), the angle at rest (rad), the compliance (1/m⁴)
+/// and, if it counts, the multiplier so far.
+#[inline(always)]
+pub(in crate::constraints) fn hinge_step<L: Lane>(
+    token: L::Token,
+    corners: [V3<L>; 4],
+    masses: [L; 4],
+    rest_angle: L,
+    compliance: L,
+    multiplier: Option<L>,
+) -> HingeStep<L> {
+    let Fold { angle, gradient } = fold(token, corners);
+    let mut excess = shortest_turn(token, angle - rest_angle);
+    if let Some(multiplier) = multiplier {
+        excess = excess + compliance * multiplier;
+    }
+    let mut denominator = compliance;
+    for (w, g) in masses.into_iter().zip(gradient) {
+        denominator = denominator + w * g.dot(g);
+    }
+    // A collapsed hinge has no gradient; without compliance its denominator would be zero.
+    let step = -excess / denominator.max(L::splat(token, f32::MIN_POSITIVE));
+    HingeStep { step, gradient }
 }
 
 /// The angle plus or minus full turns, between −π and π, so that a hinge folded past π opens the short way.

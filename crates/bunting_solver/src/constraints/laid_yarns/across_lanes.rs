@@ -4,18 +4,18 @@
 
 use core::ops::Range;
 
-use fearless_simd::{Simd, SimdCombine, SimdSplit, f32x4, f32x8};
-use glam::Vec3;
+use fearless_simd::{Simd, f32x4, f32x8};
 
-use super::{BandRow, SolveLaidYarns, YarnLink, YarnParticles, compliance, sum_of_couplings};
-use crate::batch::lane_batch::LaneBatch;
-use crate::batch::layout::Positions;
-use crate::fabric::{Fabric, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
+use super::{
+    BandRow, FARTHER, SolveLaidYarns, TightenLinks, YarnLink, YarnParticles, compliance,
+    sum_couplings,
+};
+use crate::constraints::vector_particles::{VectorParticle, VectorParticles, joined, split};
+use crate::fabric::{BAND, Fabric, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::level::dispatch;
 use crate::simd::registers::{Pack1, Pack4, Pack8};
-use crate::simd::transpose::{coordinates, vectors};
-use crate::simd::vec3::{V3, lane3, set_lane3};
+use crate::simd::vec3::V3;
 
 /// The laid yarns of a single cloth, those of each colour in a pack.
 #[derive(Clone, Debug)]
@@ -26,30 +26,23 @@ pub(crate) struct YarnPacks {
     colours: Vec<Range<usize>>,
     links: Vec<YarnLink<Pack8>>,
     rows: Vec<BandRow<Pack8>>,
-    particles: Vec<VectorParticle>,
-    /// Inverse masses, 1/m².
+    /// Scratch array of the sums of corrections before the first pass, m.
+    before: Vec<Pack4>,
+    /// Inverse masses of the particles in the substep before, 1/m².
     inverse_masses: Vec<Pack1>,
 }
 
 const _: () = assert!(YARNS_AT_ONCE == Pack8::WIDTH);
 
-/// A node of each yarn of a pack. A lane whose yarn has ended repeats its last node, so that its links have no length, and
-/// a lane without a yarn repeats one node.
+/// A node of each yarn of a pack. A lane whose yarn has ended repeats its last node, so that its links have no length,
+/// and a lane without a yarn repeats one node.
 #[derive(Clone, Debug)]
-struct NodePack {
+pub(super) struct NodePack {
     nodes: [Node; Pack8::WIDTH],
+    /// Inverse masses of the particles of each node, times their parts, 1/m².
+    factors: [[f32; 2]; Pack8::WIDTH],
     /// Number of lanes whose yarn has this node: the first ones, as yarns are sorted by length.
     count: usize,
-}
-
-/// A particle while corrections are summed: vectors of x, y, z and a fourth number.
-#[derive(Clone, Debug)]
-#[repr(C, align(32))]
-struct VectorParticle {
-    /// Position before the corrections, m, and the inverse mass, 1/m².
-    predicted: Pack4,
-    /// Sum of the corrections, m, and zero.
-    correction: Pack4,
 }
 
 impl YarnPacks {
@@ -62,12 +55,10 @@ impl YarnPacks {
         let colours = yarns.colours.ranges().iter();
         let packs: Vec<Vec<NodePack>> =
             colours.map(|colour| nodes(&yarns.list[colour.clone()])).collect();
-        let zero = Pack4::splat(0.0);
-        let particle = VectorParticle { predicted: zero, correction: zero };
         Some(Self {
             links: vec![YarnLink::new(); packs.iter().map(|nodes| nodes.len() - 1).sum()],
             rows: vec![BandRow::new(); yarns.longest()],
-            particles: vec![particle; fabric.particle_count()],
+            before: Vec::new(),
             inverse_masses: vec![Pack1::splat(0.0); fabric.particle_count()],
             colours: (0..packs.len()).map(|pack| pack..pack + 1).collect(),
             packs,
@@ -83,48 +74,75 @@ fn nodes(yarns: &[LaidYarn]) -> Vec<NodePack> {
     };
     let pack = |at: usize| NodePack {
         nodes: core::array::from_fn(|lane| node(lane, at)),
+        factors: [[0.0; 2]; Pack8::WIDTH],
         count: yarns.iter().filter(|yarn| at < yarn.nodes.len()).count(),
     };
     (0..yarns[0].nodes.len()).map(pack).collect()
 }
 
-impl<P: Pack> LaneBatch<P> {
-    /// Solves the yarns of the cloth in the first lane.
-    pub(super) fn solve_yarns_across_lanes(&mut self, passes: u32) {
-        let Some(packs) = &mut self.yarn_packs else { return };
-        let YarnPacks { packs, colours, links, rows, particles, inverse_masses } = &mut **packs;
-        let state = self.positions.packs().iter().zip(&self.correction).zip(&self.masses.inverse);
+impl NodePack {
+    /// Takes over the inverse masses of the particles, 1/m².
+    fn set_masses(&mut self, inverse_masses: &[Pack1]) {
+        for (node, factors) in self.nodes.iter().zip(&mut self.factors) {
+            for ((particle, part), factor) in node.particles.iter().zip(node.parts).zip(factors) {
+                *factor = inverse_masses[*particle as usize].lanes()[0] * part;
+            }
+        }
+    }
+}
+
+impl YarnPacks {
+    /// Solves all yarns, given the compliance of a square of each family, σ/(Y h²), 1/m².
+    pub(in crate::constraints) fn solve(
+        &mut self,
+        yarns: &LaidYarns,
+        compliance: [f32; 3],
+        passes: u32,
+        mut particles: VectorParticles<'_>,
+    ) {
         let mut has_new_masses = false;
-        let copies = particles.iter_mut().zip(&mut *inverse_masses);
-        for ((particle, copy), ((position, correction), inverse_mass)) in copies.zip(state) {
-            let inverse_mass = inverse_mass.lanes()[0];
-            let [x, y, z] = lane3(position, 0).to_array();
-            particle.predicted.lanes_mut().copy_from_slice(&[x, y, z, inverse_mass]);
-            let [x, y, z] = lane3(correction, 0).to_array();
-            particle.correction.lanes_mut().copy_from_slice(&[x, y, z, 0.0]);
+        for (at, copy) in (0..).zip(&mut self.inverse_masses) {
+            let inverse_mass = particles.inverse_mass(at);
             has_new_masses |= copy.lanes()[0] != inverse_mass;
             *copy = Pack1::splat(inverse_mass);
         }
+        let Self { packs, links, inverse_masses, .. } = self;
+        if has_new_masses {
+            packs.iter_mut().flatten().for_each(|pack| pack.set_masses(inverse_masses));
+        }
         Pack1::run(BeginLinks {
-            yarns: self.fabric.laid_yarns(),
+            yarns,
             inverse_masses,
             has_new_masses,
-            compliance: &self.layout.modulus_compliance.map(|pack| Pack1::splat(pack.lanes()[0])),
+            compliance: &compliance.map(Pack1::splat),
             links,
         });
-        let solve = SolveLaidYarns {
-            yarns: packs,
-            colours,
-            passes,
-            links,
-            rows,
-            particles: VectorParticles(particles),
-        };
-        dispatch!(token => solve_across(token, solve));
-        for (correction, particle) in self.correction.iter_mut().zip(particles) {
-            let [x, y, z, _] = particle.correction.vector();
-            set_lane3(correction, 0, Vec3::new(x, y, z));
+        if passes > 1 {
+            self.before.clear();
+            self.before.extend(particles.0.iter().map(|particle| particle.correction));
+            self.run_yarns(1, &mut particles);
+            dispatch!(token => go_farther(token, &self.before, particles.0));
+            Pack8::run(TightenLinks(&mut self.links));
         }
+        self.run_yarns(passes.max(2) - 1, &mut particles);
+    }
+
+    fn run_yarns(&mut self, passes: u32, VectorParticles(particles): &mut VectorParticles<'_>) {
+        let Self { packs, colours, links, rows, .. } = self;
+        let particles = VectorParticles(particles);
+        let solve = SolveLaidYarns { yarns: packs, colours, passes, links, rows, particles };
+        dispatch!(token => solve_across(token, solve));
+    }
+}
+
+/// Moves particles farther by a part of what a pass has moved them, given the sums of corrections before it, m.
+#[inline(always)]
+fn go_farther<S: Simd>(token: S, before: &[Pack4], particles: &mut [VectorParticle]) {
+    let farther = <f32x4<S> as Lane>::splat(token, FARTHER);
+    for (VectorParticle { correction, .. }, before) in particles.iter_mut().zip(before) {
+        let now = <f32x4<S> as Lane>::load(token, correction);
+        let moved = now - <f32x4<S> as Lane>::load(token, before);
+        now.plus_product(moved, farther).store(correction);
     }
 }
 
@@ -161,6 +179,7 @@ impl Kernel<Pack1> for BeginLinks<'_> {
                 for (laid, link) in yarn.links.iter().zip(links) {
                     let compliance: L = compliance(token, laid, self.compliance);
                     store_lane(compliance, &mut link.compliance, lane);
+                    link.rest_length.lanes_mut()[lane] = laid.rest_length;
                     link.target.lanes_mut()[lane] = laid.rest_length;
                 }
             }
@@ -180,11 +199,9 @@ fn couple<L: Lane<Pack = Pack1>>(
 ) {
     let mut couplings = yarn.couplings.as_slice();
     for (laid, link) in yarn.links.iter().zip(links) {
-        for (&count, sum) in laid.couplings.iter().zip(&mut link.couplings) {
-            let (of_row, rest) = couplings.split_at(usize::from(count));
-            couplings = rest;
-            let of_links: L = sum_of_couplings(token, of_row, inverse_masses);
-            store_lane(of_links, sum, lane);
+        let sums: [L; BAND + 1] = sum_couplings(token, laid, &mut couplings, inverse_masses);
+        for (sum, stored) in sums.into_iter().zip(&mut link.couplings) {
+            store_lane(sum, stored, lane);
         }
     }
 }
@@ -196,9 +213,7 @@ fn store_lane<L: Lane<Pack = Pack1>>(value: L, pack: &mut Pack8, lane: usize) {
     pack.lanes_mut()[lane] = single.lanes()[0];
 }
 
-/// Particles of which the nodes of eight yarns are gathered.
-struct VectorParticles<'a>(&'a mut [VectorParticle]);
-
+/// Eight yarns of one colour, whose nodes are gathered.
 impl<S: Simd> YarnParticles<f32x8<S>> for VectorParticles<'_> {
     type Node = NodePack;
 
@@ -212,34 +227,16 @@ impl<S: Simd> YarnParticles<f32x8<S>> for VectorParticles<'_> {
             let of_a = a * <f32x4<S> as Lane>::splat(token, part_a);
             *at = of_a.plus_product(b, Lane::splat(token, part_b));
         }
-        let [a, b, c, d, e, f, g, h] = at;
-        let (low, high) = (coordinates([a, b, c, d]), coordinates([e, f, g, h]));
-        V3 { x: low[0].combine(high[0]), y: low[1].combine(high[1]), z: low[2].combine(high[2]) }
+        joined(at)
     }
 
     #[inline(always)]
     fn pull_node(&mut self, token: S, pack: &NodePack, pull: V3<f32x8<S>>) {
-        let ((x, x_high), (y, y_high), (z, z_high)) =
-            (pull.x.split(), pull.y.split(), pull.z.split());
-        let low = vectors(token, [x, y, z]);
-        let high = vectors(token, [x_high, y_high, z_high]);
-        let pulls = low.into_iter().chain(high);
-        for (node, pull) in pack.nodes[..pack.count].iter().zip(pulls) {
-            for (&particle, &part) in node.particles.iter().zip(&node.parts) {
-                let VectorParticle { predicted, correction } = &mut self.0[particle as usize];
-                let factor = predicted.vector()[3] * part;
-                let sum = <f32x4<S> as Lane>::load(token, correction);
-                sum.plus_product(pull, Lane::splat(token, factor)).store(correction);
+        let nodes = pack.nodes[..pack.count].iter().zip(&pack.factors);
+        for ((node, factors), pull) in nodes.zip(split(token, pull)) {
+            for (&particle, &factor) in node.particles.iter().zip(factors) {
+                self.correct(token, particle, pull, factor);
             }
         }
-    }
-}
-
-impl VectorParticles<'_> {
-    #[inline(always)]
-    fn position<S: Simd>(&self, token: S, particle: u32) -> f32x4<S> {
-        let VectorParticle { predicted, correction } = &self.0[particle as usize];
-        let predicted = <f32x4<S> as Lane>::load(token, predicted);
-        predicted + <f32x4<S> as Lane>::load(token, correction)
     }
 }

@@ -1,15 +1,18 @@
 //! Laid yarns of cloths side by side: the same yarn of each cloth in the lanes.
 
-use super::{SolveLaidYarns, YarnLink, YarnParticles, compliance, sum_of_couplings};
+use super::{
+    FARTHER, SolveLaidYarns, TightenLinks, YarnLink, YarnParticles, compliance, sum_couplings,
+};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Particles, Positions};
 use crate::constraints::corrections::CorrectedParticles;
-use crate::fabric::{LaidYarn, Node};
+use crate::fabric::{BAND, LaidYarn, Node};
 use crate::simd::lane::{Kernel, Lane, Pack};
-use crate::simd::vec3::V3;
+use crate::simd::vec3::{Pack3, V3};
 
 impl<P: Pack> LaneBatch<P> {
-    pub(super) fn solve_yarns_side_by_side(&mut self, passes: u32) {
+    /// Solves the yarns of all lanes' cloths.
+    pub(in crate::constraints) fn solve_yarns_side_by_side(&mut self, passes: u32) {
         let yarns = self.fabric.laid_yarns();
         P::run(BeginLinks {
             yarns: &yarns.list,
@@ -17,6 +20,18 @@ impl<P: Pack> LaneBatch<P> {
             compliance: &self.layout.modulus_compliance,
             links: &mut self.yarn_links,
         });
+        if passes > 1 {
+            self.stretch_shift.clone_from(&self.correction);
+            self.run_yarns(1);
+            let (before, correction) = (&self.stretch_shift, &mut self.correction);
+            P::run(GoFarther { before, correction });
+            P::run(TightenLinks(&mut self.yarn_links));
+        }
+        self.run_yarns(passes.max(2) - 1);
+    }
+
+    fn run_yarns(&mut self, passes: u32) {
+        let yarns = self.fabric.laid_yarns();
         P::run(SolveLaidYarns {
             yarns: &yarns.list,
             colours: yarns.colours.ranges(),
@@ -29,6 +44,24 @@ impl<P: Pack> LaneBatch<P> {
                 correction: &mut self.correction,
             },
         });
+    }
+}
+
+/// Moves particles farther by a part of what a pass has moved them.
+struct GoFarther<'a, P: Pack> {
+    /// Sums of corrections before the pass, m.
+    before: &'a [Pack3<P>],
+    correction: &'a mut [Pack3<P>],
+}
+
+impl<P: Pack> Kernel<P> for GoFarther<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let farther = L::splat(token, FARTHER);
+        for (correction, before) in self.correction.iter_mut().zip(self.before) {
+            let now: V3<L> = V3::load(token, correction);
+            now.plus_scaled(now - V3::load(token, before), farther).store(correction);
+        }
     }
 }
 
@@ -48,15 +81,15 @@ impl<P: Pack> Kernel<P> for BeginLinks<'_, P> {
         for yarn in self.yarns {
             let mut couplings = yarn.couplings.as_slice();
             for (laid, link) in yarn.links.iter().zip(&mut links) {
-                for (&count, sum) in laid.couplings.iter().zip(&mut link.couplings) {
-                    let (of_row, rest) = couplings.split_at(usize::from(count));
-                    couplings = rest;
-                    let of_links: L = sum_of_couplings(token, of_row, self.inverse_masses);
-                    of_links.store(sum);
+                let sums: [L; BAND + 1] =
+                    sum_couplings(token, laid, &mut couplings, self.inverse_masses);
+                for (sum, stored) in sums.into_iter().zip(&mut link.couplings) {
+                    sum.store(stored);
                 }
                 let compliance: L = compliance(token, laid, self.compliance);
                 compliance.store(&mut link.compliance);
-                link.target = P::splat(laid.rest_length);
+                link.rest_length = P::splat(laid.rest_length);
+                link.target = link.rest_length;
             }
         }
     }

@@ -166,7 +166,7 @@ impl Warps {
 
 /// The chart along that edge of the border whose bounding rectangle is the smallest.
 fn narrowest(mesh: &RestMesh, surface: &Surface, area: f32, normal: Vec3) -> Chart {
-    let border = surface.edges.iter().filter(|edge| edge.other_opposite.is_none());
+    let border = surface.edges.iter().filter(|edge| edge.other_side.is_none());
     let mut directions: Vec<Vec3> = border
         .map(|edge| {
             let [a, b] = mesh.positions_of(edge.ends);

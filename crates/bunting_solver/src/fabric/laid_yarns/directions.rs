@@ -4,10 +4,10 @@ use glam::{Mat3, Vec2, Vec3};
 
 use super::faces::Faces;
 use super::lay::Towards;
-use crate::fabric::links::LinkFamily;
+use crate::fabric::links::{LinkFamily, along_u};
 
-/// Least sine of the angle between a triangle's normal and the axis that warp follows, of meshes without texture. Smaller:
-/// the directions of triangles at right angles to the axis are rounding errors.
+/// Least sine of the angle between a triangle's normal and the axis that warp follows, of meshes without texture.
+/// Smaller: the directions of triangles at right angles to the axis are rounding errors.
 const LEAST_SINE: f32 = 0.1;
 
 /// Least doubled area of a triangle in its texture, as a part of the square of its longest side there. Smaller: its
@@ -61,11 +61,11 @@ impl Directions {
 /// Unit vectors along the warp of each triangle.
 ///
 /// A triangle with texture has the direction in which u grows. Others have the direction of a neighbour that has one,
-/// laid into their plane. Of a mesh without texture the warp runs along the axis to which its normals are most nearly at
-/// right angles, as the axis of a cylinder.
+/// laid into their plane. Of a mesh without texture the warp runs along the axis to which its normals are most nearly
+/// at right angles, as the axis of a cylinder.
 fn warps(faces: &Faces, corner_uv: &[[Vec2; 3]]) -> Vec<Vec3> {
     let mut warps: Vec<Vec3> = (0..faces.count() as u32)
-        .map(|triangle| along_texture(faces, triangle, corner_uv[triangle as usize]))
+        .map(|triangle| along_texture(faces.corners(triangle), corner_uv[triangle as usize]))
         .collect();
     if warps.iter().all(|warp| *warp == Vec3::ZERO) {
         let axis = axis(faces);
@@ -79,16 +79,13 @@ fn warps(faces: &Faces, corner_uv: &[[Vec2; 3]]) -> Vec<Vec3> {
 }
 
 /// The direction in which u grows; zero if the texture does not tell.
-fn along_texture(faces: &Faces, triangle: u32, uv: [Vec2; 3]) -> Vec3 {
-    let [a, b, c] = faces.corners(triangle);
-    let (e1, e2) = (b - a, c - a);
+fn along_texture(corners: [Vec3; 3], uv: [Vec2; 3]) -> Vec3 {
     let (t1, t2) = (uv[1] - uv[0], uv[2] - uv[0]);
-    let doubled = t1.perp_dot(t2);
     let longest = t1.length_squared().max(t2.length_squared());
-    if doubled.abs() <= LEAST_TEXTURE * longest {
+    if t1.perp_dot(t2).abs() <= LEAST_TEXTURE * longest {
         return Vec3::ZERO;
     }
-    ((e1 * t2.y - e2 * t1.y) * doubled.signum()).normalize_or_zero()
+    along_u(corners, uv).unwrap_or_default()
 }
 
 /// The axis to which the normals, weighted by areas, are most nearly at right angles.
@@ -100,7 +97,8 @@ fn axis(faces: &Faces) -> Vec3 {
         covariance +=
             Mat3::from_cols(normal * normal.x, normal * normal.y, normal * normal.z) * area;
     }
-    // Of a matrix without its trace, powers of trace · 1 − covariance lead to the eigenvector of the least eigenvalue.
+    // The greatest eigenvalue of 1 − covariance/trace belongs to the least one of the covariance, and powers of the
+    // matrix lead to its eigenvector.
     let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
     let mut power = Mat3::IDENTITY - covariance * (1.0 / trace);
     for _ in 0..SQUARINGS {

@@ -1,8 +1,8 @@
 //! Triangles of a curved mesh with what lies across their edges, and straight walks over them.
 
-use std::collections::HashMap;
-
 use glam::Vec3;
+
+use crate::fabric::topology::Edge;
 
 /// Least distance of a crossing from the ends of its edge, as a part of the edge. Smaller: a walk through a vertex goes
 /// around it in triangles of which it crosses nothing.
@@ -44,20 +44,16 @@ pub(super) struct Heading {
 }
 
 impl<'a> Faces<'a> {
-    pub fn new(positions: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Self {
-        let mut sides: HashMap<[u32; 2], Vec<(u32, usize)>> = HashMap::new();
-        for (index, corners) in triangles.iter().enumerate() {
-            for side in 0..3 {
-                let ends = [corners[side], corners[(side + 1) % 3]];
-                let key = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-                sides.entry(key).or_default().push((index as u32, side));
-            }
-        }
+    pub fn new(positions: &'a [Vec3], triangles: &'a [[u32; 3]], edges: &[Edge]) -> Self {
         let mut across = vec![[None; 3]; triangles.len()];
-        for sides in sides.into_values() {
-            if let [(one, of_one), (other, of_other)] = sides[..] {
-                across[one as usize][of_one] = Some(other);
-                across[other as usize][of_other] = Some(one);
+        for edge in edges {
+            if let Some(other) = edge.other_side {
+                for (here, there) in [(edge.side, other), (other, edge.side)] {
+                    let triangle = here.triangle as usize;
+                    let opposite = triangles[triangle].iter().position(|&at| at == here.opposite);
+                    // Side k + 1 lies opposite to corner k.
+                    across[triangle][(opposite.unwrap_or_default() + 1) % 3] = Some(there.triangle);
+                }
             }
         }
         let corners_of = |corners: &[u32; 3]| corners.map(|corner| positions[corner as usize]);
@@ -116,8 +112,8 @@ impl<'a> Faces<'a> {
         (Crossing { ends, part, at: from.lerp(to, part) }, side)
     }
 
-    /// The heading on the other side of an edge, unfolded into the plane of the triangle there; none at a border. If one
-    /// of `directions` leads on from there, the one that turns least is taken.
+    /// The heading on the other side of an edge, unfolded into the plane of the triangle there; none at a border. If
+    /// one of `directions` leads on from there, the one that turns least is taken.
     pub fn cross(
         &self,
         heading: &Heading,

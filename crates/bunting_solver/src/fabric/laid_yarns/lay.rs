@@ -10,8 +10,8 @@ use super::faces::{Crossing, Faces, Heading};
 use super::near::{Near, Passing};
 use crate::fabric::links::LinkFamily;
 
-/// Least distance from a yarn at which another one begins, in distances of yarns. Smaller: yarns lie closer than asked for,
-/// by rounding. Larger: wider gaps stay open.
+/// Least distance from a yarn at which another one begins, in distances of yarns. Smaller: yarns lie closer than asked
+/// for, by rounding. Larger: wider gaps stay open.
 const BEGINS: f32 = 0.95;
 
 /// Distance from a yarn at which another one ends, in distances of yarns. Smaller: yarns that converge get many short

@@ -1,13 +1,13 @@
 //! Yarns that are laid across the triangles of a mesh.
 //!
-//! Links along the edges of an irregular mesh are no paths along which a load runs: chains of them are short and zigzag,
-//! and what they leave to relaxation converges slowly. A mesh that has no background grid therefore gets yarns that run
-//! straight across its triangles, along warp, weft and both diagonals. A yarn's nodes are its crossings with edges, each
-//! of which moves with the two particles at the ends of its edge; links between them are as stiff as the material is, in
-//! the width of cloth that the yarn stands for.
+//! Links along the edges of an irregular mesh are no paths along which a load runs: chains of them are short and
+//! zigzag, and what they leave to relaxation converges slowly. A mesh that has no background grid therefore gets yarns
+//! that run straight across its triangles, along warp, weft and both diagonals. A yarn's nodes are its crossings with
+//! edges, each of which moves with the two particles at the ends of its edge; links between them are as stiff as the
+//! material is, in the width of cloth that the yarn stands for.
 //!
-//! `directions` finds warp and weft in each triangle, `faces` walks across triangles, `lay` places the yarns and `near` finds
-//! those beside them; `widths` measures how much cloth each link stands for.
+//! `directions` finds warp and weft in each triangle, `faces` walks across triangles, `lay` places the yarns and `near`
+//! finds those beside them; `widths` measures how much cloth each link stands for.
 
 mod directions;
 mod faces;
@@ -30,9 +30,9 @@ use super::colour::{Colours, colour_up_to};
 use super::links::LinkFamily;
 use super::mesh::{RestMesh, Surface};
 
-/// Least distance of two nodes along a yarn, in mean distances of crossings. Smaller: more links, which differ more in length and
-/// stiffness, so that the solution of one family disturbs that of the others. Larger: yarns no longer see all that the
-/// mesh can do, and it stretches too far.
+/// Least distance of two nodes along a yarn, in mean distances of crossings. Smaller: more links, which differ more in
+/// length and stiffness, so that the solution of one family disturbs that of the others. Larger: yarns no longer see
+/// all that the mesh can do, and it stretches too far.
 const LEAST_LINK: f32 = 0.65;
 
 /// Links between which particles couple the rows of a yarn's system: each with the next ones, up to this many.
@@ -55,7 +55,8 @@ pub(crate) struct LaidLink {
     pub family: LinkFamily,
     /// Distance of its nodes at rest, m.
     pub rest_length: f32,
-    /// Length at rest over the width of cloth that the link stands for: its compliance in units of one over the modulus.
+    /// Length at rest over the width of cloth that the link stands for: its compliance in units of one over the
+    /// modulus.
     pub slenderness: f32,
     /// Numbers of the [`Coupling`]s of its row of the system with that of the k-th link before it, k = 0 to [`BAND`].
     pub couplings: [u8; BAND + 1],
@@ -99,7 +100,7 @@ pub(crate) struct LaidYarns {
 impl LaidYarns {
     /// Lays yarns across a mesh.
     pub(in crate::fabric) fn of(mesh: &RestMesh, surface: &Surface) -> Self {
-        let faces = Faces::new(&mesh.positions, &mesh.triangles);
+        let faces = Faces::new(&mesh.positions, &mesh.triangles, &surface.edges);
         let directions = Directions::of(&faces, &surface.corner_uv);
         let spacings = Towards::ALL.map(|towards| {
             Spacing::of(mesh, surface, &faces, |at| directions.of_triangle(at, towards))
@@ -168,8 +169,8 @@ fn yarns_of(line: &Line, mesh: &RestMesh, spacing: &[f32], widths: &Widths) -> V
     yarns
 }
 
-/// The crossings of a line without those that are too near to the one before, and such that no particle moves links that are
-/// farther apart than the band.
+/// The crossings of a line without those that are too near to the one before, and such that no particle moves links
+/// that are farther apart than the band.
 fn thinned(line: &Line, spacing: &[f32]) -> Vec<Stop> {
     let mut stops: Vec<Stop> = Vec::new();
     // Pieces before the first crossing and after the last belong to no link.

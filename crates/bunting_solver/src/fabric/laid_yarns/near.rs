@@ -4,9 +4,12 @@ use std::collections::HashMap;
 
 use glam::{IVec3, Vec3};
 
-/// Least cosine of the angle between two lines, or between the normals of their triangles, that lie side by side. Larger:
-/// lines beside one another on a curved mesh are not seen. Smaller: the two sides of a fold count as one.
+/// Least cosine of the angle between two lines, or between the normals of their triangles, that lie side by side.
+/// Larger: lines beside one another on a curved mesh are not seen. Smaller: the two sides of a fold count as one.
 const ALIKE: f32 = 0.8;
+
+/// Greatest distance from the first point of a line at which its end closes a ring, in the distance at which lines end.
+const RING_CLOSES: f32 = 2.5;
 
 /// A point of a line.
 #[derive(Clone, Copy, Debug)]
@@ -73,26 +76,23 @@ impl Near {
 
     /// Whether the line that was begun last passes within a distance, m.
     pub fn is_own(&self, at: Vec3, within: f32) -> bool {
-        let own = self.around(at, within).filter(|(line, _)| *line == self.line);
-        own.into_iter().any(|(_, passing)| {
-            passing.before == 0.0 && passing.at.distance(at) < RING_CLOSES * within
+        self.around(at, within).any(|(line, passing)| {
+            *line == self.line
+                && passing.before == 0.0
+                && passing.at.distance(at) < RING_CLOSES * within
         })
     }
 
     /// The points in the cells around a place; all points, if they are fewer than these cells, as in meshes of slivers.
-    fn around(&self, at: Vec3, within: f32) -> impl Iterator<Item = &(u32, Passing)> {
+    fn around(&self, at: Vec3, within: f32) -> Box<dyn Iterator<Item = &(u32, Passing)> + '_> {
+        if (2.0 * within / self.cell + 2.0).powi(3) > self.cells.len() as f32 {
+            return Box::new(self.cells.values().flatten());
+        }
         let [low, high] =
             [-within, within].map(|reach| ((at + reach) / self.cell).floor().as_ivec3());
-        let takes_all = (2.0 * within / self.cell + 2.0).powi(3) > self.cells.len() as f32;
-        let all = takes_all.then(|| self.cells.values().flatten());
-        let high = if takes_all { low - 1 } else { high };
         let cells = (low.x..=high.x).flat_map(move |x| {
             (low.y..=high.y).flat_map(move |y| (low.z..=high.z).map(move |z| IVec3::new(x, y, z)))
         });
-        let near = cells.filter_map(|cell| self.cells.get(&cell)).flatten();
-        all.into_iter().flatten().chain(near)
+        Box::new(cells.filter_map(|cell| self.cells.get(&cell)).flatten())
     }
 }
-
-/// Greatest distance from the first point of a line at which its end closes a ring, in the distance at which lines end.
-const RING_CLOSES: f32 = 2.5;

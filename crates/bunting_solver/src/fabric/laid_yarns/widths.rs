@@ -8,22 +8,23 @@ use super::lay::Line;
 use crate::fabric::links::LinkFamily;
 use crate::fabric::mesh::{RestMesh, Surface};
 
-/// Distance of lines, in mean widths of triangles at right angles to them. Smaller: more links, whose families work against
-/// one another. Larger: particles between lines are held by few; with 1, one of three cylinders sank 9 % too far.
+/// Distance of lines, in mean widths of triangles at right angles to them. Smaller: more links, whose families work
+/// against one another. Larger: particles between lines are held by few; with 1, one of three cylinders sank 9 % too
+/// far.
 const SPACING: f32 = 0.9;
 
-/// Least distance of lines, in square roots of the areas of triangles. Smaller: a mesh of slivers has as many lines as slivers,
-/// and takes long to build. Larger: long cells have fewer lines than rows.
-const LEAST: f32 = 0.35;
+/// Least distance of lines, in square roots of the areas of triangles. Smaller: a mesh of slivers has as many lines as
+/// slivers, and takes long to build. Larger: long cells have fewer lines than rows.
+const LEAST_SPACING: f32 = 0.35;
 
-/// Rounds in which lengths and areas are summed over the triangles around each particle. Fewer: links that happen to lie
-/// where few others do are stiffer. More: a graded mesh has its mean's stiffness.
+/// Rounds in which lengths and areas are summed over the triangles around each particle. Fewer: links that happen to
+/// lie where few others do are stiffer. More: a graded mesh has its mean's stiffness.
 const ROUNDS: usize = 2;
 
 /// The distances of lines in one direction, and of their nodes, in each triangle.
 ///
-/// Lines are as far apart as triangles are wide at right angles to them, in the mean, so that a mesh of long cells gets as
-/// many of them as it has rows or columns.
+/// Lines are as far apart as triangles are wide at right angles to them, in the mean, so that a mesh of long cells gets
+/// as many of them as it has rows or columns.
 pub(super) struct Spacing {
     /// Distance of lines, m.
     pub of_lines: Vec<f32>,
@@ -56,7 +57,8 @@ impl Spacing {
         let widths: Vec<f32> = mesh.triangles.iter().map(|at| mean(&widths, at)).collect();
         let areas: Vec<f32> = mesh.triangles.iter().map(|at| mean(&areas, at)).collect();
         let both = || widths.iter().zip(&areas);
-        let of_lines = both().map(|(width, area)| (SPACING * width).max(LEAST * area.sqrt()));
+        let of_lines =
+            both().map(|(width, area)| (SPACING * width).max(LEAST_SPACING * area.sqrt()));
         let of_crossings = both().map(|(width, area)| area / width);
         Self { of_lines: of_lines.collect(), of_crossings: of_crossings.collect() }
     }
@@ -100,20 +102,23 @@ impl Widths {
 
 /// For each particle the sum of a value of triangles over those around it, in some rounds.
 fn summed(mesh: &RestMesh, of_triangles: &[f32]) -> Vec<f32> {
-    let mut of_triangles = of_triangles.to_vec();
-    for round in 0.. {
-        let mut of_particles = vec![0.0; mesh.positions.len()];
-        for (corners, value) in mesh.triangles.iter().zip(&of_triangles) {
-            for &corner in corners {
-                of_particles[corner as usize] += value;
-            }
-        }
-        if round + 1 == ROUNDS {
-            return of_particles;
-        }
-        for (corners, value) in mesh.triangles.iter().zip(&mut of_triangles) {
-            *value = corners.iter().map(|&corner| of_particles[corner as usize]).sum();
+    let mut of_particles = summed_once(mesh, of_triangles);
+    for _ in 1..ROUNDS {
+        let of_corners =
+            |corners: &[u32; 3]| corners.iter().map(|&corner| of_particles[corner as usize]).sum();
+        let of_triangles: Vec<f32> = mesh.triangles.iter().map(of_corners).collect();
+        of_particles = summed_once(mesh, &of_triangles);
+    }
+    of_particles
+}
+
+/// For each particle the sum of a value of triangles over those around it.
+fn summed_once(mesh: &RestMesh, of_triangles: &[f32]) -> Vec<f32> {
+    let mut of_particles = vec![0.0; mesh.positions.len()];
+    for (corners, value) in mesh.triangles.iter().zip(of_triangles) {
+        for &corner in corners {
+            of_particles[corner as usize] += value;
         }
     }
-    Vec::new()
+    of_particles
 }

@@ -1,0 +1,242 @@
+//! Error over time of the grid and of meshes that are no grids, each solved by yarns and by Gauss–Seidel.
+//!
+//! All are the square metre of the scene `swing`, so that one reference holds for all of them: the converged grid,
+//! whose surface is interpolated at the places of a mesh's particles.
+
+use std::sync::Arc;
+
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, LaneCount, StepSettings,
+};
+use glam::{DVec2, DVec3, Vec3};
+use serde::Serialize;
+
+use crate::{
+    meshes::{Sheet, Triangulation},
+    observation::COMPARED_TICKS,
+    output::{
+        plot::{Axes, Mark, Plot, Series},
+        table::{Table, figure},
+    },
+    product::{TICK, fabric, material},
+    reference::Reference,
+    scenes::Scene,
+    simulation::{Simulation, in_double},
+    stats::rms_distance,
+    timing::Timing,
+};
+
+/// Particles along each side.
+const SIZE: usize = 33;
+/// Entry of `COMPARED_TICKS` at which the error is taken: 0.4 s.
+const COMPARED: usize = 1;
+/// Runs of which the shortest tick counts, since anything else that runs on the machine adds to it.
+const RUNS: usize = 10;
+/// Substeps and passes of yarns.
+const YARNS: [[u32; 2]; 6] = [[1, 2], [2, 1], [2, 2], [4, 2], [8, 2], [16, 4]];
+/// Substeps of Gauss–Seidel, of one pass each.
+const GAUSS_SEIDEL: [u32; 5] = [5, 10, 20, 40, 80];
+/// Substeps of rapier.
+#[cfg(feature = "peers")]
+const RAPIER: [usize; 3] = [4, 10, 20];
+
+/// One method with its settings on one cloth.
+#[derive(Clone, Debug, Serialize)]
+pub struct MeshRow {
+    /// Mesh.
+    pub mesh: &'static str,
+    /// Method.
+    pub method: &'static str,
+    /// Substeps a tick.
+    pub substeps: usize,
+    /// Passes a substep.
+    pub passes: usize,
+    /// Shortest time of a tick, µs.
+    pub us_min: f64,
+    /// Distance from the reference after 0.4 s, m RMS.
+    pub rms_error_m: f64,
+}
+
+/// The grid and three meshes of as many particles; those of two pieces have laid yarns.
+fn specimens(scene: &Scene) -> [(&'static str, Arc<Fabric>); 4] {
+    let at_top = |at: Vec3| at.y == 0.0;
+    let sheet = |triangulation| Sheet::new(triangulation, [SIZE; 2], DVec2::ONE, 1);
+    [
+        ("grid", fabric(scene)),
+        ("Delaunay", sheet(Triangulation::Delaunay).fabric(0.0, at_top)),
+        ("random quads", sheet(Triangulation::Quads).fabric(0.0, at_top)),
+        ("two pieces", sheet(Triangulation::Quads).of_two_pieces(at_top)),
+    ]
+}
+
+/// Every method on every mesh.
+#[must_use]
+pub fn rows() -> Vec<MeshRow> {
+    let scene = Scene::swing(SIZE);
+    let reference = Reference::of(&scene);
+    let surface = &reference.observation.compared[COMPARED];
+    let yarns = YARNS.map(|[substeps, passes]| {
+        ("yarns", StepSettings { passes, ..StepSettings::yarns(substeps) })
+    });
+    let gauss_seidel = GAUSS_SEIDEL.map(|it| ("Gauss–Seidel", StepSettings::gauss_seidel(it)));
+    let mut rows = Vec::new();
+    for (mesh, fabric) in specimens(&scene) {
+        let converged: Vec<DVec3> =
+            fabric.rest_positions().iter().map(|at| interpolated(surface, *at)).collect();
+        for (method, settings) in yarns.into_iter().chain(gauss_seidel) {
+            let start = || Cloth::new(&fabric, material(&scene), settings);
+            let (us_min, rms_error_m) = measure(start, &converged);
+            let [substeps, passes] = [settings.substeps, settings.passes].map(|it| it as usize);
+            rows.push(MeshRow { mesh, method, substeps, passes, us_min, rms_error_m });
+        }
+        #[cfg(feature = "peers")]
+        for substeps in RAPIER {
+            use crate::peers::rapier::{Elasticity, Rapier};
+            let start =
+                || Rapier::of(&fabric, &level(&fabric), &scene, Elasticity::Constraints, substeps);
+            let (us_min, rms_error_m) = measure(start, &converged);
+            let (method, passes) = ("rapier 0.36", 1);
+            rows.push(MeshRow { mesh, method, substeps, passes, us_min, rms_error_m });
+        }
+    }
+    rows
+}
+
+/// Shortest time of a tick, µs, and distance from the converged positions, m RMS.
+fn measure<S: Simulation>(start: impl Fn() -> S, converged: &[DVec3]) -> (f64, f64) {
+    let (mut time, mut error) = (Timing::default(), f64::NAN);
+    for _ in 0..RUNS {
+        let mut cloth = start();
+        (0..COMPARED_TICKS[COMPARED]).for_each(|_| time.time(|| cloth.tick()));
+        error = rms_distance(&in_double(cloth.positions()), converged);
+    }
+    (time.min(), error)
+}
+
+/// The particles of a fabric in the scene's level pose, m.
+fn level(fabric: &Fabric) -> Vec<Vec3> {
+    fabric.rest_positions().iter().map(|at| Vec3::new(at.x, 0.0, -at.y)).collect()
+}
+
+/// A lone cloth that begins level, without air.
+struct Cloth {
+    batch: ClothBatch,
+    settings: StepSettings,
+    positions: Vec<Vec3>,
+    velocities: Vec<Vec3>,
+}
+
+impl Cloth {
+    fn new(fabric: &Arc<Fabric>, material: FabricMaterial, settings: StepSettings) -> Self {
+        let (positions, velocities) = (level(fabric), vec![Vec3::ZERO; fabric.particle_count()]);
+        let mut batch = ClothBatch::new(Arc::clone(fabric), LaneCount::One);
+        let start = ClothSnapshot::new(positions.clone(), velocities.clone());
+        batch.insert(&start, material).expect("a good cloth");
+        batch.drive(0, Drive { air_density: 0.0, ..Drive::default() }).expect("a good drive");
+        Self { batch, settings, positions, velocities }
+    }
+}
+
+impl Simulation for Cloth {
+    fn tick(&mut self) {
+        self.batch.step(TICK, self.settings);
+        self.batch.copy_positions(0, &mut self.positions);
+        self.batch.copy_velocities(0, &mut self.velocities);
+    }
+
+    fn positions(&self) -> &[Vec3] {
+        &self.positions
+    }
+
+    fn velocities(&self) -> &[Vec3] {
+        &self.velocities
+    }
+}
+
+/// The surface between the vertices of a grid at a place of the square at rest, m: cubic along both axes (Catmull and
+/// Rom 1974), since chords between vertices lie beside a curved surface by as much as good methods err.
+fn interpolated(vertices: &[DVec3], rest: Vec3) -> DVec3 {
+    let cells = (SIZE - 1) as f64;
+    let places = [f64::from(rest.x) * cells, f64::from(-rest.y) * cells];
+    let [column, row] = places.map(|at| at.floor().clamp(0.0, cells - 1.0));
+    let along = |row: usize| {
+        spline(column as usize, places[0] - column, |column| vertices[row * SIZE + column])
+    };
+    spline(row as usize, places[1] - row, along)
+}
+
+/// The cubic through `values` between numbers `at` and `at + 1`; beyond the last value the line goes straight on.
+fn spline(at: usize, part: f64, values: impl Fn(usize) -> DVec3) -> DVec3 {
+    let (from, to) = (values(at), values(at + 1));
+    let before = if at == 0 { 2.0 * from - to } else { values(at - 1) };
+    let after = if at + 2 < SIZE { values(at + 2) } else { 2.0 * to - from };
+    let (start, end) = (0.5 * (to - before), 0.5 * (after - from));
+    let (square, cube) = (part.powi(2), part.powi(3));
+    from * (2.0 * cube - 3.0 * square + 1.0)
+        + start * (cube - 2.0 * square + part)
+        + to * (3.0 * square - 2.0 * cube)
+        + end * (cube - square)
+}
+
+/// The rows as a table.
+#[must_use]
+pub fn table(rows: &[MeshRow]) -> Table {
+    let cells = |row: &MeshRow| {
+        vec![
+            row.mesh.into(),
+            row.method.into(),
+            row.substeps.to_string(),
+            row.passes.to_string(),
+            figure(row.us_min),
+            figure(row.rms_error_m),
+        ]
+    };
+    Table {
+        name: "pareto_meshes".into(),
+        title: format!("swing, grid and meshes of {SIZE} × {SIZE} particles, alone"),
+        headers: vec!["mesh", "method", "substeps", "passes", "least µs/tick", "RMS error m"],
+        rows: rows.iter().map(cells).collect(),
+    }
+}
+
+/// The rows as a plot, a series for each method on each mesh.
+#[must_use]
+pub fn plot(rows: &[MeshRow]) -> Plot {
+    let of_series =
+        |one: &MeshRow, other: &MeshRow| (one.mesh, one.method) == (other.mesh, other.method);
+    let series = rows.chunk_by(of_series).map(|rows| Series {
+        name: format!("{}, {}", rows[0].method, rows[0].mesh),
+        points: rows.iter().map(|row| (row.us_min, row.rms_error_m)).collect(),
+        mark: Mark::Line,
+    });
+    Plot {
+        name: "pareto_meshes".into(),
+        title: format!("A grid and meshes of {} particles swing: error over time", SIZE * SIZE),
+        labels: [
+            "least time of one cloth's tick, µs".into(),
+            "RMS position error after 0.4 s, m".into(),
+        ],
+        axes: Axes::Logarithmic,
+        series: series.collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DVec3, Vec3};
+
+    use super::{SIZE, interpolated};
+
+    #[test]
+    fn a_curved_surface_is_interpolated_far_more_closely_than_by_chords() {
+        let surface = |x: f64, y: f64| DVec3::new(x, (3.0 * x + 2.0 * y).sin() / 3.0, y * y);
+        let at = |vertex: usize| (vertex as f64) / (SIZE - 1) as f64;
+        let vertices: Vec<DVec3> =
+            (0..SIZE * SIZE).map(|it| surface(at(it % SIZE), at(it / SIZE))).collect();
+        for (x, y) in [(0.512, 0.487), (0.131, 0.77), (1.0, 0.4), (0.0, 0.0), (0.3, 1.0)] {
+            let found = interpolated(&vertices, Vec3::new(x, -y, 0.0));
+            let expected = surface(x.into(), y.into());
+            assert!(found.distance(expected) < 1e-5, "{found} {expected}");
+        }
+    }
+}
