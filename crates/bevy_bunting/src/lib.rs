@@ -146,6 +146,8 @@ pub use cloth::mesh::ClothMesh;
 pub use cloth::preroll::{ClothPreroll, PrerollPlugin};
 pub use cloth::state::ClothState;
 pub use cloth::weights::WeightsError;
+#[cfg(feature = "serialize")]
+pub use complete_reader::CompleteReader;
 pub use diagnostics::ClothDiagnosticsPlugin;
 pub use display::ease::EasingPlugin;
 pub use display::lift::LiftPlugin;
@@ -197,6 +199,8 @@ pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
 #[cfg(feature = "picking")]
 pub use picking::drag::{ClothDrag, ClothDragSettings};
+#[cfg(feature = "picking")]
+pub use picking::pins::{PinBrush, PinStroke};
 #[cfg(feature = "picking")]
 pub use picking::plugin::ClothDragPlugin;
 #[cfg(feature = "render")]
