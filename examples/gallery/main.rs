@@ -3,7 +3,8 @@
 //! `cargo run --release --example gallery --features render,avian` shows one after the other in a window: → and ← go to
 //! the next and the previous one, and each has its own keys.
 //!
-//! `cargo run --release --example gallery --features render,avian -- --headless --pictures DIR` writes one picture of each.
+//! `cargo run --release --example gallery --features render,avian -- --headless --pictures DIR` writes one picture of
+//! each.
 //!
 //! Each example has its own process, since it is a whole app: it adds systems, and sets resources.
 

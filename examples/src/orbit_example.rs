@@ -26,8 +26,8 @@ impl View {
     }
 }
 
-/// An [`Example`] of one place, with values that must stay within limits. In a window the mouse turns the camera around the
-/// view's centre.
+/// An [`Example`] of one place, with values that must stay within limits. In a window the mouse turns the camera
+/// around the view's centre.
 pub trait OrbitExample {
     /// [`Example::NAME`].
     const NAME: &'static str;

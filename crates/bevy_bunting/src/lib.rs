@@ -104,6 +104,8 @@ mod anchors;
 mod background;
 mod batch;
 mod cloth;
+#[cfg(feature = "serialize")]
+mod complete_reader;
 mod diagnostics;
 mod display;
 mod environment;
@@ -247,7 +249,7 @@ pub mod prelude {
         PaintedWeights, VertexPaint,
     };
     #[cfg(feature = "picking")]
-    pub use crate::{ClothDragPlugin, ClothDragSettings};
+    pub use crate::{ClothDragPlugin, ClothDragSettings, PinBrush, PinStroke};
     #[cfg(feature = "weave")]
     pub use crate::{Weave, WeavePlugin, WovenMaterial};
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};

@@ -38,12 +38,13 @@ pub enum PinStroke {
     Erase,
 }
 
-/// How pointers paint pins: while the primary button is pressed, the vertices under the pointer are added to those of the
-/// cloth's [`Attachment`], or removed from them. [`ClothDragPlugin`](crate::ClothDragPlugin) does both.
+/// How pointers paint pins: while the primary button is pressed, the vertices under the pointer are added to those of
+/// the cloth's [`Attachment`], or removed from them. [`ClothDragPlugin`](crate::ClothDragPlugin) does both.
 ///
-/// Painted vertices become an [`AttachedVertices::List`]; those of further anchors stay theirs. They are held where all attached
-/// vertices are, at their places in the [`ClothMesh`] seen from the cloth's frame, and move there gently. A cloth without an
-/// [`Attachment`] gets one to its own `Transform`; one whose last pin is erased loses it, unless it has further anchors.
+/// Painted vertices become an [`AttachedVertices::List`]; those of further anchors stay theirs. They are held where
+/// all attached vertices are, at their places in the [`ClothMesh`] seen from the cloth's frame, and move there
+/// gently. A cloth without an [`Attachment`] gets one to its own `Transform`; one whose last pin is erased loses it,
+/// unless it has further anchors.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;
@@ -142,8 +143,8 @@ impl Canvas<'_, '_> {
     }
 }
 
-/// The vertices of a mesh within a radius (m), and the nearest one. Distances are those at rest, so that layers behind one
-/// another are not painted together. Vertices that the level of detail lacks are among them.
+/// The vertices of a mesh within a radius (m), and the nearest one. Distances are those at rest, so that layers
+/// behind one another are not painted together. Vertices that the level of detail lacks are among them.
 fn near(mesh: &ClothMesh, instance: &ClothInstance, hit: &ClothHit, radius: f32) -> BTreeSet<u32> {
     let mesh = bake(mesh, instance.scale);
     let builder = mesh.builder();

@@ -12,11 +12,11 @@ use crate::picking::pins::{self, PinBrush};
 /// Lets pointers (mouse, touch, or the user's own) drag cloths: the vertices under the pointer are grabbed when its primary
 /// button is pressed, follow it in a plane parallel to the picture, and are let go with the button.
 ///
-/// It needs Bevy's picking, which `DefaultPlugins` have with the feature `bevy_picking`, elsewhere `DefaultPickingPlugins`;
-/// and it is its backend for cloths, so that all events of `Pointer` are sent for them, too. A cloth with
-/// `Pickable::IGNORE` is neither. Other entities in front of a cloth shield it if a backend reports them, such as Bevy's
-/// `MeshPickingPlugin`. Rigid triangles are not picked. [`ClothDragSettings`] has reach and strength; with a [`PinBrush`] that is
-/// not off, pointers paint pins instead.
+/// It needs Bevy's picking, which `DefaultPlugins` have with the feature `bevy_picking`, elsewhere
+/// `DefaultPickingPlugins`; and it is its backend for cloths, so that all events of `Pointer` are sent for them, too.
+/// A cloth with `Pickable::IGNORE` is neither. Other entities in front of a cloth shield it if a backend reports
+/// them, such as Bevy's `MeshPickingPlugin`. Rigid triangles are not picked. [`ClothDragSettings`] has reach and
+/// strength; with a [`PinBrush`] that is not off, pointers paint pins instead.
 ///
 /// ```
 /// use bevy_app::prelude::*;

@@ -1,4 +1,5 @@
-//! A convoy of avian's rigid bodies over rough ground: each vehicle has a flag, the first one a tarpaulin over its load.
+//! A convoy of avian's rigid bodies over rough ground: each vehicle has a flag, the first one a tarpaulin over its
+//! load.
 
 #[cfg(feature = "render")]
 mod draw;
