@@ -8,8 +8,8 @@ use bevy_reflect::{PartialReflect, ReflectFromReflect, TypeRegistration, TypeReg
 use serde::de::{DeserializeSeed, Error};
 use serde::{Deserialize, Deserializer};
 
-/// A processor for [`TypedReflectDeserializer`] that refuses values that lack fields without defaults. Reflection alone would
-/// put a default in the place of the whole incomplete value, without a word.
+/// A processor for [`TypedReflectDeserializer`] that refuses values that lack fields without defaults. Reflection
+/// alone would put a default in the place of the whole incomplete value, without a word.
 ///
 /// ```
 /// # #[cfg(feature = "gltf")] {

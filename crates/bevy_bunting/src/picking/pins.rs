@@ -81,9 +81,9 @@ impl PinBrush {
 }
 
 /// Paints where a pointer presses its primary button.
-pub(super) fn begin(press: On<Pointer<Press>>, mut canvas: Canvas) {
+pub(super) fn begin(press: On<Pointer<Press>>, mut paint: PaintPins) {
     if press.entity == press.original_event_target() && press.button == PointerButton::Primary {
-        canvas.stroke(press.entity, &press.hit);
+        paint.stroke(press.entity, &press.hit);
     }
 }
 
@@ -92,12 +92,12 @@ pub(super) fn go_on(
     at: On<Pointer<Move>>,
     pointers: Res<PointerMap>,
     presses: Query<&PointerPress>,
-    mut canvas: Canvas,
+    mut paint: PaintPins,
 ) {
     let press = pointers.get_entity(at.pointer_id).and_then(|it| presses.get(it).ok());
     let is_pressed = press.is_some_and(PointerPress::is_primary_pressed);
     if at.entity == at.original_event_target() && is_pressed {
-        canvas.stroke(at.entity, &at.hit);
+        paint.stroke(at.entity, &at.hit);
     }
 }
 
@@ -105,13 +105,13 @@ type Painted = (&'static ClothMesh, &'static ClothInstance, Option<&'static mut 
 
 /// What is painted, and with what.
 #[derive(SystemParam)]
-pub(super) struct Canvas<'w, 's> {
+pub(super) struct PaintPins<'w, 's> {
     brush: Res<'w, PinBrush>,
     cloths: Query<'w, 's, Painted>,
     commands: Commands<'w, 's>,
 }
 
-impl Canvas<'_, '_> {
+impl PaintPins<'_, '_> {
     /// Paints around a point of a cloth. Nothing changes unless a vertex does: a new attachment is a new fabric.
     fn stroke(&mut self, cloth: Entity, hit: &HitData) {
         let Ok((mesh, instance, attachment)) = self.cloths.get_mut(cloth) else { return };
