@@ -4,6 +4,8 @@ use std::process::ExitCode;
 
 use bevy_bunting::prelude::*;
 use bunting_examples::scenes::cape::Cape;
+#[cfg(feature = "avian")]
+use bunting_examples::scenes::convoy::Convoy;
 use bunting_examples::scenes::crowd::Crowd;
 use bunting_examples::scenes::curtain::Curtain;
 use bunting_examples::scenes::custom_constraint::CustomConstraint;
@@ -32,6 +34,8 @@ pub enum Exhibit {
     Swatches,
     Cape,
     CustomConstraint,
+    #[cfg(feature = "avian")]
+    Convoy,
 }
 
 impl Exhibit {
@@ -48,6 +52,8 @@ impl Exhibit {
             Self::Swatches => 2.5,
             Self::Cape => 8.0,
             Self::CustomConstraint => 2.0,
+            #[cfg(feature = "avian")]
+            Self::Convoy => 6.0,
         }
     }
 
@@ -71,6 +77,8 @@ impl Exhibit {
             Self::Swatches => show(&Swatches, &options),
             Self::Cape => show(&Cape, &options),
             Self::CustomConstraint => show(&CustomConstraint, &options),
+            #[cfg(feature = "avian")]
+            Self::Convoy => show(&Convoy, &options),
         }
     }
 }

@@ -1,9 +1,10 @@
-//! All examples but `convoy`, which needs avian, and `hello_flag`, which has no scene of its own.
+//! All examples but `hello_flag`, which is the README's app. `convoy` is left out without the feature `avian`.
 //!
-//! `cargo run --release --example gallery --features render` shows one after the other in a window: → and ← go to
+//! `cargo run --release --example gallery --features render,avian` shows one after the other in a window: → and ← go to
 //! the next and the previous one, and each has its own keys.
 //!
-//! `cargo run --release --example gallery --features render -- --headless --pictures DIR` writes one picture of each.
+//! `cargo run --release --example gallery --features render,avian -- --headless --pictures DIR` writes one picture of
+//! each.
 //!
 //! Each example has its own process, since it is a whole app: it adds systems, and sets resources.
 
@@ -36,11 +37,13 @@ struct Gallery {
 
 fn main() -> ExitCode {
     let gallery = Gallery::parse();
-    let shown = match gallery.only {
-        Some(exhibit) => return exhibit.run(&gallery.options),
-        None if gallery.options.headless() => run_all(),
-        None => tour(),
-    };
+    if let Some(exhibit) = gallery.only {
+        return exhibit.run(&gallery.options);
+    }
+    if !cfg!(feature = "avian") {
+        eprintln!("convoy is left out: it needs --features avian");
+    }
+    let shown = if gallery.options.headless() { run_all() } else { tour() };
     shown.unwrap_or_else(|error| {
         eprintln!("{error}");
         ExitCode::FAILURE

@@ -7,6 +7,7 @@ pub mod durations;
 mod example;
 pub mod headless;
 pub mod limits;
+mod orbit_example;
 #[cfg(feature = "render")]
 pub mod render;
 pub mod scenes;
@@ -14,6 +15,7 @@ pub mod strain;
 pub mod table;
 
 pub use example::{Example, Options, Record, run};
+pub use orbit_example::{OrbitExample, View};
 
 /// Folder of scenes and models.
 pub const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets");

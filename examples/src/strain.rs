@@ -1,7 +1,21 @@
 //! Strain of cloth.
 
+use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bunting_solver::LinkFamily;
+
+use crate::limits::greatest;
+
+/// The mean strain of warp and weft of the cloth in which it is greatest.
+pub fn greatest_mean(world: &mut World) -> f32 {
+    let mut cloths = world.query::<&ClothState>();
+    greatest(cloths.iter(world).map(|cloth| {
+        let mut strain = Strain::default();
+        strain.add(cloth, LinkFamily::Warp);
+        strain.add(cloth, LinkFamily::Weft);
+        strain.mean() as f32
+    }))
+}
 
 /// Magnitudes of the strain of many links, |l/l₀ − 1|.
 #[derive(Clone, Copy, Debug, Default)]

@@ -104,6 +104,8 @@ mod anchors;
 mod background;
 mod batch;
 mod cloth;
+#[cfg(feature = "serialize")]
+mod complete_reader;
 mod diagnostics;
 mod display;
 mod environment;
@@ -146,6 +148,8 @@ pub use cloth::mesh::ClothMesh;
 pub use cloth::preroll::{ClothPreroll, PrerollPlugin};
 pub use cloth::state::ClothState;
 pub use cloth::weights::WeightsError;
+#[cfg(feature = "serialize")]
+pub use complete_reader::CompleteReader;
 pub use diagnostics::ClothDiagnosticsPlugin;
 pub use display::ease::EasingPlugin;
 pub use display::lift::LiftPlugin;
@@ -198,6 +202,8 @@ pub use parry3d;
 #[cfg(feature = "picking")]
 pub use picking::drag::{ClothDrag, ClothDragSettings};
 #[cfg(feature = "picking")]
+pub use picking::pins::{PinBrush, PinStroke};
+#[cfg(feature = "picking")]
 pub use picking::plugin::ClothDragPlugin;
 #[cfg(feature = "render")]
 pub use render::cloth_from_mesh::ClothFromMesh;
@@ -243,7 +249,7 @@ pub mod prelude {
         PaintedWeights, VertexPaint,
     };
     #[cfg(feature = "picking")]
-    pub use crate::{ClothDragPlugin, ClothDragSettings};
+    pub use crate::{ClothDragPlugin, ClothDragSettings, PinBrush, PinStroke};
     #[cfg(feature = "weave")]
     pub use crate::{Weave, WeavePlugin, WovenMaterial};
     pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};

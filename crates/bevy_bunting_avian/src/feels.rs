@@ -19,6 +19,16 @@ use crate::push::FormerReaction;
 /// A force comes a tick late. So a body must be heavier than the cloth that hangs on it: otherwise it is swung ever further.
 /// The push of cloth that touches a body is limited, so that cloth carries a body and slows it, but throws it back with at most
 /// 0.3 of the speed at which it came; cloth that itself moves up faster than that does not lift it.
+///
+/// ```
+/// use avian3d::prelude::RigidBody;
+/// use bevy_bunting_avian::FeelsCloth;
+/// use bevy_ecs::prelude::*;
+///
+/// let mut world = World::new();
+/// // A boat that its sail pulls.
+/// world.spawn((RigidBody::Dynamic, FeelsCloth::default()));
+/// ```
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[type_path = "bevy_bunting_avian"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]

@@ -22,6 +22,15 @@ pub struct SelectedCloth(pub Option<Entity>);
 /// Selects the cloth on which a pointer clicks with its primary button. Clicks need Bevy's picking and
 /// [`ClothDragPlugin`], which finds the cloth under the pointer; without them, [`SelectedCloth`] is set by the panel's list or
 /// by the app.
+///
+/// ```
+/// use bevy_app::prelude::*;
+/// use bevy_bunting_inspector::{ClothSelectionPlugin, SelectedCloth};
+///
+/// let mut app = App::new();
+/// app.add_plugins(ClothSelectionPlugin);
+/// assert_eq!(app.world().resource::<SelectedCloth>(), &SelectedCloth(None));
+/// ```
 #[derive(Debug, Default)]
 pub struct ClothSelectionPlugin;
 

@@ -11,6 +11,17 @@ use crate::selection::SelectedCloth;
 
 /// Adds the strains of the [`SelectedCloth`] to Bevy's diagnostics, once a tick. While none is selected,
 /// nothing is measured.
+///
+/// ```
+/// use bevy_app::prelude::*;
+/// use bevy_bunting_inspector::ClothStrainPlugin;
+/// use bevy_diagnostic::{DiagnosticsPlugin, DiagnosticsStore};
+///
+/// let mut app = App::new();
+/// app.add_plugins((DiagnosticsPlugin, ClothStrainPlugin));
+/// let strain = app.world().resource::<DiagnosticsStore>().get(&ClothStrainPlugin::GREATEST);
+/// assert!(strain.is_some_and(|strain| strain.suffix == "%"));
+/// ```
 #[derive(Debug, Default)]
 pub struct ClothStrainPlugin;
 

@@ -13,6 +13,8 @@ pub mod window;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 
+use crate::View;
+
 /// The one viewer of an example.
 ///
 /// # Panics
@@ -25,10 +27,10 @@ pub fn viewer(app: &mut App) -> Entity {
     viewers.single(world).expect("an example has one viewer")
 }
 
-/// Lets the mouse move the viewer around a centre, and keys change the wind and show
+/// Lets the mouse move the viewer around the centre of a view, and keys change the wind and show
 /// gizmos.
-pub fn control_orbit(app: &mut App, eye: Vec3, centre: Vec3) {
+pub fn control_orbit(app: &mut App, view: View) {
     let viewer = viewer(app);
-    app.world_mut().entity_mut(viewer).insert(orbit::Orbit::new(eye, centre));
+    app.world_mut().entity_mut(viewer).insert(orbit::Orbit::new(view));
     app.add_plugins((orbit::plugin, wind::plugin, keys::gizmos));
 }

@@ -5,6 +5,8 @@ use std::f32::consts::FRAC_PI_2;
 use bevy::input::mouse::{AccumulatedMouseMotion, AccumulatedMouseScroll};
 use bevy::prelude::*;
 
+use crate::View;
+
 /// Turn per pixel that the mouse is dragged, rad.
 const TURN: f32 = 0.005;
 
@@ -30,9 +32,9 @@ pub struct Orbit {
 }
 
 impl Orbit {
-    /// An orbit through `eye` around a centre.
+    /// An orbit through the eye of a view around its centre.
     #[must_use]
-    pub fn new(eye: Vec3, centre: Vec3) -> Self {
+    pub fn new(View { eye, centre }: View) -> Self {
         let from_centre = eye - centre;
         Self {
             centre,

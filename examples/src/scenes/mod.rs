@@ -1,6 +1,8 @@
 //! The scenes of the examples, one folder each.
 
 pub mod cape;
+#[cfg(feature = "avian")]
+pub mod convoy;
 pub mod crowd;
 pub mod curtain;
 pub mod custom_constraint;

@@ -56,6 +56,17 @@ pub struct ClothGrab {
 }
 
 /// The vertices that a [`ClothGrab`] holds.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+///
+/// let mut world = World::new();
+/// let cloth = world.spawn(ClothMesh::grid(17, 17, 1.0, 1.0)).id();
+/// // The lower left corner, wherever the hand is.
+/// let corner = GrabbedVertices::List(vec![16 * 17]);
+/// world.spawn(ClothGrab::new(cloth, corner));
+/// ```
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]

@@ -24,6 +24,22 @@ use crate::motion::pose::PoseHistory;
 /// [`ClothSkin`](crate::ClothSkin) scales the cloth by its joints, and the mesh has the figure's size.
 ///
 /// A mesh that cannot be simulated is reported in a [`ClothFailed`](crate::ClothFailed) event.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_math::Vec3;
+///
+/// // A sheet of a metre by two, and a triangle.
+/// let sheet = ClothMesh::grid(17, 33, 1.0, 2.0);
+/// let pennant = ClothMesh::Triangles {
+///     positions: vec![Vec3::ZERO, Vec3::new(1.0, -0.3, 0.0), 0.6 * Vec3::NEG_Y],
+///     indices: vec![0, 2, 1],
+///     uv: vec![],
+///     weights: vec![],
+///     merged: vec![],
+/// };
+/// # assert_eq!((sheet.vertex_count(), pennant.vertex_count()), (17 * 33, 3));
+/// ```
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Debug, PartialEq, Clone)]
@@ -167,8 +183,9 @@ impl ClothMesh {
         }
     }
 
-    /// Number of vertices.
-    pub(crate) fn vertex_count(&self) -> usize {
+    /// Number of vertices, by which an [`AttachedVertices::List`](crate::AttachedVertices::List) names them.
+    #[must_use]
+    pub fn vertex_count(&self) -> usize {
         match self {
             Self::Grid { columns, rows, .. } => *columns as usize * *rows as usize,
             Self::Triangles { positions, .. } => positions.len(),

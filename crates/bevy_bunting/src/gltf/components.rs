@@ -8,9 +8,9 @@ use bevy_reflect::{PartialReflect, TypeRegistration, TypeRegistry};
 use serde::de::DeserializeSeed;
 use serde_json::Value;
 
+use crate::complete_reader::CompleteReader;
 use crate::gltf::error::{GltfComponentError, GltfComponentFailed};
 use crate::gltf::nodes::Nodes;
-use crate::gltf::reader::Reader;
 
 /// Key of the list of components in extras, which is that of the Blender add-on skein.
 const KEY: &str = "skein";
@@ -103,7 +103,8 @@ fn read(
 ) -> Result<Box<dyn PartialReflect>, GltfComponentError> {
     let mut path = serde_path_to_error::Track::new();
     let from = serde_path_to_error::Deserializer::new(value, &mut path);
-    let mut reader = Reader::new(nodes);
+    let node = |name: &str| nodes.find(name);
+    let mut reader = CompleteReader::with_entities(&node);
     let seed = TypedReflectDeserializer::with_processor(registration, types, &mut reader);
     seed.deserialize(from).map_err(|error| GltfComponentError::Value {
         component: name.to_owned(),

@@ -4,7 +4,6 @@ mod components;
 pub mod error;
 mod nodes;
 pub mod plugin;
-mod reader;
 
 #[cfg(test)]
 mod tests;

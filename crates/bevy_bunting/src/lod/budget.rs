@@ -56,6 +56,16 @@ impl Default for ClothBudget {
 }
 
 /// Source of the costs by which levels are chosen.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_bunting::{CostTable, LodCosts};
+///
+/// // The same levels on every machine and in every run.
+/// let costs = LodCosts::Fixed(CostTable::default());
+/// let budget = ClothBudget { costs, ..ClothBudget::default() };
+/// # assert_ne!(budget, ClothBudget::default());
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]

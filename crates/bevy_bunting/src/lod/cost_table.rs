@@ -8,6 +8,15 @@ use crate::batch::cost_kind::CostKind;
 
 /// Costs of cloth; where the width of the batch matters, for one, eight and sixteen lanes. A partly filled
 /// batch costs as much as a full one.
+///
+/// ```
+/// use bevy_bunting::CostTable;
+///
+/// // A machine that publishes at twice the price.
+/// let usual = CostTable::default();
+/// let slow = CostTable { publish: 2.0 * usual.publish, ..usual.clone() };
+/// # assert_ne!(slow, usual);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]

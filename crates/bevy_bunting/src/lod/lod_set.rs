@@ -44,6 +44,15 @@ pub struct LodSet {
 }
 
 /// Rule by which the level of a cloth is chosen.
+///
+/// ```
+/// use bevy_bunting::LodChoice;
+/// use bevy_bunting::prelude::*;
+///
+/// // The next level from 10 m on, and the third from 30 m on.
+/// let choice = LodChoice::Distances(vec![10.0, 30.0]);
+/// assert_eq!(LodSet { choice, ..LodSet::default() }, LodSet::new([10.0, 30.0]));
+/// ```
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]

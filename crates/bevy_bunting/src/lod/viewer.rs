@@ -48,6 +48,16 @@ impl Default for LodViewer {
 }
 
 /// The projection of the world onto a picture.
+///
+/// ```
+/// use bevy_bunting::Lens;
+/// use bevy_bunting::prelude::*;
+///
+/// // A server that knows no camera chooses levels for a view of 45°.
+/// let lens = Lens::Perspective { field_of_view: core::f32::consts::FRAC_PI_4 };
+/// let viewer = LodViewer { lens, ..LodViewer::default() };
+/// # assert_eq!(viewer.lens, lens);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]

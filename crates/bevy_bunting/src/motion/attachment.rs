@@ -267,6 +267,17 @@ impl Attachment {
 }
 
 /// Fate of a cloth whose target is despawned.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+///
+/// let mut world = World::new();
+/// let pole = world.spawn_empty().id();
+/// // If the pole is despawned, the flag falls.
+/// let held = Attachment { on_lost: TargetLost::Release, ..Attachment::new(pole, ClothEdge::Left) };
+/// # world.spawn(held);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
@@ -280,6 +291,14 @@ pub enum TargetLost {
 }
 
 /// An edge of a cloth, by texture coordinate: u grows to the right and v down.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // A curtain hangs by its upper edge.
+/// let hung = Attachment::in_place(ClothEdge::Top);
+/// # assert_eq!(hung.vertices, AttachedVertices::Edge(ClothEdge::Top));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
@@ -295,6 +314,14 @@ pub enum ClothEdge {
 }
 
 /// A corner of a cloth, by texture coordinate: u grows to the right and v down.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // A sheet on a line, by two pegs.
+/// let pegs = AttachedVertices::Corners(vec![ClothCorner::TopLeft, ClothCorner::TopRight]);
+/// # Attachment::in_place(pegs);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]

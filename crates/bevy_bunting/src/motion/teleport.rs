@@ -37,6 +37,16 @@ pub struct TeleportCloth {
 }
 
 /// Whether a cloth keeps its shape when it is teleported.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+///
+/// let mut world = World::new();
+/// let entity = world.spawn(ClothMesh::grid(17, 17, 1.0, 1.0)).id();
+/// // The figure appears elsewhere, its cape at rest.
+/// world.trigger(TeleportCloth { entity, mode: TeleportMode::Reset });
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]

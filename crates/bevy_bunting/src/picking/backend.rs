@@ -29,6 +29,8 @@ type PickedCloth = (
 pub(super) struct ClothHit {
     /// Distance of the farthest corner of the triangle from the point, m.
     pub corners: f32,
+    /// The point at rest, in the cloth's frame, m.
+    pub at_rest: Vec3,
 }
 
 /// Finds the cloths under each pointer.
@@ -48,10 +50,9 @@ pub(super) fn find_cloths(
             let shown = surface.filter(|surface| surface.level == state.level);
             let positions = shown.map_or(state.positions(), |surface| &surface.positions);
             if let Some(hit) = cast(ray, frame, fabric, positions, bounds) {
-                let HitPoint { distance, at, normal, corners } = hit;
-                let extra = ClothHit { corners };
+                let HitPoint { distance, at, normal, on_cloth } = hit;
                 let (at, normal) = (Some(at), Some(normal));
-                let data = HitData::new_with_extra(id.camera, distance, at, normal, extra);
+                let data = HitData::new_with_extra(id.camera, distance, at, normal, on_cloth);
                 picks.push((entity, data));
             }
         }
@@ -69,8 +70,7 @@ struct HitPoint {
     at: Vec3,
     /// Unit normal in the world, towards the ray's origin.
     normal: Vec3,
-    /// Distance of the farthest corner of the triangle, m.
-    corners: f32,
+    on_cloth: ClothHit,
 }
 
 /// The first point where a ray in the world meets a surface in its frame, whose bounds may be known.
@@ -92,22 +92,31 @@ fn cast(
     if is_beside || positions.len() != fabric.particle_count() {
         return None;
     }
-    let mut nearest: Option<(f32, Vec3, f32)> = None;
-    for particles in fabric.triangles() {
+    let mut nearest: Option<(f32, Vec3, [u32; 3])> = None;
+    for &particles in fabric.triangles() {
         let [a, b, c] = particles.map(|particle| positions[particle as usize]);
         let farthest = nearest.map_or(f32::MAX, |(distance, ..)| distance);
         let triangle = Triangle::new(a, b, c);
         if let Some(hit) = triangle.cast_local_ray_and_get_normal(&in_frame, farthest, false) {
-            let at = in_frame.point_at(hit.time_of_impact);
-            let corners = [a, b, c].map(|corner| corner.distance(at));
-            let corners = corners.into_iter().fold(0.0, f32::max);
-            nearest = Some((hit.time_of_impact, hit.normal, corners));
+            nearest = Some((hit.time_of_impact, hit.normal, particles));
         }
     }
-    nearest.map(|(distance, normal, corners)| HitPoint {
+    let (distance, normal, particles) = nearest?;
+    Some(HitPoint {
         distance,
         at: ray.get_point(distance),
         normal: frame.affine().transform_vector3(normal).normalize_or_zero(),
-        corners,
+        on_cloth: on_triangle(in_frame.point_at(distance), particles, fabric, positions),
     })
+}
+
+/// A point on a triangle of a cloth, which has an area: a ray has met it.
+fn on_triangle(at: Vec3, particles: [u32; 3], fabric: &Fabric, positions: &[Vec3]) -> ClothHit {
+    let [a, b, c] = particles.map(|particle| positions[particle as usize]);
+    let rest = particles.map(|particle| fabric.rest_positions()[particle as usize]);
+    let normal = (b - a).cross(c - a);
+    let part = |from: Vec3, to: Vec3| (from - at).cross(to - at).dot(normal);
+    let at_rest = part(b, c) * rest[0] + part(c, a) * rest[1] + part(a, b) * rest[2];
+    let corners = [a, b, c].map(|corner| corner.distance(at)).into_iter().fold(0.0, f32::max);
+    ClothHit { corners, at_rest: at_rest / normal.length_squared() }
 }

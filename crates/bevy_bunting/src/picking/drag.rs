@@ -13,6 +13,7 @@ use bevy_transform::components::{GlobalTransform, Transform};
 use crate::anchors::grab::ClothGrab;
 use crate::cloth::mesh::ClothMesh;
 use crate::picking::backend::ClothHit;
+use crate::picking::pins::PinBrush;
 
 /// How pointers drag cloths.
 ///
@@ -63,10 +64,12 @@ pub(super) fn grab(
     press: On<Pointer<Press>>,
     cloths: Query<(), With<ClothMesh>>,
     settings: Res<ClothDragSettings>,
+    brush: Res<PinBrush>,
     mut commands: Commands,
 ) {
     let cloth = press.original_event_target();
     let is_first = press.entity == cloth && press.button == PointerButton::Primary;
+    let is_first = is_first && !brush.paints(cloth);
     let Some(at) = press.hit.position.filter(|_| is_first && cloths.contains(cloth)) else {
         return;
     };

@@ -7,14 +7,16 @@ use bevy_picking::{PickingPlugin, PickingSystems};
 
 use crate::picking::backend::find_cloths;
 use crate::picking::drag::{ClothDrag, ClothDragSettings, drag, grab};
+use crate::picking::pins::{self, PinBrush};
 
 /// Lets pointers (mouse, touch, or the user's own) drag cloths: the vertices under the pointer are grabbed when its primary
 /// button is pressed, follow it in a plane parallel to the picture, and are let go with the button.
 ///
-/// It needs Bevy's picking, which `DefaultPlugins` have with the feature `bevy_picking`, elsewhere `DefaultPickingPlugins`;
-/// and it is its backend for cloths, so that all events of `Pointer` are sent for them, too. A cloth with
-/// `Pickable::IGNORE` is neither. Other entities in front of a cloth shield it if a backend reports them, such as Bevy's
-/// `MeshPickingPlugin`. Rigid triangles are not picked. [`ClothDragSettings`] has reach and strength.
+/// It needs Bevy's picking, which `DefaultPlugins` have with the feature `bevy_picking`, elsewhere
+/// `DefaultPickingPlugins`; and it is its backend for cloths, so that all events of `Pointer` are sent for them, too.
+/// A cloth with `Pickable::IGNORE` is neither. Other entities in front of a cloth shield it if a backend reports
+/// them, such as Bevy's `MeshPickingPlugin`. Rigid triangles are not picked. [`ClothDragSettings`] has reach and
+/// strength; with a [`PinBrush`] that is not off, pointers paint pins instead.
 ///
 /// ```
 /// use bevy_app::prelude::*;
@@ -32,7 +34,11 @@ impl Plugin for ClothDragPlugin {
         app.init_resource::<ClothDragSettings>()
             .register_type::<ClothDragSettings>()
             .register_type::<ClothDrag>()
+            .init_resource::<PinBrush>()
+            .register_type::<PinBrush>()
             .add_observer(grab)
+            .add_observer(pins::begin)
+            .add_observer(pins::go_on)
             .add_systems(
                 PreUpdate,
                 (find_cloths.in_set(PickingSystems::Backend), drag.in_set(PickingSystems::Last))

@@ -40,6 +40,14 @@ const LEVEL_COLOURS: [Srgba; 4] = [LIME, YELLOW, ORANGE, RED];
 
 /// Choice of the gizmos that are drawn. As a group in Bevy's `GizmoConfigStore` it holds for all cloths; as a
 /// component it holds for one cloth and overrides the group. By default no gizmos are drawn.
+///
+/// ```
+/// use bevy_bunting::ClothGizmos;
+///
+/// // On a cloth: its pins and its strain.
+/// let shown = ClothGizmos { attachments: true, strain: true, ..ClothGizmos::default() };
+/// # assert!(!shown.wind);
+/// ```
 #[derive(Component, GizmoConfigGroup, Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]

@@ -78,6 +78,14 @@ impl PaintedDistance {
 }
 
 /// Values that a mesh has for each vertex.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // Blender exports a vertex group as an attribute of the mesh.
+/// let group = VertexPaint::Attribute("Pin".to_owned());
+/// # assert_ne!(group, VertexPaint::Color(ColorChannel::Red));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
@@ -90,6 +98,13 @@ pub enum VertexPaint {
 }
 
 /// A channel of vertex colours.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// let paint = VertexPaint::Color(ColorChannel::Alpha);
+/// # assert_ne!(paint, VertexPaint::Color(ColorChannel::default()));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]

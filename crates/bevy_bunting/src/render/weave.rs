@@ -9,6 +9,14 @@ use bevy_render::render_resource::AsBindGroup;
 use bevy_shader::ShaderRef;
 
 /// Adds [`WovenMaterial`] to an app that has Bevy's `PbrPlugin`. Not among [`ClothPlugins`](crate::ClothPlugins).
+///
+/// ```
+/// use bevy_app::prelude::*;
+/// use bevy_bunting::prelude::*;
+///
+/// // In an app: App::new().add_plugins((DefaultPlugins, ClothPlugins::default(), WeavePlugin));
+/// # let _ = (App::new(), WeavePlugin);
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct WeavePlugin;
 

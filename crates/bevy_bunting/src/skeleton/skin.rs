@@ -30,6 +30,22 @@ const SNAP_SPEED: f32 = 15.0;
 /// A skin that does not fit the mesh is reported as [`ClothError::Skin`](crate::ClothError::Skin): the cloth is simulated
 /// without it. A joint that is despawned is reported as [`ClothError::MissingJoint`](crate::ClothError::MissingJoint), and
 /// stays where it was in the cloth's frame.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+/// use bevy_math::Mat4;
+/// use bevy_transform::prelude::*;
+///
+/// let mut world = World::new();
+/// let neck = world.spawn(Transform::default()).id();
+/// let cape = ClothMesh::grid(17, 17, 1.0, 1.2);
+/// // All vertices follow one joint.
+/// let rigid = ([0; 4], [1.0, 0.0, 0.0, 0.0]);
+/// let skin = ClothSkin::new([(neck, Mat4::IDENTITY)])
+///     .with_vertices(core::iter::repeat_n(rigid, cape.vertex_count()));
+/// world.spawn((cape, skin, Attachment::new(neck, ClothEdge::Top)));
+/// ```
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]

@@ -6,6 +6,7 @@ use bevy_ecs::prelude::*;
 use bevy_egui::egui::{ScrollArea, Ui};
 use bevy_inspector_egui::bevy_inspector::ui_for_entity;
 
+use crate::panel::brush::show_brush;
 use crate::presets::PRESETS;
 use crate::selection::SelectedCloth;
 
@@ -69,5 +70,6 @@ pub fn show_selected(world: &mut World, ui: &mut Ui) {
             }
         }
     });
+    show_brush(world, cloth, ui);
     ui.collapsing("Selected cloth", |ui| ui_for_entity(world, cloth, ui));
 }

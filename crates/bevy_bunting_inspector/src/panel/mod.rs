@@ -1,5 +1,6 @@
 //! The panel.
 
+mod brush;
 mod cloths;
 mod files;
 mod plots;

@@ -3,6 +3,14 @@
 use bevy_ecs::prelude::*;
 
 /// What the panel remembers from frame to frame.
+///
+/// ```
+/// use bevy_bunting_inspector::PanelState;
+///
+/// // A panel that a key opens.
+/// let hidden = PanelState { is_open: false, ..PanelState::default() };
+/// # assert_ne!(hidden, PanelState::default());
+/// ```
 #[derive(Resource, Clone, Debug, PartialEq, Eq)]
 pub struct PanelState {
     /// Whether the panel is shown.

@@ -29,7 +29,7 @@ pub enum TuningProblem {
     #[error("{0}")]
     File(#[from] std::io::Error),
     /// The file is not as expected.
-    #[error("it must have the form (cloth: {{…}}, winds: {{…}}, resources: {{…}}): {0}")]
+    #[error("it must have the form (cloth: {{…}}, pins: …, winds: {{…}}, resources: {{…}}): {0}")]
     Form(Box<ron::error::SpannedError>),
     /// There is no such component or resource among the parameters.
     #[error("there is no such parameter: write the name or the whole path of its type")]
@@ -40,6 +40,17 @@ pub enum TuningProblem {
     /// Several winds have this name.
     #[error("several winds have this Name: give each its own")]
     SameName,
+    /// The pins are an empty list.
+    #[error("pins must name a vertex: leave them out to keep those that the cloth has")]
+    NoPins,
+    /// A pin is no vertex of the cloth: the file is that of another mesh.
+    #[error("there is no vertex {vertex}, since the cloth has {vertices}: its mesh is another one")]
+    NoVertex {
+        /// The pin.
+        vertex: u32,
+        /// Number of vertices of the cloth.
+        vertices: usize,
+    },
     /// The world lacks the resource.
     #[error("the world has no such resource: ClothPlugins insert it")]
     NoResource,

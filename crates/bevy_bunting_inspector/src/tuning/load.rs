@@ -4,18 +4,19 @@ use core::any::TypeId;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use bevy_bunting::ClothMesh;
+use bevy_bunting::CompleteReader;
+use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use bevy_reflect::serde::TypedReflectDeserializer;
-use bevy_reflect::{PartialReflect, TypeRegistry};
+use bevy_reflect::{PartialReflect, TypeRegistration, TypeRegistry};
 use ron::value::RawValue;
-use serde::Deserialize;
 use serde::de::DeserializeSeed;
+use serde::{Deserialize, Deserializer};
 
 use crate::parameters::{CLOTH, RESOURCES, WIND, resource_entity, winds};
 use crate::tuning::error::{Failed, TuningError, TuningProblem};
-use crate::tuning::reader::Reader;
+use crate::tuning::pins::{hold, read_pins};
 
 /// The texts of the values of one entity, by the names of their types.
 type Texts<'a> = BTreeMap<String, &'a RawValue>;
@@ -26,10 +27,23 @@ type Texts<'a> = BTreeMap<String, &'a RawValue>;
 struct Read<'a> {
     #[serde(default, borrow)]
     cloth: Texts<'a>,
+    #[serde(default, borrow, deserialize_with = "present")]
+    pins: Option<&'a RawValue>,
     #[serde(default, borrow)]
     winds: BTreeMap<String, Texts<'a>>,
     #[serde(default, borrow)]
     resources: Texts<'a>,
+}
+
+/// A value that is there, without RON's `Some`.
+fn present<'de, D: Deserializer<'de>>(from: D) -> Result<Option<&'de RawValue>, D::Error> {
+    <&RawValue>::deserialize(from).map(Some)
+}
+
+/// All values of a file.
+struct Changes<'a> {
+    components: Vec<Change<'a>>,
+    pins: Option<AttachedVertices>,
 }
 
 /// A value that has been read, for an entity.
@@ -39,8 +53,9 @@ struct Change<'a> {
     value: Box<dyn PartialReflect>,
 }
 
-/// Reads parameters from a file that [`save_tuning`](crate::save_tuning) or a text editor has written, and gives them to a
-/// cloth, the winds of the same names, and all cloths.
+/// Reads parameters from a file that [`save_tuning`](crate::save_tuning) or a text editor has written, and gives them
+/// to a cloth, the winds of the same names, and all cloths. Pins become the vertices of the cloth's [`Attachment`]; a
+/// cloth without one gets one to its own `Transform`.
 ///
 /// A file may hold any part of the parameters: the others stay as they are. Of a component that is written, fields with
 /// defaults may be left out, and then have these. Types may be written by their names alone, such as `LodSet`. Values that
@@ -55,9 +70,13 @@ pub fn load_tuning(world: &mut World, cloth: Entity, file: &Path) -> Result<(), 
         std::fs::read_to_string(file).map_err(|error| failed((String::new(), error.into())))?;
     let types = world.resource::<AppTypeRegistry>().clone();
     let types = types.read();
-    for change in changes(world, cloth, &text, &types).map_err(failed)? {
+    let Changes { components, pins } = changes(world, cloth, &text, &types).map_err(failed)?;
+    for change in components {
         let mut entity = world.entity_mut(change.entity);
         change.component.insert(&mut entity, &*change.value, &types);
+    }
+    if let Some(pins) = pins {
+        hold(world, cloth, pins);
     }
     Ok(())
 }
@@ -68,10 +87,10 @@ fn changes<'a>(
     cloth: Entity,
     text: &str,
     types: &'a TypeRegistry,
-) -> Result<Vec<Change<'a>>, Failed> {
-    if world.get::<ClothMesh>(cloth).is_none() {
+) -> Result<Changes<'a>, Failed> {
+    let Some(mesh) = world.get::<ClothMesh>(cloth).cloned() else {
         return Err((String::new(), TuningProblem::NoCloth));
-    }
+    };
     let read: Read = ron::from_str(text)
         .map_err(|error| (String::new(), TuningProblem::Form(Box::new(error))))?;
     let found = winds(world);
@@ -98,7 +117,8 @@ fn changes<'a>(
         let key = format!("resources.{name}");
         changes.push(change(key, name, value, &RESOURCES, types, holder)?);
     }
-    Ok(changes)
+    let pins = read.pins.map(|text| read_pins(text, &mesh, types)).transpose()?;
+    Ok(Changes { components: changes, pins })
 }
 
 /// A value from its text: of the type of a name that is among parameters, for the entity that holds the type.
@@ -118,19 +138,27 @@ fn change<'a>(
         Ok(entity) => entity,
         Err(problem) => return Err((key, problem)),
     };
+    let value = read_value(key, text, registration, types)?;
+    Ok(Change { entity, component, value })
+}
+
+/// A value of a type from its text.
+pub(super) fn read_value(
+    key: String,
+    text: &RawValue,
+    registration: &TypeRegistration,
+    types: &TypeRegistry,
+) -> Result<Box<dyn PartialReflect>, Failed> {
     let mut path = serde_path_to_error::Track::new();
-    let mut reader = Reader::default();
+    let mut reader = CompleteReader::default();
     let seed = TypedReflectDeserializer::with_processor(registration, types, &mut reader);
     let read = ron::Deserializer::from_str(text.get_ron()).map_err(|error| error.code);
     let read = read.and_then(|mut from| {
         seed.deserialize(serde_path_to_error::Deserializer::new(&mut from, &mut path))
     });
-    match read {
-        Ok(value) => Ok(Change { entity, component, value }),
-        Err(error) => {
-            let path = path.path();
-            let inner = path.iter().next().map_or_else(String::new, |_| format!(".{path}"));
-            Err((key + &inner, TuningProblem::Value(Box::new(error))))
-        }
-    }
+    read.map_err(|error| {
+        let path = path.path();
+        let inner = path.iter().next().map_or_else(String::new, |_| format!(".{path}"));
+        (key + &inner, TuningProblem::Value(Box::new(error)))
+    })
 }

@@ -2,5 +2,5 @@
 
 pub mod error;
 pub mod load;
-mod reader;
+mod pins;
 pub mod save;

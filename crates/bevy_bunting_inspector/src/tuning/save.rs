@@ -4,13 +4,13 @@ use core::any::TypeId;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use bevy_bunting::ClothMesh;
+use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
-use bevy_reflect::TypeRegistry;
 use bevy_reflect::serde::TypedReflectSerializer;
+use bevy_reflect::{PartialReflect, TypeRegistry};
 use ron::ser::PrettyConfig;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::parameters::{CLOTH, RESOURCES, WIND, resource_entity, winds};
 use crate::tuning::error::{Failed, TuningError, TuningProblem};
@@ -22,14 +22,28 @@ type Values<'a> = BTreeMap<&'a str, TypedReflectSerializer<'a>>;
 #[derive(Serialize)]
 struct Written<'a> {
     cloth: Values<'a>,
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "present")]
+    pins: Option<TypedReflectSerializer<'a>>,
     winds: BTreeMap<&'a str, Values<'a>>,
     resources: Values<'a>,
 }
 
+/// Writes a value that is there, without RON's `Some`.
+fn present<S: Serializer>(
+    value: &Option<TypedReflectSerializer>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    match value {
+        Some(value) => value.serialize(serializer),
+        None => serializer.serialize_none(),
+    }
+}
+
 /// Writes the parameters of a cloth, of the winds that last and of all cloths to a file of RON, with every field.
 ///
-/// Parameters are [`ClothMaterial`](bevy_bunting::ClothMaterial), [`LodSet`](bevy_bunting::LodSet) and the other components
-/// by which a cloth is tuned; not its shape, nor what holds it. Winds are told apart by their [`Name`]; one may have none.
+/// Parameters are [`ClothMaterial`](bevy_bunting::ClothMaterial), [`LodSet`](bevy_bunting::LodSet) and the other
+/// components by which a cloth is tuned; not its shape. Of its [`Attachment`] the vertices are written, as `pins`,
+/// not the target. Winds are told apart by their [`Name`]; one may have none.
 ///
 /// # Errors
 ///
@@ -63,6 +77,7 @@ fn text(world: &mut World, cloth: Entity) -> Result<String, Failed> {
     let types = world.resource::<AppTypeRegistry>().read();
     let mut written = Written {
         cloth: values(world, cloth, &CLOTH, &types),
+        pins: world.get::<Attachment>(cloth).map(|it| pins(it, &types)),
         winds: BTreeMap::new(),
         resources: BTreeMap::new(),
     };
@@ -95,4 +110,9 @@ fn values<'a>(
         Some((registration.type_info().type_path(), written))
     };
     parameters.iter().filter_map(value).collect()
+}
+
+/// The vertices of an attachment.
+fn pins<'a>(attachment: &'a Attachment, types: &'a TypeRegistry) -> TypedReflectSerializer<'a> {
+    TypedReflectSerializer::new(attachment.vertices.as_partial_reflect(), types)
 }

@@ -155,6 +155,19 @@ fn presets_are_saved_and_loaded_by_buttons() {
 }
 
 #[test]
+fn the_brush_is_shown_for_the_selected_cloth() {
+    let mut panel = Panel::new();
+    panel.click("Ensign");
+    assert!(!panel.shows("Paint pins"), "nothing paints without ClothDragPlugin");
+    panel.app.init_resource::<PinBrush>();
+    panel.click("Paint pins");
+    let brush = panel.app.world().resource::<PinBrush>().clone();
+    assert_eq!((brush.stroke, brush.only), (PinStroke::Paint, Some(panel.flag)));
+    panel.click("Drag");
+    assert_eq!(panel.app.world().resource::<PinBrush>().stroke, PinStroke::Off);
+}
+
+#[test]
 fn settings_winds_and_plots_are_shown() {
     let mut panel = Panel::new();
     panel.click("All cloths");

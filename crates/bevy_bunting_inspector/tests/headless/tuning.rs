@@ -12,7 +12,8 @@ use bevy_bunting_inspector::{TuningError, TuningProblem, load_tuning, save_tunin
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use bevy_math::Vec3;
-use bunting_tests::{app, bits, run, spawn_flag};
+use bevy_transform::prelude::*;
+use bunting_tests::{FLAG, app, bits, run, spawn_flag};
 
 /// Components that are no parameters: shapes, what holds cloth, how it starts, results, other entities, and states.
 const NOT_TUNED: [&str; 21] = [
@@ -134,6 +135,44 @@ fn a_part_of_the_parameters_leaves_the_others() {
     load(&mut app, flag, "part.ron", r#"(cloth: {"WindInfluence": (0.5)})"#).expect("parameters");
     assert_eq!(get::<WindInfluence>(&app, flag), WindInfluence(0.5));
     assert_eq!(get::<ClothMaterial>(&app, flag), before);
+}
+
+#[test]
+fn pins_are_saved_and_loaded_where_the_cloth_is_held() {
+    let (mut app, flag) = world_with_flag();
+    let pole = app.world_mut().spawn(Transform::default()).id();
+    let pins = AttachedVertices::List(vec![0, 17, 40]);
+    app.world_mut().entity_mut(flag).insert(Attachment::new(pole, pins.clone()));
+    let file = file("pins.ron");
+    save_tuning(app.world_mut(), flag, &file).expect("a file");
+    let text = std::fs::read_to_string(&file).expect("a text");
+    assert!(text.contains("pins: List("), "{text}");
+
+    let other = app.world_mut().spawn(Transform::default()).id();
+    app.world_mut().entity_mut(flag).insert(Attachment::new(other, ClothEdge::Left));
+    let free = app.world_mut().spawn(FLAG).id();
+    for cloth in [flag, free] {
+        load_tuning(app.world_mut(), cloth, &file).expect("pins");
+        assert_eq!(get::<Attachment>(&app, cloth).vertices, pins);
+    }
+    assert_eq!(get::<Attachment>(&app, flag).target, other, "the file names no target");
+    load(&mut app, flag, "edge.ron", "(pins: Edge(Top))").expect("pins");
+    assert_eq!(get::<Attachment>(&app, flag).vertices, ClothEdge::Top.into());
+}
+
+#[test]
+fn pins_of_another_mesh_and_no_pins_are_errors() {
+    let (mut app, flag) = world_with_flag();
+    let mut problem = |text: &str| {
+        let error = load(&mut app, flag, "bad_pins.ron", text).expect_err(text);
+        assert_eq!(error.key, "pins", "{error}");
+        assert_eq!(get::<Attachment>(&app, flag).vertices, ClothEdge::Left.into());
+        error.problem
+    };
+    let other = problem("(pins: List([3, 153]))");
+    assert!(matches!(other, TuningProblem::NoVertex { vertex: 153, vertices: 153 }), "{other}");
+    assert!(matches!(problem("(pins: List([]))"), TuningProblem::NoPins));
+    assert!(matches!(problem("(pins: Seam)"), TuningProblem::Value(_)));
 }
 
 #[test]

@@ -15,6 +15,16 @@ pub struct Hold {
 
 /// That which holds a particle. Places are in the cloth's frame, at the start and at the end of a tick, each in the frame
 /// at that time.
+///
+/// ```
+/// use bunting_solver::{Hold, Holder};
+/// use glam::Vec3;
+///
+/// // A spring that stays where it is, and gives way at 30 N.
+/// let spring = Holder::Spring { place: [Vec3::ZERO; 2], stiffness: 200.0, max_force: 30.0 };
+/// let hold = Hold { particle: 0, by: spring };
+/// # assert_eq!(hold.particle, 0);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Holder {
     /// A spring to a point.

@@ -12,6 +12,17 @@ const LEAST_DISTANCE: f32 = 1e-6;
 /// inverse distance. The force of a group is the sum of all corrections by its shares, less what links carry from
 /// particles of one share to those of another (the principle of virtual work with the shares as displacements). A cloth
 /// with one group needs no shares, and no tension of links.
+///
+/// ```
+/// use bunting_solver::{FabricBuilder, Grid, PinGroups};
+///
+/// // A banner between two masts, which are groups 0 and 1.
+/// let grid = FabricBuilder::grid(Grid::new(3, 2, 1.0, 1.0));
+/// let fabric = grid.pin_where(|_, uv| uv.x == 0.0 || uv.x == 1.0).build()?;
+/// let masts = PinGroups::new(&fabric, &[vec![0, 3], vec![2, 5]]);
+/// assert_eq!(masts.particles(1).count(), 2);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct PinGroups {
     /// The group and the particle of each pin.

@@ -9,6 +9,13 @@ use crate::step::Scheme;
 const MOST_IN_SIXTEEN: usize = 65 * 65;
 
 /// Number of cloths that a batch can hold.
+///
+/// ```
+/// use bunting_solver::LaneCount;
+///
+/// assert_eq!(LaneCount::Eight.get(), 8);
+/// assert_eq!(LaneCount::holding(1), LaneCount::One);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 #[cfg_attr(
     feature = "bevy_reflect",

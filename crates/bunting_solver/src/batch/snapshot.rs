@@ -9,6 +9,17 @@ use crate::step::bdf::IntegratorHistory;
 ///
 /// A snapshot taken from a batch also holds the integrator's history, so that a cloth that moves to another
 /// batch continues with the same bits.
+///
+/// ```
+/// use bunting_solver::{ClothSnapshot, FabricBuilder, Grid};
+/// use glam::Vec3;
+///
+/// let fabric = FabricBuilder::grid(Grid::new(5, 5, 1.0, 1.0)).build()?;
+/// let mut thrown = ClothSnapshot::at_rest(&fabric);
+/// (0..25).for_each(|particle| thrown.add_velocity(particle, 3.0 * Vec3::Z));
+/// assert!(!thrown.is_at_rest(&fabric));
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ClothSnapshot {
     /// Positions in the cloth's frame, m.

@@ -12,6 +12,18 @@ const SAMPLES: [f32; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 
 /// A shape that a cloth cannot enter. During a tick it moves along a straight line and turns at a constant
 /// rate. Cloth does not push it.
+///
+/// ```
+/// use bunting_solver::Collider;
+/// use glam::{Quat, Vec3};
+/// use parry3d::shape::SharedShape;
+///
+/// // A ball of 30 cm that moves by 10 cm in the tick.
+/// let (ball, still) = (SharedShape::ball(0.3), Quat::IDENTITY);
+/// let from = Collider::fixed(ball, Vec3::ZERO, still);
+/// let moving = Collider { to: (0.1 * Vec3::X, still), friction: 0.3, ..from };
+/// # assert!(moving.swept_box().maxs.x >= 0.4);
+/// ```
 #[derive(Clone)]
 pub struct Collider {
     /// Any parry shape: ball, capsule, cuboid, half-space, mesh, compound …

@@ -8,6 +8,14 @@ use super::error::FabricError;
 ///
 /// Particle `row * columns + column` rests at `(column · width/(columns−1), −row · height/(rows−1),
 /// 0)`: the origin is the top left corner, the front faces +z, u grows to the right and v down.
+///
+/// ```
+/// use bunting_solver::Grid;
+///
+/// // Two by three metres, with a particle every 25 cm.
+/// let grid = Grid::new(9, 13, 2.0, 3.0);
+/// assert_eq!(grid.index(8, 12), 9 * 13 - 1);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// Particles in a row, at least 2.

@@ -6,6 +6,14 @@ use super::error::FabricError;
 ///
 /// Masses and compliances at every level of detail follow from these values, so that a cloth behaves alike at
 /// every resolution.
+///
+/// ```
+/// use bunting_solver::FabricMaterial;
+///
+/// // Canvas: heavier and stiffer than clothes.
+/// let canvas = FabricMaterial { area_density: 0.32, bend_stiffness: 6e-5, ..FabricMaterial::COTTON };
+/// # assert!(canvas.area_density > FabricMaterial::COTTON.area_density);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FabricMaterial {
     /// Area density: mass per area, kg/m².

@@ -69,6 +69,14 @@ pub enum EffortCause {
 }
 
 /// Accelerations that act on a cloth besides gravity, as far as its substeps follow from them, m/s².
+///
+/// ```
+/// use bunting_solver::Loads;
+///
+/// // An explosion: 800 m/s² by the air alone.
+/// let (class, cause) = Loads { air: 800.0, ..Loads::default() }.class();
+/// assert!(class > Loads::default().class().0, "{cause:?}");
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Loads {
     /// Skin friction of the air, see [`of_air`](Self::of_air).

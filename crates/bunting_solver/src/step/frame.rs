@@ -3,6 +3,16 @@
 use glam::{Quat, Vec3};
 
 /// Motion of a cloth's frame in one tick: the pose of the new frame in the coordinates of the old one.
+///
+/// ```
+/// use bunting_solver::FrameMotion;
+/// use glam::{Quat, Vec3};
+///
+/// // A vehicle at 20 m/s, in a tick of 1/60 s.
+/// let [from, to] = [Vec3::ZERO, Vec3::X * 20.0 / 60.0];
+/// let motion = FrameMotion::between((from, Quat::IDENTITY), (to, Quat::IDENTITY));
+/// assert!((motion.translation.length() - 1.0 / 3.0).abs() < 1e-6);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameMotion {
     /// Orientation of the new frame in the old one.

@@ -10,6 +10,17 @@ use crate::simd::vec3::{Pack3, set_lane3, splat3};
 
 /// The animated place of a particle during a tick, and the limits that hold a free particle near it. Between start and
 /// end, place and limits move evenly along straight lines in the cloth's frame.
+///
+/// ```
+/// use bunting_solver::{Backstop, Guide};
+/// use glam::Vec3;
+///
+/// // A particle of a cape, at most 5 cm from where the skeleton would have it.
+/// let [place, out] = [Vec3::new(0.0, 1.2, -0.2), Vec3::NEG_Z];
+/// let backstop = Backstop { distance: 0.0, radius: 0.15 };
+/// let guide = Guide { places: [place; 2], normals: [out; 2], max_distance: 0.05, backstop };
+/// # assert_eq!(guide.places[0], guide.places[1]);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guide {
     /// Place at the start and at the end of the tick, each in the frame at that time, m.
@@ -42,6 +53,14 @@ impl Guide {
 
 /// A sphere behind the animated place of a particle, on the line of the animated normal, that the particle cannot enter: a
 /// cheap stand-in for the body under the cloth.
+///
+/// ```
+/// use bunting_solver::Backstop;
+///
+/// // The back of a figure, 1 cm behind the cloth.
+/// let back = Backstop { distance: 0.01, radius: 0.15 };
+/// # assert!(back.radius > back.distance);
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "bevy_reflect", derive(bevy_reflect::Reflect), type_path = "bunting_solver")]
 pub struct Backstop {

@@ -16,6 +16,14 @@ const TOO_LONG: f32 = 1e-3;
 
 /// Limits within which the number of substeps is chosen, from the fabric, the tick and the acceleration that the cloth
 /// bears: gravity, or that of its [`EffortClass`](crate::EffortClass).
+///
+/// ```
+/// use bunting_solver::StepLimits;
+///
+/// // At least 720 substeps in a second, for layers that lie on one another.
+/// let fine = StepLimits { rate: 720, ..StepLimits::default() };
+/// # assert!(fine.rate > StepLimits::default().rate);
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "bevy_reflect",

@@ -3,6 +3,14 @@
 use glam::Vec3;
 
 /// The way of a pinned particle in the frame of its cloth, along a straight line in a tick.
+///
+/// ```
+/// use bunting_solver::MovingPin;
+/// use glam::Vec3;
+///
+/// let pin = MovingPin { particle: 3, from: Vec3::ZERO, to: 0.02 * Vec3::Y };
+/// # assert!(pin.to.y > pin.from.y);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MovingPin {
     /// Index of the particle.

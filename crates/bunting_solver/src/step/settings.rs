@@ -24,6 +24,13 @@ pub enum Scheme {
 }
 
 /// Scheme, substeps and passes of a batch.
+///
+/// ```
+/// use bunting_solver::StepSettings;
+///
+/// let twice = StepSettings { passes: 2, ..StepSettings::yarns(4) };
+/// # assert_eq!((twice.substeps, twice.passes), (4, 2));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct StepSettings {
     /// Constraint solver and integrator.
@@ -61,6 +68,15 @@ impl Default for StepSettings {
 
 /// Frame motion, gravity and air that act on one cloth during a tick. Vectors are along the axes of the
 /// cloth's frame at the end of the tick.
+///
+/// ```
+/// use bunting_solver::Drive;
+/// use glam::Vec3;
+///
+/// // A breeze on the Moon.
+/// let drive = Drive { gravity: 1.62 * Vec3::NEG_Y, wind: 3.0 * Vec3::X, ..Drive::default() };
+/// # assert!(drive.motion.is_none());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Drive {
     /// Motion of the cloth's frame in this tick.

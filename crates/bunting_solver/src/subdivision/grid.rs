@@ -15,8 +15,8 @@ pub struct GridPlanes {
     planes: [Vec<f32>; 3],
     /// A plane whose rows are refined.
     wide: Vec<f32>,
-    /// Differences along the row, across it, and normals, of one row.
-    row: [[Vec<f32>; 3]; 3],
+    /// Slopes along rows, slopes along columns, and normals.
+    slopes: [[Vec<f32>; 3]; 3],
 }
 
 /// A grid whose cells are halved several times.
@@ -128,38 +128,19 @@ impl GridScheme {
     #[inline(always)]
     fn write(&self, buffers: &mut GridPlanes, drawn: &mut [[f32; 3]], normals: &mut [[f32; 3]]) {
         let [width, height] = self.drawn();
-        let GridPlanes { planes, row: [along, across, normal], .. } = buffers;
+        let [reach, reach_down] = [width, height].map(|count| self.reach(count));
+        let GridPlanes { planes, slopes: [along, across, normal], .. } = buffers;
         for buffer in along.iter_mut().chain(&mut *across).chain(&mut *normal) {
-            buffer.resize(width, 0.0);
+            buffer.resize(width * height, 0.0);
         }
-        let rows = drawn.chunks_exact_mut(width).zip(normals.chunks_exact_mut(width));
-        for (at, (drawn, normals)) in rows.enumerate() {
-            let row = |plane: &'_ [f32], at: usize| -> core::ops::Range<usize> {
-                debug_assert!(at * width < plane.len());
-                at * width..(at + 1) * width
-            };
-            for ((plane, along), across) in planes.iter().zip(&mut *along).zip(&mut *across) {
-                differences_along(&plane[row(plane, at)], self.reach(width), along);
-                let of = |at: usize| &plane[row(plane, at)];
-                let (reach, last) = (self.reach(height), height - 1);
-                if at == 0 {
-                    one_sided([of(0), of(reach), of(2 * reach)], 1.0, across);
-                } else if at == last {
-                    one_sided([of(last), of(last - reach), of(last - 2 * reach)], -1.0, across);
-                } else {
-                    let near = reach.min(at).min(last - at);
-                    let ends = of(at - near).iter().zip(of(at + near));
-                    for (to, (before, after)) in across.iter_mut().zip(ends) {
-                        *to = after - before;
-                    }
-                }
-            }
-            cross_rows(across, along, normal);
-            let [x, y, z] = [0, 1, 2].map(|axis| &planes[axis][row(&planes[axis], at)]);
-            interleave([x, y, z], drawn);
-            let [x, y, z] = &*normal;
-            interleave([x, y, z], normals);
+        // Whole planes: rows are too short for their remainders not to count.
+        for ((plane, along), across) in planes.iter().zip(&mut *along).zip(&mut *across) {
+            slopes_along_rows(plane, width, reach, along);
+            slopes_along_columns(plane, width, reach_down, across);
         }
+        cross(across, along, normal);
+        interleave(planes, drawn);
+        interleave(normal, normals);
     }
 }
 
@@ -220,20 +201,48 @@ fn parabola(end: f32, middle: f32, far: f32) -> f32 {
     0.375 * end + 0.75 * middle - 0.125 * far
 }
 
-/// Slopes along a row, each times a length: central differences, and at its ends the slopes of a parabola.
+/// Slopes along rows, each times a length: central differences, and at the ends of a row the slopes of a parabola.
 #[inline(always)]
-fn differences_along(row: &[f32], reach: usize, to: &mut [f32]) {
-    let last = row.len() - 1;
-    let ends = row.iter().zip(&row[2 * reach..]);
-    for (to, (before, after)) in to[reach..].iter_mut().zip(ends) {
+fn slopes_along_rows(plane: &[f32], width: usize, reach: usize, to: &mut [f32]) {
+    differences(plane, reach, to);
+    let last = width - 1;
+    for (row, to) in plane.chunks_exact(width).zip(to.chunks_exact_mut(width)) {
+        for at in 1..reach {
+            to[at] = row[2 * at] - row[0];
+            to[last - at] = row[last] - row[last - 2 * at];
+        }
+        to[0] = 4.0 * row[reach] - 3.0 * row[0] - row[2 * reach];
+        to[last] = 3.0 * row[last] - 4.0 * row[last - reach] + row[last - 2 * reach];
+    }
+}
+
+/// Slopes along columns, as [`slopes_along_rows`].
+#[inline(always)]
+fn slopes_along_columns(plane: &[f32], width: usize, reach: usize, to: &mut [f32]) {
+    differences(plane, reach * width, to);
+    let row = |at: usize| &plane[at * width..(at + 1) * width];
+    let last = plane.len() / width - 1;
+    for at in 1..reach {
+        difference([row(0), row(2 * at)], &mut to[at * width..]);
+        difference([row(last - 2 * at), row(last)], &mut to[(last - at) * width..]);
+    }
+    one_sided([row(0), row(reach), row(2 * reach)], 1.0, to);
+    let end = [row(last), row(last - reach), row(last - 2 * reach)];
+    one_sided(end, -1.0, &mut to[last * width..]);
+}
+
+/// Differences of the values `reach` places after and before each; none where there are no such places.
+#[inline(always)]
+fn differences(plane: &[f32], reach: usize, to: &mut [f32]) {
+    difference([plane, &plane[2 * reach..]], &mut to[reach..]);
+}
+
+/// The second values less the first.
+#[inline(always)]
+fn difference([before, after]: [&[f32]; 2], to: &mut [f32]) {
+    for (to, (before, after)) in to.iter_mut().zip(before.iter().zip(after)) {
         *to = after - before;
     }
-    for at in 1..reach {
-        to[at] = row[2 * at] - row[0];
-        to[last - at] = row[last] - row[last - 2 * at];
-    }
-    to[0] = 4.0 * row[reach] - 3.0 * row[0] - row[2 * reach];
-    to[last] = 3.0 * row[last] - 4.0 * row[last - reach] + row[last - 2 * reach];
 }
 
 /// Slopes at the first of three rows, times a length and a sign.
@@ -244,9 +253,9 @@ fn one_sided([first, second, third]: [&[f32]; 3], sign: f32, to: &mut [f32]) {
     }
 }
 
-/// The unit vectors along the products of two rows of vectors.
+/// The unit vectors along the products of vectors.
 #[inline(always)]
-fn cross_rows(a: &[Vec<f32>; 3], b: &[Vec<f32>; 3], to: &mut [Vec<f32>; 3]) {
+fn cross(a: &[Vec<f32>; 3], b: &[Vec<f32>; 3], to: &mut [Vec<f32>; 3]) {
     let count = to[0].len();
     let [ax, ay, az] = [&a[0][..count], &a[1][..count], &a[2][..count]];
     let [bx, by, bz] = [&b[0][..count], &b[1][..count], &b[2][..count]];
@@ -265,9 +274,9 @@ fn cross_rows(a: &[Vec<f32>; 3], b: &[Vec<f32>; 3], to: &mut [Vec<f32>; 3]) {
     }
 }
 
-/// Writes the vectors of a row.
+/// Writes vectors.
 #[inline(always)]
-fn interleave([x, y, z]: [&[f32]; 3], to: &mut [[f32; 3]]) {
+fn interleave([x, y, z]: &[Vec<f32>; 3], to: &mut [[f32; 3]]) {
     let count = to.len();
     let (x, y, z) = (&x[..count], &y[..count], &z[..count]);
     for (at, to) in to.iter_mut().enumerate() {

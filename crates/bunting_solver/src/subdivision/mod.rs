@@ -20,6 +20,21 @@ pub use stencils::Stencils;
 ///
 /// Both pass through the particles exactly, reproduce planes, and on grids parabolas. The border follows from the
 /// particles of the border alone; corners at which it turns by more than 30° at rest stay sharp.
+///
+/// ```
+/// use bunting_solver::{FabricBuilder, Grid, Subdivision, SubdivisionBuffers};
+///
+/// let builder = FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0));
+/// let indices: Vec<u32> = builder.indices().to_vec();
+/// let fabric = builder.build()?;
+/// let smooth = Subdivision::new(&fabric, &indices, 1);
+/// // Twice as many cells along each side.
+/// let [mut drawn, mut normals] = [vec![[0.0; 3]; 17 * 17], vec![[0.0; 3]; 17 * 17]];
+/// let mut buffers = SubdivisionBuffers::default();
+/// smooth.evaluate(fabric.rest_positions(), &mut buffers, &mut drawn, &mut normals);
+/// # assert_eq!(smooth.attributes().rows().len(), 17 * 17);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Subdivision {
     scheme: Scheme,

@@ -22,6 +22,21 @@ use crate::geometry::energy::{area_moment, elastic};
 const ALLOWED_STRAIN: f64 = 0.01;
 
 /// Correspondence of the particles of a finer and a coarser fabric of one cloth.
+///
+/// ```
+/// use std::sync::Arc;
+///
+/// use bunting_solver::{ClothSnapshot, FabricBuilder, FabricMaterial, Grid, LevelTransfer};
+/// use glam::Vec3;
+///
+/// let fabric = |n| FabricBuilder::grid(Grid::new(n, n, 1.0, 1.0)).build().map(Arc::new);
+/// let (fine, coarse) = (fabric(17)?, fabric(9)?);
+/// let between = LevelTransfer::between(&fine, &coarse)?;
+/// let flat = ClothSnapshot::at_rest(&fine);
+/// let coarser = between.restrict(&flat, &FabricMaterial::COTTON, 9.81 * Vec3::NEG_Y);
+/// assert_eq!(coarser.positions.len(), 81);
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct LevelTransfer {
     /// Settler of cloths that became finer.

@@ -7,13 +7,12 @@ mod draw;
 mod gait;
 mod skeleton;
 
-use crate::limits::{Limit, LimitRecord, greatest};
-use crate::strain::Strain;
+use crate::limits::{Limit, LimitRecord};
+use crate::strain::greatest_mean;
 use crate::{Example, Record};
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
-use bunting_solver::LinkFamily;
 
 /// Position of the viewer seen from the figure's feet, m.
 const EYE: Vec3 = Vec3::new(2.6, 1.5, 2.9);
@@ -80,13 +79,7 @@ fn follow(
 
 /// Strain of the cape, distance of its collar from the pose, and depth in the body.
 fn measure(world: &mut World) -> Vec<Limit> {
-    let mut strain = 0.0_f32;
-    for state in world.query::<&ClothState>().iter(world) {
-        let mut cloth = Strain::default();
-        cloth.add(state, LinkFamily::Warp);
-        cloth.add(state, LinkFamily::Weft);
-        strain = greatest([strain, cloth.mean() as f32]);
-    }
+    let strain = greatest_mean(world);
     let off = cloak::off(world);
     let depth = body::depth(world);
     vec![

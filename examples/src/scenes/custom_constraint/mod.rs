@@ -6,8 +6,8 @@
 
 use std::f32::consts::TAU;
 
-use crate::limits::{Limit, LimitRecord, greatest};
-use crate::{Example, Record};
+use crate::limits::{Limit, greatest};
+use crate::{OrbitExample, View};
 use bevy::ecs::schedule::ScheduleLabel;
 #[cfg(feature = "render")]
 use bevy::light::NotShadowCaster;
@@ -84,11 +84,12 @@ fn from_axis(point: Vec3) -> Vec3 {
 #[derive(Clone, Copy, Debug)]
 pub struct CustomConstraint;
 
-impl Example for CustomConstraint {
+impl OrbitExample for CustomConstraint {
     const NAME: &'static str = "Custom constraint";
     const SECONDS: f64 = 12.0;
+    const VIEW: View = View { eye: Vec3::new(0.5, 1.8, 2.9), centre: Vec3::new(0.0, 1.3, 0.0) };
 
-    fn build(&self, app: &mut App, schedule: impl ScheduleLabel) {
+    fn build(app: &mut App, schedule: impl ScheduleLabel) {
         app.add_systems(schedule, swing).add_systems(
             ClothSubstep,
             (
@@ -97,8 +98,6 @@ impl Example for CustomConstraint {
             ),
         );
         let mut commands = app.world_mut().commands();
-        let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
-        commands.spawn((LodViewer::default(), view));
         let tube = commands.spawn((Tube, Transform::default())).id();
         // The streamer's mesh begins at its top left corner.
         let offset = Transform::from_xyz(-0.5 * WIDTH, -0.1, 0.0);
@@ -106,29 +105,24 @@ impl Example for CustomConstraint {
             Streamer,
             ClothMesh::grid(9, 49, WIDTH, LENGTH),
             ClothMaterial::SILK,
+            SelfCollision::default(),
             Attachment::new(tube, ClothEdge::Top).with_offset(offset),
             Design::Pales(vec![[196, 52, 44], [238, 232, 214], [36, 86, 140]]),
         ));
     }
 
-    fn record(&self, _ticks_per_second: usize) -> impl Record {
-        LimitRecord::new(measure)
+    fn measure(world: &mut World) -> Vec<Limit> {
+        let mut streamers = world.query_filtered::<&ClothState, With<Streamer>>();
+        let positions = streamers.iter(world).flat_map(ClothState::positions);
+        let distance = greatest(positions.map(|&position| from_axis(position).length()));
+        // The wall holds particles up to the rounding of their coordinates.
+        vec![Limit { name: "distance from the axis, m", value: distance, limit: RADIUS + 1e-5 }]
     }
 
     #[cfg(feature = "render")]
-    fn stage(&self) -> crate::render::stage::Stage {
-        crate::render::stage::Stage::SMALL
-    }
-
-    #[cfg(feature = "render")]
-    fn draw(&self, app: &mut App) {
+    fn draw(app: &mut App) {
         use crate::render::{print, stage};
         app.add_plugins(print::plugin(stage::cloth())).add_systems(PostStartup, draw_tube);
-    }
-
-    #[cfg(feature = "render")]
-    fn control(&self, app: &mut App) {
-        crate::render::control_orbit(app, EYE, CENTRE);
     }
 }
 
@@ -141,20 +135,6 @@ fn swing(mut tubes: Query<&mut Transform, With<Tube>>, time: Res<Time>) {
         *tube = Transform::from_translation(PIVOT * Vec3::Y + arm).with_rotation(rotation);
     }
 }
-
-fn measure(world: &mut World) -> Vec<Limit> {
-    let mut streamers = world.query_filtered::<&ClothState, With<Streamer>>();
-    let positions = streamers.iter(world).flat_map(ClothState::positions);
-    let distance = greatest(positions.map(|&position| from_axis(position).length()));
-    // The wall holds particles up to the rounding of their coordinates.
-    vec![Limit { name: "distance from the axis, m", value: distance, limit: RADIUS + 1e-5 }]
-}
-
-/// Position of the viewer, m.
-const EYE: Vec3 = Vec3::new(0.5, 1.8, 2.9);
-
-/// The point at which the viewer looks, m.
-const CENTRE: Vec3 = Vec3::new(0.0, 1.3, 0.0);
 
 /// Draws the tube in glass.
 #[cfg(feature = "render")]

@@ -7,19 +7,12 @@ mod table;
 
 use std::f32::consts::PI;
 
-use crate::limits::{Limit, LimitRecord, greatest};
-use crate::strain::Strain;
-use crate::{Example, Record};
+use crate::limits::{Limit, greatest};
+use crate::strain::greatest_mean;
+use crate::{OrbitExample, View};
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
-use bunting_solver::LinkFamily;
-
-/// Position of the viewer, m.
-const EYE: Vec3 = Vec3::new(1.9, 1.6, 3.1);
-
-/// The point at which the viewer looks, m.
-const CENTRE: Vec3 = Vec3::new(-0.05, 0.98, -0.2);
 
 /// Time from one gust to the next, s: the first gust begins when all cloths have come to rest.
 const PERIOD: f32 = 5.0;
@@ -44,37 +37,45 @@ struct Draught;
 #[derive(Clone, Copy, Debug)]
 pub struct Drape;
 
-impl Example for Drape {
+impl OrbitExample for Drape {
     const NAME: &'static str = "Drape";
     const SECONDS: f64 = 12.0;
+    const VIEW: View = View { eye: Vec3::new(1.9, 1.6, 3.1), centre: Vec3::new(-0.05, 0.98, -0.2) };
 
-    fn build(&self, app: &mut App, schedule: impl ScheduleLabel) {
+    fn build(app: &mut App, schedule: impl ScheduleLabel) {
         app.add_systems(schedule, blow);
         let mut commands = app.world_mut().commands();
-        let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
-        commands.spawn((LodViewer::default(), view));
         commands.spawn((Draught, WindField::default()));
         curtain::spawn(&mut commands);
         table::spawn(&mut commands);
     }
 
-    fn record(&self, _ticks_per_second: usize) -> impl Record {
-        LimitRecord::new(measure)
+    /// Strain of the cloths, distance of the curtain from its rings, and depth of the sheet in the table.
+    fn measure(world: &mut World) -> Vec<Limit> {
+        let mut off = 0.0_f32;
+        for state in world.query::<&ClothState>().iter(world) {
+            let Some(fabric) = state.fabric() else { continue };
+            for (particle, rest) in fabric.rest_positions().iter().enumerate() {
+                if fabric.is_pinned(particle) {
+                    off = greatest([off, rest.distance(state.positions()[particle])]);
+                }
+            }
+        }
+        let depth = table::depth(world);
+        vec![
+            Limit {
+                name: "mean strain of a cloth",
+                value: greatest_mean(world),
+                limit: STRAIN_LIMIT,
+            },
+            Limit { name: "distance of the curtain from its rings, m", value: off, limit: 0.0 },
+            Limit { name: "depth of the sheet in the table, m", value: depth, limit: DEPTH_LIMIT },
+        ]
     }
 
     #[cfg(feature = "render")]
-    fn stage(&self) -> crate::render::stage::Stage {
-        crate::render::stage::Stage::SMALL
-    }
-
-    #[cfg(feature = "render")]
-    fn draw(&self, app: &mut App) {
+    fn draw(app: &mut App) {
         app.add_plugins(draw::plugin);
-    }
-
-    #[cfg(feature = "render")]
-    fn control(&self, app: &mut App) {
-        crate::render::control_orbit(app, EYE, CENTRE);
     }
 }
 
@@ -89,27 +90,4 @@ fn blow(mut draughts: Query<&mut WindField, With<Draught>>, time: Res<Time>) {
             wind.velocity = velocity;
         }
     }
-}
-
-/// Strain of the cloths, distance of the curtain from its rings, and depth of the sheet in the table.
-fn measure(world: &mut World) -> Vec<Limit> {
-    let [mut strain, mut off] = [0.0_f32; 2];
-    for state in world.query::<&ClothState>().iter(world) {
-        let Some(fabric) = state.fabric() else { continue };
-        let mut cloth = Strain::default();
-        cloth.add(state, LinkFamily::Warp);
-        cloth.add(state, LinkFamily::Weft);
-        strain = greatest([strain, cloth.mean() as f32]);
-        for (particle, rest) in fabric.rest_positions().iter().enumerate() {
-            if fabric.is_pinned(particle) {
-                off = greatest([off, rest.distance(state.positions()[particle])]);
-            }
-        }
-    }
-    let depth = table::depth(world);
-    vec![
-        Limit { name: "mean strain of a cloth", value: strain, limit: STRAIN_LIMIT },
-        Limit { name: "distance of the curtain from its rings, m", value: off, limit: 0.0 },
-        Limit { name: "depth of the sheet in the table, m", value: depth, limit: DEPTH_LIMIT },
-    ]
 }

@@ -6,18 +6,12 @@ mod draw;
 
 use std::f32::consts::TAU;
 
-use crate::limits::{Limit, LimitRecord, greatest};
-use crate::{Example, Record};
+use crate::limits::{Limit, greatest};
+use crate::{OrbitExample, View};
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bunting_scenes::Design;
-
-/// Position of the viewer, m.
-const EYE: Vec3 = Vec3::new(1.0, 2.45, 3.9);
-
-/// The point at which the viewer looks, m.
-const CENTRE: Vec3 = Vec3::new(-0.15, 1.75, 0.0);
 
 /// Height of the top of the canopy, m.
 const HEIGHT: f32 = 2.5;
@@ -50,15 +44,14 @@ struct Parasol;
 #[derive(Clone, Copy, Debug)]
 pub struct Parasols;
 
-impl Example for Parasols {
+impl OrbitExample for Parasols {
     const NAME: &'static str = "Parasol";
     const SECONDS: f64 = 12.0;
+    const VIEW: View = View { eye: Vec3::new(1.0, 2.45, 3.9), centre: Vec3::new(-0.15, 1.75, 0.0) };
 
-    fn build(&self, app: &mut App, schedule: impl ScheduleLabel) {
+    fn build(app: &mut App, schedule: impl ScheduleLabel) {
         app.add_systems(schedule, sway);
         let mut commands = app.world_mut().commands();
-        let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
-        commands.spawn((LodViewer::default(), view));
         commands.spawn(WindField::steady(Vec3::new(2.4, 0.0, -0.6)).with_gusts(1.8, 0.6, 4));
         for (foot, colour) in PARASOLS {
             let parasol = commands.spawn((Parasol, Transform::from_translation(foot))).id();
@@ -66,23 +59,32 @@ impl Example for Parasols {
         }
     }
 
-    fn record(&self, _ticks_per_second: usize) -> impl Record {
-        LimitRecord::new(measure)
+    /// Distances of vertices from their rest positions: 0 if rigid, and bounded if simulated.
+    fn measure(world: &mut World) -> Vec<Limit> {
+        let [mut rigid, mut simulated] = [0.0_f32; 2];
+        for (state, mesh) in world.query::<(&ClothState, &ClothMesh)>().iter(world) {
+            let ClothMesh::Triangles { positions, weights, .. } = mesh else { continue };
+            for (vertex, (rest, weight)) in (0..).zip(positions.iter().zip(weights)) {
+                let Some(particle) = state.particle_of_vertex(vertex) else { continue };
+                let distance = rest.distance(state.positions()[particle]);
+                let worst = if *weight == 0.0 { &mut rigid } else { &mut simulated };
+                *worst = greatest([*worst, distance]);
+            }
+        }
+        vec![
+            Limit { name: "distance of rigid vertices from rest, m", value: rigid, limit: 0.0 },
+            // A valance that is turned inside out is at twice its length from rest.
+            Limit {
+                name: "distance of simulated vertices from rest, m",
+                value: simulated,
+                limit: 2.0 * canopy::VALANCE,
+            },
+        ]
     }
 
     #[cfg(feature = "render")]
-    fn stage(&self) -> crate::render::stage::Stage {
-        crate::render::stage::Stage::SMALL
-    }
-
-    #[cfg(feature = "render")]
-    fn draw(&self, app: &mut App) {
+    fn draw(app: &mut App) {
         app.add_plugins(draw::plugin);
-    }
-
-    #[cfg(feature = "render")]
-    fn control(&self, app: &mut App) {
-        crate::render::control_orbit(app, EYE, CENTRE);
     }
 }
 
@@ -110,27 +112,4 @@ fn sway(mut parasols: Query<&mut Transform, With<Parasol>>, time: Res<Time>) {
             -SWAY * (1.0 + phase.sin()),
         );
     }
-}
-
-/// Distances of vertices from their rest positions: 0 if rigid, and bounded if simulated.
-fn measure(world: &mut World) -> Vec<Limit> {
-    let [mut rigid, mut simulated] = [0.0_f32; 2];
-    for (state, mesh) in world.query::<(&ClothState, &ClothMesh)>().iter(world) {
-        let ClothMesh::Triangles { positions, weights, .. } = mesh else { continue };
-        for (vertex, (rest, weight)) in (0..).zip(positions.iter().zip(weights)) {
-            let Some(particle) = state.particle_of_vertex(vertex) else { continue };
-            let distance = rest.distance(state.positions()[particle]);
-            let worst = if *weight == 0.0 { &mut rigid } else { &mut simulated };
-            *worst = greatest([*worst, distance]);
-        }
-    }
-    vec![
-        Limit { name: "distance of rigid vertices from rest, m", value: rigid, limit: 0.0 },
-        // A valance that is turned inside out is at twice its length from rest.
-        Limit {
-            name: "distance of simulated vertices from rest, m",
-            value: simulated,
-            limit: 2.0 * canopy::VALANCE,
-        },
-    ]
 }

@@ -6,17 +6,10 @@ mod draw;
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
-use bunting_solver::LinkFamily;
 
-use crate::limits::{Limit, LimitRecord, greatest};
-use crate::strain::Strain;
-use crate::{Example, Record};
-
-/// Position of the viewer, m.
-const EYE: Vec3 = Vec3::new(0.3, 1.3, 0.95);
-
-/// The point at which the viewer looks, m.
-const CENTRE: Vec3 = Vec3::new(0.05, 1.27, 0.0);
+use crate::limits::Limit;
+use crate::strain::greatest_mean;
+use crate::{OrbitExample, View};
 
 /// Width and height of a cloth, m.
 const SIZE: Vec2 = Vec2::new(0.36, 0.5);
@@ -85,14 +78,16 @@ const SWATCHES: [Swatch; 3] = [
 #[derive(Clone, Copy, Debug)]
 pub struct Swatches;
 
-impl Example for Swatches {
+impl OrbitExample for Swatches {
     const NAME: &'static str = "Swatches";
     const SECONDS: f64 = 8.0;
+    const VIEW: View = View { eye: Vec3::new(0.3, 1.3, 0.95), centre: Vec3::new(0.05, 1.27, 0.0) };
 
-    fn build(&self, app: &mut App, _schedule: impl ScheduleLabel) {
+    #[cfg(feature = "render")]
+    const STAGE: crate::render::stage::Stage = draw::STAGE;
+
+    fn build(app: &mut App, _schedule: impl ScheduleLabel) {
         let mut commands = app.world_mut().commands();
-        let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
-        commands.spawn((LodViewer::default(), view));
         commands.spawn(WindField::steady(Vec3::new(0.3, 0.0, 0.3)).with_gusts(0.6, 0.7, 5));
         let rail = commands.spawn(Transform::from_xyz(0.0, RAIL, 0.0)).id();
         for (index, swatch) in (0_u8..).zip(SWATCHES) {
@@ -108,35 +103,14 @@ impl Example for Swatches {
         }
     }
 
-    fn record(&self, _ticks_per_second: usize) -> impl Record {
-        LimitRecord::new(measure)
+    /// Greatest mean strain of a cloth.
+    fn measure(world: &mut World) -> Vec<Limit> {
+        let strain = greatest_mean(world);
+        vec![Limit { name: "mean strain of a cloth", value: strain, limit: STRAIN_LIMIT }]
     }
 
     #[cfg(feature = "render")]
-    fn stage(&self) -> crate::render::stage::Stage {
-        draw::STAGE
-    }
-
-    #[cfg(feature = "render")]
-    fn draw(&self, app: &mut App) {
+    fn draw(app: &mut App) {
         app.add_plugins(draw::plugin);
     }
-
-    #[cfg(feature = "render")]
-    fn control(&self, app: &mut App) {
-        crate::render::control_orbit(app, EYE, CENTRE);
-    }
-}
-
-/// Greatest mean strain of a cloth.
-fn measure(world: &mut World) -> Vec<Limit> {
-    let mut cloths = world.query::<&ClothState>();
-    let strains = cloths.iter(world).map(|state| {
-        let mut cloth = Strain::default();
-        cloth.add(state, LinkFamily::Warp);
-        cloth.add(state, LinkFamily::Weft);
-        cloth.mean() as f32
-    });
-    let strain = greatest(strains);
-    vec![Limit { name: "mean strain of a cloth", value: strain, limit: STRAIN_LIMIT }]
 }

@@ -5,20 +5,13 @@ mod draw;
 
 use std::f32::consts::FRAC_PI_2;
 
-use crate::limits::{Limit, LimitRecord, greatest};
-use crate::strain::Strain;
-use crate::{Example, Record};
+use crate::limits::{Limit, greatest};
+use crate::strain::greatest_mean;
+use crate::{OrbitExample, View};
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bunting_scenes::Design;
-use bunting_solver::LinkFamily;
-
-/// Position of the viewer, m.
-const EYE: Vec3 = Vec3::new(0.4, 1.1, 1.8);
-
-/// The point at which the viewer looks, m.
-const CENTRE: Vec3 = Vec3::new(-0.1, 0.5, 0.0);
 
 /// Middle of the rail, m, which lies along x.
 const RAIL: Vec3 = Vec3::new(-0.45, 0.95, 0.0);
@@ -56,16 +49,15 @@ const NEARNESS_LIMIT: f32 = 0.7;
 #[derive(Clone, Copy, Debug)]
 pub struct Towels;
 
-impl Example for Towels {
+impl OrbitExample for Towels {
     const NAME: &'static str = "Towel";
     const SECONDS: f64 = 6.0;
+    const VIEW: View = View { eye: Vec3::new(0.4, 1.1, 1.8), centre: Vec3::new(-0.1, 0.5, 0.0) };
 
-    fn build(&self, app: &mut App, _schedule: impl ScheduleLabel) {
+    fn build(app: &mut App, _schedule: impl ScheduleLabel) {
         let finest = StepLimits { rate: SUBSTEP_RATE, ..StepLimits::default() };
         app.insert_resource(ClothSettings { steps: vec![finest], ..ClothSettings::default() });
         let mut commands = app.world_mut().commands();
-        let view = Transform::from_translation(EYE).looking_at(CENTRE, Vec3::Y);
-        commands.spawn((LodViewer::default(), view));
         commands.spawn((ClothCollider::ground(), Transform::default()));
         let along_rail = Quat::from_rotation_z(FRAC_PI_2);
         let rail = ClothCollider::capsule(RAIL_SIZE[0], RAIL_SIZE[1]);
@@ -89,45 +81,32 @@ impl Example for Towels {
         }
     }
 
-    fn record(&self, _ticks_per_second: usize) -> impl Record {
-        LimitRecord::new(measure)
+    /// Strain of the towels, and how much too near particles of their layers are.
+    fn measure(world: &mut World) -> Vec<Limit> {
+        let mut nearness = 0.0_f32;
+        for state in world.query::<&ClothState>().iter(world) {
+            let Some(fabric) = state.fabric() else { continue };
+            nearness =
+                greatest([nearness, 1.0 - nearest(state.positions(), fabric.rest_positions())]);
+        }
+        vec![
+            Limit {
+                name: "mean strain of a towel",
+                value: greatest_mean(world),
+                limit: STRAIN_LIMIT,
+            },
+            Limit {
+                name: "part of the layers' distance that is lacking",
+                value: nearness,
+                limit: NEARNESS_LIMIT,
+            },
+        ]
     }
 
     #[cfg(feature = "render")]
-    fn stage(&self) -> crate::render::stage::Stage {
-        crate::render::stage::Stage::SMALL
-    }
-
-    #[cfg(feature = "render")]
-    fn draw(&self, app: &mut App) {
+    fn draw(app: &mut App) {
         app.add_plugins(draw::plugin);
     }
-
-    #[cfg(feature = "render")]
-    fn control(&self, app: &mut App) {
-        crate::render::control_orbit(app, EYE, CENTRE);
-    }
-}
-
-/// Strain of the towels, and how much too near particles of their layers are.
-fn measure(world: &mut World) -> Vec<Limit> {
-    let [mut strain, mut nearness] = [0.0_f32; 2];
-    for state in world.query::<&ClothState>().iter(world) {
-        let Some(fabric) = state.fabric() else { continue };
-        let mut cloth = Strain::default();
-        cloth.add(state, LinkFamily::Warp);
-        cloth.add(state, LinkFamily::Weft);
-        strain = greatest([strain, cloth.mean() as f32]);
-        nearness = greatest([nearness, 1.0 - nearest(state.positions(), fabric.rest_positions())]);
-    }
-    vec![
-        Limit { name: "mean strain of a towel", value: strain, limit: STRAIN_LIMIT },
-        Limit {
-            name: "part of the layers' distance that is lacking",
-            value: nearness,
-            limit: NEARNESS_LIMIT,
-        },
-    ]
 }
 
 /// Distance of the two particles of different layers that are nearest to each other, as a part of [`LAYERS`].

@@ -42,6 +42,15 @@ pub struct ClothImpulse {
 }
 
 /// What a [`ClothImpulse`] gives to the particles around its place, along the world's axes.
+///
+/// ```
+/// use bevy_bunting::Push;
+/// use bevy_math::Vec3;
+///
+/// // A gust throws all cloth alike; a ball throws light cloth farther.
+/// let [gust, ball] = [Push::Velocity(3.0 * Vec3::X), Push::Momentum(0.5 * Vec3::X)];
+/// # assert_ne!(gust, ball);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Push {
     /// A change of velocity, m/s, before the falloff.

@@ -33,6 +33,14 @@ pub struct WindRegion {
 }
 
 /// Shape of a [`WindRegion`]. Lengths are in m.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // A draught in a doorway.
+/// let shape = WindShape::Box { half_extents: bevy_math::Vec3::new(0.5, 1.0, 0.3) };
+/// # assert_eq!(shape, shape);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]

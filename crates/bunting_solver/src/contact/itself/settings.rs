@@ -2,6 +2,13 @@
 
 /// How a cloth keeps its layers apart: particles and triangles, and edges and edges, that are not neighbours. Friction
 /// between them is that of the material.
+///
+/// ```
+/// use bunting_solver::SelfCollision;
+///
+/// let layers = SelfCollision { thickness: 0.005 };
+/// # assert!(layers.thickness > 0.0);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelfCollision {
     /// Distance that layers keep, m: particles from triangles. Edges keep half of it from edges. Less where the fabric's own

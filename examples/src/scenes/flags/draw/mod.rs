@@ -6,6 +6,7 @@ mod vehicles;
 
 use std::f32::consts::FRAC_PI_4;
 
+use crate::View;
 use crate::render::stage::{self, Stage};
 use crate::render::{self, print};
 use bevy::prelude::*;
@@ -39,5 +40,5 @@ pub fn plugin(app: &mut App) {
 pub fn control(app: &mut App, centre: Vec3) {
     let viewer = render::viewer(app);
     app.world_mut().entity_mut(viewer).remove::<Track>();
-    render::control_orbit(app, centre + DISTANCE * Vec3::Z, centre);
+    render::control_orbit(app, View { eye: centre + DISTANCE * Vec3::Z, centre });
 }

@@ -5,8 +5,8 @@ use avian3d::prelude::{
 };
 use bevy::prelude::*;
 
-use crate::ground::Ground;
-use crate::vehicle::{HALF_TRACK, HALF_WHEELBASE, MASS, SPEED, Vehicle};
+use crate::scenes::convoy::ground::Ground;
+use crate::scenes::convoy::vehicle::{HALF_TRACK, HALF_WHEELBASE, MASS, SPEED, Vehicle};
 
 /// Radius of a wheel, m.
 pub const RADIUS: f32 = 0.42;

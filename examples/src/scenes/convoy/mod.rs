@@ -1,12 +1,5 @@
-//! A convoy of avian's rigid bodies at 25 m/s over rough ground: each vehicle has a flag, the first one a tarpaulin over its
+//! A convoy of avian's rigid bodies over rough ground: each vehicle has a flag, the first one a tarpaulin over its
 //! load.
-//!
-//! `cargo run --release --example convoy --features avian -- --headless` simulates it as fast as possible and prints the
-//! costs.
-//!
-//! `cargo run --release --example convoy --features avian,render` opens a window. The vehicles stand on springs, which rays
-//! find the ground for; the ground and the boxes are avian's colliders alone, which the tarpaulin lies on without set-up, and
-//! the vehicles feel the pull of their cloths (`FeelsCloth`).
 
 #[cfg(feature = "render")]
 mod draw;
@@ -14,20 +7,15 @@ mod ground;
 mod suspension;
 mod vehicle;
 
-use std::process::ExitCode;
-
+use crate::limits::{Limit, LimitRecord, greatest};
+use crate::scenes::convoy::vehicle::{Load, SPEED, Tarpaulin, Vehicle};
+use crate::strain::greatest_mean;
+use crate::{Example, Record};
 use avian3d::prelude::{Collider, LinearVelocity, PhysicsPlugins};
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bevy_bunting_avian::ClothAvianPlugin;
-use bunting_examples::limits::{Limit, LimitRecord, greatest};
-use bunting_examples::strain::Strain;
-use bunting_examples::{Example, Options, Record};
-use bunting_solver::LinkFamily;
-use clap::Parser;
-
-use crate::vehicle::{Load, SPEED, Tarpaulin, Vehicle};
 
 /// Position of the viewer relative to the middle of the convoy, m, and the point at which it looks.
 const EYE: Vec3 = Vec3::new(12.8, 2.8, 7.6);
@@ -43,16 +31,8 @@ const SPEED_LIMIT: f32 = 3.0;
 const DEPTH_LIMIT: f32 = 0.02;
 
 /// A convoy over rough ground.
-#[derive(Debug, Parser)]
-struct Convoy {
-    #[command(flatten)]
-    options: Options,
-}
-
-fn main() -> ExitCode {
-    let convoy = Convoy::parse();
-    convoy.options.run(&convoy)
-}
+#[derive(Clone, Copy, Debug)]
+pub struct Convoy;
 
 impl Example for Convoy {
     const NAME: &'static str = "Convoy";
@@ -74,7 +54,7 @@ impl Example for Convoy {
     }
 
     #[cfg(feature = "render")]
-    fn stage(&self) -> bunting_examples::render::stage::Stage {
+    fn stage(&self) -> crate::render::stage::Stage {
         draw::STAGE
     }
 
@@ -85,7 +65,7 @@ impl Example for Convoy {
 
     #[cfg(feature = "render")]
     fn control(&self, app: &mut App) {
-        app.add_plugins(bunting_examples::render::keys::gizmos);
+        app.add_plugins(crate::render::keys::gizmos);
     }
 }
 
@@ -102,20 +82,11 @@ fn follow(
 
 /// Strain of the cloths, speed of the vehicles, and depth of the tarpaulin in the load.
 fn measure(world: &mut World) -> Vec<Limit> {
-    let mut strain = 0.0;
-    for state in world.query::<&ClothState>().iter(world) {
-        if state.fabric().is_some() {
-            let mut cloth = Strain::default();
-            cloth.add(state, LinkFamily::Warp);
-            cloth.add(state, LinkFamily::Weft);
-            strain = greatest([strain, cloth.mean() as f32]);
-        }
-    }
     let mut vehicles = world.query_filtered::<&LinearVelocity, With<Vehicle>>();
     let speeds = vehicles.iter(world).map(|velocity| (velocity.length() - SPEED).abs());
     let speed = greatest(speeds);
     vec![
-        Limit { name: "mean strain of a cloth", value: strain, limit: STRAIN_LIMIT },
+        Limit { name: "mean strain of a cloth", value: greatest_mean(world), limit: STRAIN_LIMIT },
         Limit { name: "speed less 25 m/s, m/s", value: speed, limit: SPEED_LIMIT },
         Limit { name: "depth of the tarpaulin, m", value: depth(world), limit: DEPTH_LIMIT },
     ]

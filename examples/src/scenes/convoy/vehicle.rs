@@ -8,8 +8,8 @@ use bevy_bunting::prelude::*;
 use bevy_bunting_avian::FeelsCloth;
 use bunting_scenes::Design;
 
-use crate::ground;
-use crate::suspension::{Wheel, mounts};
+use crate::scenes::convoy::ground;
+use crate::scenes::convoy::suspension::{Wheel, mounts};
 
 /// Speed of the convoy, m/s.
 pub const SPEED: f32 = 25.0;

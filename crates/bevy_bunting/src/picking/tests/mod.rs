@@ -1,4 +1,7 @@
-//! Tests of dragging by a pointer, without a window.
+//! Tests of pointers on a cloth, without a window.
+
+mod drag;
+mod pins;
 
 use std::time::Duration;
 
@@ -7,8 +10,8 @@ use bevy_camera::{Camera, NormalizedRenderTarget};
 use bevy_ecs::prelude::*;
 use bevy_math::{Dir3, Ray3d, Vec2, Vec3};
 use bevy_picking::backend::ray::{RayId, RayMap};
-use bevy_picking::pointer::{Location, PointerAction, PointerButton, PointerId, PointerInput};
-use bevy_picking::{InteractionPlugin, Pickable, PickingPlugin, PickingSystems};
+use bevy_picking::pointer::{Location, PointerAction, PointerId, PointerInput};
+use bevy_picking::{InteractionPlugin, PickingPlugin, PickingSystems};
 use bevy_time::{TimePlugin, TimeUpdateStrategy};
 use bevy_transform::prelude::*;
 
@@ -90,56 +93,4 @@ impl Scene {
         let frame = entity.get::<GlobalTransform>().expect("a place");
         frame.transform_point(state.positions()[8 * 17 + 8])
     }
-}
-
-#[test]
-fn a_pointer_drags_the_cloth_under_it_and_lets_go() {
-    let mut scene = Scene::new(());
-    let before = scene.middle();
-    scene.point_at(Vec2::new(0.01, -0.01));
-    scene.run(1);
-    scene.send(PointerAction::Press(PointerButton::Primary));
-    scene.run(2);
-    assert_eq!(scene.hands(), 1);
-    for step in 1..=60 {
-        scene.point_at(Vec2::new(0.01 + 0.005 * step as f32, -0.01));
-        scene.run(1);
-    }
-    scene.run(60);
-    let drawn = scene.middle() - before;
-    assert!((drawn.x - 0.3).abs() < 0.08, "{drawn} m for 0.3 m across");
-    scene.send(PointerAction::Release(PointerButton::Primary));
-    scene.run(2);
-    assert_eq!(scene.hands(), 0);
-    scene.run(600);
-    assert!(scene.middle().distance(before) < 0.05, "{}", scene.middle());
-}
-
-#[test]
-fn other_buttons_other_places_and_ignored_cloths_are_not_dragged() {
-    let pressed = |curtain: bool, at: Vec2, button: PointerButton| {
-        let pickable = if curtain { Pickable::default() } else { Pickable::IGNORE };
-        let mut scene = Scene::new(pickable);
-        scene.point_at(at);
-        scene.run(1);
-        scene.send(PointerAction::Press(button));
-        scene.run(2);
-        scene.hands()
-    };
-    assert_eq!(pressed(true, Vec2::ZERO, PointerButton::Primary), 1);
-    assert_eq!(pressed(true, Vec2::ZERO, PointerButton::Secondary), 0);
-    assert_eq!(pressed(true, Vec2::X * 0.6, PointerButton::Primary), 0);
-    assert_eq!(pressed(false, Vec2::ZERO, PointerButton::Primary), 0);
-}
-
-#[test]
-fn a_cloth_that_is_despawned_in_a_drag_is_let_go() {
-    let mut scene = Scene::new(());
-    scene.point_at(Vec2::ZERO);
-    scene.run(1);
-    scene.send(PointerAction::Press(PointerButton::Primary));
-    scene.run(2);
-    scene.app.world_mut().despawn(scene.curtain);
-    scene.run(2);
-    assert_eq!(scene.hands(), 0);
 }

@@ -2,16 +2,16 @@
 
 use std::f32::consts::FRAC_PI_2;
 
+use crate::render::stage::Stage;
+use crate::render::{print, stage};
 use avian3d::prelude::Collider;
 use bevy::asset::RenderAssetUsages;
 use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
-use bunting_examples::render::stage::Stage;
-use bunting_examples::render::{print, stage};
 
-use crate::ground::{Ground, LENGTH, WIDTH, height, places};
-use crate::suspension::{RADIUS, Wheel};
-use crate::vehicle::{Load, Part, Pole, Vehicle};
+use crate::scenes::convoy::ground::{Ground, LENGTH, WIDTH, height, places};
+use crate::scenes::convoy::suspension::{RADIUS, Wheel};
+use crate::scenes::convoy::vehicle::{Load, Part, Pole, Vehicle};
 
 /// Sky, ground and light of a wide field.
 pub const STAGE: Stage = Stage {
