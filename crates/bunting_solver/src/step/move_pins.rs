@@ -121,3 +121,54 @@ fn read_pins<P: Pack, Y: Layout<P>>(
         positions[particle] = lane3(&packs[pack], lane);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::batch::exchange::Entering;
+    use crate::batch::snapshot::ClothSnapshot;
+    use crate::fabric::{FabricBuilder, FabricMaterial, Grid};
+    use crate::simd::registers::Pack1;
+    use crate::stability::pin_strain::PinStrain;
+    use crate::step::StepSettings;
+
+    /// Strains by the pins of a sheet of 1 m, after each of two substeps in which its right edge moves by a distance, m, and
+    /// after the first of the next tick, in which it stays.
+    fn strains(by: f32) -> [f32; 3] {
+        let sheet = FabricBuilder::grid(Grid::new(5, 5, 1.0, 1.0));
+        let sheet = sheet.pin_where(|_, uv| uv.x == 0.0 || uv.x == 1.0).build();
+        let fabric = &Arc::new(sheet.expect("a good fabric"));
+        let snapshot = &ClothSnapshot::at_rest(fabric);
+        let mut batch = LaneBatch::<Pack1>::side_by_side(Arc::clone(fabric));
+        let material = FabricMaterial::NYLON;
+        batch.exchange(&[], &[Entering { lane: 0, fabric, snapshot, material }]);
+        let right = (0..25).filter(|particle| particle % 5 == 4);
+        let pins = right.map(|particle| {
+            let from = fabric.rest_positions()[particle];
+            MovingPin { particle: particle as u32, from, to: from + Vec3::X * by }
+        });
+        batch.set_pin_motion(0, pins.collect()).expect("pins");
+        let mut substep = |begins: bool| {
+            if begins {
+                batch.begin_tick(1.0 / 60.0, StepSettings::yarns(2));
+            }
+            batch.integrate();
+            batch.solve_constraints();
+            batch.update_velocities();
+            let state = batch.lanes[0].as_ref().expect("a cloth");
+            assert_eq!(state.pin_strain.greatest > 0.0, state.pin_strain != PinStrain::default());
+            state.pin_strain.greatest
+        };
+        [substep(true), substep(false), substep(true)]
+    }
+
+    #[test]
+    fn pins_that_move_apart_strain_the_cloth_in_each_substep() {
+        for (strain, expected) in strains(0.2).into_iter().zip([0.1, 0.2, 0.2]) {
+            assert!((strain - expected).abs() < 1e-5, "{strain}");
+        }
+        assert_eq!(strains(-0.2), [0.0; 3]);
+    }
+}
