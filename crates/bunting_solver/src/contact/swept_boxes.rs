@@ -54,11 +54,11 @@ impl Block {
             }
         }
         let mut squared = [0.0; WIDTH];
-        for axis in 0..3 {
-            for place in 0..WIDTH {
+        for (axis, at) in at.iter().enumerate() {
+            for (place, squared) in squared.iter_mut().enumerate() {
                 let [sx, sy, sz] = [shifted[0][place], shifted[1][place], shifted[2][place]];
-                let moved = x[axis] * sx + y[axis] * sy + z[axis] * sz - at[axis][place];
-                squared[place] += moved * moved;
+                let moved = x[axis] * sx + y[axis] * sy + z[axis] * sz - at[place];
+                *squared += moved * moved;
             }
         }
         for axis in 0..3 {
