@@ -61,11 +61,11 @@ impl Block {
                 *squared += moved * moved;
             }
         }
-        for axis in 0..3 {
+        for (axis, at) in at.iter().enumerate() {
             for place in 0..positions.len().min(WIDTH) {
                 let reach = sweep.common + squared[place].sqrt();
-                self.least[axis][place] = at[axis][place] - reach;
-                self.greatest[axis][place] = at[axis][place] + reach;
+                self.least[axis][place] = at[place] - reach;
+                self.greatest[axis][place] = at[place] + reach;
             }
         }
     }
