@@ -106,18 +106,26 @@ fn a_pose_that_is_not_a_number_leaves_anchors_where_they_were() {
 }
 
 #[test]
-fn a_target_may_be_a_child_of_its_cloth() {
-    let (others, app, cloth) = beside(|app| {
-        let masts = masts(app);
-        let banner = banner(app, masts);
-        for mast in masts {
-            app.world_mut().entity_mut(mast).insert(ChildOf(banner));
-        }
-        Some(banner)
-    });
-    // The cloth follows its own child, which follows it: by the child's transform in each tick.
-    assert_finite(&app, cloth.expect("a cloth"));
-    assert_eq!(others, alone());
+fn a_target_may_be_a_descendant_of_its_cloth() {
+    let alone = alone();
+    for generations in [1, 3] {
+        let (others, app, cloth) = beside(|app| {
+            let masts = masts(app);
+            let banner = banner(app, masts);
+            let world = app.world_mut();
+            let mut parent = banner;
+            for _ in 1..generations {
+                parent = world.spawn((Transform::default(), ChildOf(parent))).id();
+            }
+            for mast in masts {
+                world.entity_mut(mast).insert(ChildOf(parent));
+            }
+            Some(banner)
+        });
+        // The cloth follows its own descendant, which follows it: by the descendant's transform in each tick.
+        assert_finite(&app, cloth.expect("a cloth"));
+        assert_eq!(others, alone, "{generations} generations");
+    }
 }
 
 #[test]

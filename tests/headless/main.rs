@@ -7,6 +7,7 @@ mod bad_anchors;
 mod broad_phase;
 mod cloth_collision;
 mod contacts;
+mod despawn;
 mod determinism;
 mod effort;
 mod environment;

@@ -1,5 +1,7 @@
 //! Waves and random numbers with the same bits on all machines, for gusts and imperfections.
 
+use bevy_math::Vec4;
+
 /// Constant 1.5 × 2²³: added to a float and subtracted again, it rounds the float to the nearest integer.
 const TO_INTEGER: f32 = 12_582_912.0;
 
@@ -35,6 +37,12 @@ pub(crate) fn sine(phase: f32) -> f32 {
     8.0 * part * (1.0 - 2.0 * part.abs())
 }
 
+/// The [`sine`] of each of four phases.
+pub(crate) fn sines(phases: Vec4) -> Vec4 {
+    let part = phases - ((phases + TO_INTEGER) - TO_INTEGER);
+    8.0 * part * (1.0 - 2.0 * part.abs())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -45,6 +53,7 @@ mod tests {
             let phase = step as f32 / 1000.0;
             let exact = (core::f32::consts::TAU * phase).sin();
             assert!((sine(phase) - exact).abs() < 0.06, "{phase}");
+            assert_eq!(sines(Vec4::splat(phase)), Vec4::splat(sine(phase)), "{phase}");
         }
     }
 

@@ -184,7 +184,8 @@ fn begin_prerolls(
         *state = ClothState::default();
         let frame = frame_of(entity, attachment, &transforms).unwrap_or_default();
         let seconds = if preroll.seconds.is_finite() { preroll.seconds } else { 0.0 };
-        let drive = surroundings.drive(instance.rest_middle, frame, FrameMotion::NONE, &exposure);
+        let wind = surroundings.wind_at(frame * instance.rest_middle);
+        let drive = surroundings.drive(wind, frame, FrameMotion::NONE, &exposure);
         let air = Loads::of_air(&drive, &instance.material, tick);
         let (class, _) =
             Loads { air, frame: exposure.acceleration().length(), motion: 0.0 }.class();

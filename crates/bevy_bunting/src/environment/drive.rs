@@ -37,17 +37,25 @@ type DrivenCloth = (
     Option<&'static ClothInertia>,
 );
 
-/// Sets frame motion, gravity and wind, along the axes of the cloth's frame at the end of the tick.
+/// Sets frame motion, gravity and wind, along the axes of the cloth's frame at the end of the tick. A cloth feels the air
+/// at its middle.
 pub(crate) fn drive_cloths(
     mut cloths: Query<(DrivenCloth, Exposure)>,
     surroundings: Surroundings,
     mut batches: ResMut<ClothBatches>,
+    mut winds: Local<Vec<Vec3>>,
 ) {
     let tick = surroundings.tick();
+    let middles = cloths.iter().filter_map(|((instance, frame, ..), _)| {
+        instance.lane().map(|_| frame.end() * instance.rest_middle)
+    });
+    surroundings.winds_at(middles, &mut winds);
+    let mut winds = winds.iter();
     for ((mut instance, frame, mut effort, inertia), exposure) in &mut cloths {
         let Some(lane) = instance.lane() else { continue };
+        let Some(wind) = winds.next() else { break };
         let motion = frame.motion();
-        let mut drive = surroundings.drive(instance.rest_middle, frame.end(), motion, &exposure);
+        let mut drive = surroundings.drive(*wind, frame.end(), motion, &exposure);
         // Gravity is written in every tick, which must not mark the cloth as changed.
         let instance = instance.bypass_change_detection();
         instance.gravity = drive.gravity;

@@ -9,6 +9,7 @@ use bunting_solver::{Drive, FrameMotion};
 
 use crate::environment::forces::acceleration::ClothAcceleration;
 use crate::environment::wind::influence::WindInfluence;
+use crate::environment::wind::places::{PLACES, Places};
 use crate::environment::wind::tick_wind::TickWind;
 use crate::motion::inertia::ride;
 use crate::settings::ClothSettings;
@@ -41,11 +42,11 @@ impl Surroundings<'_> {
         self.time.delta_secs()
     }
 
-    /// What acts on a cloth with the given middle at rest (m) in a frame with this pose and motion. Gravity and wind are
-    /// rotated from the world's axes to those of the frame. An acceleration of the cloth's own adds to gravity. The cloth feels the air at its middle.
+    /// What acts on a cloth in a frame with this pose and motion, where the air has a velocity (m/s). Gravity and wind are
+    /// rotated from the world's axes to those of the frame. An acceleration of the cloth's own adds to gravity.
     pub fn drive(
         &self,
-        rest_middle: Vec3,
+        wind: Vec3,
         frame: Isometry3d,
         motion: FrameMotion,
         exposure: &ExposureItem,
@@ -55,23 +56,44 @@ impl Surroundings<'_> {
         if exposure.acceleration.is_some() {
             gravity += exposure.acceleration();
         }
-        let wind = self.wind_at(rest_middle, frame, &motion, exposure);
+        let wind = self.felt(wind, frame, &motion, exposure);
         Drive { motion, gravity: inverse * gravity, wind, air_density }
     }
 
-    /// The wind that a cloth feels at a point of its frame (m), m/s, along the axes of the frame.
-    pub fn wind_at(
+    /// The part of a wind (m/s) that a cloth feels, m/s, along the axes of the frame.
+    pub fn felt(
         &self,
-        point: Vec3,
+        wind: Vec3,
         frame: Isometry3d,
         motion: &FrameMotion,
         exposure: &ExposureItem,
     ) -> Vec3 {
-        let wind = frame.rotation.inverse() * self.wind.at(frame * point);
+        let wind = frame.rotation.inverse() * wind;
         match exposure.influence {
             Some(influence) => influence.felt(wind, ride(motion, self.tick())),
             None => wind,
         }
+    }
+
+    /// Overwrites `winds` by the velocities of the air (m/s) at positions in the world (m).
+    pub fn winds_at(&self, positions: impl IntoIterator<Item = Vec3>, winds: &mut Vec<Vec3>) {
+        winds.clear();
+        if let Some(wind) = self.wind.same_everywhere() {
+            winds.extend(positions.into_iter().map(|_| wind));
+            return;
+        }
+        winds.extend(positions);
+        for places in winds.chunks_mut(PLACES) {
+            let velocities = self.wind.at_places(&Places::of(places));
+            for (place, wind) in places.iter_mut().enumerate() {
+                *wind = velocities.get(place);
+            }
+        }
+    }
+
+    /// Velocity of the air (m/s) at a position in the world (m).
+    pub fn wind_at(&self, position: Vec3) -> Vec3 {
+        self.wind.at(position)
     }
 
     /// Gravity (m/s²) and the density of the air (kg/m³). A value that is not finite, or a negative density, counts as

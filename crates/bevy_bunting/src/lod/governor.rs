@@ -151,6 +151,10 @@ impl Governor {
 
     /// Sorts steps by buckets, the greatest value first; within a bucket in the order of the cloths.
     fn sort_steps(&mut self) {
+        if self.steps.is_empty() {
+            self.sorted.clear();
+            return;
+        }
         self.bucket_ends.clear();
         self.bucket_ends.resize(BUCKETS, 0);
         for step in &self.steps {

@@ -11,16 +11,16 @@ use crate::contact::collider::Collider;
 use crate::contact::near::swept_box;
 use crate::contact::obstacle::Obstacle;
 use crate::contact::reaction::ReactionSum;
-use crate::contact::swept_boxes::SweptBoxes;
+use crate::contact::swept_boxes::{Sweep, SweptBoxes};
 use crate::fabric::Fabric;
 use crate::simd::lane::Pack;
-use crate::simd::vec3::lane3;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Gathers, for a tick of `tick` seconds, what may touch each collider.
     pub fn gather_contacts(&mut self, tick: f32) {
         let positions = self.positions.packs();
         let mut boxes = SweptBoxes::default();
+        let (mut at, mut velocities) = (Vec::new(), Vec::new());
         for (cloth, state) in self.lanes.iter_mut().enumerate() {
             let Some(state) = state else { continue };
             let by_forces = moved_by_forces(state, tick);
@@ -35,16 +35,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             // Particles reach what lies within their way in the moving frame, in any direction, since other particles
             // turn them, and within the greatest way that gravity and wind can add in the tick.
             let common = material.thickness + by_forces;
-            let into_new = drive.motion.rotation.inverse();
-            boxes.clear();
-            for particle in 0..self.fabric.particle_count() {
-                let (pack, lane) = self.layout.locate(particle, cloth);
-                let at = lane3(&positions[pack], lane);
-                // Velocities are relative to the world.
-                let in_world = lane3(&self.velocity[pack], lane) * tick;
-                let moved = into_new * (at + in_world - drive.motion.translation);
-                boxes.push(at, common + moved.distance(at));
-            }
+            self.layout.read(positions, cloth, &mut at);
+            self.layout.read(&self.velocity, cloth, &mut velocities);
+            boxes.set(&at, &velocities, &Sweep { motion: drive.motion, tick, common });
             for (collider, candidates) in colliders.iter().zip(contacts) {
                 gather_candidates(&self.fabric, collider, &boxes, candidates);
             }

@@ -36,16 +36,16 @@ struct Pair {
 impl PinStrain {
     /// The strain of a cloth with its particles at these positions, m.
     pub fn of(fabric: &Fabric, positions: &[Vec3]) -> Self {
+        if fabric.are_pins_at_rest(positions) || are_pins_near(fabric, positions) {
+            return Self::default();
+        }
         let rest = fabric.rest_positions();
         let of_pins = |positions: &[Vec3]| -> Vec<Vec3> {
             fabric.pins().iter().map(|pin| positions[pin.particle as usize]).collect()
         };
         let [at, at_rest] = [positions, rest].map(of_pins);
         // Straight distances at rest are no longer than distances along the cloth, and decide most cases.
-        if at == at_rest
-            || are_near(&at, &at_rest)
-            || too_far(&at, |one, other| at_rest[one].distance(at_rest[other])).is_empty()
-        {
+        if too_far(&at, |one, other| at_rest[one].distance(at_rest[other])).is_empty() {
             return Self::default();
         }
         let along: Vec<Vec<f32>> =
@@ -74,14 +74,18 @@ impl PinStrain {
     }
 }
 
-/// Whether no pair of pins is farther apart than at rest by almost [`LEAST_STRAIN`]: pins that a skeleton moves are mostly
-/// nearer, which squares tell without roots and divisions.
-fn are_near(at: &[Vec3], at_rest: &[Vec3]) -> bool {
+/// Whether no pair of pins is farther apart than at rest by almost [`LEAST_STRAIN`], given the positions of all particles,
+/// m: then pins do not strain the cloth. Pins that a skeleton moves are mostly nearer, which squares tell without roots
+/// and divisions.
+pub(crate) fn are_pins_near(fabric: &Fabric, positions: &[Vec3]) -> bool {
     let most = (1.0 + 0.99 * LEAST_STRAIN) * (1.0 + 0.99 * LEAST_STRAIN);
-    (0..at.len()).all(|other| {
-        (0..other).all(|one| {
-            let at_rest = at_rest[one].distance_squared(at_rest[other]);
-            at[one].distance_squared(at[other]) <= most * at_rest
+    let rest = fabric.rest_positions();
+    let places = |pin: u32| [positions, rest].map(|all| all[pin as usize]);
+    fabric.pins().iter().enumerate().all(|(count, other)| {
+        let [there, there_at_rest] = places(other.particle);
+        fabric.pins()[..count].iter().all(|one| {
+            let [here, here_at_rest] = places(one.particle);
+            here.distance_squared(there) <= most * here_at_rest.distance_squared(there_at_rest)
         })
     })
 }

@@ -28,6 +28,10 @@ pub(crate) struct MovingPins {
     pub now: Vec<MovingPin>,
     /// In the next tick.
     pub next: Vec<MovingPin>,
+    /// Positions of the pins among those of all particles, m; those of other particles are not filled in.
+    pub positions: Vec<Vec3>,
+    /// Whether no pair of pins is farther apart than at rest in this tick, so that they cannot strain the cloth.
+    pub stay_near: bool,
 }
 
 impl MovingPins {

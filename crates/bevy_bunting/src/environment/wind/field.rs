@@ -6,6 +6,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
 use crate::environment::wind::gusts::Gusts;
+use crate::environment::wind::places::Places;
 
 /// Least length of a gust, m: the size of a large flag. Smaller: gusts are shorter than the cloth, which
 /// feels them at its middle only.
@@ -64,7 +65,7 @@ impl WindField {
     /// `travel` of their lengths.
     #[must_use]
     pub fn velocity_at(&self, position: Vec3, travel: DVec3) -> Vec3 {
-        MovingAir::new(self, travel).at(position)
+        MovingAir::new(self, travel).at(&Places::of(&[position])).get(0)
     }
 
     /// Distance that gusts travel in a second, in lengths of a gust; zero without gusts.
@@ -121,9 +122,10 @@ impl MovingAir {
         self.gusts.is_none().then_some(self.velocity)
     }
 
-    /// Velocity (m/s) at a position in the world (m).
-    pub fn at(&self, position: Vec3) -> Vec3 {
-        self.velocity + self.gusts.map_or(Vec3::ZERO, |gusts| gusts.at(position))
+    /// Velocities (m/s) at positions in the world (m).
+    pub fn at(&self, positions: &Places) -> Places {
+        let mean = Places::splat(self.velocity);
+        self.gusts.as_ref().map_or(mean, |gusts| mean.plus(&gusts.at(positions)))
     }
 }
 

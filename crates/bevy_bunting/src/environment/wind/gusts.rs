@@ -3,10 +3,10 @@
 use bevy_math::{DVec3, Vec3};
 use bevy_reflect::Reflect;
 
-use crate::waves::{Random, sine};
+use crate::environment::wind::places::Places;
+use crate::waves::{Random, sines};
 
-/// Number of waves: they fill two SSE registers. Fewer: gusts repeat. More: the wind at each cloth costs
-/// more.
+/// Number of waves. Fewer: gusts repeat. More: the wind at each cloth costs more.
 const WAVES: usize = 8;
 
 /// Wave numbers, in waves to the length of a gust and spaced by equal ratios, and relative amplitudes, after
@@ -63,18 +63,19 @@ impl Gusts {
         gusts
     }
 
-    /// Velocity at a position (m) in the world, m/s.
-    pub fn at(&self, position: Vec3) -> Vec3 {
-        let [x, y, z] = &self.wave_vectors;
-        let values: [f32; WAVES] = core::array::from_fn(|wave| {
-            let along = x[wave] * position.x + y[wave] * position.y + z[wave] * position.z;
-            sine(along + self.phases[wave])
-        });
-        let sum = |amplitudes: &[f32; WAVES]| {
-            amplitudes.iter().zip(values).map(|(amplitude, value)| amplitude * value).sum()
-        };
-        let [x, y, z] = &self.amplitudes;
-        Vec3::new(sum(x), sum(y), sum(z))
+    /// Velocities at positions (m) in the world, m/s.
+    pub fn at(&self, positions: &Places) -> Places {
+        let mut velocities = Places::ZERO;
+        let Places { x: at_x, y: at_y, z: at_z } = *positions;
+        for (wave, &phase) in self.phases.iter().enumerate() {
+            let [x, y, z] = self.wave_vectors.map(|axis| axis[wave]);
+            let values = sines(at_x * x + at_y * y + at_z * z + phase);
+            let [x, y, z] = self.amplitudes.map(|axis| axis[wave]);
+            velocities.x += values * x;
+            velocities.y += values * y;
+            velocities.z += values * z;
+        }
+        velocities
     }
 
     /// Scales the amplitudes so that the sum of all waves' crests reaches `strength` (m/s) along the axis
@@ -102,9 +103,13 @@ mod tests {
 
     const STRENGTH: f32 = 2.0;
 
+    fn at(gusts: &Gusts, position: Vec3) -> Vec3 {
+        gusts.at(&Places::of(&[position])).get(0)
+    }
+
     fn velocities(seed: i32) -> Vec<Vec3> {
         let gusts = Gusts::new(seed, STRENGTH, 12.0, DVec3::ZERO);
-        (0..20_000).map(|step| gusts.at(Vec3::new(0.3, 0.5, 0.7) * step as f32)).collect()
+        (0..20_000).map(|step| at(&gusts, Vec3::new(0.3, 0.5, 0.7) * step as f32)).collect()
     }
 
     #[test]
@@ -126,7 +131,7 @@ mod tests {
         let step = 0.1;
         for place in (0..100).map(|place| Vec3::new(1.7, -2.3, 0.9) * place as f32) {
             let slope = |axis: Vec3| {
-                (gusts.at(place + step * axis) - gusts.at(place - step * axis)) / (2.0 * step)
+                (at(&gusts, place + step * axis) - at(&gusts, place - step * axis)) / (2.0 * step)
             };
             let slopes = [Vec3::X, Vec3::Y, Vec3::Z].map(slope);
             let divergence = slopes[0].x + slopes[1].y + slopes[2].z;

@@ -6,6 +6,7 @@ pub mod field;
 mod gusts;
 pub mod influence;
 pub mod per_particle;
+pub(crate) mod places;
 pub mod plugin;
 pub mod region;
 pub mod tick_wind;

@@ -64,10 +64,11 @@ fn sample(
             continue;
         }
         let (pose, motion) = (frame.end(), frame.motion());
-        let at = |point: Vec3| surroundings.wind_at(point, pose, &motion, &exposure);
-        let of_middle = at(instance.rest_middle);
-        let mut winds: Vec<Vec3> =
-            positions.iter().map(|&position| at(position) - of_middle).collect();
+        let felt = |wind: Vec3| surroundings.felt(wind, pose, &motion, &exposure);
+        let of_middle = felt(surroundings.wind_at(pose * instance.rest_middle));
+        let mut winds = Vec::new();
+        surroundings.winds_at(positions.iter().map(|&position| pose * position), &mut winds);
+        winds.iter_mut().for_each(|wind| *wind = felt(*wind) - of_middle);
         if winds.iter().all(|wind| *wind == Vec3::ZERO) {
             winds.clear();
         }

@@ -9,6 +9,7 @@ use crate::environment::wind::blast::WindBlast;
 use crate::environment::wind::fan::WindFan;
 use crate::environment::wind::field::{GustTravel, MovingAir, WindField};
 use crate::environment::wind::influence::{WindInfluence, report_influences};
+use crate::environment::wind::places::Frame;
 use crate::environment::wind::region::{WindRegion, WindShape};
 use crate::environment::wind::tick_wind::{LocalAir, TickWind};
 use crate::environment::wind::wake::{WakeTrail, WindWake};
@@ -63,7 +64,7 @@ fn collect_fields(
         };
         let pose = history.end();
         let ball = (Vec3::from(pose.translation), region.shape.reach());
-        wind.add_local(ball, LocalAir::Region(air, *region, pose));
+        wind.add_local(ball, LocalAir::Region(air, *region, Frame::of(pose)));
     }
 }
 
@@ -71,7 +72,7 @@ fn collect_fans(fans: Query<(&WindFan, &PoseHistory)>, mut wind: ResMut<TickWind
     for (fan, history) in &fans {
         let pose = history.end();
         let (centre, radius) = fan.ball();
-        wind.add_local((pose * centre, radius), LocalAir::Fan(*fan, pose));
+        wind.add_local((pose * centre, radius), LocalAir::Fan(*fan, Frame::of(pose)));
     }
 }
 

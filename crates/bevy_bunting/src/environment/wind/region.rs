@@ -1,12 +1,13 @@
 //! Regions: the space in which a wind blows.
 
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{Vec3, Vec4};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
 
-use crate::environment::falloff::falloff;
+use crate::environment::falloff::falloffs;
+use crate::environment::wind::places::Places;
 use crate::motion::pose::PoseHistory;
 
 /// Bounds the [`WindField`](crate::WindField) of the same entity to a shape, which is placed and moved by the entity's
@@ -93,13 +94,18 @@ impl WindRegion {
     /// The part of the wind at a position in the entity's frame (m).
     #[must_use]
     pub fn weight_at(&self, position: Vec3) -> f32 {
-        falloff(self.shape.depth(position), self.falloff)
+        self.weights_at(&Places::of(&[position]))[0]
+    }
+
+    /// The parts of the wind at positions in the entity's frame (m).
+    pub(super) fn weights_at(&self, positions: &Places) -> Vec4 {
+        falloffs(self.shape.depths(positions), self.falloff)
     }
 
     /// Radius of the ball around the origin in which the whole wind blows, m; not positive where there is none. The depth
     /// changes by at most a metre a metre.
     pub(super) fn depth_of_core(&self) -> f32 {
-        self.shape.depth(Vec3::ZERO) - self.falloff.max(0.0)
+        self.shape.depths(&Places::ZERO)[0] - self.falloff.max(0.0)
     }
 }
 
@@ -111,21 +117,23 @@ impl Default for WindRegion {
 }
 
 impl WindShape {
-    /// Distance of a position (m) inside the shape from the border; zero or less outside.
-    fn depth(&self, position: Vec3) -> f32 {
+    /// Distances of positions (m) inside the shape from the border; zero or less outside.
+    fn depths(&self, positions: &Places) -> Vec4 {
+        let Places { x, y, z } = *positions;
         match *self {
-            Self::Box { half_extents } => (half_extents - position.abs()).min_element(),
-            Self::Sphere { radius } => radius - position.length(),
+            Self::Box { half_extents: half } => {
+                (half.x - x.abs()).min(half.y - y.abs()).min(half.z - z.abs())
+            }
+            Self::Sphere { radius } => radius - roots(x * x + y * y + z * z),
             Self::Cone { length, radius } => {
-                let along = -position.z;
-                let across = position.truncate().length();
+                let across = roots(x * x + y * y);
                 let slant = (length * length + radius * radius).sqrt();
-                ((radius * along - length * across) / slant).min(length - along)
+                ((radius * -z - length * across) / slant).min(length + z)
             }
             Self::Capsule { half_height, radius } => {
-                let half_height = half_height.max(0.0);
-                let on_axis = Vec3::Y * position.y.max(-half_height).min(half_height);
-                radius - position.distance(on_axis)
+                let half = Vec4::splat(half_height.max(0.0));
+                let off_axis = y - y.max(-half).min(half);
+                radius - roots(x * x + off_axis * off_axis + z * z)
             }
         }
     }
@@ -139,6 +147,11 @@ impl WindShape {
             Self::Capsule { half_height, radius } => half_height.max(0.0) + radius,
         }
     }
+}
+
+/// The square roots of four numbers.
+fn roots(squares: Vec4) -> Vec4 {
+    Vec4::from_array(squares.to_array().map(f32::sqrt))
 }
 
 #[cfg(test)]
@@ -163,7 +176,8 @@ mod tests {
             (capsule, Vec3::Y * 2.5, 0.5),
             (capsule, Vec3::new(0.25, 1.0, 0.0), 0.75),
         ] {
-            assert!((shape.depth(at) - depth).abs() < 1e-6, "{shape:?} at {at}");
+            let found = shape.depths(&Places::of(&[at]))[0];
+            assert!((found - depth).abs() < 1e-6, "{shape:?} at {at}");
             assert!(depth < 0.0 || at.length() <= shape.reach(), "{shape:?} at {at}");
         }
     }

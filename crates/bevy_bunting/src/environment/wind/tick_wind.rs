@@ -1,13 +1,14 @@
 //! The air in one tick: the sum of everything that moves it.
 
 use bevy_ecs::prelude::*;
-use bevy_math::{Isometry3d, Vec3};
+use bevy_math::{BVec4A, Vec3, Vec4};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
 use crate::environment::wind::blast::WindBlast;
 use crate::environment::wind::fan::WindFan;
 use crate::environment::wind::field::MovingAir;
+use crate::environment::wind::places::{Frame, PLACES, Places};
 use crate::environment::wind::region::WindRegion;
 use crate::environment::wind::wake::WakeTrail;
 
@@ -50,10 +51,10 @@ struct Ball {
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 pub(super) enum LocalAir {
-    /// A field bounded to a region, and the region's pose.
-    Region(MovingAir, WindRegion, Isometry3d),
-    /// A jet, and its pose.
-    Fan(WindFan, Isometry3d),
+    /// A field bounded to a region, and the region's frame.
+    Region(MovingAir, WindRegion, Frame),
+    /// A jet, and its frame.
+    Fan(WindFan, Frame),
     /// A blast, its centre (m), and the length of the tick (s).
     Blast(WindBlast, Vec3, f32),
     /// A wake, and the drag area of its body, m².
@@ -69,19 +70,26 @@ impl LocalAir {
         (radius > 0.0 && radius.is_finite()).then_some((radius, velocity))
     }
 
-    /// Velocity (m/s) at a position in the world (m).
-    #[inline(never)]
-    fn at(&self, position: Vec3) -> Vec3 {
-        let in_frame =
-            |pose: &Isometry3d| pose.rotation.inverse() * (position - Vec3::from(pose.translation));
+    /// Velocities (m/s) at some of four positions in the world (m).
+    fn at(&self, positions: &Places, within: BVec4A) -> Places {
         match self {
-            Self::Region(air, region, pose) => match region.weight_at(in_frame(pose)) {
-                0.0 => Vec3::ZERO,
-                weight => weight * air.at(position),
-            },
-            Self::Fan(fan, pose) => pose.rotation * fan.velocity_at(in_frame(pose)),
-            Self::Blast(blast, centre, tick) => blast.velocity_at(position - centre, *tick),
-            Self::Wake(trail, drag_area) => trail.velocity_at(position, *drag_area),
+            Self::Region(air, region, frame) => {
+                let weights = region.weights_at(&positions.seen_from(frame));
+                if weights == Vec4::ZERO {
+                    return Places::ZERO;
+                }
+                air.at(positions).scaled(weights)
+            }
+            Self::Fan(fan, frame) => {
+                let seen = positions.seen_from(frame);
+                seen.map_where(within, |at| frame.to_world(fan.velocity_at(at)))
+            }
+            Self::Blast(blast, centre, tick) => {
+                positions.map_where(within, |at| blast.velocity_at(at - *centre, *tick))
+            }
+            Self::Wake(trail, drag_area) => {
+                positions.map_where(within, |at| trail.velocity_at(at, *drag_area))
+            }
         }
     }
 }
@@ -91,19 +99,41 @@ impl TickWind {
     /// is not finite is left out.
     #[must_use]
     pub fn at(&self, position: Vec3) -> Vec3 {
-        let velocities = self.everywhere.iter().map(|air| air.at(position));
-        let mut sum: Vec3 = velocities.filter(|velocity| velocity.is_finite()).sum();
+        self.at_places(&Places::of(&[position])).get(0)
+    }
+
+    /// The velocity of the air (m/s) if it is the same at all positions.
+    pub(crate) fn same_everywhere(&self) -> Option<Vec3> {
+        let is_same =
+            self.local.is_empty() && self.everywhere.iter().all(|air| air.steady().is_some());
+        is_same.then(|| self.at(Vec3::ZERO))
+    }
+
+    /// Velocities of the air (m/s) at positions in the world (m), as [`at`](Self::at) gives them.
+    pub(crate) fn at_places(&self, positions: &Places) -> Places {
+        let mut sum = Places::ZERO;
+        for air in &self.everywhere {
+            sum = sum.plus_where(BVec4A::TRUE, &air.at(positions));
+        }
         for (ball, air) in self.balls.iter().zip(&self.local) {
-            let squared = position.distance_squared(ball.centre);
+            let squared = positions.distances_squared(ball.centre);
             // Both are false where a number is NaN.
-            if squared < ball.squared_core {
-                sum += ball.velocity;
-            } else if squared <= ball.squared_radius {
-                let velocity = air.at(position);
-                sum += if velocity.is_finite() { velocity } else { Vec3::ZERO };
+            let within = squared.cmple(Vec4::splat(ball.squared_radius));
+            if squared.cmplt(Vec4::splat(ball.squared_core)).all() {
+                sum = sum.plus(&Places::splat(ball.velocity));
+            } else if within.any() {
+                sum = sum.plus_where(within, &air.at(positions, within));
             }
         }
-        if sum.abs().max_element() < 0.5 * FASTEST { sum } else { limited(sum) }
+        if !sum.greatest().cmplt(Vec4::splat(0.5 * FASTEST)).all() {
+            for place in 0..PLACES {
+                let velocity = sum.get(place);
+                if velocity != Vec3::ZERO {
+                    sum.set(place, limited(velocity));
+                }
+            }
+        }
+        sum
     }
 
     /// Whether the air changed everywhere since an earlier tick.
@@ -149,15 +179,14 @@ fn limited(velocity: Vec3) -> Vec3 {
 
 #[cfg(test)]
 mod tests {
-    use bevy_math::Quat;
+    use bevy_math::{DVec3, Isometry3d, Quat};
 
     use super::*;
+    use crate::environment::wind::field::WindField;
+    use crate::environment::wind::region::WindShape;
 
     #[test]
     fn steady_regions_are_the_same_in_their_cores_and_outside() {
-        use crate::environment::wind::field::WindField;
-        use crate::environment::wind::region::WindShape;
-
         let air = MovingAir::new(&WindField::steady(Vec3::new(3.0, -1.0, 0.7)), Default::default());
         let pose = Isometry3d::new(Vec3::new(1.0, 2.0, -3.0), Quat::from_rotation_x(0.7));
         let shapes = [
@@ -168,7 +197,7 @@ mod tests {
         ];
         for (shape, falloff) in shapes.into_iter().flat_map(|shape| [(shape, 0.0), (shape, 1.0)]) {
             let region = WindRegion::new(shape, falloff);
-            let local = LocalAir::Region(air, region, pose);
+            let local = LocalAir::Region(air, region, Frame::of(pose));
             let mut wind = TickWind::default();
             wind.add_local((Vec3::from(pose.translation), shape.reach()), local.clone());
             let mut in_core = 0;
@@ -176,12 +205,52 @@ mod tests {
                 let number = |step: f32| 8.0 * ((index as f32 * step).fract() - 0.5);
                 let offset = Vec3::new(number(0.618_034), number(0.754_878), number(0.569_84));
                 let at = Vec3::from(pose.translation) + offset;
-                assert_eq!(wind.at(at), local.at(at), "{region:?} at {offset}");
+                assert_eq!(
+                    wind.at(at),
+                    local.at(&Places::of(&[at]), BVec4A::TRUE).get(0),
+                    "{region:?} at {offset}"
+                );
                 in_core += usize::from(offset.length_squared() < wind.balls[0].squared_core);
             }
             let is_cone = matches!(shape, WindShape::Cone { .. });
             assert_eq!(in_core == 0, is_cone, "{region:?}");
         }
+    }
+
+    #[test]
+    fn four_places_have_the_winds_that_each_has_alone() {
+        let gusty = WindField::steady(Vec3::X).with_gusts(2.0, 0.5, 3);
+        let mut wind = TickWind::default();
+        wind.everywhere.push(MovingAir::new(&gusty, Default::default()));
+        let pose = |x: f32| Isometry3d::new(Vec3::X * x, Quat::from_rotation_y(x));
+        let region = WindRegion::ball(4.0, 2.0);
+        let of_region =
+            LocalAir::Region(MovingAir::new(&gusty, DVec3::ONE), region, Frame::of(pose(1.0)));
+        wind.add_local((Vec3::X, 4.0), of_region);
+        wind.add_local(
+            (Vec3::X * 3.0, 5.0),
+            LocalAir::Fan(WindFan::new(8.0, 0.3), Frame::of(pose(3.0))),
+        );
+        let blast = WindBlast { age: 0.02, ..WindBlast::new(60.0, 2.0) };
+        wind.add_local((Vec3::ZERO, 6.0), LocalAir::Blast(blast, Vec3::ZERO, 0.01));
+        let at = |place: usize| Vec3::new(1.1, 0.3, -0.4) * place as f32;
+        let positions: Vec<Vec3> = (0..PLACES).map(at).collect();
+        let together = wind.at_places(&Places::of(&positions));
+        for (place, position) in positions.iter().enumerate() {
+            assert_eq!(together.get(place), wind.at(*position), "{position}");
+        }
+        assert_eq!(wind.same_everywhere(), None);
+    }
+
+    #[test]
+    fn a_storm_at_one_place_leaves_the_others_calm() {
+        let storm = MovingAir::new(&WindField::steady(Vec3::X * 1e6), DVec3::ZERO);
+        let region =
+            LocalAir::Region(storm, WindRegion::ball(2.0, 1.0), Frame::of(Isometry3d::IDENTITY));
+        let mut wind = TickWind::default();
+        wind.add_local((Vec3::ZERO, 2.0), region);
+        let winds = wind.at_places(&Places::of(&[Vec3::ZERO, 9.0 * Vec3::X]));
+        assert_eq!([0, 1].map(|place| winds.get(place)), [FASTEST * Vec3::X, Vec3::ZERO]);
     }
 
     #[test]
