@@ -10,17 +10,9 @@ use crate::contact::cloths::member::Member;
 use crate::contact::itself::exchange::Part;
 use crate::contact::itself::mesh::ContactMesh;
 use crate::contact::itself::particles::Particles;
-use crate::contact::itself::place::Pose;
+use crate::contact::itself::place::{Place, Pose};
 use crate::fabric::Fabric;
 use crate::simd::lane::Pack;
-
-/// Factor on the inverse masses of particles that a collider has pushed in the substep, so that what lies on them yields and
-/// not they (Guendelman, Bridson and Fedkiw 2003, "Nonconvex rigid bodies with stacking"). Larger: stacks are pressed
-/// together.
-const LIGHTNESS: f32 = 1e-3;
-
-/// Distance of which a collider has pushed a particle, m: more than rounding to the group's frame and back.
-const LEAST_PUSH: f32 = 1e-5;
 
 /// What a group needs to know of a cloth's lane at the start of a tick.
 pub(crate) struct LaneShape {
@@ -115,7 +107,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Solves the contacts with colliders, and copies the positions after them out of the lane. Returns whether any
     /// collider has pushed the cloth.
-    pub fn touch_colliders(
+    pub fn touch_colliders_grouped(
         &mut self,
         cloth: usize,
         member: &Member,
@@ -124,23 +116,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if !member.moves {
             return false;
         }
-        if let Some(mut state) = self.lanes[cloth].take() {
-            self.solve_colliders(cloth, &mut state);
-            self.lanes[cloth] = Some(state);
-        }
-        let range = member.range.clone();
-        let mut has_pushed = false;
-        let mut after = core::mem::take(&mut particles.after);
-        after.resize(range.len(), Vec3::ZERO);
-        self.copy_common(cloth, &member.pose, &mut after);
-        for (at, &after) in range.zip(&after) {
-            if particles.end[at].distance_squared(after) > LEAST_PUSH * LEAST_PUSH {
-                particles.inverse_mass[at] *= LIGHTNESS;
-                has_pushed = true;
-            }
-            particles.end[at] = after;
-        }
-        particles.after = after;
+        let Some(mut state) = self.lanes[cloth].take() else { return false };
+        let part = Part { cloth, range: member.range.clone(), place: &member.pose };
+        let has_pushed = self.touch_colliders(&part, &mut state, particles);
+        self.lanes[cloth] = Some(state);
         has_pushed
     }
 

@@ -27,6 +27,7 @@ pub(crate) mod particles;
 mod patches;
 pub(super) mod place;
 mod rigid_zones;
+pub(super) mod rounds;
 pub(super) mod rules;
 mod search;
 mod separate;
