@@ -129,11 +129,11 @@ impl ClothGroup {
         layers.particles.touched.fill(false);
         let rounds = Rounds { mesh, rules: &rules, thickness, step, sweeps: SWEEPS };
         rounds.solve(layers, &mut LanesOfGroup { members, lanes });
-        let pressed: Vec<usize> = layers.pressed_particles().collect();
+        let unrelaxed: Vec<usize> = layers.unrelaxed_particles(thickness, step).collect();
         for (index, member) in members.iter().enumerate() {
             let (batch, lane) = lanes.lane(index);
             let range = &member.range;
-            let own = pressed.iter().filter(|at| range.contains(at));
+            let own = unrelaxed.iter().filter(|at| range.contains(at));
             batch.end_grouped(lane, own.map(|at| at - range.start));
         }
     }

@@ -123,9 +123,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         has_pushed
     }
 
-    /// Ends the substep of a group, given the particles that are still pressed against others.
-    pub fn end_grouped(&mut self, cloth: usize, pressed: impl Iterator<Item = usize>) {
-        self.suspend_relaxation(cloth, pressed);
+    /// Ends the substep of a group, given the particles that are not under-relaxed.
+    pub fn end_grouped(&mut self, cloth: usize, unrelaxed: impl Iterator<Item = usize>) {
+        self.suspend_relaxation(cloth, unrelaxed);
         if let Some(state) = &mut self.lanes[cloth] {
             state.is_grouped = false;
         }

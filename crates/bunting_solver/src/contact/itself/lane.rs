@@ -58,8 +58,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         let fabric = Arc::clone(&self.fabric_of(cloth).fabric);
         let friction = state.material.surface_friction;
-        let rules =
-            OfOneCloth { thickness: *thickness, friction, rest: fabric.rest_positions() };
+        let rules = OfOneCloth { thickness: *thickness, friction, rest: fabric.rest_positions() };
         let rounds = Rounds {
             mesh,
             rules: &rules,
@@ -69,7 +68,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         };
         let part = Part { cloth, range: 0..layers.particles.end.len(), place: &InItsFrame };
         rounds.solve(layers, &mut OwnLane { batch: self, state, part });
-        self.suspend_relaxation(cloth, layers.pressed_particles());
+        self.suspend_relaxation(cloth, layers.unrelaxed_particles(*thickness, self.clock.step));
     }
 
     /// Copies positions and masses of a cloth out of the lanes.

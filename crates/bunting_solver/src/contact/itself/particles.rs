@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
+use crate::contact::itself::pairs::Pairs;
 
 /// The particles of a cloth in a substep.
 #[derive(Clone, Debug, Default)]
@@ -62,13 +62,16 @@ impl Particles {
         self.farthest = self.farthest.max(self.travel[particle]);
     }
 
+    /// Length of a particle's way in this substep and the one before, m, given the length of both, s.
+    pub fn way(&self, particle: usize, step: f32) -> f32 {
+        self.start[particle].distance(self.end[particle])
+            + self.past_velocity[particle].length() * step
+    }
+
     /// Marks the particles of pairs as near others.
     pub(in crate::contact) fn mark_near(&mut self, pairs: &Pairs) {
         self.is_near.fill(false);
-        let fours = pairs.particles_triangles.iter().chain(&pairs.edges_edges);
-        fours.flatten().for_each(|&particle| self.is_near[particle as usize] = true);
-        let fives = pairs.edges_triangles.iter().flat_map(EdgeTriangle::particles);
-        fives.for_each(|particle| self.is_near[particle as usize] = true);
+        pairs.particles().for_each(|particle| self.is_near[particle] = true);
     }
 }
 
