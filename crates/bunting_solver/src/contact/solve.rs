@@ -172,11 +172,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if let Some(reaction) = &mut outcome.reaction {
             // A steady force acts for the whole substep, of which the formula takes β; an impact changes the velocity
             // once.
-            let steady = if push.sticks {
-                Vec3::ZERO
-            } else {
-                (given - thrown - impact) * (self.clock.step / effective_step)
-            };
+            let steady = (given - thrown - impact) * (self.clock.step / effective_step);
             let gained = contact.density * inertia * (steady + impact);
             let on_collider = contact.pose.rotation.inverse() * -gained;
             reaction.add(particle, push.touched, on_collider);
