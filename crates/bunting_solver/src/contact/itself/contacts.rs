@@ -15,7 +15,7 @@ use crate::contact::itself::untangle::{Tangles, untangle};
 
 /// Part of the distance of layers by which a particle near others may move in a substep and still be under-relaxed. Larger:
 /// under-relaxation moves it through others. Smaller: layers at rest tremble.
-const FAST: f32 = 0.1;
+const FAST: f32 = 0.25;
 
 /// The contacts of layers: scratch arrays of a substep.
 #[derive(Clone, Debug, Default)]
