@@ -13,7 +13,7 @@ use crate::simd::vec3::{Pack3, V3};
 
 /// Cosine of the greatest angle between a triangle's normal and the mean of a part's normals. Smaller: parts that are about
 /// to fold upon themselves are skipped. Larger: more of them are compared in vain.
-const LEAST_COSINE: f32 = 0.5;
+const LEAST_COSINE: f32 = 0.2;
 
 /// Unit normals of the triangles of each cell; zero of collapsed triangles.
 #[derive(Clone, Debug, Default)]

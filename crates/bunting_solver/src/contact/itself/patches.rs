@@ -176,23 +176,54 @@ fn split(fabric: &Fabric, triangles: Vec<u32>, largest: usize) -> Vec<Vec<u32>> 
     parts
 }
 
-/// The parts of a few triangles that are connected by particles.
+/// The parts of a few triangles that are connected along edges. About a single particle parts can turn upon each other while
+/// each is flat.
 fn connected(fabric: &Fabric, mut triangles: Vec<u32>) -> Vec<Vec<u32>> {
+    let corners = |triangle: u32| fabric.triangles()[triangle as usize];
+    let share_edge = |one: u32, other: u32| {
+        corners(one).iter().filter(|corner| corners(other).contains(corner)).count() > 1
+    };
     let mut parts = Vec::new();
     while let Some(first) = triangles.pop() {
         let mut part = vec![first];
-        let mut particles = fabric.triangles()[first as usize].to_vec();
         loop {
-            let joins = |triangle: &mut u32| {
-                let corners = fabric.triangles()[*triangle as usize];
-                corners.iter().any(|corner| particles.contains(corner))
-            };
+            let joins = |triangle: &mut u32| part.iter().any(|&it| share_edge(it, *triangle));
             let Some(next) = triangles.extract_if(.., joins).next() else { break };
             part.push(next);
-            particles.extend(fabric.triangles()[next as usize]);
         }
         part.sort_unstable();
         parts.push(part);
     }
     parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fabric::{FabricBuilder, Grid};
+
+    #[test]
+    fn cells_and_patches_are_connected_along_edges() {
+        let fabric = FabricBuilder::grid(Grid::new(21, 41, 0.5, 1.0)).build().expect("a good grid");
+        let (patches, cells, triangles) = patches_of(&fabric);
+        let is_one = |part: Range<u32>| {
+            let part: Vec<[u32; 3]> = triangles[part.start as usize..part.end as usize].to_vec();
+            let mut reached = vec![part[0]];
+            let mut next = 0;
+            while let Some(&from) = reached.get(next) {
+                let beside = |it: &&[u32; 3]| it.iter().filter(|at| from.contains(at)).count() == 2;
+                let new: Vec<_> = { part.iter().filter(beside).copied() }
+                    .filter(|it| !reached.contains(it))
+                    .collect();
+                reached.extend(new);
+                next += 1;
+            }
+            reached.len() == part.len()
+        };
+        assert!(cells.iter().all(|cell| is_one(cell.triangles.clone())));
+        assert!(patches.iter().all(|patch| {
+            let [first, last] = [patch.cells.start, patch.cells.end - 1];
+            is_one(cells[first as usize].triangles.start..cells[last as usize].triangles.end)
+        }));
+    }
 }
