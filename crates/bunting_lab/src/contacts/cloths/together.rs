@@ -134,7 +134,8 @@ impl Together {
     pub fn report(&self, tick: usize) {
         for batch in &self.batches.0 {
             let v = batch.snapshot(0).velocities;
-            let (at, fastest) = v.iter().enumerate().max_by(|a, b| a.1.length().total_cmp(&b.1.length())).unwrap();
+            let (at, fastest) =
+                v.iter().enumerate().max_by(|a, b| a.1.length().total_cmp(&b.1.length())).unwrap();
             let rms = (v.iter().map(|v| v.length_squared()).sum::<f32>() / v.len() as f32).sqrt();
             let n = if v.len() == 169 { 13 } else { 17 };
             print!("  [{} {} of {n}: {:.4?} rms {rms:.5}]", at / n, at % n, fastest.to_array());

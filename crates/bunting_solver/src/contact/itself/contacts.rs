@@ -70,11 +70,12 @@ impl LayerContacts {
     }
 
     /// Particles that must end the substep where they are: those of features that are still much nearer than they must be,
-    /// and those near others that move fast, given the distance of layers, m, and the length of the substep, s.
+    /// those of zones that have returned, and those near others that move fast, given the distance of layers, m, and the length of the substep, s.
     pub fn unrelaxed_particles(&self, thickness: f32, step: f32) -> impl Iterator<Item = usize> {
         let Self { contacts, pairs, particles, .. } = self;
-        let is_fast = move |&at: &usize| particles.way(at, step) > FAST * thickness;
-        contacts.pressed_particles(particles).chain(pairs.particles().filter(is_fast))
+        let stays =
+            move |&at: &usize| particles.touched[at] || particles.way(at, step) > FAST * thickness;
+        contacts.pressed_particles(particles).chain(pairs.particles().filter(stays))
     }
 
     /// The contacts of features that are as near as they may be, given what counts as such, m: their particles, a point of
