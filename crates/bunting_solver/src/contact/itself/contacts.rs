@@ -70,7 +70,8 @@ impl LayerContacts {
     }
 
     /// Particles that must end the substep where they are: those of features that are still much nearer than they must be,
-    /// those of zones that have returned, and those near others that move fast, given the distance of layers, m, and the length of the substep, s.
+    /// those of zones that have returned, and those near others that move fast, given the distance of layers, m, and the
+    /// length of the substep, s.
     pub fn unrelaxed_particles(&self, thickness: f32, step: f32) -> impl Iterator<Item = usize> {
         let Self { contacts, pairs, particles, .. } = self;
         let stays =
