@@ -129,7 +129,7 @@ impl ClothGroup {
         layers.particles.touched.fill(false);
         let rounds = Rounds { mesh, rules: &rules, thickness, step, sweeps: SWEEPS };
         rounds.solve(layers, &mut LanesOfGroup { members, lanes });
-        let unrelaxed: Vec<usize> = layers.unrelaxed_particles(thickness, step).collect();
+        let unrelaxed: Vec<usize> = layers.unrelaxed_particles(thickness).collect();
         for (index, member) in members.iter().enumerate() {
             let (batch, lane) = lanes.lane(index);
             let range = &member.range;

@@ -89,6 +89,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.gather_velocities(&Part { cloth, range, place: &member.pose }, particles);
         } else {
             particles.velocity[range.clone()].fill(Vec3::ZERO);
+            particles.past_way[range.clone()].fill(0.0);
             particles.past_velocity[range].fill(Vec3::ZERO);
         }
     }

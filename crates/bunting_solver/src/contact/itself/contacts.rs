@@ -70,12 +70,11 @@ impl LayerContacts {
     }
 
     /// Particles that must end the substep where they are: those of features that are still much nearer than they must be,
-    /// those of zones that have returned, and those near others that move fast, given the distance of layers, m, and the
-    /// length of the substep, s.
-    pub fn unrelaxed_particles(&self, thickness: f32, step: f32) -> impl Iterator<Item = usize> {
+    /// those of zones that have returned, and those near others that move fast, given the distance of layers, m.
+    pub fn unrelaxed_particles(&self, thickness: f32) -> impl Iterator<Item = usize> {
         let Self { contacts, pairs, particles, .. } = self;
         let stays =
-            move |&at: &usize| particles.touched[at] || particles.way(at, step) > FAST * thickness;
+            move |&at: &usize| particles.touched[at] || particles.way(at) > FAST * thickness;
         contacts.pressed_particles(particles).chain(pairs.particles().filter(stays))
     }
 

@@ -30,8 +30,8 @@ pub(in crate::contact) struct Part<'a, S> {
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Copies velocities of particles that are near others out of the lanes, with the corrections to the positions so far.
-    /// A pin has the velocity of its motion.
+    /// Copies velocities and ways of particles that are near others out of the lanes, with the corrections to the positions so
+    /// far. A pin has the velocity of its motion.
     pub(in crate::contact) fn gather_velocities<S: Place>(
         &mut self,
         part: &Part<S>,
@@ -56,6 +56,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             particles.velocity[at] = part.place.velocity_to_common(velocity);
             let past = lane3(&self.older_velocity[pack], lane);
             particles.past_velocity[at] = part.place.velocity_to_common(past);
+            particles.past_way[at] = lane3(&self.older_displacement[pack], lane).length();
         }
     }
 

@@ -68,7 +68,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         };
         let part = Part { cloth, range: 0..layers.particles.end.len(), place: &InItsFrame };
         rounds.solve(layers, &mut OwnLane { batch: self, state, part });
-        self.suspend_relaxation(cloth, layers.unrelaxed_particles(*thickness, self.clock.step));
+        self.suspend_relaxation(cloth, layers.unrelaxed_particles(*thickness));
     }
 
     /// Copies positions and masses of a cloth out of the lanes.

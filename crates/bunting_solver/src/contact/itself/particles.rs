@@ -23,6 +23,8 @@ pub(crate) struct Particles {
     pub velocity: Vec<Vec3>,
     /// Velocities at the start of the substep, m/s.
     pub past_velocity: Vec<Vec3>,
+    /// Lengths of the ways in the last substep, m.
+    pub past_way: Vec<f32>,
     /// Changes of velocity by impacts, which stop an approach of the particles at the start of the substep, m/s.
     pub impact: Vec<Vec3>,
     /// Scratch array of positions of a cloth, m.
@@ -43,6 +45,7 @@ impl Particles {
             vectors.resize(count, Vec3::ZERO);
         }
         self.inverse_mass.resize(count, 0.0);
+        self.past_way.resize(count, 0.0);
         self.touched.resize(count, false);
         self.is_near.resize(count, false);
     }
@@ -62,10 +65,9 @@ impl Particles {
         self.farthest = self.farthest.max(self.travel[particle]);
     }
 
-    /// Length of a particle's way in this substep and the one before, m, given the length of both, s.
-    pub fn way(&self, particle: usize, step: f32) -> f32 {
-        self.start[particle].distance(self.end[particle])
-            + self.past_velocity[particle].length() * step
+    /// Length of a particle's way in this substep and the one before, m.
+    pub fn way(&self, particle: usize) -> f32 {
+        self.start[particle].distance(self.end[particle]) + self.past_way[particle]
     }
 
     /// Marks the particles of pairs as near others.
