@@ -35,10 +35,7 @@ fn lain(seconds: f32) -> Together {
         sheets.add(&fabric, &start, FabricMaterial::FLAG_POLYESTER, at, []);
     }
     // The sheets are in the plane z = 0.
-    for tick in 0..(3.0 * seconds / TICK) as usize {
-        if tick % 20 == 0 {
-            sheets.report(tick);
-        }
+    for _ in 0..(seconds / TICK) as usize {
         sheets.tick(Drive { gravity: -GRAVITY * Vec3::Z, ..Drive::NONE });
     }
     sheets

@@ -131,18 +131,6 @@ impl Together {
         f64::from(self.with_any) / f64::from(self.ticks.max(1))
     }
 
-    pub fn report(&self, tick: usize) {
-        for batch in &self.batches.0 {
-            let v = batch.snapshot(0).velocities;
-            let (at, fastest) =
-                v.iter().enumerate().max_by(|a, b| a.1.length().total_cmp(&b.1.length())).unwrap();
-            let rms = (v.iter().map(|v| v.length_squared()).sum::<f32>() / v.len() as f32).sqrt();
-            let n = if v.len() == 169 { 13 } else { 17 };
-            print!("  [{} {} of {n}: {:.4?} rms {rms:.5}]", at / n, at % n, fastest.to_array());
-        }
-        println!(" tick {tick}");
-    }
-
     /// Greatest speed of a particle, m/s.
     pub fn speed(&self) -> f64 {
         let of = |batch: &ClothBatch| batch.snapshot(0).velocities;
