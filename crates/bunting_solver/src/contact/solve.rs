@@ -21,8 +21,8 @@ use crate::step::clock::Clock;
 use crate::step::frame::FrameStep;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Projects every candidate of contacts with colliders once (particles, then triangles), and keeps layers of each cloth
-    /// apart that has contacts with itself.
+    /// Projects every candidate of contacts with colliders once (particles, then triangles), and keeps layers of each
+    /// cloth apart that has contacts with itself.
     pub fn solve_contacts(&mut self) {
         for cloth in 0..self.lanes.len() {
             // The lane's state is taken out, so that the particles of the batch can be written.

@@ -13,8 +13,8 @@ use crate::contact::itself::search::{Search, Wanted};
 use crate::contact::itself::separate::{Contacts, Spacing};
 use crate::contact::itself::untangle::{Tangles, untangle};
 
-/// Part of the distance of layers by which a particle near others may move in a substep and still be under-relaxed. Larger:
-/// under-relaxation moves it through others. Smaller: layers at rest tremble.
+/// Part of the distance of layers by which a particle near others may move in a substep and still be under-relaxed.
+/// Larger: under-relaxation moves it through others. Smaller: layers at rest tremble.
 const FAST: f32 = 0.25;
 
 /// The contacts of layers: scratch arrays of a substep.
@@ -69,8 +69,8 @@ impl LayerContacts {
         self.contacts.separate(&mut self.particles, sweeps);
     }
 
-    /// Particles that must end the substep where they are: those of features that are still much nearer than they must be,
-    /// those of zones that have returned, and those near others that move fast, given the distance of layers, m.
+    /// Particles that must end the substep where they are: those of features that are still much nearer than they must
+    /// be, those of zones that have returned, and those near others that move fast, given the distance of layers, m.
     pub fn unrelaxed_particles(&self, thickness: f32) -> impl Iterator<Item = usize> {
         let Self { contacts, pairs, particles, .. } = self;
         let stays =

@@ -13,9 +13,9 @@ use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
 use crate::stability::relaxation::EXEMPT;
 
-/// Factor on the inverse masses of particles that a collider has pushed in the substep, so that what lies on them yields and
-/// not they (Guendelman, Bridson and Fedkiw 2003, "Nonconvex rigid bodies with stacking"). Larger: stacks are pressed
-/// together.
+/// Factor on the inverse masses of particles that a collider has pushed in the substep, so that what lies on them
+/// yields and not they (Guendelman, Bridson and Fedkiw 2003, "Nonconvex rigid bodies with stacking"). Larger: stacks
+/// are pressed together.
 const LIGHTNESS: f32 = 1e-3;
 
 /// Distance of which a collider has pushed a particle, m: more than rounding to a group's frame and back.
@@ -30,8 +30,8 @@ pub(in crate::contact) struct Part<'a, S> {
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Copies velocities and ways of particles that are near others out of the lanes, with the corrections to the positions so
-    /// far. A pin has the velocity of its motion.
+    /// Copies velocities and ways of particles that are near others out of the lanes, with the corrections to the
+    /// positions so far. A pin has the velocity of its motion.
     pub(in crate::contact) fn gather_velocities<S: Place>(
         &mut self,
         part: &Part<S>,
@@ -97,8 +97,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         sum
     }
 
-    /// Solves the contacts with colliders, and copies the positions after them out of the lane. Particles that these have
-    /// pushed yield less to others from then on. Returns whether there are any.
+    /// Solves the contacts with colliders, and copies the positions after them out of the lane. Particles that these
+    /// have pushed yield less to others from then on. Returns whether there are any.
     pub(in crate::contact) fn touch_colliders<S: Place>(
         &mut self,
         part: &Part<S>,

@@ -100,8 +100,8 @@ impl Neighbour {
     }
 }
 
-/// For each set of triangles, its neighbours in the order of their indices: those along edges, and those at particles that
-/// have a bridge.
+/// For each set of triangles, its neighbours in the order of their indices: those along edges, and those at particles
+/// that have a bridge.
 fn neighbours<'a>(
     sets: impl Iterator<Item = &'a Vec<u32>> + Clone,
     fabric: &Fabric,
@@ -190,8 +190,8 @@ fn split(fabric: &Fabric, triangles: Vec<u32>, largest: usize) -> Vec<Vec<u32>> 
     parts
 }
 
-/// The parts of a few triangles that are connected along edges. About a single particle parts can turn upon each other while
-/// each is flat.
+/// The parts of a few triangles that are connected along edges. About a single particle parts can turn upon each other
+/// while each is flat.
 fn connected(fabric: &Fabric, mut triangles: Vec<u32>) -> Vec<Vec<u32>> {
     let corners = |triangle: u32| fabric.triangles()[triangle as usize];
     let share_edge = |one: u32, other: u32| {

@@ -5,8 +5,8 @@ use crate::contact::itself::mesh::ContactMesh;
 use crate::contact::itself::particles::Particles;
 use crate::contact::itself::rules::Rules;
 
-/// Number of times that layers and then their contacts with colliders are solved. One: layers that are pressed on a floor
-/// come to lie in one plane, and pass through one another by rounding.
+/// Number of times that layers and then their contacts with colliders are solved. One: layers that are pressed on a
+/// floor come to lie in one plane, and pass through one another by rounding.
 const ROUNDS: usize = 2;
 
 /// The lanes of the cloths whose layers touch.

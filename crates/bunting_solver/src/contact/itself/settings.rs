@@ -4,8 +4,8 @@
 /// between them is that of the material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelfCollision {
-    /// Distance that layers keep, m: particles from triangles, and edges from edges. Less where the fabric's own layers are
-    /// nearer at rest.
+    /// Distance that layers keep, m: particles from triangles, and edges from edges. Less where the fabric's own
+    /// layers are nearer at rest.
     pub thickness: f32,
 }
 
