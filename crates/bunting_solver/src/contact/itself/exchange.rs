@@ -133,6 +133,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if !self.parameters.is_near_rest(Y::lanes(cloth)) {
             return;
         }
+        // Only packs in which a particle is relaxed have returned from the exemption of the last substep.
+        for particle in 0..self.fabric_of(cloth).fabric.particle_count() {
+            let (pack, lane) = self.layout.locate(particle, cloth);
+            let factor = &mut self.relaxation[pack].lanes_mut()[lane];
+            *factor = factor.min(1.0);
+        }
         for particle in particles {
             let (pack, lane) = self.layout.locate(particle, cloth);
             self.relaxation[pack].lanes_mut()[lane] = EXEMPT;
