@@ -19,7 +19,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct SelfCollision {
-    /// Distance that layers keep, m: particles from triangles. Edges keep half of it from edges. Less where the mesh's own
+    /// Distance that layers keep, m: particles from triangles, and edges from edges. Less where the mesh's own
     /// layers are nearer at rest.
     pub thickness: f32,
     /// Number of levels of detail that do not pass through themselves: the finest ones. Coarser levels do.

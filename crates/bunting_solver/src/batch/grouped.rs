@@ -51,7 +51,7 @@ impl ClothBatch {
         member: &Member,
         particles: &mut Particles,
     ) -> bool {
-        with_batch!(&mut self.0, batch => batch.touch_colliders(lane, member, particles))
+        with_batch!(&mut self.0, batch => batch.touch_colliders_grouped(lane, member, particles))
     }
 
     pub(crate) fn end_grouped(&mut self, lane: usize, pressed: impl Iterator<Item = usize>) {

@@ -21,8 +21,8 @@ use crate::step::clock::Clock;
 use crate::step::frame::FrameStep;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Moves layers of each cloth apart, projects every candidate of contacts with colliders once (particles, then
-    /// triangles), and returns layers that these pushed through one another.
+    /// Projects every candidate of contacts with colliders once (particles, then triangles), and keeps layers of each
+    /// cloth apart that has contacts with itself.
     pub fn solve_contacts(&mut self) {
         for cloth in 0..self.lanes.len() {
             // The lane's state is taken out, so that the particles of the batch can be written.
@@ -30,9 +30,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 (!state.colliders.is_empty() || state.self_contacts.is_some()) && !state.is_grouped
             };
             if let Some(mut state) = self.lanes[cloth].take_if(touches) {
-                self.separate_layers(cloth, &mut state);
-                self.solve_colliders(cloth, &mut state);
-                self.return_layers(cloth, &mut state);
+                match state.self_contacts.take() {
+                    Some(mut contacts) => {
+                        self.solve_layers(cloth, &mut state, &mut contacts);
+                        state.self_contacts = Some(contacts);
+                    }
+                    None => self.solve_colliders(cloth, &mut state),
+                }
                 self.lanes[cloth] = Some(state);
             }
         }
@@ -168,11 +172,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if let Some(reaction) = &mut outcome.reaction {
             // A steady force acts for the whole substep, of which the formula takes β; an impact changes the velocity
             // once.
-            let steady = if push.sticks {
-                Vec3::ZERO
-            } else {
-                (given - thrown - impact) * (self.clock.step / effective_step)
-            };
+            let steady = (given - thrown - impact) * (self.clock.step / effective_step);
             let gained = contact.density * inertia * (steady + impact);
             let on_collider = contact.pose.rotation.inverse() * -gained;
             reaction.add(particle, push.touched, on_collider);

@@ -3,6 +3,7 @@
 mod cape;
 mod flag;
 mod fold;
+mod towel;
 mod watch;
 
 use super::row::Row;
@@ -12,6 +13,7 @@ const LAYERS: f32 = 5e-3;
 
 pub(super) fn rows(quick: bool) -> Vec<Row> {
     let mut rows = fold::rows();
+    rows.extend(towel::rows(quick));
     rows.push(flag::row(quick));
     rows.push(cape::row(quick));
     rows

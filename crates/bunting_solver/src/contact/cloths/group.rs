@@ -9,11 +9,9 @@ use crate::contact::cloths::member::{GroupMember, Member};
 use crate::contact::cloths::rules::OfGroup;
 use crate::contact::itself::contacts::LayerContacts;
 use crate::contact::itself::mesh::ContactMesh;
+use crate::contact::itself::particles::Particles;
 use crate::contact::itself::place::Pose;
-
-/// Number of times that cloths and then their contacts with colliders are solved. One: sheets that are pressed on a floor
-/// come to lie in one plane.
-const ROUNDS: usize = 2;
+use crate::contact::itself::rounds::{Lanes, Rounds};
 
 /// Number of sweeps over all contacts. Fewer: cloth that lies on cloth trembles and does not fall asleep. More: costs more.
 const SWEEPS: usize = 8;
@@ -129,54 +127,45 @@ impl ClothGroup {
         let rules = OfGroup { members, of_patch, of_particle };
         let thickness = rules.greatest_thickness();
         layers.particles.touched.fill(false);
-        let mut meet = layers.find(mesh, thickness, &rules);
-        layers.untangle(mesh, step);
-        layers.gather(step, &rules);
-        for _ in 0..ROUNDS {
-            if meet {
-                read_velocities(members, lanes, layers);
-                layers.separate(SWEEPS);
-                write(members, lanes, layers);
-                layers.particles.touched.fill(false);
-            }
-            let mut has_pushed = false;
-            for (index, member) in members.iter().enumerate() {
-                let (batch, lane) = lanes.lane(index);
-                has_pushed |= batch.touch_colliders(lane, member, &mut layers.particles);
-            }
-            if !has_pushed {
-                break;
-            }
-            if layers.are_outdated(mesh, thickness) {
-                meet = layers.find(mesh, thickness, &rules);
-                layers.gather(step, &rules);
-            }
-        }
-        if meet && let Some(mut zones) = layers.return_zones(mesh, thickness, &rules) {
-            read_velocities(members, lanes, layers);
-            zones.stop(&mut layers.particles);
-            write(members, lanes, layers);
-        }
-        let pressed: Vec<usize> = layers.pressed_particles().collect();
+        let rounds = Rounds { mesh, rules: &rules, thickness, step, sweeps: SWEEPS };
+        rounds.solve(layers, &mut LanesOfGroup { members, lanes });
+        let unrelaxed: Vec<usize> = layers.unrelaxed_particles(thickness).collect();
         for (index, member) in members.iter().enumerate() {
             let (batch, lane) = lanes.lane(index);
             let range = &member.range;
-            let own = pressed.iter().filter(|at| range.contains(at));
+            let own = unrelaxed.iter().filter(|at| range.contains(at));
             batch.end_grouped(lane, own.map(|at| at - range.start));
         }
     }
 }
 
-fn read_velocities(members: &[Member], lanes: &mut impl GroupLanes, layers: &mut LayerContacts) {
-    for (index, member) in members.iter().enumerate() {
-        let (batch, lane) = lanes.lane(index);
-        batch.read_velocities(lane, member, &mut layers.particles);
-    }
+/// The lanes of a group's members.
+struct LanesOfGroup<'a, G> {
+    members: &'a [Member],
+    lanes: &'a mut G,
 }
 
-fn write(members: &[Member], lanes: &mut impl GroupLanes, layers: &LayerContacts) {
-    for (index, member) in members.iter().enumerate() {
-        let (batch, lane) = lanes.lane(index);
-        batch.write_grouped(lane, member, &layers.particles);
+impl<G: GroupLanes> Lanes for LanesOfGroup<'_, G> {
+    fn read_velocities(&mut self, particles: &mut Particles) {
+        for (index, member) in self.members.iter().enumerate() {
+            let (batch, lane) = self.lanes.lane(index);
+            batch.read_velocities(lane, member, particles);
+        }
+    }
+
+    fn write(&mut self, particles: &Particles) {
+        for (index, member) in self.members.iter().enumerate() {
+            let (batch, lane) = self.lanes.lane(index);
+            batch.write_grouped(lane, member, particles);
+        }
+    }
+
+    fn touch_colliders(&mut self, particles: &mut Particles) -> bool {
+        let mut has_pushed = false;
+        for (index, member) in self.members.iter().enumerate() {
+            let (batch, lane) = self.lanes.lane(index);
+            has_pushed |= batch.touch_colliders(lane, member, particles);
+        }
+        has_pushed
     }
 }

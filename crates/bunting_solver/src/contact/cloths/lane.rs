@@ -10,17 +10,9 @@ use crate::contact::cloths::member::Member;
 use crate::contact::itself::exchange::Part;
 use crate::contact::itself::mesh::ContactMesh;
 use crate::contact::itself::particles::Particles;
-use crate::contact::itself::place::Pose;
+use crate::contact::itself::place::{Place, Pose};
 use crate::fabric::Fabric;
 use crate::simd::lane::Pack;
-
-/// Factor on the inverse masses of particles that a collider has pushed in the substep, so that what lies on them yields and
-/// not they (Guendelman, Bridson and Fedkiw 2003, "Nonconvex rigid bodies with stacking"). Larger: stacks are pressed
-/// together.
-const LIGHTNESS: f32 = 1e-3;
-
-/// Distance of which a collider has pushed a particle, m: more than rounding to the group's frame and back.
-const LEAST_PUSH: f32 = 1e-5;
 
 /// What a group needs to know of a cloth's lane at the start of a tick.
 pub(crate) struct LaneShape {
@@ -97,6 +89,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.gather_velocities(&Part { cloth, range, place: &member.pose }, particles);
         } else {
             particles.velocity[range.clone()].fill(Vec3::ZERO);
+            particles.past_way[range.clone()].fill(0.0);
             particles.past_velocity[range].fill(Vec3::ZERO);
         }
     }
@@ -115,7 +108,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Solves the contacts with colliders, and copies the positions after them out of the lane. Returns whether any
     /// collider has pushed the cloth.
-    pub fn touch_colliders(
+    pub fn touch_colliders_grouped(
         &mut self,
         cloth: usize,
         member: &Member,
@@ -124,29 +117,16 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if !member.moves {
             return false;
         }
-        if let Some(mut state) = self.lanes[cloth].take() {
-            self.solve_colliders(cloth, &mut state);
-            self.lanes[cloth] = Some(state);
-        }
-        let range = member.range.clone();
-        let mut has_pushed = false;
-        let mut after = core::mem::take(&mut particles.after);
-        after.resize(range.len(), Vec3::ZERO);
-        self.copy_common(cloth, &member.pose, &mut after);
-        for (at, &after) in range.zip(&after) {
-            if particles.end[at].distance_squared(after) > LEAST_PUSH * LEAST_PUSH {
-                particles.inverse_mass[at] *= LIGHTNESS;
-                has_pushed = true;
-            }
-            particles.end[at] = after;
-        }
-        particles.after = after;
+        let Some(mut state) = self.lanes[cloth].take() else { return false };
+        let part = Part { cloth, range: member.range.clone(), place: &member.pose };
+        let has_pushed = self.touch_colliders(&part, &mut state, particles);
+        self.lanes[cloth] = Some(state);
         has_pushed
     }
 
-    /// Ends the substep of a group, given the particles that are still pressed against others.
-    pub fn end_grouped(&mut self, cloth: usize, pressed: impl Iterator<Item = usize>) {
-        self.suspend_relaxation(cloth, pressed);
+    /// Ends the substep of a group, given the particles that are not under-relaxed.
+    pub fn end_grouped(&mut self, cloth: usize, unrelaxed: impl Iterator<Item = usize>) {
+        self.suspend_relaxation(cloth, unrelaxed);
         if let Some(state) = &mut self.lanes[cloth] {
             state.is_grouped = false;
         }

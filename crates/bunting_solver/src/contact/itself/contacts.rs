@@ -13,6 +13,10 @@ use crate::contact::itself::search::{Search, Wanted};
 use crate::contact::itself::separate::{Contacts, Spacing};
 use crate::contact::itself::untangle::{Tangles, untangle};
 
+/// Part of the distance of layers by which a particle near others may move in a substep and still be under-relaxed.
+/// Larger: under-relaxation moves it through others. Smaller: layers at rest tremble.
+const FAST: f32 = 0.25;
+
 /// The contacts of layers: scratch arrays of a substep.
 #[derive(Clone, Debug, Default)]
 pub(in crate::contact) struct LayerContacts {
@@ -65,9 +69,13 @@ impl LayerContacts {
         self.contacts.separate(&mut self.particles, sweeps);
     }
 
-    /// Particles of features that are still much nearer than they must be.
-    pub fn pressed_particles(&self) -> impl Iterator<Item = usize> {
-        self.contacts.pressed_particles(&self.particles)
+    /// Particles that must end the substep where they are: those of features that are still much nearer than they must
+    /// be, those of zones that have returned, and those near others that move fast, given the distance of layers, m.
+    pub fn unrelaxed_particles(&self, thickness: f32) -> impl Iterator<Item = usize> {
+        let Self { contacts, pairs, particles, .. } = self;
+        let stays =
+            move |&at: &usize| particles.touched[at] || particles.way(at) > FAST * thickness;
+        contacts.pressed_particles(particles).chain(pairs.particles().filter(stays))
     }
 
     /// The contacts of features that are as near as they may be, given what counts as such, m: their particles, a point of

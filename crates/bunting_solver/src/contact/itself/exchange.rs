@@ -5,12 +5,21 @@ use core::ops::Range;
 use glam::Vec3;
 
 use crate::batch::lane_batch::LaneBatch;
+use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::contact::itself::particles::Particles;
 use crate::contact::itself::place::Place;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
 use crate::stability::relaxation::EXEMPT;
+
+/// Factor on the inverse masses of particles that a collider has pushed in the substep, so that what lies on them
+/// yields and not they (Guendelman, Bridson and Fedkiw 2003, "Nonconvex rigid bodies with stacking"). Larger: stacks
+/// are pressed together.
+const LIGHTNESS: f32 = 1e-3;
+
+/// Distance of which a collider has pushed a particle, m: more than rounding to a group's frame and back.
+const LEAST_PUSH: f32 = 1e-5;
 
 /// The particles of a cloth among those of all that touch.
 pub(in crate::contact) struct Part<'a, S> {
@@ -21,8 +30,8 @@ pub(in crate::contact) struct Part<'a, S> {
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Copies velocities of particles that are near others out of the lanes, with the corrections to the positions so far.
-    /// A pin has the velocity of its motion.
+    /// Copies velocities and ways of particles that are near others out of the lanes, with the corrections to the
+    /// positions so far. A pin has the velocity of its motion.
     pub(in crate::contact) fn gather_velocities<S: Place>(
         &mut self,
         part: &Part<S>,
@@ -47,6 +56,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             particles.velocity[at] = part.place.velocity_to_common(velocity);
             let past = lane3(&self.older_velocity[pack], lane);
             particles.past_velocity[at] = part.place.velocity_to_common(past);
+            particles.past_way[at] = lane3(&self.older_displacement[pack], lane).length();
         }
     }
 
@@ -87,6 +97,33 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         sum
     }
 
+    /// Solves the contacts with colliders, and copies the positions after them out of the lane. Particles that these
+    /// have pushed yield less to others from then on. Returns whether there are any.
+    pub(in crate::contact) fn touch_colliders<S: Place>(
+        &mut self,
+        part: &Part<S>,
+        state: &mut LaneState,
+        particles: &mut Particles,
+    ) -> bool {
+        if state.colliders.is_empty() {
+            return false;
+        }
+        self.solve_colliders(part.cloth, state);
+        let mut has_pushed = false;
+        let mut after = core::mem::take(&mut particles.after);
+        self.layout.read(self.positions.packs_mut(), part.cloth, &mut after);
+        for (at, &after) in part.range.clone().zip(&after) {
+            let after = part.place.to_common(after);
+            if particles.end[at].distance_squared(after) > LEAST_PUSH * LEAST_PUSH {
+                particles.inverse_mass[at] *= LIGHTNESS;
+                has_pushed = true;
+            }
+            particles.end[at] = after;
+        }
+        particles.after = after;
+        has_pushed
+    }
+
     /// Exempts particles from under-relaxation, which would move them after the contacts.
     pub(in crate::contact) fn suspend_relaxation(
         &mut self,
@@ -95,6 +132,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     ) {
         if !self.parameters.is_near_rest(Y::lanes(cloth)) {
             return;
+        }
+        // Only packs in which a particle is relaxed have returned from the exemption of the last substep.
+        for particle in 0..self.fabric_of(cloth).fabric.particle_count() {
+            let (pack, lane) = self.layout.locate(particle, cloth);
+            let factor = &mut self.relaxation[pack].lanes_mut()[lane];
+            *factor = factor.min(1.0);
         }
         for particle in particles {
             let (pack, lane) = self.layout.locate(particle, cloth);

@@ -10,6 +10,7 @@ use crate::contact::itself::exchange::Part;
 use crate::contact::itself::mesh::ContactMesh;
 use crate::contact::itself::particles::Particles;
 use crate::contact::itself::place::InItsFrame;
+use crate::contact::itself::rounds::{Lanes, Rounds};
 use crate::contact::itself::rules::OfOneCloth;
 use crate::contact::itself::settings::SelfCollision;
 use crate::contact::itself::state::SelfContacts;
@@ -43,51 +44,31 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         Arc::clone(contact_mesh.get_or_insert_with(|| Arc::new(ContactMesh::of(fabric))))
     }
 
-    /// Finds the features of a cloth that come near one another, and moves them apart.
-    pub(in crate::contact) fn separate_layers(&mut self, cloth: usize, state: &mut LaneState) {
-        let friction = state.material.surface_friction;
-        let Some(SelfContacts { settings, mesh, layers }) = state.self_contacts.as_deref_mut()
-        else {
-            return;
-        };
+    /// Keeps the layers of a cloth apart from one another, and the cloth from its colliders.
+    pub(in crate::contact) fn solve_layers(
+        &mut self,
+        cloth: usize,
+        state: &mut LaneState,
+        contacts: &mut SelfContacts,
+    ) {
+        let SelfContacts { settings: SelfCollision { thickness }, mesh, layers } = contacts;
         self.gather_particles(cloth, &mut layers.particles);
-        let fabric = Arc::clone(&self.fabric_of(cloth).fabric);
-        let thickness = settings.thickness;
-        let rules = OfOneCloth { thickness, friction, rest: fabric.rest_positions() };
         if self.clock.begun == 1 {
             layers.begin_tick();
         }
-        if layers.find(mesh, thickness, &rules) {
-            let part = Part { cloth, range: 0..layers.particles.end.len(), place: &InItsFrame };
-            self.gather_velocities(&part, &mut layers.particles);
-            layers.untangle(mesh, self.clock.step);
-            layers.gather(self.clock.step, &rules);
-            layers.separate(SWEEPS);
-            state.external_moment += self.scatter_particles(&part, &layers.particles);
-        }
-    }
-
-    /// Returns features that pass through one another to where they began in the substep.
-    pub(in crate::contact) fn return_layers(&mut self, cloth: usize, state: &mut LaneState) {
-        let friction = state.material.surface_friction;
-        let Some(SelfContacts { settings, mesh, layers }) = state.self_contacts.as_deref_mut()
-        else {
-            return;
-        };
-        if layers.pairs.is_empty() {
-            return;
-        }
-        self.layout.read(self.positions.packs_mut(), cloth, &mut layers.particles.end);
         let fabric = Arc::clone(&self.fabric_of(cloth).fabric);
-        let thickness = settings.thickness;
-        let rules = OfOneCloth { thickness, friction, rest: fabric.rest_positions() };
-        if let Some(mut zones) = layers.return_zones(mesh, thickness, &rules) {
-            let part = Part { cloth, range: 0..layers.particles.end.len(), place: &InItsFrame };
-            self.gather_velocities(&part, &mut layers.particles);
-            zones.stop(&mut layers.particles);
-            state.external_moment += self.scatter_particles(&part, &layers.particles);
-        }
-        self.suspend_relaxation(cloth, layers.pressed_particles());
+        let friction = state.material.surface_friction;
+        let rules = OfOneCloth { thickness: *thickness, friction, rest: fabric.rest_positions() };
+        let rounds = Rounds {
+            mesh,
+            rules: &rules,
+            thickness: *thickness,
+            step: self.clock.step,
+            sweeps: SWEEPS,
+        };
+        let part = Part { cloth, range: 0..layers.particles.end.len(), place: &InItsFrame };
+        rounds.solve(layers, &mut OwnLane { batch: self, state, part });
+        self.suspend_relaxation(cloth, layers.unrelaxed_particles(*thickness));
     }
 
     /// Copies positions and masses of a cloth out of the lanes.
@@ -100,5 +81,26 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let (pack, lane) = self.layout.locate(particle, cloth);
             *inverse_mass = self.masses.inverse[pack].lanes()[lane];
         }
+    }
+}
+
+/// The lane of a cloth that touches itself.
+struct OwnLane<'a, P: Pack, Y: Layout<P>> {
+    batch: &'a mut LaneBatch<P, Y>,
+    state: &'a mut LaneState,
+    part: Part<'a, InItsFrame>,
+}
+
+impl<P: Pack, Y: Layout<P>> Lanes for OwnLane<'_, P, Y> {
+    fn read_velocities(&mut self, particles: &mut Particles) {
+        self.batch.gather_velocities(&self.part, particles);
+    }
+
+    fn write(&mut self, particles: &Particles) {
+        self.state.external_moment += self.batch.scatter_particles(&self.part, particles);
+    }
+
+    fn touch_colliders(&mut self, particles: &mut Particles) -> bool {
+        self.batch.touch_colliders(&self.part, self.state, particles)
     }
 }

@@ -36,6 +36,13 @@ impl Pairs {
             && self.edges_triangles.is_empty()
     }
 
+    /// The particles of all pairs, each as often as it is in one.
+    pub fn particles(&self) -> impl Iterator<Item = usize> {
+        let fours = self.particles_triangles.iter().chain(&self.edges_edges).flatten().copied();
+        let fives = self.edges_triangles.iter().flat_map(EdgeTriangle::particles);
+        fours.chain(fives).map(|particle| particle as usize)
+    }
+
     pub fn clear(&mut self) {
         self.particles_triangles.clear();
         self.edges_edges.clear();

@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
+use crate::contact::itself::pairs::Pairs;
 
 /// The particles of a cloth in a substep.
 #[derive(Clone, Debug, Default)]
@@ -23,6 +23,8 @@ pub(crate) struct Particles {
     pub velocity: Vec<Vec3>,
     /// Velocities at the start of the substep, m/s.
     pub past_velocity: Vec<Vec3>,
+    /// Lengths of the ways in the last substep, m.
+    pub past_way: Vec<f32>,
     /// Changes of velocity by impacts, which stop an approach of the particles at the start of the substep, m/s.
     pub impact: Vec<Vec3>,
     /// Scratch array of positions of a cloth, m.
@@ -43,6 +45,7 @@ impl Particles {
             vectors.resize(count, Vec3::ZERO);
         }
         self.inverse_mass.resize(count, 0.0);
+        self.past_way.resize(count, 0.0);
         self.touched.resize(count, false);
         self.is_near.resize(count, false);
     }
@@ -62,13 +65,15 @@ impl Particles {
         self.farthest = self.farthest.max(self.travel[particle]);
     }
 
+    /// Length of a particle's way in this substep and the one before, m.
+    pub fn way(&self, particle: usize) -> f32 {
+        self.start[particle].distance(self.end[particle]) + self.past_way[particle]
+    }
+
     /// Marks the particles of pairs as near others.
     pub(in crate::contact) fn mark_near(&mut self, pairs: &Pairs) {
         self.is_near.fill(false);
-        let fours = pairs.particles_triangles.iter().chain(&pairs.edges_edges);
-        fours.flatten().for_each(|&particle| self.is_near[particle as usize] = true);
-        let fives = pairs.edges_triangles.iter().flat_map(EdgeTriangle::particles);
-        fives.for_each(|particle| self.is_near[particle as usize] = true);
+        pairs.particles().for_each(|particle| self.is_near[particle] = true);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Patches of neighbouring triangles, and the cells of which each consists.
 
 use core::ops::Range;
+use std::collections::HashMap;
 
 use glam::Vec3;
 
@@ -60,18 +61,16 @@ impl Cell {
 pub(in crate::contact) fn patches_of(fabric: &Fabric) -> (Vec<Patch>, Vec<Cell>, Vec<[u32; 3]>) {
     let (mut patches, mut cells) = (Vec::new(), Vec::new());
     for triangles in split(fabric, (0..fabric.triangles().len() as u32).collect(), LARGEST_PATCH) {
-        let particles = particles_of(fabric, &triangles);
         let first = cells.len() as u32;
-        cells.extend(split(fabric, triangles, LARGEST_CELL));
-        patches.push((particles, first..cells.len() as u32));
+        cells.extend(split(fabric, triangles.clone(), LARGEST_CELL));
+        patches.push((triangles, first..cells.len() as u32));
     }
-    let of_cells = cells.iter().map(|it| particles_of(fabric, it));
-    let neighbours = self::neighbours(of_cells, fabric);
+    let of_cells = neighbours(cells.iter(), fabric);
     let order = cells.iter().flatten();
     let triangles: Vec<[u32; 3]> =
         order.map(|&triangle| fabric.triangles()[triangle as usize]).collect();
     let mut begin = 0;
-    let cells = cells.iter().zip(neighbours).map(|(of_cell, neighbours)| {
+    let cells = cells.iter().zip(of_cells).map(|(of_cell, neighbours)| {
         let end = begin + of_cell.len() as u32;
         let range = core::mem::replace(&mut begin, end)..end;
         let of_lane = |lane: usize| triangles[range.start as usize + lane.min(of_cell.len() - 1)];
@@ -80,9 +79,8 @@ pub(in crate::contact) fn patches_of(fabric: &Fabric) -> (Vec<Patch>, Vec<Cell>,
         Cell { triangles: range, particles: particles_of(fabric, of_cell), corners, neighbours }
     });
     let cells: Vec<Cell> = cells.collect();
-    let of_patches = patches.iter().map(|(particles, _)| particles.clone());
-    let neighbours = self::neighbours(of_patches, fabric);
-    let patches = patches.into_iter().zip(neighbours);
+    let of_patches = neighbours(patches.iter().map(|(triangles, _)| triangles), fabric);
+    let patches = patches.into_iter().zip(of_patches);
     let patches = patches.map(|((_, cells), neighbours)| Patch { neighbours, cells });
     (patches.collect(), cells, triangles)
 }
@@ -91,7 +89,7 @@ pub(in crate::contact) fn patches_of(fabric: &Fabric) -> (Vec<Patch>, Vec<Cell>,
 #[derive(Clone, Copy, Debug)]
 pub(in crate::contact) struct Neighbour {
     pub index: u32,
-    /// A neighbour of both along edges if they have a single particle in common. About a single particle they can turn.
+    /// A neighbour of both along edges if they have no edge in common. About single particles they can turn.
     pub bridge: Option<u32>,
 }
 
@@ -102,35 +100,44 @@ impl Neighbour {
     }
 }
 
-/// For each set of particles, its neighbours in the order of their indices: those with several common particles, and
-/// those with one that have a bridge.
-fn neighbours(
-    sets: impl Iterator<Item = Vec<u32>> + Clone,
+/// For each set of triangles, its neighbours in the order of their indices: those along edges, and those at particles
+/// that have a bridge.
+fn neighbours<'a>(
+    sets: impl Iterator<Item = &'a Vec<u32>> + Clone,
     fabric: &Fabric,
 ) -> Vec<Vec<Neighbour>> {
-    let mut sets_at: Vec<Vec<u32>> = vec![Vec::new(); fabric.particle_count()];
+    let mut at_particles: Vec<Vec<u32>> = vec![Vec::new(); fabric.particle_count()];
+    let mut at_edges: HashMap<[u32; 2], Vec<u32>> = HashMap::new();
     for (index, set) in sets.clone().enumerate() {
-        set.iter().for_each(|&particle| sets_at[particle as usize].push(index as u32));
+        for &particle in &particles_of(fabric, set) {
+            at_particles[particle as usize].push(index as u32);
+        }
+        for edge in edges_of(fabric, set) {
+            at_edges.entry(edge).or_default().push(index as u32);
+        }
     }
-    // For each set, the others with several common particles, and those with one.
+    // For each set, the others along edges, and those at particles alone.
     let touching: Vec<[Vec<u32>; 2]> = sets
         .enumerate()
         .map(|(index, set)| {
-            let at = set.iter().flat_map(|&particle| &sets_at[particle as usize]);
-            let mut all: Vec<u32> = at.copied().filter(|&it| it != index as u32).collect();
-            all.sort_unstable();
-            let (several, one): (Vec<&[u32]>, _) =
-                all.chunk_by(|one, other| one == other).partition(|same| same.len() > 1);
-            [several, one].map(|sets| sets.into_iter().map(|same| same[0]).collect())
+            let others = |all: Vec<u32>| {
+                sorted(all.into_iter().filter(|&other| other != index as u32).collect())
+            };
+            let along = edges_of(fabric, set);
+            let along = others(along.flat_map(|edge| at_edges[&edge].iter().copied()).collect());
+            let at = particles_of(fabric, set).into_iter();
+            let at = at.flat_map(|particle| at_particles[particle as usize].iter().copied());
+            let at = others(at.filter(|other| along.binary_search(other).is_err()).collect());
+            [along, at]
         })
         .collect();
     touching
         .iter()
-        .map(|[several, one]| {
-            let along_edges = several.iter().map(|&index| Neighbour { index, bridge: None });
-            let bridged = one.iter().filter_map(|&index| {
+        .map(|[along, at]| {
+            let along_edges = along.iter().map(|&index| Neighbour { index, bridge: None });
+            let bridged = at.iter().filter_map(|&index| {
                 let of_other = &touching[index as usize][0];
-                let bridge = several.iter().copied().find(|bridge| of_other.contains(bridge));
+                let bridge = along.iter().copied().find(|bridge| of_other.contains(bridge));
                 Some(Neighbour { index, bridge: Some(bridge?) })
             });
             let mut neighbours: Vec<Neighbour> = along_edges.chain(bridged).collect();
@@ -138,6 +145,13 @@ fn neighbours(
             neighbours
         })
         .collect()
+}
+
+/// Edges of some triangles, those inside twice.
+fn edges_of<'a>(fabric: &'a Fabric, triangles: &'a [u32]) -> impl Iterator<Item = [u32; 2]> + 'a {
+    let sides = |[a, b, c]: [u32; 3]| [[a, b], [b, c], [c, a]];
+    let edges = triangles.iter().flat_map(move |&it| sides(fabric.triangles()[it as usize]));
+    edges.map(|[a, b]| [a.min(b), a.max(b)])
 }
 
 /// Particles of some triangles, in order.
@@ -176,23 +190,54 @@ fn split(fabric: &Fabric, triangles: Vec<u32>, largest: usize) -> Vec<Vec<u32>> 
     parts
 }
 
-/// The parts of a few triangles that are connected by particles.
+/// The parts of a few triangles that are connected along edges. About a single particle parts can turn upon each other
+/// while each is flat.
 fn connected(fabric: &Fabric, mut triangles: Vec<u32>) -> Vec<Vec<u32>> {
+    let corners = |triangle: u32| fabric.triangles()[triangle as usize];
+    let share_edge = |one: u32, other: u32| {
+        corners(one).iter().filter(|corner| corners(other).contains(corner)).count() > 1
+    };
     let mut parts = Vec::new();
     while let Some(first) = triangles.pop() {
         let mut part = vec![first];
-        let mut particles = fabric.triangles()[first as usize].to_vec();
         loop {
-            let joins = |triangle: &mut u32| {
-                let corners = fabric.triangles()[*triangle as usize];
-                corners.iter().any(|corner| particles.contains(corner))
-            };
+            let joins = |triangle: &mut u32| part.iter().any(|&it| share_edge(it, *triangle));
             let Some(next) = triangles.extract_if(.., joins).next() else { break };
             part.push(next);
-            particles.extend(fabric.triangles()[next as usize]);
         }
         part.sort_unstable();
         parts.push(part);
     }
     parts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fabric::{FabricBuilder, Grid};
+
+    #[test]
+    fn cells_and_patches_are_connected_along_edges() {
+        let fabric = FabricBuilder::grid(Grid::new(21, 41, 0.5, 1.0)).build().expect("a good grid");
+        let (patches, cells, triangles) = patches_of(&fabric);
+        let is_one = |part: Range<u32>| {
+            let part: Vec<[u32; 3]> = triangles[part.start as usize..part.end as usize].to_vec();
+            let mut reached = vec![part[0]];
+            let mut next = 0;
+            while let Some(&from) = reached.get(next) {
+                let beside = |it: &&[u32; 3]| it.iter().filter(|at| from.contains(at)).count() == 2;
+                let new: Vec<_> = { part.iter().filter(beside).copied() }
+                    .filter(|it| !reached.contains(it))
+                    .collect();
+                reached.extend(new);
+                next += 1;
+            }
+            reached.len() == part.len()
+        };
+        assert!(cells.iter().all(|cell| is_one(cell.triangles.clone())));
+        assert!(patches.iter().all(|patch| {
+            let [first, last] = [patch.cells.start, patch.cells.end - 1];
+            is_one(cells[first as usize].triangles.start..cells[last as usize].triangles.end)
+        }));
+    }
 }

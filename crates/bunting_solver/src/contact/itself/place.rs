@@ -4,6 +4,8 @@ use glam::{Quat, Vec3};
 
 /// The change of coordinates between a cloth's frame and the one in which contacts are solved.
 pub(in crate::contact) trait Place {
+    /// Common coordinates of a point of the frame, m.
+    fn to_common(&self, point: Vec3) -> Vec3;
     /// Coordinates in the frame, m.
     fn to_frame(&self, point: Vec3) -> Vec3;
     /// A velocity that the lane holds, in the common coordinates, m/s.
@@ -18,6 +20,11 @@ pub(in crate::contact) trait Place {
 pub(in crate::contact) struct InItsFrame;
 
 impl Place for InItsFrame {
+    #[inline(always)]
+    fn to_common(&self, point: Vec3) -> Vec3 {
+        point
+    }
+
     #[inline(always)]
     fn to_frame(&self, point: Vec3) -> Vec3 {
         point
@@ -49,14 +56,11 @@ pub(in crate::contact) struct Pose {
     pub carrier: Vec3,
 }
 
-impl Pose {
-    /// Common coordinates of a point of the frame, m.
-    pub fn to_common(self, point: Vec3) -> Vec3 {
+impl Place for Pose {
+    fn to_common(&self, point: Vec3) -> Vec3 {
         self.origin + self.rotation * point
     }
-}
 
-impl Place for Pose {
     fn to_frame(&self, point: Vec3) -> Vec3 {
         self.rotation.inverse() * (point - self.origin)
     }

@@ -11,7 +11,7 @@
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelfCollision {
-    /// Distance that layers keep, m: particles from triangles. Edges keep half of it from edges. Less where the fabric's own
+    /// Distance that layers keep, m: particles from triangles, and edges from edges. Less where the fabric's own
     /// layers are nearer at rest.
     pub thickness: f32,
 }
