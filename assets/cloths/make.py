@@ -6,6 +6,7 @@ import json
 import math
 import pathlib
 import struct
+import sys
 
 FLOAT, UNSIGNED_BYTE, UNSIGNED_SHORT = 5126, 5121, 5123
 CODES = {FLOAT: "f", UNSIGNED_BYTE: "B", UNSIGNED_SHORT: "H"}
@@ -36,10 +37,10 @@ class File:
         self.accessors.append(accessor)
         return len(self.accessors) - 1
 
-    def write(self, name, content):
+    def write(self, name, content, indent=1):
         uri = "data:application/octet-stream;base64," + base64.b64encode(self.bytes).decode()
         whole = {
-            "asset": {"version": "2.0", "generator": "assets/cloths/make.py"},
+            "asset": {"version": "2.0", "generator": "assets/cloths/" + pathlib.Path(sys.argv[0]).name},
             "scene": 0,
             **content,
             "accessors": self.accessors,
@@ -47,7 +48,7 @@ class File:
             "buffers": [{"byteLength": len(self.bytes), "uri": uri}],
         }
         path = pathlib.Path(__file__).parent / name
-        path.write_text(json.dumps(whole, indent=1) + "\n")
+        path.write_text(json.dumps(whole, indent=indent) + "\n")
 
 
 def f32(value):

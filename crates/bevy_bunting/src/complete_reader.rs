@@ -68,8 +68,9 @@ impl ReflectDeserializerProcessor for CompleteReader<'_> {
         self.entered = Some(registration.type_id());
         let seed = TypedReflectDeserializer::with_processor(registration, types, self);
         let value = seed.deserialize(deserializer)?;
-        let from = registration.data::<ReflectFromReflect>();
-        let made = from.and_then(|from| from.from_reflect(&*value));
+        // Arrays are made by the list or the struct that they are in.
+        let Some(from) = registration.data::<ReflectFromReflect>() else { return Ok(Ok(value)) };
+        let made = from.from_reflect(&*value);
         let name = registration.type_info().type_path_table().short_path();
         let lacks = || D::Error::custom(format!("{name} lacks a field that has no default"));
         made.map(|made| Ok(made.into_partial_reflect())).ok_or_else(lacks)

@@ -1,5 +1,6 @@
-//! The two files that were made for these tests.
+//! The project's own files.
 
+use bevy_math::{Mat4, Quat};
 use bevy_mesh::Mesh;
 
 use super::*;
@@ -73,4 +74,63 @@ fn the_cape_hangs_on_its_skeleton_with_the_artists_pins_and_play() {
     let shown = app.world().get::<Mesh3d>(cape).expect("it is shown");
     let meshes = app.world().resource::<bevy_asset::Assets<Mesh>>();
     assert!(meshes.get(&shown.0).is_some());
+}
+
+/// Places of a cape's upper edge by its joints' present poses.
+fn collar(app: &App, cape: Entity) -> Vec<Vec3> {
+    let world = app.world();
+    let skin = world.get::<crate::ClothSkin>(cape).expect("a skin");
+    let matrices: Vec<Mat4> = skin
+        .joints
+        .iter()
+        .zip(&skin.inverse_bind_poses)
+        .map(|(&joint, bound)| {
+            let pose = world.get::<GlobalTransform>(joint).expect("a node");
+            pose.to_matrix() * *bound
+        })
+        .collect();
+    let Some(ClothMesh::Grid { columns, width, .. }) = world.get::<ClothMesh>(cape) else {
+        panic!("a grid")
+    };
+    let place = |column: u32| {
+        let rest = Vec3::X * (width * column as f32 / (columns - 1) as f32);
+        let vertex = column as usize;
+        let both = skin.joint_indices[vertex].iter().zip(skin.joint_weights[vertex]);
+        both.map(|(&joint, weight)| matrices[joint as usize].transform_point3(rest) * weight).sum()
+    };
+    (0..*columns).map(place).collect()
+}
+
+#[test]
+fn the_figure_wears_the_cape_of_its_file() {
+    /// Distance of the collar from its pose, m: rounding of the file and of the poses.
+    const OFF: f32 = 1e-5;
+    let mut app = app(&assets());
+    let cape = spawn(&mut app, "cloths/caped_figure.gltf", "Cape");
+    run(&mut app, 90);
+    assert_eq!(messages(&app), [""; 0]);
+    let mut colliders = app.world_mut().query::<(&ClothCollider, &GlobalTransform)>();
+    assert_eq!(colliders.iter(app.world()).count(), 11);
+    let worn = |app: &App| -> Vec<Vec3> {
+        let frame = app.world().get::<GlobalTransform>(cape).expect("a frame");
+        let state = app.world().get::<ClothState>(cape).expect("it is simulated");
+        state.positions().iter().map(|&at| frame.transform_point(at)).collect()
+    };
+    let off = |app: &App| {
+        let pairs = collar(app, cape).into_iter().zip(worn(app));
+        pairs.map(|(place, at)| place.distance(at)).fold(0.0, f32::max)
+    };
+    assert!(off(&app) < OFF, "{} m", off(&app));
+    // The hem hangs behind the calves.
+    let hem = worn(&app)[24 * 25 + 12];
+    assert!(hem.z > 0.05 && (0.2..0.7).contains(&hem.y), "{hem}");
+    // It bows, and the limits of the cape's hem turn with the chest: backwards and up.
+    let chest = find(&mut app, "Chest").expect("a node");
+    let bow = Quat::from_rotation_x(-0.4);
+    app.world_mut().get_mut::<Transform>(chest).expect("a node").rotation = bow;
+    run(&mut app, 120);
+    assert!(off(&app) < OFF, "{} m", off(&app));
+    let bowed = worn(&app)[24 * 25 + 12];
+    assert!(bowed.z > hem.z + 0.1 && bowed.y > hem.y, "{hem} {bowed}");
+    assert_eq!(messages(&app), [""; 0]);
 }
