@@ -90,7 +90,7 @@ pub use fabric::{
     CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link, LinkFamily,
     MeshRepair,
 };
-pub use simd::level::{instruction_set, with_every_instruction_set};
+pub use simd::level::{has_fused_products, instruction_set, with_every_instruction_set};
 pub use step::effort::{Effort, EffortCause, EffortClass, Loads};
 pub use step::frame::FrameMotion;
 pub use step::limits::StepLimits;

@@ -1,15 +1,17 @@
 //! Golden hashes of six scenes, bit for bit: they must not change when code is moved or renamed.
 //!
 //! Each scene runs for 60 and for 600 ticks. A hash covers positions, velocities and normals every 60
-//! ticks. It holds for every batch width and every instruction set.
+//! ticks. It holds for every batch width and every instruction set with a fused
+//! multiply-add; those without one have hashes of their own, which hold for every width, too.
 
 mod hash;
 mod scenes;
 
-use bunting_solver::{LaneCount, instruction_set, with_every_instruction_set};
+use bunting_solver::{LaneCount, has_fused_products, instruction_set, with_every_instruction_set};
 
 pub use hash::StateHash;
 
+use self::scenes::GoldenScene;
 use crate::parallel;
 
 /// A scene's name and its hashes.
@@ -30,10 +32,7 @@ pub const TICKS: [u32; 2] = [60, 600];
 /// Batch widths that must hash alike.
 const WIDTHS: [LaneCount; 3] = [LaneCount::One, LaneCount::Eight, LaneCount::Sixteen];
 
-/// Instruction sets with fused multiply-add.
-const FUSED: [&str; 3] = ["AVX-512", "AVX2", "NEON"];
-
-/// Runs every scene at every batch width with every instruction set of this machine, on all cores.
+/// Runs every scene at every batch width with every instruction set of this machine where it can be chosen, on all cores.
 ///
 /// # Panics
 ///
@@ -42,10 +41,9 @@ const FUSED: [&str; 3] = ["AVX-512", "AVX2", "NEON"];
 pub fn measure() -> Vec<GoldenHash> {
     let scenes_and_widths: Vec<_> =
         scenes::ALL.iter().flat_map(|scene| WIDTHS.map(|lanes| (scene, lanes))).collect();
-    let runs = parallel::map(&scenes_and_widths, |((_, run), lanes)| run_at_width(*run, *lanes));
-    let runs_of_scenes = runs.chunks(WIDTHS.len());
-    let scenes_and_runs = scenes::ALL.iter().zip(runs_of_scenes);
-    scenes_and_runs.map(|((scene, _), runs)| golden_hash(scene, runs.concat())).collect()
+    let runs = parallel::map(&scenes_and_widths, |(scene, lanes)| runs_at_width(scene, *lanes));
+    let scenes_and_runs = scenes::ALL.iter().zip(runs.chunks(WIDTHS.len()));
+    scenes_and_runs.map(|(scene, runs)| golden_hash(scene.name, runs.concat())).collect()
 }
 
 /// One run of a scene.
@@ -53,35 +51,35 @@ pub fn measure() -> Vec<GoldenHash> {
 struct Run {
     /// Batch width and instruction set.
     setup: String,
+    /// Whether the instruction set has a fused multiply-add. Those without one have hashes of their own.
+    is_fused: bool,
     /// Index of the run's length in [`TICKS`].
     length: usize,
     hash: u64,
 }
 
 /// All runs of a scene at one batch width, the best instruction set first.
-fn run_at_width(run: scenes::Run, lanes: LaneCount) -> Vec<Run> {
-    let runs = with_every_instruction_set(|| {
-        let set = instruction_set();
-        let lengths = if !LaneCount::available().contains(&lanes) {
-            0..0
-        } else if FUSED.contains(&set) {
-            0..TICKS.len()
-        } else {
-            0..1
+fn runs_at_width(scene: &GoldenScene, lanes: LaneCount) -> Vec<Run> {
+    let runs = || {
+        let is_fused = has_fused_products();
+        let setup = format!("{} lanes, {}", lanes.get(), instruction_set());
+        let lengths = if LaneCount::available().contains(&lanes) { 0..TICKS.len() } else { 0..0 };
+        let run = |length: usize| {
+            let hash = (scene.run)(lanes, TICKS[length]);
+            Run { setup: setup.clone(), is_fused, length, hash }
         };
-        let setup = format!("{} lanes, {set}", lanes.get());
-        lengths
-            .map(|length| Run { setup: setup.clone(), length, hash: run(lanes, TICKS[length]) })
-            .collect::<Vec<_>>()
-    });
-    runs.concat()
+        lengths.map(run).collect::<Vec<_>>()
+    };
+    if scene.is_in_pool { runs() } else { with_every_instruction_set(runs).concat() }
 }
 
 /// The hashes of a scene's first run of each length, and the runs with other hashes.
 fn golden_hash(scene: &'static str, runs: Vec<Run>) -> GoldenHash {
-    let hashes =
-        [0, 1].map(|length| runs.iter().find(|run| run.length == length).map_or(0, |run| run.hash));
-    let deviating = runs.iter().filter(|run| run.hash != hashes[run.length]);
+    let hash = |is_fused: bool, length: usize| {
+        runs.iter().find(|run| (run.is_fused, run.length) == (is_fused, length)).map(|run| run.hash)
+    };
+    let hashes = [0, 1].map(|length| hash(true, length).unwrap_or(0));
+    let deviating = runs.iter().filter(|run| Some(run.hash) != hash(run.is_fused, run.length));
     let deviations = deviating
         .map(|run| format!("{}, {} ticks: {:016x}", run.setup, TICKS[run.length], run.hash));
     GoldenHash { scene, hashes, deviations: deviations.collect() }

@@ -22,15 +22,30 @@ const INTERVAL: u32 = 60;
 /// Runs a scene for some ticks in a batch of this width and hashes its states.
 pub type Run = fn(LaneCount, u32) -> u64;
 
-/// Every scene with its name.
-pub const ALL: [(&str, Run); 6] = [
-    ("flag on a vehicle", flag_on_a_vehicle),
-    ("stiff sheet by two corners", stiff_sheet),
-    ("mesh with a hole in wind", mesh_in_wind),
-    ("Gauss–Seidel curtain on a ball", gauss_seidel),
-    ("free sheet on a floor, level changes", free_sheet),
-    ("eight flags through the plugin", plugin),
+/// A scene.
+#[derive(Clone, Copy, Debug)]
+pub struct GoldenScene {
+    pub name: &'static str,
+    pub run: Run,
+    /// Whether its batches run on the threads of a pool, which do not know of the instruction set that another thread has
+    /// chosen.
+    pub is_in_pool: bool,
+}
+
+/// Every scene.
+pub const ALL: [GoldenScene; 6] = [
+    alone("flag on a vehicle", flag_on_a_vehicle),
+    alone("stiff sheet by two corners", stiff_sheet),
+    alone("mesh with a hole in wind", mesh_in_wind),
+    alone("Gauss–Seidel curtain on a ball", gauss_seidel),
+    alone("free sheet on a floor, level changes", free_sheet),
+    GoldenScene { name: "eight flags through the plugin", run: plugin, is_in_pool: true },
 ];
+
+/// A scene of batches that run on the calling thread.
+const fn alone(name: &'static str, run: Run) -> GoldenScene {
+    GoldenScene { name, run, is_in_pool: false }
+}
 
 /// The hashed cloth in the last lane of a batch, and a cloth with another material and wind in the first
 /// lane.

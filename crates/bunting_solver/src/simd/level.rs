@@ -14,6 +14,29 @@ pub(crate) fn level() -> Level {
     CHOSEN.get().unwrap_or_else(Level::new)
 }
 
+/// Whether an instruction set has a fused multiply-add, which rounds a sum with a product once. Where it has none, the
+/// product is rounded, too: once in software takes fifty times as long.
+#[inline(always)]
+pub(crate) fn fuses(level: Level) -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    {
+        matches!(level, Level::Avx2(_) | Level::Avx512(_))
+    }
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    {
+        let _ = level;
+        cfg!(target_arch = "aarch64")
+    }
+}
+
+/// Whether this thread's kernels have a fused multiply-add: those that have agree to the bit, and so do those that have
+/// not.
+#[doc(hidden)]
+#[must_use]
+pub fn has_fused_products() -> bool {
+    fuses(level())
+}
+
 /// Whether this thread's kernels use AVX-512.
 pub(crate) fn has_avx512() -> bool {
     #[cfg(target_arch = "x86_64")]
@@ -28,8 +51,7 @@ pub(crate) fn has_avx512() -> bool {
 
 /// Evaluates an expression with the token of this thread's instruction set, compiled for that set.
 ///
-/// Code for SSE2 also runs on SSE4.2 machines: both compute fused multiply-adds in software, which takes most
-/// of their time, and each further set adds about a fifth to this crate's compile time.
+/// Code for SSE2 also runs on SSE4.2 machines: each further set adds about a fifth to this crate's compile time.
 macro_rules! dispatch {
     ($token:pat => $work:expr) => {{
         #[cfg(target_arch = "x86_64")]

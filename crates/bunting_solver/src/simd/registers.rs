@@ -6,7 +6,7 @@ use core::ops::{Add, Div, Mul, Neg, Sub};
 use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, f32x4, f32x8, f32x16};
 
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
-use crate::simd::level::{dispatch, level};
+use crate::simd::level::{dispatch, fuses, level};
 
 /// A single lane: the scalar solver, with which the wide ones are compared in tests.
 #[derive(Clone, Copy, Debug)]
@@ -66,21 +66,6 @@ impl Pack for Pack1 {
             kernel.run::<Single<S>>(token);
         }
         dispatch!(token => with_token(token, kernel));
-    }
-}
-
-/// Whether the instruction set has a fused multiply-add. Without one, a sum with a product is computed in
-/// software, which is too long to be inlined.
-#[inline(always)]
-fn fuses<S: Simd>(token: S) -> bool {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    {
-        matches!(token.level(), Level::Avx2(_) | Level::Avx512(_))
-    }
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    {
-        let _ = token;
-        cfg!(target_arch = "aarch64")
     }
 }
 
@@ -167,16 +152,7 @@ macro_rules! lanes_of {
 
             #[inline(always)]
             fn plus_product(self, a: Self, b: Self) -> Self {
-                #[cold]
-                #[inline(never)]
-                fn in_software<S: Simd>(
-                    sum: $vector<S>,
-                    a: $vector<S>,
-                    b: $vector<S>,
-                ) -> $vector<S> {
-                    a.mul_add_precise(b, sum)
-                }
-                if fuses(self.simd) { a.mul_add_precise(b, self) } else { in_software(self, a, b) }
+                if fuses(self.simd.level()) { a.mul_add_precise(b, self) } else { self + a * b }
             }
 
             #[inline(always)]
@@ -312,17 +288,10 @@ impl<S: Simd> Lane for Single<S> {
     #[inline(always)]
     #[expect(clippy::disallowed_methods, reason = "reached only where the instruction set has it")]
     fn plus_product(self, a: Self, b: Self) -> Self {
-        #[cold]
-        #[inline(never)]
-        fn in_software<S: Simd>(token: S, [sum, a, b]: [f32; 3]) -> f32 {
-            let [sum, a, b] =
-                [sum, a, b].map(|value| <f32x4<S> as SimdBase<S>>::splat(token, value));
-            a.mul_add_precise(b, sum).as_slice()[0]
-        }
-        self.with(if fuses(self.token) {
+        self.with(if fuses(self.token.level()) {
             a.value.mul_add(b.value, self.value)
         } else {
-            in_software(self.token, [self.value, a.value, b.value])
+            self.value + a.value * b.value
         })
     }
 

@@ -16,6 +16,7 @@ use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
 use crate::constraints::background::nodes_of;
 use crate::fabric::{GridTransfer, Term};
 use crate::simd::lane::Pack;
+use crate::simd::level::has_fused_products;
 use crate::simd::vec3::Pack3;
 use crate::step::Scheme;
 use crate::step::bdf::IntegratorHistory;
@@ -219,10 +220,14 @@ fn add_resolved(transfer: &GridTransfer, particles: &[Vec3], nodes: &mut [Vec3])
 
 /// The vector that the terms of a row interpolate, with the bits of the kernels.
 fn interpolated(row: &[Term], from: &[Vec3]) -> Vec3 {
+    let is_fused = has_fused_products();
     let mut sum = Vec3::ZERO;
     for term in row {
         let from = from[term.from as usize];
-        let plus = |sum: f32, value: f32| libm::fmaf(value, term.weight, sum);
+        let plus = |sum: f32, value: f32| match is_fused {
+            true => libm::fmaf(value, term.weight, sum),
+            false => sum + value * term.weight,
+        };
         sum = Vec3::new(plus(sum.x, from.x), plus(sum.y, from.y), plus(sum.z, from.z));
     }
     sum
