@@ -12,6 +12,20 @@ use crate::timings::{ClothTimings, MeasureSystems, measure_sets};
 
 /// Measures the times of the [`ClothSystems`] for [`ClothTimings`], and adds these times, the counts of
 /// cloths by level, and the [`LodReport`] to Bevy's diagnostics.
+///
+/// ```
+/// use bevy_app::prelude::*;
+/// use bevy_bunting::ClothDiagnosticsPlugin;
+/// use bevy_bunting::prelude::*;
+/// use bevy_diagnostic::DiagnosticsStore;
+///
+/// let mut app = App::new();
+/// // The plugin is one of `ClothPlugins`.
+/// app.add_plugins((bevy_time::TimePlugin, bevy_transform::TransformPlugin, ClothPlugins::default()));
+/// app.update();
+/// let diagnostics = app.world().resource::<DiagnosticsStore>();
+/// assert!(diagnostics.get(&ClothDiagnosticsPlugin::TICK).is_some());
+/// ```
 #[derive(Debug, Default)]
 pub struct ClothDiagnosticsPlugin;
 

@@ -23,6 +23,23 @@ pub struct ClothTick;
 pub struct ClothSubstep;
 
 /// The sets of a [`ClothTick`], in this order.
+///
+/// ```
+/// use bevy_app::prelude::*;
+/// use bevy_bunting::prelude::*;
+/// use bevy_ecs::prelude::*;
+/// use bevy_math::Vec3;
+///
+/// /// Calms the wind before it acts on cloth.
+/// fn calm(mut winds: Query<&mut WindField>) {
+///     winds.iter_mut().for_each(|mut wind| wind.velocity = Vec3::ZERO);
+/// }
+///
+/// let mut app = App::new();
+/// app.add_plugins((bevy_time::TimePlugin, bevy_transform::TransformPlugin, ClothPlugins::default()))
+///     .add_systems(ClothTick, calm.before(ClothSystems::Prepare));
+/// app.update();
+/// ```
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClothSystems {
     /// Looks up or builds the fabrics of new and changed cloths, frees the lanes of removed ones, and sums up
@@ -46,7 +63,7 @@ impl ClothSystems {
         [Self::Prepare, Self::SelectLod, Self::Drive, Self::Step, Self::Normals, Self::Publish];
 }
 
-/// The sets of a [`ClothSubstep`], in this order.
+/// The sets of a [`ClothSubstep`], in this order. [`ClothParticles`](crate::ClothParticles) has an example of a user's force.
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClothSubstepSystems {
     /// Transforms states into the moved frame, applies external forces and damping, and predicts positions.

@@ -85,6 +85,22 @@ impl ClothGizmos {
 
 /// Draws [`ClothGizmos`] of visible cloths. Needs Bevy's `GizmoPlugin`, and
 /// [`ClothRenderPlugin`](crate::ClothRenderPlugin).
+///
+/// ```no_run
+/// use bevy_app::prelude::*;
+/// use bevy_bunting::prelude::*;
+/// use bevy_bunting::{ClothDebugPlugin, ClothGizmos};
+/// use bevy_ecs::prelude::*;
+///
+/// /// Shows pins and strain of new cloths.
+/// fn show(new: On<Add, ClothMesh>, mut commands: Commands) {
+///     let shown = ClothGizmos { attachments: true, strain: true, ..ClothGizmos::default() };
+///     commands.entity(new.entity).insert(shown);
+/// }
+///
+/// // In an app: App::new().add_plugins((DefaultPlugins, ClothPlugins::default(), ClothDebugPlugin));
+/// App::new().add_plugins((ClothPlugins::default(), ClothDebugPlugin)).add_observer(show);
+/// ```
 #[derive(Debug, Default)]
 pub struct ClothDebugPlugin;
 

@@ -4,7 +4,18 @@ use std::sync::Arc;
 
 use glam::{Quat, Vec3};
 
-/// A free particle that is held from outside, by a spring or on a rail.
+/// A free particle that is held from outside, by a spring or on a rail: see
+/// [`ClothBatch::hold`](crate::ClothBatch::hold).
+///
+/// ```
+/// use bunting_solver::{Hold, Holder};
+/// use glam::Vec3;
+///
+/// // A spring that stays where it is, and gives way at 30 N.
+/// let spring = Holder::Spring { place: [Vec3::ZERO; 2], stiffness: 200.0, max_force: 30.0 };
+/// let hold = Hold { particle: 0, by: spring };
+/// # assert_eq!(hold.particle, 0);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hold {
     /// Index of the particle. One that is pinned is not held.
@@ -17,13 +28,15 @@ pub struct Hold {
 /// at that time.
 ///
 /// ```
-/// use bunting_solver::{Hold, Holder};
-/// use glam::Vec3;
+/// use std::sync::Arc;
+/// use bunting_solver::Holder;
+/// use glam::{Quat, Vec3};
 ///
-/// // A spring that stays where it is, and gives way at 30 N.
-/// let spring = Holder::Spring { place: [Vec3::ZERO; 2], stiffness: 200.0, max_force: 30.0 };
-/// let hold = Hold { particle: 0, by: spring };
-/// # assert_eq!(hold.particle, 0);
+/// // A ring of 20 g on a straight rail of two metres that does not move.
+/// let rail = Arc::new([Vec3::ZERO, 2.0 * Vec3::X]);
+/// let pose = [(Vec3::ZERO, Quat::IDENTITY); 2];
+/// let ring = Holder::Ring { rail, pose, mass: 0.02, friction: 0.1 };
+/// # assert!(matches!(ring, Holder::Ring { .. }));
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub enum Holder {

@@ -26,6 +26,32 @@ use crate::step::{Scheme, StepSettings};
 /// Each cloth has a lane, numbered from 0. The bits of its state depend on its own history only. If there is
 /// no lane with a given number, methods that change a lane return [`BatchError::NoLane`], and methods that
 /// read one panic.
+///
+/// ```
+/// use std::sync::Arc;
+/// use bunting_solver::{
+///     ClothBatch, ClothSnapshot, Drive, FabricBuilder, FabricMaterial, Grid, LaneCount, StepLimits,
+/// };
+/// use glam::Vec3;
+///
+/// let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0));
+/// let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build()?);
+/// // Two flags side by side, each in a wind and of a material of its own.
+/// let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::Eight);
+/// let at_rest = ClothSnapshot::at_rest(&fabric);
+/// let calm = batch.insert(&at_rest, FabricMaterial::FLAG_POLYESTER)?;
+/// let windy = batch.insert(&at_rest, FabricMaterial::SILK)?;
+/// batch.drive(windy, Drive { wind: Vec3::new(6.0, 0.0, 1.0), ..Drive::default() })?;
+/// batch.step(1.0 / 60.0, StepLimits::default());
+///
+/// // The silk goes on in a batch of its own, with the same bits.
+/// let state = batch.snapshot(windy);
+/// batch.remove(windy)?;
+/// let mut alone = ClothBatch::new(fabric, LaneCount::One);
+/// alone.insert(&state, FabricMaterial::SILK)?;
+/// # assert!(batch.is_occupied(calm) && !batch.is_occupied(windy));
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct ClothBatch(pub(super) Lanes);
 

@@ -14,6 +14,23 @@ const SWEEPS: usize = 3;
 /// buffers are kept from one cloth to the next.
 ///
 /// Meshes of triangles without orientation have no inside and are skipped.
+///
+/// ```
+/// use bunting_solver::{ClothSnapshot, Collider, FabricBuilder, Grid, SurfaceLift};
+/// use glam::{Quat, Vec3};
+/// use parry3d::shape::SharedShape;
+///
+/// // A thin cuboid sticks through the middle of a cell, where no particle is.
+/// let fabric = FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0)).build()?;
+/// let positions = ClothSnapshot::at_rest(&fabric).positions;
+/// let at = (positions[0] + positions[10]) / 2.0;
+/// let spike = Collider::fixed(SharedShape::cuboid(0.01, 0.01, 0.05), at, Quat::IDENTITY);
+///
+/// let mut lifts = Vec::new();
+/// SurfaceLift::default().compute(&fabric, &positions, 2e-3, [&spike], &mut lifts);
+/// assert!(!lifts.is_empty());
+/// # Ok::<(), bunting_solver::FabricError>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct SurfaceLift {
     /// Positions in the frame of the present collider, m.

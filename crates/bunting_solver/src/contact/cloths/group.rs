@@ -27,6 +27,54 @@ pub trait GroupLanes {
 /// In each substep, [`begin_substep`](Self::begin_substep) comes before [`ClothBatch::integrate`] of all batches, and
 /// [`solve`](Self::solve) after [`ClothBatch::solve_constraints`]. Contacts of the cloths with colliders and with
 /// themselves are solved there, too. A cloth whose batch does not take part in a substep is held in it.
+///
+/// ```
+/// use std::sync::Arc;
+/// use bunting_solver::{
+///     ClothBatch, ClothGroup, ClothSnapshot, FabricBuilder, FabricMaterial, FrameMotion, Grid, GroupLanes,
+///     GroupMember, LaneCount, StepSettings,
+/// };
+/// use glam::{Quat, Vec3};
+///
+/// // Two flags, each alone in a batch.
+/// struct Flags([ClothBatch; 2]);
+///
+/// impl GroupLanes for Flags {
+///     fn lane(&mut self, member: usize) -> (&mut ClothBatch, usize) {
+///         (&mut self.0[member], 0)
+///     }
+/// }
+///
+/// let grid = FabricBuilder::grid(Grid::new(9, 9, 0.5, 0.5));
+/// let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build()?);
+/// let flag = || {
+///     let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
+///     batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::SILK).map(|_| batch)
+/// };
+/// let mut flags = Flags([flag()?, flag()?]);
+/// // One hangs 2 cm behind the other.
+/// let members = [0.0, 0.02].map(|behind| GroupMember {
+///     thickness: 5e-3,
+///     memberships: 1,
+///     filters: 1,
+///     start: (behind * Vec3::NEG_Z, Quat::IDENTITY),
+///     motion: FrameMotion::NONE,
+///     carrier: Vec3::ZERO,
+/// });
+///
+/// let mut group = ClothGroup::default();
+/// let settings = StepSettings::default();
+/// flags.0.iter_mut().for_each(|flag| flag.begin_tick(1.0 / 60.0, settings));
+/// group.set_members(&members, &mut flags);
+/// for _ in 0..settings.substeps {
+///     group.begin_substep(&mut flags);
+///     flags.0.iter_mut().for_each(ClothBatch::integrate);
+///     flags.0.iter_mut().for_each(ClothBatch::solve_constraints);
+///     group.solve(&mut flags);
+///     flags.0.iter_mut().for_each(ClothBatch::update_velocities);
+/// }
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct ClothGroup {
     members: Vec<Member>,

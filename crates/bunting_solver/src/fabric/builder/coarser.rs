@@ -3,7 +3,18 @@
 use super::source::FabricBuilder;
 use crate::fabric::grid::Grid;
 
-/// A mesh with some of the vertices of a finer mesh.
+/// A mesh with some of the vertices of a finer mesh, from [`FabricBuilder::coarser`].
+///
+/// ```
+/// use bunting_solver::{FabricBuilder, Grid};
+///
+/// let fine = FabricBuilder::grid(Grid::new(9, 5, 2.0, 1.0)).pin([0]);
+/// let coarse = fine.coarser().expect("the grid can be halved");
+/// // The second vertex of the coarser grid is the third one of the finer grid.
+/// assert_eq!(coarse.vertices[1], 2);
+/// assert_eq!(coarse.builder.build()?.particle_count(), 5 * 3);
+/// # Ok::<(), bunting_solver::FabricError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct CoarserMesh {
     /// The mesh, with those pins that remain.
