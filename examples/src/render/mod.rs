@@ -1,5 +1,7 @@
 //! Windows and pictures of examples.
 
+#[cfg(feature = "inspector")]
+mod inspector;
 pub mod keys;
 pub mod orbit;
 pub mod pictures;

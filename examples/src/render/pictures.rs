@@ -25,6 +25,8 @@ use bunting_scenes::Model;
 use clap::Args;
 
 use crate::headless::{self, ONE_TICK};
+#[cfg(feature = "inspector")]
+use crate::render::inspector;
 use crate::render::viewer;
 use crate::{ASSETS, Example, Options};
 
@@ -90,6 +92,8 @@ pub fn run(example: &impl Example, options: &Options, mut pictures: Pictures) ->
             .set(LogPlugin { level: Level::WARN, ..default() }),
     )
     .add_plugins((count_models, stage));
+    #[cfg(feature = "inspector")]
+    app.add_plugins(inspector::plugin);
     example.draw(&mut app);
     headless::start(&mut app, example);
     pictures.set_up(&mut app, camera);

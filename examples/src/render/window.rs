@@ -5,6 +5,8 @@ use std::process::ExitCode;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 
+#[cfg(feature = "inspector")]
+use crate::render::inspector;
 use crate::render::{keys, title, viewer};
 use crate::{ASSETS, Example};
 
@@ -25,6 +27,8 @@ pub fn run<E: Example>(example: &E) -> ExitCode {
         ClothPlugins::default(),
         (stage, keys::pause, title::plugin(E::NAME)),
     ));
+    #[cfg(feature = "inspector")]
+    app.add_plugins(inspector::plugin);
     example.build(&mut app, Update);
     let viewer = viewer(&mut app);
     app.world_mut().entity_mut(viewer).insert(camera);

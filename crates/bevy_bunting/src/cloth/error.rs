@@ -262,18 +262,6 @@ pub enum ClothError {
         /// Name of the attribute, as in `MeshVertexAttribute::name`.
         key: &'static str,
     },
-    /// The cloth of a [`ClothDeformer`](crate::ClothDeformer) has rigid parts, which carry nothing. The mesh is shown as
-    /// it is.
-    #[cfg(feature = "render")]
-    #[error(
-        "the mesh of {entity} cannot be carried by cloth {cloth}, which has rigid parts: carry it by a cloth without weights of 0"
-    )]
-    CarriedByRigid {
-        /// The entity with the mesh.
-        entity: Entity,
-        /// The cloth.
-        cloth: Entity,
-    },
     /// A position became infinite or not a number. The cloth was reset to its rest shape.
     #[error(
         "cloth {entity} diverged and was reset to its rest shape: give it more substeps, or a softer material"

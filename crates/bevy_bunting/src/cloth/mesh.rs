@@ -156,6 +156,26 @@ impl ClothMesh {
         Ok((repaired, repair))
     }
 
+    /// A mesh with at most this number of vertices that are not rigid, and the vertex that each of its vertices comes
+    /// from. None if it has no more, or cannot be simplified; grids are not.
+    #[cfg(feature = "render")]
+    pub(crate) fn simplified(&self, vertices: usize) -> Option<(Self, Vec<u32>)> {
+        let Self::Triangles { uv, weights, .. } = self else { return None };
+        let pins = (0..).zip(weights).filter(|(_, weight)| **weight == 0.0).map(|(at, _)| at);
+        let pins: Vec<u32> = pins.collect();
+        let all = vertices.saturating_add(pins.len());
+        let simple = self.builder().pin(pins).decimated(all)?;
+        let of_simple = || simple.vertices.iter().map(|&vertex| vertex as usize);
+        let mesh = Self::Triangles {
+            positions: simple.builder.positions().to_vec(),
+            indices: simple.builder.indices().to_vec(),
+            uv: of_simple().filter_map(|vertex| uv.get(vertex).copied()).collect(),
+            weights: of_simple().filter_map(|vertex| weights.get(vertex).copied()).collect(),
+            merged: simple.builder.merged().to_vec(),
+        };
+        Some((mesh, simple.vertices))
+    }
+
     /// Weights of all vertices; empty where all vertices are simulated.
     pub(crate) fn weights(&self) -> &[f32] {
         match self {

@@ -28,6 +28,24 @@ pub(crate) struct RigidPart {
 }
 
 impl RigidPart {
+    /// The corners of the rigid triangles, m.
+    #[cfg(feature = "render")]
+    pub fn corners(&self) -> Vec<[Vec3; 3]> {
+        let held = self.blended.iter().map(|(rest, _)| rest);
+        let mut places: Vec<(u32, Vec3)> =
+            self.vertices.iter().chain(held).map(|rest| (rest.vertex, rest.position)).collect();
+        places.sort_unstable_by_key(|place| place.0);
+        let place = |vertex| {
+            let index = places.binary_search_by_key(&vertex, |place| place.0).ok()?;
+            Some(places[index].1)
+        };
+        let corners = self.triangles.iter().filter_map(|corners| {
+            let [a, b, c] = corners.map(place);
+            Some([a?, b?, c?])
+        });
+        corners.collect()
+    }
+
     /// Extends the bounds to a position (m).
     pub fn extend_bounds(&mut self, position: Vec3) {
         let [low, high] = self.bounds.unwrap_or([position; 2]);

@@ -14,6 +14,7 @@ use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::display::surface::ClothSurface;
 use crate::fabric::levels::ClothLevels;
+use crate::render::deformer::ClothDeformer;
 use crate::render::level_mesh;
 use crate::render::level_meshes::{LevelMeshes, MeshOrigin, check_mesh};
 use crate::render::subdivision::ClothSubdivision;
@@ -29,9 +30,10 @@ type ShownCloth = (
 /// The first cloth that uses each given mesh; any further cloth gets a copy of the mesh.
 type Owners = HashMap<AssetId<Mesh>, Entity>;
 
-/// Assigns meshes to cloths that are new, have rebuilt levels, or have another `Mesh3d`.
+/// Assigns meshes to cloths that are new, have rebuilt levels, or have another `Mesh3d`. Cloths that carry their meshes
+/// have none of their levels.
 pub fn assign_meshes(
-    cloths: Query<ShownCloth>,
+    cloths: Query<ShownCloth, Without<ClothDeformer>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut owners: Local<Owners>,
     mut commands: Commands,

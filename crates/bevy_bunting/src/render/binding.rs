@@ -5,11 +5,14 @@ use bunting_solver::Subdivision;
 use parry3d::query::PointQueryWithLocation;
 use parry3d::shape::{TriMesh, TriMeshBuilderError};
 
-/// Each vertex of a mesh, bound to the nearest point of a surface at rest: by barycentric coordinates, and an offset in the
-/// frame of the surface there.
+/// The vertices of a mesh, each bound to the nearest point of a surface at rest: by barycentric coordinates, and an offset
+/// in the frame of the surface there. Vertices that are nearer to the cloth's rigid part stay where they are.
 #[derive(Clone, Debug)]
 pub struct Binding {
-    vertices: Vec<BoundVertex>,
+    /// The vertices that move, by their indices.
+    vertices: Vec<(usize, BoundVertex)>,
+    /// Number of vertices of the mesh.
+    count: usize,
     /// Greatest distance of a vertex from the surface, m.
     pub reach: f32,
 }
@@ -32,7 +35,7 @@ pub struct SurfaceVertices {
 }
 
 impl Binding {
-    /// Binds a mesh, given by positions (m) and normals, to a surface at rest.
+    /// Binds a mesh, given by positions (m) and normals, to a surface at rest, and to the corners of rigid triangles, m.
     ///
     /// # Errors
     ///
@@ -40,17 +43,25 @@ impl Binding {
     pub fn new(
         surface: &SurfaceVertices,
         subdivision: &Subdivision,
+        rigid: &[[Vec3; 3]],
         mesh: &SurfaceVertices,
     ) -> Result<Self, TriMeshBuilderError> {
-        let points = surface.positions.iter().map(|&at| Vec3::from(at)).collect();
-        let nearest = TriMesh::new(points, subdivision.triangles().to_vec())?;
+        let moving = subdivision.triangles();
+        let first = surface.positions.len() as u32;
+        let rigid_triangles =
+            (0..rigid.len() as u32).map(|it| [0, 1, 2].map(|at| first + 3 * it + at));
+        let points = surface.positions.iter().map(|&at| Vec3::from(at));
+        let nearest = TriMesh::new(
+            points.chain(rigid.iter().flatten().copied()).collect(),
+            moving.iter().copied().chain(rigid_triangles).collect(),
+        )?;
         let mut reach = 0.0_f32;
-        let bind = |(&position, &normal): (&[f32; 3], &[f32; 3])| {
+        let bind = |(index, (&position, &normal)): (usize, (&[f32; 3], &[f32; 3]))| {
             let position = Vec3::from(position);
             let (_, (triangle, place)) =
                 nearest.project_local_point_and_get_location(position, false);
             let mut bound = BoundVertex {
-                corners: subdivision.triangles()[triangle as usize],
+                corners: *moving.get(triangle as usize)?,
                 weights: place.barycentric_coordinates().unwrap_or([1.0, 0.0, 0.0]),
                 offset: Vec3::ZERO,
                 normal: Vec3::ZERO,
@@ -59,25 +70,26 @@ impl Binding {
             reach = reach.max(position.distance(foot));
             bound.offset = frame.transpose() * (position - foot);
             bound.normal = frame.transpose() * Vec3::from(normal);
-            bound
+            Some((index, bound))
         };
-        let vertices = mesh.positions.iter().zip(&mesh.normals).map(bind).collect();
-        Ok(Self { vertices, reach })
+        let all = mesh.positions.iter().zip(&mesh.normals).enumerate();
+        let vertices = all.filter_map(bind).collect();
+        Ok(Self { vertices, count: mesh.positions.len(), reach })
     }
 
     /// Number of vertices.
     pub fn vertex_count(&self) -> usize {
-        self.vertices.len()
+        self.count
     }
 
-    /// Writes positions (m) and normals of the mesh, carried by the surface.
+    /// Writes positions (m) and normals of the vertices that the surface carries.
     pub fn carry(
         &self,
         surface: &SurfaceVertices,
         positions: &mut [[f32; 3]],
         mut normals: Option<&mut [[f32; 3]]>,
     ) {
-        for (index, vertex) in self.vertices.iter().enumerate() {
+        for &(index, ref vertex) in &self.vertices {
             let (foot, frame) = vertex.frame(surface);
             positions[index] = (foot + frame * vertex.offset).to_array();
             if let Some(normals) = &mut normals {
@@ -138,7 +150,7 @@ mod tests {
         let normals: Vec<Vec3> = positions.iter().map(|at| (*at + Vec3::Y).normalize()).collect();
         let arrays = |values: &[Vec3]| values.iter().map(Vec3::to_array).collect::<Vec<_>>();
         let mesh = SurfaceVertices { positions: arrays(&positions), normals: arrays(&normals) };
-        let binding = Binding::new(&surface(&bent), &subdivision, &mesh).expect("triangles");
+        let binding = Binding::new(&surface(&bent), &subdivision, &[], &mesh).expect("triangles");
         assert!((0.1..1.1).contains(&binding.reach), "{}", binding.reach);
         let turn = Quat::from_euler(bevy_math::EulerRot::XYZ, 1.0, 2.0, 3.0);
         let shift = Vec3::new(1.0, -2.0, 0.5);

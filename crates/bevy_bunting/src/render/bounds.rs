@@ -7,6 +7,8 @@ use bevy_math::Vec3A;
 
 use crate::cloth::state::ClothState;
 use crate::display::easing::ClothEasing;
+use crate::fabric::levels::ClothLevels;
+use crate::render::deformer::Carried;
 use crate::render::level_meshes::LevelMeshes;
 use crate::render::subdivide::edge_length;
 
@@ -14,25 +16,28 @@ type BoundedCloth = (
     &'static ClothState,
     Option<&'static ClothEasing>,
     Option<&'static LevelMeshes>,
+    Option<&'static Carried>,
     &'static mut Aabb,
 );
-type IsStale = Or<(Changed<ClothState>, Changed<ClothEasing>, Changed<LevelMeshes>)>;
+type IsStale =
+    Or<(Changed<ClothState>, Changed<ClothEasing>, Changed<LevelMeshes>, Changed<Carried>)>;
 
 /// Length of an edge that the drawn surface may lie beyond the box of the particles: the negative weights at the middle of
 /// a cell add up to 0.28, and its sixteen particles are at most three diagonals apart.
 const BEYOND: f32 = 1.2;
 
-/// Distance by which the drawn surface may lie beyond the box of the particles, m.
-fn beyond_particles(meshes: &LevelMeshes) -> f32 {
+/// Distance by which a smooth surface may lie beyond the box of the particles, m.
+fn beyond_particles(levels: &ClothLevels) -> f32 {
     // The coarsest level has the longest edges.
-    let coarsest = meshes.levels.fabric(meshes.levels.count() - 1);
-    if meshes.halvings == 0 { 0.0 } else { BEYOND * edge_length(coarsest) }
+    BEYOND * edge_length(levels.fabric(levels.count() - 1))
 }
 
 /// Bounds the rigid part and the surfaces before and after the last tick, between which the shown surface
 /// lies. Cloths that are not visible are bounded, too, as they may come into view.
 pub fn bound_cloths(mut cloths: Query<BoundedCloth, (With<NoAutoAabb>, IsStale)>) {
-    for (state, easing, level_meshes, mut bounds) in &mut cloths {
+    for (state, easing, level_meshes, carried, mut bounds) in &mut cloths {
+        let levels = level_meshes.map(|it| &*it.levels).or(carried.map(Carried::levels));
+        let smooth = carried.is_some() || level_meshes.is_some_and(|it| it.halvings > 0);
         let [from, to] = match easing {
             Some(easing) if easing.level().is_some() => {
                 [&*easing.previous_positions, &*easing.positions]
@@ -40,7 +45,7 @@ pub fn bound_cloths(mut cloths: Query<BoundedCloth, (With<NoAutoAabb>, IsStale)>
             _ => [state.previous_positions(), state.positions()],
         };
         let particles = from.iter().chain(to);
-        let rigid = level_meshes.and_then(|it| it.levels.rigid().bounds.as_ref());
+        let rigid = levels.and_then(|it| it.rigid().bounds.as_ref());
         let (low, high) = particles
             .chain(rigid.into_iter().flatten())
             .map(|&position| Vec3A::from(position))
@@ -48,7 +53,8 @@ pub fn bound_cloths(mut cloths: Query<BoundedCloth, (With<NoAutoAabb>, IsStale)>
                 (low.min(position), high.max(position))
             });
         if low.cmple(high).all() {
-            let beyond = level_meshes.map_or(0.0, beyond_particles);
+            let beyond = levels.filter(|_| smooth).map_or(0.0, beyond_particles);
+            let beyond = beyond + carried.map_or(0.0, Carried::reach);
             let half_extents = 0.5 * (high - low) + Vec3A::splat(beyond);
             let bound = Aabb { center: 0.5 * (low + high), half_extents };
             bounds.set_if_neq(bound);

@@ -14,6 +14,7 @@ use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::cloth::mesh::ClothMesh;
 use crate::fabric::scale::ScaleBaked;
+use crate::render::deformer::{Carried, ClothDeformer};
 use crate::render::from_skin::{BindPoses, LoadedSkin, unbind};
 use crate::render::level_mesh::with_vertices;
 use crate::render::level_meshes::LevelMeshes;
@@ -64,6 +65,11 @@ pub struct ClothFromMesh {
     /// Weights of the vertices, painted by the artist; without them all vertices are simulated. What
     /// is pinned stays on the entity, or on the target of its [`Attachment`](crate::Attachment) if it has one.
     pub weights: Option<PaintedWeights>,
+    /// Greatest number of simulated vertices. A mesh with more is simulated as one with fewer triangles, which carries the
+    /// detailed one like a [`ClothDeformer`](crate::ClothDeformer); pinned vertices stay, as
+    /// [`FabricBuilder::decimated`](bunting_solver::FabricBuilder::decimated) says. The [`ClothMesh`] has the vertices of the
+    /// simple mesh, by which [`AttachedVertices::List`](crate::AttachedVertices::List) names them.
+    pub max_vertices: Option<u32>,
     /// Greatest distances of the particles of a skinned mesh from their animated places, painted by the artist; written into
     /// the entity's [`SkinLimits`](crate::SkinLimits).
     pub max_distance: Option<PaintedDistance>,
@@ -104,6 +110,7 @@ type Asked = (
     &'static Mesh3d,
     Option<&'static SourceMesh>,
     Option<&'static LevelMeshes>,
+    Option<&'static Carried>,
     Option<&'static SkinnedMesh>,
     Option<&'static SkinLimits>,
     Has<AwaitsMesh>,
@@ -119,9 +126,11 @@ pub fn make_cloths(
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, wanted, shown, known, levels, skinned, limits, awaits) in &asked {
+    for (entity, wanted, shown, known, levels, carried, skinned, limits, awaits) in &asked {
         let is_own = |known: &&SourceMesh| {
-            known.shown == shown.id() || levels.is_some_and(|levels| levels.contains(shown.id()))
+            known.shown == shown.id()
+                || levels.is_some_and(|levels| levels.contains(shown.id()))
+                || carried.is_some_and(|carried| carried.shows(shown.id()))
         };
         let known = known.filter(is_own);
         if known.is_some() && !wanted.is_changed() && !awaits {
@@ -151,18 +160,23 @@ pub fn make_cloths(
         };
         let scale = if is_scale(scale) { scale } else { Vec3::ONE };
         match wanted.convert(entity, mesh, scale) {
-            Ok((shape, mut copy, distances)) => {
+            Ok(Converted { shape, mut shown, distances, simple }) => {
                 if let Some(skin) = loaded {
-                    cloth.insert(skin.convert(&copy, scale));
+                    cloth.insert(skin.convert(simple.as_ref().unwrap_or(&shown), scale));
                     cloth.remove::<(SkinnedMesh, DynamicSkinnedMeshBounds)>();
-                    unbind(&mut copy);
+                    unbind(&mut shown);
                 }
                 if let Some(distances) = distances {
                     let others = limits.cloned().unwrap_or_default();
                     let max_distance = ByVertex::Each(distances);
                     cloth.insert(SkinLimits { max_distance, ..others });
                 }
-                let copy = meshes.add(copy);
+                if simple.is_some() {
+                    cloth.insert(ClothDeformer { cloth: entity }).remove::<LevelMeshes>();
+                } else if carried.is_some_and(|carried| carried.is_of(entity)) {
+                    cloth.remove::<(ClothDeformer, Carried)>();
+                }
+                let copy = meshes.add(shown);
                 let made_of = SourceMesh { source, shown: copy.id(), skin };
                 cloth.insert((shape, made_of, ScaleBaked, Mesh3d(copy)));
                 cloth.remove::<AwaitsMesh>();
@@ -181,15 +195,20 @@ fn is_scale(scale: Vec3) -> bool {
     scale.is_finite() && scale.cmpne(Vec3::ZERO).all()
 }
 
+/// The cloth that a mesh becomes.
+struct Converted {
+    shape: ClothMesh,
+    /// The mesh that shows it.
+    shown: Mesh,
+    /// The vertices' greatest distances from their animated places, m, if they are painted.
+    distances: Option<Vec<f32>>,
+    /// The mesh with the vertices of the shape, if these are fewer than those that are shown.
+    simple: Option<Mesh>,
+}
+
 impl ClothFromMesh {
-    /// The cloth of a mesh with a scale, the mesh that shows it, vertex by vertex, and the vertices' greatest distances, if
-    /// they are painted.
-    fn convert(
-        &self,
-        entity: Entity,
-        mesh: &Mesh,
-        scale: Vec3,
-    ) -> Result<(ClothMesh, Mesh, Option<Vec<f32>>), ClothError> {
+    /// The cloth of a mesh with a scale.
+    fn convert(&self, entity: Entity, mesh: &Mesh, scale: Vec3) -> Result<Converted, ClothError> {
         let is_kept = mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD);
         if !is_kept || mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION).is_err() {
             return Err(ClothError::MeshUnreadable { entity });
@@ -219,7 +238,14 @@ impl ClothFromMesh {
                 shown.insert_indices(Indices::U32(indices.clone()));
             }
         }
-        let distances = self.max_distance.as_ref().map(|painted| painted.read(entity, &shown));
-        Ok((shape, shown, distances.transpose()?))
+        let simplified = self.max_vertices.and_then(|most| shape.simplified(most as usize));
+        let simple = simplified.map(|(simplified, vertices)| {
+            shape = simplified;
+            with_vertices(shown.clone(), vertices)
+        });
+        let of_shape = simple.as_ref().unwrap_or(&shown);
+        let distances = self.max_distance.as_ref().map(|painted| painted.read(entity, of_shape));
+        let distances = distances.transpose()?;
+        Ok(Converted { shape, shown, distances, simple })
     }
 }

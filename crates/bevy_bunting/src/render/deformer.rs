@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use bevy_asset::{AssetId, Assets, RenderAssetUsages};
+use bevy_asset::{AssetId, Assets, Handle, RenderAssetUsages};
 use bevy_camera::primitives::Aabb;
-use bevy_camera::visibility::{InheritedVisibility, NoAutoAabb};
+use bevy_camera::visibility::{InheritedVisibility, NoAutoAabb, Visibility};
 use bevy_ecs::prelude::*;
 use bevy_math::{Vec3, Vec3A};
 use bevy_mesh::{Mesh, Mesh3d, VertexAttributeValues};
@@ -31,10 +31,12 @@ const HALVINGS: u32 = 1;
 /// without a transform of its own. The mesh that is shown is a copy; other entities with the same asset stay as they
 /// are. It is drawn as it is until another thread has bound it. The cloth itself is drawn only if it has a material.
 ///
+/// A cloth that names itself is drawn by its own detailed mesh alone: that is what
+/// [`ClothFromMesh::max_vertices`](crate::ClothFromMesh) does.
+///
 /// # Errors
 ///
-/// A [`ClothFailed`] event tells that the mesh is kept in the render world only, or that the cloth has rigid
-/// parts, which carry nothing. The mesh is then shown as it is.
+/// A [`ClothFailed`] event tells that the mesh is kept in the render world only. It is then shown as it is.
 ///
 /// ```
 /// use bevy_bunting::ClothDeformer;
@@ -61,9 +63,47 @@ pub struct ClothDeformer {
 pub struct Carried {
     cloth: Entity,
     levels: Arc<ClothLevels>,
+    /// The given mesh, as it is at rest.
+    given: Handle<Mesh>,
     /// The mesh that is shown: a copy or, if the mesh cannot be carried, the given one.
     shown: AssetId<Mesh>,
     state: CarriedState,
+}
+
+impl Carried {
+    /// Levels of the cloth.
+    pub fn levels(&self) -> &ClothLevels {
+        &self.levels
+    }
+
+    /// Whether this cloth carries it.
+    pub fn is_of(&self, cloth: Entity) -> bool {
+        self.cloth == cloth
+    }
+
+    /// Whether this is the mesh that is shown.
+    pub fn shows(&self, mesh: AssetId<Mesh>) -> bool {
+        self.shown == mesh
+    }
+
+    /// Takes up the binding that another thread has made. Returns whether it has.
+    fn finish(&mut self) -> bool {
+        if let CarriedState::Awaited(work) = &self.state
+            && work.is_done()
+            && let CarriedState::Awaited(work) =
+                core::mem::replace(&mut self.state, CarriedState::Refused)
+            && let Some(bound) = work.take()
+        {
+            self.state = CarriedState::Bound(Box::new(bound));
+            return true;
+        }
+        false
+    }
+
+    /// Greatest distance of a vertex from the surface, m; zero until it is known.
+    pub fn reach(&self) -> f32 {
+        if let CarriedState::Bound(bound) = &self.state { bound.binding.reach } else { 0.0 }
+    }
 }
 
 #[derive(Debug)]
@@ -101,33 +141,31 @@ pub fn bind_meshes(
         if is_known {
             continue;
         }
-        let Some(mesh) = meshes.get(shown.id()) else { continue };
+        let known = carried.filter(|carried| carried.shown == shown.id());
+        let given = known.map_or(&shown.0, |carried| &carried.given).clone();
+        let Some(mesh) = meshes.get(&given) else { continue };
         let bound = |shown: AssetId<Mesh>, state: CarriedState| Carried {
             cloth: deformer.cloth,
             levels: Arc::clone(levels),
+            given: given.clone(),
             shown,
             state,
         };
-        let refusal = if !levels.rigid().vertices.is_empty() {
-            Some(ClothError::CarriedByRigid { entity, cloth: deformer.cloth })
-        } else if at_rest(mesh).is_none() {
-            Some(ClothError::MeshUnreadable { entity })
-        } else {
-            None
-        };
-        if let Some(error) = refusal {
+        let Some(rest) = at_rest(mesh) else {
             commands.entity(entity).insert(bound(shown.id(), CarriedState::Refused));
-            ClothFailed::report(&mut commands, entity, error);
+            ClothFailed::report(&mut commands, entity, ClothError::MeshUnreadable { entity });
             continue;
-        }
+        };
         let copy = mesh.clone();
-        let Some(rest) = at_rest(&copy) else { continue };
         let of = Arc::clone(levels);
         let work = Background::begin(move || bind(&of, &rest));
         let copy = meshes.add(copy);
         let carried = bound(copy.id(), CarriedState::Awaited(work));
-        commands.entity(entity).insert((carried, Mesh3d(copy), NoAutoAabb));
-        commands.entity(entity).insert_if_new(Aabb::default());
+        let mut entity_commands = commands.entity(entity);
+        entity_commands.insert((carried, Mesh3d(copy), NoAutoAabb)).insert_if_new(Aabb::default());
+        if deformer.cloth == entity {
+            entity_commands.insert_if_new((ClothSurface::default(), Visibility::default()));
+        }
     }
 }
 
@@ -147,12 +185,13 @@ fn at_rest(mesh: &Mesh) -> Option<SurfaceVertices> {
 
 /// Binds a mesh to the finest level at rest.
 fn bind(levels: &ClothLevels, mesh: &SurfaceVertices) -> Option<Bound> {
-    let fabric = levels.fabric(0);
-    let subdivision = Subdivision::new(fabric, &levels.topology(0).indices, HALVINGS);
+    let (fabric, rigid) = (levels.fabric(0), levels.rigid());
+    let indices = levels.topology(0).simulated_indices(rigid);
+    let subdivision = Subdivision::new(fabric, &indices, HALVINGS);
     let mut surface = SurfaceVertices::default();
     let buffers = &mut SubdivisionBuffers::default();
     evaluate(&subdivision, fabric.rest_positions(), buffers, &mut surface);
-    let binding = Binding::new(&surface, &subdivision, mesh).ok()?;
+    let binding = Binding::new(&surface, &subdivision, &rigid.corners(), mesh).ok()?;
     Some(Bound { subdivision, binding, written: Vec::new() })
 }
 
@@ -176,35 +215,33 @@ pub struct CarryBuffers {
     tangents: TangentSums,
 }
 
-type CarriedMesh =
-    (&'static Mesh3d, &'static InheritedVisibility, &'static mut Carried, &'static mut Aabb);
+type CarriedMesh = (Entity, &'static Mesh3d, &'static InheritedVisibility, &'static mut Carried);
 
-/// Writes carried meshes of cloths that have moved, and their bounds.
+/// Writes carried meshes of cloths that have moved, and the bounds of those that other entities have.
 pub fn carry_meshes(
-    mut carried: Query<CarriedMesh, Without<ClothSurface>>,
-    cloths: Query<(Ref<ClothSurface>, &Aabb), With<ClothInstance>>,
+    mut carried: Query<CarriedMesh>,
+    cloths: Query<&ClothSurface, With<ClothInstance>>,
+    mut bounds: Query<&mut Aabb>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut buffers: Local<CarryBuffers>,
 ) {
-    for (shown, visibility, mut carried, mut bounds) in &mut carried {
-        let carried = carried.bypass_change_detection();
-        if let CarriedState::Awaited(work) = &carried.state
-            && work.is_done()
-            && let CarriedState::Awaited(work) =
-                core::mem::replace(&mut carried.state, CarriedState::Refused)
-            && let Some(bound) = work.take()
-        {
-            carried.state = CarriedState::Bound(Box::new(bound));
+    for (entity, shown, visibility, mut carried) in &mut carried {
+        if carried.bypass_change_detection().finish() {
+            // Its bounds follow.
+            carried.set_changed();
         }
+        let carried = carried.bypass_change_detection();
         let CarriedState::Bound(bound) = &mut carried.state else { continue };
-        let Ok((surface, of_cloth)) = cloths.get(carried.cloth) else { continue };
+        let Ok(surface) = cloths.get(carried.cloth) else { continue };
         let fits =
             surface.positions.len() == carried.levels.fabric(surface.level()).particle_count();
         if !fits || shown.id() != carried.shown {
             continue;
         }
-        let half_extents = of_cloth.half_extents + Vec3A::splat(bound.binding.reach);
-        bounds.set_if_neq(Aabb { center: of_cloth.center, half_extents });
+        if let Ok([of_cloth, mut bounds]) = bounds.get_many_mut([carried.cloth, entity]) {
+            let half_extents = of_cloth.half_extents + Vec3A::splat(bound.binding.reach);
+            bounds.set_if_neq(Aabb { center: of_cloth.center, half_extents });
+        }
         if !visibility.get() {
             continue;
         }

@@ -3,7 +3,7 @@
 use bevy_bunting::prelude::*;
 use bevy_bunting::{ClothEffort, ClothPaused};
 use bevy_ecs::prelude::*;
-use bevy_egui::egui::{ScrollArea, Ui};
+use bevy_egui::egui::{CollapsingHeader, ScrollArea, Ui};
 use bevy_inspector_egui::bevy_inspector::ui_for_entity;
 
 use crate::panel::brush::show_brush;
@@ -71,5 +71,7 @@ pub fn show_selected(world: &mut World, ui: &mut Ui) {
         }
     });
     show_brush(world, cloth, ui);
-    ui.collapsing("Selected cloth", |ui| ui_for_entity(world, cloth, ui));
+    CollapsingHeader::new("Selected cloth")
+        .default_open(true)
+        .show(ui, |ui| ui_for_entity(world, cloth, ui));
 }

@@ -36,10 +36,16 @@ fn plot(diagnostic: &Diagnostic, ui: &mut Ui) {
         let stroke = PathStroke::new(LINE, ui.visuals().text_color());
         ui.painter().rect_filled(area, 0.0, ui.visuals().extreme_bg_color);
         ui.painter().line(points(&values, greatest, area), stroke);
-        let (path, suffix) = (diagnostic.path(), &diagnostic.suffix);
+        let suffix = &diagnostic.suffix;
         let last = values.last().copied().unwrap_or_default();
-        ui.label(format!("{path}: {last:.3} {suffix}, greatest {greatest:.3} {suffix}"));
+        let name = name(diagnostic.path());
+        ui.label(format!("{name} {last:.2} {suffix}, at most {greatest:.2} {suffix}"));
     });
+}
+
+/// What a diagnostic is called beside its plot: `mean strain` for `cloth/selected/mean_strain`.
+fn name(path: &DiagnosticPath) -> String {
+    path.components().last().unwrap_or_default().replace('_', " ")
 }
 
 /// Points of the values in an area whose height is `greatest`, the last one at its right.

@@ -107,6 +107,7 @@ fn spawn_flag(commands: &mut Commands, vehicle: Entity, colour: [u8; 3]) {
     let top = Transform::from_xyz(0.0, 0.5 * Pole::LENGTH, 0.0)
         .with_rotation(Quat::from_rotation_y(-FRAC_PI_2));
     commands.spawn((
+        Name::new("Flag"),
         ClothMesh::grid(33, 23, 1.5, 1.0),
         ClothMaterial::FLAG_POLYESTER,
         Attachment::new(pole, ClothEdge::Left).with_offset(top),

@@ -42,6 +42,7 @@ pub fn spawn(commands: &mut Commands) -> Entity {
     };
     let rings = Anchor::new(rail, others).with_hold(hold);
     let cloth = (
+        Name::new("Curtain"),
         ClothMesh::grid(COLUMNS, ROWS, WIDTH, HEIGHT),
         ClothMaterial(FabricMaterial { area_density: 0.2, ..FabricMaterial::COTTON }),
         Attachment::new(rail, first).with_anchor(rings),

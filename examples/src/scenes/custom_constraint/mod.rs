@@ -103,6 +103,7 @@ impl OrbitExample for CustomConstraint {
         let offset = Transform::from_xyz(-0.5 * WIDTH, -0.1, 0.0);
         commands.spawn((
             Streamer,
+            Name::new("Streamer"),
             ClothMesh::grid(9, 49, WIDTH, LENGTH),
             ClothMaterial::SILK,
             SelfCollision::default(),

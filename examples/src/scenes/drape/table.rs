@@ -60,6 +60,7 @@ pub fn spawn(commands: &mut Commands) {
     let corner = turn * Vec3::new(-0.5 * SHEET.x, 0.5 * SHEET.y, 0.0);
     commands.spawn((
         Sheet,
+        Name::new("Tablecloth"),
         ClothMesh::grid(PARTICLES.0, PARTICLES.1, SHEET.x, SHEET.y),
         ClothMaterial(FabricMaterial { area_density: 0.2, ..FabricMaterial::COTTON }),
         Transform::from_translation(CENTRE + DROP * Vec3::Y + corner).with_rotation(turn),

@@ -66,13 +66,66 @@ fn a_carried_mesh_follows_its_cloth_at_every_level() {
 }
 
 #[test]
-fn what_cannot_be_carried_is_reported_once() {
+fn a_mesh_is_bound_as_it_was_given_when_the_cloth_is_made_anew() {
+    let mut app = app(TICK);
+    let [cloth, carried] = flag_with_a_box(&mut app, LodSet::default());
+    wait(&mut app, carried);
+    run(&mut app, 60);
+    let given: Vec<Vec3> = surface(&app, cloth).positions.clone();
+    let flown = centre(&app, carried);
+    assert!(flown.z > 0.1, "the flag flies: {flown}");
+    // Another attachment is another fabric, whose surface is flat again.
+    app.world_mut().entity_mut(cloth).insert(Attachment::in_place(ClothEdge::Right));
+    app.world_mut().entity_mut(cloth).insert(ClothPaused);
+    let mut beside = f32::INFINITY;
+    for _ in 0..300 {
+        run(&mut app, 1);
+        std::thread::sleep(Duration::from_millis(1));
+        let now = centre(&app, carried);
+        let surface = surface(&app, cloth);
+        let nearest = surface.positions.iter().map(|at| at.distance(now)).fold(9.0, f32::min);
+        beside = nearest;
+    }
+    assert_ne!(surface(&app, cloth).positions, given);
+    assert!(beside < 0.15, "{beside} m from the nearest particle");
+}
+
+#[test]
+fn what_lies_over_the_rigid_part_stays_and_the_rest_is_carried() {
     let mut app = app(TICK);
     let weight = |vertex: usize| if vertex % 9 < 3 { 0.0 } else { 1.0 };
     let shape = FLAG.with_weights((0..45).map(weight).collect());
     let cloth = app.world_mut().spawn((shape, Attachment::in_place(AttachedVertices::Rigid))).id();
-    let mesh = add(&mut app, Mesh::from(Cuboid::default()));
+    // A row of points over the whole width.
+    let row: Vec<[f32; 3]> = (0..31).map(|at| [0.05 * at as f32, -0.4, 0.01]).collect();
+    let mesh = Mesh::new(bevy_mesh::PrimitiveTopology::PointList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, row.clone());
+    let mesh = add(&mut app, mesh);
+    let carried = app.world_mut().spawn((mesh, crate::ClothDeformer { cloth })).id();
+    for _ in 0..200 {
+        run(&mut app, 1);
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    assert_eq!(failures(&app), []);
+    let moved: Vec<f32> = positions(&app, carried)
+        .iter()
+        .zip(&row)
+        .map(|(now, rest)| Vec3::from(*now).distance(Vec3::from(*rest)))
+        .collect();
+    // Three columns of vertices are rigid: the first 0.375 m.
+    assert!(moved[..7].iter().all(|&moved| moved == 0.0), "{moved:?}");
+    assert!(moved[30] > 0.2, "{moved:?}");
+    assert!(moved.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 0.08), "no gap: {moved:?}");
+}
+
+#[test]
+fn what_cannot_be_read_is_reported_once() {
+    let mut app = app(TICK);
+    let cloth = spawn(&mut app, ());
+    let mut mesh = Mesh::from(Cuboid::default());
+    mesh.asset_usage = RenderAssetUsages::RENDER_WORLD;
+    let mesh = add(&mut app, mesh);
     let carried = app.world_mut().spawn((mesh, crate::ClothDeformer { cloth })).id();
     run(&mut app, 5);
-    assert_eq!(failures(&app), [ClothError::CarriedByRigid { entity: carried, cloth }]);
+    assert_eq!(failures(&app), [ClothError::MeshUnreadable { entity: carried }]);
 }

@@ -10,6 +10,7 @@ mod given;
 mod levels;
 mod parts;
 pub(crate) mod reflect;
+mod simplified;
 mod subdivided;
 mod written;
 

@@ -104,7 +104,10 @@ fn check_serializable(of: TypeId, types: &TypeRegistry, seen: &mut BTreeSet<Type
 
 #[test]
 fn every_public_component_and_resource_is_reflected() {
-    let app = app(TICK);
+    #[cfg_attr(not(feature = "picking"), expect(unused_mut, reason = "one plugin fewer"))]
+    let mut app = app(TICK);
+    #[cfg(feature = "picking")]
+    app.add_plugins(crate::ClothDragPlugin);
     let types = app.world().resource::<AppTypeRegistry>().read();
     let of = |name: &String| {
         types.get_with_short_type_path(name).unwrap_or_else(|| panic!("{name} is not registered"))
@@ -135,7 +138,13 @@ fn a_cloth_of_a_mesh_makes_the_round_trip() {
     let paint = VertexPaint::Attribute("Pin".to_owned());
     let max_distance = Some(PaintedDistance { paint: paint.clone(), at_zero: 0.1, at_one: 0.5 });
     let weights = Some(PaintedWeights { paint, free: 0.2, pinned: 0.7 });
-    let asked = ClothFromMesh { repair: true, ignore_uv: true, weights, max_distance };
+    let asked = ClothFromMesh {
+        repair: true,
+        ignore_uv: true,
+        weights,
+        max_vertices: Some(600),
+        max_distance,
+    };
     let mut app = app(TICK);
     let original = app.world_mut().spawn(asked.clone()).id();
     let copy = app.world_mut().spawn_empty().id();

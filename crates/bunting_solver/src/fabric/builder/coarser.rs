@@ -41,6 +41,32 @@ impl FabricBuilder {
         }
     }
 
+    /// The same shape with at most this number of vertices, as far as all pinned vertices can stay and hardly any
+    /// triangle is turned over: for a mesh that is drawn in more detail than it is simulated. Unlike in
+    /// [`coarser`](Self::coarser) the border has fewer vertices, too. None if the mesh has no more than this number, is
+    /// invalid, or cannot be simplified, and without the feature `mesh_levels`.
+    ///
+    /// ```
+    /// use bunting_solver::{FabricBuilder, Grid};
+    ///
+    /// let grid = FabricBuilder::grid(Grid::new(65, 65, 1.0, 1.0));
+    /// let dense = FabricBuilder::new(grid.positions().to_vec(), grid.indices().to_vec());
+    /// let simple = dense.pin([0, 64]).decimated(600).expect("it has 4,225 vertices");
+    /// assert!((400..=600).contains(&simple.vertices.len()));
+    /// ```
+    #[must_use]
+    #[cfg_attr(
+        not(feature = "mesh_levels"),
+        expect(unused_variables, reason = "by meshoptimizer only")
+    )]
+    pub fn decimated(&self, vertices: usize) -> Option<CoarserMesh> {
+        #[cfg(feature = "mesh_levels")]
+        let decimated = self.simplified_to(vertices);
+        #[cfg(not(feature = "mesh_levels"))]
+        let decimated = None;
+        decimated
+    }
+
     fn every_second(&self, grid: &Grid) -> Option<CoarserMesh> {
         let halved = grid.halved()?;
         let vertices: Vec<u32> = (0..halved.rows)
@@ -119,6 +145,22 @@ mod tests {
         assert_eq!(builder.pinned.len(), fine.pinned.len());
         let area = |builder: &FabricBuilder| builder.clone().build().expect("a cloth").area();
         assert!((area(&builder) / area(&fine) - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_decimated_mesh_has_the_shape_with_fewer_vertices_also_on_the_border() {
+        let fine = curtain();
+        assert!(fine.decimated(fine.positions.len()).is_none(), "it has no more");
+        let CoarserMesh { builder, vertices } = fine.decimated(120).expect("it has some 500");
+        assert!((90..=120).contains(&vertices.len()), "{}", vertices.len());
+        for (vertex, &of) in vertices.iter().enumerate() {
+            assert_eq!(builder.positions[vertex], fine.positions[of as usize]);
+            assert_eq!(builder.uv[vertex], fine.uv[of as usize]);
+        }
+        assert!(border(&builder.indices).len() < border(&fine.indices).len());
+        assert_eq!(builder.pinned.len(), fine.pinned.len());
+        let area = |builder: &FabricBuilder| builder.clone().build().expect("a cloth").area();
+        assert!((area(&builder) / area(&fine) - 1.0).abs() < 0.05);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The next coarser mesh of one that is not a grid.
+//! Meshes with fewer triangles: the next coarser level of one that is not a grid, and one of a given size.
 
 use meshopt::{SimplifyOptions, VertexDataAdapter, typed_to_bytes};
 
@@ -16,12 +16,51 @@ const WORTHWHILE: f32 = 0.75;
 /// much as a metre of shape.
 const UV_COST: f32 = 1.0;
 
+/// Fraction of the triangles that are asked for when a mesh still has too many vertices.
+const FEWER: f32 = 0.75;
+
+/// Greatest number of attempts to reach a number of vertices.
+const ATTEMPTS: usize = 8;
+
 impl FabricBuilder {
+    /// A mesh of at most this number of vertices, if it can be reached. None if the mesh has no more than this number, is
+    /// invalid, or cannot be simplified.
+    pub(super) fn simplified_to(&self, vertices: usize) -> Option<CoarserMesh> {
+        if self.positions.len() <= vertices {
+            return None;
+        }
+        self.validate().ok()?;
+        // Twice as many triangles as vertices, by Euler's formula.
+        let mut triangles = 2.0 * vertices as f32;
+        let mut least: Option<CoarserMesh> = None;
+        for _ in 0..ATTEMPTS {
+            let kept =
+                self.simplified_triangles(3 * triangles as usize, SimplifyOptions::Regularize);
+            let Some(simple) = kept.map(|kept| self.with_triangles(&kept)) else { break };
+            let count = simple.vertices.len();
+            if least.as_ref().is_some_and(|least| least.vertices.len() <= count) {
+                break;
+            }
+            least = Some(simple);
+            if count <= vertices {
+                break;
+            }
+            triangles *= FEWER;
+        }
+        least
+    }
+
     /// About a quarter of the triangles, with the whole border and all pins. None if hardly any can be removed.
     pub(super) fn simplified(&self) -> Option<CoarserMesh> {
         self.validate().ok()?;
-        let kept = self.simplified_triangles()?;
-        let mut vertices = kept.clone();
+        let options = SimplifyOptions::LockBorder | SimplifyOptions::Regularize;
+        let kept = self.simplified_triangles(self.indices.len() / REDUCTION, options)?;
+        Some(self.with_triangles(&kept))
+    }
+
+    /// The mesh of some triangles, three vertices each.
+    fn with_triangles(&self, kept: &[u32]) -> CoarserMesh {
+        let mut vertices = kept.to_vec();
         vertices.sort_unstable();
         vertices.dedup();
         let index = |vertex: &u32| vertices.binary_search(vertex).ok().map(|at| at as u32);
@@ -40,11 +79,12 @@ impl FabricBuilder {
             tethered: self.tethered,
             grid: None,
         };
-        Some(CoarserMesh { builder, vertices })
+        CoarserMesh { builder, vertices }
     }
 
-    /// Triangles of the simplified mesh, as three vertices of this mesh each.
-    fn simplified_triangles(&self) -> Option<Vec<u32>> {
+    /// Triangles of a mesh simplified to some number of corners, as three vertices of this mesh each. None if hardly any
+    /// can be removed.
+    fn simplified_triangles(&self, corners: usize, options: SimplifyOptions) -> Option<Vec<u32>> {
         let positions: Vec<[f32; 3]> = self.positions.iter().map(|at| at.to_array()).collect();
         let adapter =
             VertexDataAdapter::new(typed_to_bytes(&positions), size_of::<[f32; 3]>(), 0).ok()?;
@@ -59,9 +99,9 @@ impl FabricBuilder {
             costs,
             size_of_val(costs),
             &locked,
-            self.indices.len() / REDUCTION,
+            corners,
             f32::MAX,
-            SimplifyOptions::LockBorder | SimplifyOptions::Regularize,
+            options,
             None,
         );
         if kept.is_empty() || kept.len() as f32 > WORTHWHILE * self.indices.len() as f32 {

@@ -1,0 +1,100 @@
+//! Tests of meshes that are simulated with fewer vertices than they are drawn with.
+
+use bunting_solver::Grid;
+
+use super::*;
+
+/// Vertices of the detailed mesh along each side.
+const SIDE: u32 = 33;
+
+/// A detailed sheet of one metre whose left column is painted red.
+fn detailed(app: &mut App) -> (Mesh3d, Mesh) {
+    let grid = Grid::new(SIDE, SIDE, 1.0, 1.0);
+    let builder = bunting_solver::FabricBuilder::grid(grid);
+    let red = |vertex: u32| if vertex.is_multiple_of(SIDE) { 1.0 } else { 0.0 };
+    let colors: Vec<[f32; 4]> = (0..SIDE * SIDE).map(|it| [red(it), 0.0, 0.0, 1.0]).collect();
+    let uvs: Vec<[f32; 2]> = grid.uvs().iter().map(Vec2::to_array).collect();
+    let mesh = Mesh::new(bevy_mesh::PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, arrays(builder.positions()))
+        .with_inserted_attribute(Mesh::ATTRIBUTE_NORMAL, vec![[0.0, 0.0, 1.0]; colors.len()])
+        .with_inserted_attribute(Mesh::ATTRIBUTE_UV_0, uvs)
+        .with_inserted_attribute(Mesh::ATTRIBUTE_COLOR, colors)
+        .with_inserted_indices(bevy_mesh::Indices::U32(builder.indices().to_vec()));
+    (add(app, mesh.clone()), mesh)
+}
+
+fn with_at_most(vertices: Option<u32>) -> ClothFromMesh {
+    ClothFromMesh { max_vertices: vertices, ..ClothFromMesh::painted() }
+}
+
+/// Waits until a cloth's free edge is drawn away from its place at rest.
+fn wait(app: &mut App, cloth: Entity, rest: &[[f32; 3]]) {
+    for _ in 0..1000 {
+        run(app, 1);
+        std::thread::yield_now();
+        let last = rest.len() - 1;
+        let now = positions(app, cloth);
+        if now.len() == rest.len() && Vec3::from(now[last]).distance(Vec3::from(rest[last])) > 0.05
+        {
+            return;
+        }
+    }
+    panic!("nothing moves the drawn mesh: {:?}", failures(app));
+}
+
+#[test]
+fn a_detailed_mesh_is_simulated_with_few_vertices_and_drawn_with_all() {
+    let mut app = app(TICK);
+    let (given, mesh_at_rest) = detailed(&mut app);
+    let rest = values(&mesh_at_rest, Mesh::ATTRIBUTE_POSITION).clone();
+    let cloth = app.world_mut().spawn((given, with_at_most(Some(120)))).id();
+    wait(&mut app, cloth, &rest);
+    run(&mut app, 100);
+    assert_eq!(failures(&app), []);
+    let shape = app.world().get::<ClothMesh>(cloth).expect("a cloth");
+    assert!((100..=120 + 33).contains(&shape.vertex_count()), "{}", shape.vertex_count());
+    let drawn = mesh(&app, cloth);
+    assert_eq!(drawn.count_vertices(), rest.len());
+    let color = Mesh::ATTRIBUTE_COLOR;
+    assert_eq!(drawn.attribute(color), mesh_at_rest.attribute(color));
+    // What is painted stays, and the sheet is whole. The smooth surface is longer than its chords where the free edge
+    // flutters.
+    let points = |values: &[[f32; 3]]| values.iter().copied().map(Vec3::from).collect::<Vec<_>>();
+    let (drawn, at_rest) = (points(positions(&app, cloth)), points(&rest));
+    let rows = drawn.chunks(SIDE as usize).zip(at_rest.chunks(SIDE as usize));
+    let pins = rows.clone().map(|(now, rest)| now[0].distance(rest[0])).fold(0.0, f32::max);
+    let edge = |pair: &[Vec3]| pair[0].distance(pair[1]) * (SIDE - 1) as f32;
+    let edges: Vec<f32> = rows.flat_map(|(now, _)| now.windows(2).map(edge)).collect();
+    let longest = edges.iter().copied().fold(0.0, f32::max);
+    let mean = edges.iter().sum::<f32>() / edges.len() as f32;
+    assert!(pins < 1e-3, "pins are drawn {pins} m from their places");
+    assert!((mean - 1.0).abs() < 0.02, "edges are {mean} times as long as at rest");
+    assert!(longest < 1.6, "an edge is {longest} times as long as at rest");
+    // The drawn mesh lies in its bounds.
+    let bounds = app.world().get::<Aabb>(cloth).expect("bounds");
+    let outside = |at: &Vec3| {
+        let beyond = (Vec3A::from(*at) - bounds.center).abs() - bounds.half_extents;
+        beyond.max_element() > 1e-6
+    };
+    assert!(!drawn.iter().any(outside), "{bounds:?}");
+}
+
+#[test]
+fn the_number_of_vertices_can_be_changed_and_taken_back() {
+    let mut app = app(TICK);
+    let (given, mesh_at_rest) = detailed(&mut app);
+    let rest = values(&mesh_at_rest, Mesh::ATTRIBUTE_POSITION).clone();
+    let none = ClothSubdivision::NONE;
+    let cloth = app.world_mut().spawn((given, with_at_most(None), none)).id();
+    let count = |app: &App| app.world().get::<ClothMesh>(cloth).map(ClothMesh::vertex_count);
+    for (most, least, greatest) in [(None, 1089, 1089), (Some(200), 150, 233), (None, 1089, 1089)] {
+        app.world_mut().entity_mut(cloth).insert(with_at_most(most));
+        run(&mut app, 3);
+        wait(&mut app, cloth, &rest);
+        let count = count(&app).expect("a cloth");
+        assert!((least..=greatest).contains(&count), "{count} for {most:?}");
+        assert_eq!(app.world().get::<crate::ClothDeformer>(cloth).is_some(), most.is_some());
+    }
+    assert!(is_current(&app, cloth), "each particle is drawn again");
+    assert_eq!(failures(&app), []);
+}
