@@ -3,10 +3,12 @@
 use bevy_bunting::prelude::*;
 use bevy_bunting::{ClothEffort, ClothPaused};
 use bevy_ecs::prelude::*;
-use bevy_egui::egui::{CollapsingHeader, ScrollArea, Ui};
+use bevy_egui::egui::{ScrollArea, Ui};
 use bevy_inspector_egui::bevy_inspector::ui_for_entity;
 
 use crate::panel::brush::show_brush;
+use crate::panel::components::show_components;
+use crate::parameters::CLOTH;
 use crate::presets::PRESETS;
 use crate::selection::SelectedCloth;
 
@@ -56,7 +58,7 @@ fn line(
     (format!("{name} · level {level} · {doing}"), cloth)
 }
 
-/// Shows the components of the selected cloth, and presets for its material.
+/// Shows presets, the brush and all parameters of the selected cloth.
 pub fn show_selected(world: &mut World, ui: &mut Ui) {
     let SelectedCloth(Some(cloth)) = *world.resource() else {
         ui.label("No cloth is selected.");
@@ -71,7 +73,6 @@ pub fn show_selected(world: &mut World, ui: &mut Ui) {
         }
     });
     show_brush(world, cloth, ui);
-    CollapsingHeader::new("Selected cloth")
-        .default_open(true)
-        .show(ui, |ui| ui_for_entity(world, cloth, ui));
+    show_components(world, cloth, &CLOTH, ui);
+    ui.collapsing("All components", |ui| ui_for_entity(world, cloth, ui));
 }

@@ -2,6 +2,7 @@
 
 mod brush;
 mod cloths;
+mod components;
 mod files;
 mod plots;
 pub mod plugin;

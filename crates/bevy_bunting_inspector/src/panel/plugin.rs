@@ -10,6 +10,9 @@ use crate::panel::window::cloth_panel;
 use crate::selection::ClothSelectionPlugin;
 use crate::strain::ClothStrainPlugin;
 
+/// Width and height of the window at first, points.
+const SIZE: [f32; 2] = [360.0, 640.0];
+
 /// Shows the panel in a window of egui, on the first camera, while [`PanelState::is_open`]. It adds egui's plugin unless it
 /// is added before.
 ///
@@ -43,8 +46,7 @@ fn show(world: &mut World) {
     let Ok(mut context) = contexts.single_mut(world) else { return };
     let context = context.get_mut().clone();
     let mut is_open = world.resource::<PanelState>().is_open;
-    egui::Window::new("Cloth").open(&mut is_open).vscroll(true).show(&context, |ui| {
-        cloth_panel(world, ui);
-    });
+    let window = egui::Window::new("Cloth").default_size(SIZE).vscroll(true);
+    window.open(&mut is_open).show(&context, |ui| cloth_panel(world, ui));
     world.resource_mut::<PanelState>().is_open = is_open;
 }

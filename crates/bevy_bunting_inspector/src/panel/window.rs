@@ -4,12 +4,13 @@ use bevy_bunting::LodReport;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_egui::egui::Ui;
-use bevy_inspector_egui::bevy_inspector::{ui_for_entity, ui_for_resource};
+use bevy_inspector_egui::bevy_inspector::ui_for_resource;
 
 use crate::panel::cloths::{list_cloths, show_selected};
+use crate::panel::components::show_components;
 use crate::panel::files::show_file;
 use crate::panel::plots::show_plots;
-use crate::parameters::winds;
+use crate::parameters::{WIND, winds};
 
 /// Shows the cloths, the selected one, winds, settings, times and files in a `Ui` of egui, for apps that have a panel of their
 /// own; [`ClothInspectorPlugin`](crate::ClothInspectorPlugin) shows it in a window.
@@ -19,11 +20,12 @@ use crate::parameters::winds;
 /// `DefaultPlugins` do.
 pub fn cloth_panel(world: &mut World, ui: &mut Ui) {
     list_cloths(world, ui);
+    show_plots(world, ui);
     show_selected(world, ui);
     ui.collapsing("Winds", |ui| {
         for (name, wind) in winds(world) {
             let title = if name.is_empty() { wind.to_string() } else { name };
-            ui.collapsing(title, |ui| ui_for_entity(world, wind, ui));
+            ui.collapsing(title, |ui| show_components(world, wind, &WIND, ui));
         }
     });
     ui.collapsing("All cloths", |ui| {
@@ -34,6 +36,5 @@ pub fn cloth_panel(world: &mut World, ui: &mut Ui) {
         ui.strong("Choice of levels");
         ui_for_resource::<LodReport>(world, ui);
     });
-    show_plots(world, ui);
     show_file(world, ui);
 }

@@ -6,7 +6,7 @@ mod stencils;
 #[cfg(test)]
 mod tests;
 
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 use crate::fabric::Fabric;
 pub use grid::GridPlanes;
@@ -58,8 +58,10 @@ enum Scheme {
 #[derive(Clone, Debug, Default)]
 pub struct SubdivisionBuffers {
     grid: GridPlanes,
-    points: Vec<Vec3>,
-    normals: Vec<Vec3>,
+    /// Vectors of four lanes, which are loaded at once.
+    particles: Vec<Vec3A>,
+    points: Vec<Vec3A>,
+    normals: Vec<Vec3A>,
 }
 
 impl Subdivision {
@@ -142,7 +144,9 @@ impl Subdivision {
         match &self.scheme {
             Scheme::Grid(grid) => grid.evaluate(positions, &mut buffers.grid, drawn, normals),
             Scheme::Mesh { points, triangles, point_of_vertex } => {
-                points.apply(positions, &mut buffers.points);
+                buffers.particles.clear();
+                buffers.particles.extend(positions.iter().map(|&at| Vec3A::from(at)));
+                points.apply(&buffers.particles, &mut buffers.points);
                 add_normals(&buffers.points, triangles, &mut buffers.normals);
                 for (vertex, &point) in point_of_vertex.iter().enumerate() {
                     drawn[vertex] = buffers.points[point as usize].to_array();
@@ -154,9 +158,9 @@ impl Subdivision {
 }
 
 /// Writes the unit normals of points: the means of their triangles' normals, weighted by area.
-fn add_normals(points: &[Vec3], triangles: &[[u32; 3]], normals: &mut Vec<Vec3>) {
+fn add_normals(points: &[Vec3A], triangles: &[[u32; 3]], normals: &mut Vec<Vec3A>) {
     normals.clear();
-    normals.resize(points.len(), Vec3::ZERO);
+    normals.resize(points.len(), Vec3A::ZERO);
     for corners in triangles {
         let [a, b, c] = corners.map(|corner| points[corner as usize]);
         let normal = (b - a).cross(c - a);

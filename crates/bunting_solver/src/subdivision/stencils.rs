@@ -1,6 +1,6 @@
 //! Sparse rows of weights.
 
-use glam::Vec3;
+use glam::Vec3A;
 
 /// Values as weighted sums of other values: one row of weights for each.
 #[derive(Clone, Debug, Default)]
@@ -56,11 +56,14 @@ impl Stencils {
     }
 
     /// Writes the sum of each row.
-    pub(super) fn apply(&self, values: &[Vec3], into: &mut Vec<Vec3>) {
-        let sum = |row: &[(u32, f32)]| {
-            row.iter().map(|&(index, weight)| values[index as usize] * weight).sum::<Vec3>()
+    pub(super) fn apply(&self, values: &[Vec3A], into: &mut Vec<Vec3A>) {
+        let mut begin = 0;
+        let sum = |&end: &u32| {
+            let row = &self.terms[begin..end as usize];
+            begin = end as usize;
+            row.iter().map(|&(index, weight)| values[index as usize] * weight).sum::<Vec3A>()
         };
         into.clear();
-        into.extend(self.rows().map(sum));
+        into.extend(self.ends.iter().map(sum));
     }
 }
