@@ -7,4 +7,5 @@ mod files;
 mod plots;
 pub mod plugin;
 pub mod state;
+mod units;
 pub mod window;

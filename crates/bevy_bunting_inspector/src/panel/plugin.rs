@@ -6,6 +6,7 @@ use bevy_egui::{EguiContext, EguiPlugin, EguiPrimaryContextPass, PrimaryEguiCont
 use bevy_inspector_egui::DefaultInspectorConfigPlugin;
 
 use crate::panel::state::PanelState;
+use crate::panel::units::add_units;
 use crate::panel::window::cloth_panel;
 use crate::selection::ClothSelectionPlugin;
 use crate::strain::ClothStrainPlugin;
@@ -38,6 +39,11 @@ impl Plugin for ClothInspectorPlugin {
         app.add_plugins((ClothSelectionPlugin, ClothStrainPlugin))
             .init_resource::<PanelState>()
             .add_systems(EguiPrimaryContextPass, show);
+    }
+
+    fn finish(&self, app: &mut App) {
+        // By now the types of all plugins are registered.
+        add_units(app.world().resource());
     }
 }
 

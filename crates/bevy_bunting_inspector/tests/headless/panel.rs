@@ -186,9 +186,11 @@ fn settings_winds_and_plots_are_shown() {
 
 #[test]
 fn the_plugin_shows_the_panel_in_the_first_context_while_it_is_open() {
-    let (mut app, _) = world_with_flag();
+    let (mut app, flag) = world_with_flag();
     app.register_type::<AssetId<Mesh>>();
     app.add_plugins(ClothInspectorPlugin);
+    app.finish();
+    app.insert_resource(SelectedCloth(Some(flag)));
     let world = app.world_mut();
     let entity = world.spawn((EguiContext::default(), PrimaryEguiContext)).id();
     let context = world.get_mut::<EguiContext>(entity).expect("a context").get_mut().clone();
@@ -198,13 +200,15 @@ fn the_plugin_shows_the_panel_in_the_first_context_while_it_is_open() {
         // Windows of egui come and go within some frames.
         for _ in 0..30 {
             texts.clear();
-            context.begin_pass(RawInput::default());
+            let screen = Rect::from_min_size(Pos2::ZERO, Vec2::new(900.0, 900.0));
+            context.begin_pass(RawInput { screen_rect: Some(screen), ..RawInput::default() });
             world.run_schedule(EguiPrimaryContextPass);
             let shapes = context.end_pass().shapes;
             shapes.iter().for_each(|shape| collect_texts(&shape.shape, &mut texts));
         }
-        texts.iter().any(|(text, _)| text.contains("Cloths: 1"))
+        ["Cloths: 1", " kg/m²", "0.0000103"]
+            .map(|part| texts.iter().any(|(text, _)| text.contains(part)))
     };
-    assert!(shows(true));
-    assert!(!shows(false));
+    assert_eq!(shows(true), [true; 3], "panel, density, bending stiffness");
+    assert_eq!(shows(false), [false; 3]);
 }
