@@ -121,6 +121,32 @@ fn two_masts_that_move_as_one_are_like_one() {
     assert!(apart < 1e-3, "{apart} m");
 }
 
+/// The masts are fast from the first frame on: that is a teleport for both, and then the velocity of both.
+#[test]
+fn a_banner_that_is_new_between_fast_vehicles_is_not_torn() {
+    fn drives(time: f32) -> (Vec3, f32) {
+        (Vec3::new(0.0, 0.0, -20.0 * time), 0.0)
+    }
+    for in_update in [true, false] {
+        let mut app = app();
+        if in_update {
+            app.add_systems(Update, sway);
+        } else {
+            app.add_systems(FixedUpdate, sway);
+        }
+        let (_, banner) = banner(&mut app, [drives, drives]);
+        app.world_mut().entity_mut(banner).insert(finest());
+        let mut worst = 0.0_f32;
+        for _ in 0..120 {
+            run(&mut app, 1);
+            if !state(&app, banner).positions().is_empty() {
+                worst = worst.max(strain(&app, banner));
+            }
+        }
+        assert!(worst < 0.03, "{worst}, in update: {in_update}");
+    }
+}
+
 #[test]
 fn an_anchor_far_from_its_place_is_reached_gently() {
     let mut app = app();

@@ -14,9 +14,11 @@ use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::cloth::mesh::ClothMesh;
 use crate::fabric::scale::ScaleBaked;
+use crate::motion::attachment::Attachment;
 use crate::render::from_skin::{BindPoses, LoadedSkin, unbind};
 use crate::render::level_mesh::with_vertices;
 use crate::render::level_meshes::LevelMeshes;
+use crate::render::painted_vertices::{PaintedVertices, painted_attachment};
 use crate::render::painted_weights::{PaintedDistance, PaintedWeights};
 use crate::skeleton::by_vertex::ByVertex;
 use crate::skeleton::limits::SkinLimits;
@@ -34,7 +36,8 @@ use crate::skeleton::limits::SkinLimits;
 /// # Errors
 ///
 /// A [`ClothFailed`] event tells what cannot be used: a mesh that failed to load, one that is kept in the
-/// render world only, weights that are not painted, or a defect of the mesh. The entity is shown as before.
+/// render world only, values that are not painted, painted vertices that no anchor holds, or a defect of the mesh. The
+/// entity is shown as before.
 ///
 /// ```no_run
 /// use bevy_asset::AssetServer;
@@ -67,6 +70,13 @@ pub struct ClothFromMesh {
     /// Greatest distances of the particles of a skinned mesh from their animated places, painted by the artist; written into
     /// the entity's [`SkinLimits`](crate::SkinLimits).
     pub max_distance: Option<PaintedDistance>,
+    /// Radii of the backstops of a skinned mesh, painted by the artist; written into the entity's `SkinLimits`.
+    pub backstop_radius: Option<PaintedDistance>,
+    /// Distances of the backstops of a skinned mesh, painted by the artist; written into the entity's `SkinLimits`.
+    pub backstop_distance: Option<PaintedDistance>,
+    /// Vertices that the entity's [`Attachment`](crate::Attachment) holds, then those that each of its anchors holds, painted
+    /// by the artist; written into the attachment, which must be there when the mesh is loaded.
+    pub held: Vec<PaintedVertices>,
 }
 
 impl ClothFromMesh {
@@ -106,6 +116,7 @@ type Asked = (
     Option<&'static LevelMeshes>,
     Option<&'static SkinnedMesh>,
     Option<&'static SkinLimits>,
+    Option<&'static Attachment>,
     Has<AwaitsMesh>,
 );
 type MayBeStale = Or<(Changed<ClothFromMesh>, Changed<Mesh3d>, With<AwaitsMesh>)>;
@@ -119,7 +130,7 @@ pub fn make_cloths(
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, wanted, shown, known, levels, skinned, limits, awaits) in &asked {
+    for (entity, wanted, shown, known, levels, skinned, limits, attachment, awaits) in &asked {
         let is_own = |known: &&SourceMesh| {
             known.shown == shown.id() || levels.is_some_and(|levels| levels.contains(shown.id()))
         };
@@ -150,17 +161,23 @@ pub fn make_cloths(
             None => of_entity().unwrap_or(Vec3::ONE),
         };
         let scale = if is_scale(scale) { scale } else { Vec3::ONE };
-        match wanted.convert(entity, mesh, scale) {
-            Ok((shape, mut copy, distances)) => {
+        let converted = wanted.convert(entity, mesh, scale).and_then(|(shape, copy)| {
+            let limits = wanted.painted_limits(limits, entity, &copy)?;
+            let attachment = painted_attachment(&wanted.held, attachment, entity, &copy)?;
+            Ok((shape, copy, limits, attachment))
+        });
+        match converted {
+            Ok((shape, mut copy, limits, attachment)) => {
                 if let Some(skin) = loaded {
                     cloth.insert(skin.convert(&copy, scale));
                     cloth.remove::<(SkinnedMesh, DynamicSkinnedMeshBounds)>();
                     unbind(&mut copy);
                 }
-                if let Some(distances) = distances {
-                    let others = limits.cloned().unwrap_or_default();
-                    let max_distance = ByVertex::Each(distances);
-                    cloth.insert(SkinLimits { max_distance, ..others });
+                if let Some(limits) = limits {
+                    cloth.insert(limits);
+                }
+                if let Some(attachment) = attachment {
+                    cloth.insert(attachment);
                 }
                 let copy = meshes.add(copy);
                 let made_of = SourceMesh { source, shown: copy.id(), skin };
@@ -182,14 +199,35 @@ fn is_scale(scale: Vec3) -> bool {
 }
 
 impl ClothFromMesh {
-    /// The cloth of a mesh with a scale, the mesh that shows it, vertex by vertex, and the vertices' greatest distances, if
-    /// they are painted.
+    /// The limits of a skinned mesh with those that are painted; none if none are.
+    fn painted_limits(
+        &self,
+        limits: Option<&SkinLimits>,
+        entity: Entity,
+        mesh: &Mesh,
+    ) -> Result<Option<SkinLimits>, ClothError> {
+        let mut limits = limits.cloned().unwrap_or_default();
+        let mut are_painted = false;
+        for (painted, limit) in [
+            (&self.max_distance, &mut limits.max_distance),
+            (&self.backstop_radius, &mut limits.backstop_radius),
+            (&self.backstop_distance, &mut limits.backstop_distance),
+        ] {
+            if let Some(painted) = painted {
+                *limit = ByVertex::Each(painted.read(entity, mesh)?);
+                are_painted = true;
+            }
+        }
+        Ok(are_painted.then_some(limits))
+    }
+
+    /// The cloth of a mesh with a scale, and the mesh that shows it, vertex by vertex.
     fn convert(
         &self,
         entity: Entity,
         mesh: &Mesh,
         scale: Vec3,
-    ) -> Result<(ClothMesh, Mesh, Option<Vec<f32>>), ClothError> {
+    ) -> Result<(ClothMesh, Mesh), ClothError> {
         let is_kept = mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD);
         if !is_kept || mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION).is_err() {
             return Err(ClothError::MeshUnreadable { entity });
@@ -219,7 +257,6 @@ impl ClothFromMesh {
                 shown.insert_indices(Indices::U32(indices.clone()));
             }
         }
-        let distances = self.max_distance.as_ref().map(|painted| painted.read(entity, &shown));
-        Ok((shape, shown, distances.transpose()?))
+        Ok((shape, shown))
     }
 }

@@ -164,7 +164,7 @@ impl VertexPaint {
     /// # Errors
     ///
     /// The mesh does not have the values in a format that can be read.
-    fn values(&self, entity: Entity, mesh: &Mesh) -> Result<Vec<f32>, ClothError> {
+    pub(super) fn values(&self, entity: Entity, mesh: &Mesh) -> Result<Vec<f32>, ClothError> {
         let missing = || ClothError::NotPainted { entity, key: self.key() };
         self.find(mesh).ok_or_else(missing)
     }
