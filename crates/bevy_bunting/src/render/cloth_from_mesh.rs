@@ -74,8 +74,8 @@ pub struct ClothFromMesh {
     pub backstop_radius: Option<PaintedDistance>,
     /// Distances of the backstops of a skinned mesh, painted by the artist; written into the entity's `SkinLimits`.
     pub backstop_distance: Option<PaintedDistance>,
-    /// Vertices that the entity's [`Attachment`](crate::Attachment) holds, then those that each of its anchors holds, painted
-    /// by the artist; written into the attachment, which must be there when the mesh is loaded.
+    /// Vertices that the entity's [`Attachment`](crate::Attachment) holds, then those that each of its anchors holds,
+    /// painted by the artist; written into the attachment, which must be there when the mesh is loaded.
     pub held: Vec<PaintedVertices>,
 }
 

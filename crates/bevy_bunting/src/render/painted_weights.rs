@@ -40,8 +40,8 @@ pub struct PaintedWeights {
     pub pinned: f32,
 }
 
-/// Greatest distances of particles from their animated places, see [`SkinLimits::max_distance`](crate::SkinLimits), read from
-/// values that an artist has painted into the mesh. They grow evenly with the value, also beyond 0 and 1.
+/// Distances of [`SkinLimits`](crate::SkinLimits), such as the greatest distances of particles from their animated places,
+/// read from values that an artist has painted into the mesh. They grow evenly with the value, also beyond 0 and 1.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;

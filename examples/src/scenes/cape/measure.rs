@@ -42,7 +42,8 @@ pub fn depth(world: &mut World) -> f32 {
     }))
 }
 
-/// Greatest distance of a pinned particle of a cloth of all vertices from where its joints hold it, m.
+/// Greatest distance of a pinned particle from where the joints of its skin hold it, m. The cloth has all of its
+/// particles, in the order of its vertices.
 pub fn off(world: &mut World) -> f32 {
     let poses = world.query::<&GlobalTransform>();
     let mut capes = world.query::<(&ClothSkin, ShownCloth)>();

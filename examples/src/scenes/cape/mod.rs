@@ -1,7 +1,7 @@
 //! A figure that stands, walks, turns and runs in a cape.
 //!
-//! Where it is drawn, the figure is that of a glTF file, played by Bevy's animation. Without assets it is the same figure,
-//! made here.
+//! Where it is drawn, the figure is that of a glTF file, played by Bevy's animation. Without assets it is the same
+//! figure, made here.
 
 mod body;
 mod cloak;
