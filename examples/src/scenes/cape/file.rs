@@ -3,7 +3,7 @@
 use std::f32::consts::TAU;
 
 use bevy::app::AnimationSystems;
-use bevy::gltf::GltfAssetLabel;
+use bevy::gltf::Gltf;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bunting_scenes::{Design, Model};
@@ -14,16 +14,24 @@ use crate::scenes::cape::gait::Walker;
 /// The file.
 const FILE: &str = "cloths/caped_figure.gltf";
 
+/// The animations that are blended, by their names in the file.
+const GAITS: [&str; 3] = ["Stand", "Walk", "Run"];
+
 /// Spawns the figure, and plays it once it is loaded.
 pub fn plugin(app: &mut App) {
     app.world_mut().spawn((Walker::default(), Model(FILE.to_owned()), Transform::default()));
     app.add_systems(PostStartup, load)
-        .add_systems(PostUpdate, play.before(AnimationSystems))
+        .add_systems(Update, show.run_if(resource_exists::<Figure>))
+        .add_systems(PostUpdate, play.before(AnimationSystems).run_if(resource_exists::<Gaits>))
         .add_observer(begin)
         .add_observer(dye);
 }
 
-/// The animations that are blended: standing, walking and running, in the order of the file.
+/// The figure's file.
+#[derive(Resource)]
+struct Figure(Handle<Gltf>);
+
+/// The animations that are blended, in the order of [`GAITS`].
 #[derive(Resource)]
 struct Gaits {
     graph: Handle<AnimationGraph>,
@@ -31,17 +39,23 @@ struct Gaits {
     nodes: Vec<AnimationNodeIndex>,
 }
 
-fn load(
-    figure: Single<Entity, With<Walker>>,
+fn load(mut commands: Commands, assets: Res<AssetServer>) {
+    commands.insert_resource(Figure(assets.load(FILE)));
+}
+
+/// Shows the figure when its whole file is loaded: with its animations, so that it is never seen in its bind pose.
+fn show(
+    walker: Single<Entity, (With<Walker>, Without<WorldAssetRoot>)>,
+    figure: Res<Figure>,
+    files: Res<Assets<Gltf>>,
     mut commands: Commands,
     mut graphs: ResMut<Assets<AnimationGraph>>,
-    assets: Res<AssetServer>,
 ) {
-    let clips = [0, 1, 2].map(|clip| assets.load(GltfAssetLabel::Animation(clip).from_asset(FILE)));
+    let Some(file) = files.get(&figure.0) else { return };
+    let clips = GAITS.map(|gait| file.named_animations[gait].clone());
     let (graph, nodes) = AnimationGraph::from_clips(clips.clone());
     commands.insert_resource(Gaits { graph: graphs.add(graph), clips, nodes });
-    let scene = assets.load(GltfAssetLabel::Scene(0).from_asset(FILE));
-    commands.entity(*figure).insert(WorldAssetRoot(scene));
+    commands.entity(*walker).insert(WorldAssetRoot(file.scenes[0].clone()));
 }
 
 /// Begins all animations of the figure, at rest.
@@ -62,10 +76,9 @@ fn begin(
 fn play(
     figure: Single<&Walker>,
     mut players: Query<&mut AnimationPlayer>,
-    gaits: Option<Res<Gaits>>,
+    gaits: Res<Gaits>,
     clips: Res<Assets<AnimationClip>>,
 ) {
-    let Some(gaits) = gaits else { return };
     let [walk, run] = [figure.walk(), figure.run()];
     let weights = [1.0 - walk, walk - run, run];
     for mut player in &mut players {
