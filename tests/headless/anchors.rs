@@ -121,6 +121,37 @@ fn two_masts_that_move_as_one_are_like_one() {
     assert!(apart < 1e-3, "{apart} m");
 }
 
+/// Both masts are fast from their first frame on: that is a teleport of both, and then the velocity of both.
+#[test]
+fn a_banner_that_is_new_between_fast_vehicles_is_not_torn_along() {
+    fn drives(time: f32) -> (Vec3, f32) {
+        (Vec3::new(0.0, 0.0, -20.0 * time), 0.0)
+    }
+    for in_update in [true, false] {
+        let mut app = app();
+        // The wind of travel is that of another test.
+        app.world_mut().resource_mut::<ClothSettings>().air_density = 0.0;
+        if in_update {
+            app.add_systems(Update, sway);
+        } else {
+            app.add_systems(FixedUpdate, sway);
+        }
+        let (_, banner) = banner(&mut app, [drives, drives]);
+        app.world_mut().entity_mut(banner).insert(finest());
+        let (mut worst, mut behind) = (0.0_f32, 0.0_f32);
+        for _ in 0..120 {
+            run(&mut app, 1);
+            let positions = state(&app, banner).positions();
+            if !positions.is_empty() {
+                worst = worst.max(strain(&app, banner));
+                behind = positions.iter().map(|at| at.z.abs()).fold(behind, f32::max);
+            }
+        }
+        assert!(worst < 0.02, "stretched by {worst}, in update: {in_update}");
+        assert!(behind < 0.05, "{behind} m behind, in update: {in_update}");
+    }
+}
+
 #[test]
 fn an_anchor_far_from_its_place_is_reached_gently() {
     let mut app = app();

@@ -4,6 +4,7 @@ mod anchors;
 mod any_order;
 mod attachment;
 mod bad_anchors;
+mod bones;
 mod broad_phase;
 mod cloth_collision;
 mod contacts;

@@ -212,6 +212,8 @@ pub use render::debug::{ClothDebugPlugin, ClothGizmos};
 #[cfg(feature = "render")]
 pub use render::deformer::ClothDeformer;
 #[cfg(feature = "render")]
+pub use render::painted_vertices::PaintedVertices;
+#[cfg(feature = "render")]
 pub use render::painted_weights::{ColorChannel, PaintedDistance, PaintedWeights, VertexPaint};
 #[cfg(feature = "render")]
 pub use render::plugin::{ClothRenderPlugin, ClothRenderSystems};
@@ -246,7 +248,7 @@ pub mod prelude {
     #[cfg(feature = "render")]
     pub use crate::{
         ClothDeformer, ClothFromMesh, ClothSubdivision, ColorChannel, PaintedDistance,
-        PaintedWeights, VertexPaint,
+        PaintedVertices, PaintedWeights, VertexPaint,
     };
     #[cfg(feature = "picking")]
     pub use crate::{ClothDragPlugin, ClothDragSettings, PinBrush, PinStroke};

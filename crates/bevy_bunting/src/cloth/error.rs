@@ -262,6 +262,20 @@ pub enum ClothError {
         /// Name of the attribute, as in `MeshVertexAttribute::name`.
         key: &'static str,
     },
+    /// A [`ClothFromMesh`](crate::ClothFromMesh) names the painted vertices of more anchors than the entity has, or it has no
+    /// [`Attachment`](crate::Attachment). No cloth is made until its `Mesh3d` or `ClothFromMesh` changes.
+    #[cfg(feature = "render")]
+    #[error(
+        "the ClothFromMesh of {entity} names {painted} lists of held vertices, and its Attachment with its anchors holds {holders}: add an Attachment or anchors"
+    )]
+    PaintedNotHeld {
+        /// The entity with the mesh.
+        entity: Entity,
+        /// Number of painted lists.
+        painted: usize,
+        /// Number of lists that the attachment and its anchors hold; 0 without an attachment.
+        holders: usize,
+    },
     /// A position became infinite or not a number. The cloth was reset to its rest shape.
     #[error(
         "cloth {entity} diverged and was reset to its rest shape: give it more substeps, or a softer material"

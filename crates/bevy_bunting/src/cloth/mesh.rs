@@ -157,14 +157,15 @@ impl ClothMesh {
     }
 
     /// A mesh with at most this number of vertices that are not rigid, and the vertex that each of its vertices comes
-    /// from. None if it has no more, or cannot be simplified; grids are not.
+    /// from. Rigid and held vertices stay. None if it has no more, or cannot be simplified; grids are not.
     #[cfg(feature = "render")]
-    pub(crate) fn simplified(&self, vertices: usize) -> Option<(Self, Vec<u32>)> {
+    pub(crate) fn simplified(&self, vertices: usize, held: &[u32]) -> Option<(Self, Vec<u32>)> {
         let Self::Triangles { uv, weights, .. } = self else { return None };
-        let pins = (0..).zip(weights).filter(|(_, weight)| **weight == 0.0).map(|(at, _)| at);
-        let pins: Vec<u32> = pins.collect();
-        let all = vertices.saturating_add(pins.len());
-        let simple = self.builder().pin(pins).decimated(all)?;
+        let rigid = (0..).zip(weights).filter(|(_, weight)| **weight == 0.0).map(|(at, _)| at);
+        let rigid: Vec<u32> = rigid.collect();
+        let all = vertices.saturating_add(rigid.len());
+        let kept = rigid.into_iter().chain(held.iter().copied());
+        let simple = self.builder().pin(kept).decimated(all)?;
         let of_simple = || simple.vertices.iter().map(|&vertex| vertex as usize);
         let mesh = Self::Triangles {
             positions: simple.builder.positions().to_vec(),

@@ -14,10 +14,12 @@ use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::cloth::mesh::ClothMesh;
 use crate::fabric::scale::ScaleBaked;
+use crate::motion::attachment::Attachment;
 use crate::render::deformer::{Carried, ClothDeformer};
 use crate::render::from_skin::{BindPoses, LoadedSkin, unbind};
 use crate::render::level_mesh::with_vertices;
 use crate::render::level_meshes::LevelMeshes;
+use crate::render::painted_vertices::{PaintedVertices, painted_attachment};
 use crate::render::painted_weights::{PaintedDistance, PaintedWeights};
 use crate::skeleton::by_vertex::ByVertex;
 use crate::skeleton::limits::SkinLimits;
@@ -35,7 +37,8 @@ use crate::skeleton::limits::SkinLimits;
 /// # Errors
 ///
 /// A [`ClothFailed`] event tells what cannot be used: a mesh that failed to load, one that is kept in the
-/// render world only, weights that are not painted, or a defect of the mesh. The entity is shown as before.
+/// render world only, values that are not painted, painted vertices that no anchor holds, or a defect of the mesh. The
+/// entity is shown as before.
 ///
 /// ```no_run
 /// use bevy_asset::AssetServer;
@@ -66,13 +69,20 @@ pub struct ClothFromMesh {
     /// is pinned stays on the entity, or on the target of its [`Attachment`](crate::Attachment) if it has one.
     pub weights: Option<PaintedWeights>,
     /// Greatest number of simulated vertices. A mesh with more is simulated as one with fewer triangles, which carries the
-    /// detailed one like a [`ClothDeformer`](crate::ClothDeformer); pinned vertices stay, as
+    /// detailed one like a [`ClothDeformer`](crate::ClothDeformer); pinned and held vertices stay, as
     /// [`FabricBuilder::decimated`](bunting_solver::FabricBuilder::decimated) says. The [`ClothMesh`] has the vertices of the
     /// simple mesh, by which [`AttachedVertices::List`](crate::AttachedVertices::List) names them.
     pub max_vertices: Option<u32>,
     /// Greatest distances of the particles of a skinned mesh from their animated places, painted by the artist; written into
     /// the entity's [`SkinLimits`](crate::SkinLimits).
     pub max_distance: Option<PaintedDistance>,
+    /// Radii of the backstops of a skinned mesh, painted by the artist; written into the entity's `SkinLimits`.
+    pub backstop_radius: Option<PaintedDistance>,
+    /// Distances of the backstops of a skinned mesh, painted by the artist; written into the entity's `SkinLimits`.
+    pub backstop_distance: Option<PaintedDistance>,
+    /// Vertices that the entity's [`Attachment`](crate::Attachment) holds, then those that each of its anchors holds,
+    /// painted by the artist; written into the attachment, which must be there when the mesh is loaded.
+    pub held: Vec<PaintedVertices>,
 }
 
 impl ClothFromMesh {
@@ -113,6 +123,7 @@ type Asked = (
     Option<&'static Carried>,
     Option<&'static SkinnedMesh>,
     Option<&'static SkinLimits>,
+    Option<&'static Attachment>,
     Has<AwaitsMesh>,
 );
 type MayBeStale = Or<(Changed<ClothFromMesh>, Changed<Mesh3d>, With<AwaitsMesh>)>;
@@ -126,7 +137,9 @@ pub fn make_cloths(
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, wanted, shown, known, levels, carried, skinned, limits, awaits) in &asked {
+    for (entity, wanted, shown, known, levels, carried, skinned, limits, attachment, awaits) in
+        &asked
+    {
         let is_own = |known: &&SourceMesh| {
             known.shown == shown.id()
                 || levels.is_some_and(|levels| levels.contains(shown.id()))
@@ -159,17 +172,24 @@ pub fn make_cloths(
             None => of_entity().unwrap_or(Vec3::ONE),
         };
         let scale = if is_scale(scale) { scale } else { Vec3::ONE };
-        match wanted.convert(entity, mesh, scale) {
-            Ok(Converted { shape, mut shown, distances, simple }) => {
+        let converted = wanted.convert(entity, mesh, scale).and_then(|converted| {
+            let limits = wanted.painted_limits(limits, entity, converted.of_shape())?;
+            let attachment =
+                painted_attachment(&wanted.held, attachment, entity, converted.of_shape())?;
+            Ok((converted, limits, attachment))
+        });
+        match converted {
+            Ok((Converted { shape, mut shown, simple }, limits, attachment)) => {
                 if let Some(skin) = loaded {
                     cloth.insert(skin.convert(simple.as_ref().unwrap_or(&shown), scale));
                     cloth.remove::<(SkinnedMesh, DynamicSkinnedMeshBounds)>();
                     unbind(&mut shown);
                 }
-                if let Some(distances) = distances {
-                    let others = limits.cloned().unwrap_or_default();
-                    let max_distance = ByVertex::Each(distances);
-                    cloth.insert(SkinLimits { max_distance, ..others });
+                if let Some(limits) = limits {
+                    cloth.insert(limits);
+                }
+                if let Some(attachment) = attachment {
+                    cloth.insert(attachment);
                 }
                 if simple.is_some() {
                     cloth.insert(ClothDeformer { cloth: entity }).remove::<LevelMeshes>();
@@ -200,13 +220,40 @@ struct Converted {
     shape: ClothMesh,
     /// The mesh that shows it.
     shown: Mesh,
-    /// The vertices' greatest distances from their animated places, m, if they are painted.
-    distances: Option<Vec<f32>>,
     /// The mesh with the vertices of the shape, if these are fewer than those that are shown.
     simple: Option<Mesh>,
 }
 
+impl Converted {
+    /// The mesh with the vertices of the shape.
+    fn of_shape(&self) -> &Mesh {
+        self.simple.as_ref().unwrap_or(&self.shown)
+    }
+}
+
 impl ClothFromMesh {
+    /// The limits of a skinned mesh with those that are painted; none if none are.
+    fn painted_limits(
+        &self,
+        limits: Option<&SkinLimits>,
+        entity: Entity,
+        mesh: &Mesh,
+    ) -> Result<Option<SkinLimits>, ClothError> {
+        let mut limits = limits.cloned().unwrap_or_default();
+        let mut are_painted = false;
+        for (painted, limit) in [
+            (&self.max_distance, &mut limits.max_distance),
+            (&self.backstop_radius, &mut limits.backstop_radius),
+            (&self.backstop_distance, &mut limits.backstop_distance),
+        ] {
+            if let Some(painted) = painted {
+                *limit = ByVertex::Each(painted.read(entity, mesh)?);
+                are_painted = true;
+            }
+        }
+        Ok(are_painted.then_some(limits))
+    }
+
     /// The cloth of a mesh with a scale.
     fn convert(&self, entity: Entity, mesh: &Mesh, scale: Vec3) -> Result<Converted, ClothError> {
         let is_kept = mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD);
@@ -238,14 +285,15 @@ impl ClothFromMesh {
                 shown.insert_indices(Indices::U32(indices.clone()));
             }
         }
-        let simplified = self.max_vertices.and_then(|most| shape.simplified(most as usize));
+        let mut held = Vec::new();
+        for painted in &self.held {
+            held.extend(painted.read(entity, &shown)?);
+        }
+        let simplified = self.max_vertices.and_then(|most| shape.simplified(most as usize, &held));
         let simple = simplified.map(|(simplified, vertices)| {
             shape = simplified;
             with_vertices(shown.clone(), vertices)
         });
-        let of_shape = simple.as_ref().unwrap_or(&shown);
-        let distances = self.max_distance.as_ref().map(|painted| painted.read(entity, of_shape));
-        let distances = distances.transpose()?;
-        Ok(Converted { shape, shown, distances, simple })
+        Ok(Converted { shape, shown, simple })
     }
 }

@@ -13,6 +13,7 @@ mod from_skin;
 pub mod hidden;
 pub mod level_mesh;
 pub mod level_meshes;
+pub mod painted_vertices;
 pub mod painted_weights;
 pub mod plugin;
 pub mod subdivide;

@@ -40,8 +40,8 @@ pub struct PaintedWeights {
     pub pinned: f32,
 }
 
-/// Greatest distances of particles from their animated places, see [`SkinLimits::max_distance`](crate::SkinLimits), read from
-/// values that an artist has painted into the mesh. They grow evenly with the value, also beyond 0 and 1.
+/// Distances of [`SkinLimits`](crate::SkinLimits), such as the greatest distances of particles from their animated places,
+/// read from values that an artist has painted into the mesh. They grow evenly with the value, also beyond 0 and 1.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;
@@ -164,7 +164,7 @@ impl VertexPaint {
     /// # Errors
     ///
     /// The mesh does not have the values in a format that can be read.
-    fn values(&self, entity: Entity, mesh: &Mesh) -> Result<Vec<f32>, ClothError> {
+    pub(super) fn values(&self, entity: Entity, mesh: &Mesh) -> Result<Vec<f32>, ClothError> {
         let missing = || ClothError::NotPainted { entity, key: self.key() };
         self.find(mesh).ok_or_else(missing)
     }

@@ -36,12 +36,12 @@ pub struct Guide {
 impl Guide {
     /// Whether the numbers can be simulated.
     fn is_valid(&self) -> bool {
-        let Backstop { distance, radius } = self.backstop;
-        self.places.into_iter().chain(self.normals).all(Vec3::is_finite)
-            && self.max_distance >= 0.0
-            && distance.is_finite()
-            && radius.is_finite()
-            && radius >= 0.0
+        let Self { places: [from, to], normals: [before, after], max_distance, backstop } = *self;
+        let Backstop { distance, radius } = backstop;
+        // Zero times a number that is not finite is not zero: one test for all instead of one for each of fourteen.
+        let zeros = Vec3::ZERO * from + Vec3::ZERO * to + Vec3::ZERO * before + Vec3::ZERO * after;
+        let zero = zeros.x + zeros.y + zeros.z + 0.0 * distance + 0.0 * radius;
+        zero == 0.0 && max_distance >= 0.0 && radius >= 0.0
     }
 
     /// Centres of the backstop, m.

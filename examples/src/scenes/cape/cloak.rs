@@ -6,7 +6,6 @@
 
 use std::f32::consts::FRAC_PI_2;
 
-use crate::limits::greatest;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bunting_scenes::Design;
@@ -42,18 +41,13 @@ const WOOL: FabricMaterial =
     FabricMaterial { area_density: 0.22, bend_stiffness: 2e-4, ..FabricMaterial::COTTON };
 
 /// Colour.
-const CRIMSON: [u8; 3] = [148, 28, 36];
-
-/// A joint of the collar, by its index.
-#[derive(Component, Clone, Copy, Debug)]
-pub struct CollarJoint(usize);
+pub const CRIMSON: [u8; 3] = [148, 28, 36];
 
 /// Spawns the cape with its collar on the chest.
 pub fn spawn(commands: &mut Commands, joints: &[Entity]) {
     let chest = joints[Joint::Chest.index()];
-    let collar: Vec<Entity> = (0..COLLAR)
-        .map(|joint| commands.spawn((CollarJoint(joint), pose(joint), ChildOf(chest))).id())
-        .collect();
+    let collar: Vec<Entity> =
+        (0..COLLAR).map(|joint| commands.spawn((pose(joint), ChildOf(chest))).id()).collect();
     let bound = (0..COLLAR).map(|joint| Mat4::from_translation(-bind_place(joint)));
     commands.spawn((
         ClothMesh::grid(COUNT, COUNT, WIDTH, LENGTH),
@@ -95,25 +89,4 @@ fn vertices() -> impl Iterator<Item = ([u16; 4], [f32; 4])> {
         let part = along - left as f32;
         ([left as u16, left as u16 + 1, 0, 0], [1.0 - part, part, 0.0, 0.0])
     })
-}
-
-/// Greatest distance of the upper edge from where the collar's joints hold it, m.
-pub fn off(world: &mut World) -> f32 {
-    let mut poses = [GlobalTransform::IDENTITY; COLLAR];
-    for (joint, pose) in world.query::<(&CollarJoint, &GlobalTransform)>().iter(world) {
-        poses[joint.0] = *pose;
-    }
-    let mut capes = world.query::<(&ClothState, &GlobalTransform)>();
-    let capes = capes.iter(world);
-    greatest(capes.flat_map(|(state, frame)| {
-        let edge = state.positions().iter().zip(vertices()).take(COUNT as usize);
-        edge.enumerate().map(move |(column, (&at, (joints, weights)))| {
-            let rest = Vec3::new(WIDTH * column as f32 / (COUNT - 1) as f32, 0.0, 0.0);
-            let place = |end: usize| {
-                let joint = joints[end] as usize;
-                poses[joint].transform_point(rest - bind_place(joint)) * weights[end]
-            };
-            frame.transform_point(at).distance(place(0) + place(1))
-        })
-    }))
 }

@@ -26,7 +26,21 @@ const TURNS: [[f32; 3]; 3] = [[3.8, 1.2, FRAC_PI_2], [8.6, 0.9, -FRAC_PI_2], [12
 #[derive(Component, Clone, Copy, Debug, Default)]
 pub struct Walker {
     /// Phase of the gait, rad: one turn for two steps.
-    phase: f32,
+    pub phase: f32,
+    /// m/s.
+    speed: f32,
+}
+
+impl Walker {
+    /// How much of a walk the gait is, from 0 to 1.
+    pub fn walk(&self) -> f32 {
+        (self.speed / WALK).clamp(0.0, 1.0)
+    }
+
+    /// How much of a run the walk is, from 0 to 1.
+    pub fn run(&self) -> f32 {
+        ((self.speed - WALK) / (RUN - WALK)).clamp(0.0, 1.0)
+    }
 }
 
 /// The sum of changes up to a time, each smooth.
@@ -48,9 +62,8 @@ struct Pose {
 }
 
 impl Pose {
-    fn new(phase: f32, speed: f32) -> Self {
-        let run = ((speed - WALK) / (RUN - WALK)).clamp(0.0, 1.0);
-        Self { phase, walk: (speed / WALK).clamp(0.0, 1.0), run }
+    fn of(walker: &Walker) -> Self {
+        Self { phase: walker.phase, walk: walker.walk(), run: walker.run() }
     }
 
     fn phase_of(&self, side: Side) -> f32 {
@@ -106,22 +119,23 @@ impl Pose {
     }
 }
 
-/// Moves the figure and its joints.
-pub fn walk(
-    mut figure: Single<(&mut Walker, &mut Transform), Without<Joint>>,
-    mut joints: Query<(&Joint, &mut Transform)>,
-    time: Res<Time>,
-) {
+/// Moves the figure along its way.
+pub fn go(mut figure: Single<(&mut Walker, &mut Transform)>, time: Res<Time>) {
     let (now, tick) = (time.elapsed_secs(), time.delta_secs());
     let speed = sum(&CHANGES, now);
     let heading = Quat::from_rotation_y(sum(&TURNS, now));
     let (walker, place) = &mut *figure;
     // Longer steps at higher speed.
     let stride = 0.9 + 0.45 * speed;
+    walker.speed = speed;
     walker.phase = (walker.phase + TAU * speed / stride * tick) % TAU;
     place.translation += heading * Vec3::NEG_Z * (speed * tick);
     place.rotation = heading;
-    let pose = Pose::new(walker.phase, speed);
+}
+
+/// Moves the joints of a figure that no animation moves.
+pub fn bend(figure: Single<&Walker>, mut joints: Query<(&Joint, &mut Transform)>) {
+    let pose = Pose::of(&figure);
     for (joint, mut transform) in &mut joints {
         transform.rotation = pose.rotation(*joint);
         if *joint == Joint::Hips {

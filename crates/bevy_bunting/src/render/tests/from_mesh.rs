@@ -100,6 +100,43 @@ fn weights_are_read_from_a_named_attribute() {
 }
 
 #[test]
+fn each_anchor_holds_the_vertices_that_are_painted_for_it() {
+    let mut app = app(TICK);
+    let mesh = painted(&mut app);
+    let rest = values(&mesh, Mesh::ATTRIBUTE_POSITION).clone();
+    let given = add(&mut app, mesh);
+    // The left column, and those of the colours' blue channel from 40 on: five vertices of the lowest row.
+    let list = |paint, least| PaintedVertices { paint, least };
+    let pins = list(VertexPaint::Attribute("Pin".to_owned()), 0.5);
+    let hem = list(VertexPaint::Color(ColorChannel::Blue), 40.0);
+    let from = |held: &[&PaintedVertices]| ClothFromMesh {
+        held: held.iter().copied().cloned().collect(),
+        ..ClothFromMesh::default()
+    };
+    let [mast, car] =
+        [0.0, 1.0].map(|x| app.world_mut().spawn(Transform::from_xyz(x, 0.0, 0.0)).id());
+    let none = || AttachedVertices::List(Vec::new());
+    let back = Transform::from_xyz(-1.0, 0.0, 0.0);
+    let anchored =
+        Attachment::new(mast, none()).with_anchor(Anchor::new(car, none()).with_offset(back));
+    let cloth = spawn_from(&mut app, &given, from(&[&pins, &hem]));
+    app.world_mut().entity_mut(cloth).insert(anchored);
+    let other = spawn_from(&mut app, &given, from(&[&pins, &hem]));
+    app.world_mut().entity_mut(other).insert(Attachment::new(mast, none()));
+    run(&mut app, 30);
+    let missing = ClothError::PaintedNotHeld { entity: other, painted: 2, holders: 1 };
+    assert_eq!(failures(&app), [missing]);
+    app.world_mut().get_mut::<Transform>(car).expect("a car").translation.y = 0.1;
+    run(&mut app, 120);
+    for (vertex, now) in positions(&app, cloth).iter().enumerate() {
+        let lifted = if vertex >= 40 { 0.1 } else { 0.0 };
+        let place = Vec3::from(rest[vertex]) + lifted * Vec3::Y;
+        let is_held = vertex % 9 == 0 || vertex >= 40;
+        assert_eq!(place.distance(Vec3::from(*now)) < ROUNDING, is_held, "vertex {vertex}");
+    }
+}
+
+#[test]
 fn meshes_that_cannot_be_read_are_reported_once_and_others_go_on() {
     let mut app = app(TICK);
     let mut hidden = painted(&mut app);

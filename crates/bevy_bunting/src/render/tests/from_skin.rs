@@ -46,12 +46,14 @@ fn a_skinned_mesh_becomes_a_cloth_that_its_skeleton_leads() {
     let right = Transform::from_xyz(1.5, 0.0, 0.0);
     let joints = [turned, right].map(|at| app.world_mut().spawn((at, ChildOf(root))).id());
     let skin = SkinnedMesh { inverse_bindposes: poses.clone(), joints: joints.to_vec() };
-    let play = PaintedDistance {
-        paint: VertexPaint::Attribute("Play".to_owned()),
-        at_zero: 0.1,
-        at_one: 0.3,
+    let paint = VertexPaint::Attribute("Play".to_owned());
+    let painted = |at_zero, at_one| Some(PaintedDistance { paint: paint.clone(), at_zero, at_one });
+    let from = ClothFromMesh {
+        max_distance: painted(0.1, 0.3),
+        backstop_distance: painted(0.02, 0.03),
+        backstop_radius: painted(0.5, 0.0),
+        ..ClothFromMesh::painted()
     };
-    let from = ClothFromMesh { max_distance: Some(play), ..ClothFromMesh::painted() };
     let cloth = app.world_mut().spawn((given.clone(), skin, from, ClothSubdivision::NONE)).id();
     run(&mut app, 3);
     assert!(app.world().get::<ClothMesh>(cloth).is_none(), "its bind poses are not loaded");
@@ -82,4 +84,11 @@ fn a_skinned_mesh_becomes_a_cloth_that_its_skeleton_leads() {
         farthest = farthest.max(away);
     }
     assert!(farthest > 0.1, "the rest moves: {farthest}");
+    let limits = app.world().get::<SkinLimits>(cloth).expect("they are painted");
+    for (painted, at_zero, at_one) in
+        [(&limits.backstop_distance, 0.02, 0.03), (&limits.backstop_radius, 0.5, 0.0)]
+    {
+        let even = (0..45).map(|vertex| at_zero + (at_one - at_zero) * (vertex % 9) as f32 / 8.0);
+        assert_eq!(*painted, ByVertex::Each(even.collect()));
+    }
 }

@@ -137,13 +137,15 @@ fn no_field_is_left_out_of_reflection() {
 fn a_cloth_of_a_mesh_makes_the_round_trip() {
     let paint = VertexPaint::Attribute("Pin".to_owned());
     let max_distance = Some(PaintedDistance { paint: paint.clone(), at_zero: 0.1, at_one: 0.5 });
-    let weights = Some(PaintedWeights { paint, free: 0.2, pinned: 0.7 });
+    let weights = Some(PaintedWeights { paint: paint.clone(), free: 0.2, pinned: 0.7 });
     let asked = ClothFromMesh {
         repair: true,
         ignore_uv: true,
         weights,
         max_vertices: Some(600),
         max_distance,
+        held: vec![PaintedVertices { paint, least: 0.3 }],
+        ..ClothFromMesh::default()
     };
     let mut app = app(TICK);
     let original = app.world_mut().spawn(asked.clone()).id();

@@ -98,3 +98,22 @@ fn the_number_of_vertices_can_be_changed_and_taken_back() {
     assert!(is_current(&app, cloth), "each particle is drawn again");
     assert_eq!(failures(&app), []);
 }
+
+#[test]
+fn held_vertices_stay() {
+    let mut app = app(TICK);
+    let (given, _) = detailed(&mut app);
+    let paint = VertexPaint::Color(ColorChannel::Red);
+    let held = vec![PaintedVertices { paint, least: 0.5 }];
+    let from = ClothFromMesh { held, max_vertices: Some(120), ..ClothFromMesh::default() };
+    let attached = Attachment::in_place(ClothEdge::Left);
+    let cloth = app.world_mut().spawn((given, from, attached)).id();
+    run(&mut app, 3);
+    let attachment = app.world().get::<Attachment>(cloth).expect("an attachment");
+    let AttachedVertices::List(held) = &attachment.vertices else { panic!("{attachment:?}") };
+    let shape = app.world().get::<ClothMesh>(cloth).expect("a cloth");
+    let ClothMesh::Triangles { positions, .. } = shape else { panic!("triangles") };
+    assert_eq!(held.len() as u32, SIDE);
+    assert!(held.iter().all(|&vertex| positions[vertex as usize].x == 0.0));
+    assert!(positions.len() <= 120);
+}
