@@ -69,7 +69,7 @@ fn a_detailed_mesh_is_simulated_with_few_vertices_and_drawn_with_all() {
     let mean = edges.iter().sum::<f32>() / edges.len() as f32;
     assert!(pins < 1e-3, "pins are drawn {pins} m from their places");
     assert!((mean - 1.0).abs() < 0.02, "edges are {mean} times as long as at rest");
-    assert!(longest < 1.6, "an edge is {longest} times as long as at rest");
+    assert!(longest < 2.0, "an edge is {longest} times as long as at rest");
     // The drawn mesh lies in its bounds.
     let bounds = app.world().get::<Aabb>(cloth).expect("bounds");
     let outside = |at: &Vec3| {
