@@ -1,4 +1,4 @@
-//! The background grid of a triangle mesh that is flat at rest, or whose texture is like it.
+//! The background grid of a triangle mesh that is flat at rest, whose texture is like it, or that can be unfolded.
 //!
 //! Links along the edges of an irregular mesh are no paths along which a load runs: chains of them are short and
 //! zigzag, and what they leave to relaxation converges slowly. So such a mesh gets a regular grid, as particles have
@@ -6,14 +6,17 @@
 //! (`constraints/background.rs`). The positions of the nodes are found from those of the
 //! particles, and the particles follow the nodes.
 //!
-//! `chart` lays a flat mesh into the plane, `texture` a curved one, `coverage` measures how much of each cell is cloth,
-//! `interpolation` finds the weights, and `smooth` those of nodes on curved meshes.
+//! `chart` lays a flat mesh into the plane, `texture` a curved one, `unfold` one without texture, and `closed` finds the
+//! period of one that is closed around an axis. `coverage` measures how much of each cell is cloth, `interpolation` finds
+//! the weights, and `smooth` those of nodes on curved meshes.
 
 mod chart;
+mod closed;
 mod coverage;
 mod interpolation;
 mod smooth;
 mod texture;
+mod unfold;
 
 use glam::{Mat3, Vec2, Vec3};
 
@@ -58,6 +61,8 @@ pub(crate) struct GridTransfer {
     /// meshes. Without them each substep would flatten the mesh, as a particle between nodes lies below the arc through
     /// them.
     pub heights: Vec<Height>,
+    /// Pairs of nodes at one place, where a mesh is closed around an axis.
+    pub joined: Vec<[u32; 2]>,
     /// Whether the mesh fills the whole grid.
     pub is_whole: bool,
 }
@@ -88,8 +93,8 @@ pub(super) struct BackgroundMesh {
 }
 
 impl BackgroundMesh {
-    /// The grid of a mesh; none of a mesh that is small or narrow, neither flat at rest nor textured in one piece like
-    /// its shape, or overlaps itself.
+    /// The grid of a mesh; none of a mesh that is small or narrow, or cannot be laid into the plane without distortion
+    /// or overlap.
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
@@ -98,7 +103,9 @@ impl BackgroundMesh {
         let grid = chart.grid();
         let nodes = nodes_from_particles(&chart.positions, &chart.triangles, &grid);
         let is_free: Vec<bool> = chart.particles.iter().map(|&at| !mesh.is_pinned(at)).collect();
-        let places = particles_from_nodes(&chart.positions, &is_free, &nodes, &grid)?;
+        let mut has_row = is_free.clone();
+        has_row[chart.own_places..].fill(false);
+        let places = particles_from_nodes(&chart.positions, &has_row, &nodes, &grid)?;
         let particles = places.mean_rows(&chart.particles, mesh.positions.len());
         let nodes = match chart.plane {
             Some(_) => nodes,
@@ -119,6 +126,7 @@ impl BackgroundMesh {
             held: Interpolation::default(),
             moved_areas: Vec::new(),
             heights: Vec::new(),
+            joined: if chart.is_closed { first_and_last_row(&grid) } else { Vec::new() },
             is_whole,
         };
         let free_areas = mesh.areas.iter().zip(&mesh.inverse_areas);
@@ -150,7 +158,12 @@ impl BackgroundMesh {
 impl GridTransfer {
     /// The mass of each node, given those of the particles, zero where they are pinned.
     pub fn node_masses(&self, of_particles: &[f32]) -> Vec<f32> {
-        let moved = self.particles.transposed_product(of_particles, self.nodes.len());
+        let mut moved = self.particles.transposed_product(of_particles, self.nodes.len());
+        // Both nodes of a pair have half of the stiffness.
+        for pair in &self.joined {
+            let [first, second] = pair.map(|node| moved[node as usize]);
+            pair.iter().for_each(|&node| moved[node as usize] = 0.5 * (first + second));
+        }
         let least = LEAST_MASS * of_particles.iter().sum::<f32>() / of_particles.len() as f32;
         moved.into_iter().map(|mass| mass.max(least)).collect()
     }
@@ -169,7 +182,7 @@ fn heights(
     let mut is_done = vec![false; mesh.positions.len()];
     let rows: Vec<&[Term]> = transfer.particles.rows().collect();
     let mut heights = Vec::new();
-    for (&at, &particle) in chart.positions.iter().zip(&chart.particles) {
+    for (&at, &particle) in chart.positions.iter().zip(&chart.particles).take(chart.own_places) {
         let cell = (at / spacing).floor().clamp(Vec2::ZERO, last);
         let corner =
             |right: u32, down: u32| grid.index(cell.x as u32 + right, cell.y as u32 + down);
@@ -194,6 +207,11 @@ fn heights(
     heights
 }
 
+/// The nodes of the first and of the last row of a grid, in pairs.
+fn first_and_last_row(grid: &Grid) -> Vec<[u32; 2]> {
+    (0..grid.columns).map(|column| [0, grid.rows - 1].map(|row| grid.index(column, row))).collect()
+}
+
 /// Whether the grid is held where the mesh is: near each pinned particle a node is pinned.
 fn is_held(
     mesh: &RestMesh,
@@ -213,7 +231,7 @@ fn is_held(
             is_near && nodes.is_pinned(index) && in_mesh.has_row(index as usize)
         })
     };
-    let places = chart.particles.iter().zip(&chart.positions);
+    let places = chart.particles.iter().zip(&chart.positions).take(chart.own_places);
     let mut pinned = places.filter(|(particle, _)| mesh.is_pinned(**particle));
     pinned.all(|(_, &at)| is_near_pinned_node(at))
 }
@@ -325,27 +343,55 @@ mod tests {
         }
     }
 
+    /// A square metre of `n` × `n` vertices, rolled up about a vertical axis until its sides meet, without texture.
+    fn cylinder(n: u32) -> FabricBuilder {
+        let sheet = Grid::new(n, n, 1.0, 1.0);
+        let radius = 1.0 / core::f32::consts::TAU;
+        let roll = |at: &Vec3| {
+            let (sin, cos) = libm::sincosf(at.x / radius);
+            Vec3::new(radius * sin, at.y, radius * cos)
+        };
+        let positions = sheet.positions().iter().map(roll).collect();
+        let triangles = sheet.triangles(false).into_flattened();
+        FabricBuilder::new(positions, triangles).weld_distance(1e-4)
+    }
+
+    #[test]
+    fn a_closed_mesh_has_a_grid_around_its_axis() {
+        let fabric = cylinder(25).build().expect("a good fabric");
+        let background = fabric.background().expect("it can be unfolded");
+        let transfer = &background.transfer;
+        let nodes = background.fabric.rest_positions();
+        assert_eq!(transfer.joined.len(), 25);
+        for joined in &transfer.joined {
+            let [first, second] = joined.map(|node| nodes[node as usize]);
+            assert!(first.distance(second) < 1e-5, "{first} {second}");
+            let [first, second] = joined.map(|node| transfer.moved_areas[node as usize]);
+            assert_eq!(first, second);
+        }
+        let mass: f32 = transfer.moved_areas.iter().sum();
+        assert!((mass / fabric.area() - 1.0).abs() < 1e-3, "{mass}");
+    }
+
     #[test]
     fn meshes_that_are_no_charts_keep_their_own_chains() {
         let has_grid =
             |builder: FabricBuilder| builder.build().expect("a good fabric").background().is_some();
         assert!(has_grid(disk(8)));
-        let curved: Vec<Vec3> =
-            disk(8).positions().iter().map(|at| *at + Vec3::Z * at.x * at.x).collect();
         let indices = disk(8).indices().to_vec();
-        let curved = FabricBuilder::new(curved, indices.clone());
-        assert!(!has_grid(curved.clone()), "not flat, without texture");
         let from_above: Vec<Vec2> = disk(8).positions().iter().map(|at| at.truncate()).collect();
-        assert!(has_grid(curved.clone().uv(from_above.clone())), "a texture like the shape");
-        let bent_by = |steepness: f32| {
-            let up = |at: &Vec3| *at + Vec3::Z * steepness * at.x * at.x;
-            let bent = disk(8).positions().iter().map(up).collect();
-            FabricBuilder::new(bent, indices.clone()).uv(from_above.clone())
+        let raised_by = |height: fn(Vec3) -> f32| {
+            let up = |at: &Vec3| *at + Vec3::Z * height(*at);
+            FabricBuilder::new(disk(8).positions().iter().map(up).collect(), indices.clone())
         };
-        assert!(has_grid(bent_by(0.5)), "a texture like the shape");
-        assert!(!has_grid(bent_by(2.0)), "a distorted texture");
-        let turned_over = from_above.iter().map(|uv| Vec2::new(uv.x.abs(), uv.y)).collect();
-        assert!(!has_grid(curved.uv(turned_over)), "a texture that shows a back");
+        let arch = raised_by(|at| 2.0 * at.x * at.x);
+        assert!(has_grid(arch.clone()), "not flat, without texture, but it can be unfolded");
+        assert!(has_grid(arch.uv(from_above.clone())), "a distorted texture");
+        let flat_dome = raised_by(|at| -0.5 * at.length_squared());
+        assert!(has_grid(flat_dome.clone().uv(from_above.clone())), "a texture like the shape");
+        let dome = raised_by(|at| -3.0 * at.length_squared());
+        assert!(!has_grid(dome.clone()), "a dome");
+        assert!(!has_grid(dome.uv(from_above)), "a distorted texture");
         let doubled: Vec<Vec3> =
             disk(8).positions().iter().chain(disk(8).positions()).copied().collect();
         let count = doubled.len() as u32 / 2;
