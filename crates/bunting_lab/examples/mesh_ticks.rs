@@ -1,8 +1,9 @@
-//! Time of a tick of an irregular mesh, flat or bent, closed to a cylinder or to a funnel without texture, beside that of
-//! the grid of as many particles, in turn: a lone cloth, and eight.
+//! Time of a tick of an irregular mesh, flat or bent, closed to a cylinder or to a funnel without texture, beside that
+//! of the grid of as many particles, in turn: a lone cloth, and eight.
 //!
 //! ```sh
-//! cargo run --release -p bunting_lab --example mesh_ticks -- COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel one|eight
+//! cargo run --release -p bunting_lab --example mesh_ticks -- \
+//!     COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel one|eight
 //! ```
 
 use std::{f32::consts::TAU, sync::Arc, time::Instant};

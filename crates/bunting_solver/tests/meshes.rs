@@ -160,7 +160,7 @@ fn the_yarns_of_a_stiff_mesh_come_nearer_to_one_another_in_a_pass_that_goes_fart
     assert!(speed < 1e-3 && error.abs() < 0.05, "{error}, {speed} m/s");
 }
 
-/// The two sides of the seam of a closed mesh are one: its greatest strain in wind is that of an open one.
+/// The first and the last row of nodes are one. Where they are not joined the seam opens: 38 % and 67 %.
 #[test]
 fn a_closed_mesh_does_not_open_at_its_seam() {
     let fabric = Arc::new(bent_with(&irregular(17, 0.0), CLOSED, Vec::new()));
@@ -180,8 +180,7 @@ fn a_closed_mesh_does_not_open_at_its_seam() {
     }
     strains.sort_by(f32::total_cmp);
     let (large, greatest) = (strains[strains.len() * 999 / 1000], strains[strains.len() - 1]);
-    println!("seam {large} {greatest}");
-    assert!(large < 0.5 && greatest < 0.7, "99.9 %: {large}, greatest: {greatest}");
+    assert!(large < 0.33 && greatest < 0.5, "99.9 %: {large}, greatest: {greatest}");
 }
 
 #[test]

@@ -14,8 +14,8 @@ pub enum Triangulation {
     Delaunay,
     /// Cells whose corners are moved at random, each cut along one of its diagonals at random.
     Quads,
-    /// What simplification leaves of a mesh of four times as many triangles, as of a scan: triangles of uneven sizes, and
-    /// a border of which nothing is left out.
+    /// What simplification leaves of a mesh of four times as many triangles, as of a scan: triangles of uneven sizes,
+    /// and a border of which nothing is left out.
     Scan,
 }
 
@@ -51,8 +51,8 @@ impl Random {
 }
 
 impl Sheet {
-    /// A sheet with about as many vertices as a grid of `columns` × `rows`. Those of the first columns of the grid, as many
-    /// as are `kept`, and of its border are vertices of the sheet.
+    /// A sheet with about as many vertices as a grid of `columns` × `rows`. Those of the first columns of the grid, as
+    /// many as are `kept`, and of its border are vertices of the sheet.
     ///
     /// # Panics
     ///
@@ -108,8 +108,8 @@ impl Sheet {
         Self { positions: builder.positions().to_vec(), indices: builder.indices().to_vec() }
     }
 
-    /// The sheet as a fabric of two pieces that share a seam halfway down, with pins. The warp of the upper one runs along
-    /// the rows, that of the lower one down the columns.
+    /// The sheet as a fabric of two pieces that share a seam halfway down, with pins. The warp of the upper one runs
+    /// along the rows, that of the lower one down the columns.
     ///
     /// # Panics
     ///

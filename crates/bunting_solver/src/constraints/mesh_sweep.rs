@@ -1,8 +1,8 @@
 //! A Gauss–Seidel sweep over the links of a mesh that does not fill a background grid.
 //!
-//! Where cloth snaps like a whip, such links may be far longer than those of the grid, as their particles are raised above
-//! the nodes, or extrapolated from them; or longer than those of laid yarns, between which they lie. The links have a small
-//! part of the material's stiffness, so that grid or yarns carry the load. The constraint is that of
+//! Where cloth snaps like a whip, such links may be far longer than those of the grid, as their particles are raised
+//! above the nodes, or extrapolated from them; or longer than those of laid yarns, between which they lie. The links
+//! have a small part of the material's stiffness, so that grid or yarns carry the load. The constraint is that of
 //! `gauss_seidel/distance.rs`.
 
 use crate::batch::lane_batch::LaneBatch;
@@ -14,8 +14,9 @@ use crate::fabric::Link;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
 
-/// Strain up to which links are left to the background grid. Smaller: links take part of the load from the grid, whatever
-/// their stiffness, as a sweep moves light particles all the way. Larger: single edges are drawn longer in wind.
+/// Strain up to which links are left to the background grid. Smaller: links take part of the load from the grid,
+/// whatever their stiffness, as a sweep moves light particles all the way. Larger: single edges are drawn longer in
+/// wind.
 const SLACK: f32 = 0.01;
 
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {

@@ -25,8 +25,8 @@ const TIGHTER: f32 = 1e-4;
 /// cos of the angle to the warp or the weft up to which a row runs along it: 3°.
 const ALONG: f32 = 0.9986;
 
-/// Mean of cos² of the angle between the warp and its mean direction below which a mesh is of pieces with different warps.
-/// Larger: textures that are distorted a little count as pieces.
+/// Mean of cos² of the angle between the warp and its mean direction below which a mesh is of pieces with different
+/// warps. Larger: textures that are distorted a little count as pieces.
 const ONE_WARP: f32 = 0.9;
 
 /// A mesh in the plane.
@@ -58,8 +58,8 @@ pub(super) struct Plane {
 }
 
 impl Chart {
-    /// The chart of a mesh; none if it is folded or of pieces with different warps, or if it has no texture that is like it
-    /// and cannot be unfolded.
+    /// The chart of a mesh; none if it is folded or of pieces with different warps, or if it has no texture that is
+    /// like it and cannot be unfolded.
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         let Some(normal) = plane_normal(mesh) else {
             let unfolded = || Self::unfolded(mesh, surface);

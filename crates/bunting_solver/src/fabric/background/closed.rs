@@ -1,9 +1,9 @@
 //! Charts of meshes that are closed around an axis, as cylinders are.
 //!
 //! Such a mesh has a seam in the plane, with the same particles on both of its sides. Their two places are one period
-//! apart. The chart then has each particle once, within one period along its second axis; triangles near the ends of the
-//! period are repeated beyond them. A grid over one period has its first row once more as its last row, and both are
-//! joined (`constraints/background.rs`).
+//! apart. The chart then has each particle once, within one period along its second axis; triangles near the ends of
+//! the period are repeated beyond them. A grid over one period has its first row once more as its last row, and both
+//! are joined (`constraints/background.rs`).
 
 use std::collections::BTreeMap;
 
@@ -17,12 +17,12 @@ const ALIKE: f32 = 0.25;
 /// Least period, in cells. Smaller: the repeated triangles overlap one another.
 const LEAST_PERIOD: f32 = 8.0;
 
-/// Width of the strip beyond the ends of the period in which triangles are repeated, in cells. Smaller: nodes at the ends
-/// are fitted to the particles on one side.
+/// Width of the strip beyond the ends of the period in which triangles are repeated, in cells. Smaller: nodes at the
+/// ends are fitted to the particles on one side.
 const REPEATED: f32 = 3.0;
 
-/// Most periods that a triangle may lie away from its own. Smaller: triangles across the seam are lost, as each of their
-/// corners may have been laid on either side.
+/// Most periods that a triangle may lie away from its own. Smaller: triangles across the seam are lost, as each of
+/// their corners may have been laid on either side.
 const MOST_TURNS: i32 = 2;
 
 impl Chart {

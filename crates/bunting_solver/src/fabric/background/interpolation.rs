@@ -14,8 +14,8 @@ const LEAST_WEIGHT: f32 = 1e-5;
 /// the border. Smaller: nodes outside the mesh are extrapolated from a single triangle.
 const INSIDE: f32 = -0.02;
 
-/// Radii around a particle at the border within which nodes count, in cells; the second where there are too few within the
-/// first. Smaller: too few to fit a plane at the corners of a mesh that lies aslant.
+/// Radii around a particle at the border within which nodes count, in cells; the second where there are too few within
+/// the first. Smaller: too few to fit a plane at the corners of a mesh that lies aslant.
 const RADII: [f32; 2] = [2.2, 3.3];
 
 /// Least determinant of a fit's normal equations, relative to the cube of their largest term. Smaller: nodes that lie
@@ -210,8 +210,8 @@ pub(super) fn nodes_from_particles(
     weights
 }
 
-/// Weights of the nodes at each place of a free particle: bilinear in its cell, and near the border those of a plane fitted to the nodes
-/// around it. None if there are too few of these.
+/// Weights of the nodes at each place of a free particle: bilinear in its cell, and near the border those of a plane
+/// fitted to the nodes around it. None if there are too few of these.
 pub(super) fn particles_from_nodes(
     positions: &[Vec2],
     is_free: &[bool],

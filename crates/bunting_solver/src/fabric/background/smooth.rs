@@ -24,8 +24,8 @@ const GREATEST_SUM: f32 = 3.0;
 const QUARTIC: usize = 15;
 const QUADRATIC: usize = 6;
 
-/// Rows of nodes by fits to the places around them; the given rows where there are too few places, and of nodes that stand
-/// for pins.
+/// Rows of nodes by fits to the places around them; the given rows where there are too few places, and of nodes that
+/// stand for pins.
 pub(super) fn smoothed(
     rows: Interpolation,
     positions: &[Vec2],

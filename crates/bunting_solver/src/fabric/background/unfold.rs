@@ -1,8 +1,8 @@
 //! A curved mesh without a texture like its shape, unfolded into the plane.
 //!
-//! Triangles are laid side by side, each along its warp and weft, those nearest to a line along the warp first; where two
-//! ways around a cylinder meet is a seam. Then the places are found at which the gradients come nearest to warp and weft
-//! in all triangles, as Bommes, Zimmer and Kobbelt do in 2009 for quadrangles.
+//! Triangles are laid side by side, each along its warp and weft, those nearest to a line along the warp first; where
+//! two ways around a cylinder meet is a seam. Then the places are found at which the gradients come nearest to warp and
+//! weft in all triangles, as Bommes, Zimmer and Kobbelt do in 2009 for quadrangles.
 
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;

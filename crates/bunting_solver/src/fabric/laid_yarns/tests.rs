@@ -5,8 +5,8 @@ use glam::Vec3;
 use super::{BAND, LaidYarn};
 use crate::fabric::{Fabric, FabricBuilder, LinkFamily};
 
-/// A mesh of `n` × `n` vertices in uneven cells, rolled up about a vertical axis to a closed funnel twice as wide below. Its
-/// warp cannot be laid into the plane without distortion, so that it has no background grid.
+/// A mesh of `n` × `n` vertices in uneven cells, rolled up about a vertical axis to a closed funnel twice as wide
+/// below. Its warp cannot be laid into the plane without distortion, so that it has no background grid.
 fn funnel(n: u32) -> Fabric {
     let radius = 1.0 / core::f32::consts::TAU;
     let place = |index: u32| {
