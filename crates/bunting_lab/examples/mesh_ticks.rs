@@ -1,11 +1,12 @@
-//! Time of a tick of an irregular mesh, flat or bent and without texture, beside that of the grid of as many particles, in
-//! turn: a lone cloth, and eight.
+//! Time of a tick of an irregular mesh, flat or bent, closed to a cylinder or to a funnel without texture, beside that
+//! of the grid of as many particles, in turn: a lone cloth, and eight.
 //!
 //! ```sh
-//! cargo run --release -p bunting_lab --example mesh_ticks -- COLUMNS TICKS grid|mesh|both|bent one|eight
+//! cargo run --release -p bunting_lab --example mesh_ticks -- \
+//!     COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel one|eight
 //! ```
 
-use std::{sync::Arc, time::Instant};
+use std::{f32::consts::TAU, sync::Arc, time::Instant};
 
 use anyhow::{Context, Result, bail};
 use bunting_lab::{
@@ -69,7 +70,7 @@ impl Timed {
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [columns, ticks, kinds, lanes] = &arguments[..] else {
-        bail!("COLUMNS TICKS grid|mesh|both|bent one|eight")
+        bail!("COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel one|eight")
     };
     let n: usize = columns.parse().context("COLUMNS")?;
     let lanes = if lanes == "one" { LaneCount::One } else { LaneCount::Eight };
@@ -78,6 +79,19 @@ fn main() -> Result<()> {
         let sheet = Sheet::new(Triangulation::Quads, [n, n], DVec2::ONE, 1);
         let mesh = FabricBuilder::new(sheet.bent(0.5), sheet.indices);
         timed.push(Timed::new("bent", mesh.pin_where(|at, _| at.y == 0.0).build()?, lanes)?);
+    }
+    if kinds == "rolled" || kinds == "funnel" {
+        let sheet = Sheet::new(Triangulation::Quads, [n, n], DVec2::ONE, 1);
+        let wide = |at: &Vec3| if kinds == "funnel" { 1.0 - at.y } else { 1.0 };
+        let roll = |at: Vec3| Vec3::new(at.x * wide(&at), at.y, at.z * wide(&at));
+        let positions = sheet.bent(1.0 / TAU).into_iter().map(roll).collect();
+        let mesh = FabricBuilder::new(positions, sheet.indices).weld_distance(1e-5);
+        timed.push(Timed::new("rolled", mesh.pin_where(|at, _| at.y == 0.0).build()?, lanes)?);
+    }
+    if kinds == "scan" {
+        let sheet = Sheet::new(Triangulation::Scan, [n, n], DVec2::ONE, 1);
+        let mesh = FabricBuilder::new(sheet.positions, sheet.indices);
+        timed.push(Timed::new("scan", mesh.pin_where(|at, _| at.x == 0.0).build()?, lanes)?);
     }
     if kinds == "grid" || kinds == "both" {
         let grid = FabricBuilder::grid(Grid::new(n as u32, n as u32, 1.0, 1.0));

@@ -63,6 +63,9 @@ fn a_hanging_mesh_has_its_materials_strain() {
 const CLOTH: FabricMaterial =
     FabricMaterial { warp_stiffness: 1e3, weft_stiffness: 1e3, shear_stiffness: 50.0, ..ISOTROPIC };
 
+/// Radius of a square metre that is rolled up until its sides meet, m.
+const CLOSED: f32 = 1.0 / core::f32::consts::TAU;
+
 /// A mesh of a square metre that is bent about a vertical axis, and closed where the radius is 1 m/2π: there its
 /// texture has a seam.
 fn bent(flat: &Fabric, radius: f32) -> Fabric {
@@ -84,38 +87,40 @@ fn bent_with(flat: &Fabric, radius: f32, uv: Vec<Vec2>) -> Fabric {
 #[test]
 fn a_curved_mesh_with_a_texture_rests_with_its_materials_strain() {
     let expected = ISOTROPIC.area_density * GRAVITY / (2.0 * ISOTROPIC.weft_stiffness);
-    let closed = 1.0 / core::f32::consts::TAU;
-    for (n, radius) in [(17, 0.5), (25, 0.3), (25, closed), (33, closed)] {
+    for (n, radius) in [(17, 0.5), (25, 0.3), (25, CLOSED), (33, CLOSED)] {
         let fabric = Arc::new(bent(&irregular(n, 0.0), radius));
-        assert_eq!(fabric.particle_count(), (n * (n - u32::from(radius == closed))) as usize);
+        assert_eq!(fabric.particle_count(), (n * (n - u32::from(radius == CLOSED))) as usize);
         let [sunk, speed] = hung(&fabric, ISOTROPIC);
         let error = sunk / expected - 1.0;
         assert!(speed < 1e-3, "{n} × {n}, radius {radius} m: {speed} m/s");
-        assert!(error.abs() < 0.03, "{n} × {n}, radius {radius} m: {error}");
+        assert!(error.abs() < 0.01, "{n} × {n}, radius {radius} m: {error}");
     }
 }
 
 #[test]
 fn a_curved_mesh_without_texture_hangs_with_its_materials_strain() {
-    let expected = CLOTH.area_density * GRAVITY / (2.0 * CLOTH.weft_stiffness);
-    for (n, radius) in [(17, 0.5), (25, 0.3), (25, 1.0 / core::f32::consts::TAU)] {
-        let fabric = Arc::new(bent_with(&irregular(n, 0.0), radius, Vec::new()));
-        let [sunk, speed] = hung(&fabric, CLOTH);
-        let error = sunk / expected - 1.0;
-        assert!(speed < 1e-3, "{n} × {n}, radius {radius} m: {speed} m/s");
-        assert!(error.abs() < 0.06, "{n} × {n}, radius {radius} m: {error}");
+    for material in [CLOTH, ISOTROPIC] {
+        let expected = material.area_density * GRAVITY / (2.0 * material.weft_stiffness);
+        for (n, radius) in [(17, 0.5), (25, 0.3), (25, CLOSED), (33, CLOSED)] {
+            let fabric = Arc::new(bent_with(&irregular(n, 0.0), radius, Vec::new()));
+            let [sunk, speed] = hung(&fabric, material);
+            let error = sunk / expected - 1.0;
+            assert!(speed < 1e-3, "{n} × {n}, radius {radius} m: {speed} m/s");
+            assert!(error.abs() < 0.02, "{n} × {n}, radius {radius} m: {error}");
+        }
     }
 }
 
-/// Nodes lie below a curved surface by different heights, so that the families of yarns agree slowly. Without a first
-/// pass that goes farther the error was 41 %, with it 30 %.
-#[test]
-fn the_yarns_of_a_stiff_curved_mesh_come_nearer_to_one_another_in_a_pass_that_goes_farther() {
-    let expected = ISOTROPIC.area_density * GRAVITY / (2.0 * ISOTROPIC.weft_stiffness);
-    let fabric = Arc::new(bent_with(&irregular(25, 0.0), 0.3, Vec::new()));
-    let [sunk, speed] = hung(&fabric, ISOTROPIC);
-    let error = sunk / expected - 1.0;
-    assert!(speed < 1e-3 && error.abs() < 0.35, "{error}, {speed} m/s");
+/// The mesh rolled up to a funnel that is twice as wide below, which has laid yarns.
+fn funnel(flat: &Fabric) -> Fabric {
+    let place = |at: &Vec3| {
+        let (sin, cos) = libm::sincosf(at.x / CLOSED);
+        let wide = CLOSED * (1.0 - at.y);
+        Vec3::new(wide * sin, at.y, wide * cos)
+    };
+    let positions = flat.rest_positions().iter().map(place).collect();
+    let builder = FabricBuilder::new(positions, flat.triangles().as_flattened().to_vec());
+    builder.weld_distance(1e-5).pin_where(|at, _| at.y == 0.0).build().expect("a good fabric")
 }
 
 /// A flat mesh of a square metre of two pieces that share a seam halfway down; the warp of the lower one runs down.
@@ -143,6 +148,39 @@ fn a_load_crosses_a_seam_of_pieces_with_different_warps() {
         let error = sunk / expected - 1.0;
         assert!(speed < 1e-3 && error.abs() < 0.05, "{n} × {n}: {error}, {speed} m/s");
     }
+}
+
+/// The families of yarns agree slowly. Without a first pass that goes farther the error was +7 %, with it −3 %.
+#[test]
+fn the_yarns_of_a_stiff_mesh_come_nearer_to_one_another_in_a_pass_that_goes_farther() {
+    let expected = ISOTROPIC.area_density * GRAVITY / (2.0 * ISOTROPIC.weft_stiffness);
+    let fabric = Arc::new(of_two_pieces(&irregular(17, 0.0), |at| at.y == 0.0));
+    let [sunk, speed] = hung(&fabric, ISOTROPIC);
+    let error = sunk / expected - 1.0;
+    assert!(speed < 1e-3 && error.abs() < 0.05, "{error}, {speed} m/s");
+}
+
+/// The first and the last row of nodes are one. Where they are not joined the seam opens: 38 % and 67 %.
+#[test]
+fn a_closed_mesh_does_not_open_at_its_seam() {
+    let fabric = Arc::new(bent_with(&irregular(17, 0.0), CLOSED, Vec::new()));
+    let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
+    let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
+    batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::FLAG_POLYESTER).expect("room");
+    let wind = Vec3::new(5.0, 0.0, 3.0);
+    batch.drive(0, Drive { wind, ..Drive::default() }).expect("a lane");
+    let mut strains = Vec::new();
+    for _ in 0..240 {
+        batch.step(TICK, settings);
+        let at = batch.snapshot(0).positions;
+        let length = |of: &[Vec3], [a, b]: [u32; 2]| of[a as usize].distance(of[b as usize]);
+        let sides = fabric.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let rest = fabric.rest_positions();
+        strains.extend(sides.map(|ends| length(&at, ends) / length(rest, ends) - 1.0));
+    }
+    strains.sort_by(f32::total_cmp);
+    let (large, greatest) = (strains[strains.len() * 999 / 1000], strains[strains.len() - 1]);
+    assert!(large < 0.33 && greatest < 0.5, "99.9 %: {large}, greatest: {greatest}");
 }
 
 #[test]
@@ -229,7 +267,8 @@ fn a_mesh_has_the_same_bits_at_every_width() {
         irregular(30, 0.5),
         with_a_hole(&flat),
         bent(&flat, 0.3),
-        bent_with(&irregular(12, 0.0), 0.3, Vec::new()),
+        bent_with(&irregular(12, 0.0), CLOSED, Vec::new()),
+        funnel(&irregular(12, 0.0)),
     ];
     for fabric in fabrics.map(Arc::new) {
         for material in [limp, stiff] {
@@ -245,8 +284,9 @@ fn a_mesh_has_the_same_bits_at_every_width() {
 #[test]
 fn a_mesh_that_moves_to_another_batch_keeps_its_bits() {
     let flat = irregular(21, 0.0);
-    let untextured = bent_with(&irregular(12, 0.0), 0.3, Vec::new());
-    let fabrics = [irregular(13, 0.0), with_a_hole(&flat), bent(&flat, 0.3), untextured];
+    let untextured = bent_with(&irregular(12, 0.0), CLOSED, Vec::new());
+    let funnel = funnel(&irregular(12, 0.0));
+    let fabrics = [irregular(13, 0.0), with_a_hole(&flat), bent(&flat, 0.3), untextured, funnel];
     for fabric in fabrics.map(Arc::new) {
         let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
         let wind = Vec3::new(6.0, 0.0, 4.0);

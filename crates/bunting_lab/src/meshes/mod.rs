@@ -14,6 +14,9 @@ pub enum Triangulation {
     Delaunay,
     /// Cells whose corners are moved at random, each cut along one of its diagonals at random.
     Quads,
+    /// What simplification leaves of a mesh of four times as many triangles, as of a scan: triangles of uneven sizes,
+    /// and a border of which nothing is left out.
+    Scan,
 }
 
 /// A rectangle of triangles from the origin to (width, −height).
@@ -48,8 +51,12 @@ impl Random {
 }
 
 impl Sheet {
-    /// A sheet with as many vertices as a grid of `columns` × `rows`, whose first columns, as many as are `kept`, and
-    /// whose border are those of the grid.
+    /// A sheet with about as many vertices as a grid of `columns` × `rows`. Those of the first columns of the grid, as
+    /// many as are `kept`, and of its border are vertices of the sheet.
+    ///
+    /// # Panics
+    ///
+    /// When a scan cannot be simplified.
     #[must_use]
     pub fn new(
         triangulation: Triangulation,
@@ -74,6 +81,7 @@ impl Sheet {
                 let triangles = delaunay::triangulate(&points);
                 (points, triangles)
             }
+            Triangulation::Scan => return Self::simplified([columns, rows], size, kept),
             Triangulation::Quads => {
                 let points = grid.map(|at| {
                     let shift = random.place() * 2.0 - 1.0;
@@ -90,8 +98,18 @@ impl Sheet {
         Self { positions: positions.collect(), indices: front.map(|at| at as u32).collect() }
     }
 
-    /// The sheet as a fabric of two pieces that share a seam halfway down, with pins. The warp of the upper one runs along
-    /// the rows, that of the lower one down the columns.
+    fn simplified([columns, rows]: [usize; 2], size: DVec2, kept: usize) -> Self {
+        let fine = [2 * columns - 1, 2 * rows - 1];
+        let fine = Self::new(Triangulation::Quads, fine, size, 2 * kept - 1);
+        let last_kept = (size.x * (kept as f64 - 0.9) / (columns - 1) as f64) as f32;
+        let builder = FabricBuilder::new(fine.positions, fine.indices);
+        let coarser = builder.pin_where(|at, _| at.x < last_kept).coarser();
+        let builder = coarser.expect("a mesh that can be simplified").builder;
+        Self { positions: builder.positions().to_vec(), indices: builder.indices().to_vec() }
+    }
+
+    /// The sheet as a fabric of two pieces that share a seam halfway down, with pins. The warp of the upper one runs
+    /// along the rows, that of the lower one down the columns.
     ///
     /// # Panics
     ///

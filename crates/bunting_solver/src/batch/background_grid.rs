@@ -162,7 +162,7 @@ impl SingleGrid {
             (pack * Pack8::WIDTH + lane) as u32
         };
         let places: Vec<u32> = (0..batch.fabric.particle_count()).map(place).collect();
-        let GridTransfer { nodes, particles, means, held, moved_areas, heights, is_whole } =
+        let GridTransfer { nodes, particles, means, held, moved_areas, heights, joined, is_whole } =
             background.transfer.clone();
         Self {
             nodes: vec![zero; count],
@@ -174,6 +174,7 @@ impl SingleGrid {
                 held: held.with_rows_at(&places, count),
                 moved_areas,
                 heights,
+                joined,
                 is_whole,
             },
             batch,

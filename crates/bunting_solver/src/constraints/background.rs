@@ -60,6 +60,7 @@ fn interpolated(transfer: &GridTransfer, of_particles: &[Vec3], outside: &[Vec3]
     let mut unresolved = Vec::new();
     for _ in 0..READING_STEPS {
         project(transfer, &particles, &mut unresolved, &mut nodes, |_| {});
+        Pack1::run(JoinNodes { joined: &transfer.joined, nodes: &mut nodes });
     }
     nodes.iter().map(|node| lane3(node, 0)).collect()
 }
@@ -149,14 +150,35 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         else {
             return;
         };
+        let GridTransfer { particles: rows, heights, joined, .. } = &background.transfer;
+        P::run(JoinNodes { joined, nodes: grid.positions.packs_mut() });
         grid.update_node_velocities(&mut self.lanes);
-        let GridTransfer { particles: rows, heights, .. } = &background.transfer;
         let to = self.positions.packs_mut();
         let nodes = grid.positions.packs_mut();
         P::run(Interpolate { rows, from: nodes, to });
         P::run(AddHeights { heights, sign: 1.0, nodes, to });
         if !integrates && self.clock.begun == self.clock.settings.substeps {
             P::run(Interpolate { rows, from: &grid.velocity, to: &mut self.velocity });
+        }
+    }
+}
+
+/// Moves the nodes of each pair to the middle between them.
+struct JoinNodes<'a, P: Pack> {
+    joined: &'a [[u32; 2]],
+    nodes: &'a mut [Pack3<P>],
+}
+
+impl<P: Pack> Kernel<P> for JoinNodes<'_, P> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let half = L::splat(token, 0.5);
+        for [first, second] in self.joined {
+            let from: V3<L> = V3::load(token, &self.nodes[*first as usize]);
+            let to: V3<L> = V3::load(token, &self.nodes[*second as usize]);
+            let middle = from.plus_scaled(to - from, half);
+            middle.store(&mut self.nodes[*first as usize]);
+            middle.store(&mut self.nodes[*second as usize]);
         }
     }
 }

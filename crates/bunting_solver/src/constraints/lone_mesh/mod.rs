@@ -57,15 +57,17 @@ impl LoneMesh {
         self.run_hinges();
     }
 
-    /// Solves each link once, from the first to the last or backwards, given the compliances of their classes.
+    /// Solves each link once, from the first to the last or backwards, given the strain up to which they do not resist,
+    /// and the compliances of their classes.
     pub(super) fn sweep_links(
         &mut self,
         is_backwards: bool,
+        slack: f32,
         compliance: impl Iterator<Item = f32>,
     ) {
         self.compliance.clear();
         self.compliance.extend(compliance);
-        self.run_links(is_backwards);
+        self.run_links(is_backwards, slack);
     }
 
     /// Solves the laid yarns, if there are any, given the compliance of a square of each family, σ/(Y h²), 1/m².
@@ -84,10 +86,11 @@ impl LoneMesh {
         dispatch!(token => solve_hinges(token, solve));
     }
 
-    fn run_links(&mut self, is_backwards: bool) {
+    fn run_links(&mut self, is_backwards: bool, slack: f32) {
         let sweep = SweepLinks {
             packs: &self.links,
             is_backwards,
+            slack,
             compliance: &self.compliance,
             particles: VectorParticles(&mut self.particles),
         };

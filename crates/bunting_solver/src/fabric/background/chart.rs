@@ -1,11 +1,14 @@
 //! A mesh laid into the plane: a flat one along its warp or along the sides of its bounding rectangle, a curved one by
-//! its texture.
+//! its texture, or unfolded.
 
 use glam::{Vec2, Vec3};
 
+use super::texture::scale_of_texture;
+use super::unfold::Unfolded;
 use crate::fabric::grid::Grid;
 use crate::fabric::links::warp_direction;
 use crate::fabric::mesh::{RestMesh, Surface};
+use crate::fabric::topology;
 
 /// Greatest distance of a particle from the mean plane, as a part of the mesh's extent. Larger: curved meshes are
 /// flattened.
@@ -22,8 +25,8 @@ const TIGHTER: f32 = 1e-4;
 /// cos of the angle to the warp or the weft up to which a row runs along it: 3°.
 const ALONG: f32 = 0.9986;
 
-/// Mean of cos² of the angle between the warp and its mean direction below which a mesh is of pieces with different warps.
-/// Larger: textures that are distorted a little count as pieces.
+/// Mean of cos² of the angle between the warp and its mean direction below which a mesh is of pieces with different
+/// warps. Larger: textures that are distorted a little count as pieces.
 const ONE_WARP: f32 = 0.9;
 
 /// A mesh in the plane.
@@ -32,6 +35,10 @@ pub(super) struct Chart {
     pub positions: Vec<Vec2>,
     /// The particle at each place. A particle on a seam of the texture has two.
     pub particles: Vec<u32>,
+    /// How many of the places, the first ones, are not repeated beyond the seam of a closed chart.
+    pub own_places: usize,
+    /// Whether the chart is one period along its second axis.
+    pub is_closed: bool,
     /// Three places for each triangle.
     pub triangles: Vec<[u32; 3]>,
     /// cos² of the angle between the first axis and the warp.
@@ -51,15 +58,40 @@ pub(super) struct Plane {
 }
 
 impl Chart {
-    /// The chart of a mesh; none if it is folded, or curved and without a texture that is like it, or flat and of pieces
-    /// with different warps.
+    /// The chart of a mesh; none if it is folded or of pieces with different warps, or if it has no texture that is
+    /// like it and cannot be unfolded.
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
-        let Some(normal) = plane_normal(mesh) else { return Self::by_texture(mesh, surface) };
+        let Some(normal) = plane_normal(mesh) else {
+            let unfolded = || Self::unfolded(mesh, surface);
+            return Self::by_texture(mesh, surface).or_else(unfolded).map(Self::closed);
+        };
         let warps = Warps::of(mesh, surface);
         let warp = warps.mean().unwrap_or_else(|| normal.any_orthonormal_vector());
-        if !warps.are_along(warp) {
-            return None;
-        }
+        warps.are_along(warp).then(|| Self::in_plane(mesh, surface, normal, warp))
+    }
+
+    /// The chart of a curved mesh that is unfolded; none if that is impossible, or distorts it.
+    fn unfolded(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
+        let Unfolded { places, particles, triangles } = Unfolded::of(mesh, surface)?;
+        let uv = |corners: &[u32; 3]| corners.map(|place| places[place as usize].as_vec2());
+        let corner_uv: Vec<[Vec2; 3]> = triangles.iter().map(uv).collect();
+        scale_of_texture(mesh, surface, &corner_uv)?;
+        let edges = topology::edges(&triangles).ok()?;
+        let flat = RestMesh {
+            positions: places.iter().map(|at| at.as_vec2().extend(0.0)).collect(),
+            uv: Vec::new(),
+            particle_of_vertex: Vec::new(),
+            areas: Vec::new(),
+            inverse_areas: Vec::new(),
+            triangles,
+        };
+        let surface = Surface { edges, corner_uv, ..surface.clone() };
+        let chart = Self::in_plane(&flat, &surface, Vec3::Z, Vec3::X);
+        Some(Self { particles, plane: None, ..chart })
+    }
+
+    /// The chart of a flat mesh along its warp, or along the sides of its bounding rectangle if it fills that better.
+    fn in_plane(mesh: &RestMesh, surface: &Surface, normal: Vec3, warp: Vec3) -> Self {
         let area: f32 = surface.triangle_areas.iter().sum();
         let mut best = Self::along(mesh, area, normal, warp);
         let filled = |chart: &Self| area / chart.extent.element_product();
@@ -71,7 +103,7 @@ impl Chart {
         let warp_cos2 = along.dot(warp).powi(2).min(1.0);
         // Rounding does not turn a warp.
         best.warp_cos2 = if warp_cos2 > ALONG * ALONG { 1.0 } else { warp_cos2 };
-        Some(best)
+        best
     }
 
     /// The chart with its first axis along a direction in the plane. Its second axis points down the rows of a grid.
@@ -90,6 +122,8 @@ impl Chart {
         Self {
             positions: mesh.positions.iter().map(|&at| flat(at) - low).collect(),
             particles: (0..mesh.positions.len() as u32).collect(),
+            own_places: mesh.positions.len(),
+            is_closed: false,
             triangles: mesh.triangles.clone(),
             warp_cos2: 1.0,
             plane: Some(Plane { origin: height + axes[0] * low.x + axes[1] * low.y, axes }),
@@ -101,10 +135,16 @@ impl Chart {
     /// The grid over the bounding rectangle with about as many nodes as there are particles.
     pub fn grid(&self) -> Grid {
         let Vec2 { x: width, y: height } = self.extent;
-        // N particles of an area A in rows and columns, of which those on the border stand for half cells.
-        let spacing = (self.area / self.positions.len() as f32).sqrt();
+        let spacing = self.spacing();
         let count = |extent: f32| (extent / spacing).round().max(2.0) as u32;
-        Grid::new(count(width), count(height), width, height)
+        // The first row of a closed chart is there once more.
+        Grid::new(count(width), count(height) + u32::from(self.is_closed), width, height)
+    }
+
+    /// Spacing of the grid, m: N particles of an area A are in rows and columns, of which those on the border stand for
+    /// half cells.
+    pub(super) fn spacing(&self) -> f32 {
+        (self.area / self.own_places as f32).sqrt()
     }
 }
 

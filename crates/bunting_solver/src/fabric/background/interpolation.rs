@@ -14,8 +14,9 @@ const LEAST_WEIGHT: f32 = 1e-5;
 /// the border. Smaller: nodes outside the mesh are extrapolated from a single triangle.
 const INSIDE: f32 = -0.02;
 
-/// Radius around a particle at the border within which nodes count, in cells. Smaller: too few to fit a plane.
-const RADIUS: f32 = 2.2;
+/// Radii around a particle at the border within which nodes count, in cells; the second where there are too few within
+/// the first. Smaller: too few to fit a plane at the corners of a mesh that lies aslant.
+const RADII: [f32; 2] = [2.2, 3.3];
 
 /// Least determinant of a fit's normal equations, relative to the cube of their largest term. Smaller: nodes that lie
 /// almost on a line are extrapolated across it.
@@ -149,10 +150,10 @@ impl Interpolation {
         rows
     }
 
-    /// One row for each of `count` numbers: the mean of the rows that have this number.
+    /// One row for each of `count` numbers: the mean of the rows that have this number and terms.
     pub fn mean_rows(&self, numbers: &[u32], count: usize) -> Self {
         let mut rows = vec![Vec::new(); count];
-        for (row, &number) in self.rows().zip(numbers) {
+        for (row, &number) in self.rows().zip(numbers).filter(|(row, _)| !row.is_empty()) {
             rows[number as usize].push(row);
         }
         let mut means = Self::default();
@@ -209,8 +210,8 @@ pub(super) fn nodes_from_particles(
     weights
 }
 
-/// Weights of the nodes at each place of a free particle: bilinear in its cell, and near the border those of a plane fitted to the nodes
-/// around it. None if there are too few of these.
+/// Weights of the nodes at each place of a free particle: bilinear in its cell, and near the border those of a plane
+/// fitted to the nodes around it. None if there are too few of these.
 pub(super) fn particles_from_nodes(
     positions: &[Vec2],
     is_free: &[bool],
@@ -244,7 +245,7 @@ pub(super) fn particles_from_nodes(
         if bilinear.iter().all(has_node) {
             weights.push(bilinear);
         } else {
-            weights.push(near.fit(at)?);
+            weights.push(RADII.into_iter().find_map(|radius| near.fit(at, radius))?);
         }
     }
     Some(weights)
@@ -300,12 +301,12 @@ impl<'a> Neighbourhood<'a> {
 
     /// The smallest weights that reproduce a plane at a place, given in cells: those of the least squares fit to the
     /// nodes near it. None if these lie on a line.
-    fn fit(&self, place: Vec2) -> Option<Vec<Term>> {
+    fn fit(&self, place: Vec2, radius: f32) -> Option<Vec<Term>> {
         let near: Vec<(u32, Vec3, f32)> = self
-            .around(place)
+            .around(place, radius)
             .filter_map(|(node, at)| {
                 let away = at - place;
-                let nearness = 1.0 - away.length_squared() / (RADIUS * RADIUS);
+                let nearness = 1.0 - away.length_squared() / (radius * radius);
                 (nearness > 0.0).then(|| (node, away.extend(1.0), nearness * nearness))
             })
             .collect();
@@ -326,10 +327,10 @@ impl<'a> Neighbourhood<'a> {
     }
 
     /// Nodes within the radius along each axis, and their places in cells.
-    fn around(&self, place: Vec2) -> impl Iterator<Item = (u32, Vec2)> {
+    fn around(&self, place: Vec2, radius: f32) -> impl Iterator<Item = (u32, Vec2)> {
         let range = |centre: f32, count: u32| {
-            (centre - RADIUS).ceil().max(0.0) as u32
-                ..((centre + RADIUS).floor() as u32 + 1).min(count)
+            (centre - radius).ceil().max(0.0) as u32
+                ..((centre + radius).floor() as u32 + 1).min(count)
         };
         let columns = range(place.x, self.grid.columns);
         range(place.y, self.grid.rows)

@@ -1,4 +1,4 @@
-//! The background grid of a triangle mesh that is flat at rest, or whose texture is like it.
+//! The background grid of a triangle mesh that is flat at rest, whose texture is like it, or that can be unfolded.
 //!
 //! Links along the edges of an irregular mesh are no paths along which a load runs: chains of them are short and
 //! zigzag, and what they leave to relaxation converges slowly. So such a mesh gets a regular grid, as particles have
@@ -6,14 +6,19 @@
 //! (`constraints/background.rs`). The positions of the nodes are found from those of the
 //! particles, and the particles follow the nodes.
 //!
-//! `chart` lays a flat mesh into the plane, `texture` a curved one, `coverage` measures how much of each cell is cloth,
-//! `interpolation` finds the weights, and `smooth` those of nodes on curved meshes.
+//! `chart` lays a flat mesh into the plane, `texture` a curved one, `unfold` one without texture, and `closed` finds
+//! the period of one that is closed around an axis. `coverage` measures how much of each cell is cloth, `interpolation`
+//! finds the weights, and `smooth` those of nodes on curved meshes.
 
 mod chart;
+mod closed;
 mod coverage;
 mod interpolation;
 mod smooth;
+#[cfg(test)]
+mod tests;
 mod texture;
+mod unfold;
 
 use glam::{Mat3, Vec2, Vec3};
 
@@ -58,6 +63,8 @@ pub(crate) struct GridTransfer {
     /// meshes. Without them each substep would flatten the mesh, as a particle between nodes lies below the arc through
     /// them.
     pub heights: Vec<Height>,
+    /// Pairs of nodes at one place, where a mesh is closed around an axis.
+    pub joined: Vec<[u32; 2]>,
     /// Whether the mesh fills the whole grid.
     pub is_whole: bool,
 }
@@ -88,8 +95,8 @@ pub(super) struct BackgroundMesh {
 }
 
 impl BackgroundMesh {
-    /// The grid of a mesh; none of a mesh that is small or narrow, neither flat at rest nor textured in one piece like
-    /// its shape, or overlaps itself.
+    /// The grid of a mesh; none of a mesh that is small or narrow, or cannot be laid into the plane without distortion
+    /// or overlap.
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
@@ -98,7 +105,9 @@ impl BackgroundMesh {
         let grid = chart.grid();
         let nodes = nodes_from_particles(&chart.positions, &chart.triangles, &grid);
         let is_free: Vec<bool> = chart.particles.iter().map(|&at| !mesh.is_pinned(at)).collect();
-        let places = particles_from_nodes(&chart.positions, &is_free, &nodes, &grid)?;
+        let mut has_row = is_free.clone();
+        has_row[chart.own_places..].fill(false);
+        let places = particles_from_nodes(&chart.positions, &has_row, &nodes, &grid)?;
         let particles = places.mean_rows(&chart.particles, mesh.positions.len());
         let nodes = match chart.plane {
             Some(_) => nodes,
@@ -119,6 +128,7 @@ impl BackgroundMesh {
             held: Interpolation::default(),
             moved_areas: Vec::new(),
             heights: Vec::new(),
+            joined: if chart.is_closed { first_and_last_row(&grid) } else { Vec::new() },
             is_whole,
         };
         let free_areas = mesh.areas.iter().zip(&mesh.inverse_areas);
@@ -150,7 +160,12 @@ impl BackgroundMesh {
 impl GridTransfer {
     /// The mass of each node, given those of the particles, zero where they are pinned.
     pub fn node_masses(&self, of_particles: &[f32]) -> Vec<f32> {
-        let moved = self.particles.transposed_product(of_particles, self.nodes.len());
+        let mut moved = self.particles.transposed_product(of_particles, self.nodes.len());
+        // Both nodes of a pair have half of the stiffness.
+        for pair in &self.joined {
+            let [first, second] = pair.map(|node| moved[node as usize]);
+            pair.iter().for_each(|&node| moved[node as usize] = 0.5 * (first + second));
+        }
         let least = LEAST_MASS * of_particles.iter().sum::<f32>() / of_particles.len() as f32;
         moved.into_iter().map(|mass| mass.max(least)).collect()
     }
@@ -169,7 +184,7 @@ fn heights(
     let mut is_done = vec![false; mesh.positions.len()];
     let rows: Vec<&[Term]> = transfer.particles.rows().collect();
     let mut heights = Vec::new();
-    for (&at, &particle) in chart.positions.iter().zip(&chart.particles) {
+    for (&at, &particle) in chart.positions.iter().zip(&chart.particles).take(chart.own_places) {
         let cell = (at / spacing).floor().clamp(Vec2::ZERO, last);
         let corner =
             |right: u32, down: u32| grid.index(cell.x as u32 + right, cell.y as u32 + down);
@@ -194,6 +209,11 @@ fn heights(
     heights
 }
 
+/// The nodes of the first and of the last row of a grid, in pairs.
+fn first_and_last_row(grid: &Grid) -> Vec<[u32; 2]> {
+    (0..grid.columns).map(|column| [0, grid.rows - 1].map(|row| grid.index(column, row))).collect()
+}
+
 /// Whether the grid is held where the mesh is: near each pinned particle a node is pinned.
 fn is_held(
     mesh: &RestMesh,
@@ -213,14 +233,14 @@ fn is_held(
             is_near && nodes.is_pinned(index) && in_mesh.has_row(index as usize)
         })
     };
-    let places = chart.particles.iter().zip(&chart.positions);
+    let places = chart.particles.iter().zip(&chart.positions).take(chart.own_places);
     let mut pinned = places.filter(|(particle, _)| mesh.is_pinned(**particle));
     pinned.all(|(_, &at)| is_near_pinned_node(at))
 }
 
-/// The nodes as particles. Those that stand for pinned particles, or for none, are pinned. Where the mesh fills the grid,
-/// nodes have the areas of a grid's particles: with those of the particles that they move, which differ from node to node
-/// by chance, a swing loses motion to short waves.
+/// The nodes as particles. Those that stand for pinned particles, or for none, are pinned. Where the mesh fills the
+/// grid, nodes have the areas of a grid's particles: with those of the particles that they move, which differ from node
+/// to node by chance, a swing loses motion to short waves.
 fn node_mesh(mesh: &RestMesh, chart: &Chart, grid: &Grid, transfer: &GridTransfer) -> RestMesh {
     let areas =
         if transfer.is_whole { grid.particle_areas() } else { transfer.moved_areas.clone() };
@@ -244,133 +264,5 @@ fn node_mesh(mesh: &RestMesh, chart: &Chart, grid: &Grid, transfer: &GridTransfe
         triangles: grid.triangles(false),
         particle_of_vertex: (0..areas.len() as u32).collect(),
         areas,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::{Vec2, Vec3};
-
-    use crate::fabric::{FabricBuilder, Grid, Interpolation};
-
-    /// A disk of half a metre: rings of six, twelve, eighteen … vertices about its centre.
-    fn disk(rings: u32) -> FabricBuilder {
-        let mut positions = vec![Vec3::ZERO];
-        let mut indices = Vec::new();
-        let first = |ring: u32| if ring == 0 { 0 } else { 1 + 3 * ring * (ring - 1) };
-        for ring in 1..=rings {
-            let count = 6 * ring;
-            for place in 0..count {
-                let angle = core::f32::consts::TAU * place as f32 / count as f32;
-                let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
-                positions.push(Vec3::new(cos, sin, 0.0) * (0.5 * ring as f32 / rings as f32));
-            }
-            let inner =
-                |place: u32| first(ring - 1) + if ring > 1 { place % (count - 6) } else { 0 };
-            let outer = |place: u32| first(ring) + place % count;
-            for sector in 0..6 {
-                for at in 0..ring {
-                    let (out, within) = (sector * ring + at, sector * (ring - 1) + at);
-                    indices.extend([outer(out), outer(out + 1), inner(within)]);
-                    if at + 1 < ring {
-                        indices.extend([inner(within), outer(out + 1), inner(within + 1)]);
-                    }
-                }
-            }
-        }
-        FabricBuilder::new(positions, indices)
-    }
-
-    /// Greatest difference of a plane's values from what a row interpolates from them.
-    fn error(rows: &Interpolation, from: &[Vec3], to: &[Vec3]) -> f32 {
-        let plane = |at: &Vec3| 0.3 + at.dot(Vec3::new(1.0, -2.0, 0.0));
-        let of_row = |(row, to): (&[super::Term], &Vec3)| {
-            let sum: f32 =
-                row.iter().map(|term| plane(&from[term.from as usize]) * term.weight).sum();
-            if row.is_empty() { 0.0 } else { (sum - plane(to)).abs() }
-        };
-        rows.rows().zip(to).map(of_row).fold(0.0, f32::max)
-    }
-
-    #[test]
-    fn weights_reproduce_planes_and_keep_the_mass() {
-        let fabric = disk(12).build().expect("a good fabric");
-        let background = fabric.background().expect("a flat mesh has a grid");
-        let [particles, nodes] = [&fabric, &*background.fabric].map(|of| of.rest_positions());
-        let transfer = &background.transfer;
-        assert!(!transfer.is_whole, "nodes lie outside a disk");
-        assert!(error(&transfer.nodes, particles, nodes) < 1e-5);
-        assert!(error(&transfer.particles, nodes, particles) < 1e-5);
-        let masses = transfer.node_masses(fabric.particle_areas());
-        let in_mesh = masses.iter().zip(transfer.nodes.rows()).filter(|(_, row)| !row.is_empty());
-        let mass: f32 = in_mesh.map(|(mass, _)| mass).sum();
-        assert!((mass / fabric.area() - 1.0).abs() < 0.02, "{mass}");
-    }
-
-    #[test]
-    fn cells_stand_for_all_of_the_cloth() {
-        for rings in [8, 12, 20] {
-            let fabric = disk(rings).build().expect("a good fabric");
-            let mesh = fabric.background().expect("a flat mesh has a grid");
-            // Warp links store ½ k l² = ½ Y A at a strain of one, A being the area that they stand for.
-            let warp = mesh.fabric.links().iter().filter(|link| link.family as u32 == 0);
-            let area: f32 = warp
-                .map(|link| {
-                    let [one, ..] = mesh.fabric.link_classes()[link.class as usize].coefficients;
-                    one * link.rest_length * link.rest_length
-                })
-                .sum();
-            // Negative coefficients, which make room for diagonals, are left out of none: the sum is the area.
-            assert!((area / fabric.area() - 1.0).abs() < 0.05, "{rings}: {area}");
-        }
-    }
-
-    #[test]
-    fn meshes_that_are_no_charts_keep_their_own_chains() {
-        let has_grid =
-            |builder: FabricBuilder| builder.build().expect("a good fabric").background().is_some();
-        assert!(has_grid(disk(8)));
-        let curved: Vec<Vec3> =
-            disk(8).positions().iter().map(|at| *at + Vec3::Z * at.x * at.x).collect();
-        let indices = disk(8).indices().to_vec();
-        let curved = FabricBuilder::new(curved, indices.clone());
-        assert!(!has_grid(curved.clone()), "not flat, without texture");
-        let from_above: Vec<Vec2> = disk(8).positions().iter().map(|at| at.truncate()).collect();
-        assert!(has_grid(curved.clone().uv(from_above.clone())), "a texture like the shape");
-        let bent_by = |steepness: f32| {
-            let up = |at: &Vec3| *at + Vec3::Z * steepness * at.x * at.x;
-            let bent = disk(8).positions().iter().map(up).collect();
-            FabricBuilder::new(bent, indices.clone()).uv(from_above.clone())
-        };
-        assert!(has_grid(bent_by(0.5)), "a texture like the shape");
-        assert!(!has_grid(bent_by(2.0)), "a distorted texture");
-        let turned_over = from_above.iter().map(|uv| Vec2::new(uv.x.abs(), uv.y)).collect();
-        assert!(!has_grid(curved.uv(turned_over)), "a texture that shows a back");
-        let doubled: Vec<Vec3> =
-            disk(8).positions().iter().chain(disk(8).positions()).copied().collect();
-        let count = doubled.len() as u32 / 2;
-        let twice = indices.iter().copied().chain(indices.iter().map(|at| at + count)).collect();
-        let overlapping = FabricBuilder::new(doubled, twice).weld_distance(0.0);
-        assert!(!has_grid(overlapping), "two disks at one place");
-        assert!(!has_grid(disk(2)), "small");
-        // Some vertices lie near a node, and others between nodes.
-        let pinned =
-            [true, false].map(|held| (0..60).any(|at| has_grid(disk(8).pin([at])) == held));
-        assert_eq!(pinned, [true; 2]);
-        assert!(!has_grid(FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0))), "a grid");
-    }
-
-    #[test]
-    fn rows_run_along_the_warp() {
-        for warp in [Vec2::X, Vec2::Y] {
-            let uv = |at: &Vec3| Vec2::new(warp.dot(at.truncate()), warp.perp_dot(at.truncate()));
-            let uv = disk(8).positions().iter().map(uv).collect();
-            let fabric = disk(8).uv(uv).build().expect("a good fabric");
-            let background = fabric.background().expect("a flat mesh has a grid");
-            assert!((background.warp_cos2 - 1.0).abs() < 1e-3, "{}", background.warp_cos2);
-            let nodes = background.fabric.rest_positions();
-            let row = (nodes[1] - nodes[0]).normalize();
-            assert!(row.dot(warp.extend(0.0)).abs() > 0.999, "{row} for a warp along {warp}");
-        }
     }
 }

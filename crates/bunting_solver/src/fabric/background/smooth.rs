@@ -1,29 +1,31 @@
-//! Positions of nodes on a curved mesh from quadratic fits.
+//! Positions of nodes on a curved mesh from fits of polynomials.
 //!
 //! A node in a triangle of a curved mesh lies below the surface, one on an edge less so: rows of such nodes zigzag, and
-//! their links straighten under load. The value at a node of a quadratic that is fitted to the particles around it lies
-//! on the surface up to third order.
+//! their links straighten under load. The value at a node of a quartic that is fitted to the particles around it lies
+//! on the surface up to fifth order, that of a quadratic, where there are few particles, up to third order.
 
 use glam::{DVec3, Vec2};
 
+use super::LEAST_FREE;
 use super::interpolation::{Interpolation, Term};
 use crate::fabric::grid::Grid;
 
-/// Radius around a node within which places count, in cells. Smaller: too few for a quadratic. Larger: folds of a few
-/// cells are smoothed.
-const RADIUS: f64 = 2.2;
+/// Radius around a node within which places count, in cells. Smaller: too few for a quartic. Larger: rows around a
+/// cylinder of sixteen cells zigzag, and the folds of a few cells are smoothed.
+const RADIUS: f64 = 2.8;
 
 /// Least pivot of a fit's normal equations, relative to their largest element. Smaller: fits to places on few lines.
-const LEAST_PIVOT: f64 = 1e-4;
+const LEAST_PIVOT: f64 = 1e-6;
 
 /// Greatest sum of the magnitudes of a row's weights. Larger: a node moves by more than the particles around it.
 const GREATEST_SUM: f32 = 3.0;
 
-/// Number of a quadratic's coefficients.
-const TERMS: usize = 6;
+/// Numbers of the coefficients of a quartic and of a quadratic.
+const QUARTIC: usize = 15;
+const QUADRATIC: usize = 6;
 
-/// Rows of nodes by quadratic fits to the places around them; the given rows where there are too few places, and of nodes
-/// in triangles with a corner that is not free, as a node between pins stays between them.
+/// Rows of nodes by fits to the places around them; the given rows where there are too few places, and of nodes that
+/// stand for pins.
 pub(super) fn smoothed(
     rows: Interpolation,
     positions: &[Vec2],
@@ -53,8 +55,10 @@ pub(super) fn smoothed(
                 (nearness > 0.0).then(|| (place, away.extend(nearness * nearness)))
             })
             .collect();
-        let is_smooth = !row.is_empty() && row.iter().all(|term| is_free[term.from as usize]);
-        match fit(&near).filter(|_| is_smooth) {
+        let free = row.iter().filter(|term| is_free[term.from as usize]);
+        let is_smooth = free.map(|term| term.weight).sum::<f32>() > LEAST_FREE;
+        let fits = || fit::<QUARTIC>(&near).or_else(|| fit::<QUADRATIC>(&near));
+        match is_smooth.then(fits).flatten() {
             Some(terms) => smoothed.push(terms),
             None => smoothed.push(row.iter().copied()),
         }
@@ -63,12 +67,11 @@ pub(super) fn smoothed(
 }
 
 /// Weights of the values at places, given relative to the node with a weight as third coordinate, in the value at the
-/// node of the quadratic that is fitted to them; none if they do not determine it.
-fn fit(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
-    let powers = |at: &DVec3| [1.0, at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y];
-    let mut system = [[0.0; TERMS + 1]; TERMS];
+/// node of the polynomial that is fitted to them; none if they do not determine it.
+fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
+    let mut system = [[0.0; TERMS]; TERMS];
     for (_, at) in near {
-        let powers = powers(at);
+        let powers = powers::<TERMS>(at);
         for (row, one) in system.iter_mut().zip(powers) {
             for (element, other) in row.iter_mut().zip(powers) {
                 *element += at.z * one * other;
@@ -76,32 +79,57 @@ fn fit(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
         }
     }
     // The value at the node is the first coefficient: the weights are those of the first row of the inverse.
-    system[0][TERMS] = 1.0;
-    let scale = system[0][0];
+    let mut solution = [0.0; TERMS];
+    solution[0] = 1.0;
+    let least = LEAST_PIVOT * system[0][0];
     for pivot in 0..TERMS {
-        if system[pivot][pivot] <= LEAST_PIVOT * scale {
+        if system[pivot][pivot] <= least {
             return None;
         }
-        let row = system[pivot];
+        let (row, value) = (system[pivot], solution[pivot]);
         for (index, other) in system.iter_mut().enumerate() {
             if index != pivot {
                 let factor = other[pivot] / row[pivot];
-                for (element, of_pivot) in other.iter_mut().zip(row) {
+                for (element, of_pivot) in other[pivot..].iter_mut().zip(&row[pivot..]) {
                     *element -= factor * of_pivot;
                 }
+                solution[index] -= factor * value;
             }
         }
     }
-    let mut solution = [0.0; TERMS];
-    for (index, row) in system.iter().enumerate() {
-        solution[index] = row[TERMS] / row[index];
+    for (index, value) in solution.iter_mut().enumerate() {
+        *value /= system[index][index];
     }
     let weight = |at: &DVec3| {
-        let sum: f64 = powers(at).iter().zip(solution).map(|(power, factor)| power * factor).sum();
-        (at.z * sum) as f32
+        let powers = powers::<TERMS>(at).into_iter();
+        (at.z * powers.zip(solution).map(|(power, factor)| power * factor).sum::<f64>()) as f32
     };
     let terms: Vec<Term> =
         near.iter().map(|(place, at)| Term { from: *place, weight: weight(at) }).collect();
     let sum: f32 = terms.iter().map(|term| term.weight.abs()).sum();
     (sum < GREATEST_SUM).then_some(terms)
+}
+
+/// The first products of powers of two coordinates, those of lower degree first.
+fn powers<const TERMS: usize>(at: &DVec3) -> [f64; TERMS] {
+    let (x, y) = (at.x, at.y);
+    let [xx, xy, yy] = [x * x, x * y, y * y];
+    let all: [f64; QUARTIC] = [
+        1.0,
+        x,
+        y,
+        xx,
+        xy,
+        yy,
+        xx * x,
+        xx * y,
+        x * yy,
+        yy * y,
+        xx * xx,
+        xx * xy,
+        xx * yy,
+        xy * yy,
+        yy * yy,
+    ];
+    core::array::from_fn(|term| all[term])
 }

@@ -74,27 +74,7 @@ impl Chart {
     /// The chart of a mesh by its texture, whose first axis is the warp; none if the texture has several pieces, shows
     /// a back, or distorts the mesh.
     pub(super) fn by_texture(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
-        let area: f32 = surface.triangle_areas.iter().sum();
-        let corners = mesh.triangles.iter().zip(&surface.corner_uv);
-        let metrics: Vec<([f32; 3], f32)> = corners
-            .map(|(&triangle, &uv)| metric(mesh.positions_of(triangle), uv))
-            .collect::<Option<_>>()?;
-        let mean = |of: usize| {
-            let sum = metrics.iter().zip(&surface.triangle_areas).map(|((at, _), a)| at[of] * a);
-            sum.sum::<f32>() / area
-        };
-        let scale = Vec2::new(mean(0), mean(2)).map(f32::sqrt);
-        let is_good = |&([u_u, u_v, v_v], side): &([f32; 3], f32)| {
-            let (p, q) = (u_u / (scale.x * scale.x), v_v / (scale.y * scale.y));
-            let off = u_v / (scale.x * scale.y);
-            // Eigenvalues of the metric.
-            let (middle, radius) = (0.5 * (p + q), (0.25 * (p - q) * (p - q) + off * off).sqrt());
-            let is_near_one = middle + radius < DISTORTION && middle - radius > 1.0 / DISTORTION;
-            is_near_one && side == metrics[0].1
-        };
-        if !metrics.iter().all(is_good) {
-            return None;
-        }
+        let scale = scale_of_texture(mesh, surface, &surface.corner_uv)?;
         let Places { uv, particles, triangles } = Places::of(mesh, surface)?;
         let (low, high) =
             uv.iter().fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), at| {
@@ -102,12 +82,41 @@ impl Chart {
             });
         Some(Self {
             positions: uv.iter().map(|at| (*at - low) * scale).collect(),
+            own_places: particles.len(),
+            is_closed: false,
             particles,
             triangles,
             warp_cos2: 1.0,
             plane: None,
             extent: (high - low) * scale,
-            area,
+            area: surface.triangle_areas.iter().sum(),
         })
     }
+}
+
+/// Lengths in the cloth over those in a texture, along u and v; none if the texture shows a back, or distorts the mesh.
+pub(super) fn scale_of_texture(
+    mesh: &RestMesh,
+    surface: &Surface,
+    corner_uv: &[[Vec2; 3]],
+) -> Option<Vec2> {
+    let area: f32 = surface.triangle_areas.iter().sum();
+    let corners = mesh.triangles.iter().zip(corner_uv);
+    let metrics: Vec<([f32; 3], f32)> = corners
+        .map(|(&triangle, &uv)| metric(mesh.positions_of(triangle), uv))
+        .collect::<Option<_>>()?;
+    let mean = |of: usize| {
+        let sum = metrics.iter().zip(&surface.triangle_areas).map(|((at, _), a)| at[of] * a);
+        sum.sum::<f32>() / area
+    };
+    let scale = Vec2::new(mean(0), mean(2)).map(f32::sqrt);
+    let is_good = |&([u_u, u_v, v_v], side): &([f32; 3], f32)| {
+        let (p, q) = (u_u / (scale.x * scale.x), v_v / (scale.y * scale.y));
+        let off = u_v / (scale.x * scale.y);
+        // Eigenvalues of the metric.
+        let (middle, radius) = (0.5 * (p + q), (0.25 * (p - q) * (p - q) + off * off).sqrt());
+        let is_near_one = middle + radius < DISTORTION && middle - radius > 1.0 / DISTORTION;
+        is_near_one && side == metrics[0].1
+    };
+    metrics.iter().all(is_good).then_some(scale)
 }

@@ -15,7 +15,7 @@ const LEAST_SINE: f32 = 0.1;
 const LEAST_TEXTURE: f32 = 1e-4;
 
 /// The directions of warp and weft in each triangle, unit vectors in its plane at right angles to one another.
-pub(super) struct Directions {
+pub(in crate::fabric) struct Directions {
     warps: Vec<Vec3>,
     wefts: Vec<Vec3>,
 }

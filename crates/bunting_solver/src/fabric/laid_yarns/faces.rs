@@ -13,7 +13,7 @@ const LEAST_PART: f32 = 1e-3;
 const LEAST_DEPARTURE: f32 = 0.05;
 
 /// The triangles of a mesh.
-pub(super) struct Faces<'a> {
+pub(in crate::fabric) struct Faces<'a> {
     positions: &'a [Vec3],
     triangles: &'a [[u32; 3]],
     /// Unit normals of the triangles.
@@ -83,13 +83,18 @@ impl<'a> Faces<'a> {
         self.across[triangle as usize].into_iter().flatten()
     }
 
+    /// The triangle across a side of one; none at a border. Side k joins the corners k and k + 1.
+    pub fn across(&self, triangle: u32, side: usize) -> Option<u32> {
+        self.across[triangle as usize][side]
+    }
+
     pub fn centre(&self, triangle: u32) -> Vec3 {
         let [a, b, c] = self.corners(triangle);
         (a + b + c) / 3.0
     }
 
     /// The point at which a straight line leaves its triangle, and the side of it.
-    pub fn exit(&self, heading: &Heading) -> (Crossing, usize) {
+    pub(super) fn exit(&self, heading: &Heading) -> (Crossing, usize) {
         let particles = self.particles(heading.triangle);
         let corners = self.corners(heading.triangle);
         let normal = self.normals[heading.triangle as usize];
@@ -114,7 +119,7 @@ impl<'a> Faces<'a> {
 
     /// The heading on the other side of an edge, unfolded into the plane of the triangle there; none at a border. If
     /// one of `directions` leads on from there, the one that turns least is taken.
-    pub fn cross(
+    pub(super) fn cross(
         &self,
         heading: &Heading,
         (crossing, side): (Crossing, usize),

@@ -200,7 +200,7 @@ impl Way<'_> {
 
 /// The direction in which lines are laid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Towards {
+pub(in crate::fabric) enum Towards {
     Warp,
     Weft,
     /// Between warp and weft.

@@ -22,13 +22,16 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
-use self::directions::Directions;
-use self::faces::{Crossing, Faces};
-use self::lay::{Layer, Line, Piece, Towards};
+use self::faces::Crossing;
+use self::lay::{Layer, Line, Piece};
 use self::widths::{Spacing, Widths};
 use super::colour::{Colours, colour_up_to};
 use super::links::LinkFamily;
 use super::mesh::{RestMesh, Surface};
+
+pub(in crate::fabric) use self::directions::Directions;
+pub(in crate::fabric) use self::faces::Faces;
+pub(in crate::fabric) use self::lay::Towards;
 
 /// Least distance of two nodes along a yarn, in mean distances of crossings. Smaller: more links, which differ more in
 /// length and stiffness, so that the solution of one family disturbs that of the others. Larger: yarns no longer see

@@ -5,15 +5,19 @@ use glam::Vec3;
 use super::{BAND, LaidYarn};
 use crate::fabric::{Fabric, FabricBuilder, LinkFamily};
 
-/// A mesh of `n` × `n` vertices in uneven cells, rolled around a vertical axis.
-fn rolled(n: u32, radius: f32) -> Fabric {
+/// A mesh of `n` × `n` vertices in uneven cells, rolled up about a vertical axis to a closed funnel twice as wide
+/// below. Its warp cannot be laid into the plane without distortion, so that it has no background grid.
+fn funnel(n: u32) -> Fabric {
+    let radius = 1.0 / core::f32::consts::TAU;
     let place = |index: u32| {
         let (column, row) = ((index % n) as f32, (index / n) as f32);
         let shift = 0.2 * libm::sinf(7.0 * column + 11.0 * row);
         let is_inside = column > 0.0 && column < (n - 1) as f32;
         let across = (column + if is_inside { shift } else { 0.0 }) / (n - 1) as f32;
         let (sin, cos) = libm::sincosf(across / radius);
-        Vec3::new(radius * sin, -row / (n - 1) as f32, radius * cos)
+        let down = row / (n - 1) as f32;
+        let wide = radius * (1.0 + down);
+        Vec3::new(wide * sin, -down, wide * cos)
     };
     let cells = (0..n - 1).flat_map(|row| (0..n - 1).map(move |column| row * n + column));
     let indices = cells.flat_map(|at| [at, at + n, at + n + 1, at, at + n + 1, at + 1]);
@@ -22,7 +26,7 @@ fn rolled(n: u32, radius: f32) -> Fabric {
 }
 
 fn fabrics() -> [Fabric; 3] {
-    [rolled(9, 0.5), rolled(20, 0.3), rolled(25, 1.0 / core::f32::consts::TAU)]
+    [16, 20, 25].map(funnel)
 }
 
 /// The area that the links of a family stand for.
@@ -94,8 +98,7 @@ fn yarns_move_each_particle_and_close_rings() {
         }
         assert!(is_moved.iter().all(|&is_moved| is_moved));
     }
-    // Around the closed cylinder run some 24 rings. Each has one link that closes it.
-    let closed = rolled(25, 1.0 / core::f32::consts::TAU);
-    let closing = closed.laid_yarns().list.iter().filter(|yarn| yarn.links.len() == 1).count();
+    // Around the funnel run some 24 rings. Each has one link that closes it.
+    let closing = funnel(25).laid_yarns().list.iter().filter(|yarn| yarn.links.len() == 1).count();
     assert!(closing >= 20, "{closing} links close rings");
 }

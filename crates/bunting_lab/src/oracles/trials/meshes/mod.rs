@@ -22,7 +22,8 @@ use crate::{
     stats::mean,
 };
 
-const TRIANGULATIONS: [Triangulation; 2] = [Triangulation::Delaunay, Triangulation::Quads];
+const TRIANGULATIONS: [Triangulation; 3] =
+    [Triangulation::Delaunay, Triangulation::Quads, Triangulation::Scan];
 /// Isotropic but for Poisson's ratio.
 const ISOTROPIC: FabricMaterial = FabricMaterial {
     area_density: 0.2,
@@ -43,7 +44,7 @@ pub fn cases(_: &Mount) -> Vec<Case> {
     of_each.chain(swing::cases()).chain([6.0, 25.0].into_iter().flat_map(flags::cases)).collect()
 }
 
-/// A square metre of `n` × `n` particles, or the grid of as many.
+/// A square metre of about `n` × `n` particles, or the grid of as many.
 fn square(
     triangulation: Option<Triangulation>,
     n: usize,
