@@ -1,5 +1,5 @@
-//! Sheets that fall on a ball, a box and a mesh, in this project and in rapier: the same particles, links, masses, thickness
-//! and friction.
+//! Sheets that fall on a ball, a box and a mesh, in this project and in rapier: the same particles, links, masses,
+//! thickness and friction.
 
 use bunting_solver::{Collider, Fabric, FabricMaterial, Link, LinkFamily};
 use glam::{Quat, Vec3};

@@ -1,8 +1,8 @@
 //! The capstan: a strip over a cylinder slips from T₂/T₁ = exp(μ θ) on (Euler 1769).
 //!
-//! The law does not depend on the force. The solver does: what contacts push out in a substep, chains have pulled in before,
-//! by (β h)² T/(ρ r) for a tension T per width, so that links on the cylinder are stretched by (β h)² T/(ρ r²). At the
-//! slight force this is 0.3 to 1.5 %, at the great one 1.5 to 7.5 %.
+//! The law does not depend on the force. The solver does: what contacts push out in a substep, chains have pulled in
+//! before, by (β h)² T/(ρ r) for a tension T per width, so that links on the cylinder are stretched by (β h)² T/(ρ r²).
+//! At the slight force this is 0.4 to 2 %, at the great one 2 to 10 %.
 
 use std::sync::Arc;
 
@@ -22,11 +22,11 @@ const SIZE: [u32; 2] = [65, 5];
 /// Length and width of the strip, m.
 const LENGTH: f32 = 1.0;
 const WIDTH: f32 = 0.1;
-/// Forces at the end that pulls less, N. The strip weighs 0.16 N.
+/// Forces at the end that pulls less, N. The strip weighs 0.12 N.
 const SLIGHT: f32 = 0.02;
 const GREAT: f32 = 0.1;
-/// Ticks after which the strip has settled, and ticks over which it must not slip. A strip that slips does so slowly: each
-/// link that comes onto the cylinder has to be stretched first.
+/// Ticks after which the strip has settled, and ticks over which it must not slip. A strip that slips does so slowly:
+/// each link that comes onto the cylinder has to be stretched first.
 const SETTLING: usize = 120;
 const HOLDING: usize = 120;
 /// Distance over which a strip counts as slipping, m.

@@ -11,9 +11,9 @@ use crate::contact::nearest::nearest_point;
 /// How much longer than it is a path is taken to be where it is found out whether it reaches a shape: more than rounding.
 const REACH: f32 = 1.001;
 
-/// Part of the clearance by which a particle may be farther from a shape and touches it. Larger: particles that a fast shape
-/// hits slide around it. Smaller: with rounding, particles that are pressed against a shape count as hit by it, and slide
-/// without friction.
+/// Part of the clearance by which a particle may be farther from a shape than it must be and touches it. Larger:
+/// particles that a fast shape hits slide around it. Smaller: by rounding, particles that are pressed against a shape
+/// count as hit by it, and slide whatever the friction.
 const TOUCHING: f32 = 0.1;
 
 /// The surface of a shape, in the shape's frame.
