@@ -33,14 +33,9 @@ const HOLDING: usize = 120;
 const SLIPPED: f32 = 5e-3;
 
 pub(super) fn rows(quick: bool) -> Vec<Row> {
-    let few = [(0.2, 90.0, SLIGHT), (0.5, 180.0, SLIGHT), (0.5, 90.0, GREAT)];
-    let others = [
-        (0.2, 180.0, SLIGHT),
-        (0.5, 90.0, SLIGHT),
-        (0.2, 90.0, GREAT),
-        (0.2, 180.0, GREAT),
-        (0.5, 180.0, GREAT),
-    ];
+    let few = [(0.2, 90.0, SLIGHT), (0.5, 180.0, SLIGHT), (0.5, 90.0, GREAT), (0.5, 180.0, GREAT)];
+    let others =
+        [(0.2, 180.0, SLIGHT), (0.5, 90.0, SLIGHT), (0.2, 90.0, GREAT), (0.2, 180.0, GREAT)];
     let others = if quick { &[][..] } else { &others };
     let of = |&(friction, degrees, force): &(f32, f32, f32)| ratio(friction, degrees, force);
     few.iter().chain(others).map(of).collect()
