@@ -17,11 +17,50 @@ pub fn run(quick: bool) -> Outcome {
     let families = families(quick);
     let times = families::times("contacts", &families);
     let rows: Vec<Row> = families.into_iter().flat_map(|family| family.cases).collect();
-    Outcome {
+    let outcome = Outcome {
         json: json!({ "rows": rows }),
         tables: vec![table("contacts", &rows), times],
         plots: Vec::new(),
-    }
+    };
+    with_peers(outcome, quick)
+}
+
+/// Adds the drapes of this project and of rapier.
+#[cfg(feature = "peers")]
+fn with_peers(mut outcome: Outcome, quick: bool) -> Outcome {
+    let drapes = contacts::beside::drapes(quick);
+    outcome.json["drapes"] = json!(drapes);
+    let cells = |it: &contacts::beside::Drape| {
+        vec![
+            it.shape.into(),
+            it.engine.into(),
+            it.substeps.to_string(),
+            figure(it.depth_m),
+            figure_or_dash(it.speed),
+            figure_or_dash(it.mean_strain),
+            figure(it.us),
+        ]
+    };
+    outcome.tables.push(Table {
+        name: "drapes".into(),
+        title: "Sheets of 33 × 33 that fall on a shape, after 4 s".into(),
+        headers: vec![
+            "shape",
+            "engine",
+            "substeps",
+            "highest above the cloth, m",
+            "RMS speed m/s",
+            "mean strain",
+            "µs a tick",
+        ],
+        rows: drapes.iter().map(cells).collect(),
+    });
+    outcome
+}
+
+#[cfg(not(feature = "peers"))]
+fn with_peers(outcome: Outcome, _quick: bool) -> Outcome {
+    outcome
 }
 
 /// Every family with its rows.

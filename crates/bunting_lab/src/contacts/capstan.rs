@@ -1,4 +1,8 @@
 //! The capstan: a strip over a cylinder slips from T₂/T₁ = exp(μ θ) on (Euler 1769).
+//!
+//! The law does not depend on the force. The solver does: what contacts push out in a substep, chains have pulled in
+//! before, by (β h)² T/(ρ r) for a tension T per width, so that links on the cylinder are stretched by (β h)² T/(ρ r²).
+//! At the slight force this is 0.4 to 2 %, at the great one 2 to 10 %.
 
 use std::sync::Arc;
 
@@ -18,26 +22,32 @@ const SIZE: [u32; 2] = [65, 5];
 /// Length and width of the strip, m.
 const LENGTH: f32 = 1.0;
 const WIDTH: f32 = 0.1;
-/// Force at the end that pulls less, N.
-const FORCE: f32 = 1.0;
-/// Ticks after which the strip has settled, and ticks over which it must not slip.
-const SETTLING: usize = 30;
-const HOLDING: usize = 30;
+/// Forces at the end that pulls less, N. The strip weighs 0.12 N.
+const SLIGHT: f32 = 0.02;
+const GREAT: f32 = 0.1;
+/// Ticks after which the strip has settled, and ticks over which it must not slip. A strip that slips does so slowly:
+/// each link that comes onto the cylinder has to be stretched first.
+const SETTLING: usize = 120;
+const HOLDING: usize = 120;
 /// Distance over which a strip counts as slipping, m.
 const SLIPPED: f32 = 5e-3;
 
 pub(super) fn rows(quick: bool) -> Vec<Row> {
-    let all = [(0.2, 90.0), (0.5, 180.0), (0.2, 180.0), (0.5, 90.0)];
-    let some = if quick { &all[..2] } else { &all };
-    some.iter().map(|&(friction, degrees)| ratio(friction, degrees)).collect()
+    let few = [(0.2, 90.0, SLIGHT), (0.5, 180.0, SLIGHT), (0.5, 90.0, GREAT), (0.5, 180.0, GREAT)];
+    let others =
+        [(0.2, 180.0, SLIGHT), (0.5, 90.0, SLIGHT), (0.2, 90.0, GREAT), (0.2, 180.0, GREAT)];
+    let others = if quick { &[][..] } else { &others };
+    let of = |&(friction, degrees, force): &(f32, f32, f32)| ratio(friction, degrees, force);
+    few.iter().chain(others).map(of).collect()
 }
 
 /// Row of the ratio of forces from which on the strip slips.
-fn ratio(friction: f32, degrees: f32) -> Row {
+fn ratio(friction: f32, degrees: f32, force: f32) -> Row {
     let exact = (friction * degrees.to_radians()).exp();
-    let (relative, us) = threshold(0.7, 1.3, |relative| slips(friction, degrees, relative * exact));
+    let slips = |relative| slips(friction, degrees, [force, relative * exact * force]);
+    let (relative, us) = threshold(0.7, 1.3, slips);
     Row::new(
-        format!("capstan, μ = {friction}, θ = {degrees}°"),
+        format!("capstan, μ = {friction}, θ = {degrees}°, {force} N"),
         "error of T₂/T₁, of one",
         (relative - 1.0).abs().into(),
         0.05,
@@ -50,8 +60,8 @@ fn strip() -> Arc<Fabric> {
     Arc::new(FabricBuilder::grid(grid).build().expect("a good grid"))
 }
 
-/// Whether the strip slips towards the greater force at a ratio of forces, and the time of a tick, µs.
-fn slips(friction: f32, degrees: f32, ratio: f32) -> (bool, f64) {
+/// Whether the strip slips under the forces at its ends, N, and the time of a tick, µs.
+fn slips(friction: f32, degrees: f32, [less, more]: [f32; 2]) -> (bool, f64) {
     let fabric = strip();
     let angle = degrees.to_radians();
     let radius = RADIUS + THICKNESS;
@@ -76,8 +86,8 @@ fn slips(friction: f32, degrees: f32, ratio: f32) -> (bool, f64) {
     let (sine, cosine) = half.sin_cos();
     // Forces are along the straight ends.
     let pulls = [
-        (0, FORCE * Vec3::new(-cosine, 0.0, -sine)),
-        (SIZE[0] - 1, ratio * FORCE * Vec3::new(cosine, 0.0, -sine)),
+        (0, less * Vec3::new(-cosine, 0.0, -sine)),
+        (SIZE[0] - 1, more * Vec3::new(cosine, 0.0, -sine)),
     ];
     // Forces are shared by the particles of an end in proportion to their masses.
     let areas = fabric.particle_areas();

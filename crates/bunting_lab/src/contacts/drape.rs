@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use bunting_solver::Collider;
+use bunting_solver::{Collider, Fabric};
 use glam::{Quat, Vec2, Vec3};
 use parry3d::{
     query::PointQuery,
@@ -101,7 +101,7 @@ fn row(feature: &Feature, speed: f32, seconds: f32) -> Row {
         cloth.touch([moving(&collider, at(tick), at(tick + 1))]);
         cloth.tick();
         if tick as f32 * TICK >= SETTLING && tick % EVERY == 0 {
-            let surface = Surface::new(&cloth);
+            let surface = Surface::new(cloth.batch.fabric(), &cloth.displayed());
             for sample in &feature.samples {
                 let sample = at(tick + 1) + feature.turn * *sample;
                 deepest = worse(deepest, surface.below(sample).into());
@@ -121,16 +121,16 @@ const CELL: f32 = 0.02;
 /// Longest side of a triangle that is looked up, m.
 const LONGEST: f32 = 1.0;
 
-/// The displayed triangles, and those over each cell of the plane.
-struct Surface {
+/// The triangles of a cloth, and those over each cell of the plane.
+pub(super) struct Surface {
     triangles: Vec<[Vec3; 3]>,
     over: HashMap<[i32; 2], Vec<usize>>,
 }
 
 impl Surface {
-    fn new(cloth: &Trial) -> Self {
-        let positions = cloth.displayed();
-        let corners = cloth.batch.fabric().triangles().iter();
+    /// The surface of a fabric whose particles are at these positions, m.
+    pub fn new(fabric: &Fabric, positions: &[Vec3]) -> Self {
+        let corners = fabric.triangles().iter();
         let triangles: Vec<[Vec3; 3]> =
             corners.map(|it| it.map(|corner| positions[corner as usize])).collect();
         let mut over = HashMap::<_, Vec<usize>>::new();
@@ -148,7 +148,7 @@ impl Surface {
     }
 
     /// Distance from a point to the surface if the surface is below the point and nowhere above it, m; else zero.
-    fn below(&self, at: Vec3) -> f32 {
+    pub fn below(&self, at: Vec3) -> f32 {
         let over = self.over.get(&cell(at.truncate())).into_iter().flatten();
         let triangles = over.map(|&index| &self.triangles[index]);
         let heights = triangles.filter_map(|triangle| height(triangle, at.truncate()));

@@ -2,6 +2,8 @@
 //!
 //! Every row is one figure of the product with default passes, and one limit.
 
+#[cfg(feature = "peers")]
+pub mod beside;
 mod capstan;
 mod cloths;
 mod drape;

@@ -7,7 +7,7 @@
 
 use std::f32::consts::TAU;
 
-use bunting_solver::Fabric;
+use bunting_solver::{Fabric, FabricMaterial};
 use glam::Vec3;
 use rapier3d::prelude::*;
 
@@ -64,41 +64,45 @@ impl Rapier {
         substeps: usize,
     ) -> Self {
         let material = product::material(scene);
-        let masses: Vec<f32> =
-            fabric.particle_areas().iter().map(|area| area * material.area_density).collect();
-        let inverse = |particle: u32| {
-            let particle = particle as usize;
-            if fabric.is_pinned(particle) { 0.0 } else { masses[particle].recip() }
-        };
-        let softness = |link: &bunting_solver::Link| {
-            let stiffness = fabric.link_stiffness(link, &material);
-            let [a, b] = link.particles;
-            let rate = (stiffness * (inverse(a) + inverse(b))).sqrt();
-            SpringCoefficients::new(rate / TAU, DAMPING_RATIO)
-        };
-        let positions = start.iter().copied().map(vector).collect();
-        let pinned: Vec<usize> =
+        let gravity = Vec3::new(0.0, -scene.gravity as f32, 0.0);
+        let cloth = soft_body(fabric, start, &material).no_surface_collider();
+        let cloth = cloth.solver(match elasticity {
+            Elasticity::Constraints => SoftBodySolver::Constraints,
+            Elasticity::Fem => SoftBodySolver::Fem,
+        });
+        let pinned =
             (0..fabric.particle_count()).filter(|&particle| fabric.is_pinned(particle)).collect();
-        let mut cloth = SoftBodyBuilder::new(positions)
-            .edges(fabric.links().iter().map(|link| link.particles).collect())
-            .surface(fabric.triangles().to_vec())
-            .masses(masses.clone())
-            .pinned_particles(pinned.iter().map(|&particle| particle as u32))
-            .linear_damping(scene.damping as f32)
-            .can_sleep(false)
-            .no_surface_collider()
-            .solver(match elasticity {
-                Elasticity::Constraints => SoftBodySolver::Constraints,
-                Elasticity::Fem => SoftBodySolver::Fem,
-            });
-        cloth.edge_softness = (0..).zip(fabric.links().iter().map(softness)).collect();
-        let dihedrals = cloth.surface_dihedrals();
+        Self { pinned, ..Self::insert(cloth, gravity, substeps) }
+    }
+
+    /// A fabric at rest beside a shape that it touches, under gravity, m/s².
+    #[must_use]
+    pub fn beside(
+        fabric: &Fabric,
+        material: &FabricMaterial,
+        shape: ColliderBuilder,
+        gravity: Vec3,
+        substeps: usize,
+    ) -> Self {
+        let friction = material.surface_friction;
+        // The shape of this collider is replaced by the cloth's surface.
+        let surface = ColliderBuilder::ball(1.0).friction(friction);
+        let cloth = soft_body(fabric, fabric.rest_positions(), material)
+            .surface_collider(surface)
+            .particle_radius(material.thickness);
+        let mut rapier = Self::insert(cloth, gravity, substeps);
+        rapier.world.insert_collider(shape.friction(friction), None);
+        rapier
+    }
+
+    /// A world with one cloth.
+    fn insert(cloth: SoftBodyBuilder, gravity: Vec3, substeps: usize) -> Self {
         let mut world = PhysicsWorld::new();
-        world.gravity = Vector::new(0.0, -scene.gravity as f32, 0.0);
+        world.gravity = vector(gravity);
         world.integration_parameters.num_solver_iterations = substeps;
-        let cloth = world.insert_soft_body(cloth.dihedrals(dihedrals));
-        let mut rapier =
-            Self { world, cloth, pinned, positions: Vec::new(), velocities: Vec::new() };
+        let cloth = world.insert_soft_body(cloth);
+        let (positions, velocities) = (Vec::new(), Vec::new());
+        let mut rapier = Self { world, cloth, pinned: Vec::new(), positions, velocities };
         rapier.look();
         rapier
     }
@@ -109,6 +113,33 @@ impl Rapier {
         self.positions = cloth.particle_positions().map(plain).collect();
         self.velocities = cloth.particle_velocities().map(plain).collect();
     }
+}
+
+/// A fabric as a soft body with particles at given positions, m.
+fn soft_body(fabric: &Fabric, start: &[Vec3], material: &FabricMaterial) -> SoftBodyBuilder {
+    let masses: Vec<f32> =
+        fabric.particle_areas().iter().map(|area| area * material.area_density).collect();
+    let inverse = |particle: u32| {
+        let particle = particle as usize;
+        if fabric.is_pinned(particle) { 0.0 } else { masses[particle].recip() }
+    };
+    let softness = |link: &bunting_solver::Link| {
+        let stiffness = fabric.link_stiffness(link, material);
+        let [a, b] = link.particles;
+        let rate = (stiffness * (inverse(a) + inverse(b))).sqrt();
+        SpringCoefficients::new(rate / TAU, DAMPING_RATIO)
+    };
+    let pinned = (0..fabric.particle_count()).filter(|&particle| fabric.is_pinned(particle));
+    let mut cloth = SoftBodyBuilder::new(start.iter().copied().map(vector).collect())
+        .edges(fabric.links().iter().map(|link| link.particles).collect())
+        .surface(fabric.triangles().to_vec())
+        .masses(masses.clone())
+        .pinned_particles(pinned.map(|particle| particle as u32))
+        .linear_damping(material.damping)
+        .can_sleep(false);
+    cloth.edge_softness = (0..).zip(fabric.links().iter().map(softness)).collect();
+    let dihedrals = cloth.surface_dihedrals();
+    cloth.dihedrals(dihedrals)
 }
 
 /// Conversion to rapier's version of glam.

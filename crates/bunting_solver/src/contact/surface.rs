@@ -11,6 +11,11 @@ use crate::contact::nearest::nearest_point;
 /// How much longer than it is a path is taken to be where it is found out whether it reaches a shape: more than rounding.
 const REACH: f32 = 1.001;
 
+/// Part of the clearance by which a particle may be farther from a shape than it must be and touches it. Larger:
+/// particles that a fast shape hits slide around it. Smaller: by rounding, particles that are pressed against a shape
+/// count as hit by it, and slide whatever the friction.
+const TOUCHING: f32 = 0.1;
+
 /// The surface of a shape, in the shape's frame.
 pub(super) struct Surface<'a> {
     pub shape: &'a dyn Shape,
@@ -53,7 +58,7 @@ impl Surface<'_> {
 
     /// Projects a particle whose path enters the shape from outside. A particle that a fast shape overtakes
     /// moves with the shape and does not slide: a slide as long as the path would carry it around the shape
-    /// within the substep.
+    /// within the substep. A particle that touched the shape before is pressed against it and rubs.
     fn cross(&self, from: Vec3, to: Vec3) -> Option<Projection> {
         if self.is_out_of_reach(from, to) || self.contains(from) {
             return None;
@@ -65,12 +70,18 @@ impl Surface<'_> {
         if above(to) >= 0.0 {
             return None;
         }
-        let at = entry + hit.normal * self.clearance;
+        let normal = hit.normal;
+        let touched = above(from) < TOUCHING * self.clearance;
+        let at = if touched {
+            self.pushed(from, to, &Overlap { normal, depth: -above(to) })
+        } else {
+            entry + normal * self.clearance
+        };
         // Beside an edge this point may lie within another face, and normals of rays against round shapes are
         // estimates.
         let overlap = self.overlap(from, at);
         let to = overlap.map_or(at, |Overlap { normal, depth }| at + normal * depth);
-        Some(Projection { to, normal: hit.normal, sticks: true })
+        Some(Projection { to, normal, sticks: !touched })
     }
 
     /// Whether a path is known to end farther from the shape than it is long. Only capsules are asked, at which rays are
@@ -85,14 +96,20 @@ impl Surface<'_> {
         (a + along * part).distance_squared(to) > reach * reach
     }
 
-    /// Projects a particle that comes closer than the clearance, with friction.
+    /// Projects a particle that comes closer than the clearance.
     fn slide(&self, from: Vec3, to: Vec3) -> Option<Projection> {
-        let Overlap { normal, depth } = self.overlap(from, to)?;
+        let overlap = self.overlap(from, to)?;
+        let to = self.pushed(from, to, &overlap);
+        Some(Projection { to, normal: overlap.normal, sticks: false })
+    }
+
+    /// The end of a particle's path, m, moved out of an overlap, with friction.
+    fn pushed(&self, from: Vec3, to: Vec3, &Overlap { normal, depth }: &Overlap) -> Vec3 {
         let moved = to - from;
         let slide = moved - normal * moved.dot(normal);
         // Friction shortens the slide by at most its coefficient times the depth (Coulomb's cone).
         let held = (self.friction * depth / slide.length().max(LEAST_LENGTH)).min(1.0);
-        Some(Projection { to: to + normal * depth - slide * held, normal, sticks: false })
+        to + normal * depth - slide * held
     }
 
     /// Unit normal of the surface, out of the shape, near a point that is closer than the clearance.
@@ -126,5 +143,38 @@ impl Surface<'_> {
             Some(field) => ground::depth(field, at).is_some_and(|depth| depth > 0.0),
             None => self.shape.contains_local_point(at),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use parry3d::shape::Cuboid;
+
+    use super::Surface;
+
+    /// Where a particle ends that moves from a height above a slab to a place within it, m, and whether it sticks.
+    fn pressed(height: f32, slide: f32, friction: f32) -> (Vec3, bool) {
+        let slab = Cuboid::new(Vec3::new(1.0, 1.0, 0.1));
+        let (clearance, rise) = (2e-3, 0.0);
+        let surface = Surface { shape: &slab, ground: None, rise, clearance, friction };
+        let at = |x: f32, z: f32| Vec3::new(x, 0.0, 0.1 + z);
+        let projection = surface.project(at(0.0, height), at(slide, -8e-3)).expect("a contact");
+        (projection.to, projection.sticks)
+    }
+
+    #[test]
+    fn a_particle_that_is_pressed_through_the_surface_rubs_on_it() {
+        // The friction is that of 10 mm: the whole depth below the clearance.
+        for (slide, friction, end) in [(1e-3, 0.5, 0.0), (6e-3, 0.5, 1e-3), (6e-3, 0.0, 6e-3)] {
+            let (to, sticks) = pressed(2e-3, slide, friction);
+            assert!(to.distance(Vec3::new(end, 0.0, 0.102)) < 1e-6 && !sticks, "{to} of {end}");
+        }
+    }
+
+    #[test]
+    fn a_particle_that_is_hit_sticks() {
+        let (to, sticks) = pressed(8e-3, 6e-3, 0.0);
+        assert!(to.distance(Vec3::new(3e-3, 0.0, 0.102)) < 1e-6 && sticks, "{to}");
     }
 }
