@@ -15,8 +15,8 @@ const TICK: f32 = 1.0 / 60.0;
 /// Larger: it passes although a constraint pushes one particle more than another.
 const MOMENTUM_ROUNDING: f32 = 1e-3;
 
-/// Relative change of the angular momentum about the centre in a second, of a crumpled sheet, by rounding. Where it is not
-/// given back the sheet loses 0.10.
+/// Relative change of the angular momentum about the centre in a second, of a crumpled sheet, by rounding. Where it
+/// is not given back the sheet loses 0.10.
 const SPIN_ROUNDING: f32 = 1e-4;
 
 /// The same with Gauss–Seidel: the directions of links are those before a solve and not those after it. Measured: 0.05.
@@ -90,8 +90,8 @@ fn free_cloth_keeps_its_momenta() {
     }
 }
 
-/// What acts from outside for a tick turns a free sheet at the rate that its moment gives, although the sheet's own angular
-/// momentum is kept before, between and after.
+/// What acts from outside for a tick turns a free sheet at the rate that its moment gives, although the sheet's own
+/// angular momentum is kept before, between and after.
 #[test]
 fn a_free_cloth_takes_up_the_moment_of_a_users_force() {
     const ACCELERATION: f32 = 30.0;

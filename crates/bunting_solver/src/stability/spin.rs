@@ -1,10 +1,10 @@
 //! Angular momentum of a free cloth on which nothing acts from outside.
 //!
-//! No internal force changes it, but a substep does, by two small errors. Each solve of a constraint moves particles along
-//! the directions between them, and so has no moment, but later solves find particles that earlier ones have moved, as
-//! about a [pole](crate::stability::pole). And the integrator damps vibrations together with their share of the angular
-//! momentum. A rigid turn about the centre of mass gives back what a substep has lost: of all motions with this angular
-//! momentum it has the least energy.
+//! No internal force changes it, but a substep does, by two small errors. Each solve of a constraint moves particles
+//! along the directions between them, and so has no moment, but later solves find particles that earlier ones have
+//! moved, as about a [pole](crate::stability::pole). And the integrator damps vibrations together with their share of
+//! the angular momentum. A rigid turn about the centre of mass gives back what a substep has lost: of all motions
+//! with this angular momentum it has the least energy.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
@@ -48,8 +48,8 @@ impl LaneState {
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Gives back the angular momentum that the substep has lost, to free cloths on which nothing acts. Those that follow the
-    /// nodes of a background grid have none of their own.
+    /// Gives back the angular momentum that the substep has lost, to free cloths on which nothing acts. Those that
+    /// follow the nodes of a background grid have none of their own.
     pub fn keep_spin(&mut self) {
         if self.fabric.has_pins() {
             return;

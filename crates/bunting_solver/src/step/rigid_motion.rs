@@ -21,7 +21,7 @@ pub(crate) struct RigidMotion<L> {
 }
 
 impl<L: Lane> RigidMotion<L> {
-    /// Sums over particles with the given areas, m², of cloths of one over `per_area`, m².
+    /// Sums over the particles, given their areas, m², and one over the area of the whole cloth, 1/m².
     #[inline(always)]
     pub fn of<C: Constant<L::Pack>>(
         token: L::Token,
@@ -65,9 +65,9 @@ impl<L: Lane> RigidMotion<L> {
         }
     }
 
-    /// The angular velocity ω = I⁻¹ L, rad/s, of a rigid turn with the angular momentum L, m⁴/s, by Cramer's rule, where
-    /// I = Σ m (|r|² 1 − r rᵀ) (thesis, eq. A.5). A ridge is added to the diagonal, since the inertia of a line or a point
-    /// has no inverse.
+    /// The angular velocity ω = I⁻¹ L, rad/s, of a rigid turn with the angular momentum L, m⁴/s, by Cramer's rule,
+    /// where I = Σ m (|r|² 1 − r rᵀ) (thesis, eq. A.5). A ridge is added to the diagonal, since the inertia of a line
+    /// or a point has no inverse.
     #[inline(always)]
     pub fn turning(&self, token: L::Token, spin: V3<L>) -> V3<L> {
         let Self { squares, products, .. } = self;

@@ -1,5 +1,5 @@
-//! Free meshes that fly, spin and vibrate without loads and damping: momentum and angular momentum stay as they are, and
-//! kinetic energy, of which they have most at the start, never exceeds that.
+//! Free meshes that fly, spin and vibrate without loads and damping: momentum and angular momentum stay as they are,
+//! and kinetic energy, of which they have most at the start, never exceeds that.
 
 use std::sync::Arc;
 
