@@ -4,3 +4,4 @@ pub(crate) mod added_mass;
 pub(crate) mod pin_strain;
 pub(crate) mod pole;
 pub(crate) mod relaxation;
+pub(crate) mod spin;

@@ -3,6 +3,7 @@
 use crate::constants::GRAVITY;
 use crate::simd::lane::Pack;
 use crate::stability::pole::PoleTurn;
+use crate::stability::spin::Disturbance;
 use crate::step::Scheme;
 
 /// A backward differentiation formula of order one or two. With Δ and Δ₋₁ the last two changes of x, and ẋ
@@ -97,6 +98,8 @@ pub(crate) struct IntegratorHistory {
     substeps: u32,
     /// Turn of the cloth about its pole by the last substep's corrections, which the next prediction undoes.
     pub pole_turn: PoleTurn,
+    /// Substeps in which actions from outside have an effect on a free cloth's angular momentum.
+    pub disturbance: Disturbance,
     /// Whether something could act on single particles of a mesh with a background grid in this tick. What acts on them in
     /// the last substep reaches the nodes in the next one.
     pub was_acted_on: bool,

@@ -85,6 +85,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             formula,
             scheme: settings.scheme,
         };
+        state.history.disturbance.begin_substep(state.is_disturbed(&inputs));
         if state.inputs.replace(inputs) != Some(inputs) {
             self.set_inputs(cloth, &inputs);
         }

@@ -32,7 +32,7 @@ type Motion = [Vec<Vec3>; VECTORS];
 
 impl LaneState {
     /// Whether something may act on single particles in this tick.
-    fn is_acted_on(&self) -> bool {
+    pub fn is_acted_on(&self) -> bool {
         self.contacts.iter().any(|candidates| !candidates.is_empty())
             || self.self_contacts.is_some()
             || self.guides.is_some()
@@ -94,6 +94,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn access_particles(&mut self, cloth: usize) {
         if let Some(state) = &mut self.lanes[cloth] {
             state.history.was_acted_on = true;
+            state.history.disturbance.disturb();
         }
         self.stop_following(cloth);
     }

@@ -19,6 +19,7 @@ pub(crate) mod moving_pins;
 mod nodes;
 pub(crate) mod parameters;
 pub(crate) mod predict;
+pub(crate) mod rigid_motion;
 mod settings;
 mod velocity;
 

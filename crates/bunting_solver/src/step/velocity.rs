@@ -40,6 +40,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.store_pole_turn(&turn);
         }
         self.damp_internally();
+        if has_chains {
+            self.keep_spin();
+        }
     }
 
     /// Computes velocities from the corrected positions. `turn` is that of [`UpdateVelocities`], if the turn about the

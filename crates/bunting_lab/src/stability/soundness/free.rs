@@ -22,17 +22,25 @@ const WIDTH: f32 = 0.2;
 /// Bowl, ball and Möbius strip, and the strip held at a vertex, at the default number of substeps and at eight.
 pub(super) fn cases(quick: bool) -> Vec<HardCase> {
     let seconds = if quick { 10.0 } else { 30.0 };
-    let rings = if quick { 8 } else { 16 };
-    let meshes = [
-        ("bowl", around(16, 6, false, sphere([0.2, 1.6]))),
-        ("ball", around(2 * rings, rings, false, sphere([0.15, 2.99]))),
-        ("Möbius strip", around(48, 6, true, moebius)),
-        ("Möbius strip held at a vertex", around(48, 6, true, moebius).pin([0])),
-    ];
-    let meshes = meshes.map(|(name, mesh)| (name, Arc::new(mesh.build().expect("a good mesh"))));
+    let held = built("Möbius strip held at a vertex", around(48, 6, true, moebius).pin([0]));
+    let meshes = free_meshes(quick).into_iter().chain([held]);
     let settings = [DEFAULT, StepSettings { substeps: 8, ..DEFAULT }];
-    let cases = meshes.iter().flat_map(|mesh| settings.map(|settings| (mesh, settings)));
-    cases.map(|((name, fabric), settings)| at_rest(name, fabric, seconds, settings)).collect()
+    let cases = meshes.flat_map(|mesh| settings.map(|settings| (mesh.clone(), settings)));
+    cases.map(|((name, fabric), settings)| at_rest(name, &fabric, seconds, settings)).collect()
+}
+
+/// Bowl, ball and Möbius strip, with their names.
+pub(super) fn free_meshes(quick: bool) -> [(&'static str, Arc<Fabric>); 3] {
+    let rings = if quick { 8 } else { 16 };
+    [
+        built("bowl", around(16, 6, false, sphere([0.2, 1.6]))),
+        built("ball", around(2 * rings, rings, false, sphere([0.15, 2.99]))),
+        built("Möbius strip", around(48, 6, true, moebius)),
+    ]
+}
+
+fn built(name: &'static str, mesh: FabricBuilder) -> (&'static str, Arc<Fabric>) {
+    (name, Arc::new(mesh.build().expect("a good mesh")))
 }
 
 /// The part of a sphere between two angles (rad) from its axis, of which a ring is given from 0 to 1, and an azimuth, rad.
@@ -80,17 +88,6 @@ fn around(
 /// Case of a mesh at rest in eight lanes of polyester without damping: its RMS speed, with stretch
 /// stiffnesses over four decades and bending stiffnesses over six.
 fn at_rest(name: &str, fabric: &Arc<Fabric>, seconds: f32, settings: StepSettings) -> HardCase {
-    let scaled = |stretch: f32, bend: f32| {
-        let polyester = FabricMaterial::FLAG_POLYESTER;
-        FabricMaterial {
-            warp_stiffness: stretch * polyester.warp_stiffness,
-            weft_stiffness: stretch * polyester.weft_stiffness,
-            shear_stiffness: stretch * polyester.shear_stiffness,
-            bend_stiffness: bend * polyester.bend_stiffness,
-            damping: 0.0,
-            ..polyester
-        }
-    };
     let stretches = [0.01, 0.1, 5.0, 50.0].map(|factor| scaled(factor, 1.0));
     let bends = [0.01, 1.0, 100.0, 1e4].map(|factor| scaled(1.0, factor));
     let mut batch = ClothBatch::new(Arc::clone(fabric), LaneCount::Eight);
@@ -103,4 +100,17 @@ fn at_rest(name: &str, fabric: &Arc<Fabric>, seconds: f32, settings: StepSetting
     let kind = if fabric.has_pins() { "" } else { "free " };
     let name = format!("{kind}{name} at rest, {} substeps", settings.substeps);
     HardCase::new(name, 0, "RMS speed, m/s", fastest(&batch), AT_REST)
+}
+
+/// Polyester without damping whose stretch and bending stiffnesses are multiplied by factors.
+pub(super) fn scaled(stretch: f32, bend: f32) -> FabricMaterial {
+    let polyester = FabricMaterial::FLAG_POLYESTER;
+    FabricMaterial {
+        warp_stiffness: stretch * polyester.warp_stiffness,
+        weft_stiffness: stretch * polyester.weft_stiffness,
+        shear_stiffness: stretch * polyester.shear_stiffness,
+        bend_stiffness: bend * polyester.bend_stiffness,
+        damping: 0.0,
+        ..polyester
+    }
 }

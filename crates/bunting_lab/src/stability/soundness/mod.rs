@@ -3,6 +3,7 @@
 mod free;
 mod hang;
 mod jerk;
+mod momentum;
 mod rates;
 mod strips;
 
@@ -21,6 +22,7 @@ const AT_REST: f64 = 1e-3;
 /// All cases.
 pub fn cases(quick: bool) -> Vec<HardCase> {
     let mut cases = free::cases(quick);
+    cases.extend(momentum::cases(quick));
     cases.extend(strips::cases(quick));
     cases.extend(jerk::cases(quick));
     cases.extend(rates::cases());
