@@ -77,6 +77,10 @@ impl<'a> Layer<'a> {
                     continue;
                 }
                 let (line, headings) = self.follow_both_ways(start, way);
+                if line.pieces.is_empty() {
+                    // Nothing is laid here, which would keep those beside it from starting here again.
+                    continue;
+                }
                 starts.extend(
                     headings.iter().flat_map(|heading| self.beside(heading, way)).flatten(),
                 );

@@ -102,3 +102,37 @@ fn yarns_move_each_particle_and_close_rings() {
     let closing = funnel(25).laid_yarns().list.iter().filter(|yarn| yarn.links.len() == 1).count();
     assert!(closing >= 20, "{closing} links close rings");
 }
+
+/// A ball of 0.3 m with rings of quads between two poles, whose directions turn about the poles.
+fn ball(rings: u32, around: u32) -> FabricBuilder {
+    let place = |ring: u32, at: u32| {
+        let (up, out) = libm::sincosf(core::f32::consts::PI * ring as f32 / rings as f32);
+        let (sin, cos) = libm::sincosf(core::f32::consts::TAU * at as f32 / around as f32);
+        0.3 * Vec3::new(up * cos, out, up * sin)
+    };
+    let inner = (1..rings).flat_map(|ring| (0..around).map(move |at| place(ring, at)));
+    let poles = [place(0, 0), place(rings, 0)];
+    let positions: Vec<Vec3> = inner.chain(poles).collect();
+    let [top, bottom] = [2, 1].map(|back| positions.len() as u32 - back);
+    let vertex = |ring: u32, at: u32| (ring - 1) * around + at % around;
+    let mut indices = Vec::new();
+    for at in 0..around {
+        indices.extend([top, vertex(1, at + 1), vertex(1, at)]);
+        indices.extend([bottom, vertex(rings - 1, at), vertex(rings - 1, at + 1)]);
+        for ring in 1..rings - 1 {
+            let [a, b] = [vertex(ring, at), vertex(ring, at + 1)];
+            let [c, d] = [vertex(ring + 1, at), vertex(ring + 1, at + 1)];
+            indices.extend([a, b, c, b, d, c]);
+        }
+    }
+    FabricBuilder::new(positions, indices)
+}
+
+#[test]
+fn laying_ends_where_directions_turn_about_points() {
+    for [rings, around] in [[16, 16], [24, 24], [16, 32]] {
+        let fabric = ball(rings, around).build().expect("a good fabric");
+        let links = fabric.laid_yarns().link_count();
+        assert!((1..50 * fabric.particle_count()).contains(&links), "{links} links");
+    }
+}
