@@ -16,6 +16,11 @@ const REACH: f32 = 1.001;
 /// count as hit by it, and slide whatever the friction.
 const TOUCHING: f32 = 0.1;
 
+/// Depth up to which a particle that touches a shape is pressed into it within a substep, in clearances. Larger:
+/// particles in front of a fast edge slide around it, substep by substep. Smaller: taut cloth that is pulled against a
+/// shape is held by more than friction.
+const PRESSED: f32 = 6.0;
+
 /// The surface of a shape, in the shape's frame.
 pub(super) struct Surface<'a> {
     pub shape: &'a dyn Shape,
@@ -58,7 +63,8 @@ impl Surface<'_> {
 
     /// Projects a particle whose path enters the shape from outside. A particle that a fast shape overtakes
     /// moves with the shape and does not slide: a slide as long as the path would carry it around the shape
-    /// within the substep. A particle that touched the shape before is pressed against it and rubs.
+    /// within the substep. A particle that touched the shape before, and does not come far into it, is pressed against
+    /// it and rubs.
     fn cross(&self, from: Vec3, to: Vec3) -> Option<Projection> {
         if self.is_out_of_reach(from, to) || self.contains(from) {
             return None;
@@ -71,9 +77,11 @@ impl Surface<'_> {
             return None;
         }
         let normal = hit.normal;
-        let touched = above(from) < TOUCHING * self.clearance;
-        let at = if touched {
-            self.pushed(from, to, &Overlap { normal, depth: -above(to) })
+        let depth = -above(to);
+        let is_pressed =
+            above(from) < TOUCHING * self.clearance && depth < PRESSED * self.clearance;
+        let at = if is_pressed {
+            self.pushed(from, to, &Overlap { normal, depth })
         } else {
             entry + normal * self.clearance
         };
@@ -81,7 +89,7 @@ impl Surface<'_> {
         // estimates.
         let overlap = self.overlap(from, at);
         let to = overlap.map_or(at, |Overlap { normal, depth }| at + normal * depth);
-        Some(Projection { to, normal, sticks: !touched })
+        Some(Projection { to, normal, sticks: !is_pressed })
     }
 
     /// Whether a path is known to end farther from the shape than it is long. Only capsules are asked, at which rays are
@@ -155,11 +163,15 @@ mod tests {
 
     /// Where a particle ends that moves from a height above a slab to a place within it, m, and whether it sticks.
     fn pressed(height: f32, slide: f32, friction: f32) -> (Vec3, bool) {
+        pressed_to(height, slide, -8e-3, friction)
+    }
+
+    fn pressed_to(height: f32, slide: f32, end: f32, friction: f32) -> (Vec3, bool) {
         let slab = Cuboid::new(Vec3::new(1.0, 1.0, 0.1));
         let (clearance, rise) = (2e-3, 0.0);
         let surface = Surface { shape: &slab, ground: None, rise, clearance, friction };
         let at = |x: f32, z: f32| Vec3::new(x, 0.0, 0.1 + z);
-        let projection = surface.project(at(0.0, height), at(slide, -8e-3)).expect("a contact");
+        let projection = surface.project(at(0.0, height), at(slide, end)).expect("a contact");
         (projection.to, projection.sticks)
     }
 
@@ -176,5 +188,8 @@ mod tests {
     fn a_particle_that_is_hit_sticks() {
         let (to, sticks) = pressed(8e-3, 6e-3, 0.0);
         assert!(to.distance(Vec3::new(3e-3, 0.0, 0.102)) < 1e-6 && sticks, "{to}");
+        // A fast shape hits what it touches, too.
+        let (to, sticks) = pressed_to(2e-3, 6e-3, -2e-2, 0.0);
+        assert!(to.x < 1e-3 && sticks, "{to}");
     }
 }
