@@ -151,23 +151,22 @@ impl Governor {
 
     /// Sorts steps by buckets, the greatest value first; within a bucket in the order of the cloths.
     fn sort_steps(&mut self) {
-        if self.steps.is_empty() {
-            self.sorted.clear();
-            return;
-        }
+        let buckets = self.steps.iter().map(|step| step.bucket);
+        let first = buckets.clone().min().unwrap_or(0);
+        let count = buckets.max().map_or(0, |last| last - first + 1);
         self.bucket_ends.clear();
-        self.bucket_ends.resize(BUCKETS, 0);
+        self.bucket_ends.resize(count as usize, 0);
         for step in &self.steps {
-            self.bucket_ends[step.bucket as usize] += 1;
+            self.bucket_ends[(step.bucket - first) as usize] += 1;
         }
         let mut end = 0;
         for bucket in &mut self.bucket_ends {
             end += core::mem::replace(bucket, end);
         }
-        self.sorted.clear();
+        // Every element is overwritten.
         self.sorted.resize(self.steps.len(), Step::default());
         for step in &self.steps {
-            let index = &mut self.bucket_ends[step.bucket as usize];
+            let index = &mut self.bucket_ends[(step.bucket - first) as usize];
             self.sorted[*index as usize] = *step;
             *index += 1;
         }

@@ -86,8 +86,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Whether all positions and velocities of a lane are finite.
     pub fn is_finite(&self, lane: usize) -> bool {
-        let finite = |packs| self.of_cloth(packs, lane).all(Vec3::is_finite);
-        finite(self.positions.packs()) && finite(&self.velocity)
+        let lanes = Y::lanes(lane);
+        let is_finite = |pack: &P| {
+            pack.lanes()[lanes.clone()].iter().fold(true, |all, number| all & number.is_finite())
+        };
+        let vectors = self.positions.packs().iter().chain(&self.velocity);
+        vectors.flatten().all(is_finite)
     }
 
     /// The vectors of one cloth, particle by particle.
