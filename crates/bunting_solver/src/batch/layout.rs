@@ -71,6 +71,14 @@ pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
     /// Reads the vectors of a cloth, particle by particle.
     fn read(&self, packs: &[Pack3<P>], cloth: usize, into: &mut Vec<Vec3>);
 
+    /// Reads a number of each particle of a cloth.
+    fn read_numbers(&self, packs: &[P], cloth: usize, into: &mut [f32]) {
+        for (particle, value) in into.iter_mut().enumerate() {
+            let (pack, lane) = self.locate(particle, cloth);
+            *value = packs[pack].lanes()[lane];
+        }
+    }
+
     /// Writes the vectors of cloths, and zero into lanes of a cloth without a particle.
     fn write(&self, packs: &mut [Pack3<P>], cloths: &[OfCloth]);
 

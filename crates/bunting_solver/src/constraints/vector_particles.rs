@@ -1,10 +1,10 @@
 //! The particles of a lone mesh as vectors, of which eight are gathered at once.
 
-use fearless_simd::{Simd, SimdCombine, SimdSplit, f32x4, f32x8};
+use fearless_simd::{Simd, f32x4, f32x8};
 
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::registers::{Pack4, Pack8};
-use crate::simd::transpose::{coordinates, vectors};
+use crate::simd::transpose::{joined, split};
 use crate::simd::vec3::V3;
 
 /// A particle while corrections are summed: vectors of x, y, z and a fourth number.
@@ -87,20 +87,4 @@ impl VectorParticles<'_> {
             self.correct(token, particle, by, factor);
         }
     }
-}
-
-/// The coordinates of eight vectors.
-#[inline(always)]
-pub(super) fn joined<S: Simd>([a, b, c, d, e, f, g, h]: [f32x4<S>; Pack8::WIDTH]) -> V3<f32x8<S>> {
-    let (low, high) = (coordinates([a, b, c, d]), coordinates([e, f, g, h]));
-    V3 { x: low[0].combine(high[0]), y: low[1].combine(high[1]), z: low[2].combine(high[2]) }
-}
-
-/// The eight vectors of given coordinates.
-#[inline(always)]
-pub(super) fn split<S: Simd>(token: S, by: V3<f32x8<S>>) -> impl Iterator<Item = f32x4<S>> {
-    let ((x, x_high), (y, y_high), (z, z_high)) = (by.x.split(), by.y.split(), by.z.split());
-    let low = vectors(token, [x, y, z]);
-    let high = vectors(token, [x_high, y_high, z_high]);
-    low.into_iter().chain(high)
 }

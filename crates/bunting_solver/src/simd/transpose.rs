@@ -1,6 +1,8 @@
-//! Four vectors of x, y, z and a fourth number, and the four values of each of their coordinates.
+//! Vectors of x, y, z and a fourth number, four or eight of them, and the values of each of their coordinates.
 
-use fearless_simd::{Simd, SimdBase, f32x4};
+use fearless_simd::{Simd, SimdBase, SimdCombine, SimdSplit, f32x4, f32x8};
+
+use crate::simd::vec3::V3;
 
 /// The coordinates x, y and z of four vectors.
 #[inline(always)]
@@ -22,4 +24,20 @@ pub(crate) fn vectors<S: Simd>(token: S, [x, y, z]: [f32x4<S>; 3]) -> [f32x4<S>;
         xz_high.zip_low(yw_high),
         xz_high.zip_high(yw_high),
     ]
+}
+
+/// The coordinates of eight vectors.
+#[inline(always)]
+pub(crate) fn joined<S: Simd>([a, b, c, d, e, f, g, h]: [f32x4<S>; 8]) -> V3<f32x8<S>> {
+    let (low, high) = (coordinates([a, b, c, d]), coordinates([e, f, g, h]));
+    V3 { x: low[0].combine(high[0]), y: low[1].combine(high[1]), z: low[2].combine(high[2]) }
+}
+
+/// The eight vectors of given coordinates.
+#[inline(always)]
+pub(crate) fn split<S: Simd>(token: S, by: V3<f32x8<S>>) -> impl Iterator<Item = f32x4<S>> {
+    let ((x, x_high), (y, y_high), (z, z_high)) = (by.x.split(), by.y.split(), by.z.split());
+    let low = vectors(token, [x, y, z]);
+    let high = vectors(token, [x_high, y_high, z_high]);
+    low.into_iter().chain(high)
 }

@@ -150,6 +150,16 @@ impl<P: Pack> Layout<P> for SingleCloth<P> {
         }
     }
 
+    /// Without a division for each particle.
+    fn read_numbers(&self, packs: &[P], _: usize, into: &mut [f32]) {
+        let packs = packs.chunks(self.shape.packs_in_row::<P>());
+        for (values, packs) in into.chunks_mut(self.shape.columns).zip(packs) {
+            for (values, pack) in values.chunks_mut(P::WIDTH).zip(packs) {
+                values.copy_from_slice(&pack.lanes()[..values.len()]);
+            }
+        }
+    }
+
     fn write(&self, packs: &mut [Pack3<P>], cloths: &[OfCloth]) {
         for &(_, values) in cloths {
             packs.fill(splat3(Vec3::ZERO));

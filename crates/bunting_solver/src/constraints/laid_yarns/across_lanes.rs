@@ -10,11 +10,12 @@ use super::{
     BandRow, FARTHER, SolveLaidYarns, TightenLinks, YarnLink, YarnParticles, compliance,
     sum_couplings,
 };
-use crate::constraints::vector_particles::{VectorParticle, VectorParticles, joined, split};
+use crate::constraints::vector_particles::{VectorParticle, VectorParticles};
 use crate::fabric::{BAND, Fabric, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::level::dispatch;
 use crate::simd::registers::{Pack1, Pack4, Pack8};
+use crate::simd::transpose::{joined, split};
 use crate::simd::vec3::V3;
 
 /// The laid yarns of a single cloth, those of each colour in a pack.

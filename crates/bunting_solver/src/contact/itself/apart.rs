@@ -1,11 +1,12 @@
 //! Planes that keep triangles apart over a substep: each triangle of a cell is compared with all of another at once.
 
-use glam::Vec3;
+use fearless_simd::Simd;
 
-use crate::contact::itself::boxes::{Around, Boxes, Corners, Splat};
+use crate::contact::itself::boxes::{Boxes, Corners, Splat, set_around};
 use crate::contact::itself::patches::Cell;
-use crate::contact::itself::swept::Swept;
+use crate::contact::itself::swept::{End, Path, Swept, gather};
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
+use crate::simd::level::dispatch;
 use crate::simd::registers::Pack8;
 use crate::simd::vec3::V3;
 
@@ -27,26 +28,21 @@ impl TrianglePaths {
         Self { corners, around: Boxes::empty(), count: 0 }
     }
 
-    /// Sets the paths of a cell's triangles, given the positions of all particles at the start and at the end, m.
-    pub fn set(&mut self, cell: &Cell, positions: [&[Vec3]; 2], thickness: f32) {
-        let Self { corners, around, count } = self;
-        *count = cell.triangles.len();
-        for (corners, positions) in corners.iter_mut().zip(positions) {
-            gather(cell, positions, corners);
-        }
-        Pack8::run(Around { corners, by: 0.5 * thickness, boxes: around });
+    /// Sets the paths of a cell's triangles, given those of all particles.
+    pub fn set(&mut self, cell: &Cell, paths: &[Path], thickness: f32) {
+        self.count = cell.triangles.len();
+        dispatch!(token => set(token, self, cell, paths, 0.5 * thickness));
     }
 }
 
-/// Gathers the corners of a cell's triangles.
+/// Sets the paths of a cell's triangles, given the distance by which boxes are widened, m.
 #[inline(always)]
-pub(in crate::contact) fn gather(cell: &Cell, positions: &[Vec3], into: &mut Corners) {
-    for (corner, lanes) in into.iter_mut().zip(&cell.corners) {
-        for (lane, &particle) in lanes.iter().enumerate() {
-            let position = positions[particle as usize];
-            corner[0].lanes_mut()[lane] = position.x;
-            corner[1].lanes_mut()[lane] = position.y;
-            corner[2].lanes_mut()[lane] = position.z;
+fn set<S: Simd>(token: S, triangles: &mut TrianglePaths, cell: &Cell, paths: &[Path], by: f32) {
+    for end in [End::First, End::Last] {
+        let corners = gather(token, cell, paths, end);
+        set_around(token, &corners, end, by, &mut triangles.around);
+        for (corner, into) in corners.iter().zip(&mut triangles.corners[end as usize]) {
+            corner.store(into);
         }
     }
 }
@@ -218,9 +214,12 @@ fn sides<L: Lane>(
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
+
     use super::*;
     use crate::contact::itself::crossing::crossing;
     use crate::contact::itself::pairs::EdgeTriangle;
+    use crate::contact::itself::swept::end_at;
 
     const THICKNESS: f32 = 5e-3;
 
@@ -233,7 +232,7 @@ mod tests {
 
     /// A cell of triangles, and the meetings of its triangles with those of another, all at rest.
     fn meetings(cells: [&[[u32; 3]]; 2], positions: &[Vec3]) -> Vec<Meeting> {
-        let paths: Vec<_> = positions.iter().map(|&at| [at.into(); 2]).collect();
+        let paths: Vec<Path> = positions.iter().map(|&at| [end_at(at); 2]).collect();
         let cells = cells.map(|triangles| {
             let last = triangles.len() - 1;
             let corner =
@@ -246,13 +245,13 @@ mod tests {
             }
         });
         let around = Swept::around(&cells[1].particles, &paths).widened(0.5 * THICKNESS);
-        let paths = cells.map(|cell| {
-            let mut paths = TrianglePaths::empty();
-            paths.set(&cell, [positions, positions], THICKNESS);
-            paths
+        let triangles = cells.map(|cell| {
+            let mut triangles = TrianglePaths::empty();
+            triangles.set(&cell, &paths, THICKNESS);
+            triangles
         });
         let mut meetings = Vec::new();
-        find_meetings([&paths[0], &paths[1]], &around, THICKNESS, &mut meetings);
+        find_meetings([&triangles[0], &triangles[1]], &around, THICKNESS, &mut meetings);
         meetings
     }
 
@@ -261,7 +260,8 @@ mod tests {
         let passes = |[a, b, c]: [u32; 3], triangle| {
             let edges = [[a, b], [b, c], [c, a]];
             edges.iter().any(|&edge| {
-                crossing(&EdgeTriangle { index: 0, edge, triangle }, positions).is_some()
+                crossing(&EdgeTriangle { index: 0, edge, triangle, patches: [0; 2] }, positions)
+                    .is_some()
             })
         };
         let [one, other] = triangles;

@@ -1,6 +1,8 @@
 //! Boxes around paths, one in each lane.
 
-use crate::contact::itself::swept::Swept;
+use fearless_simd::{Simd, f32x8};
+
+use crate::contact::itself::swept::{End, Swept};
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::registers::Pack8;
 use crate::simd::vec3::{Pack3, V3, set_lane3};
@@ -78,26 +80,18 @@ fn overlap<L: Lane>(low: &[V3<L>; 2], high: &[V3<L>; 2]) -> L::Mask {
         & (low[0].z.lt(high[0].z) | low[1].z.lt(high[1].z))
 }
 
-/// Computes boxes around triangles, given the corners at the start and at the end, m.
-pub(in crate::contact) struct Around<'a> {
-    pub corners: &'a [Corners; 2],
-    /// Distance by which the boxes are widened, m.
-    pub by: f32,
-    pub boxes: &'a mut Boxes,
-}
-
-impl Kernel<Pack8> for Around<'_> {
-    #[inline(always)]
-    fn run<L: Lane<Pack = Pack8>>(self, token: L::Token) {
-        let by = V3::splat(token, self.by);
-        for at in 0..2 {
-            let a = V3::<L>::load(token, &self.corners[at][0]);
-            let b = V3::<L>::load(token, &self.corners[at][1]);
-            let c = V3::<L>::load(token, &self.corners[at][2]);
-            (a.min(b).min(c) - by).store(&mut self.boxes.low[at]);
-            (a.max(b).max(c) + by).store(&mut self.boxes.high[at]);
-        }
-    }
+/// Sets boxes around triangles, given an end of their corners' paths, m, and the distance by which the boxes are widened, m.
+#[inline(always)]
+pub(in crate::contact) fn set_around<S: Simd>(
+    token: S,
+    [a, b, c]: &[V3<f32x8<S>>; 3],
+    end: End,
+    by: f32,
+    boxes: &mut Boxes,
+) {
+    let by = V3::splat(token, by);
+    (a.min(*b).min(*c) - by).store(&mut boxes.low[end as usize]);
+    (a.max(*b).max(*c) + by).store(&mut boxes.high[end as usize]);
 }
 
 /// Finds the boxes that meet another.

@@ -9,7 +9,7 @@ use crate::contact::itself::pairs::Pairs;
 use crate::contact::itself::particles::Particles;
 use crate::contact::itself::rigid_zones::RigidZones;
 use crate::contact::itself::rules::Rules;
-use crate::contact::itself::search::{Search, Wanted};
+use crate::contact::itself::search::Search;
 use crate::contact::itself::separate::{Contacts, Spacing};
 use crate::contact::itself::untangle::{Tangles, untangle};
 
@@ -38,7 +38,7 @@ impl LayerContacts {
         let Self { search, pairs, particles, contacts, .. } = self;
         let cloth = Cloth { mesh, particles, thickness };
         if !search.is_good(cloth) {
-            search.find(cloth, rules, pairs, Wanted::All);
+            search.find(cloth, rules, pairs);
             drop_distant(pairs, particles, thickness);
         }
         if pairs.is_empty() {
@@ -105,18 +105,14 @@ impl LayerContacts {
     ) -> Option<RigidZones> {
         let Self { search, pairs, particles, tangles, .. } = self;
         particles.touched.fill(false);
-        if search.is_outdated(Cloth { mesh, particles, thickness }) {
-            search.find(Cloth { mesh, particles, thickness }, rules, pairs, Wanted::Crossings);
-        }
+        search.find_moved(Cloth { mesh, particles, thickness }, rules, pairs);
         let mut zones = RigidZones::new(particles);
         let mut grew = false;
         while zones.grow(pairs, tangles, particles) {
             grew = true;
-            let cloth = Cloth { mesh, particles, thickness };
-            if !search.is_outdated(cloth) {
+            if !search.find_moved(Cloth { mesh, particles, thickness }, rules, pairs) {
                 break;
             }
-            search.find(cloth, rules, pairs, Wanted::Crossings);
         }
         particles.is_near.clone_from(&particles.touched);
         grew.then_some(zones)

@@ -77,10 +77,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.layout.read(&self.scratch, cloth, start);
         self.layout.read(self.positions.packs_mut(), cloth, end);
         touched.fill(false);
-        for (particle, inverse_mass) in inverse_mass.iter_mut().enumerate() {
-            let (pack, lane) = self.layout.locate(particle, cloth);
-            *inverse_mass = self.masses.inverse[pack].lanes()[lane];
-        }
+        self.layout.read_numbers(&self.masses.inverse, cloth, inverse_mass);
     }
 }
 

@@ -90,7 +90,7 @@ impl ContactMesh {
                 particles: it.particles.iter().map(|&particle| moved(particle)).collect(),
                 edges: it.edges.iter().map(|edge| edge + edges).collect(),
             }));
-            all.patches.extend(part.patches.iter().map(|patch| patch.moved(patches, cells)));
+            all.patches.extend(part.patches.iter().map(|patch| patch.moved(patches, cells, first)));
             all.cells.extend(part.cells.iter().map(|cell| cell.moved(cells, triangles, first)));
             first += particles;
         }

@@ -41,6 +41,16 @@ impl Kind {
         }
     }
 
+    /// Whether the features may be nearer than a distance, m: unless two of their particles are farther apart than the
+    /// features reach.
+    pub fn are_within(self, [a, b, c, d]: &[Vec3; 4], distance: f32) -> bool {
+        let (apart, reach) = match self {
+            Self::ParticleTriangle => (a.distance(*b), b.distance(*c).max(b.distance(*d))),
+            Self::EdgeEdge => (a.distance(*c), a.distance(*b) + c.distance(*d)),
+        };
+        apart <= reach + distance
+    }
+
     /// The sign of the height, or of the volume, at the start if the features have passed through each other since; else
     /// zero.
     pub fn passed(self, start: [Vec3; 4], end: [Vec3; 4]) -> f32 {

@@ -12,6 +12,8 @@ pub(in crate::contact) struct EdgeTriangle {
     pub index: u32,
     pub edge: [u32; 2],
     pub triangle: [u32; 3],
+    /// The patches in which they were found.
+    pub patches: [u32; 2],
 }
 
 impl EdgeTriangle {

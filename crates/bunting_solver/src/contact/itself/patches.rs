@@ -22,6 +22,7 @@ pub(in crate::contact) struct Patch {
     pub neighbours: Vec<Neighbour>,
     /// Indices of its cells.
     pub cells: Range<u32>,
+    pub particles: Vec<u32>,
 }
 
 /// A few neighbouring triangles of a patch.
@@ -35,11 +36,12 @@ pub(in crate::contact) struct Cell {
 }
 
 impl Patch {
-    /// The patch among others, with larger indices of patches and cells.
-    pub(in crate::contact) fn moved(&self, patches: u32, cells: u32) -> Self {
+    /// The patch among others, with larger indices of patches, cells and particles.
+    pub(in crate::contact) fn moved(&self, patches: u32, cells: u32, particles: u32) -> Self {
         Self {
             neighbours: self.neighbours.iter().map(|it| it.moved(patches)).collect(),
             cells: self.cells.start + cells..self.cells.end + cells,
+            particles: self.particles.iter().map(|&it| it + particles).collect(),
         }
     }
 }
@@ -81,7 +83,11 @@ pub(in crate::contact) fn patches_of(fabric: &Fabric) -> (Vec<Patch>, Vec<Cell>,
     let cells: Vec<Cell> = cells.collect();
     let of_patches = neighbours(patches.iter().map(|(triangles, _)| triangles), fabric);
     let patches = patches.into_iter().zip(of_patches);
-    let patches = patches.map(|((_, cells), neighbours)| Patch { neighbours, cells });
+    let patches = patches.map(|((triangles, cells), neighbours)| Patch {
+        neighbours,
+        cells,
+        particles: particles_of(fabric, &triangles),
+    });
     (patches.collect(), cells, triangles)
 }
 

@@ -107,11 +107,15 @@ impl<R: Rules> Spacing<'_, R> {
         let passed = kind.passed(start, end);
         let Keep { distance, friction, rest } = self.rules.keep(pair);
         let near = kind.near(end, passed).filter(|near| near.gap < FAR * distance)?;
-        let at_rest = rest.map_or(f32::INFINITY, |rest| REST_PART * kind.distance(rest));
+        let is_near_at_rest = |rest: &[Vec3; 4]| kind.are_within(rest, distance / REST_PART);
+        let at_rest = rest
+            .filter(is_near_at_rest)
+            .map_or(f32::INFINITY, |rest| REST_PART * kind.distance(rest));
+        let distance = distance.min(at_rest).min(kind.distance(start) + RECOVERY * self.step);
         Some(Contact {
             particles: pair,
             kind,
-            distance: distance.min(at_rest).min(kind.distance(start) + RECOVERY * self.step),
+            distance,
             friction,
             passed,
             normal: near.normal,

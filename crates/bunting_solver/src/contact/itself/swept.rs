@@ -1,9 +1,57 @@
-//! Boxes around paths.
+//! Paths of particles in a substep, and boxes around them.
 
-use glam::Vec3A;
+use fearless_simd::{Simd, f32x4, f32x8};
+use glam::{Vec3, Vec3A, Vec4};
 
-/// Positions of a particle at the start and at the end of a substep, m.
-pub(in crate::contact) type Path = [Vec3A; 2];
+use crate::contact::itself::patches::Cell;
+use crate::simd::lane::{Lane, Pack};
+use crate::simd::registers::{Pack4, Pack8};
+use crate::simd::transpose::joined;
+use crate::simd::vec3::V3;
+
+/// Positions of a particle at the start and at the end of a substep, m, and zeros.
+pub(in crate::contact) type Path = [Pack4; 2];
+
+/// An end of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::contact) enum End {
+    First,
+    Last,
+}
+
+/// An end of a path at a position, m.
+#[inline]
+pub(in crate::contact) fn end_at(position: Vec3) -> Pack4 {
+    let mut end = Pack4::splat(0.0);
+    end.lanes_mut()[..3].copy_from_slice(&position.to_array());
+    end
+}
+
+/// The position of an end of a path, m.
+#[inline]
+pub(in crate::contact) fn position_of(end: &Pack4) -> Vec3A {
+    Vec3A::from_vec4(Vec4::from_array(end.vector()))
+}
+
+/// The corners of a cell's triangles at an end of their paths, m.
+#[inline(always)]
+pub(in crate::contact) fn gather<S: Simd>(
+    token: S,
+    cell: &Cell,
+    paths: &[Path],
+    end: End,
+) -> [V3<f32x8<S>>; 3] {
+    let zero = V3::<f32x8<S>>::splat(token, 0.0);
+    let mut corners = [zero; 3];
+    for (corner, particles) in corners.iter_mut().zip(&cell.corners) {
+        let mut at = [<f32x4<S> as Lane>::splat(token, 0.0); Pack8::WIDTH];
+        for (at, &particle) in at.iter_mut().zip(particles) {
+            *at = Lane::load(token, &paths[particle as usize][end as usize]);
+        }
+        *corner = joined(at);
+    }
+    corners
+}
 
 /// Boxes around some particles at the start and at the end of a substep, m. Particles move along straight lines.
 #[derive(Clone, Copy, Debug)]
@@ -19,8 +67,9 @@ impl Swept {
     pub fn around(particles: &[u32], paths: &[Path]) -> Self {
         let mut swept = Self::EMPTY;
         for &particle in particles {
-            let path = &paths[particle as usize];
-            swept = swept.merged(Self { low: *path, high: *path });
+            let [first, last] = &paths[particle as usize];
+            let path = [position_of(first), position_of(last)];
+            swept = swept.merged(Self { low: path, high: path });
         }
         swept
     }
