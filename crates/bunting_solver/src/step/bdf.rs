@@ -87,7 +87,7 @@ const ROUGH: f32 = 2.0;
 /// RMS speed that is added to the cloth's own in this comparison, in units of the speed that gravity adds in
 /// a substep. Smaller: cloth at rest counts as rough by its rounding. Larger: curved meshes go on to rattle at 20 to
 /// 200 mm/s after they were pulled.
-const SLOW: f32 = 1.0;
+const SLOW: f32 = 2.0;
 
 /// RMS speed below which a cloth hardly moves, in units of the speed that gravity adds in a substep. Smaller:
 /// limp flags, which oscillate with 0.7 to 1.2, are not relaxed. Larger: with 3 a flag in a light wind is
