@@ -79,15 +79,11 @@ const MOST_GROWTH_OF_BDF3: f32 = 1.49;
 /// extrapolation amplifies itself and the whole cloth oscillates from substep to substep: white noise has
 /// ratios of 2 and 6. If air stops a cloth at once, extrapolation would reverse its motion. Smaller: flags in
 /// wind lose their second order; in a strong wind, with two substeps, one substep of a thousand exceeds 1.
-///
-/// The integrator stays at first order until the motion is smooth again. If each restart were followed by three substeps
-/// of rising order, the changes of formula would themselves keep a curved mesh in motion for ever.
 const ROUGH: f32 = 2.0;
 
 /// RMS speed that is added to the cloth's own in this comparison, in units of the speed that gravity adds in
-/// a substep. Smaller: cloth at rest counts as rough by its rounding. Larger: curved meshes go on to rattle at 20 to
-/// 200 mm/s after they were pulled.
-const SLOW: f32 = 2.0;
+/// a substep. Smaller: cloth at rest counts as rough by its rounding.
+const SLOW: f32 = 5.0;
 
 /// RMS speed below which a cloth hardly moves, in units of the speed that gravity adds in a substep. Smaller:
 /// limp flags, which oscillate with 0.7 to 1.2, are not relaxed. Larger: with 3 a flag in a light wind is
@@ -101,8 +97,6 @@ pub(crate) struct IntegratorHistory {
     steps: [f32; 2],
     /// Number of substeps since the integrator restarted.
     substeps: u32,
-    /// Number of velocities, of which the last three are kept, since substeps of like lengths began.
-    velocities: u32,
     /// Turn of the cloth about its pole by the last substep's corrections, which the next prediction undoes.
     pub pole_turn: PoleTurn,
     /// Substeps in which actions from outside have an effect on a free cloth's angular momentum.
@@ -131,7 +125,7 @@ impl IntegratorHistory {
         let joins = scheme == Scheme::Yarns && self.substeps >= 2 && is_long;
         if joins {
             self.steps = [last + before, 0.0];
-            (self.substeps, self.velocities) = (1, 1);
+            self.substeps = 1;
         }
         joins
     }
@@ -144,7 +138,6 @@ impl IntegratorHistory {
         }
         self.steps = [step, last];
         self.substeps = self.substeps.saturating_add(1);
-        self.velocities = self.velocities.saturating_add(1);
         match (scheme, self.substeps) {
             (Scheme::GaussSeidel, _) | (Scheme::Yarns, 1) => Formula::BACKWARD_EULER,
             (Scheme::Yarns, 3..) if step <= MOST_GROWTH_OF_BDF3 * last => {
@@ -157,7 +150,7 @@ impl IntegratorHistory {
     /// Whether the cloth hardly moves, and three velocities are known.
     pub fn is_near_rest(&self, sums: MotionSums<f32>, particles: usize) -> bool {
         let slow = NEAR_REST * GRAVITY * self.steps[0];
-        self.velocities > 2 && sums.velocity < particles as f32 * slow * slow
+        self.substeps > 2 && sums.velocity < particles as f32 * slow * slow
     }
 
     /// Restarts the integrator at first order where the motion is rough: backward Euler dissipates it.
@@ -165,8 +158,8 @@ impl IntegratorHistory {
         let slow = SLOW * GRAVITY * self.steps[0];
         let smooth = ROUGH * (sums.velocity + particles as f32 * slow * slow);
         // The first substep has no earlier velocity, the second only one.
-        let first = self.velocities > 1 && sums.first_difference > smooth;
-        let second = self.velocities > 2 && sums.second_difference > smooth;
+        let first = self.substeps > 1 && sums.first_difference > smooth;
+        let second = self.substeps > 2 && sums.second_difference > smooth;
         if first || second {
             self.substeps = 0;
         }
