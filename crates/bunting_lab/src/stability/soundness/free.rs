@@ -62,7 +62,7 @@ fn moebius(across: f32, azimuth: f32) -> Vec3 {
 
 /// A mesh of `rings` rings of `columns` quads, given the place of a ring, from 0 to 1, and an azimuth, rad. Where it is
 /// twisted, the first ring goes on as the last.
-fn around(
+pub(super) fn around(
     columns: u32,
     rings: u32,
     is_twisted: bool,

@@ -4,6 +4,7 @@ mod free;
 mod hang;
 mod jerk;
 mod momentum;
+mod pulled;
 mod rates;
 mod strips;
 
@@ -23,6 +24,7 @@ const AT_REST: f64 = 1e-3;
 pub fn cases(quick: bool) -> Vec<HardCase> {
     let mut cases = free::cases(quick);
     cases.extend(momentum::cases(quick));
+    cases.extend(pulled::cases());
     cases.extend(strips::cases(quick));
     cases.extend(jerk::cases(quick));
     cases.extend(rates::cases());

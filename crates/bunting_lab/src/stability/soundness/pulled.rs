@@ -1,0 +1,110 @@
+//! Curved meshes that wind has blown about and a jerk has pulled: in still air they must come to rest.
+
+use std::sync::Arc;
+
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion,
+    LaneCount, StepLimits,
+};
+use glam::{DVec2, Vec3};
+
+use super::free::around;
+use super::{AT_REST, GRAVITY, advance, fastest};
+use crate::meshes::{Sheet, Triangulation};
+use crate::product::TICK;
+use crate::stability::case::HardCase;
+
+/// Velocity of the wind in the first seconds, m/s.
+const WIND: Vec3 = Vec3::new(2.0, 1.0, 5.0);
+/// Time for which it blows, s.
+const BLOWN: f32 = 4.0;
+/// Movement of the frame in the tick after that, m.
+const JERK: Vec3 = Vec3::new(0.12, 0.1, -0.12);
+/// Damping in the still air that follows, 1/s.
+const DAMPING: f32 = 4.0;
+/// Time from then on until the speed is measured, s.
+const SETTLING: f32 = 20.0;
+/// Stretch stiffnesses of the lanes, N/m, and their area densities, kg/m².
+const MATERIALS: [(f32, f32); 8] = [
+    (500.0, 0.05),
+    (500.0, 0.3),
+    (2e3, 0.1),
+    (2e3, 0.5),
+    (8e3, 0.1),
+    (8e3, 1.0),
+    (2e4, 0.05),
+    (2e4, 0.3),
+];
+
+/// Cases of a saddle and a wave that hang from an edge, and of a tube and a ring that hang from two vertices.
+pub(super) fn cases() -> Vec<HardCase> {
+    let meshes = [
+        ("saddle", bent(33, 11, |u, v| Vec3::new(u, v, 0.6 * (u * u - v * v)))),
+        ("wave", bent(29, 12, |u, v| Vec3::new(u, v, 0.05 * (6.0 * u).sin()))),
+        (
+            "tube",
+            hung(
+                around(24, 27, false, |down, azimuth| {
+                    Vec3::new(0.3 * azimuth.cos(), -down, 0.3 * azimuth.sin())
+                }),
+                12,
+            ),
+        ),
+        (
+            "ring",
+            hung(
+                around(27, 24, false, |out, azimuth| {
+                    (0.2 + 0.4 * out) * Vec3::new(azimuth.cos(), azimuth.sin(), 0.0)
+                }),
+                3,
+            ),
+        ),
+    ];
+    meshes.map(|(name, fabric)| at_rest(name, fabric)).into()
+}
+
+/// A sheet of about `columns` × `rows` vertices that hangs from its top edge, given the place of each point of the unit
+/// square, whose middle is the origin.
+fn bent(columns: usize, rows: usize, at: impl Fn(f32, f32) -> Vec3) -> Arc<Fabric> {
+    let sheet = Sheet::new(Triangulation::Quads, [columns, rows], DVec2::ONE, 1);
+    let places = sheet.positions.iter().map(|place| at(place.x - 0.5, place.y + 0.5));
+    let top = (0..).zip(&sheet.positions).filter(|(_, place)| place.y > -1e-6);
+    let top: Vec<u32> = top.map(|(vertex, _)| vertex).collect();
+    let mesh = FabricBuilder::new(places.collect(), sheet.indices.clone()).pin(top);
+    Arc::new(mesh.build().expect("a good mesh"))
+}
+
+/// A mesh that hangs from its first vertex and another one.
+fn hung(mesh: FabricBuilder, other: u32) -> Arc<Fabric> {
+    Arc::new(mesh.pin([0, other]).build().expect("a good mesh"))
+}
+
+/// Case of the greatest RMS speed of a mesh in eight lanes of polyester.
+fn at_rest(name: &str, fabric: Arc<Fabric>) -> HardCase {
+    let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
+    let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::Eight);
+    let still = Drive::default();
+    let materials = MATERIALS.map(|(stiffness, area_density)| FabricMaterial {
+        area_density,
+        warp_stiffness: stiffness,
+        weft_stiffness: stiffness,
+        shear_stiffness: 0.05 * stiffness,
+        ..FabricMaterial::FLAG_POLYESTER
+    });
+    for material in materials {
+        let lane = batch.insert(&ClothSnapshot::at_rest(&fabric), material).expect("a good cloth");
+        batch.drive(lane, Drive { wind: WIND, ..still }).expect("a good drive");
+    }
+    advance(&mut batch, BLOWN, settings);
+    let motion = FrameMotion { translation: JERK, ..FrameMotion::NONE };
+    for (lane, material) in materials.into_iter().enumerate() {
+        let damped = FabricMaterial { damping: DAMPING, ..material };
+        batch.set_material(lane, damped).expect("a good material");
+        batch.drive(lane, Drive { motion, ..still }).expect("a good drive");
+    }
+    batch.step(TICK, settings);
+    (0..MATERIALS.len()).for_each(|lane| batch.drive(lane, still).expect("a good drive"));
+    advance(&mut batch, SETTLING, settings);
+    let name = format!("{name} that was pulled: at rest");
+    HardCase::new(name, 0, "RMS speed, m/s", fastest(&batch), AT_REST)
+}
