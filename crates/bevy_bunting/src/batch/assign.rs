@@ -76,7 +76,12 @@ pub(crate) fn assign_lanes(
             continue;
         }
         if let StateStorage::Snapshot(snapshot) = core::mem::take(&mut instance.storage) {
-            let pending = PendingCloth { entity, fabric: 0, snapshot, material: instance.material };
+            let pending = PendingCloth {
+                entity,
+                fabric: 0,
+                snapshot: *snapshot,
+                material: instance.material,
+            };
             effort.settings = steps;
             batches.add(&fabric, steps, pending);
         }

@@ -25,9 +25,16 @@ pub(crate) enum StateStorage {
     #[default]
     None,
     /// A snapshot outside of any batch: the cloth waits for a lane, is paused or asleep.
-    Snapshot(ClothSnapshot),
+    /// Boxed: each tick walks over the instances, and nearly all of them have lanes.
+    Snapshot(Box<ClothSnapshot>),
     /// A lane of a batch.
     Lane(LaneHandle),
+}
+
+impl From<ClothSnapshot> for StateStorage {
+    fn from(snapshot: ClothSnapshot) -> Self {
+        Self::Snapshot(Box::new(snapshot))
+    }
 }
 
 /// The simulated side of a [`ClothMesh`](crate::ClothMesh).
@@ -82,7 +89,7 @@ fn copy_state(mut world: DeferredWorld, context: HookContext) {
         return;
     };
     if let Some(mut instance) = world.get_mut::<ClothInstance>(context.entity) {
-        instance.storage = StateStorage::Snapshot(state);
+        instance.storage = state.into();
     }
 }
 
@@ -119,7 +126,7 @@ impl ClothInstance {
     pub fn state(&self, batches: &ClothBatches) -> Option<ClothSnapshot> {
         match &self.storage {
             StateStorage::None => None,
-            StateStorage::Snapshot(snapshot) => Some(snapshot.clone()),
+            StateStorage::Snapshot(snapshot) => Some((**snapshot).clone()),
             StateStorage::Lane(lane) => Some(batches.batch(*lane).snapshot(lane.lane)),
         }
     }
@@ -128,7 +135,7 @@ impl ClothInstance {
     pub fn set_state(&mut self, state: ClothSnapshot, batches: &mut ClothBatches) {
         match self.storage {
             StateStorage::Lane(lane) => batches.lane(lane).restore(&state),
-            _ => self.storage = StateStorage::Snapshot(state),
+            _ => self.storage = state.into(),
         }
         self.unmoved = false;
         self.wake();
@@ -137,14 +144,14 @@ impl ClothInstance {
     /// Moves the state out of its lane into a snapshot.
     pub fn leave_lane(&mut self, batches: &mut ClothBatches) {
         if let StateStorage::Lane(lane) = self.storage {
-            self.storage = StateStorage::Snapshot(batches.remove(lane));
+            self.storage = batches.remove(lane).into();
         }
     }
 
     /// Moves the state to another level and keeps momentum and energy as far as the levels allow.
     pub fn change_level(&mut self, to: usize, batches: &mut ClothBatches) {
         if let StateStorage::Lane(lane) = self.storage {
-            self.storage = StateStorage::Snapshot(batches.remove_without_history(lane));
+            self.storage = batches.remove_without_history(lane).into();
         }
         if self.unmoved {
             self.level = to;
@@ -152,8 +159,8 @@ impl ClothInstance {
         } else if let (Some(levels), StateStorage::Snapshot(snapshot)) =
             (&self.levels, &mut self.storage)
         {
-            let state = core::mem::take(snapshot);
-            *snapshot = levels.transfer(state, (self.level, to), &self.material, self.gravity);
+            let state = core::mem::take(&mut **snapshot);
+            **snapshot = levels.transfer(state, (self.level, to), &self.material, self.gravity);
         }
         self.level = to;
     }
@@ -171,7 +178,7 @@ impl ClothInstance {
                 StateStorage::Snapshot(snapshot) => Some(snapshot.of(&shared)),
                 StateStorage::Lane(lane) => Some(batches.remove_particles(*lane, &shared)),
             };
-            let relaxed = |state| StateStorage::Snapshot(levels.relax(state, to));
+            let relaxed = |state| levels.relax(state, to).into();
             self.storage = state.map_or(StateStorage::None, relaxed);
         }
         self.level = to;
@@ -218,7 +225,7 @@ impl ClothInstance {
         self.taking_up = None;
         self.is_posed = false;
         if let Some(fabric) = self.fabric() {
-            self.storage = StateStorage::Snapshot(almost_at_rest(fabric, self.seed));
+            self.storage = almost_at_rest(fabric, self.seed).into();
             self.unmoved = true;
         }
     }

@@ -193,7 +193,7 @@ fn begin_prerolls(
         let preroll = Preroll {
             settings: settings.limits(instance.level).of_fabric(&fabric, tick, acceleration),
             fabric,
-            state: snapshot,
+            state: *snapshot,
             material: instance.material,
             drive,
             tick,
@@ -223,7 +223,7 @@ fn end_prerolls(
         }
         instance.level = rolling.level;
         state.restart(rolling.level, &levels, &snapshot.positions);
-        instance.storage = StateStorage::Snapshot(snapshot);
+        instance.storage = snapshot.into();
     }
 }
 

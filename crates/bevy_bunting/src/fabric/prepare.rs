@@ -243,7 +243,7 @@ impl CutClothItem<'_, '_> {
                     && change == Isometry3d::IDENTITY
                     && former.is_some_and(|former| has_pins_of(&fabric, &former)) =>
             {
-                *state = core::mem::take(state).without_history();
+                **state = core::mem::take(&mut **state).without_history();
                 under_way.map(|way| way.of_pins(&fabric))
             }
             (Some(fabric), StateStorage::Snapshot(state)) if keeps_state => {
