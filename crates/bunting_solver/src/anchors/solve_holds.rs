@@ -176,7 +176,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             set_lane3(&mut self.positions.packs_mut()[pack], lane, end);
             // All of the particle's correction that the cloth has not done.
             let given = own * (end - held.predicted) - by_cloth;
-            if let Some(pole) = &self.fabric_of(cloth).pole {
+            if let Some(pole) = self.pole_of(cloth) {
                 state.external_moment += pole.moment(1.0, end, given);
             }
             let by_holder = match hold.by {

@@ -134,7 +134,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         // A steady force acts for the whole substep, of which the formula takes β.
         let rate = state.material.area_density * step / (effective * effective);
         let positions = self.positions.packs();
-        let pole = self.fabric_of(cloth).pole;
+        let pole = self.pole_of(cloth);
         let turn = state.history.pole_turn.angle;
         for particle in 0..fabric.particle_count() {
             let (pack, lane) = self.layout.locate(particle, cloth);

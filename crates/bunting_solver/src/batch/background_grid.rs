@@ -140,10 +140,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.parameters.set_empty(Y::lanes(cloth));
     }
 
-    fn set_drive(&mut self, cloth: usize, drive: &Drive, clock: &Clock) {
-        self.parameters.set_drive(Y::lanes(cloth), drive, clock);
-    }
-
     fn set_load_stretch(&mut self, cloth: usize, stretch: &LoadStretch) {
         self.parameters.set_load_stretch(Y::lanes(cloth), stretch);
     }

@@ -20,6 +20,7 @@ use crate::fabric::{CHAINS_PER_PAIR, Fabric, GridTransfer};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::{Pack3, set_lane3, splat3};
+use crate::stability::pole::Pole;
 use crate::step::clock::Clock;
 use crate::step::guides::Guides;
 use crate::step::local_wind::LocalWind;
@@ -210,6 +211,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// The fabric of a lane's cloth.
     pub fn fabric_of(&self, cloth: usize) -> &LaneFabric {
         &self.fabrics[Y::fabric_of(cloth)]
+    }
+
+    /// The line about which a cloth is free to turn in this substep.
+    pub fn pole_of(&self, cloth: usize) -> Option<Pole> {
+        let packs = self.numbers.pole.as_ref()?;
+        let at_rest = self.fabric_of(cloth).pole?;
+        Some(packs.of_lane(Y::lanes(cloth).start, at_rest))
     }
 
     /// Gives a lane another fabric of the batch's topology, before a cloth of that fabric is put into it.

@@ -157,7 +157,7 @@ impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
         let before = lane3(stored, lane);
         set_lane3(stored, lane, position);
         // A correction from outside may turn the cloth about its pole.
-        if let (Some(pole), Some(state)) = (self.fabric_of(cloth).pole, &mut self.lanes[cloth]) {
+        if let (Some(pole), Some(state)) = (self.pole_of(cloth), &mut self.lanes[cloth]) {
             let predicted =
                 lane3(&self.scratch[pack], lane) + lane3(&self.displacement[pack], lane);
             let inertia = self.masses.inertia[pack].lanes()[lane];

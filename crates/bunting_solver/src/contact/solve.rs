@@ -166,7 +166,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             set_lane3(past, lane, changed);
         }
         let inertia = self.masses.inertia[pack].lanes()[lane];
-        if let Some(pole) = &self.fabric_of(cloth).pole {
+        if let Some(pole) = self.pole_of(cloth) {
             outcome.moment += pole.gained(inertia, predicted, [before, after]);
         }
         if let Some(reaction) = &mut outcome.reaction {

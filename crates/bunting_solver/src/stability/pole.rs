@@ -1,6 +1,8 @@
 //! The spurious turn of a cloth about its pole, and its removal.
 //!
-//! A cloth whose pins lie on a line, the pole, is free to turn about it, and no internal force can turn it.
+//! A cloth whose pins lie on a line, the pole, is free to turn about it, and no internal force can turn it. Neither can it
+//! turn a cloth that hangs from one point: its pole is the upright line through this point.
+//!
 //! Each solve of a constraint moves particles along the directions between them, and so has no moment. But
 //! later solves find particles that earlier ones have moved, and the cross product of two corrections
 //! remains. It is small and always of one sign: a flag that hangs from its pole in folds would turn about it
@@ -16,23 +18,25 @@ use crate::fabric::Fabric;
 use crate::simd::constant::Constant;
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::sum::Sum;
-use crate::simd::vec3::{Pack3, V3, fill_lanes3, splat3};
+use crate::simd::vec3::{Pack3, V3, fill_lanes3, lane3, splat3};
 
 /// Greatest distance of pins from the line through them, as a fraction of its length. Smaller: rounding bends
 /// poles. Larger: cloth that its pins hold counts as free to turn.
 const STRAIGHT: f32 = 1e-3;
 
-/// The line through all pins.
+/// The line about which a cloth is free to turn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Pole {
     /// A point of the line, m.
     at: Vec3,
     /// Direction of the line, of unit length.
     along: Vec3,
+    /// Whether all pins are at one point, so that the line follows gravity.
+    is_point: bool,
 }
 
 impl Pole {
-    /// The line through a fabric's pins, if there are two or more and they lie on one.
+    /// The line through a fabric's pins, if they lie on one or at a point.
     pub fn of(fabric: &Fabric) -> Option<Self> {
         let pins: Vec<Vec3> = fabric
             .pins()
@@ -41,13 +45,22 @@ impl Pole {
             .collect();
         let at = *pins.first()?;
         let far = pins.iter().max_by(|a, b| at.distance(**a).total_cmp(&at.distance(**b)))?;
-        let along = (*far - at).try_normalize()?;
+        let Some(along) = (*far - at).try_normalize() else {
+            return Some(Self { at, along: Vec3::Y, is_point: true });
+        };
         let off = |pin: &Vec3| (*pin - at).reject_from_normalized(along).length();
         let straight = pins.iter().all(|pin| off(pin) <= STRAIGHT * at.distance(*far));
-        straight.then_some(Self { at, along })
+        straight.then_some(Self { at, along, is_point: false })
     }
 
-    /// The two pins at the ends of the pole.
+    /// The upright line through the point at which a cloth is held; none if its pins lie on a line, or nothing pulls the
+    /// cloth down.
+    pub fn upright(self, gravity: Vec3) -> Option<Self> {
+        let along = gravity.try_normalize().filter(|_| self.is_point)?;
+        Some(Self { along, ..self })
+    }
+
+    /// The two pins at the ends of the pole; twice the same one at a point.
     pub fn ends(&self, fabric: &Fabric) -> [u32; 2] {
         let place = |particle: u32| self.along.dot(fabric.rest_positions()[particle as usize]);
         let order = |a: &u32, b: &u32| place(*a).total_cmp(&place(*b));
@@ -60,6 +73,9 @@ impl Pole {
     /// 32 steps, so that inverse masses are not computed again for every small turn.
     pub fn uprightness(&self, gravity: Vec3) -> f32 {
         const STEPS: f32 = 32.0;
+        if self.is_point {
+            return 1.0;
+        }
         libm::roundf(STEPS * gravity.normalize_or_zero().dot(self.along).abs()) / STEPS
     }
 
@@ -108,6 +124,11 @@ impl<P: Pack> PolePacks<P> {
     pub fn set_lanes(&mut self, lanes: &Range<usize>, pole: Pole) {
         fill_lanes3(&mut self.at, lanes, pole.at);
         fill_lanes3(&mut self.along, lanes, pole.along);
+    }
+
+    /// The pole of a lane, given that at rest.
+    pub fn of_lane(&self, lane: usize, at_rest: Pole) -> Pole {
+        Pole { along: lane3(&self.along, lane), ..at_rest }
     }
 }
 

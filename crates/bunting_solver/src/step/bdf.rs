@@ -85,10 +85,14 @@ const ROUGH: f32 = 2.0;
 /// a substep. Smaller: cloth at rest counts as rough by its rounding.
 const SLOW: f32 = 5.0;
 
-/// RMS speed below which a cloth hardly moves, in units of the speed that gravity adds in a substep. Smaller:
-/// limp flags, which oscillate with 0.7 to 1.2, are not relaxed. Larger: with 3 a flag in a light wind is
-/// held.
+/// RMS speed below which a cloth hardly moves, in units of the speed that gravity adds in a substep, or in a
+/// [`SHORT_SUBSTEP`]. Smaller: limp flags, which oscillate with 0.7 to 1.2, are not relaxed. Larger: with 3 a flag in a light
+/// wind is held.
 const NEAR_REST: f32 = 2.0;
+
+/// Length of a substep, s, up to which that speed stays the same: links oscillate no slower in shorter substeps. Smaller: the
+/// mouth of a dome that hangs from one point oscillates for ever with six substeps a tick.
+const SHORT_SUBSTEP: f32 = 1.0 / 120.0;
 
 /// History of a cloth's integrator besides its particles' vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -97,6 +101,8 @@ pub(crate) struct IntegratorHistory {
     steps: [f32; 2],
     /// Number of substeps since the integrator restarted.
     substeps: u32,
+    /// Number of substeps whose velocities are known: a restart forgets none.
+    recorded: u32,
     /// Turn of the cloth about its pole by the last substep's corrections, which the next prediction undoes.
     pub pole_turn: PoleTurn,
     /// Substeps in which actions from outside have an effect on a free cloth's angular momentum.
@@ -126,6 +132,7 @@ impl IntegratorHistory {
         if joins {
             self.steps = [last + before, 0.0];
             self.substeps = 1;
+            self.recorded = 1;
         }
         joins
     }
@@ -138,6 +145,7 @@ impl IntegratorHistory {
         }
         self.steps = [step, last];
         self.substeps = self.substeps.saturating_add(1);
+        self.recorded = self.recorded.saturating_add(1);
         match (scheme, self.substeps) {
             (Scheme::GaussSeidel, _) | (Scheme::Yarns, 1) => Formula::BACKWARD_EULER,
             (Scheme::Yarns, 3..) if step <= MOST_GROWTH_OF_BDF3 * last => {
@@ -149,8 +157,8 @@ impl IntegratorHistory {
 
     /// Whether the cloth hardly moves, and three velocities are known.
     pub fn is_near_rest(&self, sums: MotionSums<f32>, particles: usize) -> bool {
-        let slow = NEAR_REST * GRAVITY * self.steps[0];
-        self.substeps > 2 && sums.velocity < particles as f32 * slow * slow
+        let slow = NEAR_REST * GRAVITY * self.steps[0].max(SHORT_SUBSTEP);
+        self.recorded > 2 && sums.velocity < particles as f32 * slow * slow
     }
 
     /// Restarts the integrator at first order where the motion is rough: backward Euler dissipates it.
@@ -292,6 +300,17 @@ mod tests {
         assert!(after(3).is_near_rest(of(0.19), 4));
         assert!(!after(3).is_near_rest(of(0.20), 4));
         assert!(!after(2).is_near_rest(of(0.0), 4));
+        // Short substeps make no difference, and a restart forgets no velocity.
+        let mut history = IntegratorHistory::default();
+        (0..3).for_each(|_| {
+            history.begin_substep(0.1 * STEP, Scheme::Yarns);
+        });
+        assert!(history.is_near_rest(of(0.16), 4));
+        let oscillating =
+            MotionSums { first_difference: 16.0, second_difference: 64.0, ..of(0.16) };
+        history.restart_if_rough(oscillating, 4);
+        assert_eq!(history.begin_substep(0.1 * STEP, Scheme::Yarns), Formula::BACKWARD_EULER);
+        assert!(history.is_near_rest(oscillating, 4));
     }
 
     #[test]

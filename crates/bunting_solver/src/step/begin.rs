@@ -7,12 +7,13 @@ use crate::batch::layout::{Layout, Positions};
 use crate::constraints::background::node_inverse_masses;
 use crate::constraints::stiffness::Stiffness;
 use crate::simd::lane::Pack;
+use crate::simd::vec3::lane3;
 use crate::stability::added_mass::{AddedMass, InverseMasses, inertias};
 use crate::step::bdf::Formula;
 use crate::step::clock::Clock;
 use crate::step::load_stretch::LoadStretch;
 use crate::step::parameters::ParameterInputs;
-use crate::step::{Scheme, StepSettings};
+use crate::step::{Drive, Scheme, StepSettings};
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Begins a tick of `tick` seconds: computes all values that are constant over it, and gathers contact
@@ -68,7 +69,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 
     fn begin_substep_of(&mut self, cloth: usize, state: &mut LaneState) {
-        let Clock { settings, step, .. } = self.clock;
+        let clock = self.clock;
+        let Clock { settings, step, .. } = clock;
         state.external_moment = 0.0;
         if state.history.join_last_substeps(step, settings.scheme) {
             self.join_last_substeps(cloth);
@@ -90,9 +92,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.set_inputs(cloth, &inputs);
         }
         self.set_added_mass(cloth, state);
-        self.parameters.set_drive(Y::lanes(cloth), &state.drive, &self.clock);
+        self.set_drive(cloth, &state.drive, &clock);
         if let Some(background) = &mut self.background {
-            background.set_drive(cloth, &state.drive, &self.clock);
+            background.set_drive(cloth, &state.drive, &clock);
             let damping = self.parameters.internal_damping_factor.lanes()[Y::lanes(cloth).start];
             background.begin_nodes(cloth, state, damping);
         }
@@ -111,6 +113,18 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.parameters.set_load_stretch(Y::lanes(cloth), &stretch);
         if let Some(background) = &mut self.background {
             background.set_load_stretch(cloth, &stretch);
+        }
+    }
+
+    /// Sets what acts on a cloth in the substep that `clock` is about to begin. The pole of a cloth that is held at a point
+    /// turns to where gravity points.
+    pub fn set_drive(&mut self, cloth: usize, drive: &Drive, clock: &Clock) {
+        let lanes = Y::lanes(cloth);
+        self.parameters.set_drive(lanes.clone(), drive, clock);
+        let gravity = lane3(&self.parameters.gravity_step, lanes.start);
+        let pole = self.pole_of(cloth).and_then(|pole| pole.upright(gravity));
+        if let (Some(pole), Some(packs)) = (pole, &mut self.numbers.pole) {
+            packs.set_lanes(&lanes, pole);
         }
     }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion,
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion, Grid,
     LaneCount, StepLimits,
 };
 use glam::{DVec2, Vec3};
@@ -36,7 +36,8 @@ const MATERIALS: [(f32, f32); 8] = [
     (2e4, 0.3),
 ];
 
-/// Cases of a saddle and a wave that hang from an edge, and of a tube and a ring that hang from two vertices.
+/// Cases of a saddle and a wave that hang from an edge, of a tube and a ring that hang from two vertices, and of a dome and a
+/// sheet that hang from one.
 pub(super) fn cases() -> Vec<HardCase> {
     let meshes = [
         ("saddle", bent(33, 11, |u, v| Vec3::new(u, v, 0.6 * (u * u - v * v)))),
@@ -47,7 +48,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                 around(24, 27, false, |down, azimuth| {
                     Vec3::new(0.3 * azimuth.cos(), -down, 0.3 * azimuth.sin())
                 }),
-                12,
+                &[0, 12],
             ),
         ),
         (
@@ -56,9 +57,21 @@ pub(super) fn cases() -> Vec<HardCase> {
                 around(27, 24, false, |out, azimuth| {
                     (0.2 + 0.4 * out) * Vec3::new(azimuth.cos(), azimuth.sin(), 0.0)
                 }),
-                3,
+                &[0, 3],
             ),
         ),
+        (
+            "dome",
+            hung(
+                around(24, 16, false, |down, azimuth| {
+                    let polar = 0.15 + 1.4 * down;
+                    let outwards = Vec3::new(azimuth.cos(), 0.0, azimuth.sin());
+                    0.4 * (polar.sin() * outwards + polar.cos() * Vec3::Y)
+                }),
+                &[0],
+            ),
+        ),
+        ("sheet", hung(FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)), &[0])),
     ];
     meshes.map(|(name, fabric)| at_rest(name, fabric)).into()
 }
@@ -74,9 +87,9 @@ fn bent(columns: usize, rows: usize, at: impl Fn(f32, f32) -> Vec3) -> Arc<Fabri
     Arc::new(mesh.build().expect("a good mesh"))
 }
 
-/// A mesh that hangs from its first vertex and another one.
-fn hung(mesh: FabricBuilder, other: u32) -> Arc<Fabric> {
-    Arc::new(mesh.pin([0, other]).build().expect("a good mesh"))
+/// A mesh that hangs from some of its vertices.
+fn hung(mesh: FabricBuilder, from: &[u32]) -> Arc<Fabric> {
+    Arc::new(mesh.pin(from.iter().copied()).build().expect("a good mesh"))
 }
 
 /// Case of the greatest RMS speed of a mesh in eight lanes of polyester.

@@ -70,7 +70,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         particles: &Particles,
     ) -> f32 {
         let inverse_step = self.inverse_step(part.cloth);
-        let pole = self.fabric_of(part.cloth).pole;
+        let pole = self.pole_of(part.cloth);
         let mut sum = 0.0;
         for at in part.range.clone() {
             if !particles.touched[at] || particles.inverse_mass[at] == 0.0 {

@@ -135,6 +135,10 @@ impl BackgroundMesh {
         let free_areas: Vec<f32> =
             free_areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect();
         transfer.moved_areas = transfer.node_masses(&free_areas);
+        // Particles that follow their nodes need not show how these move.
+        if !is_whole && !coverage::shows_nodes(&covered, &grid, &transfer.moved_areas) {
+            return None;
+        }
         let nodes = node_mesh(mesh, &chart, &grid, &transfer);
         let is_free = |node: usize| !nodes.is_pinned(node as u32);
         transfer.means = transfer.particles.adjoint(&mesh.areas, &transfer.moved_areas, is_free);

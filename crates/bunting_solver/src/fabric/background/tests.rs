@@ -148,3 +148,28 @@ fn rows_run_along_the_warp() {
         assert!(row.dot(warp.extend(0.0)).abs() > 0.999, "{row} for a warp along {warp}");
     }
 }
+
+/// A ring of `around` × `across` quads between two radii, m.
+fn ring(around: u32, across: u32, [inner, outer]: [f32; 2]) -> FabricBuilder {
+    let at = |circle: u32, place: u32| {
+        let angle = core::f32::consts::TAU * place as f32 / around as f32;
+        let radius = inner + (outer - inner) * circle as f32 / across as f32;
+        Vec3::new(libm::cosf(angle), libm::sinf(angle), 0.0) * radius
+    };
+    let quads = |circle: u32| (0..around).map(move |place| [circle, place]);
+    let positions = (0..=across).flat_map(quads).map(|[circle, place]| at(circle, place));
+    let index = |circle: u32, place: u32| circle * around + place % around;
+    let indices = (0..across).flat_map(quads).flat_map(|[circle, place]| {
+        let corner = |out, on| index(circle + out, place + on);
+        [corner(0, 0), corner(1, 0), corner(0, 1), corner(0, 1), corner(1, 0), corner(1, 1)]
+    });
+    FabricBuilder::new(positions.collect(), indices.collect())
+}
+
+#[test]
+fn a_mesh_whose_particles_do_not_show_the_nodes_has_no_grid() {
+    let has_grid =
+        |mesh: FabricBuilder| mesh.build().expect("a good fabric").background().is_some();
+    assert!(has_grid(ring(48, 8, [0.3, 0.6])), "quads nearly square");
+    assert!(!has_grid(ring(27, 24, [0.2, 0.6])), "quads eight times as wide as high outside");
+}
