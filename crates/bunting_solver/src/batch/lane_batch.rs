@@ -80,7 +80,7 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub yarn_links: Vec<YarnLink<P>>,
     /// Scratch array of the system of a laid yarn.
     pub band_rows: Vec<BandRow<P>>,
-    /// The constraints of a single cloth across the lanes, where its fabric is a mesh that no grid fills.
+    /// The constraints of a single cloth across the lanes, where its fabric is a mesh that does not follow a background grid.
     pub lone_mesh: Option<Box<LoneMesh>>,
     /// Scratch array of the block tridiagonal system of a strip.
     pub strip_blocks: Vec<StripBlock<P>>,

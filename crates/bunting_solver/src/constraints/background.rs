@@ -41,21 +41,17 @@ pub(crate) fn node_inverse_masses(fabric: &Fabric, of_particles: &[f32]) -> Vec<
 
 /// The state of the nodes of a mesh without a past.
 pub(crate) fn nodes_of(fabric: &Fabric, positions: &[Vec3], velocities: &[Vec3]) -> ClothSnapshot {
-    let Some(Background { fabric: grid, transfer, .. }) = fabric.background() else {
+    let Some(Background { transfer, .. }) = fabric.background() else {
         return ClothSnapshot::default();
     };
     let flat = GridTransfer { heights: Vec::new(), ..transfer.clone() };
-    let still = vec![Vec3::ZERO; grid.particle_count()];
-    ClothSnapshot::new(
-        interpolated(transfer, positions, grid.rest_positions()),
-        interpolated(&flat, velocities, &still),
-    )
+    ClothSnapshot::new(interpolated(transfer, positions), interpolated(&flat, velocities))
 }
 
-/// The vectors of nodes, interpolated from those of particles; `outside` where a node lies outside the mesh.
-fn interpolated(transfer: &GridTransfer, of_particles: &[Vec3], outside: &[Vec3]) -> Vec<Vec3> {
-    let packs = |vectors: &[Vec3]| vectors.iter().copied().map(splat3).collect();
-    let (particles, mut nodes): (Vec<Pack3<Pack1>>, Vec<_>) = (packs(of_particles), packs(outside));
+/// The vectors of nodes, interpolated from those of particles.
+fn interpolated(transfer: &GridTransfer, of_particles: &[Vec3]) -> Vec<Vec3> {
+    let particles: Vec<Pack3<Pack1>> = of_particles.iter().copied().map(splat3).collect();
+    let mut nodes = vec![splat3(Vec3::ZERO); transfer.nodes.len()];
     Pack1::run(Interpolate { rows: &transfer.nodes, from: &particles, to: &mut nodes });
     let mut unresolved = Vec::new();
     for _ in 0..READING_STEPS {
@@ -82,7 +78,7 @@ fn project<P: Pack>(
 }
 
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
-    /// Solves bending: on the background grid if the mesh fills it, else at the mesh's hinges. Then moves the nodes for
+    /// Solves bending: on the background grid of a flat mesh, at the hinges of a curved one. Then moves the nodes for
     /// [`solve_stretch_on_background`](Self::solve_stretch_on_background).
     pub(super) fn solve_bending_with_background(&mut self) {
         let is_whole = self.fabric.background().is_some_and(|grid| grid.transfer.is_whole);
@@ -98,15 +94,14 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     }
 
     /// Solves stretch and shear on the background grid, then tethers and contacts. Between them is a sweep over the links
-    /// of a mesh that is curved or does not fill its grid: such links are longer than the grid's where particles are
-    /// raised above nodes, or extrapolated from them. On other meshes a sweep stretches single links by up to 80 % in
-    /// wind, and takes a part of the load from the grid.
+    /// of a curved mesh: such links are longer than the grid's where particles are raised above nodes. On flat meshes a sweep
+    /// stretches single links by up to 80 % in wind, and takes a part of the load from the grid.
     pub(super) fn solve_stretch_on_background(&mut self) {
         if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
             grid.solve_stretch_of_grid();
         }
         self.place_particles();
-        // A grid that the mesh fills has tethers of its own.
+        // The grid of a flat mesh has tethers of its own.
         if self.fabric.background().is_some_and(|grid| !grid.transfer.is_whole) {
             self.begin_lone_mesh();
             self.sweep_mesh(false);

@@ -1,7 +1,7 @@
-//! A Gauss–Seidel sweep over the links of a mesh that does not fill a background grid.
+//! A Gauss–Seidel sweep over the links of a mesh that is curved at rest, or has laid yarns.
 //!
-//! Where cloth snaps like a whip, such links may be far longer than those of the grid, as their particles are raised
-//! above the nodes, or extrapolated from them; or longer than those of laid yarns, between which they lie. The links
+//! Where cloth snaps like a whip, such links may be far longer than those of the background grid, as their particles are
+//! raised above the nodes, or than those of laid yarns, between which they lie. The links
 //! have a small part of the material's stiffness, so that grid or yarns carry the load. The constraint is that of
 //! `gauss_seidel/distance.rs`.
 

@@ -128,8 +128,8 @@ impl Fabric {
         fabric
     }
 
-    /// The constraints of a background grid, whose nodes have no hinges, and have cells and tethers only where the mesh fills
-    /// the grid.
+    /// The constraints of a background grid, whose nodes have no hinges, and have cells and tethers only where the mesh is
+    /// flat at rest.
     fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
         let BackgroundMesh { grid, mesh, coverage, transfer, .. } = background;
         let links = Links::of(&mesh, Some(&grid), Some(&coverage), &[]);

@@ -1,6 +1,6 @@
 //! Cloths whose particles follow the nodes of their background grid.
 //!
-//! Where a mesh fills its grid, and nothing acts on single particles, the nodes carry all of the motion, air included. The
+//! Where a mesh with a grid is flat at rest, and nothing acts on single particles, the nodes carry all of the motion, air included. The
 //! particles are then neither integrated nor projected onto the nodes, but interpolated from them: positions in each
 //! substep, velocities at the end of a tick. In a tick in which something may act on particles (contacts, holds, guides,
 //! moving pins, local wind, users, reports of what acts on pins) they take the nodes' motion over, and are integrated themselves.
@@ -47,7 +47,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Begins a tick after one of the scheme `before`: decides which cloths follow their nodes.
     pub fn begin_following(&mut self, before: Scheme) {
         let Some(background) = self.fabric.background() else { return };
-        let has_whole_grid = background.transfer.is_whole;
+        let is_flat = background.transfer.is_whole;
         let has_yarns = self.clock.settings.scheme == Scheme::Yarns;
         if has_yarns && before != Scheme::Yarns {
             self.find_nodes();
@@ -56,7 +56,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let Some(state) = &mut self.lanes[cloth] else { continue };
             let is_acted_on = !has_yarns || state.is_acted_on();
             let was_acted_on = mem::replace(&mut state.history.was_acted_on, is_acted_on);
-            if !has_whole_grid || is_acted_on || was_acted_on {
+            if !is_flat || is_acted_on || was_acted_on {
                 self.stop_following(cloth);
             } else if !state.follows_nodes {
                 self.start_following(cloth);

@@ -56,7 +56,7 @@ fn locate(particle: usize) -> (usize, usize) {
 }
 
 impl SingleMesh {
-    /// The layout of a fabric; none unless it has a background grid that can lie across the lanes, and fills it.
+    /// The layout of a fabric; none unless it is flat, and has a background grid that can lie across the lanes.
     pub fn of(fabric: &Arc<Fabric>) -> Option<Self> {
         let background = fabric.background()?;
         if !background.transfer.is_whole || SingleCloth::<Pack8>::of(&background.fabric).is_none() {

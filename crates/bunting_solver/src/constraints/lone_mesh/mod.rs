@@ -1,4 +1,4 @@
-//! The constraints of a lone mesh that no grid fills: eight that share no particle are solved at once, in the lanes.
+//! The constraints of a lone mesh that does not follow a background grid: eight that share no particle are solved at once, in the lanes.
 //!
 //! Neighbours on a mesh are no neighbours in memory, so particles are vectors (`vector_particles.rs`), which are
 //! gathered and transposed. Hinges and links are packed such that their order stays that of the scalar code
@@ -35,10 +35,10 @@ pub(crate) struct LoneMesh {
 }
 
 impl LoneMesh {
-    /// The constraints of a fabric; none if it is a grid, or fills one.
+    /// The constraints of a fabric; none if it is a grid, or follows one.
     pub fn of(fabric: &Fabric) -> Option<Self> {
-        let fills_grid = fabric.background().is_some_and(|grid| grid.transfer.is_whole);
-        if fabric.grid().is_some() || fills_grid {
+        let follows_grid = fabric.background().is_some_and(|grid| grid.transfer.is_whole);
+        if fabric.grid().is_some() || follows_grid {
             return None;
         }
         Some(Self {

@@ -7,22 +7,14 @@ use crate::fabric::grid::Grid;
 /// Greatest part of a cell that a mesh may cover. Larger: a mesh that overlaps itself counts as flat.
 const COVERED_ONCE: f32 = 1.01;
 
-/// Part of a cell by which rounding may change what a mesh covers.
-const ROUNDED: f32 = 0.01;
+/// Least part of a grid that a mesh must cover to fill it. Smaller: nodes outside the mesh.
+const FILLED: f32 = 0.995;
 
-/// Least part of a cell that counts as cloth if all of its nodes lie in the mesh. Smaller: links without stiffness.
+/// Least part of a cell that counts as cloth. Smaller: links without stiffness.
 const LEAST_COVERAGE: f32 = 0.1;
 
-/// Least area that the particles around a node must give to it, as a part of a cell's, where all is cloth. Smaller: nodes
-/// between which few particles lie count, too.
-const LEAST_MOVED: f32 = 0.3;
-
-/// Greatest part of the nodes within the cloth that may move less. Random triangles of even size leave up to 6 %, a ring of 27
-/// quads around and 24 across 30 %. Larger: nodes that no particle shows move by themselves, and rings never rest.
-const MOST_UNSEEN: f32 = 0.15;
-
-/// The part of each cell that triangles cover; none if a part of a cell is covered twice.
-pub(super) fn covered_once(
+/// The part of each cell that counts as cloth; none if the triangles cover a part of a cell twice, or do not fill the grid.
+pub(super) fn filled_once(
     positions: &[Vec2],
     triangles: &[[u32; 3]],
     grid: &Grid,
@@ -45,64 +37,10 @@ pub(super) fn covered_once(
             }
         }
     }
-    covered.iter().all(|&part| part < COVERED_ONCE).then_some(covered)
-}
-
-/// How much cloth each cell stands for that has all of its nodes in the mesh: its own, and what cells next to it that
-/// have not, at the border, give to it.
-pub(super) fn given_to_whole_cells(
-    covered: &[f32],
-    grid: &Grid,
-    in_mesh: impl Fn(u32) -> bool,
-) -> Vec<f32> {
-    let columns = (grid.columns - 1) as usize;
-    let is_whole: Vec<bool> =
-        grid.cells().map(|(corners, _)| corners.iter().all(|&corner| in_mesh(corner))).collect();
-    let whole_neighbours = |cell: usize| {
-        let (row, column) = (cell / columns, cell % columns);
-        let sides = [
-            (column > 0).then(|| cell - 1),
-            (column + 1 < columns).then(|| cell + 1),
-            (row > 0).then(|| cell - columns),
-            Some(cell + columns),
-        ];
-        let is_whole = |cell: &usize| is_whole.get(*cell).copied().unwrap_or(false);
-        sides.into_iter().flatten().filter(is_whole).collect::<Vec<usize>>()
-    };
-    let mut given = vec![0.0; covered.len()];
-    for (cell, &part) in covered.iter().enumerate() {
-        if is_whole[cell] {
-            given[cell] += part;
-            continue;
-        }
-        let neighbours = whole_neighbours(cell);
-        for &neighbour in &neighbours {
-            given[neighbour] += part / neighbours.len() as f32;
-        }
-    }
-    // A cell that has all of its nodes joins them, however little cloth it has.
-    for (given, is_whole) in given.iter_mut().zip(is_whole) {
-        if is_whole {
-            *given = given.max(LEAST_COVERAGE);
-        }
-    }
-    given
-}
-
-/// Whether the particles lie evenly enough to show how nodes move, given the area that each node moves, m².
-pub(super) fn shows_nodes(covered: &[f32], grid: &Grid, moved: &[f32]) -> bool {
-    let cell = Vec2::from(grid.spacing()).element_product();
-    let mut cloth = vec![0.0; moved.len()];
-    for ((corners, _), part) in grid.cells().zip(covered) {
-        corners.iter().for_each(|&corner| cloth[corner as usize] += 0.25 * part);
-    }
-    let within = cloth.iter().zip(moved).filter(|(part, _)| **part > 1.0 - ROUNDED);
-    let [mut all, mut unseen] = [0; 2];
-    for (_, area) in within {
-        all += 1;
-        unseen += usize::from(*area < LEAST_MOVED * cell);
-    }
-    unseen as f32 <= MOST_UNSEEN * all as f32
+    let is_once = covered.iter().all(|&part| part < COVERED_ONCE);
+    let is_filled = covered.iter().sum::<f32>() > FILLED * covered.len() as f32;
+    (is_once && is_filled)
+        .then(|| covered.into_iter().map(|part| part.max(LEAST_COVERAGE)).collect())
 }
 
 /// Area of a triangle within the unit square at a corner (Sutherland and Hodgman 1974).

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use glam::{Mat3, Vec2, Vec3};
+use glam::Vec2;
 
 use super::chart::node_positions;
 use crate::fabric::grid::Grid;
@@ -13,14 +13,6 @@ const LEAST_WEIGHT: f32 = 1e-5;
 /// Least barycentric coordinate of a node in the triangle that it is interpolated in. Larger: rounding loses nodes on
 /// the border. Smaller: nodes outside the mesh are extrapolated from a single triangle.
 const INSIDE: f32 = -0.02;
-
-/// Radii around a particle at the border within which nodes count, in cells; the second where there are too few within
-/// the first. Smaller: too few to fit a plane at the corners of a mesh that lies aslant.
-const RADII: [f32; 2] = [2.2, 3.3];
-
-/// Least determinant of a fit's normal equations, relative to the cube of their largest term. Smaller: nodes that lie
-/// almost on a line are extrapolated across it.
-const LEAST_DETERMINANT: f32 = 1e-2;
 
 /// One term of an interpolated value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,11 +66,6 @@ impl Interpolation {
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.rows.len()
-    }
-
-    /// Whether a row has terms.
-    pub fn has_row(&self, row: usize) -> bool {
-        !self.rows[row].is_empty()
     }
 
     /// The terms of a row.
@@ -193,34 +180,29 @@ impl Interpolation {
     }
 }
 
-/// Weights of the particles at each node: barycentric in the triangle that the node lies in; none of nodes outside the
-/// mesh.
+/// Weights of the particles at each node: barycentric in the triangle that the node lies in. None if a node lies outside
+/// the mesh.
 pub(super) fn nodes_from_particles(
     positions: &[Vec2],
     triangles: &[[u32; 3]],
     grid: &Grid,
-) -> Interpolation {
+) -> Option<Interpolation> {
     let mut weights = Interpolation::default();
     for within in barycentric(positions, triangles, &node_positions(grid), grid) {
-        match within {
-            Some((least, terms)) if least > INSIDE => weights.push(terms),
-            _ => weights.push([]),
-        }
+        let (_, terms) = within.filter(|(least, _)| *least > INSIDE)?;
+        weights.push(terms);
     }
-    weights
+    Some(weights)
 }
 
-/// Weights of the nodes at each place of a free particle: bilinear in its cell, and near the border those of a plane
-/// fitted to the nodes around it. None if there are too few of these.
+/// Weights of the nodes at each place of a free particle: bilinear in its cell.
 pub(super) fn particles_from_nodes(
     positions: &[Vec2],
     is_free: &[bool],
-    nodes: &Interpolation,
     grid: &Grid,
-) -> Option<Interpolation> {
+) -> Interpolation {
     let spacing = Vec2::from(grid.spacing());
     let last = Vec2::new((grid.columns - 2) as f32, (grid.rows - 2) as f32);
-    let near = Neighbourhood::new(nodes, grid);
     let mut weights = Interpolation::default();
     for (&position, &is_free) in positions.iter().zip(is_free) {
         if !is_free {
@@ -234,21 +216,14 @@ pub(super) fn particles_from_nodes(
             from: grid.index(cell.x as u32 + right, cell.y as u32 + down),
             weight,
         };
-        let bilinear = [
+        weights.push([
             term(0, 0, (1.0 - x) * (1.0 - y)),
             term(1, 0, x * (1.0 - y)),
             term(0, 1, (1.0 - x) * y),
             term(1, 1, x * y),
-        ];
-        let has_node =
-            |term: &Term| term.weight.abs() <= LEAST_WEIGHT || nodes.has_row(term.from as usize);
-        if bilinear.iter().all(has_node) {
-            weights.push(bilinear);
-        } else {
-            weights.push(RADII.into_iter().find_map(|radius| near.fit(at, radius))?);
-        }
+        ]);
     }
-    Some(weights)
+    weights
 }
 
 /// For each node the triangle in which its least barycentric coordinate is greatest, of those near it: that coordinate
@@ -286,60 +261,6 @@ fn barycentric(
         }
     }
     best
-}
-
-/// The nodes of a grid that lie in the mesh.
-struct Neighbourhood<'a> {
-    nodes: &'a Interpolation,
-    grid: &'a Grid,
-}
-
-impl<'a> Neighbourhood<'a> {
-    fn new(nodes: &'a Interpolation, grid: &'a Grid) -> Self {
-        Self { nodes, grid }
-    }
-
-    /// The smallest weights that reproduce a plane at a place, given in cells: those of the least squares fit to the
-    /// nodes near it. None if these lie on a line.
-    fn fit(&self, place: Vec2, radius: f32) -> Option<Vec<Term>> {
-        let near: Vec<(u32, Vec3, f32)> = self
-            .around(place, radius)
-            .filter_map(|(node, at)| {
-                let away = at - place;
-                let nearness = 1.0 - away.length_squared() / (radius * radius);
-                (nearness > 0.0).then(|| (node, away.extend(1.0), nearness * nearness))
-            })
-            .collect();
-        let mut system = Mat3::ZERO;
-        for (_, row, nearness) in &near {
-            system += Mat3::from_cols(*row * row.x, *row * row.y, *row * row.z) * *nearness;
-        }
-        let scale = system.z_axis.z;
-        if system.determinant().abs() <= LEAST_DETERMINANT * scale.powi(3) {
-            return None;
-        }
-        let solution = system.inverse() * Vec3::Z;
-        let terms = near.iter().map(|(node, row, nearness)| Term {
-            from: *node,
-            weight: nearness * row.dot(solution),
-        });
-        Some(terms.collect())
-    }
-
-    /// Nodes within the radius along each axis, and their places in cells.
-    fn around(&self, place: Vec2, radius: f32) -> impl Iterator<Item = (u32, Vec2)> {
-        let range = |centre: f32, count: u32| {
-            (centre - radius).ceil().max(0.0) as u32
-                ..((centre + radius).floor() as u32 + 1).min(count)
-        };
-        let columns = range(place.x, self.grid.columns);
-        range(place.y, self.grid.rows)
-            .flat_map(move |row| columns.clone().map(move |column| (column, row)))
-            .map(|(column, row)| {
-                (self.grid.index(column, row), Vec2::new(column as f32, row as f32))
-            })
-            .filter(|(node, _)| self.nodes.has_row(*node as usize))
-    }
 }
 
 #[cfg(test)]

@@ -1,4 +1,5 @@
-//! The background grid of a triangle mesh that is flat at rest, whose texture is like it, or that can be unfolded.
+//! The background grid of a triangle mesh that fills a rectangle, and is flat at rest, has a texture that is like it, or can
+//! be unfolded.
 //!
 //! Links along the edges of an irregular mesh are no paths along which a load runs: chains of them are short and
 //! zigzag, and what they leave to relaxation converges slowly. So such a mesh gets a regular grid, as particles have
@@ -32,15 +33,11 @@ pub(crate) use self::interpolation::{Interpolation, RowGroup, Term};
 /// Fewest particles of a mesh with a background grid. Smaller meshes have no paths that are long.
 const FEWEST_PARTICLES: usize = 30;
 
-/// Least part of its bounding rectangle that a mesh must fill for its grid to bend as a whole. Smaller: lines of nodes
-/// lead through holes.
-const WHOLE: f32 = 0.995;
-
 /// Greatest distance of a pinned particle from a pinned node, in cells. Larger: a cloth hangs by less than its pins.
 const HELD_WITHIN: f32 = 0.8;
 
-/// Least mass of a node, as a part of the particles' mean mass. Smaller: fits at the border, whose weights may be
-/// negative, make nodes that weigh nothing.
+/// Least mass of a node, as a part of the particles' mean mass. Smaller: nodes around which no particle lies weigh
+/// nothing.
 const LEAST_MASS: f32 = 0.2;
 
 /// Part of a node's weights that must be of free particles; else the node is pinned.
@@ -65,7 +62,7 @@ pub(crate) struct GridTransfer {
     pub heights: Vec<Height>,
     /// Pairs of nodes at one place, where a mesh is closed around an axis.
     pub joined: Vec<[u32; 2]>,
-    /// Whether the mesh fills the whole grid.
+    /// Whether the grid bends as a whole, feels the air, and has tethers: that of a mesh that is flat at rest.
     pub is_whole: bool,
 }
 
@@ -85,7 +82,7 @@ pub(crate) struct Height {
 /// A background grid before its constraints are found.
 pub(super) struct BackgroundMesh {
     pub grid: Grid,
-    /// The nodes as particles. Those outside the mesh are pinned.
+    /// The nodes as particles.
     pub mesh: RestMesh,
     /// How much cloth each cell stands for, in units of its area.
     pub coverage: Vec<f32>,
@@ -95,32 +92,26 @@ pub(super) struct BackgroundMesh {
 }
 
 impl BackgroundMesh {
-    /// The grid of a mesh; none of a mesh that is small or narrow, or cannot be laid into the plane without distortion
-    /// or overlap.
+    /// The grid of a mesh; none of a mesh that is small, cannot be laid into the plane without distortion or overlap, or
+    /// does not fill a rectangle there: laid yarns hold such meshes better (`fabric/laid_yarns/`).
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
         }
         let chart = Chart::of(mesh, surface)?;
         let grid = chart.grid();
-        let nodes = nodes_from_particles(&chart.positions, &chart.triangles, &grid);
+        let nodes = nodes_from_particles(&chart.positions, &chart.triangles, &grid)?;
+        let coverage = coverage::filled_once(&chart.positions, &chart.triangles, &grid)?;
         let is_free: Vec<bool> = chart.particles.iter().map(|&at| !mesh.is_pinned(at)).collect();
         let mut has_row = is_free.clone();
         has_row[chart.own_places..].fill(false);
-        let places = particles_from_nodes(&chart.positions, &has_row, &nodes, &grid)?;
+        let places = particles_from_nodes(&chart.positions, &has_row, &grid);
         let particles = places.mean_rows(&chart.particles, mesh.positions.len());
         let nodes = match chart.plane {
             Some(_) => nodes,
             None => smooth::smoothed(nodes, &chart.positions, &grid, &is_free),
         };
         let nodes = nodes.with_columns(&chart.particles);
-        let covered = coverage::covered_once(&chart.positions, &chart.triangles, &grid)?;
-        let in_mesh = |node: u32| nodes.has_row(node as usize);
-        let coverage = coverage::given_to_whole_cells(&covered, &grid, in_mesh);
-        // Lines of nodes bend from straight ones.
-        let is_whole = chart.plane.is_some()
-            && (0..nodes.len() as u32).all(in_mesh)
-            && covered.iter().sum::<f32>() > WHOLE * covered.len() as f32;
         let mut transfer = GridTransfer {
             nodes,
             particles,
@@ -129,16 +120,13 @@ impl BackgroundMesh {
             moved_areas: Vec::new(),
             heights: Vec::new(),
             joined: if chart.is_closed { first_and_last_row(&grid) } else { Vec::new() },
-            is_whole,
+            // Lines of nodes bend from straight ones.
+            is_whole: chart.plane.is_some(),
         };
         let free_areas = mesh.areas.iter().zip(&mesh.inverse_areas);
         let free_areas: Vec<f32> =
             free_areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect();
         transfer.moved_areas = transfer.node_masses(&free_areas);
-        // Particles that follow their nodes need not show how these move.
-        if !is_whole && !coverage::shows_nodes(&covered, &grid, &transfer.moved_areas) {
-            return None;
-        }
         let nodes = node_mesh(mesh, &chart, &grid, &transfer);
         let is_free = |node: usize| !nodes.is_pinned(node as u32);
         transfer.means = transfer.particles.adjoint(&mesh.areas, &transfer.moved_areas, is_free);
@@ -146,7 +134,7 @@ impl BackgroundMesh {
         if chart.plane.is_none() {
             transfer.heights = heights(mesh, &chart, &grid, &nodes, &transfer);
         }
-        let is_held = is_held(mesh, &chart, &grid, &nodes, &transfer.nodes);
+        let is_held = is_held(mesh, &chart, &grid, &nodes);
         let GridTransfer { nodes: first, particles, means, held, .. } = &mut transfer;
         for rows in [first, particles, means, held] {
             *rows = core::mem::take(rows).grouped();
@@ -175,7 +163,7 @@ impl GridTransfer {
     }
 }
 
-/// The heights of the free particles whose cells have all of their nodes.
+/// The heights of the free particles.
 fn heights(
     mesh: &RestMesh,
     chart: &Chart,
@@ -193,9 +181,8 @@ fn heights(
         let corner =
             |right: u32, down: u32| grid.index(cell.x as u32 + right, cell.y as u32 + down);
         let corners = [corner(0, 0), corner(1, 1), corner(1, 0), corner(0, 1)];
-        let has_nodes = corners.iter().all(|&node| transfer.nodes.has_row(node as usize));
         // A particle on a seam has the height of one side.
-        if mesh.is_pinned(particle) || is_done[particle as usize] || !has_nodes {
+        if mesh.is_pinned(particle) || is_done[particle as usize] {
             continue;
         }
         is_done[particle as usize] = true;
@@ -219,22 +206,15 @@ fn first_and_last_row(grid: &Grid) -> Vec<[u32; 2]> {
 }
 
 /// Whether the grid is held where the mesh is: near each pinned particle a node is pinned.
-fn is_held(
-    mesh: &RestMesh,
-    chart: &Chart,
-    grid: &Grid,
-    nodes: &RestMesh,
-    in_mesh: &Interpolation,
-) -> bool {
+fn is_held(mesh: &RestMesh, chart: &Chart, grid: &Grid, nodes: &RestMesh) -> bool {
     let spacing = Vec2::from(grid.spacing());
     let last = Vec2::new((grid.columns - 1) as f32, (grid.rows - 1) as f32);
     let is_near_pinned_node = |at: Vec2| {
         let cell = (at / spacing).floor().min(last - 1.0).max(Vec2::ZERO);
         let corners = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE].map(|corner| cell + corner);
         corners.into_iter().any(|node| {
-            let index = grid.index(node.x as u32, node.y as u32);
             let is_near = node.distance(at / spacing) < HELD_WITHIN;
-            is_near && nodes.is_pinned(index) && in_mesh.has_row(index as usize)
+            is_near && nodes.is_pinned(grid.index(node.x as u32, node.y as u32))
         })
     };
     let places = chart.particles.iter().zip(&chart.positions).take(chart.own_places);
@@ -242,8 +222,8 @@ fn is_held(
     pinned.all(|(_, &at)| is_near_pinned_node(at))
 }
 
-/// The nodes as particles. Those that stand for pinned particles, or for none, are pinned. Where the mesh fills the
-/// grid, nodes have the areas of a grid's particles: with those of the particles that they move, which differ from node
+/// The nodes as particles. Those that stand for pinned particles are pinned. Nodes of a flat mesh have the areas of a
+/// grid's particles: with those of the particles that they move, which differ from node
 /// to node by chance, a swing loses motion to short waves.
 fn node_mesh(mesh: &RestMesh, chart: &Chart, grid: &Grid, transfer: &GridTransfer) -> RestMesh {
     let areas =
