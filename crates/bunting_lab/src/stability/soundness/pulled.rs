@@ -36,8 +36,8 @@ const MATERIALS: [(f32, f32); 8] = [
     (2e4, 0.3),
 ];
 
-/// Cases of a saddle and a wave that hang from an edge, of a tube and a ring that hang from two vertices, and of a dome and a
-/// sheet that hang from one.
+/// Cases of a saddle, a wave and a sheet with a hole that hang from an edge, of a tube and a ring that hang from two
+/// vertices, and of a dome, a sheet and a disk that hang from one.
 pub(super) fn cases() -> Vec<HardCase> {
     let meshes = [
         ("saddle", bent(33, 11, |u, v| Vec3::new(u, v, 0.6 * (u * u - v * v)))),
@@ -71,6 +71,16 @@ pub(super) fn cases() -> Vec<HardCase> {
                 &[0],
             ),
         ),
+        (
+            "disk",
+            hung(
+                around(48, 11, false, |out, azimuth| {
+                    (0.02 + 0.4 * out) * Vec3::new(azimuth.cos(), 0.5 * azimuth.sin(), 0.0)
+                }),
+                &[528],
+            ),
+        ),
+        ("sheet with a hole", holed(26, 21)),
         ("sheet", hung(FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)), &[0])),
     ];
     meshes.map(|(name, fabric)| at_rest(name, fabric)).into()
@@ -84,6 +94,19 @@ fn bent(columns: usize, rows: usize, at: impl Fn(f32, f32) -> Vec3) -> Arc<Fabri
     let top = (0..).zip(&sheet.positions).filter(|(_, place)| place.y > -1e-6);
     let top: Vec<u32> = top.map(|(vertex, _)| vertex).collect();
     let mesh = FabricBuilder::new(places.collect(), sheet.indices.clone()).pin(top);
+    Arc::new(mesh.build().expect("a good mesh"))
+}
+
+/// A sheet of about `columns` × `rows` vertices and a metre with a hole of 0.6 m in its middle, which hangs from its top edge.
+fn holed(columns: usize, rows: usize) -> Arc<Fabric> {
+    let sheet = Sheet::new(Triangulation::Delaunay, [columns, rows], DVec2::ONE, 1);
+    let middle = Vec3::new(0.5, -0.5, 0.0);
+    let is_cloth = |corner: &u32| sheet.positions[*corner as usize].distance(middle) > 0.3;
+    let kept = sheet.indices.chunks_exact(3).filter(|corners| corners.iter().all(is_cloth));
+    let corners: Vec<Vec3> =
+        kept.flatten().map(|&corner| sheet.positions[corner as usize]).collect();
+    let indices = (0..corners.len() as u32).collect();
+    let mesh = FabricBuilder::new(corners, indices).pin_where(|at, _| at.y == 0.0);
     Arc::new(mesh.build().expect("a good mesh"))
 }
 

@@ -14,6 +14,7 @@ use crate::{
     meshes::{Sheet, Triangulation},
     oracles::{Case, bending::Cantilever, stretch::hung_strip},
     scenes::GRAVITY,
+    stats::mean,
 };
 
 /// Error of a stretch that passes: of isotropic materials, and of others.
@@ -22,6 +23,8 @@ const STRETCH: [f64; 2] = [0.03, 0.05];
 const DROOP: f64 = 0.05;
 /// Radius of the arc without texture, m.
 const ARC_RADIUS: f32 = 0.3;
+/// Part of its width that the tapered sheet loses over its height. Larger: stress is not along the height.
+const TAPER: f64 = 0.2;
 /// Γ = σgL³/B of the strips whose warp is turned.
 const TURNED_GAMMA: f64 = 10.0;
 
@@ -40,6 +43,7 @@ pub(super) fn cases(triangulation: Triangulation) -> Vec<Case> {
     cases.extend(two_corners(triangulation));
     cases.extend(cylinder(triangulation));
     cases.extend(without_background(triangulation));
+    cases.extend(tapered(triangulation));
     cases
 }
 
@@ -114,6 +118,31 @@ fn without_background(triangulation: Triangulation) -> [Case; 4] {
     let [[a, b], [c, d]] =
         [("arc without texture", arc), ("two pieces", sheet.of_two_pieces(at_top))].map(of_cloth);
     [a, b, c, d]
+}
+
+/// δ/L of a sheet that is half a metre wide at its top, from which it hangs, and narrower below, and its speed at rest.
+fn tapered(triangulation: Triangulation) -> [Case; 2] {
+    let size = DVec2::new(0.5, 1.0);
+    let mut sheet = Sheet::new(triangulation, [17, 33], size, 1);
+    for at in &mut sheet.positions {
+        let narrower = 1.0 + TAPER as f32 * at.y;
+        at.x = (at.x - 0.25) * narrower;
+    }
+    let fabric = sheet.fabric(0.0, at_top);
+    let mut cloth = Cloth::new(fabric, ISOTROPIC, |at| at);
+    cloth.run(4.0);
+    let stretch = -1.0 - cloth.mean(|at| at.y == -1.0).y;
+    // At a depth of y of a sheet of width w₀ (1 − t y) hang σ g w₀ ((1 − y) − t (1 − y²)/2), on that width.
+    let strain = |y: f64| ((1.0 - y) - 0.5 * TAPER * (1.0 - y * y)) / (1.0 - TAPER * y);
+    let strains: Vec<f64> =
+        (0..1000).map(|part| strain((f64::from(part) + 0.5) / 1000.0)).collect();
+    let expected = f64::from(ISOTROPIC.area_density) * GRAVITY / 1e4 * mean(&strains);
+    let name = format!("tapered sheet, hung from its top, {triangulation:?}");
+    let speed = cloth.speed();
+    [
+        Case::new(name.clone(), expected, stretch, STRETCH[0]),
+        bound(format!("{name}, speed at rest, m/s"), REST[0], speed),
+    ]
 }
 
 /// Drop over reach of a strip of 1 m × 0.25 m, clamped by one more cell, whose warp runs at an angle to it, rad.
