@@ -94,6 +94,18 @@ const NEAR_REST: f32 = 2.0;
 /// mouth of a dome that hangs from one point oscillates for ever with six substeps a tick.
 const SHORT_SUBSTEP: f32 = 1.0 / 120.0;
 
+/// Ratio of the squared first difference of velocities to the squared velocities above which a cloth that hardly moves
+/// vibrates: 0.3 is that of periods of eleven substeps. Smaller: cloth that swings counts, too. Larger: cloth vibrates for ever.
+const FAST: f32 = 0.3;
+
+/// RMS speed above which vibration counts, m/s. Smaller: perturbations of a cloth that is about to buckle count, too.
+const SEEN: f32 = 1e-3;
+
+/// Time, s, for which a cloth that hardly moves must have vibrated for BDF3 to be left out until the cloth moves again: BDF3
+/// damps vibrations too little to outweigh what solves that undo one another's work feed into them. Smaller: each flag that
+/// comes to rest changes its formula.
+const LONG: f32 = 1.0;
+
 /// History of a cloth's integrator besides its particles' vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct IntegratorHistory {
@@ -103,6 +115,8 @@ pub(crate) struct IntegratorHistory {
     substeps: u32,
     /// Number of substeps whose velocities are known: a restart forgets none.
     recorded: u32,
+    /// Time for which the cloth has vibrated since it hardly moves, s.
+    vibrated: f32,
     /// Turn of the cloth about its pole by the last substep's corrections, which the next prediction undoes.
     pub pole_turn: PoleTurn,
     /// Substeps in which actions from outside have an effect on a free cloth's angular momentum.
@@ -146,19 +160,28 @@ impl IntegratorHistory {
         self.steps = [step, last];
         self.substeps = self.substeps.saturating_add(1);
         self.recorded = self.recorded.saturating_add(1);
+        let has_bdf3 = step <= MOST_GROWTH_OF_BDF3 * last && self.vibrated < LONG;
         match (scheme, self.substeps) {
             (Scheme::GaussSeidel, _) | (Scheme::Yarns, 1) => Formula::BACKWARD_EULER,
-            (Scheme::Yarns, 3..) if step <= MOST_GROWTH_OF_BDF3 * last => {
-                Formula::bdf2_opt(step, last, before)
-            }
+            (Scheme::Yarns, 3..) if has_bdf3 => Formula::bdf2_opt(step, last, before),
             (Scheme::Yarns, _) => Formula::bdf2(step, last),
         }
     }
 
-    /// Whether the cloth hardly moves, and three velocities are known.
-    pub fn is_near_rest(&self, sums: MotionSums<f32>, particles: usize) -> bool {
+    /// Whether the cloth hardly moves, and three velocities are known. Counts for how long it vibrates while it `is_free` of
+    /// wind and colliders: without BDF3 implicit drag takes a part of a wind that leans on the cloth, and friction under
+    /// tension holds less, as β h is longer.
+    pub fn assess_rest(&mut self, sums: MotionSums<f32>, particles: usize, is_free: bool) -> bool {
         let slow = NEAR_REST * GRAVITY * self.steps[0].max(SHORT_SUBSTEP);
-        self.recorded > 2 && sums.velocity < particles as f32 * slow * slow
+        let is_slow = self.recorded > 2 && sums.velocity < particles as f32 * slow * slow;
+        let vibrates = sums.first_difference > FAST * sums.velocity
+            && sums.velocity > particles as f32 * SEEN * SEEN;
+        if !is_slow || !is_free {
+            self.vibrated = 0.0;
+        } else if vibrates {
+            self.vibrated += self.steps[0];
+        }
+        is_slow
     }
 
     /// Restarts the integrator at first order where the motion is rough: backward Euler dissipates it.
@@ -297,20 +320,43 @@ mod tests {
     fn a_cloth_that_is_slow_for_three_substeps_is_near_rest() {
         let of = |speed: f32| MotionSums { velocity: 4.0 * speed * speed, ..MotionSums::default() };
         // Gravity of 9.81 m/s² acts for a hundredth of a second.
-        assert!(after(3).is_near_rest(of(0.19), 4));
-        assert!(!after(3).is_near_rest(of(0.20), 4));
-        assert!(!after(2).is_near_rest(of(0.0), 4));
+        assert!(after(3).assess_rest(of(0.19), 4, true));
+        assert!(!after(3).assess_rest(of(0.20), 4, true));
+        assert!(!after(2).assess_rest(of(0.0), 4, true));
         // Short substeps make no difference, and a restart forgets no velocity.
         let mut history = IntegratorHistory::default();
         (0..3).for_each(|_| {
             history.begin_substep(0.1 * STEP, Scheme::Yarns);
         });
-        assert!(history.is_near_rest(of(0.16), 4));
+        assert!(history.assess_rest(of(0.16), 4, true));
         let oscillating =
             MotionSums { first_difference: 16.0, second_difference: 64.0, ..of(0.16) };
         history.restart_if_rough(oscillating, 4);
         assert_eq!(history.begin_substep(0.1 * STEP, Scheme::Yarns), Formula::BACKWARD_EULER);
-        assert!(history.is_near_rest(oscillating, 4));
+        assert!(history.assess_rest(oscillating, 4, true));
+    }
+
+    #[test]
+    fn a_cloth_that_has_vibrated_at_rest_has_no_bdf3_until_it_moves() {
+        let moving = |speed: f32, difference: f32| MotionSums {
+            velocity: 4.0 * speed * speed,
+            first_difference: 4.0 * difference * difference,
+            second_difference: 0.0,
+        };
+        let formula = |sums: MotionSums<f32>, is_free: bool| {
+            let mut history = after(200);
+            for _ in 0..101 {
+                history.assess_rest(sums, 4, is_free);
+            }
+            history.begin_substep(STEP, Scheme::Yarns)
+        };
+        let bdf2 = Formula::bdf2(STEP, STEP);
+        let opt = Formula::bdf2_opt(STEP, STEP, STEP);
+        assert_eq!(formula(moving(0.01, 0.01), true), bdf2);
+        assert_eq!(formula(moving(0.01, 0.005), true), opt, "it swings");
+        assert_eq!(formula(moving(5e-4, 5e-4), true), opt, "nobody sees it");
+        assert_eq!(formula(moving(0.3, 0.3), true), opt, "it moves");
+        assert_eq!(formula(moving(0.01, 0.01), false), opt, "something acts on it");
     }
 
     #[test]

@@ -3,11 +3,18 @@
 use core::mem::swap;
 
 use crate::batch::lane_batch::LaneBatch;
+use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
+use crate::constants::GRAVITY;
+use crate::fabric::FabricMaterial;
 use crate::simd::lane::Pack;
 use crate::step::Scheme;
 use crate::step::bdf::MotionSums;
 use crate::step::predict::Predict;
+
+/// Pressure of a wind that counts as none, in units of the weight of the cloth. Larger: implicit drag takes a part of the
+/// wind's push on cloth that is at rest.
+const NO_WIND: f32 = 0.01;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Begins a substep: transforms the state into the moved frame, applies air, damping and gravity, and
@@ -94,7 +101,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 }
                 (None, _) => continue,
             };
-            let near_rest = relaxes && state.history.is_near_rest(sums, particles);
+            let is_free = state.is_free_of_wind_and_colliders();
+            let near_rest = relaxes && state.history.assess_rest(sums, particles, is_free);
             state.history.restart_if_rough(sums, particles);
             let of_nodes = near_rest && state.follows_nodes;
             let of_particles = near_rest && !state.follows_nodes;
@@ -106,5 +114,19 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             }
             self.parameters.set_near_rest(Y::lanes(cloth), of_particles);
         }
+    }
+}
+
+impl LaneState {
+    /// Whether no wind pushes the cloth, and no collider may touch it in this tick.
+    fn is_free_of_wind_and_colliders(&self) -> bool {
+        let FabricMaterial { area_density, pressure_coefficient, friction_coefficient, .. } =
+            self.material;
+        let coefficient = pressure_coefficient + friction_coefficient;
+        let squared = self.drive.wind.length_squared();
+        let pressure = 0.5 * self.drive.air_density * coefficient * squared;
+        pressure <= NO_WIND * area_density * GRAVITY
+            && self.local_wind.is_none()
+            && self.contacts.iter().all(|candidates| candidates.is_empty())
     }
 }
