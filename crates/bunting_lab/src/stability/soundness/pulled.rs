@@ -36,8 +36,8 @@ const MATERIALS: [(f32, f32); 8] = [
     (2e4, 0.3),
 ];
 
-/// Cases of a saddle, a wave and a sheet with a hole that hang from an edge, of a tube and a ring that hang from two
-/// vertices, and of a dome, a sheet and a disk that hang from one.
+/// Cases of a saddle, a wave and a sheet with a hole that hang from an edge, of a tube, a ring and a sheet of
+/// long cells that hang from two vertices, and of a dome, a sheet and a disk that hang from one.
 pub(super) fn cases() -> Vec<HardCase> {
     let meshes = [
         ("saddle", bent(33, 11, |u, v| Vec3::new(u, v, 0.6 * (u * u - v * v)))),
@@ -82,6 +82,7 @@ pub(super) fn cases() -> Vec<HardCase> {
         ),
         ("sheet with a hole", holed(26, 21)),
         ("sheet", hung(FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)), &[0])),
+        ("sheet of long cells", hung(FabricBuilder::grid(Grid::new(31, 16, 0.44, 0.5)), &[0, 30])),
     ];
     meshes.map(|(name, fabric)| at_rest(name, fabric)).into()
 }
