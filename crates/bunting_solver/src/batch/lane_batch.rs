@@ -12,8 +12,10 @@ use crate::batch::mixed::Mixed;
 use crate::batch::probe_motion::ProbeMotion;
 use crate::batch::side_by_side::SideBySide;
 use crate::batch::single_cloth::SingleCloth;
+use crate::batch::single_mesh::HeightPacks;
 use crate::constraints::laid_yarns::{BandRow, YarnLink};
 use crate::constraints::lone_mesh::LoneMesh;
+use crate::constraints::rest_bends::RestBendPacks;
 use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, Fabric, GridTransfer};
@@ -82,6 +84,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub band_rows: Vec<BandRow<P>>,
     /// The constraints of a single cloth across the lanes, where its fabric is a mesh that does not follow a background grid.
     pub lone_mesh: Option<Box<LoneMesh>>,
+    /// Second differences at rest, if the fabric is a grid that is curved there.
+    pub rest_bends: Option<Box<RestBendPacks<P, Y>>>,
     /// Scratch array of the block tridiagonal system of a strip.
     pub strip_blocks: Vec<StripBlock<P>>,
     /// Scratch array of the bending moments of a line, or the twisting moments of a ribbon.
@@ -119,8 +123,13 @@ pub(crate) struct SingleGrid {
     pub nodes: Vec<Pack4>,
     /// What the grid does not resolve of the particles' positions, m.
     pub unresolved: Vec<Pack4>,
-    /// How nodes and particles are interpolated from one another, with nodes numbered as they are stored.
+    /// Scratch array for what is lowered by the heights, m; empty if there are none.
+    pub lowered: Vec<Pack3<Pack8>>,
+    /// How nodes and particles are interpolated from one another, with nodes numbered as they are stored. What is joined
+    /// are packs of nodes.
     pub transfer: GridTransfer,
+    /// The heights of the particles above the surface between nodes.
+    pub heights: HeightPacks,
 }
 
 impl<P: Pack> LaneBatch<P> {
@@ -183,6 +192,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             yarn_links,
             band_rows,
             lone_mesh,
+            rest_bends: RestBendPacks::of(&fabric, &layout).map(Box::new),
             strip_blocks: Vec::new(),
             moments: vec![splat3(Vec3::ZERO); longest_line],
             masses: Masses::new(

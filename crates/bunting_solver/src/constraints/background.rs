@@ -78,36 +78,20 @@ fn project<P: Pack>(
 }
 
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
-    /// Solves bending: on the background grid of a flat mesh, at the hinges of a curved one. Then moves the nodes for
-    /// [`solve_stretch_on_background`](Self::solve_stretch_on_background).
-    pub(super) fn solve_bending_with_background(&mut self) {
-        let is_whole = self.fabric.background().is_some_and(|grid| grid.transfer.is_whole);
-        if !is_whole {
-            self.solve_dihedral_both_ways();
-        }
+    /// Moves the nodes, and solves bending.
+    pub(super) fn solve_bending_on_background(&mut self) {
         self.move_nodes();
-        if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background
-            && is_whole
-        {
+        if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
             grid.solve_bending_before_stretch();
         }
     }
 
-    /// Solves stretch and shear on the background grid, then tethers and contacts. Between them is a sweep over the links
-    /// of a curved mesh: such links are longer than the grid's where particles are raised above nodes. On flat meshes a sweep
-    /// stretches single links by up to 80 % in wind, and takes a part of the load from the grid.
+    /// Solves stretch and shear on the background grid, then contacts.
     pub(super) fn solve_stretch_on_background(&mut self) {
         if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
             grid.solve_stretch_of_grid();
         }
         self.place_particles();
-        // The grid of a flat mesh has tethers of its own.
-        if self.fabric.background().is_some_and(|grid| !grid.transfer.is_whole) {
-            self.begin_lone_mesh();
-            self.sweep_mesh(false);
-            self.apply_corrections();
-            self.solve_tethers();
-        }
         self.sum_reactions();
         self.solve_guides();
         self.solve_contacts();
@@ -159,9 +143,9 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
 }
 
 /// Moves the nodes of each pair to the middle between them.
-struct JoinNodes<'a, P: Pack> {
-    joined: &'a [[u32; 2]],
-    nodes: &'a mut [Pack3<P>],
+pub(super) struct JoinNodes<'a, P: Pack> {
+    pub joined: &'a [[u32; 2]],
+    pub nodes: &'a mut [Pack3<P>],
 }
 
 impl<P: Pack> Kernel<P> for JoinNodes<'_, P> {
@@ -179,32 +163,47 @@ impl<P: Pack> Kernel<P> for JoinNodes<'_, P> {
 }
 
 /// Raises particles by their heights above the surface between the nodes, or lowers them.
-struct AddHeights<'a, P: Pack> {
-    heights: &'a [Height],
-    sign: f32,
-    nodes: &'a [Pack3<P>],
-    to: &'a mut [Pack3<P>],
+pub(crate) struct AddHeights<'a, P: Pack> {
+    pub heights: &'a [Height],
+    pub sign: f32,
+    pub nodes: &'a [Pack3<P>],
+    pub to: &'a mut [Pack3<P>],
 }
 
 impl<P: Pack> Kernel<P> for AddHeights<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let Self { heights, sign, nodes, to } = self;
-        let least = L::splat(token, LEAST_LENGTH * LEAST_LENGTH);
+        let sign = L::splat(token, sign);
         for Height { particle, nodes: [a, b, c, d], along: [x, y], height } in heights {
-            let along: V3<L> =
-                V3::load(token, &nodes[*b as usize]) - V3::load(token, &nodes[*a as usize]);
-            let across: V3<L> =
-                V3::load(token, &nodes[*d as usize]) - V3::load(token, &nodes[*c as usize]);
-            let normal = along.cross(across);
-            let length = normal.dot(normal).max(least).sqrt();
-            let factor = L::splat(token, sign * height) / length;
+            let nodes: [V3<L>; 4] = [
+                V3::load(token, &nodes[*a as usize]),
+                V3::load(token, &nodes[*b as usize]),
+                V3::load(token, &nodes[*c as usize]),
+                V3::load(token, &nodes[*d as usize]),
+            ];
+            let at = [L::splat(token, *x), L::splat(token, *y), L::splat(token, *height)];
             let to = &mut to[*particle as usize];
-            V3::<L>::load(token, to)
-                .plus_scaled(along, L::splat(token, sign * x))
-                .plus_scaled(across, L::splat(token, sign * y))
-                .plus_scaled(normal, factor)
-                .store(to);
+            raised(token, V3::load(token, to), nodes, sign, at).store(to);
         }
     }
+}
+
+/// A place that is raised by a [`Height`] above four nodes, or lowered, given the coordinates along both tangents and along the
+/// normal.
+#[inline(always)]
+pub(crate) fn raised<L: Lane>(
+    token: L::Token,
+    from: V3<L>,
+    [a, b, c, d]: [V3<L>; 4],
+    sign: L,
+    [x, y, height]: [L; 3],
+) -> V3<L> {
+    let least = L::splat(token, LEAST_LENGTH * LEAST_LENGTH);
+    let (along, across) = (b - a, d - c);
+    let normal = along.cross(across);
+    let length = normal.dot(normal).max(least).sqrt();
+    from.plus_scaled(along, sign * x)
+        .plus_scaled(across, sign * y)
+        .plus_scaled(normal, sign * height / length)
 }

@@ -4,7 +4,8 @@
 
 use crate::batch::lane_batch::{BackgroundGrid, LaneBatch, SingleGrid};
 use crate::batch::layout::Positions;
-use crate::batch::single_mesh::{SingleMesh, read_vectors, write_vectors};
+use crate::batch::single_mesh::{AddHeightPacks, SingleMesh, read_vectors, write_vectors};
+use crate::constraints::background::JoinNodes;
 use crate::constraints::interpolate::{AddInterpolated, Interpolate, Remainder};
 use crate::fabric::GridTransfer;
 use crate::simd::lane::Pack;
@@ -43,6 +44,7 @@ impl LaneBatch<Pack8, SingleMesh> {
         let integrates = self.integrates_particles();
         let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
         grid.batch.solve_stretch_of_grid();
+        grid.join_nodes();
         grid.batch.update_node_velocities(&mut self.lanes);
         if !integrates {
             // The particles' own vectors are those of pins alone.
@@ -50,6 +52,7 @@ impl LaneBatch<Pack8, SingleMesh> {
         }
         grid.place_particles(self.positions.vectors_mut());
         self.positions.write_vectors();
+        grid.raise_particles(self.positions.packs_mut());
         if !integrates && self.clock.begun == self.clock.settings.substeps {
             grid.give_velocities(&mut self.velocity, self.layout.velocities_mut());
         }
@@ -62,13 +65,30 @@ impl LaneBatch<Pack8, SingleMesh> {
 impl SingleGrid {
     /// Moves the predicted nodes to where the particles are, m.
     fn project(&mut self, of: &[Pack4]) {
-        let Self { batch, nodes, unresolved, transfer } = self;
+        let Self { batch, nodes, unresolved, lowered, transfer, heights } = self;
         let GridTransfer { particles: rows, means, held, .. } = &*transfer;
         read_vectors(batch.positions.packs_mut(), nodes);
         Pack4::run(Interpolate { rows: held, from: of, to: nodes });
         Pack4::run(Remainder { rows, from: nodes, of, to: unresolved });
+        if !heights.is_empty() {
+            write_vectors(unresolved, lowered);
+            Pack8::run(AddHeightPacks { heights, sign: -1.0, nodes, to: lowered });
+            read_vectors(lowered, unresolved);
+        }
         Pack4::run(AddInterpolated { rows: means, from: unresolved, to: nodes });
         write_vectors(nodes, batch.positions.packs_mut());
+    }
+
+    /// Moves the nodes of each pair to the middle between them.
+    fn join_nodes(&mut self) {
+        let Self { batch, transfer, .. } = self;
+        Pack8::run(JoinNodes { joined: &transfer.joined, nodes: batch.positions.packs_mut() });
+    }
+
+    /// Raises particles by their heights above the surface between the nodes that they have been placed on.
+    fn raise_particles(&self, particles: &mut [Pack3<Pack8>]) {
+        let Self { heights, nodes, .. } = self;
+        Pack8::run(AddHeightPacks { heights, sign: 1.0, nodes, to: particles });
     }
 
     /// Interpolates the positions of the free particles from the nodes, m.

@@ -21,6 +21,7 @@ pub(crate) mod laid_yarns;
 pub(crate) mod lone_mesh;
 mod mesh_sweep;
 mod overlong;
+pub(crate) mod rest_bends;
 pub(crate) mod shear;
 mod solve;
 mod stiff_bending;

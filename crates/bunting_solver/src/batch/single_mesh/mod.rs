@@ -5,6 +5,7 @@
 //! too (`batch/background_grid.rs`). Gathers, and the interpolation between particles and nodes, read positions as
 //! vectors of x, y, z and zero, as neither the corners of patches nor nodes and particles are neighbours in memory.
 
+mod heights;
 mod patches;
 mod positions;
 mod vectors;
@@ -15,6 +16,7 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use self::patches::PatchPacks;
+pub(crate) use self::heights::{AddHeightPacks, HeightPacks};
 pub(crate) use self::positions::MeshPositions;
 pub(crate) use self::vectors::{pack_count, read_vectors, write_vectors};
 use crate::batch::layout::{Layout, OfCloth, Order};
@@ -56,12 +58,9 @@ fn locate(particle: usize) -> (usize, usize) {
 }
 
 impl SingleMesh {
-    /// The layout of a fabric; none unless it is flat, and has a background grid that can lie across the lanes.
+    /// The layout of a fabric; none unless it has a background grid that can lie across the lanes.
     pub fn of(fabric: &Arc<Fabric>) -> Option<Self> {
-        let background = fabric.background()?;
-        if !background.transfer.is_whole || SingleCloth::<Pack8>::of(&background.fabric).is_none() {
-            return None;
-        }
+        SingleCloth::<Pack8>::of(&fabric.background()?.fabric)?;
         let particles = fabric.particle_count();
         let tethers = [fabric.far_tethers(), fabric.tethers()]
             .map(|tethers| TetherPacks::new(tethers, |at| locate(at as usize), |pack| pack as u32));

@@ -37,8 +37,7 @@ pub(crate) struct LoneMesh {
 impl LoneMesh {
     /// The constraints of a fabric; none if it is a grid, or follows one.
     pub fn of(fabric: &Fabric) -> Option<Self> {
-        let follows_grid = fabric.background().is_some_and(|grid| grid.transfer.is_whole);
-        if fabric.grid().is_some() || follows_grid {
+        if fabric.grid().is_some() || fabric.background().is_some() {
             return None;
         }
         Some(Self {

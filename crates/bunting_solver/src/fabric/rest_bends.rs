@@ -1,0 +1,67 @@
+//! Second differences of a grid that is curved at rest, in a frame of each node that turns with the cloth.
+//!
+//! A line of such a grid resists what its second differences are more than at rest. These are given along the normal of a
+//! node, its tangent along the row, and the product of both, which are found from the node's neighbours
+//! (`constraints/rest_bends.rs`). The systems of the lines stay those of a flat grid.
+
+use glam::Vec3;
+
+use super::grid::Grid;
+
+/// The second differences at rest of a grid's nodes.
+#[derive(Clone, Debug)]
+pub(crate) struct RestBends {
+    /// Of each node: second differences along its row and along its column, and the twist of the cell behind and below it,
+    /// each along the normal, the tangent and the product of both, m; zero where a line ends.
+    pub of_nodes: Vec<[[f32; 3]; 3]>,
+    /// Of each node those before and after it in its row, and those above and below it: the node itself where the grid
+    /// ends.
+    pub neighbours: Vec<[u32; 4]>,
+}
+
+impl RestBends {
+    /// The second differences of nodes at their positions at rest, m. The first and the last row of a closed grid are at
+    /// one place.
+    pub(super) fn of(grid: &Grid, positions: &[Vec3], is_closed: bool) -> Self {
+        let places = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |at| (at, row)));
+        let neighbours: Vec<[u32; 4]> =
+            places.map(|place| neighbours(grid, place, is_closed)).collect();
+        let of_node = |(node, near): (u32, &[u32; 4])| {
+            let at = |node: u32| positions[node as usize];
+            let [before, after, above, below] = *near;
+            let (along, across) = (at(after) - at(before), at(below) - at(above));
+            let normal = along.cross(across).normalize_or_zero();
+            let tangent = along.normalize_or_zero();
+            let product = normal.cross(tangent);
+            let in_frame = |of: Vec3| [of.dot(normal), of.dot(tangent), of.dot(product)];
+            let second = |first: u32, last: u32| match first == node || last == node {
+                true => Vec3::ZERO,
+                false => at(first) - 2.0 * at(node) + at(last),
+            };
+            // A closed grid has no cells below its last row.
+            let has_cell = after != node && node / grid.columns + 1 < grid.rows;
+            let twist = match has_cell {
+                true => at(node) - at(after) - at(below) + at(below + 1),
+                false => Vec3::ZERO,
+            };
+            [second(before, after), second(above, below), twist].map(in_frame)
+        };
+        Self { of_nodes: (0..).zip(&neighbours).map(of_node).collect(), neighbours }
+    }
+}
+
+/// The nodes before and after a place in its row, and those above and below it.
+fn neighbours(grid: &Grid, (column, row): (u32, u32), is_closed: bool) -> [u32; 4] {
+    let (last_column, last_row) = (grid.columns - 1, grid.rows - 1);
+    let above = match row {
+        0 if is_closed => last_row - 1,
+        _ => row.saturating_sub(1),
+    };
+    let below = if is_closed && row == last_row { 1 } else { (row + 1).min(last_row) };
+    [
+        grid.index(column.saturating_sub(1), row),
+        grid.index((column + 1).min(last_column), row),
+        grid.index(column, above),
+        grid.index(column, below),
+    ]
+}
