@@ -153,12 +153,8 @@ impl SingleGrid {
             (pack * Pack8::WIDTH + lane) as u32
         };
         let places: Vec<u32> = (0..batch.fabric.particle_count()).map(place).collect();
-        let GridTransfer { nodes, particles, means, held, moved_areas, heights, joined } =
+        let GridTransfer { nodes, particles, means, held, moved_areas, heights, joined: _ } =
             background.transfer.clone();
-        // Nodes of the first and the last row lie in the same lanes.
-        let pack = |node: u32| batch.layout.locate(node as usize, 0).0 as u32;
-        let mut joined: Vec<[u32; 2]> = joined.into_iter().map(|pair| pair.map(pack)).collect();
-        joined.dedup();
         Self {
             heights: HeightPacks::new(&heights, fabric.particle_count(), &places),
             nodes: vec![zero; count],
@@ -174,7 +170,7 @@ impl SingleGrid {
                 held: held.with_rows_at(&places, count),
                 moved_areas,
                 heights: Vec::new(),
-                joined,
+                joined: Vec::new(),
             },
             batch,
         }

@@ -10,6 +10,8 @@
 //! keeps straight rows straight, and take steps of R towards the orthogonal projection. In each substep that would move
 //! them by an error whose size does not depend on the substep's length, of modes that P hardly shows.
 
+use std::sync::Arc;
+
 use glam::Vec3;
 
 use crate::batch::lane_batch::{BackgroundGrid, LaneBatch};
@@ -56,9 +58,18 @@ fn interpolated(transfer: &GridTransfer, of_particles: &[Vec3]) -> Vec<Vec3> {
     let mut unresolved = Vec::new();
     for _ in 0..READING_STEPS {
         project(transfer, &particles, &mut unresolved, &mut nodes, |_| {});
-        Pack1::run(JoinNodes { joined: &transfer.joined, nodes: &mut nodes });
+        join(&transfer.joined, &mut nodes);
     }
     nodes.iter().map(|node| lane3(node, 0)).collect()
+}
+
+/// Moves the nodes of each pair to the middle between them.
+fn join(pairs: &[[u32; 2]], nodes: &mut [Pack3<Pack1>]) {
+    for pair in pairs {
+        let [first, second] = pair.map(|node| lane3(&nodes[node as usize], 0));
+        let middle = splat3(first.midpoint(second));
+        pair.iter().for_each(|&node| nodes[node as usize] = middle);
+    }
 }
 
 /// Moves nodes by R (x − P X), one step towards the places at which the particles are interpolated from them best.
@@ -90,7 +101,9 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     pub(super) fn solve_stretch_on_background(&mut self) {
         if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
             grid.solve_stretch_of_grid();
+            grid.join_ends();
         }
+        self.hold_links();
         self.place_particles();
         self.sum_reactions();
         self.solve_guides();
@@ -120,6 +133,28 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         self.draw_nodes();
     }
 
+    /// Places the particles of curved meshes on their nodes, sweeps over their links, and moves the nodes by what these
+    /// resolve of the corrections.
+    fn hold_links(&mut self) {
+        let fabric = Arc::clone(&self.fabric);
+        let Some(Background { transfer, .. }) = fabric.background() else { return };
+        let GridTransfer { particles: rows, means, heights, .. } = transfer;
+        if heights.is_empty() {
+            return;
+        }
+        if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
+            let (nodes, to) = (grid.positions.packs(), self.positions.packs_mut());
+            P::run(Interpolate { rows, from: nodes, to });
+            P::run(AddHeights { heights, sign: 1.0, nodes, to });
+        }
+        self.sweep_strained_links();
+        if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
+            let (from, to) = (&self.stretch_shift[..], &mut grid.positions.packs_mut()[..]);
+            P::run(AddInterpolated { rows: means, from, to });
+            grid.join_ends();
+        }
+    }
+
     /// Interpolates the positions of the free particles from the nodes, and their velocities at the end of a tick if all
     /// follow them.
     fn place_particles(&mut self) {
@@ -129,8 +164,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         else {
             return;
         };
-        let GridTransfer { particles: rows, heights, joined, .. } = &background.transfer;
-        P::run(JoinNodes { joined, nodes: grid.positions.packs_mut() });
+        let GridTransfer { particles: rows, heights, .. } = &background.transfer;
         grid.update_node_velocities(&mut self.lanes);
         let to = self.positions.packs_mut();
         let nodes = grid.positions.packs_mut();
@@ -138,26 +172,6 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         P::run(AddHeights { heights, sign: 1.0, nodes, to });
         if !integrates && self.clock.begun == self.clock.settings.substeps {
             P::run(Interpolate { rows, from: &grid.velocity, to: &mut self.velocity });
-        }
-    }
-}
-
-/// Moves the nodes of each pair to the middle between them.
-pub(super) struct JoinNodes<'a, P: Pack> {
-    pub joined: &'a [[u32; 2]],
-    pub nodes: &'a mut [Pack3<P>],
-}
-
-impl<P: Pack> Kernel<P> for JoinNodes<'_, P> {
-    #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let half = L::splat(token, 0.5);
-        for [first, second] in self.joined {
-            let from: V3<L> = V3::load(token, &self.nodes[*first as usize]);
-            let to: V3<L> = V3::load(token, &self.nodes[*second as usize]);
-            let middle = from.plus_scaled(to - from, half);
-            middle.store(&mut self.nodes[*first as usize]);
-            middle.store(&mut self.nodes[*second as usize]);
         }
     }
 }

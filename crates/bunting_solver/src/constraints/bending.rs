@@ -24,8 +24,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                     lines,
                     factors: &self.layout.factors().bending,
                     moments: &mut self.moments,
-                    at_rest: rest
-                        .map(|rest| rest.of_lines(lines[0].is_row, order, masses, linked)),
+                    at_rest: rest.map(|rest| rest.of_lines(lines[0].is_row, order, masses, linked)),
                     particles: self.positions.particles(order, masses, linked),
                 });
             }

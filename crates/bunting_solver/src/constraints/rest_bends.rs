@@ -29,7 +29,7 @@ struct NodeFrame<C> {
     neighbours: [u32; 4],
     /// Positive in lanes whose node has neighbours before and after it in its row.
     has_in_row: [C; 2],
-    /// As [`RestBends::of_nodes`](crate::fabric::RestBends::of_nodes), m.
+    /// As `RestBends::of_nodes`, m.
     at_rest: [[C; 3]; 3],
 }
 
@@ -135,7 +135,9 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for TurnRestBends<'_, P, S> {
             let normal = unit(token, along.cross(across));
             let tangent = unit(token, along);
             let product = normal.cross(tangent);
-            for (turned, [first, second, third]) in [row, column, cell].into_iter().zip(&frame.at_rest) {
+            for (turned, [first, second, third]) in
+                [row, column, cell].into_iter().zip(&frame.at_rest)
+            {
                 (normal * first.load(token))
                     .plus_scaled(tangent, second.load(token))
                     .plus_scaled(product, third.load(token))

@@ -94,7 +94,8 @@ impl BendProfile {
         Self {
             inverse_spacing: 1.0 / spacing,
             coefficients: coefficients.collect(),
-            closing: is_closed.then(|| coefficient([before_last, inverse_areas[0], inverse_areas[1]])),
+            closing: is_closed
+                .then(|| coefficient([before_last, inverse_areas[0], inverse_areas[1]])),
             inverse_areas,
         }
     }

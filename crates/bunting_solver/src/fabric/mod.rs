@@ -45,7 +45,6 @@ pub(crate) use fabric::Background;
 pub(crate) use hinges::{Hinge, angle as hinge_angle};
 pub(crate) use laid_yarns::{BAND, Coupling, LaidLink, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
 pub(crate) use patches::Patch;
-pub(crate) use rest_bends::RestBends;
 pub(crate) use strip::{StripLink, StripRow};
 pub(crate) use tethers::Tether;
 pub(crate) use twist::{Ribbon, RibbonProfile};

@@ -82,5 +82,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             }
         }
         self.damp_internally();
+        self.keep_spin_of_nodes(cloths);
     }
 }

@@ -23,8 +23,7 @@ impl HeightPacks {
     /// The heights of some of `particles` particles, with nodes at their places among the vectors of nodes.
     pub fn new(heights: &[Height], particles: usize, places: &[u32]) -> Self {
         let zero = Pack8::splat(0.0);
-        let none =
-            HeightPack { nodes: [[0; Pack8::WIDTH]; 4], along: [zero; 2], height: zero };
+        let none = HeightPack { nodes: [[0; Pack8::WIDTH]; 4], along: [zero; 2], height: zero };
         let count = if heights.is_empty() { 0 } else { pack_count(particles) };
         let mut packs = vec![none; count];
         for Height { particle, nodes, along, height } in heights {
