@@ -11,7 +11,7 @@ use super::colour::Colours;
 use super::grid::Grid;
 use super::hinges::{Hinge, HingeClass, Hinges};
 use super::laid_yarns::LaidYarns;
-use super::links::{Link, LinkClass, LinkFamily, Links, Probe};
+use super::links::{Link, LinkClass, Links, Probe};
 use super::material::FabricMaterial;
 use super::mesh::{RestMesh, Surface};
 use super::normals::vertex_normals;
@@ -43,7 +43,6 @@ pub struct Fabric {
     bending: Bending,
     twist: Twist,
     rest_bends: Option<RestBends>,
-    is_closed: bool,
     tethers: Tethers,
     tautness: f32,
     shortest: f32,
@@ -125,7 +124,6 @@ impl Fabric {
             bending,
             twist,
             rest_bends: None,
-            is_closed: false,
             tethers,
             topology: None,
             background,
@@ -147,7 +145,6 @@ impl Fabric {
             bending: Bending::of(&grid, inverse_areas, is_closed),
             twist: Twist::of(&grid, inverse_areas),
             rest_bends: (!is_flat).then(|| RestBends::of(&grid, &mesh.positions, is_closed)),
-            is_closed,
             hinges: Hinges::of(&mesh, &[]),
             tethers: Tethers::of(&mesh, &edges, is_flat, tethered),
             tautness: 0.0,
@@ -361,29 +358,6 @@ impl Fabric {
     /// The second differences of a background grid that is curved at rest.
     pub(crate) fn rest_bends(&self) -> Option<&RestBends> {
         self.rest_bends.as_ref()
-    }
-
-    /// Whether the first and the last row of a background grid are at one place.
-    pub(crate) fn is_closed(&self) -> bool {
-        self.is_closed
-    }
-
-    /// Whether all yarns down the columns of a grid run from its first row to its last.
-    pub(crate) fn has_whole_columns(&self) -> bool {
-        let Some(grid) = &self.grid else { return false };
-        let is_down = |yarn: &&Yarn| yarn.particles[1] == yarn.particles[0] + grid.columns;
-        self.yarns.list.iter().filter(is_down).all(|yarn| grid.is_whole_column(yarn))
-    }
-
-    /// Length of a grid's diagonals at rest, m, the mean of those that differ; zero of other meshes.
-    pub(crate) fn diagonal(&self) -> f32 {
-        if self.rest_bends.is_none() {
-            return self.grid.map_or(0.0, |grid| grid.diagonal());
-        }
-        let diagonals = self.links.list.iter().filter(|it| it.family == LinkFamily::Diagonal);
-        let (count, sum) =
-            diagonals.fold((0, 0.0), |(count, sum), it| (count + 1, sum + it.rest_length));
-        sum / count.max(1) as f32
     }
 
     /// The pinned particles.

@@ -6,7 +6,10 @@
 
 use glam::Vec3;
 
+use super::fabric::Fabric;
 use super::grid::Grid;
+use super::links::LinkFamily;
+use super::yarns::Yarn;
 
 /// The second differences at rest of a grid's nodes.
 #[derive(Clone, Debug)]
@@ -17,6 +20,8 @@ pub(crate) struct RestBends {
     /// Of each node those before and after it in its row, and those above and below it: the node itself where the grid
     /// ends.
     pub neighbours: Vec<[u32; 4]>,
+    /// Whether the first and the last row are at one place.
+    pub is_closed: bool,
 }
 
 impl RestBends {
@@ -46,7 +51,32 @@ impl RestBends {
             };
             [second(before, after), second(above, below), twist].map(in_frame)
         };
-        Self { of_nodes: (0..).zip(&neighbours).map(of_node).collect(), neighbours }
+        Self { of_nodes: (0..).zip(&neighbours).map(of_node).collect(), neighbours, is_closed }
+    }
+}
+
+impl Fabric {
+    /// Whether the first and the last row of a background grid are at one place.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.rest_bends().is_some_and(|rest| rest.is_closed)
+    }
+
+    /// Whether all yarns down the columns of a grid run from its first row to its last.
+    pub(crate) fn has_whole_columns(&self) -> bool {
+        let Some(grid) = self.grid() else { return false };
+        let is_down = |yarn: &&Yarn| yarn.particles[1] == yarn.particles[0] + grid.columns;
+        self.yarns().iter().filter(is_down).all(|yarn| grid.is_whole_column(yarn))
+    }
+
+    /// Length of a grid's diagonals at rest, m, the mean where it is curved there; zero of other meshes.
+    pub(crate) fn diagonal(&self) -> f32 {
+        if self.rest_bends().is_none() {
+            return self.grid().map_or(0.0, Grid::diagonal);
+        }
+        let diagonals = self.links().iter().filter(|it| it.family == LinkFamily::Diagonal);
+        let (count, sum) =
+            diagonals.fold((0.0, 0.0), |(count, sum), it| (count + 1.0, sum + it.rest_length));
+        sum / f32::max(count, 1.0)
     }
 }
 
