@@ -1,8 +1,9 @@
 //! Strips that bend under their own weight.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use faer::{Mat, Side};
+use glam::DVec2;
 
 use super::root::bisect;
 
@@ -14,6 +15,14 @@ pub const SELF_WEIGHT_COLUMN: f64 = 7.837347;
 const STEPS: usize = 4000;
 /// Step of the logarithm of the tip's angle in the search for the first equilibrium.
 const SCAN: f64 = 0.25;
+
+/// How far the free end of a quarter arc moves that is clamped where it is level, under a small load along its length: level
+/// and up, in units of the radius, given w R³/B (Castigliano 1879). The moment at the angle a from the clamp is
+/// w R² (cos a − (π/2 − a) sin a).
+#[must_use]
+pub fn quarter_arc(load: f64) -> DVec2 {
+    load * DVec2::new(PI / 8.0, FRAC_PI_2 - 1.25 - PI * PI / 16.0)
+}
 
 /// Critical w L³/B of a column of square cells, clamped in the middle of one more cell below the first. The
 /// column's two sides are rigid links joined by springs of B/2l each, and carry `masses` at the upper ends of

@@ -7,12 +7,12 @@ use crate::batch::lane_batch::{BackgroundGrid, LaneBatch, SingleGrid};
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::single_cloth::SingleCloth;
-use crate::batch::single_mesh::pack_count;
+use crate::batch::single_mesh::{HeightPacks, pack_count};
 use crate::batch::snapshot::ClothSnapshot;
 use crate::fabric::{Background, Fabric, GridTransfer};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
-use crate::simd::vec3::{lane3, set_lane3};
+use crate::simd::vec3::{lane3, set_lane3, splat3};
 use crate::stability::added_mass::inertias;
 use crate::step::Drive;
 use crate::step::bdf::IntegratorHistory;
@@ -40,15 +40,10 @@ impl<P: Pack> BackgroundGrid<P> {
         let background = fabric.background()?;
         let grid = &background.fabric;
         let single = if is_single { LaneBatch::single_cloth(grid) } else { None };
-        let mut batch = match single {
+        Some(match single {
             Some(batch) => Self::Single(Box::new(SingleGrid::new(batch, fabric, background))),
             None => Self::SideBySide(Box::new(LaneBatch::side_by_side(grid.clone()))),
-        };
-        // The particles undo what the corrections turn.
-        if !background.transfer.is_whole {
-            with_grid!(&mut batch, nodes => nodes.numbers.pole = None);
-        }
-        Some(batch)
+        })
     }
 
     /// Marks a cloth's lanes as empty.
@@ -158,10 +153,15 @@ impl SingleGrid {
             (pack * Pack8::WIDTH + lane) as u32
         };
         let places: Vec<u32> = (0..batch.fabric.particle_count()).map(place).collect();
-        let GridTransfer { nodes, particles, means, held, moved_areas, heights, joined, is_whole } =
+        let GridTransfer { nodes, particles, means, held, moved_areas, heights, joined: _ } =
             background.transfer.clone();
         Self {
+            heights: HeightPacks::new(&heights, fabric.particle_count(), &places),
             nodes: vec![zero; count],
+            lowered: vec![
+                splat3(Vec3::ZERO);
+                if heights.is_empty() { 0 } else { pack_count(fabric.particle_count()) }
+            ],
             unresolved: vec![zero; pack_count(fabric.particle_count()) * Pack8::WIDTH],
             transfer: GridTransfer {
                 nodes: nodes.with_rows_at(&places, count),
@@ -169,9 +169,8 @@ impl SingleGrid {
                 means: means.with_rows_at(&places, count),
                 held: held.with_rows_at(&places, count),
                 moved_areas,
-                heights,
-                joined,
-                is_whole,
+                heights: Vec::new(),
+                joined: Vec::new(),
             },
             batch,
         }
@@ -205,6 +204,6 @@ mod tests {
         }
         let curved = grid.positions().iter().map(|at| *at + Vec3::Z * at.x * at.x).collect();
         let curved = Arc::new(FabricBuilder::new(curved, triangles).build().expect("a cloth"));
-        assert!(LaneBatch::single_mesh(&curved).is_none());
+        assert!(LaneBatch::single_mesh(&curved).is_some());
     }
 }

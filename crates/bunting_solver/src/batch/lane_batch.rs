@@ -12,8 +12,11 @@ use crate::batch::mixed::Mixed;
 use crate::batch::probe_motion::ProbeMotion;
 use crate::batch::side_by_side::SideBySide;
 use crate::batch::single_cloth::SingleCloth;
+use crate::batch::single_mesh::HeightPacks;
+use crate::constraints::join;
 use crate::constraints::laid_yarns::{BandRow, YarnLink};
 use crate::constraints::lone_mesh::LoneMesh;
+use crate::constraints::rest_bends::RestBendPacks;
 use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, Fabric, GridTransfer};
@@ -76,12 +79,18 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub stretch_shift: Vec<Pack3<P>>,
     /// Scratch array of the tridiagonal systems of a pair of chains.
     pub rows: Vec<TridiagonalRow<P>>,
+    /// Scratch array of the closing links' parts in the unknowns of closed chains.
+    pub by_closing: Vec<P>,
     /// The links of laid yarns in the substep; empty where the batch has a `lone_mesh`.
     pub yarn_links: Vec<YarnLink<P>>,
     /// Scratch array of the system of a laid yarn.
     pub band_rows: Vec<BandRow<P>>,
     /// The constraints of a single cloth across the lanes, where its fabric is a mesh that does not follow a background grid.
     pub lone_mesh: Option<Box<LoneMesh>>,
+    /// Indices in row-major order of the nodes of the first and the last row of a closed grid.
+    pub joined: Vec<[u32; 2]>,
+    /// Second differences at rest, if the fabric is a grid that is curved there.
+    pub rest_bends: Option<Box<RestBendPacks<P, Y>>>,
     /// Scratch array of the block tridiagonal system of a strip.
     pub strip_blocks: Vec<StripBlock<P>>,
     /// Scratch array of the bending moments of a line, or the twisting moments of a ribbon.
@@ -119,8 +128,12 @@ pub(crate) struct SingleGrid {
     pub nodes: Vec<Pack4>,
     /// What the grid does not resolve of the particles' positions, m.
     pub unresolved: Vec<Pack4>,
+    /// Scratch array for what is lowered by the heights, m; empty if there are none.
+    pub lowered: Vec<Pack3<Pack8>>,
     /// How nodes and particles are interpolated from one another, with nodes numbered as they are stored.
     pub transfer: GridTransfer,
+    /// The heights of the particles above the surface between nodes.
+    pub heights: HeightPacks,
 }
 
 impl<P: Pack> LaneBatch<P> {
@@ -153,7 +166,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         let chains = layout.chains(&fabric);
         let longest_line = fabric.grid().map_or(0, |grid| grid.columns.max(grid.rows) as usize);
-        let is_lone = P::WIDTH == 1;
+        let is_lone = P::WIDTH == 1 || (Y::CLOTHS == 1 && fabric.background().is_some());
         let lone_mesh = if is_lone { LoneMesh::of(&fabric).map(Box::new) } else { None };
         let (mut yarn_links, mut band_rows) = (Vec::new(), Vec::new());
         if lone_mesh.is_none() {
@@ -180,9 +193,15 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             relaxation: vec![P::splat(1.0); layout.pack_count()],
             link_target: vec![P::splat(0.0); chains.target_count()],
             rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
+            by_closing: vec![
+                P::splat(0.0);
+                if fabric.is_closed() { CHAINS_PER_PAIR * chains.longest() } else { 0 }
+            ],
             yarn_links,
             band_rows,
             lone_mesh,
+            joined: join::joined_rows(&fabric, &layout),
+            rest_bends: RestBendPacks::of(&fabric, &layout).map(Box::new),
             strip_blocks: Vec::new(),
             moments: vec![splat3(Vec3::ZERO); longest_line],
             masses: Masses::new(

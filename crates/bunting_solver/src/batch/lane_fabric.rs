@@ -4,7 +4,7 @@ use core::ops::Range;
 use std::sync::Arc;
 
 use crate::contact::itself::mesh::ContactMesh;
-use crate::fabric::{Fabric, Grid};
+use crate::fabric::Fabric;
 use crate::simd::lane::Pack;
 use crate::stability::added_mass::InverseMasses;
 use crate::stability::pole::{Pole, PolePacks};
@@ -62,7 +62,7 @@ impl<P: Pack> FabricNumbers<P> {
 
     /// Sets the numbers of some lanes to those of a fabric.
     pub fn set(&mut self, lanes: Range<usize>, LaneFabric { fabric, pole, .. }: &LaneFabric) {
-        let diagonal = fabric.grid().map_or(0.0, Grid::diagonal);
+        let diagonal = fabric.diagonal();
         self.area.lanes_mut()[lanes.clone()].fill(fabric.area());
         self.diagonal_length.lanes_mut()[lanes.clone()].fill(diagonal);
         if let (Some(packs), Some(pole)) = (&mut self.pole, pole) {

@@ -68,6 +68,11 @@ pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
     /// The pack and the lane of a particle of a cloth.
     fn locate(&self, particle: usize, cloth: usize) -> (usize, usize);
 
+    /// Index in row-major order of the first particle of a pack, by which [`Particles`] access it.
+    fn index_of_pack(&self, pack: usize) -> u32 {
+        pack as u32
+    }
+
     /// Reads the vectors of a cloth, particle by particle.
     fn read(&self, packs: &[Pack3<P>], cloth: usize, into: &mut Vec<Vec3>);
 
@@ -162,6 +167,11 @@ pub(crate) trait Positions<P: Pack>: Clone + Debug + Send + Sync + 'static {
 
     /// The positions in packs, m, copied back from the constraints' arrays.
     fn packs_mut(&mut self) -> &mut Vec<Pack3<P>>;
+
+    /// The packs, to be overwritten: whatever constraints hold is discarded.
+    fn overwritten(&mut self) -> &mut [Pack3<P>] {
+        self.packs_mut()
+    }
 
     /// The particles in an order, for the constraints. `inverse_masses` are given for each pack, 1/m².
     fn particles<'a>(

@@ -1,14 +1,15 @@
 //! Stretch, shear and bending of a mesh on its background grid.
 //!
 //! The nodes are integrated as the particles are (`step/nodes.rs`), and take over whatever else acts on the particles:
-//! contacts and forces of users, and air where the grid does not feel it itself. Where nothing does, particles only follow
-//! (`step/follow.rs`). The grid is solved as any other grid, and the particles follow: x = P X, where P
+//! contacts and forces of users. Where nothing does, particles only follow (`step/follow.rs`). The grid is solved as any other grid, and the particles follow: x = P X, where P
 //! interpolates between nodes. A node takes over what its displacement moves: X ← X + R (x − P X) with
 //! R = (Pᵀ m)⁻¹ Pᵀ m, which is Galerkin's method with lumped masses. What the grid does not resolve is taken off.
 //!
 //! Nodes without a past are read from the particles alone. They begin at X = B x, with B the weights in triangles, which
 //! keeps straight rows straight, and take steps of R towards the orthogonal projection. In each substep that would move
 //! them by an error whose size does not depend on the substep's length, of modes that P hardly shows.
+
+use std::sync::Arc;
 
 use glam::Vec3;
 
@@ -56,9 +57,18 @@ fn interpolated(transfer: &GridTransfer, of_particles: &[Vec3]) -> Vec<Vec3> {
     let mut unresolved = Vec::new();
     for _ in 0..READING_STEPS {
         project(transfer, &particles, &mut unresolved, &mut nodes, |_| {});
-        Pack1::run(JoinNodes { joined: &transfer.joined, nodes: &mut nodes });
+        join(&transfer.joined, &mut nodes);
     }
     nodes.iter().map(|node| lane3(node, 0)).collect()
+}
+
+/// Moves the nodes of each pair to the middle between them.
+fn join(pairs: &[[u32; 2]], nodes: &mut [Pack3<Pack1>]) {
+    for pair in pairs {
+        let [first, second] = pair.map(|node| lane3(&nodes[node as usize], 0));
+        let middle = splat3(first.midpoint(second));
+        pair.iter().for_each(|&node| nodes[node as usize] = middle);
+    }
 }
 
 /// Moves nodes by R (x − P X), one step towards the places at which the particles are interpolated from them best.
@@ -78,36 +88,22 @@ fn project<P: Pack>(
 }
 
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
-    /// Solves bending: on the background grid of a flat mesh, at the hinges of a curved one. Then moves the nodes for
-    /// [`solve_stretch_on_background`](Self::solve_stretch_on_background).
-    pub(super) fn solve_bending_with_background(&mut self) {
-        let is_whole = self.fabric.background().is_some_and(|grid| grid.transfer.is_whole);
-        if !is_whole {
-            self.solve_dihedral_both_ways();
-        }
+    /// Moves the nodes, and solves bending.
+    pub(super) fn solve_bending_on_background(&mut self) {
         self.move_nodes();
-        if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background
-            && is_whole
-        {
+        if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
             grid.solve_bending_before_stretch();
         }
     }
 
-    /// Solves stretch and shear on the background grid, then tethers and contacts. Between them is a sweep over the links
-    /// of a curved mesh: such links are longer than the grid's where particles are raised above nodes. On flat meshes a sweep
-    /// stretches single links by up to 80 % in wind, and takes a part of the load from the grid.
+    /// Solves stretch and shear on the background grid, then contacts.
     pub(super) fn solve_stretch_on_background(&mut self) {
         if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
             grid.solve_stretch_of_grid();
+            grid.join_ends();
         }
+        self.hold_links();
         self.place_particles();
-        // The grid of a flat mesh has tethers of its own.
-        if self.fabric.background().is_some_and(|grid| !grid.transfer.is_whole) {
-            self.begin_lone_mesh();
-            self.sweep_mesh(false);
-            self.apply_corrections();
-            self.solve_tethers();
-        }
         self.sum_reactions();
         self.solve_guides();
         self.solve_contacts();
@@ -136,6 +132,28 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         self.draw_nodes();
     }
 
+    /// Places the particles of curved meshes on their nodes, sweeps over their links, and moves the nodes by what these
+    /// resolve of the corrections.
+    fn hold_links(&mut self) {
+        let fabric = Arc::clone(&self.fabric);
+        let Some(Background { transfer, .. }) = fabric.background() else { return };
+        let GridTransfer { particles: rows, means, heights, .. } = transfer;
+        if heights.is_empty() {
+            return;
+        }
+        if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
+            let (nodes, to) = (grid.positions.packs(), self.positions.packs_mut());
+            P::run(Interpolate { rows, from: nodes, to });
+            P::run(AddHeights { heights, sign: 1.0, nodes, to });
+        }
+        self.sweep_strained_links();
+        if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
+            let (from, to) = (&self.stretch_shift[..], &mut grid.positions.packs_mut()[..]);
+            P::run(AddInterpolated { rows: means, from, to });
+            grid.join_ends();
+        }
+    }
+
     /// Interpolates the positions of the free particles from the nodes, and their velocities at the end of a tick if all
     /// follow them.
     fn place_particles(&mut self) {
@@ -145,8 +163,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         else {
             return;
         };
-        let GridTransfer { particles: rows, heights, joined, .. } = &background.transfer;
-        P::run(JoinNodes { joined, nodes: grid.positions.packs_mut() });
+        let GridTransfer { particles: rows, heights, .. } = &background.transfer;
         grid.update_node_velocities(&mut self.lanes);
         let to = self.positions.packs_mut();
         let nodes = grid.positions.packs_mut();
@@ -158,53 +175,48 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     }
 }
 
-/// Moves the nodes of each pair to the middle between them.
-struct JoinNodes<'a, P: Pack> {
-    joined: &'a [[u32; 2]],
-    nodes: &'a mut [Pack3<P>],
-}
-
-impl<P: Pack> Kernel<P> for JoinNodes<'_, P> {
-    #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let half = L::splat(token, 0.5);
-        for [first, second] in self.joined {
-            let from: V3<L> = V3::load(token, &self.nodes[*first as usize]);
-            let to: V3<L> = V3::load(token, &self.nodes[*second as usize]);
-            let middle = from.plus_scaled(to - from, half);
-            middle.store(&mut self.nodes[*first as usize]);
-            middle.store(&mut self.nodes[*second as usize]);
-        }
-    }
-}
-
 /// Raises particles by their heights above the surface between the nodes, or lowers them.
-struct AddHeights<'a, P: Pack> {
-    heights: &'a [Height],
-    sign: f32,
-    nodes: &'a [Pack3<P>],
-    to: &'a mut [Pack3<P>],
+pub(crate) struct AddHeights<'a, P: Pack> {
+    pub heights: &'a [Height],
+    pub sign: f32,
+    pub nodes: &'a [Pack3<P>],
+    pub to: &'a mut [Pack3<P>],
 }
 
 impl<P: Pack> Kernel<P> for AddHeights<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let Self { heights, sign, nodes, to } = self;
-        let least = L::splat(token, LEAST_LENGTH * LEAST_LENGTH);
+        let sign = L::splat(token, sign);
         for Height { particle, nodes: [a, b, c, d], along: [x, y], height } in heights {
-            let along: V3<L> =
-                V3::load(token, &nodes[*b as usize]) - V3::load(token, &nodes[*a as usize]);
-            let across: V3<L> =
-                V3::load(token, &nodes[*d as usize]) - V3::load(token, &nodes[*c as usize]);
-            let normal = along.cross(across);
-            let length = normal.dot(normal).max(least).sqrt();
-            let factor = L::splat(token, sign * height) / length;
+            let nodes: [V3<L>; 4] = [
+                V3::load(token, &nodes[*a as usize]),
+                V3::load(token, &nodes[*b as usize]),
+                V3::load(token, &nodes[*c as usize]),
+                V3::load(token, &nodes[*d as usize]),
+            ];
+            let at = [L::splat(token, *x), L::splat(token, *y), L::splat(token, *height)];
             let to = &mut to[*particle as usize];
-            V3::<L>::load(token, to)
-                .plus_scaled(along, L::splat(token, sign * x))
-                .plus_scaled(across, L::splat(token, sign * y))
-                .plus_scaled(normal, factor)
-                .store(to);
+            raised(token, V3::load(token, to), nodes, sign, at).store(to);
         }
     }
+}
+
+/// A place that is raised by a [`Height`] above four nodes, or lowered, given the coordinates along both tangents and along the
+/// normal.
+#[inline(always)]
+pub(crate) fn raised<L: Lane>(
+    token: L::Token,
+    from: V3<L>,
+    [a, b, c, d]: [V3<L>; 4],
+    sign: L,
+    [x, y, height]: [L; 3],
+) -> V3<L> {
+    let least = L::splat(token, LEAST_LENGTH * LEAST_LENGTH);
+    let (along, across) = (b - a, d - c);
+    let normal = along.cross(across);
+    let length = normal.dot(normal).max(least).sqrt();
+    from.plus_scaled(along, sign * x)
+        .plus_scaled(across, sign * y)
+        .plus_scaled(normal, sign * height / length)
 }

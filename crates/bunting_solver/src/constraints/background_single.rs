@@ -4,8 +4,11 @@
 
 use crate::batch::lane_batch::{BackgroundGrid, LaneBatch, SingleGrid};
 use crate::batch::layout::Positions;
-use crate::batch::single_mesh::{SingleMesh, read_vectors, write_vectors};
+use crate::batch::single_mesh::{
+    AddHeightPacks, MeshPositions, SingleMesh, read_vectors, write_vectors,
+};
 use crate::constraints::interpolate::{AddInterpolated, Interpolate, Remainder};
+use crate::constraints::mesh_sweep::SLACK;
 use crate::fabric::GridTransfer;
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
@@ -43,13 +46,21 @@ impl LaneBatch<Pack8, SingleMesh> {
         let integrates = self.integrates_particles();
         let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
         grid.batch.solve_stretch_of_grid();
-        grid.batch.update_node_velocities(&mut self.lanes);
+        grid.batch.join_ends();
         if !integrates {
             // The particles' own vectors are those of pins alone.
             self.positions.read_vectors();
         }
-        grid.place_particles(self.positions.vectors_mut());
-        self.positions.write_vectors();
+        if let Some(mesh) = &mut self.lone_mesh {
+            grid.place_particles(&mut self.positions);
+            mesh.place_vectors(self.positions.read_vectors(), &self.masses.inverse);
+            mesh.sweep_links(false, SLACK, self.layout.link_compliance.iter().copied());
+            mesh.read_correction_vectors(&mut grid.unresolved);
+            grid.take_over();
+            grid.batch.join_ends();
+        }
+        grid.batch.update_node_velocities(&mut self.lanes);
+        grid.place_particles(&mut self.positions);
         if !integrates && self.clock.begun == self.clock.settings.substeps {
             grid.give_velocities(&mut self.velocity, self.layout.velocities_mut());
         }
@@ -62,20 +73,35 @@ impl LaneBatch<Pack8, SingleMesh> {
 impl SingleGrid {
     /// Moves the predicted nodes to where the particles are, m.
     fn project(&mut self, of: &[Pack4]) {
-        let Self { batch, nodes, unresolved, transfer } = self;
+        let Self { batch, nodes, unresolved, lowered, transfer, heights } = self;
         let GridTransfer { particles: rows, means, held, .. } = &*transfer;
         read_vectors(batch.positions.packs_mut(), nodes);
         Pack4::run(Interpolate { rows: held, from: of, to: nodes });
         Pack4::run(Remainder { rows, from: nodes, of, to: unresolved });
+        if !heights.is_empty() {
+            write_vectors(unresolved, lowered);
+            Pack8::run(AddHeightPacks { heights, sign: -1.0, nodes, to: lowered });
+            read_vectors(lowered, unresolved);
+        }
         Pack4::run(AddInterpolated { rows: means, from: unresolved, to: nodes });
         write_vectors(nodes, batch.positions.packs_mut());
     }
 
+    /// Moves the nodes by what they resolve of corrections of particles.
+    fn take_over(&mut self) {
+        let Self { batch, nodes, unresolved, transfer, .. } = self;
+        Pack4::run(AddInterpolated { rows: &transfer.means, from: unresolved, to: nodes });
+        write_vectors(nodes, batch.positions.packs_mut());
+    }
+
     /// Interpolates the positions of the free particles from the nodes, m.
-    fn place_particles(&mut self, particles: &mut [Pack4]) {
-        let Self { batch, nodes, transfer, .. } = self;
+    fn place_particles(&mut self, particles: &mut MeshPositions) {
+        let Self { batch, nodes, transfer, heights, .. } = self;
         read_vectors(batch.positions.packs_mut(), nodes);
-        Pack4::run(Interpolate { rows: &transfer.particles, from: nodes, to: particles });
+        let to = particles.vectors_mut();
+        Pack4::run(Interpolate { rows: &transfer.particles, from: nodes, to });
+        particles.write_vectors();
+        Pack8::run(AddHeightPacks { heights, sign: 1.0, nodes, to: particles.packs_mut() });
     }
 
     /// Interpolates the velocities of the free particles from the nodes, m/s, by way of vectors.

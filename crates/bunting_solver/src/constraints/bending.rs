@@ -2,7 +2,7 @@
 //! of stiffness B × width/l.
 //!
 //! The XPBD system (D W Dᵀ + α̃) λ = −C of a line is pentadiagonal, constant, and the same for x, y and z (see
-//! `bend_factors.rs`). Solved before stretch, three substeps suffice for the heavy cantilever, where Gauss–Seidel
+//! `bend_factors.rs`). On a grid that is curved at rest C is less by the bend at rest (`rest_bends.rs`). Solved before stretch, three substeps suffice for the heavy cantilever, where Gauss–Seidel
 //! needs hundreds.
 
 use crate::batch::lane_batch::LaneBatch;
@@ -17,13 +17,17 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Solves every line once.
     pub fn solve_bending(&mut self) {
         for (order, lines) in self.layout.bend_lines(&self.fabric) {
-            let (masses, linked) = (&self.masses.inverse, self.layout.linked());
-            P::run(Bending {
-                lines,
-                factors: &self.layout.factors().bending,
-                moments: &mut self.moments,
-                particles: self.positions.particles(order, masses, linked),
-            });
+            for lines in lines.chunk_by(|line, next| line.is_row == next.is_row) {
+                let (masses, linked) = (&self.masses.inverse, self.layout.linked());
+                let rest = self.rest_bends.as_mut();
+                P::run(Bending {
+                    lines,
+                    factors: &self.layout.factors().bending,
+                    moments: &mut self.moments,
+                    at_rest: rest.map(|rest| rest.of_lines(lines[0].is_row, order, masses, linked)),
+                    particles: self.positions.particles(order, masses, linked),
+                });
+            }
         }
     }
 }
@@ -32,6 +36,8 @@ struct Bending<'a, P: Pack, S: Particles<P>> {
     lines: &'a [BendLine],
     factors: &'a [BendFactors<P, S::Constant>],
     moments: &'a mut [Pack3<P>],
+    /// Second differences at rest, m, if the grid is curved there.
+    at_rest: Option<S>,
     particles: S,
 }
 
@@ -42,6 +48,9 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Bending<'_, P, S> {
             let factors = &self.factors[line.profile as usize];
             self.eliminate::<L>(token, &line.particles, factors);
             self.substitute::<L>(token, &line.particles, factors);
+            if !factors.closing.is_empty() {
+                self.close::<L>(token, &line.particles, &factors.closing);
+            }
         }
     }
 }
@@ -62,7 +71,11 @@ impl<P: Pack, S: Particles<P>> Bending<'_, P, S> {
         for (index, (row, &next)) in factors.rows.iter().zip(&particles[2..]).enumerate() {
             let next: V3<L> = self.particles.position(token, next);
             let next_edge = next - at;
-            let y = (edge - next_edge)
+            let mut right = edge - next_edge;
+            if let Some(at_rest) = &self.at_rest {
+                right = right + at_rest.position(token, particles[index + 1]);
+            }
+            let y = right
                 .minus_scaled(last, L::load(token, &row.first_lower))
                 .minus_scaled(before_last, L::load(token, &row.second_lower));
             y.store(&mut self.moments[index]);
@@ -103,6 +116,34 @@ impl<P: Pack, S: Particles<P>> Bending<'_, P, S> {
         let difference = after_next.minus_scaled(next, two);
         self.shift::<L>(token, particles[1], difference, mobilities[1]);
         self.shift::<L>(token, particles[0], next, mobilities[0]);
+    }
+
+    /// Solves the bend at the ends of a closed line together with their distance.
+    #[inline(always)]
+    fn close<L: Lane<Pack = P>>(
+        &mut self,
+        token: L::Token,
+        particles: &[u32],
+        moved_by: &[[P; 2]],
+    ) {
+        let [first, second, .., before_last, last] = particles else { return };
+        let start: V3<L> = self.particles.position(token, *first);
+        let end: V3<L> = self.particles.position(token, *last);
+        let after = self.particles.position(token, *second);
+        let before = self.particles.position(token, *before_last);
+        let mut bend = (start + end) - (before + after);
+        if let Some(at_rest) = &self.at_rest {
+            bend = bend + at_rest.position(token, *first);
+        }
+        let apart = end - start;
+        for (&particle, [by_bend, by_distance]) in particles.iter().zip(moved_by) {
+            let moved = self
+                .particles
+                .position(token, particle)
+                .plus_scaled(bend, L::load(token, by_bend))
+                .plus_scaled(apart, L::load(token, by_distance));
+            self.particles.set_position(token, particle, moved);
+        }
     }
 
     /// Moves a particle by the second difference of moments that acts on it.

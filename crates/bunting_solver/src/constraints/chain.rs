@@ -72,6 +72,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             compliance: &self.layout.factors().link_compliance,
             rows: &mut self.rows,
             target: &mut self.link_target,
+            by_closing: &mut self.by_closing,
             particles: self.positions.particles(order, masses, linked),
         });
     }
@@ -102,6 +103,7 @@ impl<P: Pack> LaneBatch<P> {
             compliance: &self.layout.factors().link_compliance,
             rows: &mut self.rows,
             target: &mut self.link_target,
+            by_closing: &mut [],
             particles: CorrectedParticles {
                 inverse_masses: &self.masses.inverse,
                 predicted: self.positions.packs(),
@@ -128,13 +130,13 @@ pub(super) enum Pass {
 impl Pass {
     /// Whether the pass starts from the stored targets.
     #[inline(always)]
-    fn is_warm(self) -> bool {
+    pub(super) fn is_warm(self) -> bool {
         self != Self::First
     }
 
     /// Whether the pass stores the new targets.
     #[inline(always)]
-    fn stores_targets(self) -> bool {
+    pub(super) fn stores_targets(self) -> bool {
         self != Self::Diagonals
     }
 }
@@ -145,9 +147,11 @@ pub(super) struct SolveChains<'a, P: Pack, S: Particles<P>> {
     pass: Pass,
     /// Set by [`Pass::Overlong`] where any link is overlong.
     pub(super) is_any_overlong: &'a mut bool,
-    compliance: &'a [P],
+    pub(super) compliance: &'a [P],
     pub(super) rows: &'a mut [TridiagonalRow<P>],
     pub(super) target: &'a mut [P],
+    /// Scratch array of the closing links' parts in the unknowns of closed chains.
+    pub(super) by_closing: &'a mut [P],
     pub(super) particles: S,
 }
 
@@ -194,6 +198,10 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         pair: &ChainPair<S::Constant>,
         pass: Pass,
     ) {
+        if pair.is_closed {
+            self.solve_closed::<L, N>(token, pair, pass);
+            return;
+        }
         self.eliminate::<L, N>(token, pair, pass);
         self.substitute::<L, N>(token, pair, pass);
     }

@@ -1,9 +1,11 @@
 //! A Gauss–Seidel sweep over the links of a mesh that is curved at rest, or has laid yarns.
 //!
-//! Where cloth snaps like a whip, such links may be far longer than those of the background grid, as their particles are
-//! raised above the nodes, or than those of laid yarns, between which they lie. The links
-//! have a small part of the material's stiffness, so that grid or yarns carry the load. The constraint is that of
+//! Where cloth snaps like a whip, or folds within a cell, such links may be far longer or shorter than those of the background
+//! grid, as their particles are interpolated and raised above the nodes, or than those of laid yarns, between which they lie.
+//! The links have a small part of the material's stiffness, so that grid or yarns carry the load. The constraint is that of
 //! `gauss_seidel/distance.rs`.
+
+use glam::Vec3;
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
@@ -12,19 +14,19 @@ use crate::constants::LEAST_LENGTH;
 use crate::constraints::corrections::CorrectedParticles;
 use crate::fabric::Link;
 use crate::simd::lane::{Kernel, Lane, Pack};
-use crate::simd::vec3::V3;
+use crate::simd::vec3::{V3, splat3};
 
 /// Strain up to which links are left to the background grid. Smaller: links take part of the load from the grid,
 /// whatever their stiffness, as a sweep moves light particles all the way. Larger: single edges are drawn longer in
 /// wind.
-const SLACK: f32 = 0.01;
+pub(super) const SLACK: f32 = 0.01;
 
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// Solves each link of the mesh once, from the first to the last or backwards, and adds to the sums of corrections.
     pub(super) fn sweep_mesh(&mut self, is_backwards: bool) {
         let compliance = &self.layout.factors().link_compliance;
         // Laid yarns do not hold the cloth at their ends.
-        let slack = if self.background.is_some() { SLACK } else { 0.0 };
+        let slack = 0.0;
         if let Some(mesh) = &mut self.lone_mesh {
             mesh.sweep_links(is_backwards, slack, compliance.iter().map(|pack| pack.lanes()[0]));
             return;
@@ -38,6 +40,31 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
                 inverse_masses: &self.masses.inverse,
                 predicted: self.positions.packs(),
                 correction: &mut self.correction,
+            },
+        });
+    }
+
+    /// Solves each strained link of a mesh with a background grid once, and writes the corrections to `stretch_shift`.
+    pub(super) fn sweep_strained_links(&mut self) {
+        let Self { positions, stretch_shift: correction, .. } = self;
+        correction.clear();
+        correction.resize(positions.packs().len(), splat3(Vec3::ZERO));
+        let compliance = &self.layout.factors().link_compliance;
+        if let Some(mesh) = &mut self.lone_mesh {
+            mesh.place(positions.packs(), &self.masses.inverse);
+            mesh.sweep_links(false, SLACK, compliance.iter().map(|pack| pack.lanes()[0]));
+            mesh.read_corrections(correction);
+            return;
+        }
+        P::run(SweepMesh {
+            links: self.fabric.links(),
+            is_backwards: false,
+            slack: SLACK,
+            compliance,
+            particles: CorrectedParticles {
+                inverse_masses: &self.masses.inverse,
+                predicted: positions.packs(),
+                correction,
             },
         });
     }

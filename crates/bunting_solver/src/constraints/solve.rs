@@ -11,7 +11,7 @@ use crate::step::Scheme;
 impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// Projects the predicted positions onto all constraints.
     ///
-    /// A mesh that is flat at rest is solved on its background grid (`background.rs`). The hinges of other meshes are
+    /// A mesh with a background grid is solved on that (`background.rs`). The hinges of other meshes are
     /// solved forwards and backwards, and so are the yarns that are laid across them (`laid_yarns/`). Each solve of a
     /// yarn is a projection, self-adjoint in the metric of the masses, with eigenvalues from 0 to 1. A sequence of
     /// solves that reads the same backwards is self-adjoint, too, and a product of two such sequences still has real
@@ -30,7 +30,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         if self.fabric.grid().is_some() {
             self.solve_bending_before_stretch();
         } else if self.background.is_some() {
-            self.solve_bending_with_background();
+            self.solve_bending_on_background();
         } else {
             self.solve_dihedral_both_ways();
         }

@@ -26,6 +26,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Solves bending and twist of a grid; for stiff cloth at positions that contain the displacement by
     /// stretch.
     pub fn solve_bending_before_stretch(&mut self) {
+        self.turn_rest_bends();
         if !self.parameters.any_bends_stiffly() {
             self.bend();
             return;

@@ -1,4 +1,4 @@
-//! Bending of a grid, which is flat at rest: second differences along its rows and columns.
+//! Bending of a grid: second differences along its rows and columns.
 //!
 //! The energy ½ B ∫ (|x_uu|² + |x_vv|²) with three-point stencils is quadratic in the positions, so that the
 //! implicit step of a whole line is a pentadiagonal system with constant factors. Lines with the same spacing,
@@ -11,6 +11,8 @@ use super::grid::Grid;
 /// A row or a column of a grid.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct BendLine {
+    /// Whether it is a row.
+    pub is_row: bool,
     /// Particles along the line.
     pub particles: Vec<u32>,
     /// Index into [`Bending::profiles`].
@@ -27,6 +29,8 @@ pub(crate) struct BendProfile {
     /// For each particle but the first and the last: stiffness against a unit change of direction there, in units
     /// of the material's bending stiffness.
     pub coefficients: Vec<f32>,
+    /// The same at the ends of a closed line, which are at one place.
+    pub closing: Option<f32>,
 }
 
 /// The lines along which a grid bends; none for other meshes.
@@ -39,30 +43,31 @@ pub(crate) struct Bending {
 }
 
 impl Bending {
-    /// Rows and columns of three and more particles.
-    pub fn of(grid: &Grid, inverse_areas: &[f32]) -> Self {
+    /// Rows and columns of three and more particles. The columns of a closed grid end where they begin.
+    pub fn of(grid: &Grid, inverse_areas: &[f32], is_closed: bool) -> Self {
         let [dx, dy] = grid.spacing();
         // The first and the last line represent half a cell.
         let cells =
             |index: u32, count: u32| if index == 0 || index == count - 1 { 0.5 } else { 1.0 };
         let rows = (0..grid.rows).map(|row| {
             let particles = (0..grid.columns).map(|column| grid.index(column, row)).collect();
-            (particles, dx, dy * cells(row, grid.rows))
+            (true, particles, dx, dy * cells(row, grid.rows))
         });
         let columns = (0..grid.columns).map(|column| {
             let particles = (0..grid.rows).map(|row| grid.index(column, row)).collect();
-            (particles, dy, dx * cells(column, grid.columns))
+            (false, particles, dy, dx * cells(column, grid.columns))
         });
         let mut profiles: Vec<BendProfile> = Vec::new();
         let mut classes = Classes::new();
-        let bends = |(particles, ..): &(Vec<u32>, f32, f32)| particles.len() > 2;
-        let lines = rows.chain(columns).filter(bends).map(|(particles, spacing, width)| {
-            let profile = BendProfile::new(&particles, spacing, width, inverse_areas);
+        let bends = |(_, particles, ..): &(bool, Vec<u32>, f32, f32)| particles.len() > 2;
+        let lines = rows.chain(columns).filter(bends).map(|(is_row, particles, spacing, width)| {
+            let closes = is_closed && !is_row;
+            let profile = BendProfile::new(&particles, spacing, width, inverse_areas, closes);
             let (class, is_new) = classes.class_of(profile.key());
             if is_new {
                 profiles.push(profile);
             }
-            BendLine { particles, profile: class }
+            BendLine { is_row, particles, profile: class }
         });
         Self { lines: lines.collect(), profiles }
     }
@@ -70,23 +75,36 @@ impl Bending {
 
 impl BendProfile {
     /// A line of particles `spacing` metres apart that represents a strip of cloth `width` metres wide.
-    fn new(particles: &[u32], spacing: f32, width: f32, inverse_areas: &[f32]) -> Self {
+    fn new(
+        particles: &[u32],
+        spacing: f32,
+        width: f32,
+        inverse_areas: &[f32],
+        is_closed: bool,
+    ) -> Self {
         let inverse_areas: Vec<f32> =
             particles.iter().map(|&particle| inverse_areas[particle as usize]).collect();
-        let coefficients = inverse_areas
-            .windows(3)
-            .map(|three| {
-                let at_clamp = three[1] == 0.0 && (three[0] == 0.0) != (three[2] == 0.0);
-                width / spacing * if at_clamp { CLAMP_FACTOR } else { 1.0 }
-            })
-            .collect();
-        Self { inverse_spacing: 1.0 / spacing, inverse_areas, coefficients }
+        let coefficient = |three: [f32; 3]| {
+            let at_clamp = three[1] == 0.0 && (three[0] == 0.0) != (three[2] == 0.0);
+            width / spacing * if at_clamp { CLAMP_FACTOR } else { 1.0 }
+        };
+        let before_last = inverse_areas[inverse_areas.len() - 2];
+        let coefficients =
+            inverse_areas.windows(3).map(|three| coefficient([three[0], three[1], three[2]]));
+        Self {
+            inverse_spacing: 1.0 / spacing,
+            coefficients: coefficients.collect(),
+            closing: is_closed
+                .then(|| coefficient([before_last, inverse_areas[0], inverse_areas[1]])),
+            inverse_areas,
+        }
     }
 
     /// Key that is equal for profiles that differ by rounding only.
     fn key(&self) -> Vec<u32> {
         let areas_and_coefficients = self.inverse_areas.iter().chain(&self.coefficients);
-        let values = core::iter::once(&self.inverse_spacing).chain(areas_and_coefficients);
+        let closing = self.closing.iter().chain(areas_and_coefficients);
+        let values = core::iter::once(&self.inverse_spacing).chain(closing);
         values.map(|value| rounded_bits(*value)).collect()
     }
 }

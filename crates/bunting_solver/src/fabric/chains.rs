@@ -30,6 +30,8 @@ pub(crate) struct Chain<C = f32> {
     /// Order in which a Gauss–Seidel sweep visits the links: every second link, then the others, each with
     /// its class.
     pub sweep_order: Vec<(usize, u32)>,
+    /// Whether its ends are at one place.
+    pub is_closed: bool,
 }
 
 /// A link of a chain.
@@ -53,6 +55,8 @@ pub(crate) struct ChainPair<C = f32> {
     pub links: Vec<[ChainLink<C>; CHAINS_PER_PAIR]>,
     /// Indices of the links' target lengths: row by row, `count` in each.
     pub targets: Range<usize>,
+    /// Whether the ends of each chain are at one place.
+    pub is_closed: bool,
 }
 
 /// The chains of one colour.
@@ -101,13 +105,15 @@ pub(crate) struct Chains<C = f32> {
 }
 
 impl Chains {
-    /// Chains of all yarns, and the cells of a grid.
+    /// Chains of all yarns, and the cells of a grid, whose first and last row may be joined.
     pub(super) fn of(
         yarns: &[Yarn],
         colours: &Colours,
         links: &[Link],
         grid: Option<&Grid>,
+        is_joined: bool,
     ) -> Self {
+        let is_column = |yarn: &Yarn| grid.is_some_and(|grid| grid.is_whole_column(yarn));
         let chain = |yarn: &Yarn| {
             let count = yarn.links.len();
             let order = (0..count).step_by(2).chain((1..count).step_by(2));
@@ -116,6 +122,7 @@ impl Chains {
                 particles: yarn.particles.clone(),
                 links: (0..count).map(|at| ChainLink::of(link(at))).collect(),
                 sweep_order: order.map(|at| (at, link(at).class)).collect(),
+                is_closed: is_joined && is_column(yarn),
             }
         };
         let mut chains = Self::of_colours(colours.ranges().iter().map(|range| {
@@ -244,6 +251,7 @@ impl Chains {
                 particles: pair.particles.clone(),
                 links: links.collect(),
                 targets: pair.targets.clone(),
+                is_closed: pair.is_closed,
             }
         };
         let sweep_link = |link: &SweepLink| SweepLink { class: link.target, ..*link };
@@ -284,6 +292,7 @@ impl<C: Copy> ChainPair<C> {
             particles: particles.collect(),
             links: links.collect(),
             targets: first_target..first_target + rows * chains.len(),
+            is_closed: chains.iter().all(|chain| chain.is_closed),
         }
     }
 }

@@ -16,6 +16,7 @@ use super::material::FabricMaterial;
 use super::mesh::{RestMesh, Surface};
 use super::normals::vertex_normals;
 use super::patches::{self, Patch};
+use super::rest_bends::RestBends;
 use super::strip::{self, StripRow};
 use super::tethers::{self, Pin, Tether, Tethers};
 use super::topology;
@@ -41,6 +42,7 @@ pub struct Fabric {
     hinges: Hinges,
     bending: Bending,
     twist: Twist,
+    rest_bends: Option<RestBends>,
     tethers: Tethers,
     tautness: f32,
     shortest: f32,
@@ -49,7 +51,7 @@ pub struct Fabric {
     background: Option<Background>,
 }
 
-/// The grid that solves stretch and shear of a mesh, and bending where the mesh is flat at rest.
+/// The grid that solves stretch, shear and bending of a mesh.
 #[derive(Clone, Debug)]
 pub(crate) struct Background {
     /// The grid, whose particles are called nodes.
@@ -93,11 +95,12 @@ impl Fabric {
             (None, Some(_)) => Default::default(),
             (None, None) => (Yarns::default(), LaidYarns::of(&mesh, surface)),
         };
-        let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref());
+        let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref(), false);
         let strips =
             grid.map(|grid| strip::strips(&grid, &links.list, &chains)).unwrap_or_default();
         let hinges = Hinges::of(&mesh, &surface.edges);
-        let bending = grid.map(|grid| Bending::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
+        let bending =
+            grid.map(|grid| Bending::of(&grid, &mesh.inverse_areas, false)).unwrap_or_default();
         let twist = grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
         let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
         let shortest = match (&grid, &background) {
@@ -120,6 +123,7 @@ impl Fabric {
             hinges,
             bending,
             twist,
+            rest_bends: None,
             tethers,
             topology: None,
             background,
@@ -128,27 +132,26 @@ impl Fabric {
         fabric
     }
 
-    /// The constraints of a background grid, whose nodes have no hinges, and have cells and tethers only where the mesh is
-    /// flat at rest.
+    /// The constraints of a background grid, whose nodes have no hinges.
     fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
-        let BackgroundMesh { grid, mesh, coverage, transfer, .. } = background;
+        let BackgroundMesh { grid, mesh, coverage, is_flat, transfer, .. } = background;
         let links = Links::of(&mesh, Some(&grid), Some(&coverage), &[]);
         let yarns = Yarns::of(&mesh.positions, &links.list);
-        let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid));
-        let whole = transfer.is_whole.then_some(grid);
-        let patches = whole.map(|grid| patches::cells(&mesh.triangles, &grid)).unwrap_or_default();
+        let is_closed = !transfer.joined.is_empty();
+        let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid), is_closed);
         let edges = topology::edges(&mesh.triangles).unwrap_or_default();
         let inverse_areas = &mesh.inverse_areas;
         let fabric = Self {
-            bending: whole.map(|grid| Bending::of(&grid, inverse_areas)).unwrap_or_default(),
-            twist: whole.map(|grid| Twist::of(&grid, inverse_areas)).unwrap_or_default(),
+            bending: Bending::of(&grid, inverse_areas, is_closed),
+            twist: Twist::of(&grid, inverse_areas),
+            rest_bends: (!is_flat).then(|| RestBends::of(&grid, &mesh.positions, is_closed)),
             hinges: Hinges::of(&mesh, &[]),
-            tethers: Tethers::of(&mesh, &edges, true, tethered && whole.is_some()),
+            tethers: Tethers::of(&mesh, &edges, is_flat, tethered),
             tautness: 0.0,
             shortest: 0.0,
             probes: Vec::new(),
-            patches,
-            patch_grid_columns: whole.map(|grid| grid.columns as usize),
+            patches: patches::cells(&mesh.triangles, &grid),
+            patch_grid_columns: Some(grid.columns as usize),
             background: None,
             laid_yarns: LaidYarns::default(),
             strips: Vec::new(),
@@ -301,12 +304,9 @@ impl Fabric {
     }
 
     /// Whether corrections of particles are summed by themselves (`constraints/corrections.rs`): on grids without such
-    /// cells, and on meshes except where the particles only follow the nodes of a background grid.
+    /// cells, and on meshes without a background grid.
     pub(crate) fn sums_corrections(&self) -> bool {
-        match &self.background {
-            Some(background) => !background.transfer.is_whole,
-            None => !self.has_shear_cells(),
-        }
+        self.background.is_none() && !self.has_shear_cells()
     }
 
     /// Strips of a narrow grid, each row by row; none of other fabrics.
@@ -353,6 +353,11 @@ impl Fabric {
     /// A material along the directions in which stretch is solved.
     pub(crate) fn material_of_stretch(&self, material: &FabricMaterial) -> FabricMaterial {
         self.background.as_ref().map_or(*material, |grid| material.turned(grid.warp_cos2))
+    }
+
+    /// The second differences of a background grid that is curved at rest.
+    pub(crate) fn rest_bends(&self) -> Option<&RestBends> {
+        self.rest_bends.as_ref()
     }
 
     /// The pinned particles.

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::error::FabricError;
+use super::yarns::Yarn;
 
 /// A rectangular grid of particles.
 ///
@@ -38,6 +39,13 @@ impl Grid {
     /// Length of the diagonals of cells at rest, m.
     pub(crate) fn diagonal(&self) -> f32 {
         libm::hypotf(self.width / (self.columns - 1) as f32, self.height / (self.rows - 1) as f32)
+    }
+
+    /// Whether a yarn runs down a whole column.
+    pub(super) fn is_whole_column(&self, yarn: &Yarn) -> bool {
+        let steps = yarn.particles.windows(2);
+        yarn.particles.len() == self.rows as usize
+            && steps.into_iter().all(|ends| ends[1] == ends[0] + self.columns)
     }
 
     /// Index of the particle in a column and row.

@@ -29,6 +29,7 @@ mod material;
 mod mesh;
 mod normals;
 mod patches;
+mod rest_bends;
 mod shared_topology;
 mod strip;
 mod tethers;

@@ -43,7 +43,7 @@ impl LaneState {
     }
 
     fn keeps_spin(&self) -> bool {
-        self.history.disturbance == Disturbance(0) && !self.follows_nodes
+        self.history.disturbance == Disturbance(0)
     }
 }
 
@@ -56,13 +56,32 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         let mut keeps = P::splat(0.0);
         for (cloth, state) in self.lanes.iter().enumerate() {
-            if state.as_ref().is_some_and(LaneState::keeps_spin) {
+            if state.as_ref().is_some_and(|state| state.keeps_spin() && !state.follows_nodes) {
                 keeps.lanes_mut()[Y::lanes(cloth)].fill(1.0);
             }
         }
+        self.keep_spin_of(&keeps);
+    }
+
+    /// [`keep_spin`](Self::keep_spin) of the nodes that some cloths follow.
+    pub fn keep_spin_of_nodes(&mut self, cloths: &[Option<LaneState>]) {
+        if self.fabric.has_pins() {
+            return;
+        }
+        let mut keeps = P::splat(0.0);
+        for (cloth, state) in cloths.iter().enumerate() {
+            if state.as_ref().is_some_and(|state| state.keeps_spin() && state.follows_nodes) {
+                keeps.lanes_mut()[Y::lanes(cloth)].fill(1.0);
+            }
+        }
+        self.keep_spin_of(&keeps);
+    }
+
+    /// Keeps the spin of the cloths in the lanes that hold one.
+    fn keep_spin_of(&mut self, keeps: &P) {
         if keeps.lanes().contains(&1.0) {
             P::run(KeepSpin {
-                keeps: &keeps,
+                keeps,
                 area: &self.numbers.area,
                 areas: &self.masses.areas,
                 partial_sums: &self.partial_sums,

@@ -1,11 +1,12 @@
 //! Cloths whose particles follow the nodes of their background grid.
 //!
-//! Where a mesh with a grid is flat at rest, and nothing acts on single particles, the nodes carry all of the motion, air included. The
+//! Where nothing acts on the single particles of a mesh with a grid, the nodes carry all of the motion, air included. The
 //! particles are then neither integrated nor projected onto the nodes, but interpolated from them: positions in each
 //! substep, velocities at the end of a tick. In a tick in which something may act on particles (contacts, holds, guides,
 //! moving pins, local wind, users, reports of what acts on pins) they take the nodes' motion over, and are integrated themselves.
 
 use core::mem;
+use core::ops::Range;
 
 use glam::Vec3;
 
@@ -13,11 +14,12 @@ use crate::batch::lane_batch::{BackgroundGrid, LaneBatch};
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
-use crate::constraints::background::nodes_of;
-use crate::fabric::{GridTransfer, Term};
+use crate::constraints::background::{AddHeights, nodes_of};
+use crate::fabric::{GridTransfer, Height, Interpolation, Term};
 use crate::simd::lane::Pack;
 use crate::simd::level::has_fused_products;
-use crate::simd::vec3::Pack3;
+use crate::simd::registers::Pack1;
+use crate::simd::vec3::{Pack3, lane3, splat3};
 use crate::step::Scheme;
 use crate::step::bdf::IntegratorHistory;
 
@@ -26,6 +28,9 @@ const VECTORS: usize = 7;
 
 /// How many of the vectors, the first ones, are its history. The others are valid in a substep.
 const HISTORY: usize = 4;
+
+/// Which of the vectors are positions: at the start of the substep, and predicted.
+const POSITIONS: Range<usize> = 5..VECTORS;
 
 /// The vectors of each particle of a cloth, or of each node.
 type Motion = [Vec<Vec3>; VECTORS];
@@ -46,8 +51,9 @@ impl LaneState {
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Begins a tick after one of the scheme `before`: decides which cloths follow their nodes.
     pub fn begin_following(&mut self, before: Scheme) {
-        let Some(background) = self.fabric.background() else { return };
-        let is_flat = background.transfer.is_whole;
+        if self.fabric.background().is_none() {
+            return;
+        }
         let has_yarns = self.clock.settings.scheme == Scheme::Yarns;
         if has_yarns && before != Scheme::Yarns {
             self.find_nodes();
@@ -56,7 +62,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let Some(state) = &mut self.lanes[cloth] else { continue };
             let is_acted_on = !has_yarns || state.is_acted_on();
             let was_acted_on = mem::replace(&mut state.history.was_acted_on, is_acted_on);
-            if !is_flat || is_acted_on || was_acted_on {
+            if is_acted_on || was_acted_on {
                 self.stop_following(cloth);
             } else if !state.follows_nodes {
                 self.start_following(cloth);
@@ -109,15 +115,15 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             && let (Some(background), Some(grid)) = (self.fabric.background(), &mut self.background)
         {
             let transfer = &background.transfer;
-            add_resolved(transfer, &positions, &mut nodes.positions);
-            add_resolved(transfer, &velocities, &mut nodes.velocities);
+            add_resolved(transfer, &transfer.heights, &positions, &mut nodes.positions);
+            add_resolved(transfer, &[], &velocities, &mut nodes.velocities);
             let of_nodes = &mut nodes_history.displacements;
             for (particles, nodes) in displacements.iter().zip(of_nodes) {
-                add_resolved(transfer, particles, nodes);
+                add_resolved(transfer, &[], particles, nodes);
             }
             let of_nodes = &mut nodes_history.older_velocities;
             for (particles, nodes) in older_velocities.iter().zip(of_nodes) {
-                add_resolved(transfer, particles, nodes);
+                add_resolved(transfer, &[], particles, nodes);
             }
             grid.restore(cloth, &nodes);
         }
@@ -178,12 +184,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             BackgroundGrid::Single(single) => single.batch.motion_of(cloth),
         };
         let mut motion = self.motion_of(cloth);
-        for (particles, nodes) in motion.iter_mut().zip(&nodes) {
-            for (vector, row) in particles.iter_mut().zip(background.transfer.particles.rows()) {
-                if !row.is_empty() {
-                    *vector = interpolated(row, nodes);
-                }
-            }
+        let GridTransfer { particles: rows, heights, .. } = &background.transfer;
+        for (kind, (particles, nodes)) in motion.iter_mut().zip(&nodes).enumerate() {
+            let are_positions = POSITIONS.contains(&kind);
+            follow(rows, if are_positions { heights } else { &[] }, nodes, particles);
         }
         Some(motion)
     }
@@ -206,17 +210,36 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 }
 
-/// Adds to vectors of nodes R (x − P X): what they resolve of the difference of particles' vectors.
-fn add_resolved(transfer: &GridTransfer, particles: &[Vec3], nodes: &mut [Vec3]) {
-    let rows = particles.iter().zip(transfer.particles.rows());
-    let difference = |(of, row): (&Vec3, &[Term])| match row {
-        [] => Vec3::ZERO,
-        row => *of - interpolated(row, nodes),
-    };
-    let differences: Vec<Vec3> = rows.map(difference).collect();
+/// Adds to vectors of nodes R (x − P X): what they resolve of the difference of particles' vectors. Positions have heights.
+fn add_resolved(
+    transfer: &GridTransfer,
+    heights: &[Height],
+    particles: &[Vec3],
+    nodes: &mut [Vec3],
+) {
+    let mut followed = particles.to_vec();
+    follow(&transfer.particles, heights, nodes, &mut followed);
+    let differences: Vec<Vec3> =
+        particles.iter().zip(&followed).map(|(of, followed)| *of - *followed).collect();
     for (node, row) in nodes.iter_mut().zip(transfer.means.rows()) {
         *node += interpolated(row, &differences);
     }
+}
+
+/// Overwrites the vectors of particles that have rows by those that nodes interpolate, and raises positions by their heights.
+fn follow(rows: &Interpolation, heights: &[Height], nodes: &[Vec3], particles: &mut [Vec3]) {
+    for (vector, row) in particles.iter_mut().zip(rows.rows()) {
+        if !row.is_empty() {
+            *vector = interpolated(row, nodes);
+        }
+    }
+    if heights.is_empty() {
+        return;
+    }
+    let in_packs = |of: &[Vec3]| of.iter().copied().map(splat3).collect();
+    let (nodes, mut to): (Vec<Pack3<Pack1>>, Vec<_>) = (in_packs(nodes), in_packs(particles));
+    Pack1::run(AddHeights { heights, sign: 1.0, nodes: &nodes, to: &mut to });
+    particles.iter_mut().zip(&to).for_each(|(particle, raised)| *particle = lane3(raised, 0));
 }
 
 /// The vector that the terms of a row interpolate, with the bits of the kernels.

@@ -1,7 +1,7 @@
 //! The motion of the nodes of background grids.
 //!
-//! Nodes are integrated as the particles are: by the same formula, with gravity, damping and the motion of the frame, and,
-//! where the mesh is flat at rest, with air on the grid's own cells. What else acts on the particles reaches the nodes by
+//! Nodes are integrated as the particles are: by the same formula, with gravity, damping, the motion of the frame, and air on
+//! the grid's own cells. What else acts on the particles reaches the nodes by
 //! projection (`constraints/background.rs`).
 //!
 //! Where the particles follow the nodes (`step/follow.rs`), the nodes also undo the turn about the pole, are
@@ -82,5 +82,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             }
         }
         self.damp_internally();
+        self.keep_spin_of_nodes(cloths);
     }
 }

@@ -20,13 +20,12 @@ pub(super) struct BendLinePacks {
 impl BendLinePacks {
     pub fn new<P: Pack>(fabric: &Fabric, shape: GridShape) -> Self {
         let mut profiles = Vec::new();
-        let is_row = |line: &&BendLine| line.particles[1] == line.particles[0] + 1;
         // Neighbouring rows are consecutive in column-major order.
         let lines = [Order::ColumnMajor, Order::RowMajor].map(|order| {
             let parallel: Vec<&BendLine> = fabric
                 .bend_lines()
                 .iter()
-                .filter(|line| is_row(line) == (order == Order::ColumnMajor))
+                .filter(|line| line.is_row == (order == Order::ColumnMajor))
                 .collect();
             let packs = parallel.chunks(P::WIDTH).enumerate().map(|(pack, lines)| {
                 let profile =
@@ -34,6 +33,7 @@ impl BendLinePacks {
                 profiles.push(array::from_fn(profile));
                 let first = (pack * P::WIDTH) as isize;
                 BendLine {
+                    is_row: lines[0].is_row,
                     particles: (0..lines[0].particles.len())
                         .map(|line| shape.index(order, line, first))
                         .collect(),

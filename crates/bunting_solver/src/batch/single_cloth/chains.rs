@@ -135,7 +135,8 @@ impl<P: Pack> ChainPacks<P> {
     /// The chains of a grid; none if its yarns do not run straight.
     pub fn new(fabric: &Fabric, shape: GridShape) -> Option<Self> {
         let grid = fabric.grid()?;
-        let mut packer = Packer { shape, classes: Vec::new() };
+        let is_joined = fabric.is_closed();
+        let mut packer = Packer { shape, is_joined, classes: Vec::new() };
         let mut colours: Vec<(LinkFamily, Vec<Chain<P>>)> = Vec::new();
         let mut orders = Vec::new();
         for range in fabric.yarn_colours().ranges() {
@@ -186,6 +187,8 @@ fn cells<P: Pack>(chains: &Chains<P>, shape: GridShape) -> Vec<Cell> {
 /// Packs neighbouring yarns.
 struct Packer {
     shape: GridShape,
+    /// Whether the ends of columns are at one place.
+    is_joined: bool,
     classes: Vec<LaneIndices>,
 }
 
@@ -236,6 +239,7 @@ impl Packer {
             particles: (begin..=end).map(at).collect(),
             links: chain_links,
             sweep_order: sweep.concat(),
+            is_closed: self.is_joined && direction == Direction { columns: 0, rows: 1 },
         })
     }
 

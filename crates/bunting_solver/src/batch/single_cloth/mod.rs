@@ -194,6 +194,10 @@ impl<P: Pack> Layout<P> for SingleCloth<P> {
         &self.chains.chains
     }
 
+    fn index_of_pack(&self, pack: usize) -> u32 {
+        GridShape::start_of_pack::<P>(pack)
+    }
+
     fn order_of_chains(&self, colour: usize) -> Order {
         self.chains.orders[colour]
     }

@@ -92,6 +92,11 @@ impl<P: Pack> Positions<P> for PositionGrids<P> {
         &mut self.packs
     }
 
+    fn overwritten(&mut self) -> &mut [Pack3<P>] {
+        self.order = None;
+        &mut self.packs
+    }
+
     fn particles<'a>(
         &'a mut self,
         order: Order,

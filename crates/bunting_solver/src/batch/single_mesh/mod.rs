@@ -5,6 +5,7 @@
 //! too (`batch/background_grid.rs`). Gathers, and the interpolation between particles and nodes, read positions as
 //! vectors of x, y, z and zero, as neither the corners of patches nor nodes and particles are neighbours in memory.
 
+mod heights;
 mod patches;
 mod positions;
 mod vectors;
@@ -14,6 +15,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+pub(crate) use self::heights::{AddHeightPacks, HeightPacks};
 use self::patches::PatchPacks;
 pub(crate) use self::positions::MeshPositions;
 pub(crate) use self::vectors::{pack_count, read_vectors, write_vectors};
@@ -38,6 +40,8 @@ pub(crate) struct SingleMesh {
     /// Tethers to the farthest pins, and to the nearest pins.
     tethers: [TetherPacks<Pack8>; 2],
     patches: PatchPacks,
+    /// Compliance of each class of links of the mesh, 1/m²: a curved one is swept over.
+    pub link_compliance: Vec<f32>,
     /// Velocities as vectors, m/s.
     velocity: Vec<Pack4>,
 }
@@ -56,10 +60,12 @@ fn locate(particle: usize) -> (usize, usize) {
 }
 
 impl SingleMesh {
-    /// The layout of a fabric; none unless it is flat, and has a background grid that can lie across the lanes.
+    /// The layout of a fabric; none unless it has a background grid that can lie across the lanes.
     pub fn of(fabric: &Arc<Fabric>) -> Option<Self> {
-        let background = fabric.background()?;
-        if !background.transfer.is_whole || SingleCloth::<Pack8>::of(&background.fabric).is_none() {
+        let grid = &fabric.background()?.fabric;
+        SingleCloth::<Pack8>::of(grid)?;
+        // Columns that are closed and others would lie in one pack.
+        if grid.is_closed() && !grid.has_whole_columns() {
             return None;
         }
         let particles = fabric.particle_count();
@@ -75,6 +81,7 @@ impl SingleMesh {
             },
             tethers,
             patches: PatchPacks::new(fabric.patches(), particles),
+            link_compliance: Vec::new(),
             velocity: vec![Pack4::splat(0.0); pack_count(particles) * Pack8::WIDTH],
         })
     }
@@ -166,8 +173,9 @@ impl Layout<Pack8> for SingleMesh {
         &self.factors
     }
 
-    /// Has nothing to compute: all stiffness is that of the background grid.
-    fn set_stiffness(&mut self, _: usize, _: &Fabric, _: &Stiffness) {}
+    fn set_stiffness(&mut self, _: usize, fabric: &Fabric, stiffness: &Stiffness) {
+        self.link_compliance = stiffness.of_links(fabric);
+    }
 
     fn set_pins(&mut self, _: usize, _: &Fabric, positions: &[Vec3]) {
         self.tethers.iter_mut().for_each(|tethers| tethers.set_pins(positions));

@@ -62,8 +62,6 @@ pub(crate) struct GridTransfer {
     pub heights: Vec<Height>,
     /// Pairs of nodes at one place, where a mesh is closed around an axis.
     pub joined: Vec<[u32; 2]>,
-    /// Whether the grid bends as a whole, feels the air, and has tethers: that of a mesh that is flat at rest.
-    pub is_whole: bool,
 }
 
 /// The distance of a particle from the surface between nodes at rest.
@@ -88,6 +86,8 @@ pub(super) struct BackgroundMesh {
     pub coverage: Vec<f32>,
     /// cos² of the angle between the rows and the warp.
     pub warp_cos2: f32,
+    /// Whether the nodes lie in a plane at rest.
+    pub is_flat: bool,
     pub transfer: GridTransfer,
 }
 
@@ -120,8 +120,6 @@ impl BackgroundMesh {
             moved_areas: Vec::new(),
             heights: Vec::new(),
             joined: if chart.is_closed { first_and_last_row(&grid) } else { Vec::new() },
-            // Lines of nodes bend from straight ones.
-            is_whole: chart.plane.is_some(),
         };
         let free_areas = mesh.areas.iter().zip(&mesh.inverse_areas);
         let free_areas: Vec<f32> =
@@ -143,6 +141,7 @@ impl BackgroundMesh {
             mesh: nodes,
             coverage,
             warp_cos2: chart.warp_cos2,
+            is_flat: chart.plane.is_some(),
             transfer,
             grid,
         })
@@ -222,12 +221,11 @@ fn is_held(mesh: &RestMesh, chart: &Chart, grid: &Grid, nodes: &RestMesh) -> boo
     pinned.all(|(_, &at)| is_near_pinned_node(at))
 }
 
-/// The nodes as particles. Those that stand for pinned particles are pinned. Nodes of a flat mesh have the areas of a
-/// grid's particles: with those of the particles that they move, which differ from node
+/// The nodes as particles. Those that stand for pinned particles are pinned. They have the areas of a grid's
+/// particles: with those of the particles that they move, which differ from node
 /// to node by chance, a swing loses motion to short waves.
 fn node_mesh(mesh: &RestMesh, chart: &Chart, grid: &Grid, transfer: &GridTransfer) -> RestMesh {
-    let areas =
-        if transfer.is_whole { grid.particle_areas() } else { transfer.moved_areas.clone() };
+    let areas = grid.particle_areas();
     let is_free = |row: &[Term]| {
         let free = row.iter().filter(|term| !mesh.is_pinned(term.from));
         free.map(|term| term.weight).sum::<f32>() > LEAST_FREE

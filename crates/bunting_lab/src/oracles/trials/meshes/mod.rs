@@ -1,6 +1,7 @@
 //! Meshes that are no grids, by default settings: closed forms where there are some; elsewhere bounds, and the grid of
 //! as many particles, as this group asks whether a mesh is as good as a grid.
 
+mod curved;
 mod flags;
 mod rest;
 mod swing;
@@ -41,7 +42,12 @@ const REST: [f64; 2] = [1e-3, 5e-3];
 /// Everything that a mesh should do as a grid does.
 pub fn cases(_: &Mount) -> Vec<Case> {
     let of_each = TRIANGULATIONS.into_iter().flat_map(rest::cases);
-    of_each.chain(swing::cases()).chain([6.0, 25.0].into_iter().flat_map(flags::cases)).collect()
+    let arcs = TRIANGULATIONS.into_iter().flat_map(curved::cases);
+    of_each
+        .chain(arcs)
+        .chain(swing::cases())
+        .chain([6.0, 25.0].into_iter().flat_map(flags::cases))
+        .collect()
 }
 
 /// A square metre of about `n` × `n` particles, or the grid of as many.

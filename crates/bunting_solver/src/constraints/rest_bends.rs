@@ -1,0 +1,155 @@
+//! The second differences at rest of a curved grid, turned with the cloth.
+//!
+//! Before bending is solved, the frame of each node is found from its neighbours at their predicted positions. The second
+//! differences at rest (`fabric/rest_bends.rs`), which are constant in this frame, are then constant vectors of the systems'
+//! right-hand sides.
+
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::layout::{Layout, Order, Particles, Positions};
+use crate::constants::LEAST_LENGTH;
+use crate::fabric::Fabric;
+use crate::simd::constant::Constant;
+use crate::simd::lane::{Kernel, Lane, Pack};
+use crate::simd::vec3::{Pack3, V3, splat3};
+
+/// The second differences at rest of the nodes of a batch of grids.
+#[derive(Clone, Debug)]
+pub(crate) struct RestBendPacks<P: Pack, Y: Layout<P>> {
+    frames: Vec<NodeFrame<Y::Constant>>,
+    /// Second differences along rows, and along columns, and the twists of cells, m.
+    turned: [Y::Positions; 3],
+}
+
+/// What the frame of each node of a pack is found from, and what is constant in it.
+#[derive(Clone, Copy, Debug)]
+struct NodeFrame<C> {
+    /// Index of the first node in row-major order.
+    at: u32,
+    /// Indices of its neighbours before and after it in its row, above and below it.
+    neighbours: [u32; 4],
+    /// Positive in lanes whose node has neighbours before and after it in its row.
+    has_in_row: [C; 2],
+    /// As `RestBends::of_nodes`, m.
+    at_rest: [[C; 3]; 3],
+}
+
+impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
+    /// Those of a fabric; none if it is flat at rest.
+    pub fn of(fabric: &Fabric, layout: &Y) -> Option<Self> {
+        let rest = fabric.rest_bends()?;
+        let mut nodes_of_packs = vec![Vec::new(); layout.pack_count()];
+        for node in 0..fabric.particle_count() {
+            nodes_of_packs[layout.locate(node, 0).0].push(node);
+        }
+        let frame = |(pack, nodes): (usize, &Vec<usize>)| {
+            let constant = |of_node: &dyn Fn(usize) -> f32| {
+                Y::Constant::of(|lane| nodes.get(lane).map_or(0.0, |&node| of_node(node)))
+            };
+            let has = |side: usize| move |node: usize| rest.neighbours[node][side] != node as u32;
+            let at = layout.index_of_pack(pack);
+            let step = |side: usize, index: u32| {
+                if nodes.iter().any(|&node| has(side)(node)) { index } else { at }
+            };
+            let [_, _, above, below] = rest.neighbours[nodes[0]];
+            let in_column = |node: u32| layout.index_of_pack(layout.locate(node as usize, 0).0);
+            let sides = [0, 1];
+            NodeFrame {
+                at,
+                neighbours: [
+                    step(0, at.saturating_sub(1)),
+                    step(1, at + 1),
+                    in_column(above),
+                    in_column(below),
+                ],
+                has_in_row: sides.map(|side| constant(&|node| f32::from(has(side)(node)))),
+                at_rest: [0, 1, 2].map(|kind| {
+                    [0, 1, 2].map(|axis| constant(&|node| rest.of_nodes[node][kind][axis]))
+                }),
+            }
+        };
+        let zero = || layout.positions(vec![splat3(glam::Vec3::ZERO); layout.pack_count()]);
+        Some(Self {
+            frames: nodes_of_packs.iter().enumerate().map(frame).collect(),
+            turned: [zero(), zero(), zero()],
+        })
+    }
+
+    /// The second differences along rows or columns as the positions of particles.
+    pub fn of_lines<'a>(
+        &'a mut self,
+        are_rows: bool,
+        order: Order,
+        masses: &'a [P],
+        linked: &'a [P],
+    ) -> <Y::Positions as Positions<P>>::Particles<'a> {
+        let [rows, columns, _] = &mut self.turned;
+        if are_rows { rows } else { columns }.particles(order, masses, linked)
+    }
+
+    /// The twists of cells as the positions of their first nodes.
+    pub fn of_cells<'a>(
+        &'a mut self,
+        order: Order,
+        masses: &'a [P],
+        linked: &'a [P],
+    ) -> <Y::Positions as Positions<P>>::Particles<'a> {
+        self.turned[2].particles(order, masses, linked)
+    }
+}
+
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Turns the second differences at rest of curved grids with the nodes at their present positions.
+    pub(super) fn turn_rest_bends(&mut self) {
+        let Some(rest) = &mut self.rest_bends else { return };
+        let (masses, linked) = (&self.masses.inverse, self.layout.linked());
+        P::run(TurnRestBends {
+            frames: &rest.frames,
+            turned: rest.turned.each_mut().map(|vectors| vectors.overwritten()),
+            nodes: self.positions.particles(Order::RowMajor, masses, linked),
+        });
+    }
+}
+
+struct TurnRestBends<'a, P: Pack, S: Particles<P>> {
+    frames: &'a [NodeFrame<S::Constant>],
+    turned: [&'a mut [Pack3<P>]; 3],
+    nodes: S,
+}
+
+impl<P: Pack, S: Particles<P>> Kernel<P> for TurnRestBends<'_, P, S> {
+    #[inline(always)]
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        let zero = L::splat(token, 0.0);
+        let [rows, columns, cells] = self.turned;
+        let turned = rows.iter_mut().zip(columns).zip(cells);
+        for (frame, ((row, column), cell)) in self.frames.iter().zip(turned) {
+            let at: V3<L> = self.nodes.position(token, frame.at);
+            let [before, after, above, below] = frame.neighbours;
+            let [has_before, has_after] = &frame.has_in_row;
+            let before = self.nodes.position(token, before);
+            let before: V3<L> = before.or_where_not(zero.lt(has_before.load(token)), at);
+            let after = self.nodes.position(token, after);
+            let after: V3<L> = after.or_where_not(zero.lt(has_after.load(token)), at);
+            let across = self.nodes.position(token, below) - self.nodes.position(token, above);
+            let along = after - before;
+            let normal = unit(token, along.cross(across));
+            let tangent = unit(token, along);
+            let product = normal.cross(tangent);
+            for (turned, [first, second, third]) in
+                [row, column, cell].into_iter().zip(&frame.at_rest)
+            {
+                (normal * first.load(token))
+                    .plus_scaled(tangent, second.load(token))
+                    .plus_scaled(product, third.load(token))
+                    .store(turned);
+            }
+        }
+    }
+}
+
+/// The unit vector along a vector.
+#[inline(always)]
+fn unit<L: Lane>(token: L::Token, vector: V3<L>) -> V3<L> {
+    let least = L::splat(token, LEAST_LENGTH * LEAST_LENGTH);
+    vector * (L::splat(token, 1.0) / vector.dot(vector).max(least).sqrt())
+}

@@ -1,0 +1,97 @@
+//! Second differences of a grid that is curved at rest, in a frame of each node that turns with the cloth.
+//!
+//! A line of such a grid resists what its second differences are more than at rest. These are given along the normal of a
+//! node, its tangent along the row, and the product of both, which are found from the node's neighbours
+//! (`constraints/rest_bends.rs`). The systems of the lines stay those of a flat grid.
+
+use glam::Vec3;
+
+use super::fabric::Fabric;
+use super::grid::Grid;
+use super::links::LinkFamily;
+use super::yarns::Yarn;
+
+/// The second differences at rest of a grid's nodes.
+#[derive(Clone, Debug)]
+pub(crate) struct RestBends {
+    /// Of each node: second differences along its row and along its column, and the twist of the cell behind and below it,
+    /// each along the normal, the tangent and the product of both, m; zero where a line ends.
+    pub of_nodes: Vec<[[f32; 3]; 3]>,
+    /// Of each node those before and after it in its row, and those above and below it: the node itself where the grid
+    /// ends.
+    pub neighbours: Vec<[u32; 4]>,
+    /// Whether the first and the last row are at one place.
+    pub is_closed: bool,
+}
+
+impl RestBends {
+    /// The second differences of nodes at their positions at rest, m. The first and the last row of a closed grid are at
+    /// one place.
+    pub(super) fn of(grid: &Grid, positions: &[Vec3], is_closed: bool) -> Self {
+        let places = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |at| (at, row)));
+        let neighbours: Vec<[u32; 4]> =
+            places.map(|place| neighbours(grid, place, is_closed)).collect();
+        let of_node = |(node, near): (u32, &[u32; 4])| {
+            let at = |node: u32| positions[node as usize];
+            let [before, after, above, below] = *near;
+            let (along, across) = (at(after) - at(before), at(below) - at(above));
+            let normal = along.cross(across).normalize_or_zero();
+            let tangent = along.normalize_or_zero();
+            let product = normal.cross(tangent);
+            let in_frame = |of: Vec3| [of.dot(normal), of.dot(tangent), of.dot(product)];
+            let second = |first: u32, last: u32| match first == node || last == node {
+                true => Vec3::ZERO,
+                false => at(first) - 2.0 * at(node) + at(last),
+            };
+            // A closed grid has no cells below its last row.
+            let has_cell = after != node && node / grid.columns + 1 < grid.rows;
+            let twist = match has_cell {
+                true => at(node) - at(after) - at(below) + at(below + 1),
+                false => Vec3::ZERO,
+            };
+            [second(before, after), second(above, below), twist].map(in_frame)
+        };
+        Self { of_nodes: (0..).zip(&neighbours).map(of_node).collect(), neighbours, is_closed }
+    }
+}
+
+impl Fabric {
+    /// Whether the first and the last row of a background grid are at one place.
+    pub(crate) fn is_closed(&self) -> bool {
+        self.rest_bends().is_some_and(|rest| rest.is_closed)
+    }
+
+    /// Whether all yarns down the columns of a grid run from its first row to its last.
+    pub(crate) fn has_whole_columns(&self) -> bool {
+        let Some(grid) = self.grid() else { return false };
+        let is_down = |yarn: &&Yarn| yarn.particles[1] == yarn.particles[0] + grid.columns;
+        self.yarns().iter().filter(is_down).all(|yarn| grid.is_whole_column(yarn))
+    }
+
+    /// Length of a grid's diagonals at rest, m, the mean where it is curved there; zero of other meshes.
+    pub(crate) fn diagonal(&self) -> f32 {
+        if self.rest_bends().is_none() {
+            return self.grid().map_or(0.0, Grid::diagonal);
+        }
+        let diagonals = self.links().iter().filter(|it| it.family == LinkFamily::Diagonal);
+        let (count, sum) =
+            diagonals.fold((0.0, 0.0), |(count, sum), it| (count + 1.0, sum + it.rest_length));
+        sum / f32::max(count, 1.0)
+    }
+}
+
+/// The nodes before and after a place in its row, and those above and below it.
+fn neighbours(grid: &Grid, (column, row): (u32, u32), is_closed: bool) -> [u32; 4] {
+    let (last_column, last_row) = (grid.columns - 1, grid.rows - 1);
+    let above = match row {
+        0 if is_closed => last_row - 1,
+        _ => row.saturating_sub(1),
+    };
+    let below = if is_closed && row == last_row { 1 } else { (row + 1).min(last_row) };
+    [
+        grid.index(column.saturating_sub(1), row),
+        grid.index((column + 1).min(last_column), row),
+        grid.index(column, above),
+        grid.index(column, below),
+    ]
+}
