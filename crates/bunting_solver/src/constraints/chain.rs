@@ -14,6 +14,7 @@
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
 use crate::constraints::corrections::CorrectedParticles;
+use crate::constraints::ring::SolveRings;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, ChainLink, ChainPair, LinkFamily};
 use crate::simd::constant::Constant;
@@ -65,15 +66,22 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let chains = self.layout.chains(&self.fabric);
         let order = self.layout.order_of_chains(colour);
         let (masses, linked) = (&self.masses.inverse, self.layout.linked());
-        P::run(SolveChains {
-            pairs: &chains.pairs[chains.colours[colour].pairs.clone()],
+        let of_colour = chains.colours[colour].pairs.clone();
+        let solve = SolveChains {
+            pairs: &chains.pairs[of_colour.clone()],
             pass,
             is_any_overlong,
             compliance: &self.layout.factors().link_compliance,
             rows: &mut self.rows,
             target: &mut self.link_target,
             particles: self.positions.particles(order, masses, linked),
-        });
+        };
+        match chains.are_rings.get(of_colour) {
+            Some(are_rings) if matches!(pass, Pass::First | Pass::Again) => {
+                P::run(SolveRings { chains: solve, are_rings });
+            }
+            _ => P::run(solve),
+        }
     }
 }
 
@@ -141,11 +149,11 @@ impl Pass {
 
 /// The chains of one colour, in pairs.
 pub(super) struct SolveChains<'a, P: Pack, S: Particles<P>> {
-    pairs: &'a [ChainPair<S::Constant>],
-    pass: Pass,
+    pub(super) pairs: &'a [ChainPair<S::Constant>],
+    pub(super) pass: Pass,
     /// Set by [`Pass::Overlong`] where any link is overlong.
     pub(super) is_any_overlong: &'a mut bool,
-    compliance: &'a [P],
+    pub(super) compliance: &'a [P],
     pub(super) rows: &'a mut [TridiagonalRow<P>],
     pub(super) target: &'a mut [P],
     pub(super) particles: S,

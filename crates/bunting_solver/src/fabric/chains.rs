@@ -11,6 +11,8 @@
 use core::ops::Range;
 use std::collections::HashMap;
 
+use glam::Vec3;
+
 use super::colour::Colours;
 use super::grid::Grid;
 use super::links::{Link, LinkFamily};
@@ -98,6 +100,10 @@ pub(crate) struct Chains<C = f32> {
     pub sweep_links: Vec<SweepLink>,
     /// The cells of a grid whose diagonals are links; none for other meshes.
     pub cells: Vec<Cell>,
+    /// Lengths at rest of the two diagonals of each cell, m; empty where all are alike.
+    pub diagonal_lengths: Vec<[f32; 2]>,
+    /// Whether the chains of each pair close around a grid; empty of grids that are not closed.
+    pub are_rings: Vec<bool>,
 }
 
 impl Chains {
@@ -129,6 +135,32 @@ impl Chains {
         chains
     }
 
+    /// Notes which chains are rings, given the pairs of particles at one place.
+    pub(super) fn find_rings(&mut self, joined: &[[u32; 2]]) {
+        if joined.is_empty() {
+            return;
+        }
+        let is_ring = |pair: &ChainPair| {
+            let [.., before, last] = &pair.particles[..] else { return false };
+            let first = &pair.particles[0];
+            (0..pair.count).all(|at| {
+                let ends = [first[at], last[at]];
+                before[at] != last[at] && joined.iter().any(|two| sorted(*two) == sorted(ends))
+            })
+        };
+        self.are_rings = self.pairs.iter().map(is_ring).collect();
+    }
+
+    /// Notes the lengths at rest of each cell's diagonals, given the positions of the particles, m.
+    pub(super) fn measure_diagonals(&mut self, rest: &[Vec3]) {
+        let length = |one: u32, other: u32| rest[one as usize].distance(rest[other as usize]);
+        let of_cell = |cell: &Cell| {
+            let [first, left, right, last] = cell.corners;
+            [length(first, last), length(left, right)]
+        };
+        self.diagonal_lengths = self.cells.iter().map(of_cell).collect();
+    }
+
     /// The cells of a grid, with the targets of the diagonals that are links.
     fn cells_of(&self, grid: &Grid) -> Vec<Cell> {
         let targets: HashMap<[u32; 2], u32> =
@@ -150,6 +182,11 @@ impl Chains {
     }
 }
 
+/// Two particles, the lower one first.
+fn sorted([one, other]: [u32; 2]) -> [u32; 2] {
+    [one.min(other), one.max(other)]
+}
+
 impl<C: Copy> Chains<C> {
     /// No chains.
     pub fn none() -> Self {
@@ -163,6 +200,8 @@ impl<C: Copy> Chains<C> {
             colours: Vec::new(),
             sweep_links: Vec::new(),
             cells: Vec::new(),
+            diagonal_lengths: Vec::new(),
+            are_rings: Vec::new(),
         };
         for (family, of_colour) in colours {
             let (first_pair, first_link) = (chains.pairs.len(), chains.sweep_links.len());
@@ -252,6 +291,8 @@ impl Chains {
             colours: self.colours.clone(),
             sweep_links: self.sweep_links.iter().map(sweep_link).collect(),
             cells: self.cells.clone(),
+            diagonal_lengths: self.diagonal_lengths.clone(),
+            are_rings: self.are_rings.clone(),
         }
     }
 }

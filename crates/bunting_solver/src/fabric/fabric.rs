@@ -131,10 +131,23 @@ impl Fabric {
     /// The constraints of a background grid, whose nodes have no hinges, and have cells and tethers only where the mesh is
     /// flat at rest.
     fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
-        let BackgroundMesh { grid, mesh, coverage, transfer, .. } = background;
-        let links = Links::of(&mesh, Some(&grid), Some(&coverage), &[]);
-        let yarns = Yarns::of(&mesh.positions, &links.list);
-        let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid));
+        let BackgroundMesh { grid, mesh, coverage, warps, transfer, .. } = background;
+        let is_curved = !warps.is_empty();
+        let (links, yarns) = if is_curved {
+            let links = Links::of_curved_lines(&mesh, &grid, &coverage, &warps);
+            // In the chart lines are straight.
+            let yarns = Yarns::of(&grid.positions(), &links.list);
+            (links, yarns)
+        } else {
+            let links = Links::of(&mesh, Some(&grid), Some(&coverage), &[]);
+            let yarns = Yarns::of(&mesh.positions, &links.list);
+            (links, yarns)
+        };
+        let mut chains = Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid));
+        if is_curved {
+            chains.measure_diagonals(&mesh.positions);
+        }
+        chains.find_rings(&transfer.joined);
         let whole = transfer.is_whole.then_some(grid);
         let patches = whole.map(|grid| patches::cells(&mesh.triangles, &grid)).unwrap_or_default();
         let edges = topology::edges(&mesh.triangles).unwrap_or_default();

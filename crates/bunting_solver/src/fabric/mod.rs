@@ -18,6 +18,7 @@ mod chains;
 mod clamp;
 mod classes;
 mod colour;
+mod curved_links;
 mod error;
 #[expect(clippy::module_inception, reason = "the file of the type that gives the folder its name")]
 mod fabric;

@@ -1,5 +1,5 @@
 //! The background grid of a triangle mesh that fills a rectangle, and is flat at rest, has a texture that is like it, or can
-//! be unfolded.
+//! be unfolded, or that maps onto a rectangle, as tapered sheets and funnels do.
 //!
 //! Links along the edges of an irregular mesh are no paths along which a load runs: chains of them are short and
 //! zigzag, and what they leave to relaxation converges slowly. So such a mesh gets a regular grid, as particles have
@@ -9,12 +9,14 @@
 //!
 //! `chart` lays a flat mesh into the plane, `texture` a curved one, `unfold` one without texture, and `closed` finds
 //! the period of one that is closed around an axis. `coverage` measures how much of each cell is cloth, `interpolation`
-//! finds the weights, and `smooth` those of nodes on curved meshes.
+//! finds the weights, and `smooth` those of nodes on curved meshes. `mapped` finds charts whose lines are curved, and
+//! unevenly far apart: there each link and each cell has its own width and direction.
 
 mod chart;
 mod closed;
 mod coverage;
 mod interpolation;
+mod mapped;
 mod smooth;
 #[cfg(test)]
 mod tests;
@@ -88,17 +90,24 @@ pub(super) struct BackgroundMesh {
     pub coverage: Vec<f32>,
     /// cos² of the angle between the rows and the warp.
     pub warp_cos2: f32,
+    /// The same in each cell, where lines of nodes are curved; empty where they are straight.
+    pub warps: Vec<f32>,
     pub transfer: GridTransfer,
 }
 
 impl BackgroundMesh {
-    /// The grid of a mesh; none of a mesh that is small, cannot be laid into the plane without distortion or overlap, or
-    /// does not fill a rectangle there: laid yarns hold such meshes better (`fabric/laid_yarns/`).
+    /// The grid of a mesh; none of a mesh that is small, or neither fills a rectangle in the plane without distortion or
+    /// overlap nor maps onto one: laid yarns hold such meshes better (`fabric/laid_yarns/`).
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
         }
-        let chart = Chart::of(mesh, surface)?;
+        let straight = Chart::of(mesh, surface).and_then(|chart| Self::on(mesh, &chart));
+        straight.or_else(|| Self::on(mesh, &Chart::mapped(mesh, surface)?))
+    }
+
+    /// The grid of a mesh on a chart.
+    fn on(mesh: &RestMesh, chart: &Chart) -> Option<Self> {
         let grid = chart.grid();
         let nodes = nodes_from_particles(&chart.positions, &chart.triangles, &grid)?;
         let coverage = coverage::filled_once(&chart.positions, &chart.triangles, &grid)?;
@@ -127,14 +136,21 @@ impl BackgroundMesh {
         let free_areas: Vec<f32> =
             free_areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect();
         transfer.moved_areas = transfer.node_masses(&free_areas);
-        let nodes = node_mesh(mesh, &chart, &grid, &transfer);
+        let nodes = node_mesh(mesh, chart, &grid, &transfer);
+        if !chart.warps.is_empty() && !mapped::is_regular(&grid, &nodes) {
+            return None;
+        }
         let is_free = |node: usize| !nodes.is_pinned(node as u32);
         transfer.means = transfer.particles.adjoint(&mesh.areas, &transfer.moved_areas, is_free);
         transfer.held = transfer.nodes.rows_where(|node| !is_free(node));
         if chart.plane.is_none() {
-            transfer.heights = heights(mesh, &chart, &grid, &nodes, &transfer);
+            transfer.heights = heights(mesh, chart, &grid, &nodes, &transfer);
         }
-        let is_held = is_held(mesh, &chart, &grid, &nodes);
+        let warps = match chart.warps.is_empty() {
+            true => Vec::new(),
+            false => warps_of_cells(&transfer.nodes, &chart.warps, &grid),
+        };
+        let is_held = is_held(mesh, chart, &grid, &nodes);
         let GridTransfer { nodes: first, particles, means, held, .. } = &mut transfer;
         for rows in [first, particles, means, held] {
             *rows = core::mem::take(rows).grouped();
@@ -143,6 +159,7 @@ impl BackgroundMesh {
             mesh: nodes,
             coverage,
             warp_cos2: chart.warp_cos2,
+            warps,
             transfer,
             grid,
         })
@@ -198,6 +215,16 @@ fn heights(
         }
     }
     heights
+}
+
+/// cos² of the angle between the rows and the warp in each cell, given those at the particles.
+fn warps_of_cells(nodes: &Interpolation, of_particles: &[f32], grid: &Grid) -> Vec<f32> {
+    let of_node = |row: &[Term]| -> f32 {
+        row.iter().map(|term| term.weight * of_particles[term.from as usize]).sum()
+    };
+    let of_nodes: Vec<f32> = nodes.rows().map(of_node).collect();
+    let mean = |corners: [u32; 4]| corners.map(|at| 0.25 * of_nodes[at as usize]).iter().sum();
+    grid.cells().map(|(corners, _)| f32::clamp(mean(corners), 0.0, 1.0)).collect()
 }
 
 /// The nodes of the first and of the last row of a grid, in pairs.
