@@ -1,12 +1,13 @@
 //! Rings: chains around a closed grid, whose last particle is the first one.
 //!
-//! A ring that is solved as an open chain gives way at its ends, where nothing pulls on from, and carries no tension
-//! around a funnel there. Its system is tridiagonal but for its two corners, which couple the first and the last link. It is
+//! A ring that is solved as an open chain gives way at its ends, as nothing pulls from beyond them: there it carries no
+//! tension around a funnel. Its system is tridiagonal but for its two corners, which couple the first and the last link. It is
 //! solved as the sum of a tridiagonal one and a product of two vectors (Sherman and Morrison 1950): the elimination
 //! carries a second right side along.
 
 use crate::batch::layout::Particles;
 use crate::constraints::chain::{Pass, SolveChains};
+use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, ChainPair};
 use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Pack};
@@ -26,7 +27,9 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for SolveRings<'_, P, S> {
         for (pair, &is_ring) in pairs.iter().zip(self.are_rings) {
             match (is_ring, pair.count) {
                 (true, count) => {
-                    (0..count).for_each(|at| self.chains.solve_ring::<L>(token, pair, at, pass))
+                    for at in 0..count {
+                        self.chains.solve_ring::<L>(token, pair, at, pass);
+                    }
                 }
                 (false, CHAINS_PER_PAIR) => {
                     self.chains.solve::<L, CHAINS_PER_PAIR>(token, pair, pass);
@@ -52,7 +55,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         let least = L::splat(token, f32::MIN_POSITIVE);
         let count = pair.links.len();
         let (first, last) = (pair.particles[0][at], pair.particles[count][at]);
-        let target_of = |row: usize| pair.targets.start + row * pair.count + at;
+        let first_target = pair.targets.start + at;
         let start = {
             let (one, other): (V3<L>, V3<L>) =
                 (self.particles.position(token, first), self.particles.position(token, last));
@@ -72,7 +75,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             let target = if pass == Pass::First {
                 link.rest_length.load(token)
             } else {
-                L::load(token, &self.target[target_of(row)])
+                L::load(token, &self.target[first_target + row * pair.count])
             };
             let is_last = row + 1 == count;
             let particle = pair.particles[row + 1][at];
@@ -135,7 +138,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 .minus_product(part, L::load(token, &of_second.unknown));
             let tension = V3::load(token, &of_unknown.along) * unknown;
             let change = L::load(token, &of_unknown.target_change) * unknown;
-            let target = &mut self.target[target_of(row)];
+            let target = &mut self.target[first_target + row * pair.count];
             let before = if pass == Pass::First {
                 pair.links[row][at].rest_length.load(token)
             } else {
@@ -165,10 +168,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
 
     /// The rows of both right sides of a link.
     #[inline(always)]
-    fn rows_of(
-        &mut self,
-        row: usize,
-    ) -> &mut [crate::constraints::tridiagonal::TridiagonalRow<P>; 2] {
+    fn rows_of(&mut self, row: usize) -> &mut [TridiagonalRow<P>; 2] {
         let (rows, _) = self.rows.as_chunks_mut::<2>();
         &mut rows[row]
     }

@@ -15,7 +15,7 @@ impl Links {
         for (((corners, _), &part), &warp) in grid.cells().zip(coverage).zip(warps) {
             let [top_left, top_right, bottom_left, bottom_right] = corners;
             let [a, b, c, d] = mesh.positions_of(corners);
-            let area = 0.5 * part * (d - a).cross(c - b).length();
+            let area = 0.5 * (d - a).cross(c - b).length();
             let mut add = |ends: [u32; 2], family| {
                 let [from, to] = ends;
                 let squared = {
@@ -23,11 +23,12 @@ impl Links {
                     one.distance_squared(other)
                 };
                 let sum = sums.entry([from.min(to), from.max(to)]).or_insert(CellSum::none(family));
-                sum.coefficient += match family {
-                    // G γ² A/2 in both diagonals, whose lengths change by γ A/d.
-                    LinkFamily::Diagonal => 0.5 * squared / area,
-                    _ => 0.5 * area / squared,
-                };
+                sum.coefficient += part
+                    * match family {
+                        // G γ² A/2 in both diagonals, whose lengths change by γ A/d.
+                        LinkFamily::Diagonal => 0.5 * squared / area,
+                        _ => 0.5 * area / squared,
+                    };
                 sum.warps += warp;
                 sum.cells += 1.0;
             };
