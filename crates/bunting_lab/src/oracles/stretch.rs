@@ -24,3 +24,27 @@ pub fn spinning_strip(density: f64, rate: f64, length: f64, stiffness: f64) -> f
 pub fn free_spinning_strip(density: f64, rate: f64, length: f64, stiffness: f64) -> f64 {
     2.0 * spinning_strip(density, rate, length / 2.0, stiffness)
 }
+
+/// How far the lower rim of a funnel sinks that hangs from its upper one, m: a cone of half the angle φ, from a radius to
+/// a smaller one, without Poisson's ratio. Weight below hangs on each circle, and tension around it, σ g r tan φ, carries
+/// what of the weight points outwards.
+#[must_use]
+pub fn hung_funnel(
+    density: f64,
+    gravity: f64,
+    [upper, lower]: [f64; 2],
+    height: f64,
+    stiffness: f64,
+) -> f64 {
+    const PARTS: u32 = 1000;
+    let (slant, narrower) = (height.hypot(upper - lower), upper - lower);
+    let [sin, cos] = [narrower / slant, height / slant];
+    let strain = |part: u32| {
+        let radius = upper - narrower * (f64::from(part) + 0.5) / f64::from(PARTS);
+        (radius * radius - lower * lower) / (2.0 * radius * sin * cos)
+    };
+    let lengthening = slant * (0..PARTS).map(strain).sum::<f64>() / f64::from(PARTS);
+    // The wider lower rim hangs lower, as the length along the cone is the same.
+    let widening = sin * lower * lower * sin / cos;
+    density * gravity * (lengthening + widening) / (stiffness * cos)
+}

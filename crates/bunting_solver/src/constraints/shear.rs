@@ -38,6 +38,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let (masses, linked) = (&self.masses.inverse, self.layout.linked());
         P::run(DiagonalTargets {
             cells: &self.layout.chains(&self.fabric).cells,
+            lengths: &self.layout.chains(&self.fabric).diagonal_lengths,
             length: &self.numbers.diagonal_length,
             stretch: &self.parameters.diagonal_stretch,
             target: &mut self.link_target,
@@ -54,11 +55,21 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         for target in &mut self.link_target {
             target.lanes_mut()[lanes.clone()].copy_from_slice(lengths);
         }
+        let chains = self.layout.chains(&self.fabric);
+        for (cell, lengths) in chains.cells.iter().zip(&chains.diagonal_lengths) {
+            // The first diagonal is stored last, as it may be the only one.
+            for at in [1, 0] {
+                let target = &mut self.link_target[cell.targets[at] as usize];
+                target.lanes_mut()[lanes.clone()].fill(lengths[at]);
+            }
+        }
     }
 }
 
 struct DiagonalTargets<'a, P: Pack, S: Particles<P>> {
     cells: &'a [Cell],
+    /// Of both diagonals of each cell at rest, m; empty where all are alike.
+    lengths: &'a [[f32; 2]],
     /// At rest, m.
     length: &'a P,
     /// Greatest length, in units of that at rest.
@@ -70,6 +81,9 @@ struct DiagonalTargets<'a, P: Pack, S: Particles<P>> {
 impl<P: Pack, S: Particles<P>> Kernel<P> for DiagonalTargets<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+        if !self.lengths.is_empty() {
+            return self.of_unlike_cells::<L>(token);
+        }
         let Self { cells, target: targets, particles, .. } = self;
         let length = L::load(token, self.length);
         let half = L::splat(token, 0.5) * length;
@@ -87,6 +101,33 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for DiagonalTargets<'_, P, S> {
             // The first diagonal is stored last, as it may be the only one.
             let [of_first, of_second] = cell.targets;
             bounded(token, other, target).store(&mut targets[of_second as usize]);
+            bounded(token, own, target).store(&mut targets[of_first as usize]);
+        }
+    }
+}
+
+impl<P: Pack, S: Particles<P>> DiagonalTargets<'_, P, S> {
+    /// The targets of cells that are no rectangles and differ: diagonals are at rest when their ratio is that at rest.
+    #[inline(always)]
+    fn of_unlike_cells<L: Lane<Pack = P>>(self, token: L::Token) {
+        let Self { cells, lengths, target: targets, particles, .. } = self;
+        let (one, half) = (L::splat(token, 1.0), L::splat(token, 0.5));
+        let longest = L::load(token, self.stretch);
+        let shortest = one + one - longest;
+        for (cell, [of_own, of_other]) in cells.iter().zip(lengths) {
+            let [first, left, right, last] = cell.corners;
+            let own: V3<L> = particles.position(token, last) - particles.position(token, first);
+            let other: V3<L> = particles.position(token, right) - particles.position(token, left);
+            let (own, other) = (own.dot(own), other.dot(other));
+            let at_rest = 2.0 * (of_own * of_own + of_other * of_other);
+            // √(Σ|d|²/Σ|d₀|²), linearised about one.
+            let stretch = half.plus_product(own + other, L::splat(token, 1.0 / at_rest));
+            let stretch = shortest.max(longest.or_where_not(longest.lt(stretch), stretch));
+            // The first diagonal is stored last, as it may be the only one.
+            let [of_first, of_second] = cell.targets;
+            let target = L::splat(token, *of_other) * stretch;
+            bounded(token, other, target).store(&mut targets[of_second as usize]);
+            let target = L::splat(token, *of_own) * stretch;
             bounded(token, own, target).store(&mut targets[of_first as usize]);
         }
     }

@@ -4,6 +4,7 @@
 //! implicit step of a whole line is a pentadiagonal system with constant factors. Lines with the same spacing,
 //! areas and pins share one [`BendProfile`], and so one set of factors.
 
+use super::cell_sizes::CellSizes;
 use super::clamp::CLAMP_FACTOR;
 use super::classes::{Classes, rounded_bits};
 use super::grid::Grid;
@@ -44,7 +45,13 @@ pub(crate) struct Bending {
 
 impl Bending {
     /// Rows and columns of three and more particles. The columns of a closed grid end where they begin.
-    pub fn of(grid: &Grid, inverse_areas: &[f32], is_closed: bool) -> Self {
+    /// Particles are evenly far apart unless sizes are given.
+    pub fn of(
+        grid: &Grid,
+        inverse_areas: &[f32],
+        is_closed: bool,
+        sizes: Option<&CellSizes>,
+    ) -> Self {
         let [dx, dy] = grid.spacing();
         // The first and the last line represent half a cell.
         let cells =
@@ -62,7 +69,15 @@ impl Bending {
         let bends = |(_, particles, ..): &(bool, Vec<u32>, f32, f32)| particles.len() > 2;
         let lines = rows.chain(columns).filter(bends).map(|(is_row, particles, spacing, width)| {
             let closes = is_closed && !is_row;
-            let profile = BendProfile::new(&particles, spacing, width, inverse_areas, closes);
+            let size = |particle: u32| match sizes {
+                Some(CellSizes { spacings, widths, .. }) => {
+                    let line = usize::from(!is_row);
+                    (spacings[particle as usize][line], widths[particle as usize][line])
+                }
+                None => (spacing, width),
+            };
+            let sizes: Vec<(f32, f32)> = particles.iter().map(|&particle| size(particle)).collect();
+            let profile = BendProfile::new(&particles, &sizes, inverse_areas, closes);
             let (class, is_new) = classes.class_of(profile.key());
             if is_new {
                 profiles.push(profile);
@@ -74,28 +89,31 @@ impl Bending {
 }
 
 impl BendProfile {
-    /// A line of particles `spacing` metres apart that represents a strip of cloth `width` metres wide.
+    /// A line of particles. `sizes` are their distances, m, and the widths of cloth that the line represents there, m.
     fn new(
         particles: &[u32],
-        spacing: f32,
-        width: f32,
+        sizes: &[(f32, f32)],
         inverse_areas: &[f32],
         is_closed: bool,
     ) -> Self {
+        // One spacing for the whole line, whose second differences the coefficients weigh by the real ones.
+        let spacing = sizes[sizes.len() / 2].0;
         let inverse_areas: Vec<f32> =
             particles.iter().map(|&particle| inverse_areas[particle as usize]).collect();
-        let coefficient = |three: [f32; 3]| {
+        let coefficient = |three: [f32; 3], (distance, width): (f32, f32)| {
             let at_clamp = three[1] == 0.0 && (three[0] == 0.0) != (three[2] == 0.0);
-            width / spacing * if at_clamp { CLAMP_FACTOR } else { 1.0 }
+            let ratio = spacing / distance;
+            width / distance * (ratio * ratio) * if at_clamp { CLAMP_FACTOR } else { 1.0 }
         };
         let before_last = inverse_areas[inverse_areas.len() - 2];
+        let inner = inverse_areas.windows(3).zip(&sizes[1..]);
         let coefficients =
-            inverse_areas.windows(3).map(|three| coefficient([three[0], three[1], three[2]]));
+            inner.map(|(three, &size)| coefficient([three[0], three[1], three[2]], size));
         Self {
             inverse_spacing: 1.0 / spacing,
             coefficients: coefficients.collect(),
             closing: is_closed
-                .then(|| coefficient([before_last, inverse_areas[0], inverse_areas[1]])),
+                .then(|| coefficient([before_last, inverse_areas[0], inverse_areas[1]], sizes[0])),
             inverse_areas,
         }
     }

@@ -11,6 +11,8 @@
 use core::ops::Range;
 use std::collections::HashMap;
 
+use glam::Vec3;
+
 use super::colour::Colours;
 use super::grid::Grid;
 use super::links::{Link, LinkFamily};
@@ -102,6 +104,8 @@ pub(crate) struct Chains<C = f32> {
     pub sweep_links: Vec<SweepLink>,
     /// The cells of a grid whose diagonals are links; none for other meshes.
     pub cells: Vec<Cell>,
+    /// Lengths at rest of the two diagonals of each cell, m; empty where all are alike.
+    pub diagonal_lengths: Vec<[f32; 2]>,
 }
 
 impl Chains {
@@ -134,6 +138,16 @@ impl Chains {
             chains.cells = chains.cells_of(grid);
         }
         chains
+    }
+
+    /// Notes the lengths at rest of each cell's diagonals, given the positions of the particles, m.
+    pub(super) fn measure_diagonals(&mut self, rest: &[Vec3]) {
+        let length = |one: u32, other: u32| rest[one as usize].distance(rest[other as usize]);
+        let of_cell = |cell: &Cell| {
+            let [first, left, right, last] = cell.corners;
+            [length(first, last), length(left, right)]
+        };
+        self.diagonal_lengths = self.cells.iter().map(of_cell).collect();
     }
 
     /// The cells of a grid, with the targets of the diagonals that are links.
@@ -170,6 +184,7 @@ impl<C: Copy> Chains<C> {
             colours: Vec::new(),
             sweep_links: Vec::new(),
             cells: Vec::new(),
+            diagonal_lengths: Vec::new(),
         };
         for (family, of_colour) in colours {
             let (first_pair, first_link) = (chains.pairs.len(), chains.sweep_links.len());
@@ -260,6 +275,7 @@ impl Chains {
             colours: self.colours.clone(),
             sweep_links: self.sweep_links.iter().map(sweep_link).collect(),
             cells: self.cells.clone(),
+            diagonal_lengths: self.diagonal_lengths.clone(),
         }
     }
 }

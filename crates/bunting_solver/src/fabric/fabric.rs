@@ -99,9 +99,11 @@ impl Fabric {
         let strips =
             grid.map(|grid| strip::strips(&grid, &links.list, &chains)).unwrap_or_default();
         let hinges = Hinges::of(&mesh, &surface.edges);
-        let bending =
-            grid.map(|grid| Bending::of(&grid, &mesh.inverse_areas, false)).unwrap_or_default();
-        let twist = grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas)).unwrap_or_default();
+        let bending = grid
+            .map(|grid| Bending::of(&grid, &mesh.inverse_areas, false, None))
+            .unwrap_or_default();
+        let twist =
+            grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas, None)).unwrap_or_default();
         let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
         let shortest = match (&grid, &background) {
             (None, None) => laid_yarns.least_spacing,
@@ -134,23 +136,40 @@ impl Fabric {
 
     /// The constraints of a background grid, whose nodes have no hinges.
     fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
-        let BackgroundMesh { grid, mesh, coverage, is_flat, transfer, .. } = background;
-        let links = Links::of(&mesh, Some(&grid), Some(&coverage), &[]);
-        let yarns = Yarns::of(&mesh.positions, &links.list);
+        let BackgroundMesh { grid, mesh, coverage, curved_lines, is_flat, transfer, .. } =
+            background;
+        let (links, yarns) = match &curved_lines {
+            Some(lines) => {
+                let links = Links::of_curved_lines(&mesh, &grid, &coverage, lines);
+                // In the chart lines are straight.
+                let yarns = Yarns::of(&grid.positions(), &links.list);
+                (links, yarns)
+            }
+            None => {
+                let links = Links::of(&mesh, Some(&grid), Some(&coverage), &[]);
+                let yarns = Yarns::of(&mesh.positions, &links.list);
+                (links, yarns)
+            }
+        };
+        let sizes = curved_lines.as_ref().map(|lines| &lines.sizes);
         let is_closed = !transfer.joined.is_empty();
-        let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid), is_closed);
+        let mut chains =
+            Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid), is_closed);
+        if sizes.is_some() {
+            chains.measure_diagonals(&mesh.positions);
+        }
         let edges = topology::edges(&mesh.triangles).unwrap_or_default();
         let inverse_areas = &mesh.inverse_areas;
         let fabric = Self {
-            bending: Bending::of(&grid, inverse_areas, is_closed),
-            twist: Twist::of(&grid, inverse_areas),
+            bending: Bending::of(&grid, inverse_areas, is_closed, sizes),
+            twist: Twist::of(&grid, inverse_areas, sizes),
             rest_bends: (!is_flat).then(|| RestBends::of(&grid, &mesh.positions, is_closed)),
             hinges: Hinges::of(&mesh, &[]),
             tethers: Tethers::of(&mesh, &edges, is_flat, tethered),
             tautness: 0.0,
             shortest: 0.0,
             probes: Vec::new(),
-            patches: patches::cells(&mesh.triangles, &grid),
+            patches: patches::cells(&mesh.triangles, &grid, sizes),
             patch_grid_columns: Some(grid.columns as usize),
             background: None,
             laid_yarns: LaidYarns::default(),

@@ -48,6 +48,23 @@ impl Grid {
             && steps.into_iter().all(|ends| ends[1] == ends[0] + self.columns)
     }
 
+    /// The particles before and after a place in its row, and those above and below it: the particle itself where the grid
+    /// ends. The first and the last row of a closed grid are at one place.
+    pub(super) fn neighbours(&self, (column, row): (u32, u32), is_closed: bool) -> [u32; 4] {
+        let (last_column, last_row) = (self.columns - 1, self.rows - 1);
+        let above = match row {
+            0 if is_closed => last_row - 1,
+            _ => row.saturating_sub(1),
+        };
+        let below = if is_closed && row == last_row { 1 } else { (row + 1).min(last_row) };
+        [
+            self.index(column.saturating_sub(1), row),
+            self.index((column + 1).min(last_column), row),
+            self.index(column, above),
+            self.index(column, below),
+        ]
+    }
+
     /// Index of the particle in a column and row.
     #[must_use]
     pub const fn index(&self, column: u32, row: u32) -> u32 {

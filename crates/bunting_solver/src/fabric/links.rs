@@ -63,6 +63,8 @@ pub(crate) struct LinkClass {
     pub coefficients: [f32; 3],
     /// Least stiffness, as a fraction of the material's smaller stretch stiffness.
     pub floor: f32,
+    /// cos² of the angle between the rows of the grid and the warp, where it varies from link to link; else one.
+    pub warp_cos2: f32,
 }
 
 impl LinkClass {
@@ -78,6 +80,7 @@ impl LinkClass {
     /// Warp and weft then carry all of the stretch: the material's own moduli hold, and negative
     /// coefficients, which compensate for the diagonals, are left out.
     pub fn uncoupled_stiffness(&self, material: &FabricMaterial) -> f32 {
+        let material = &material.turned(self.warp_cos2);
         let FabricMaterial { warp_stiffness, weft_stiffness, shear_stiffness, .. } = *material;
         let moduli = [warp_stiffness, weft_stiffness, shear_stiffness];
         self.combined(moduli, |coefficient| coefficient > 0.0).max(self.least(material))
@@ -99,7 +102,7 @@ impl LinkClass {
 /// Least stiffness of a link, as a fraction of its stiffness in an isotropic mesh (Van Gelder 1998). Smaller:
 /// a mesh cannot hold its shape on links whose stiffness is zero or negative. Larger: shear-soft materials
 /// shear too little.
-const LEAST_STIFFNESS: f64 = 0.02;
+pub(super) const LEAST_STIFFNESS: f64 = 0.02;
 
 /// Size, relative to the normal equations, of the term that selects the smallest solution if a triangle's
 /// three directions do not determine it (as for an equilateral triangle). Smaller: the inverse is dominated
@@ -154,18 +157,27 @@ impl Links {
                 }
             }
         }
+        let links = sums.into_iter().map(|(ends, sum)| (ends, sum.class(), sum.family()));
+        Self::of_classes(mesh, links)
+    }
+
+    /// Links between particles, with their stiffnesses and families.
+    pub(super) fn of_classes(
+        mesh: &RestMesh,
+        links: impl Iterator<Item = ([u32; 2], LinkClass, LinkFamily)>,
+    ) -> Self {
         let is_free = |ends: &[u32; 2]| !ends.iter().all(|&end| mesh.is_pinned(end));
         let mut table = Vec::new();
         let mut classes = Classes::new();
-        let links = sums.into_iter().filter(|(ends, _)| is_free(ends)).map(|(particles, sum)| {
-            let value = sum.class();
+        let links = links.filter(|(ends, ..)| is_free(ends)).map(|(particles, value, family)| {
             let [a, b, c] = value.coefficients;
-            let (class, is_new) = classes.class_of([a, b, c, value.floor].map(rounded_bits));
+            let (class, is_new) =
+                classes.class_of([a, b, c, value.floor, value.warp_cos2].map(rounded_bits));
             if is_new {
                 table.push(value);
             }
             let [a, b] = mesh.positions_of(particles);
-            Link { particles, rest_length: a.distance(b), class, family: sum.family() }
+            Link { particles, rest_length: a.distance(b), class, family }
         });
         let (list, _) = colour(
             mesh.positions.len(),
@@ -216,6 +228,7 @@ impl LinkSum {
                 if coefficient.abs() < LEAST_COEFFICIENT { 0.0 } else { coefficient as f32 }
             }),
             floor: (LEAST_STIFFNESS * self.isotropic) as f32,
+            warp_cos2: 1.0,
         }
     }
 

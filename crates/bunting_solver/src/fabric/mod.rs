@@ -14,10 +14,12 @@
 mod background;
 mod bending;
 mod builder;
+mod cell_sizes;
 mod chains;
 mod clamp;
 mod classes;
 mod colour;
+mod curved_links;
 mod error;
 #[expect(clippy::module_inception, reason = "the file of the type that gives the folder its name")]
 mod fabric;

@@ -30,7 +30,7 @@ impl RestBends {
     pub(super) fn of(grid: &Grid, positions: &[Vec3], is_closed: bool) -> Self {
         let places = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |at| (at, row)));
         let neighbours: Vec<[u32; 4]> =
-            places.map(|place| neighbours(grid, place, is_closed)).collect();
+            places.map(|place| grid.neighbours(place, is_closed)).collect();
         let of_node = |(node, near): (u32, &[u32; 4])| {
             let at = |node: u32| positions[node as usize];
             let [before, after, above, below] = *near;
@@ -78,20 +78,4 @@ impl Fabric {
             diagonals.fold((0.0, 0.0), |(count, sum), it| (count + 1.0, sum + it.rest_length));
         sum / f32::max(count, 1.0)
     }
-}
-
-/// The nodes before and after a place in its row, and those above and below it.
-fn neighbours(grid: &Grid, (column, row): (u32, u32), is_closed: bool) -> [u32; 4] {
-    let (last_column, last_row) = (grid.columns - 1, grid.rows - 1);
-    let above = match row {
-        0 if is_closed => last_row - 1,
-        _ => row.saturating_sub(1),
-    };
-    let below = if is_closed && row == last_row { 1 } else { (row + 1).min(last_row) };
-    [
-        grid.index(column.saturating_sub(1), row),
-        grid.index((column + 1).min(last_column), row),
-        grid.index(column, above),
-        grid.index(column, below),
-    ]
 }

@@ -4,6 +4,7 @@
 //! energy that rows and columns leave out. Neighbouring cells of a ribbon share two particles, so that the implicit
 //! step of a whole ribbon is a tridiagonal system with constant factors.
 
+use super::cell_sizes::CellSizes;
 use super::classes::{Classes, rounded_bits};
 use super::grid::Grid;
 
@@ -35,8 +36,9 @@ pub(crate) struct Twist {
 }
 
 impl Twist {
-    /// The ribbons along a grid's longer side, where twist accumulates over most cells.
-    pub fn of(grid: &Grid, inverse_areas: &[f32]) -> Self {
+    /// The ribbons along a grid's longer side, where twist accumulates over most cells. Cells are alike unless sizes are
+    /// given.
+    pub fn of(grid: &Grid, inverse_areas: &[f32], sizes: Option<&CellSizes>) -> Self {
         let along_columns = grid.rows >= grid.columns;
         let (across, along) =
             if along_columns { (grid.columns, grid.rows) } else { (grid.rows, grid.columns) };
@@ -46,13 +48,21 @@ impl Twist {
         let inverse_area = |particle: u32| inverse_areas[particle as usize];
         let [dx, _] = grid.spacing();
         let cell_area = dx * grid.height / (grid.rows - 1) as f32;
+        // The mean area of a ribbon's cells.
+        let mean_area = |line: u32| {
+            let Some(sizes) = sizes else { return cell_area };
+            let columns = grid.columns - 1;
+            let (first, step) = if along_columns { (line, columns) } else { (line * columns, 1) };
+            let sum: f32 = (0..along - 1).map(|at| sizes.areas[(first + at * step) as usize]).sum();
+            sum / (along - 1) as f32
+        };
         let mut profiles: Vec<RibbonProfile> = Vec::new();
         let mut classes = Classes::new();
         let ribbon = |line: u32| {
             let pair = |place: u32| [particle(line, place), particle(line + 1, place)];
             let pairs: Vec<[u32; 2]> = (0..along).map(pair).collect();
             let profile = RibbonProfile {
-                coefficient: 2.0 / cell_area,
+                coefficient: 2.0 / mean_area(line),
                 inverse_areas: pairs.iter().map(|pair| pair.map(inverse_area)).collect(),
             };
             let (class, is_new) = classes.class_of(profile.key());
@@ -70,6 +80,7 @@ impl Twist {
 impl RibbonProfile {
     /// Key that is equal for profiles that differ by rounding only.
     fn key(&self) -> Vec<u32> {
-        self.inverse_areas.as_flattened().iter().map(|&value| rounded_bits(value)).collect()
+        let areas = self.inverse_areas.as_flattened().iter();
+        core::iter::once(&self.coefficient).chain(areas).map(|&value| rounded_bits(value)).collect()
     }
 }

@@ -46,6 +46,9 @@ pub(super) struct Chart {
     /// The plane of a flat mesh.
     pub plane: Option<Plane>,
     pub extent: Vec2,
+    /// cos² of the angle between the rows and the warp at each particle, where the lines of the grid are curved; empty
+    /// where they are straight.
+    pub warps: Vec<f32>,
     /// Of the mesh, m².
     pub area: f32,
 }
@@ -128,6 +131,7 @@ impl Chart {
             warp_cos2: 1.0,
             plane: Some(Plane { origin: height + axes[0] * low.x + axes[1] * low.y, axes }),
             extent: high - low,
+            warps: Vec::new(),
             area,
         }
     }

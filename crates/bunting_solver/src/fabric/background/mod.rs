@@ -1,5 +1,5 @@
 //! The background grid of a triangle mesh that fills a rectangle, and is flat at rest, has a texture that is like it, or can
-//! be unfolded.
+//! be unfolded, or that maps onto a rectangle, as tapered sheets and funnels do.
 //!
 //! Links along the edges of an irregular mesh are no paths along which a load runs: chains of them are short and
 //! zigzag, and what they leave to relaxation converges slowly. So such a mesh gets a regular grid, as particles have
@@ -9,12 +9,14 @@
 //!
 //! `chart` lays a flat mesh into the plane, `texture` a curved one, `unfold` one without texture, and `closed` finds
 //! the period of one that is closed around an axis. `coverage` measures how much of each cell is cloth, `interpolation`
-//! finds the weights, and `smooth` those of nodes on curved meshes.
+//! finds the weights, and `smooth` those of nodes on curved meshes. `mapped` finds charts whose lines are curved, and
+//! unevenly far apart: there each link and each cell has its own width and direction.
 
 mod chart;
 mod closed;
 mod coverage;
 mod interpolation;
+mod mapped;
 mod smooth;
 #[cfg(test)]
 mod tests;
@@ -25,6 +27,7 @@ use glam::{Mat3, Vec2, Vec3};
 
 use self::chart::Chart;
 use self::interpolation::{nodes_from_particles, particles_from_nodes};
+use super::cell_sizes::CellSizes;
 use super::grid::Grid;
 use super::mesh::{RestMesh, Surface};
 
@@ -86,19 +89,33 @@ pub(super) struct BackgroundMesh {
     pub coverage: Vec<f32>,
     /// cos² of the angle between the rows and the warp.
     pub warp_cos2: f32,
+    /// Of each cell, where lines of nodes are curved.
+    pub curved_lines: Option<CurvedLines>,
     /// Whether the nodes lie in a plane at rest.
     pub is_flat: bool,
     pub transfer: GridTransfer,
 }
 
+/// The cells of a grid whose lines are curved.
+pub(super) struct CurvedLines {
+    pub sizes: CellSizes,
+    /// cos² of the angle between the rows and the warp in each cell.
+    pub warps: Vec<f32>,
+}
+
 impl BackgroundMesh {
-    /// The grid of a mesh; none of a mesh that is small, cannot be laid into the plane without distortion or overlap, or
-    /// does not fill a rectangle there: laid yarns hold such meshes better (`fabric/laid_yarns/`).
+    /// The grid of a mesh; none of a mesh that is small, or neither fills a rectangle in the plane without distortion or
+    /// overlap nor maps onto one: laid yarns hold such meshes better (`fabric/laid_yarns/`).
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
         }
-        let chart = Chart::of(mesh, surface)?;
+        let straight = Chart::of(mesh, surface).and_then(|chart| Self::on(mesh, &chart));
+        straight.or_else(|| Self::on(mesh, &Chart::mapped(mesh, surface)?))
+    }
+
+    /// The grid of a mesh on a chart.
+    fn on(mesh: &RestMesh, chart: &Chart) -> Option<Self> {
         let grid = chart.grid();
         let nodes = nodes_from_particles(&chart.positions, &chart.triangles, &grid)?;
         let coverage = coverage::filled_once(&chart.positions, &chart.triangles, &grid)?;
@@ -125,14 +142,21 @@ impl BackgroundMesh {
         let free_areas: Vec<f32> =
             free_areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect();
         transfer.moved_areas = transfer.node_masses(&free_areas);
-        let nodes = node_mesh(mesh, &chart, &grid, &transfer);
+        let nodes = node_mesh(mesh, chart, &grid, &transfer);
+        if !chart.warps.is_empty() && !mapped::is_regular(&grid, &nodes) {
+            return None;
+        }
         let is_free = |node: usize| !nodes.is_pinned(node as u32);
         transfer.means = transfer.particles.adjoint(&mesh.areas, &transfer.moved_areas, is_free);
         transfer.held = transfer.nodes.rows_where(|node| !is_free(node));
         if chart.plane.is_none() {
-            transfer.heights = heights(mesh, &chart, &grid, &nodes, &transfer);
+            transfer.heights = heights(mesh, chart, &grid, &nodes, &transfer);
         }
-        let is_held = is_held(mesh, &chart, &grid, &nodes);
+        let curved_lines = (!chart.warps.is_empty()).then(|| CurvedLines {
+            sizes: CellSizes::of(&grid, &nodes.positions, chart.is_closed),
+            warps: warps_of_cells(&transfer.nodes, &chart.warps, &grid),
+        });
+        let is_held = is_held(mesh, chart, &grid, &nodes);
         let GridTransfer { nodes: first, particles, means, held, .. } = &mut transfer;
         for rows in [first, particles, means, held] {
             *rows = core::mem::take(rows).grouped();
@@ -141,6 +165,7 @@ impl BackgroundMesh {
             mesh: nodes,
             coverage,
             warp_cos2: chart.warp_cos2,
+            curved_lines,
             is_flat: chart.plane.is_some(),
             transfer,
             grid,
@@ -199,6 +224,16 @@ fn heights(
     heights
 }
 
+/// cos² of the angle between the rows and the warp in each cell, given those at the particles.
+fn warps_of_cells(nodes: &Interpolation, of_particles: &[f32], grid: &Grid) -> Vec<f32> {
+    let of_node = |row: &[Term]| -> f32 {
+        row.iter().map(|term| term.weight * of_particles[term.from as usize]).sum()
+    };
+    let of_nodes: Vec<f32> = nodes.rows().map(of_node).collect();
+    let mean = |corners: [u32; 4]| corners.map(|at| 0.25 * of_nodes[at as usize]).iter().sum();
+    grid.cells().map(|(corners, _)| f32::clamp(mean(corners), 0.0, 1.0)).collect()
+}
+
 /// The nodes of the first and of the last row of a grid, in pairs.
 fn first_and_last_row(grid: &Grid) -> Vec<[u32; 2]> {
     (0..grid.columns).map(|column| [0, grid.rows - 1].map(|row| grid.index(column, row))).collect()
@@ -225,18 +260,21 @@ fn is_held(mesh: &RestMesh, chart: &Chart, grid: &Grid, nodes: &RestMesh) -> boo
 /// particles: with those of the particles that they move, which differ from node
 /// to node by chance, a swing loses motion to short waves.
 fn node_mesh(mesh: &RestMesh, chart: &Chart, grid: &Grid, transfer: &GridTransfer) -> RestMesh {
-    let areas = grid.particle_areas();
     let is_free = |row: &[Term]| {
         let free = row.iter().filter(|term| !mesh.is_pinned(term.from));
         free.map(|term| term.weight).sum::<f32>() > LEAST_FREE
     };
-    let rows = transfer.nodes.rows().zip(&areas);
     let in_chart = chart::node_positions(grid);
     let in_space = |(&at, row): (&Vec2, &[Term])| match &chart.plane {
         Some(plane) => plane.in_space(at),
         None => row.iter().map(|term| mesh.positions[term.from as usize] * term.weight).sum(),
     };
-    let positions = in_chart.iter().zip(transfer.nodes.rows()).map(in_space).collect();
+    let positions: Vec<Vec3> = in_chart.iter().zip(transfer.nodes.rows()).map(in_space).collect();
+    let areas = match chart.warps.is_empty() {
+        true => grid.particle_areas(),
+        false => CellSizes::of(grid, &positions, chart.is_closed).particle_areas(grid),
+    };
+    let rows = transfer.nodes.rows().zip(&areas);
     RestMesh {
         positions,
         inverse_areas: rows

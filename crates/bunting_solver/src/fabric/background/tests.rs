@@ -1,7 +1,7 @@
 use glam::{Vec2, Vec3};
 
 use super::Term;
-use crate::fabric::{FabricBuilder, Grid, Interpolation};
+use crate::fabric::{FabricBuilder, Grid, Interpolation, LinkFamily};
 
 /// A sheet of `n` × `n` vertices over a square metre, those within moved by up to a fifth of a cell.
 fn sheet(n: u32) -> FabricBuilder {
@@ -158,5 +158,36 @@ fn rows_run_along_the_warp() {
         let nodes = background.fabric.rest_positions();
         let row = (nodes[1] - nodes[0]).normalize();
         assert!(row.dot(warp.extend(0.0)).abs() > 0.999, "{row} for a warp along {warp}");
+    }
+}
+
+#[test]
+fn links_of_curved_lines_stand_for_all_of_the_cloth() {
+    let tapered = |at: Vec3| Vec3::new((at.x - 0.5) * (1.0 + 0.3 * at.y), at.y, 0.0);
+    let positions = sheet(16).positions().iter().map(|at| tapered(*at)).collect();
+    let fabric = FabricBuilder::new(positions, sheet(16).indices().to_vec());
+    let fabric = fabric.build().expect("a good fabric");
+    let background = fabric.background().expect("it maps onto a rectangle");
+    let grid = &background.fabric;
+    assert_eq!(grid.chains().diagonal_lengths.len(), grid.chains().cells.len());
+    for family in [LinkFamily::Warp, LinkFamily::Weft] {
+        let links = grid.links().iter().filter(|link| link.family == family);
+        let area: f32 = links
+            .map(|link| {
+                let factors = grid.link_classes()[link.class as usize].coefficients;
+                factors.iter().sum::<f32>() * link.rest_length * link.rest_length
+            })
+            .sum();
+        assert!((area / fabric.area() - 1.0).abs() < 0.02, "{family:?}: {area}");
+    }
+    let corners = [0, grid.grid().expect("a grid").columns - 1].map(|at| at as usize);
+    let nodes = grid.rest_positions();
+    for node in corners {
+        let nearest = fabric.rest_positions().iter().map(|at| at.distance(nodes[node]));
+        assert!(
+            nearest.fold(f32::MAX, f32::min) < 5e-3,
+            "a corner of the grid lies at {}",
+            nodes[node]
+        );
     }
 }

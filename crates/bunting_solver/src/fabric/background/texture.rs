@@ -89,6 +89,7 @@ impl Chart {
             warp_cos2: 1.0,
             plane: None,
             extent: (high - low) * scale,
+            warps: Vec::new(),
             area: surface.triangle_areas.iter().sum(),
         })
     }

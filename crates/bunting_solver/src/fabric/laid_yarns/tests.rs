@@ -6,7 +6,8 @@ use super::{BAND, LaidYarn};
 use crate::fabric::{Fabric, FabricBuilder, LinkFamily};
 
 /// A mesh of `n` × `n` vertices in uneven cells, rolled up about a vertical axis to a closed funnel twice as wide
-/// below. Its warp cannot be laid into the plane without distortion, so that it has no background grid.
+/// below. Its warp cannot be laid into the plane without distortion, and a cell is missing, so that it has no background
+/// grid.
 fn funnel(n: u32) -> Fabric {
     let radius = 1.0 / core::f32::consts::TAU;
     let place = |index: u32| {
@@ -20,6 +21,8 @@ fn funnel(n: u32) -> Fabric {
         Vec3::new(wide * sin, -down, wide * cos)
     };
     let cells = (0..n - 1).flat_map(|row| (0..n - 1).map(move |column| row * n + column));
+    let hole = n / 2 * n + n / 2;
+    let cells = cells.filter(|&at| at != hole);
     let indices = cells.flat_map(|at| [at, at + n, at + n + 1, at, at + n + 1, at + 1]);
     let builder = FabricBuilder::new((0..n * n).map(place).collect(), indices.collect());
     builder.weld_distance(1e-5).build().expect("a good fabric")

@@ -1,7 +1,7 @@
 //! Meshes at rest: hung from an edge, from a rim and by two corners, and clamped level.
 
 use std::{
-    f32::consts::{FRAC_PI_4, PI},
+    f32::consts::{FRAC_PI_4, PI, TAU},
     f64::consts::FRAC_PI_2,
     sync::Arc,
 };
@@ -12,7 +12,11 @@ use glam::{DVec2, Vec3};
 use super::{Cloth, ISOTROPIC, REST, STANDARD, at_top, bound, square};
 use crate::{
     meshes::{Sheet, Triangulation},
-    oracles::{Case, bending::Cantilever, stretch::hung_strip},
+    oracles::{
+        Case,
+        bending::Cantilever,
+        stretch::{hung_funnel, hung_strip},
+    },
     scenes::GRAVITY,
     stats::mean,
 };
@@ -25,6 +29,11 @@ const DROOP: f64 = 0.05;
 const ARC_RADIUS: f32 = 0.3;
 /// Part of its width that the tapered sheet loses over its height. Larger: stress is not along the height.
 const TAPER: f64 = 0.2;
+/// Radii of the rims of a funnel of a metre's height, m.
+const FUNNEL: [f32; 2] = [0.4, 0.1];
+/// Isotropic but for shear, and ten times as soft.
+const SOFT: FabricMaterial =
+    FabricMaterial { warp_stiffness: 1e3, weft_stiffness: 1e3, shear_stiffness: 50.0, ..ISOTROPIC };
 /// Γ = σgL³/B of the strips whose warp is turned.
 const TURNED_GAMMA: f64 = 10.0;
 
@@ -44,6 +53,8 @@ pub(super) fn cases(triangulation: Triangulation) -> Vec<Case> {
     cases.extend(cylinder(triangulation));
     cases.extend(without_background(triangulation));
     cases.extend(tapered(triangulation));
+    cases
+        .extend([ISOTROPIC, SOFT].into_iter().flat_map(|material| funnel(triangulation, material)));
     cases
 }
 
@@ -94,12 +105,7 @@ fn cylinder(triangulation: Triangulation) -> [Case; 2] {
 /// δ/L of two meshes that have no background grid and hang from their tops, of a cloth that stretches by a thousandth, and
 /// their speeds at rest: an arc without texture, and two pieces whose warps are at right angles.
 fn without_background(triangulation: Triangulation) -> [Case; 4] {
-    let material = FabricMaterial {
-        warp_stiffness: 1e3,
-        weft_stiffness: 1e3,
-        shear_stiffness: 50.0,
-        ..ISOTROPIC
-    };
+    let material = SOFT;
     let sheet = Sheet::new(triangulation, [33, 33], DVec2::ONE, 1);
     let arc = FabricBuilder::new(sheet.bent(ARC_RADIUS), sheet.indices.clone());
     let arc = Arc::new(arc.pin_where(|at, _| at_top(at)).build().expect("a cloth"));
@@ -141,6 +147,32 @@ fn tapered(triangulation: Triangulation) -> [Case; 2] {
     let speed = cloth.speed();
     [
         Case::new(name.clone(), expected, stretch, STRETCH[0]),
+        bound(format!("{name}, speed at rest, m/s"), REST[0], speed),
+    ]
+}
+
+/// How far the lower rim of a funnel sinks that hangs from its wider one, m, and its speed at rest.
+fn funnel(triangulation: Triangulation, material: FabricMaterial) -> [Case; 2] {
+    let sheet = Sheet::new(triangulation, [33, 33], DVec2::ONE, 1);
+    let [upper, lower] = FUNNEL;
+    let roll = |at: &Vec3| {
+        let (sin, cos) = (TAU * at.x).sin_cos();
+        let radius = upper + (lower - upper) * -at.y;
+        Vec3::new(radius * sin, at.y, radius * cos)
+    };
+    let positions = sheet.positions.iter().map(roll).collect();
+    let mesh = FabricBuilder::new(positions, sheet.indices).weld_distance(1e-5);
+    let fabric = Arc::new(mesh.pin_where(|at, _| at_top(at)).build().expect("a cloth"));
+    let mut cloth = Cloth::new(fabric, material, |at| at);
+    cloth.run(4.0);
+    let stiffness = f64::from(material.warp_stiffness);
+    let density = f64::from(material.area_density);
+    let expected = hung_funnel(density, GRAVITY, FUNNEL.map(f64::from), 1.0, stiffness);
+    let sunk = -1.0 - cloth.mean(|at| at.y == -1.0).y;
+    let name = format!("funnel, hung from its wide rim, {triangulation:?}, Y = {stiffness} N/m");
+    let speed = cloth.speed();
+    [
+        Case::new(name.clone(), expected, sunk, STRETCH[0]),
         bound(format!("{name}, speed at rest, m/s"), REST[0], speed),
     ]
 }

@@ -1,0 +1,210 @@
+//! Charts of meshes that are no rectangles but map onto one: tapered sheets, capes and pennants by their four corners,
+//! and funnels by their two rims.
+//!
+//! Two functions are found whose gradients are the smallest: one has fixed values on two opposite sides of the mesh, the
+//! other on the other two (around a funnel it grows by one period). Each has its gradient along the sides on which it is
+//! free, so that lines of the one cross lines of the other, and the sides, at right angles. Where the map is conformal, as
+//! of funnels, that holds everywhere. A function of each coordinate alone then spaces rows and columns evenly in the mean,
+//! which keeps the angles.
+
+mod border;
+mod harmonic;
+mod regular;
+
+use glam::{DMat4, DVec3, DVec4, Vec2, Vec3};
+
+use self::border::{Sides, sides};
+use self::harmonic::Laplacian;
+use super::chart::Chart;
+use crate::fabric::laid_yarns::{Directions, Faces, Towards};
+use crate::fabric::mesh::{RestMesh, Surface};
+
+pub(super) use self::regular::is_regular;
+
+/// Particles and places of a mesh that is cut open.
+struct Cut {
+    /// The particle at each place.
+    particles: Vec<u32>,
+    /// Three places for each triangle.
+    triangles: Vec<[u32; 3]>,
+    /// How far each place lies beyond its particle, in periods.
+    turns: Vec<f64>,
+}
+
+impl Chart {
+    /// The chart of a mesh that maps onto a rectangle, or onto a strip that closes; none of one that has other corners
+    /// or rims.
+    pub(super) fn mapped(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
+        let sides = sides(mesh, surface)?;
+        let laplacian = Laplacian::of(mesh);
+        let (cut, [along, across]) = match sides {
+            Sides::Four(sides) => {
+                let value = |[zero, one]: [usize; 2]| {
+                    let mut fixed = vec![None; mesh.positions.len()];
+                    sides[zero].iter().for_each(|&at| fixed[at as usize] = Some(0.0));
+                    sides[one].iter().for_each(|&at| fixed[at as usize] = Some(1.0));
+                    laplacian.solved(&fixed, &mesh.triangles, None)
+                };
+                let cut = Cut {
+                    particles: (0..mesh.positions.len() as u32).collect(),
+                    triangles: mesh.triangles.clone(),
+                    turns: vec![0.0; mesh.positions.len()],
+                };
+                (cut, [value([3, 1])?, value([0, 2])?])
+            }
+            Sides::Rims(rims) => {
+                let mut fixed = vec![None; mesh.positions.len()];
+                for (rim, value) in rims.iter().zip([0.0, 1.0]) {
+                    rim.iter().for_each(|&at| fixed[at as usize] = Some(value));
+                }
+                let cut = border::cut_open(mesh, &rims)?;
+                let along = laplacian.solved(&fixed, &mesh.triangles, None)?;
+                let free = vec![None; mesh.positions.len()];
+                let around = laplacian.solved(&free, &cut.triangles, Some(&cut))?;
+                (cut, [along, around])
+            }
+        };
+        let values = |of: &[f64]| -> Vec<f64> {
+            let places = cut.particles.iter().map(|&particle| of[particle as usize]);
+            places.collect()
+        };
+        let along = values(&along);
+        let across: Vec<f64> =
+            values(&across).iter().zip(&cut.turns).map(|(value, turn)| value + turn).collect();
+        let is_closed = cut.particles.len() > mesh.positions.len();
+        let [along, across] = [(&along, true), (&across, !is_closed)].map(|(values, is_spaced)| {
+            Coordinate::of(mesh, surface, &cut.triangles, values, is_spaced)
+        });
+        let (along, across) = (along?, across?);
+        let extent = Vec2::new(along.length, across.length);
+        let mut positions: Vec<Vec2> =
+            along.values.iter().zip(&across.values).map(|(&x, &y)| Vec2::new(x, y)).collect();
+        // The second axis points down the rows of a grid, seen from the front.
+        if doubled_area(&positions, &cut.triangles) > 0.0 {
+            let last = positions.iter().map(|at| at.x).fold(f32::MIN, f32::max);
+            positions.iter_mut().for_each(|at| at.x = last - at.x);
+        }
+        Some(Self {
+            warps: warps(mesh, surface, &positions, &cut)?,
+            positions,
+            own_places: cut.particles.len(),
+            particles: cut.particles,
+            is_closed: false,
+            triangles: cut.triangles,
+            warp_cos2: 1.0,
+            plane: None,
+            area: extent.element_product(),
+            extent,
+        })
+        .map(Self::closed)
+    }
+}
+
+/// Twice the area of the triangles in the plane.
+fn doubled_area(positions: &[Vec2], triangles: &[[u32; 3]]) -> f32 {
+    let doubled = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| positions[corner as usize]);
+        (b - a).perp_dot(c - a)
+    };
+    triangles.iter().map(doubled).sum()
+}
+
+/// A coordinate of places, m.
+struct Coordinate {
+    values: Vec<f32>,
+    /// From the first place to the last, in the mean over all lines.
+    length: f32,
+}
+
+impl Coordinate {
+    /// A coordinate from values between 0 and 1, if wanted one whose lines are evenly spaced in the mean; none if the
+    /// values have no gradients.
+    fn of(
+        mesh: &RestMesh,
+        surface: &Surface,
+        triangles: &[[u32; 3]],
+        values: &[f64],
+        is_spaced: bool,
+    ) -> Option<Self> {
+        // The spacing of lines, as a cubic of the value by least squares: each line counts as its length.
+        let (mut normal, mut right) = (DMat4::ZERO, DVec4::ZERO);
+        let (mut length, mut area) = (0.0, 0.0);
+        let at_rest = mesh.triangles.iter().zip(&surface.triangle_areas);
+        for ((corners, &of_triangle), places) in at_rest.zip(triangles) {
+            let of_corners = places.map(|place| values[place as usize]);
+            let steepness = gradient(mesh.positions_of(*corners), of_corners).length();
+            let weight = f64::from(of_triangle) * steepness;
+            let middle = of_corners.iter().sum::<f64>() / 3.0;
+            let powers = DVec4::new(1.0, middle, middle * middle, middle.powi(3));
+            let column = powers * weight;
+            normal += DMat4::from_cols(
+                column * powers.x,
+                column * powers.y,
+                column * powers.z,
+                column * powers.w,
+            );
+            right += powers * f64::from(of_triangle);
+            length += weight;
+            area += f64::from(of_triangle);
+        }
+        let mean = area / length;
+        let cubic = if is_spaced { normal.inverse() * right } else { DVec4::X * mean };
+        let integrated = cubic * DVec4::new(1.0, 1.0 / 2.0, 1.0 / 3.0, 1.0 / 4.0);
+        let integral = |at: f64| {
+            at * (integrated.x + at * (integrated.y + at * (integrated.z + at * integrated.w)))
+        };
+        let whole = integral(1.0);
+        let is_good = whole.is_finite()
+            && (0..=8_u8).map(|eighth| f64::from(eighth) / 8.0).all(|at| {
+                let spacing = cubic.dot(DVec4::new(1.0, at, at * at, at.powi(3)));
+                spacing > LEAST_SPACING * whole
+            });
+        is_good.then(|| Self {
+            values: values.iter().map(|&value| integral(value) as f32).collect(),
+            length: whole as f32,
+        })
+    }
+}
+
+/// Greatest difference of cos² of the angle between rows and warp in a triangle from the mean around its corners. Larger:
+/// cells at seams of pieces with different warps are sheared as if cut on the bias.
+const UNLIKE_WARPS: f32 = 0.2;
+
+/// Least spacing of lines where they are densest before they are spaced evenly, as a part of the mean. Smaller: rows
+/// that hardly differ become a whole part of the grid.
+const LEAST_SPACING: f64 = 0.05;
+
+/// The gradient of a linear function on a triangle, 1/m, given its values at the corners.
+fn gradient(corners: [Vec3; 3], values: [f64; 3]) -> DVec3 {
+    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
+    let normal = (b - a).cross(c - a);
+    let sum = (c - b) * values[0] + (a - c) * values[1] + (b - a) * values[2];
+    normal.cross(sum) / normal.length_squared()
+}
+
+/// cos² of the angle between the rows and the warp at each particle; none if it differs much between neighbours.
+fn warps(mesh: &RestMesh, surface: &Surface, positions: &[Vec2], cut: &Cut) -> Option<Vec<f32>> {
+    let faces = Faces::new(&mesh.positions, &mesh.triangles, &surface.edges);
+    let directions = Directions::of(&faces, &surface.corner_uv);
+    let mut sums = vec![[0.0; 2]; mesh.positions.len()];
+    let mut of_triangles = Vec::new();
+    for (triangle, corners) in (0_u32..).zip(&mesh.triangles) {
+        let places = cut.triangles[triangle as usize];
+        let downwards = places.map(|place| f64::from(positions[place as usize].y));
+        let across_rows = gradient(mesh.positions_of(*corners), downwards);
+        let warp = directions.of_triangle(triangle, Towards::Warp).as_dvec3();
+        let cos2 = (1.0 - warp.dot(across_rows).powi(2) / across_rows.length_squared()) as f32;
+        of_triangles.push(cos2);
+        let area = surface.triangle_areas[triangle as usize];
+        for &corner in corners {
+            let [sum, whole] = &mut sums[corner as usize];
+            *sum += area * cos2;
+            *whole += area;
+        }
+    }
+    let warps: Vec<f32> = sums.iter().map(|[sum, whole]| sum / whole).collect();
+    let is_alike = |(corners, of_triangle): (&[u32; 3], &f32)| {
+        corners.iter().all(|&corner| (warps[corner as usize] - of_triangle).abs() < UNLIKE_WARPS)
+    };
+    mesh.triangles.iter().zip(&of_triangles).all(is_alike).then_some(warps)
+}

@@ -1,0 +1,74 @@
+//! Links of a background grid whose lines are curved and unevenly far apart: each has the width of the cells beside it,
+//! and the moduli of the material along it.
+
+use std::collections::BTreeMap;
+
+use super::background::CurvedLines;
+use super::grid::Grid;
+use super::links::{LEAST_STIFFNESS, LinkClass, LinkFamily, Links};
+use super::mesh::RestMesh;
+
+impl Links {
+    /// Links of a grid whose lines are curved, given how much of each cell is cloth. A link along a line stands for half of each cell beside it.
+    pub fn of_curved_lines(
+        mesh: &RestMesh,
+        grid: &Grid,
+        coverage: &[f32],
+        lines: &CurvedLines,
+    ) -> Self {
+        let mut sums: BTreeMap<[u32; 2], CellSum> = BTreeMap::new();
+        let cells = grid.cells().zip(coverage).zip(lines.sizes.areas.iter().zip(&lines.warps));
+        for (((corners, _), &part), (&area, &warp)) in cells {
+            let [top_left, top_right, bottom_left, bottom_right] = corners;
+            let mut add = |ends: [u32; 2], family| {
+                let [from, to] = ends;
+                let squared = {
+                    let [one, other] = mesh.positions_of(ends);
+                    one.distance_squared(other)
+                };
+                let sum = sums.entry([from.min(to), from.max(to)]).or_insert(CellSum::none(family));
+                sum.coefficient += part
+                    * match family {
+                        // G γ² A/2 in both diagonals, whose lengths change by γ A/d.
+                        LinkFamily::Diagonal => 0.5 * squared / area,
+                        _ => 0.5 * area / squared,
+                    };
+                sum.warps += warp;
+                sum.cells += 1.0;
+            };
+            add([top_left, top_right], LinkFamily::Warp);
+            add([bottom_left, bottom_right], LinkFamily::Warp);
+            add([top_left, bottom_left], LinkFamily::Weft);
+            add([top_right, bottom_right], LinkFamily::Weft);
+            add([top_left, bottom_right], LinkFamily::Diagonal);
+            add([top_right, bottom_left], LinkFamily::Diagonal);
+        }
+        let links = sums.into_iter().map(|(ends, sum)| (ends, sum.class(), sum.family));
+        Self::of_classes(mesh, links)
+    }
+}
+
+/// Sums over the cells beside a link.
+struct CellSum {
+    family: LinkFamily,
+    /// Factor of the family's modulus.
+    coefficient: f32,
+    /// Sum of cos² of the angles between rows and warp.
+    warps: f32,
+    cells: f32,
+}
+
+impl CellSum {
+    fn none(family: LinkFamily) -> Self {
+        Self { family, coefficient: 0.0, warps: 0.0, cells: 0.0 }
+    }
+
+    fn class(&self) -> LinkClass {
+        let of = |family| if self.family == family { self.coefficient } else { 0.0 };
+        LinkClass {
+            coefficients: [LinkFamily::Warp, LinkFamily::Weft, LinkFamily::Diagonal].map(of),
+            floor: LEAST_STIFFNESS as f32 * self.coefficient,
+            warp_cos2: self.warps / self.cells,
+        }
+    }
+}
