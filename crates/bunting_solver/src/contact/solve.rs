@@ -120,7 +120,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             set_lane3(position, lane, contact.pose.transform_point(corner.to));
             let push = Push { particle, before, to: corner.to, normal, touched: at, sticks };
             match pushes[..of_particles].binary_search_by_key(&particle, |push| push.particle) {
-                Ok(known) => pushes[known] = Push { before: pushes[known].before, ..push },
+                Ok(known) => pushes[known].append(push),
                 Err(_) => pushes.push(push),
             }
         }
@@ -204,6 +204,13 @@ struct Push {
     touched: Vec3,
     /// Whether the particle moves with the collider in this substep.
     sticks: bool,
+}
+
+impl Push {
+    /// Adds a push that has moved the particle on.
+    fn append(&mut self, next: Self) {
+        *self = Self { before: self.before, sticks: self.sticks || next.sticks, ..next };
+    }
 }
 
 /// A collider and a cloth in a substep.
