@@ -13,8 +13,8 @@ const TICK: f32 = 1.0 / 60.0;
 /// Half the side of the box, m.
 const HALF: f32 = 0.2;
 
-/// RMS speed of a sheet of a metre that has fallen on a box of 0.4 m, m/s.
-fn speed_on_box(friction: f32) -> f32 {
+/// RMS speed of a sheet of a metre 4 s after it has fallen on a box of 0.4 m, m/s.
+fn speed_on_box() -> f32 {
     let grid = FabricBuilder::grid(Grid::new(33, 33, 1.0, 1.0));
     let fabric = Arc::new(grid.build().expect("a good fabric"));
     let material = FabricMaterial {
@@ -22,7 +22,7 @@ fn speed_on_box(friction: f32) -> f32 {
         pressure_coefficient: 0.0,
         friction_coefficient: 0.0,
         thickness: 2e-3,
-        surface_friction: friction,
+        surface_friction: 0.4,
         ..FabricMaterial::COTTON
     };
     let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
@@ -39,8 +39,12 @@ fn speed_on_box(friction: f32) -> f32 {
     (squares.sum::<f32>() / velocities.len() as f32).sqrt()
 }
 
+/// Speed below which the sheet counts as at rest, m/s. Flaps that swing have 0.01. Larger: single particles at the corners
+/// of the box may have a velocity of a metre a second though they stay where they are, which gives 0.05.
+const AT_REST: f32 = 0.03;
+
 #[test]
 fn a_sheet_on_a_box_comes_to_rest() {
-    let speed = speed_on_box(0.4);
-    assert!(speed < 0.03, "{speed} m/s");
+    let speed = speed_on_box();
+    assert!(speed < AT_REST, "{speed} m/s");
 }
