@@ -70,38 +70,36 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             return;
         }
         let contact = Contact::new(state, collider, &self.clock);
+        let mut pushes = Vec::new();
         for &particle in &candidates.particles {
-            self.solve_contact(cloth, particle as usize, &contact, outcome);
+            pushes.extend(self.solve_contact(cloth, particle, &contact));
         }
         if !candidates.triangles.is_empty() {
-            self.solve_triangle_contacts(cloth, candidates, &contact, outcome);
+            self.solve_triangle_contacts(cloth, candidates, &contact, &mut pushes);
+        }
+        for push in &pushes {
+            self.change_velocity(cloth, &contact, push, outcome);
         }
     }
 
-    /// Projects one particle.
-    fn solve_contact(
-        &mut self,
-        cloth: usize,
-        particle: usize,
-        contact: &Contact,
-        outcome: &mut Outcome,
-    ) {
-        let (pack, lane) = self.layout.locate(particle, cloth);
+    /// Projects one particle, and returns the push if there is one.
+    fn solve_contact(&mut self, cloth: usize, particle: u32, contact: &Contact) -> Option<Push> {
+        let (pack, lane) = self.layout.locate(particle as usize, cloth);
         let start = lane3(&self.scratch[pack], lane);
-        let before = lane3(&self.positions.packs_mut()[pack], lane);
-        if let Some(Projection { to, normal, sticks }) = contact.project(start, before) {
-            let push = Push { to, normal, touched: to, sticks };
-            self.push(cloth, particle, contact, &push, outcome);
-        }
+        let position = &mut self.positions.packs_mut()[pack];
+        let before = lane3(position, lane);
+        let Projection { to, normal, sticks } = contact.project(start, before)?;
+        set_lane3(position, lane, contact.pose.transform_point(to));
+        Some(Push { particle, before, to, normal, touched: to, sticks })
     }
 
-    /// Projects triangles.
+    /// Projects triangles, and adds what pushes their corners to the pushes of particles, which are in ascending order.
     fn solve_triangle_contacts(
         &mut self,
         cloth: usize,
         candidates: &Candidates,
         contact: &Contact,
-        outcome: &mut Outcome,
+        pushes: &mut Vec<Push>,
     ) {
         let positions = self.positions.packs_mut();
         let corner_of = |&particle: &u32| {
@@ -113,31 +111,36 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         };
         let mut corners: Vec<Corner> = candidates.corners.iter().map(corner_of).collect();
         contact.solve_triangles(&candidates.triangles, &mut corners);
+        let of_particles = pushes.len();
         for (&particle, corner) in candidates.corners.iter().zip(&corners) {
-            if let Some(Touch { normal, at, sticks }) = corner.touch {
-                let push = Push { to: corner.to, normal, touched: at, sticks };
-                self.push(cloth, particle as usize, contact, &push, outcome);
+            let Some(Touch { normal, at, sticks }) = corner.touch else { continue };
+            let (pack, lane) = self.layout.locate(particle as usize, cloth);
+            let position = &mut self.positions.packs_mut()[pack];
+            let before = lane3(position, lane);
+            set_lane3(position, lane, contact.pose.transform_point(corner.to));
+            let push = Push { particle, before, to: corner.to, normal, touched: at, sticks };
+            match pushes[..of_particles].binary_search_by_key(&particle, |push| push.particle) {
+                Ok(known) => pushes[known].append(push),
+                Err(_) => pushes.push(push),
             }
         }
     }
 
-    /// Moves a particle that a contact pushes.
-    fn push(
+    /// Changes the velocity of a particle that a collider has pushed. What the particle and its triangles were pushed
+    /// counts as one push: a particle that is put down on the surface and is then raised by a triangle would be left with
+    /// a velocity, though it does not move.
+    fn change_velocity(
         &mut self,
         cloth: usize,
-        particle: usize,
         contact: &Contact,
         push: &Push,
         outcome: &mut Outcome,
     ) {
-        let (pack, lane) = self.layout.locate(particle, cloth);
+        let (pack, lane) = self.layout.locate(push.particle as usize, cloth);
         let effective_step = self.parameters.step.lanes()[lane];
-        let position = &mut self.positions.packs_mut()[pack];
         let start = lane3(&self.scratch[pack], lane);
-        let before = lane3(position, lane);
-        let after = contact.pose.transform_point(push.to);
+        let (before, after) = (push.before, contact.pose.transform_point(push.to));
         let normal = contact.pose.rotation * push.normal;
-        set_lane3(position, lane, after);
 
         // A surface pushes a particle but does not throw it off: the velocity away from the surface that the
         // contact gave to it is removed. A particle that sticks has the velocity of the surface.
@@ -175,7 +178,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let steady = (given - thrown - impact) * (self.clock.step / effective_step);
             let gained = contact.density * inertia * (steady + impact);
             let on_collider = contact.pose.rotation.inverse() * -gained;
-            reaction.add(particle, push.touched, on_collider);
+            reaction.add(push.particle as usize, push.touched, on_collider);
         }
     }
 }
@@ -188,8 +191,11 @@ struct Outcome<'a> {
     reaction: Option<&'a mut ReactionSum>,
 }
 
-/// The push of a contact to a particle, in the collider's frame.
+/// The push of a collider to a particle, in the collider's frame if not said otherwise.
 struct Push {
+    particle: u32,
+    /// Position of the particle before the push, m, in the cloth's frame.
+    before: Vec3,
     /// New position of the particle, m.
     to: Vec3,
     /// Unit normal of the surface, out of the shape.
@@ -198,6 +204,13 @@ struct Push {
     touched: Vec3,
     /// Whether the particle moves with the collider in this substep.
     sticks: bool,
+}
+
+impl Push {
+    /// Adds a push that has moved the particle on.
+    fn append(&mut self, next: Self) {
+        *self = Self { before: self.before, sticks: self.sticks || next.sticks, ..next };
+    }
 }
 
 /// A collider and a cloth in a substep.
