@@ -133,12 +133,12 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     }
 
     /// Places the particles of curved meshes on their nodes, sweeps over their links, and moves the nodes by what these
-    /// resolve of the corrections.
+    /// resolve of the corrections; not of cloths near rest, which a sweep in one direction keeps moving.
     fn hold_links(&mut self) {
         let fabric = Arc::clone(&self.fabric);
         let Some(Background { transfer, .. }) = fabric.background() else { return };
         let GridTransfer { particles: rows, means, heights, .. } = transfer;
-        if heights.is_empty() {
+        if heights.is_empty() || (0..self.lanes.len()).all(|cloth| self.rests(cloth)) {
             return;
         }
         if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
@@ -147,6 +147,10 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             P::run(AddHeights { heights, sign: 1.0, nodes, to });
         }
         self.sweep_strained_links();
+        for cloth in (0..self.lanes.len()).filter(|cloth| self.rests(*cloth)).collect::<Vec<_>>() {
+            let corrections = self.stretch_shift.iter_mut();
+            corrections.for_each(|correction| set_lane3(correction, cloth, Vec3::ZERO));
+        }
         if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
             let (from, to) = (&self.stretch_shift[..], &mut grid.positions.packs_mut()[..]);
             P::run(AddInterpolated { rows: means, from, to });

@@ -43,7 +43,7 @@ impl LaneBatch<Pack8, SingleMesh> {
         if self.clock.stands_still() {
             return;
         }
-        let integrates = self.integrates_particles();
+        let (integrates, rests) = (self.integrates_particles(), self.rests(0));
         let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
         grid.batch.solve_stretch_of_grid();
         grid.batch.join_ends();
@@ -51,7 +51,9 @@ impl LaneBatch<Pack8, SingleMesh> {
             // The particles' own vectors are those of pins alone.
             self.positions.read_vectors();
         }
-        if let Some(mesh) = &mut self.lone_mesh {
+        if let Some(mesh) = &mut self.lone_mesh
+            && !rests
+        {
             grid.place_particles(&mut self.positions);
             mesh.place_vectors(self.positions.read_vectors(), &self.masses.inverse);
             mesh.sweep_links(false, SLACK, self.layout.link_compliance.iter().copied());
