@@ -84,7 +84,7 @@ impl Chart {
             let last = positions.iter().map(|at| at.x).fold(f32::MIN, f32::max);
             positions.iter_mut().for_each(|at| at.x = last - at.x);
         }
-        Some(Self {
+        Some(Self::closed(Self {
             warps: warps(mesh, surface, &positions, &cut)?,
             positions,
             own_places: cut.particles.len(),
@@ -95,8 +95,7 @@ impl Chart {
             plane: None,
             area: extent.element_product(),
             extent,
-        })
-        .map(Self::closed)
+        }))
     }
 }
 
