@@ -8,6 +8,7 @@ mod capstan;
 mod cloths;
 mod drape;
 mod fast;
+mod inside;
 mod intersections;
 mod itself;
 mod rest;
@@ -23,12 +24,13 @@ pub use row::Row;
 pub type Family = fn(quick: bool) -> Vec<Row>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 8] = [
+pub const ALL: [(&str, Family); 9] = [
     ("slope", slope::rows),
     ("capstan", capstan::rows),
     ("turntable", turntable::rows),
     ("rest", rest::rows),
     ("fast", fast::rows),
+    ("inside", inside::rows),
     ("drape", drape::rows),
     ("itself", itself::rows),
     ("cloths", cloths::rows),
