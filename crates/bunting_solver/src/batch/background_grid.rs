@@ -86,14 +86,6 @@ impl<P: Pack> BackgroundGrid<P> {
         with_grid!(self, batch => batch.set_nodes_near_rest(cloth, near_rest));
     }
 
-    /// Whether the nodes of a cloth are under-relaxed.
-    pub fn are_nodes_near_rest(&self, cloth: usize) -> bool {
-        match self {
-            Self::SideBySide(batch) => batch.is_near_rest(cloth),
-            Self::Single(single) => single.batch.is_near_rest(cloth),
-        }
-    }
-
     /// Makes one substep of a cloth's last two.
     pub fn join_last_substeps(&mut self, cloth: usize) {
         with_grid!(self, batch => batch.join_last_substeps(cloth));

@@ -166,7 +166,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         let chains = layout.chains(&fabric);
         let longest_line = fabric.grid().map_or(0, |grid| grid.columns.max(grid.rows) as usize);
-        let is_lone = P::WIDTH == 1 || (Y::CLOTHS == 1 && fabric.background().is_some());
+        let is_lone = P::WIDTH == 1;
         let lone_mesh = if is_lone { LoneMesh::of(&fabric).map(Box::new) } else { None };
         let (mut yarn_links, mut band_rows) = (Vec::new(), Vec::new());
         if lone_mesh.is_none() {

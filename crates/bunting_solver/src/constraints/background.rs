@@ -9,8 +9,6 @@
 //! keeps straight rows straight, and take steps of R towards the orthogonal projection. In each substep that would move
 //! them by an error whose size does not depend on the substep's length, of modes that P hardly shows.
 
-use std::sync::Arc;
-
 use glam::Vec3;
 
 use crate::batch::lane_batch::{BackgroundGrid, LaneBatch};
@@ -102,7 +100,6 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             grid.solve_stretch_of_grid();
             grid.join_ends();
         }
-        self.hold_links();
         self.place_particles();
         self.sum_reactions();
         self.solve_guides();
@@ -130,32 +127,6 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             }
         });
         self.draw_nodes();
-    }
-
-    /// Places the particles of curved meshes on their nodes, sweeps over their links, and moves the nodes by what these
-    /// resolve of the corrections; not of cloths near rest, which a sweep in one direction keeps moving.
-    fn hold_links(&mut self) {
-        let fabric = Arc::clone(&self.fabric);
-        let Some(Background { transfer, .. }) = fabric.background() else { return };
-        let GridTransfer { particles: rows, means, heights, .. } = transfer;
-        if heights.is_empty() || (0..self.lanes.len()).all(|cloth| self.rests(cloth)) {
-            return;
-        }
-        if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
-            let (nodes, to) = (grid.positions.packs(), self.positions.packs_mut());
-            P::run(Interpolate { rows, from: nodes, to });
-            P::run(AddHeights { heights, sign: 1.0, nodes, to });
-        }
-        self.sweep_strained_links();
-        for cloth in (0..self.lanes.len()).filter(|cloth| self.rests(*cloth)).collect::<Vec<_>>() {
-            let corrections = self.stretch_shift.iter_mut();
-            corrections.for_each(|correction| set_lane3(correction, cloth, Vec3::ZERO));
-        }
-        if let Some(BackgroundGrid::SideBySide(grid)) = &mut self.background {
-            let (from, to) = (&self.stretch_shift[..], &mut grid.positions.packs_mut()[..]);
-            P::run(AddInterpolated { rows: means, from, to });
-            grid.join_ends();
-        }
     }
 
     /// Interpolates the positions of the free particles from the nodes, and their velocities at the end of a tick if all

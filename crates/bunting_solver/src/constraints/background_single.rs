@@ -8,7 +8,6 @@ use crate::batch::single_mesh::{
     AddHeightPacks, MeshPositions, SingleMesh, read_vectors, write_vectors,
 };
 use crate::constraints::interpolate::{AddInterpolated, Interpolate, Remainder};
-use crate::constraints::mesh_sweep::SLACK;
 use crate::fabric::GridTransfer;
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
@@ -43,23 +42,13 @@ impl LaneBatch<Pack8, SingleMesh> {
         if self.clock.stands_still() {
             return;
         }
-        let (integrates, rests) = (self.integrates_particles(), self.rests(0));
+        let integrates = self.integrates_particles();
         let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
         grid.batch.solve_stretch_of_grid();
         grid.batch.join_ends();
         if !integrates {
             // The particles' own vectors are those of pins alone.
             self.positions.read_vectors();
-        }
-        if let Some(mesh) = &mut self.lone_mesh
-            && !rests
-        {
-            grid.place_particles(&mut self.positions);
-            mesh.place_vectors(self.positions.read_vectors(), &self.masses.inverse);
-            mesh.sweep_links(false, SLACK, self.layout.link_compliance.iter().copied());
-            mesh.read_correction_vectors(&mut grid.unresolved);
-            grid.take_over();
-            grid.batch.join_ends();
         }
         grid.batch.update_node_velocities(&mut self.lanes);
         grid.place_particles(&mut self.positions);
@@ -86,13 +75,6 @@ impl SingleGrid {
             read_vectors(lowered, unresolved);
         }
         Pack4::run(AddInterpolated { rows: means, from: unresolved, to: nodes });
-        write_vectors(nodes, batch.positions.packs_mut());
-    }
-
-    /// Moves the nodes by what they resolve of corrections of particles.
-    fn take_over(&mut self) {
-        let Self { batch, nodes, unresolved, transfer, .. } = self;
-        Pack4::run(AddInterpolated { rows: &transfer.means, from: unresolved, to: nodes });
         write_vectors(nodes, batch.positions.packs_mut());
     }
 

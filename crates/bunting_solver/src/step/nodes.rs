@@ -59,19 +59,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.layout.set_pins(cloth, &self.fabric, &positions);
     }
 
-    /// Whether a cloth, or the nodes that it follows, are under-relaxed; true where there is none.
-    pub fn rests(&self, cloth: usize) -> bool {
-        let Some(grid) = self.background.as_ref().filter(|_| self.lanes[cloth].is_some()) else {
-            return true;
-        };
-        self.is_near_rest(cloth) || grid.are_nodes_near_rest(cloth)
-    }
-
-    /// Whether the particles of a cloth are under-relaxed.
-    pub fn is_near_rest(&self, cloth: usize) -> bool {
-        self.parameters.is_near_rest(Y::lanes(cloth))
-    }
-
     /// Sets whether the nodes of a cloth are under-relaxed.
     pub fn set_nodes_near_rest(&mut self, cloth: usize, near_rest: bool) {
         if self.parameters.is_near_rest(Y::lanes(cloth)) && !near_rest {

@@ -40,8 +40,6 @@ pub(crate) struct SingleMesh {
     /// Tethers to the farthest pins, and to the nearest pins.
     tethers: [TetherPacks<Pack8>; 2],
     patches: PatchPacks,
-    /// Compliance of each class of links of the mesh, 1/m²: a curved one is swept over.
-    pub link_compliance: Vec<f32>,
     /// Velocities as vectors, m/s.
     velocity: Vec<Pack4>,
 }
@@ -81,7 +79,6 @@ impl SingleMesh {
             },
             tethers,
             patches: PatchPacks::new(fabric.patches(), particles),
-            link_compliance: Vec::new(),
             velocity: vec![Pack4::splat(0.0); pack_count(particles) * Pack8::WIDTH],
         })
     }
@@ -173,9 +170,8 @@ impl Layout<Pack8> for SingleMesh {
         &self.factors
     }
 
-    fn set_stiffness(&mut self, _: usize, fabric: &Fabric, stiffness: &Stiffness) {
-        self.link_compliance = stiffness.of_links(fabric);
-    }
+    /// Has nothing to compute: all stiffness is that of the background grid.
+    fn set_stiffness(&mut self, _: usize, _: &Fabric, _: &Stiffness) {}
 
     fn set_pins(&mut self, _: usize, _: &Fabric, positions: &[Vec3]) {
         self.tethers.iter_mut().for_each(|tethers| tethers.set_pins(positions));

@@ -47,8 +47,6 @@ pub(super) fn link_packs(fabric: &Fabric) -> Vec<LinkPack> {
 pub(super) struct SweepLinks<'a> {
     pub packs: &'a [LinkPack],
     pub is_backwards: bool,
-    /// Strain up to which links do not resist.
-    pub slack: f32,
     /// Compliance of each class, 1/m².
     pub compliance: &'a [f32],
     pub particles: VectorParticles<'a>,
@@ -76,8 +74,7 @@ impl SweepLinks<'_> {
         let mass_a = self.particles.inverse_masses(token, a);
         let mass_b = self.particles.inverse_masses(token, b);
         let along = self.particles.gather(token, b) - self.particles.gather(token, a);
-        let slack = Lane::splat(token, self.slack);
-        let pull = link_pull(token, along, mass_a + mass_b + compliance, rest_length, slack);
+        let pull = link_pull(token, along, mass_a + mass_b + compliance, rest_length);
         self.particles.scatter(token, &a[..pack.count], along, pull * mass_a);
         let zero = <f32x8<S> as Lane>::splat(token, 0.0);
         self.particles.scatter(token, &b[..pack.count], along, zero - pull * mass_b);

@@ -1,4 +1,4 @@
-//! The constraints of a lone mesh that has no background grid, and the links of one that is curved: eight that share no particle are solved at once, in the lanes.
+//! The constraints of a lone mesh that has no background grid: eight that share no particle are solved at once, in the lanes.
 //!
 //! Neighbours on a mesh are no neighbours in memory, so particles are vectors (`vector_particles.rs`), which are
 //! gathered and transposed. Hinges and links are packed such that their order stays that of the scalar code
@@ -20,8 +20,7 @@ use crate::batch::layout::Positions;
 use crate::fabric::{Fabric, LaidYarns};
 use crate::simd::lane::Pack;
 use crate::simd::level::dispatch;
-use crate::simd::registers::{Pack4, Pack8};
-use crate::simd::vec3::{Pack3, lane3, set_lane3};
+use crate::simd::vec3::{lane3, set_lane3};
 
 /// The particles and constraints of a lone mesh.
 #[derive(Clone, Debug)]
@@ -36,16 +35,14 @@ pub(crate) struct LoneMesh {
 }
 
 impl LoneMesh {
-    /// The constraints of a fabric; none if it is a grid, or flat with one. A curved mesh with a background grid has links
-    /// alone.
+    /// The constraints of a fabric; none if it is a grid, or has one.
     pub fn of(fabric: &Fabric) -> Option<Self> {
-        let background = fabric.background();
-        if fabric.grid().is_some() || background.is_some_and(|it| it.transfer.heights.is_empty()) {
+        if fabric.grid().is_some() || fabric.background().is_some() {
             return None;
         }
         Some(Self {
             particles: vec![VectorParticle::new(); fabric.particle_count()],
-            hinges: if background.is_some() { Vec::new() } else { hinge_packs(fabric) },
+            hinges: hinge_packs(fabric),
             links: link_packs(fabric),
             yarns: YarnPacks::of(fabric),
             compliance: Vec::new(),
@@ -64,56 +61,17 @@ impl LoneMesh {
     pub(super) fn sweep_links(
         &mut self,
         is_backwards: bool,
-        slack: f32,
         compliance: impl Iterator<Item = f32>,
     ) {
         self.compliance.clear();
         self.compliance.extend(compliance);
-        self.run_links(is_backwards, slack);
+        self.run_links(is_backwards);
     }
 
     /// Solves the laid yarns, if there are any, given the compliance of a square of each family, σ/(Y h²), 1/m².
     pub(super) fn solve_yarns(&mut self, laid: &LaidYarns, compliance: [f32; 3], passes: u32) {
         if let Some(yarns) = &mut self.yarns {
             yarns.solve(laid, compliance, passes, VectorParticles(&mut self.particles));
-        }
-    }
-
-    /// Takes over positions, m, and inverse masses, 1/m², of the first lane, without corrections.
-    pub(super) fn place<P: Pack>(&mut self, positions: &[Pack3<P>], inverse_masses: &[P]) {
-        let state = positions.iter().zip(inverse_masses);
-        for (particle, (position, inverse_mass)) in self.particles.iter_mut().zip(state) {
-            let [x, y, z] = lane3(position, 0).to_array();
-            let predicted = [x, y, z, inverse_mass.lanes()[0]];
-            particle.predicted.lanes_mut().copy_from_slice(&predicted);
-            particle.correction = Pack4::splat(0.0);
-        }
-    }
-
-    /// Writes the sums of corrections to the first lane, m.
-    pub(super) fn read_corrections<P: Pack>(&self, corrections: &mut [Pack3<P>]) {
-        for (correction, particle) in corrections.iter_mut().zip(&self.particles) {
-            let [x, y, z, _] = particle.correction.vector();
-            set_lane3(correction, 0, Vec3::new(x, y, z));
-        }
-    }
-
-    /// Takes over positions as vectors, m, and inverse masses of packs of eight particles, 1/m².
-    pub(super) fn place_vectors(&mut self, positions: &[Pack4], inverse_masses: &[Pack8]) {
-        let masses = inverse_masses.iter().flat_map(|pack| pack.lanes());
-        for (particle, (position, inverse_mass)) in
-            self.particles.iter_mut().zip(positions.iter().zip(masses))
-        {
-            particle.predicted = *position;
-            particle.predicted.lanes_mut()[3] = *inverse_mass;
-            particle.correction = Pack4::splat(0.0);
-        }
-    }
-
-    /// Writes the sums of corrections as vectors, m.
-    pub(super) fn read_correction_vectors(&self, corrections: &mut [Pack4]) {
-        for (correction, particle) in corrections.iter_mut().zip(&self.particles) {
-            *correction = particle.correction;
         }
     }
 
@@ -126,11 +84,10 @@ impl LoneMesh {
         dispatch!(token => solve_hinges(token, solve));
     }
 
-    fn run_links(&mut self, is_backwards: bool, slack: f32) {
+    fn run_links(&mut self, is_backwards: bool) {
         let sweep = SweepLinks {
             packs: &self.links,
             is_backwards,
-            slack,
             compliance: &self.compliance,
             particles: VectorParticles(&mut self.particles),
         };
