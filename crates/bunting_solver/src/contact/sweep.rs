@@ -24,10 +24,10 @@ const ADVANCE: f32 = 0.7;
 /// of it.
 const OVERTAKEN: f32 = 5e-3;
 
-/// Depth at the start of a substep from which on a triangle is left to its particles, m: it has begun its simulation in the
-/// shape, so that no side is the right one. Smaller: sharp features that the sweeps leave in the cloth for a substep go
-/// through. Larger: cloth that a shape pierces is torn to both sides without an end.
-const PIERCED: f32 = 1e-2;
+/// Depth at the start of a substep from which on a triangle is left to its particles, as a fraction of its longest side: the
+/// cloth has begun in the shape, so that neither side is the right one. Smaller: features of shapes that a change of level
+/// leaves in the cloth go through. Larger: cloth that a shape pierces is torn to both sides without an end.
+const PIERCED: f32 = 0.5;
 
 /// A corner of triangles near a shape.
 #[derive(Clone, Copy, Debug)]
@@ -154,10 +154,12 @@ fn meet(obstacle: &Obstacle, particles: [usize; 3], corners: &mut [Corner]) -> O
     end.or(hit.map(|(_, hit)| hit)).map(Meeting::Cut)
 }
 
-/// Whether a part of a triangle is deep in the shape.
+/// Whether a part of a triangle is so deep in the shape that the shape pierces it.
 fn is_pierced(obstacle: &Obstacle, corners: &[Vec3; 3]) -> bool {
-    let deepest = obstacle.deepest(corners, -PIERCED);
-    deepest.is_some_and(|(_, plane)| plane.distance < -PIERCED)
+    let [a, b, c] = *corners;
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    let deep = -PIERCED * longest;
+    obstacle.deepest(corners, deep).is_some_and(|(_, plane)| plane.distance < deep)
 }
 
 /// Moves the corners of one triangle. Returns whether they had to move.
