@@ -126,3 +126,40 @@ impl BendProfile {
         values.map(|value| rounded_bits(*value)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::Bending;
+    use crate::fabric::cell_sizes::CellSizes;
+    use crate::fabric::grid::Grid;
+
+    #[test]
+    fn lines_that_are_unevenly_far_apart_store_the_energy_of_a_cylinder() {
+        const CURVATURE: f32 = 2.0;
+        let grid = Grid::new(41, 9, 1.0, 0.5);
+        // From 0.02 m to 0.03 m between columns, and rows that spread by a half.
+        let graded = |at: Vec3| {
+            let x = at.x * (0.8 + 0.2 * at.x);
+            Vec3::new(x, at.y * (1.0 + 0.5 * x), 0.0)
+        };
+        let rest: Vec<Vec3> = grid.positions().into_iter().map(graded).collect();
+        let sizes = CellSizes::of(&grid, &rest, false);
+        let bending = Bending::of(&grid, &vec![1.0; rest.len()], false, Some(&sizes));
+        let height = |at: Vec3| 0.5 * CURVATURE * at.x * at.x;
+        let (mut energy, mut area) = (0.0, 0.0);
+        for line in bending.lines.iter().filter(|line| line.is_row) {
+            let profile = &bending.profiles[line.profile as usize];
+            for (three, coefficient) in line.particles.windows(3).zip(&profile.coefficients) {
+                let [a, b, c] = [0, 1, 2].map(|at| height(rest[three[at] as usize]));
+                let turn = (a - 2.0 * b + c) * profile.inverse_spacing;
+                energy += 0.5 * coefficient * turn * turn;
+                let middle = three[1] as usize;
+                area += sizes.spacings[middle][0] * sizes.widths[middle][0];
+            }
+        }
+        let expected = 0.5 * CURVATURE * CURVATURE * area;
+        assert!((energy / expected - 1.0).abs() < 0.01, "{energy} of {expected}");
+    }
+}
