@@ -1,8 +1,8 @@
 //! Stretch, shear and bending of a mesh on its background grid.
 //!
 //! The nodes are integrated as the particles are (`step/nodes.rs`), and take over whatever else acts on the particles:
-//! contacts and forces of users. Where nothing does, particles only follow (`step/follow.rs`). The grid is solved as any other grid, and the particles follow: x = P X, where P
-//! interpolates between nodes. A node takes over what its displacement moves: X ← X + R (x − P X) with
+//! contacts and forces of users. Where nothing does, particles only follow (`step/follow.rs`). The grid is solved as any
+//! other grid, and the particles follow: x = P X, where P interpolates between nodes. A node takes over what its displacement moves: X ← X + R (x − P X) with
 //! R = (Pᵀ m)⁻¹ Pᵀ m, which is Galerkin's method with lumped masses. What the grid does not resolve is taken off.
 //!
 //! Nodes without a past are read from the particles alone. They begin at X = B x, with B the weights in triangles, which
