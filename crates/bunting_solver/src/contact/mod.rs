@@ -18,3 +18,4 @@ mod solve;
 mod surface;
 mod sweep;
 mod swept_boxes;
+mod touch;

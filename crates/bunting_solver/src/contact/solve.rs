@@ -14,7 +14,8 @@ use crate::contact::obstacle::Obstacle;
 use crate::contact::reach::Reach;
 use crate::contact::reaction::ReactionSum;
 use crate::contact::surface::{Projection, Surface};
-use crate::contact::sweep::{Corner, Touch, solve_triangles};
+use crate::contact::sweep::{Corner, solve_triangles};
+use crate::contact::touch::Touch;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
 use crate::step::clock::Clock;
@@ -90,7 +91,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let before = lane3(position, lane);
         let Projection { to, normal, sticks } = contact.project(start, before)?;
         set_lane3(position, lane, contact.pose.transform_point(to));
-        Some(Push { particle, before, to, normal, touched: to, sticks })
+        Some(Push { particle, before, to, touch: Touch::new(normal, to, sticks) })
     }
 
     /// Projects triangles, and adds what pushes their corners to the pushes of particles, which are in ascending order.
@@ -113,12 +114,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         contact.solve_triangles(&candidates.triangles, &mut corners);
         let of_particles = pushes.len();
         for (&particle, corner) in candidates.corners.iter().zip(&corners) {
-            let Some(Touch { normal, at, sticks }) = corner.touch else { continue };
+            let Some(touch) = corner.touch else { continue };
             let (pack, lane) = self.layout.locate(particle as usize, cloth);
             let position = &mut self.positions.packs_mut()[pack];
             let before = lane3(position, lane);
             set_lane3(position, lane, contact.pose.transform_point(corner.to));
-            let push = Push { particle, before, to: corner.to, normal, touched: at, sticks };
+            let push = Push { particle, before, to: corner.to, touch };
             match pushes[..of_particles].binary_search_by_key(&particle, |push| push.particle) {
                 Ok(known) => pushes[known].append(push),
                 Err(_) => pushes.push(push),
@@ -140,16 +141,17 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let effective_step = self.parameters.step.lanes()[lane];
         let start = lane3(&self.scratch[pack], lane);
         let (before, after) = (push.before, contact.pose.transform_point(push.to));
-        let normal = contact.pose.rotation * push.normal;
+        let Touch { at, sticks, .. } = push.touch;
+        let normal = contact.pose.rotation * push.touch.normal;
 
         // A surface pushes a particle but does not throw it off: the velocity away from the surface that the
         // contact gave to it is removed. A particle that sticks has the velocity of the surface.
-        let of_surface = contact.surface_motion(push.touched) / self.clock.step;
+        let of_surface = contact.surface_motion(at) / self.clock.step;
         let predicted = start + lane3(&self.displacement[pack], lane);
         let velocity = lane3(&self.velocity[pack], lane);
         let given = (after - before) / effective_step;
         let leaving = velocity + (after - predicted) / effective_step - of_surface;
-        let thrown = if push.sticks {
+        let thrown = if sticks {
             leaving
         } else {
             leaving.dot(normal).min(given.dot(normal)).max(0.0) * normal
@@ -159,7 +161,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         // An impact must not be extrapolated, so the velocities of the last substeps change by the same
         // amount. A steady pressure is extrapolated, since it continues.
         let approach = of_surface - lane3(&self.older_velocity[pack], lane);
-        let impact = if push.sticks {
+        let impact = if sticks {
             approach
         } else {
             approach.dot(normal).min((given - thrown).dot(normal)).max(0.0) * normal
@@ -178,7 +180,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let steady = (given - thrown - impact) * (self.clock.step / effective_step);
             let gained = contact.density * inertia * (steady + impact);
             let on_collider = contact.pose.rotation.inverse() * -gained;
-            reaction.add(push.particle as usize, push.touched, on_collider);
+            reaction.add(push.particle as usize, at, on_collider);
         }
     }
 }
@@ -191,25 +193,21 @@ struct Outcome<'a> {
     reaction: Option<&'a mut ReactionSum>,
 }
 
-/// The push of a collider to a particle, in the collider's frame if not said otherwise.
+/// The push of a collider to a particle.
 struct Push {
     particle: u32,
     /// Position of the particle before the push, m, in the cloth's frame.
     before: Vec3,
-    /// New position of the particle, m.
+    /// New position of the particle, m, in the collider's frame.
     to: Vec3,
-    /// Unit normal of the surface, out of the shape.
-    normal: Vec3,
-    /// The point of the collider that pushes, m.
-    touched: Vec3,
-    /// Whether the particle moves with the collider in this substep.
-    sticks: bool,
+    touch: Touch,
 }
 
 impl Push {
-    /// Adds a push that has moved the particle on.
+    /// Adds a push of triangles that has moved the particle on. The normal stays that of the surface nearest to the particle.
     fn append(&mut self, next: Self) {
-        *self = Self { before: self.before, sticks: self.sticks || next.sticks, ..next };
+        let touch = self.touch.sticking(self.touch.sticks || next.touch.sticks);
+        *self = Self { before: self.before, touch, ..next };
     }
 }
 

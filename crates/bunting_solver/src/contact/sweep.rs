@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use crate::constants::LEAST_LENGTH;
 use crate::contact::obstacle::{Cut, Obstacle, Plane, barycentric};
+use crate::contact::touch::Touch;
 
 /// Number of sweeps in each solve: the first over all triangles, the others over those of which a corner has moved since.
 /// Fewer: triangles that several features cut are left cut, and those beside an overtaken one are lost.
@@ -38,23 +39,12 @@ pub(super) struct Corner {
     pub from: Vec3,
     /// Present position, m.
     pub to: Vec3,
-    /// The last contact that has moved the corner.
+    /// The deepest of the contacts that have moved the corner.
     pub touch: Option<Touch>,
     /// The plane nearest to the present position, if it has been computed.
     plane: Option<Plane>,
     /// The last sweep that may have moved the corner, counted from one; zero if none has.
     moved: usize,
-}
-
-/// Where a shape touches a triangle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Touch {
-    /// Unit normal, out of the shape.
-    pub normal: Vec3,
-    /// Point of the shape, m.
-    pub at: Vec3,
-    /// Whether the corner moves with the shape in this substep.
-    pub sticks: bool,
 }
 
 impl Corner {
@@ -63,8 +53,10 @@ impl Corner {
     }
 
     fn put(&mut self, to: Vec3, touch: Touch) {
+        let depth = (to - self.to).dot(touch.normal);
+        let touch = Touch { depth, ..touch };
+        self.touch = Some(self.touch.map_or(touch, |former| former.or_deeper(touch)));
         self.to = to;
-        self.touch = Some(touch);
         self.plane = None;
     }
 }
@@ -148,7 +140,7 @@ fn meet(obstacle: &Obstacle, particles: [usize; 3], corners: &mut [Corner]) -> O
         && hit.depth.max(end.as_ref().map_or(0.0, |end| end.depth)) > OVERTAKEN
     {
         let met = weighted(&hit.weights, &between(&from, &to, *at));
-        let touch = Touch { normal: hit.normal, at: met, sticks: true };
+        let touch = Touch::new(hit.normal, met, true);
         return Some(Meeting::Overtaken { at: *at, touch });
     }
     end.or(hit.map(|(_, hit)| hit)).map(Meeting::Cut)
@@ -201,7 +193,7 @@ fn push_out(cut: &Cut, friction: f32, particles: [usize; 3], corners: &mut [Corn
     let shift = normal * depth - slide * held;
     let inverse_masses = particles.map(|corner| corners[corner].inverse_mass);
     let Some(parts) = cut.corner_shifts(inverse_masses) else { return false };
-    let touch = Touch { normal, at: point + shift, sticks: false };
+    let touch = Touch::new(normal, point + shift, false);
     for (corner, part) in particles.into_iter().zip(parts) {
         if part > 0.0 {
             let to = corners[corner].to + shift * part;
