@@ -1,5 +1,5 @@
 //! Time of a tick of an irregular mesh, flat or bent, closed to a cylinder or to a funnel without texture, beside that
-//! of the grid of as many particles, in turn: a lone cloth, and eight.
+//! of the grid of as many particles, in turn: a lone cloth, and eight; and the time in which its fabric is built.
 //!
 //! ```sh
 //! cargo run --release -p bunting_lab --example mesh_ticks -- \
@@ -15,8 +15,8 @@ use bunting_lab::{
     scenes::GRAVITY,
 };
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, Grid, LaneCount,
-    StepLimits, StepSettings, instruction_set,
+    ClothBatch, ClothSnapshot, Drive, FabricBuilder, FabricMaterial, Grid, LaneCount, StepLimits,
+    StepSettings, instruction_set,
 };
 use glam::{DVec2, Vec3};
 
@@ -25,16 +25,20 @@ const BLOCK: usize = 10;
 
 /// Cloths of one fabric in a wind, and the times of their ticks, s.
 struct Timed {
-    name: &'static str,
+    name: String,
     batch: ClothBatch,
+    /// Time in which the fabric was built, s.
+    build_time: f64,
     settings: StepSettings,
     particles: usize,
     times: Vec<f64>,
 }
 
 impl Timed {
-    fn new(name: &'static str, fabric: Fabric, lanes: LaneCount) -> Result<Self> {
-        let fabric = Arc::new(fabric);
+    fn new(name: &str, builder: FabricBuilder, lanes: LaneCount) -> Result<Self> {
+        let start = Instant::now();
+        let fabric = Arc::new(builder.build()?);
+        let build_time = start.elapsed().as_secs_f64();
         let mut batch = ClothBatch::new(Arc::clone(&fabric), lanes);
         for cloth in 0..lanes.get() {
             let wind = Vec3::new(6.0, 0.0, 0.9 + 0.1 * cloth as f32);
@@ -44,7 +48,7 @@ impl Timed {
         }
         let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY as f32);
         let particles = fabric.particle_count() * lanes.get();
-        Ok(Self { name, batch, settings, particles, times: Vec::new() })
+        Ok(Self { name: name.into(), batch, build_time, settings, particles, times: Vec::new() })
     }
 
     fn run_block(&mut self) {
@@ -57,8 +61,9 @@ impl Timed {
     fn print(&self) {
         let least = self.times.iter().copied().fold(f64::INFINITY, f64::min);
         println!(
-            "{}: {:.1} µs, {:.1} ns a particle at {} × {}",
+            "{}: built in {:.0} ms; {:.1} µs, {:.1} ns a particle at {} × {}",
             self.name,
+            self.build_time * 1e3,
             least * 1e6,
             least * 1e9 / self.particles as f64,
             self.settings.substeps,
@@ -78,7 +83,7 @@ fn main() -> Result<()> {
     if kinds == "bent" {
         let sheet = Sheet::new(Triangulation::Quads, [n, n], DVec2::ONE, 1);
         let mesh = FabricBuilder::new(sheet.bent(0.5), sheet.indices);
-        timed.push(Timed::new("bent", mesh.pin_where(|at, _| at.y == 0.0).build()?, lanes)?);
+        timed.push(Timed::new("bent", mesh.pin_where(|at, _| at.y == 0.0), lanes)?);
     }
     if kinds == "rolled" || kinds == "funnel" {
         let sheet = Sheet::new(Triangulation::Quads, [n, n], DVec2::ONE, 1);
@@ -86,21 +91,21 @@ fn main() -> Result<()> {
         let roll = |at: Vec3| Vec3::new(at.x * wide(&at), at.y, at.z * wide(&at));
         let positions = sheet.bent(1.0 / TAU).into_iter().map(roll).collect();
         let mesh = FabricBuilder::new(positions, sheet.indices).weld_distance(1e-5);
-        timed.push(Timed::new("rolled", mesh.pin_where(|at, _| at.y == 0.0).build()?, lanes)?);
+        timed.push(Timed::new(kinds, mesh.pin_where(|at, _| at.y == 0.0), lanes)?);
     }
     if kinds == "scan" {
         let sheet = Sheet::new(Triangulation::Scan, [n, n], DVec2::ONE, 1);
         let mesh = FabricBuilder::new(sheet.positions, sheet.indices);
-        timed.push(Timed::new("scan", mesh.pin_where(|at, _| at.x == 0.0).build()?, lanes)?);
+        timed.push(Timed::new("scan", mesh.pin_where(|at, _| at.x == 0.0), lanes)?);
     }
     if kinds == "grid" || kinds == "both" {
         let grid = FabricBuilder::grid(Grid::new(n as u32, n as u32, 1.0, 1.0));
-        timed.push(Timed::new("grid", grid.pin_where(|at, _| at.x == 0.0).build()?, lanes)?);
+        timed.push(Timed::new("grid", grid.pin_where(|at, _| at.x == 0.0), lanes)?);
     }
     if kinds == "mesh" || kinds == "both" {
         let sheet = Sheet::new(Triangulation::Delaunay, [n, n], DVec2::ONE, 1);
         let mesh = FabricBuilder::new(sheet.positions, sheet.indices);
-        timed.push(Timed::new("mesh", mesh.pin_where(|at, _| at.x == 0.0).build()?, lanes)?);
+        timed.push(Timed::new("mesh", mesh.pin_where(|at, _| at.x == 0.0), lanes)?);
     }
     for _ in 0..ticks.parse::<usize>().context("TICKS")?.div_ceil(BLOCK) {
         timed.iter_mut().for_each(Timed::run_block);

@@ -1,6 +1,9 @@
 //! Tests that a batch of one cloth, whose own yarns fill the lanes, computes the same bits as a batch of
 //! several cloths.
 
+#[path = "common/irregular.rs"]
+mod irregular;
+
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -8,6 +11,7 @@ use bunting_solver::{
     Grid, LaneCount, StepSettings, with_every_instruction_set,
 };
 use glam::{Quat, Vec3};
+use irregular::irregular;
 use parry3d::shape::SharedShape;
 
 const TICK: f32 = 1.0 / 60.0;
@@ -95,6 +99,37 @@ fn pins_anywhere_agree() {
 fn yarns_that_run_from_diagonal_to_diagonal_agree() {
     let grid = FabricBuilder::grid(Grid::new(5, 17, 2.0, 0.5));
     agrees(grid.pin_where(|_, uv| uv.x == 0.0), FabricMaterial::COTTON, yarns(2, 2));
+}
+
+/// Irregular triangles over the unit square, moved to other places, held where the second coordinate was zero.
+fn mesh(place: impl Fn(Vec3) -> Vec3) -> FabricBuilder {
+    let flat = irregular(17, 0.0);
+    let held: Vec<u32> = (0..)
+        .zip(flat.rest_positions())
+        .filter(|(_, at)| at.y == 0.0)
+        .map(|(particle, _)| particle)
+        .collect();
+    let positions = flat.rest_positions().iter().map(|&at| place(at)).collect();
+    FabricBuilder::new(positions, flat.triangles().as_flattened().to_vec())
+        .weld_distance(1e-5)
+        .pin(held)
+}
+
+#[test]
+fn meshes_agree() {
+    let rolled = |radius: f32, at: Vec3| {
+        let angle = at.x * core::f32::consts::TAU;
+        Vec3::new(radius * libm::sinf(angle), at.y, radius * libm::cosf(angle))
+    };
+    agrees(mesh(|at| at), FabricMaterial::COTTON, yarns(2, 2));
+    agrees(mesh(|at| rolled(0.2, at)), FabricMaterial::COTTON, yarns(2, 2));
+    // Lines of nodes are curved, and each cell has diagonals of its own.
+    agrees(
+        mesh(|at| at * Vec3::new(1.0 + 0.4 * at.y, 1.0, 1.0)),
+        FabricMaterial::COTTON,
+        yarns(2, 2),
+    );
+    agrees(mesh(|at| rolled(0.2 + 0.1 * at.y, at)), FabricMaterial::SILK, yarns(3, 2));
 }
 
 #[test]

@@ -21,6 +21,7 @@ use core::ops::Range;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Order, Particles, Positions};
 use crate::fabric::Cell;
+use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::vec3::V3;
 
@@ -60,7 +61,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             // The first diagonal is stored last, as it may be the only one.
             for at in [1, 0] {
                 let target = &mut self.link_target[cell.targets[at] as usize];
-                target.lanes_mut()[lanes.clone()].fill(lengths[at]);
+                let length = lengths[at].pack();
+                target.lanes_mut()[lanes.clone()].copy_from_slice(&length.lanes()[lanes.clone()]);
             }
         }
     }
@@ -69,7 +71,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 struct DiagonalTargets<'a, P: Pack, S: Particles<P>> {
     cells: &'a [Cell],
     /// Of both diagonals of each cell at rest, m; empty where all are alike.
-    lengths: &'a [[f32; 2]],
+    lengths: &'a [[S::Constant; 2]],
     /// At rest, m.
     length: &'a P,
     /// Greatest length, in units of that at rest.
@@ -111,24 +113,23 @@ impl<P: Pack, S: Particles<P>> DiagonalTargets<'_, P, S> {
     #[inline(always)]
     fn of_unlike_cells<L: Lane<Pack = P>>(self, token: L::Token) {
         let Self { cells, lengths, target: targets, particles, .. } = self;
-        let (one, half) = (L::splat(token, 1.0), L::splat(token, 0.5));
+        let (one, two, half) = (L::splat(token, 1.0), L::splat(token, 2.0), L::splat(token, 0.5));
         let longest = L::load(token, self.stretch);
         let shortest = one + one - longest;
         for (cell, [of_own, of_other]) in cells.iter().zip(lengths) {
+            let (of_own, of_other): (L, L) = (of_own.load(token), of_other.load(token));
             let [first, left, right, last] = cell.corners;
             let own: V3<L> = particles.position(token, last) - particles.position(token, first);
             let other: V3<L> = particles.position(token, right) - particles.position(token, left);
             let (own, other) = (own.dot(own), other.dot(other));
-            let at_rest = 2.0 * (of_own * of_own + of_other * of_other);
+            let at_rest = two * (of_own * of_own + of_other * of_other);
             // √(Σ|d|²/Σ|d₀|²), linearised about one.
-            let stretch = half.plus_product(own + other, L::splat(token, 1.0 / at_rest));
+            let stretch = half.plus_product(own + other, one / at_rest);
             let stretch = shortest.max(longest.or_where_not(longest.lt(stretch), stretch));
             // The first diagonal is stored last, as it may be the only one.
             let [of_first, of_second] = cell.targets;
-            let target = L::splat(token, *of_other) * stretch;
-            bounded(token, other, target).store(&mut targets[of_second as usize]);
-            let target = L::splat(token, *of_own) * stretch;
-            bounded(token, own, target).store(&mut targets[of_first as usize]);
+            bounded(token, other, of_other * stretch).store(&mut targets[of_second as usize]);
+            bounded(token, own, of_own * stretch).store(&mut targets[of_first as usize]);
         }
     }
 }

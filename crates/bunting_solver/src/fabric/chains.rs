@@ -105,7 +105,7 @@ pub(crate) struct Chains<C = f32> {
     /// The cells of a grid whose diagonals are links; none for other meshes.
     pub cells: Vec<Cell>,
     /// Lengths at rest of the two diagonals of each cell, m; empty where all are alike.
-    pub diagonal_lengths: Vec<[f32; 2]>,
+    pub diagonal_lengths: Vec<[C; 2]>,
 }
 
 impl Chains {
@@ -275,7 +275,7 @@ impl Chains {
             colours: self.colours.clone(),
             sweep_links: self.sweep_links.iter().map(sweep_link).collect(),
             cells: self.cells.clone(),
-            diagonal_lengths: self.diagonal_lengths.clone(),
+            diagonal_lengths: self.diagonal_lengths.iter().map(|of| of.map(&constant)).collect(),
         }
     }
 }

@@ -17,8 +17,9 @@ use super::mesh::{RestMesh, Surface};
 use super::normals::vertex_normals;
 use super::patches::{self, Patch};
 use super::rest_bends::RestBends;
+use super::rest_paths::RestPaths;
 use super::strip::{self, StripRow};
-use super::tethers::{self, Pin, Tether, Tethers};
+use super::tethers::{Pin, Tether, Tethers};
 use super::topology;
 use super::twist::{Ribbon, RibbonProfile, Twist};
 use super::yarns::{Yarn, Yarns};
@@ -426,6 +427,6 @@ impl Fabric {
     /// Distance of each particle from a pin at rest, along the cloth, m; infinite if they are not connected.
     pub(crate) fn distances_from(&self, pin: Pin) -> Vec<f32> {
         let edges = self.mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-        tethers::distances(&self.mesh.positions, edges, pin, self.grid.is_some())
+        RestPaths::new(&self.mesh.positions, edges, self.grid.is_some()).distances(pin)
     }
 }

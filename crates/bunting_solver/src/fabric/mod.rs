@@ -32,6 +32,7 @@ mod mesh;
 mod normals;
 mod patches;
 mod rest_bends;
+mod rest_paths;
 mod shared_topology;
 mod strip;
 mod tethers;

@@ -3,12 +3,12 @@
 //! Distances are geodesic at rest ("long range attachments", Kim 2012): straight on a grid, along the edges of
 //! other meshes.
 
-use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BTreeMap;
 
 use glam::Vec3;
 
 use super::mesh::RestMesh;
+use super::rest_paths::RestPaths;
 use super::topology::Edge;
 
 /// A bound on the distance between a free particle and a pin.
@@ -58,17 +58,17 @@ pub(crate) struct Tethers {
 }
 
 impl Tethers {
-    /// Pins and tethers; without tethers if the fabric is not `tethered`. On a `flat` mesh the shortest path
-    /// between two particles at rest is straight.
+    /// Pins and tethers; without tethers if the fabric is not `tethered`. Paths on a `flat` mesh are straight.
     pub(super) fn of(mesh: &RestMesh, edges: &[Edge], flat: bool, tethered: bool) -> Self {
         let rest = &mesh.positions;
         let pins = pins(mesh, edges);
-        let near = near_tethers(rest, edges, &pins, flat);
+        let paths = RestPaths::new(rest, edges.iter().map(|edge| edge.ends), flat);
+        let near = near_tethers(&paths, &pins);
         let reach = near.iter().map(|tether| tether.length).fold(0.0, f32::max);
         if !tethered {
             return Self { pins, near: Vec::new(), far: Vec::new(), reach };
         }
-        let far = far_tethers(rest, edges, &pins, &near, reach, flat);
+        let far = far_tethers(rest, &paths, &pins, &near, reach);
         Self { pins, near, far, reach }
     }
 }
@@ -89,12 +89,9 @@ fn pins(mesh: &RestMesh, edges: &[Edge]) -> Vec<Pin> {
 }
 
 /// Tether of each free particle that is connected to a pin, to its nearest pin.
-fn near_tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -> Vec<Tether> {
-    let edges = edges.iter().map(|edge| edge.ends);
-    let nearest =
-        if flat { nearest_straight(rest, pins) } else { nearest_along(rest, edges, pins) };
+fn near_tethers(paths: &RestPaths, pins: &[Pin]) -> Vec<Tether> {
     (0..)
-        .zip(nearest)
+        .zip(paths.nearest(pins))
         .filter_map(|(particle, nearest)| {
             let (length, pin) = nearest?;
             let Pin { particle: pin, isolated } = pins[pin];
@@ -111,11 +108,10 @@ fn near_tethers(rest: &[Vec3], edges: &[Edge], pins: &[Pin], flat: bool) -> Vec<
 /// Tethers to the farthest pins, see [`Tethers::far`].
 fn far_tethers(
     rest: &[Vec3],
-    edges: &[Edge],
+    paths: &RestPaths,
     pins: &[Pin],
     near: &[Tether],
     reach: f32,
-    flat: bool,
 ) -> Vec<Tether> {
     let mut particles_of_pin: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
     for &Tether { particle, .. } in near {
@@ -126,7 +122,7 @@ fn far_tethers(
         }
     }
     let tethers_to_pin = |(pin, particles): (usize, Vec<u32>)| {
-        let lengths = distances(rest, edges.iter().map(|edge| edge.ends), pins[pin], flat);
+        let lengths = paths.distances(pins[pin]);
         let pin = pins[pin].particle;
         particles.into_iter().filter_map(move |particle| {
             let length = lengths[particle as usize];
@@ -136,62 +132,6 @@ fn far_tethers(
         })
     };
     particles_of_pin.into_iter().flat_map(tethers_to_pin).collect()
-}
-
-/// Distance of each particle from a pin at rest, m; infinite if they are not connected.
-pub(super) fn distances(
-    rest: &[Vec3],
-    edges: impl Iterator<Item = [u32; 2]>,
-    pin: Pin,
-    flat: bool,
-) -> Vec<f32> {
-    let nearest =
-        if flat { nearest_straight(rest, &[pin]) } else { nearest_along(rest, edges, &[pin]) };
-    nearest.into_iter().map(|nearest| nearest.map_or(f32::INFINITY, |(length, _)| length)).collect()
-}
-
-/// For each particle the straight distance to the nearest pin, m, and the index of the pin.
-fn nearest_straight(rest: &[Vec3], pins: &[Pin]) -> Vec<Option<(f32, usize)>> {
-    let distance = |at: Vec3, pin: &Pin| at.distance(rest[pin.particle as usize]);
-    rest.iter()
-        .map(|&at| {
-            let distances = pins.iter().enumerate().map(|(index, pin)| (distance(at, pin), index));
-            distances.min_by(|one, other| one.0.total_cmp(&other.0))
-        })
-        .collect()
-}
-
-/// Distance along the edges of the mesh to the nearest pin, m, and the index of the pin (Dijkstra 1959). It
-/// is never shorter than the path across the triangles.
-fn nearest_along(
-    rest: &[Vec3],
-    edges: impl Iterator<Item = [u32; 2]>,
-    pins: &[Pin],
-) -> Vec<Option<(f32, usize)>> {
-    let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); rest.len()];
-    for [a, b] in edges {
-        neighbours[a as usize].push(b);
-        neighbours[b as usize].push(a);
-    }
-    let mut nearest: Vec<Option<(f32, usize)>> = vec![None; rest.len()];
-    // The bits of non-negative floats are ordered like the floats.
-    let mut open: BinaryHeap<Reverse<(u32, usize, u32)>> =
-        pins.iter().enumerate().map(|(index, pin)| Reverse((0, index, pin.particle))).collect();
-    while let Some(Reverse((bits, pin, particle))) = open.pop() {
-        let reached = &mut nearest[particle as usize];
-        if reached.is_some() {
-            continue;
-        }
-        let distance = f32::from_bits(bits);
-        *reached = Some((distance, pin));
-        for &neighbour in &neighbours[particle as usize] {
-            if nearest[neighbour as usize].is_none() {
-                let edge = rest[particle as usize].distance(rest[neighbour as usize]);
-                open.push(Reverse(((distance + edge).to_bits(), pin, neighbour)));
-            }
-        }
-    }
-    nearest
 }
 
 #[cfg(test)]

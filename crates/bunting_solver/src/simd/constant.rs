@@ -22,6 +22,9 @@ pub(crate) trait Constant<P: Pack>: Copy + Debug + Send + Sync + 'static {
     /// Whether the number is known to be zero in all lanes, so that the pack can be skipped.
     fn is_zero(self) -> bool;
 
+    /// The number in all lanes.
+    fn pack(self) -> P;
+
     /// The number in a register.
     fn load<L: Lane<Pack = P>>(&self, token: L::Token) -> L;
 
@@ -52,6 +55,10 @@ impl<P: Pack> Constant<P> for f32 {
     #[inline(always)]
     fn is_zero(self) -> bool {
         self == 0.0
+    }
+
+    fn pack(self) -> P {
+        P::splat(self)
     }
 
     #[inline(always)]
@@ -101,6 +108,10 @@ impl<P: Pack> Constant<P> for PerLane<P> {
         self.0.lanes()[0] == 0.0
     }
 
+    fn pack(self) -> P {
+        self.0
+    }
+
     #[inline(always)]
     fn load<L: Lane<Pack = P>>(&self, token: L::Token) -> L {
         L::load(token, &self.0)
@@ -130,6 +141,10 @@ impl<P: Pack> Constant<Self> for P {
     #[inline(always)]
     fn is_zero(self) -> bool {
         false
+    }
+
+    fn pack(self) -> Self {
+        self
     }
 
     #[inline(always)]

@@ -4,7 +4,9 @@
 //! yarns are diagonals, each line begins one particle further on than the line before.
 
 use core::ops::Range;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
+
+use glam::Vec3;
 
 use super::grid_shape::GridShape;
 use super::{LaneIndices, MOST_LANES, NO_INDEX};
@@ -136,7 +138,7 @@ impl<P: Pack> ChainPacks<P> {
     pub fn new(fabric: &Fabric, shape: GridShape) -> Option<Self> {
         let grid = fabric.grid()?;
         let is_joined = fabric.is_closed();
-        let mut packer = Packer { shape, is_joined, classes: Vec::new() };
+        let mut packer = Packer { shape, is_joined, classes: Vec::new(), known: HashMap::new() };
         let mut colours: Vec<(LinkFamily, Vec<Chain<P>>)> = Vec::new();
         let mut orders = Vec::new();
         for range in fabric.yarn_colours().ranges() {
@@ -149,6 +151,10 @@ impl<P: Pack> ChainPacks<P> {
         }
         let mut chains = Chains::of_colours(colours.into_iter());
         chains.cells = cells(&chains, shape);
+        if !fabric.chains().diagonal_lengths.is_empty() {
+            chains.diagonal_lengths =
+                diagonal_lengths(&chains.cells, shape, fabric.rest_positions());
+        }
         Some(Self { chains, orders, classes: packer.classes })
     }
 }
@@ -184,12 +190,29 @@ fn cells<P: Pack>(chains: &Chains<P>, shape: GridShape) -> Vec<Cell> {
     chains.diagonals().map(of_diagonal).collect()
 }
 
+/// Lengths at rest of the two diagonals of each cell, m; one in lanes without a cell.
+fn diagonal_lengths<P: Pack>(cells: &[Cell], shape: GridShape, rest: &[Vec3]) -> Vec<[P; 2]> {
+    let length = |ends: [u32; 2]| {
+        P::of(|lane| match ends.map(|end| shape.particle(end + lane as u32)) {
+            [Some(one), Some(other)] => rest[one].distance(rest[other]),
+            _ => 1.0,
+        })
+    };
+    let of_cell = |cell: &Cell| {
+        let [first, left, right, last] = cell.corners;
+        [[first, last], [left, right]].map(length)
+    };
+    cells.iter().map(of_cell).collect()
+}
+
 /// Packs neighbouring yarns.
 struct Packer {
     shape: GridShape,
     /// Whether the ends of columns are at one place.
     is_joined: bool,
     classes: Vec<LaneIndices>,
+    /// The class with these classes of the fabric in its lanes.
+    known: HashMap<LaneIndices, u32>,
 }
 
 impl Packer {
@@ -245,11 +268,9 @@ impl Packer {
 
     /// The class of links with these classes of the fabric in their lanes.
     fn class(&mut self, of_lanes: LaneIndices) -> u32 {
-        // Neighbours mostly have equal classes, which are the last ones in the list.
-        let known = self.classes.iter().rposition(|known| *known == of_lanes);
-        known.unwrap_or_else(|| {
+        *self.known.entry(of_lanes).or_insert_with(|| {
             self.classes.push(of_lanes);
-            self.classes.len() - 1
-        }) as u32
+            self.classes.len() as u32 - 1
+        })
     }
 }

@@ -60,6 +60,13 @@ impl GridShape {
         };
         ((MARGIN + line * stride) as isize + place) as u32
     }
+
+    /// The particle at an index in row-major order, if there is one.
+    pub fn particle(&self, index: u32) -> Option<usize> {
+        let index = (index as usize).checked_sub(MARGIN)?;
+        let (row, column) = (index / self.row_stride, index % self.row_stride);
+        (row < self.rows && column < self.columns).then_some(row * self.columns + column)
+    }
 }
 
 #[cfg(test)]

@@ -69,7 +69,7 @@ impl<P: Pack> SingleCloth<P> {
     /// The layout of a fabric; none unless it is a grid whose yarns run straight, and so wide that it is not
     /// solved by strips, whose rows follow one on another.
     pub fn of(fabric: &Fabric) -> Option<Self> {
-        if !fabric.strips().is_empty() || !fabric.chains().diagonal_lengths.is_empty() {
+        if !fabric.strips().is_empty() {
             return None;
         }
         let shape = GridShape::new::<P>(fabric.grid()?);

@@ -15,7 +15,9 @@
 mod chart;
 mod closed;
 mod coverage;
+mod gradient_fit;
 mod interpolation;
+mod laplacian;
 mod mapped;
 mod smooth;
 #[cfg(test)]
@@ -142,8 +144,13 @@ impl BackgroundMesh {
         let free_areas: Vec<f32> =
             free_areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect();
         transfer.moved_areas = transfer.node_masses(&free_areas);
-        let nodes = node_mesh(mesh, chart, &grid, &transfer);
-        if !chart.warps.is_empty() && !mapped::is_regular(&grid, &nodes) {
+        let positions = rest_positions(mesh, chart, &grid, &transfer);
+        let curved_lines = (!chart.warps.is_empty()).then(|| CurvedLines {
+            sizes: CellSizes::of(&grid, &positions, chart.is_closed),
+            warps: warps_of_cells(&transfer.nodes, &chart.warps, &grid),
+        });
+        let nodes = node_mesh(mesh, &grid, &transfer, positions, curved_lines.as_ref());
+        if curved_lines.is_some() && !mapped::is_regular(&grid, &nodes) {
             return None;
         }
         let is_free = |node: usize| !nodes.is_pinned(node as u32);
@@ -152,10 +159,6 @@ impl BackgroundMesh {
         if chart.plane.is_none() {
             transfer.heights = heights(mesh, chart, &grid, &nodes, &transfer);
         }
-        let curved_lines = (!chart.warps.is_empty()).then(|| CurvedLines {
-            sizes: CellSizes::of(&grid, &nodes.positions, chart.is_closed),
-            warps: warps_of_cells(&transfer.nodes, &chart.warps, &grid),
-        });
         let is_held = is_held(mesh, chart, &grid, &nodes);
         let GridTransfer { nodes: first, particles, means, held, .. } = &mut transfer;
         for rows in [first, particles, means, held] {
@@ -256,23 +259,37 @@ fn is_held(mesh: &RestMesh, chart: &Chart, grid: &Grid, nodes: &RestMesh) -> boo
     pinned.all(|(_, &at)| is_near_pinned_node(at))
 }
 
+/// Positions of the nodes at rest, m.
+fn rest_positions(
+    mesh: &RestMesh,
+    chart: &Chart,
+    grid: &Grid,
+    transfer: &GridTransfer,
+) -> Vec<Vec3> {
+    let in_space = |(at, row): (Vec2, &[Term])| match &chart.plane {
+        Some(plane) => plane.in_space(at),
+        None => row.iter().map(|term| mesh.positions[term.from as usize] * term.weight).sum(),
+    };
+    chart::node_positions(grid).into_iter().zip(transfer.nodes.rows()).map(in_space).collect()
+}
+
 /// The nodes as particles. Those that stand for pinned particles are pinned. They have the areas of a grid's
 /// particles: with those of the particles that they move, which differ from node
 /// to node by chance, a swing loses motion to short waves.
-fn node_mesh(mesh: &RestMesh, chart: &Chart, grid: &Grid, transfer: &GridTransfer) -> RestMesh {
+fn node_mesh(
+    mesh: &RestMesh,
+    grid: &Grid,
+    transfer: &GridTransfer,
+    positions: Vec<Vec3>,
+    curved_lines: Option<&CurvedLines>,
+) -> RestMesh {
     let is_free = |row: &[Term]| {
         let free = row.iter().filter(|term| !mesh.is_pinned(term.from));
         free.map(|term| term.weight).sum::<f32>() > LEAST_FREE
     };
-    let in_chart = chart::node_positions(grid);
-    let in_space = |(&at, row): (&Vec2, &[Term])| match &chart.plane {
-        Some(plane) => plane.in_space(at),
-        None => row.iter().map(|term| mesh.positions[term.from as usize] * term.weight).sum(),
-    };
-    let positions: Vec<Vec3> = in_chart.iter().zip(transfer.nodes.rows()).map(in_space).collect();
-    let areas = match chart.warps.is_empty() {
-        true => grid.particle_areas(),
-        false => CellSizes::of(grid, &positions, chart.is_closed).particle_areas(grid),
+    let areas = match curved_lines {
+        Some(lines) => lines.sizes.particle_areas(grid),
+        None => grid.particle_areas(),
     };
     let rows = transfer.nodes.rows().zip(&areas);
     RestMesh {
@@ -280,7 +297,7 @@ fn node_mesh(mesh: &RestMesh, chart: &Chart, grid: &Grid, transfer: &GridTransfe
         inverse_areas: rows
             .map(|(row, area)| if is_free(row) { 1.0 / area } else { 0.0 })
             .collect(),
-        uv: in_chart,
+        uv: chart::node_positions(grid),
         triangles: grid.triangles(false),
         particle_of_vertex: (0..areas.len() as u32).collect(),
         areas,

@@ -9,6 +9,7 @@ use std::collections::BinaryHeap;
 
 use glam::{DVec2, DVec3, Vec3};
 
+use super::gradient_fit::GradientFit;
 use crate::fabric::laid_yarns::{Directions, Faces, Towards};
 use crate::fabric::mesh::{RestMesh, Surface};
 
@@ -18,12 +19,6 @@ const NEAR: f64 = 0.5;
 
 /// Least cosine of the angle between the warps of neighbours. Smaller: pieces whose warps are at right angles are one.
 const ALONG: f64 = 0.7;
-
-/// Most steps of conjugate gradients.
-const STEPS: usize = 200;
-
-/// Square of the residual, relative to that at first, that is left.
-const ACCURATE: f64 = 1e-12;
 
 /// The triangles of a mesh in the plane.
 pub(super) struct Unfolded {
@@ -41,8 +36,7 @@ impl Unfolded {
         let mut sheet = Sheet::new(mesh, surface);
         sheet.lay();
         let triangles: Vec<[u32; 3]> = sheet.triangles.iter().copied().collect::<Option<_>>()?;
-        let system = GradientFit::new(&sheet, &triangles, &surface.triangle_areas);
-        let places = system.solved(sheet.places);
+        let places = sheet.fitted(&triangles, &surface.triangle_areas)?;
         Some(Self { places, particles: sheet.particles, triangles })
     }
 }
@@ -144,86 +138,16 @@ impl<'a> Sheet<'a> {
         self.triangles[other as usize] = Some(places);
         Some(places.iter().map(|&place| self.places[place as usize]).sum::<DVec2>() / 3.0)
     }
-}
-
-/// A system of equations for two coordinates of places, whose gradients are to be warp and weft.
-struct GradientFit<'a> {
-    triangles: &'a [[u32; 3]],
-    areas: &'a [f32],
-    /// Warp and weft of each triangle.
-    axes: Vec<[DVec3; 2]>,
-    /// For each triangle the gradients of the functions that are one at a corner and zero at the others, 1/m.
-    gradients: Vec<[DVec3; 3]>,
-    /// Diagonal of the system.
-    diagonal: Vec<f64>,
-}
-
-impl<'a> GradientFit<'a> {
-    fn new(sheet: &Sheet, triangles: &'a [[u32; 3]], areas: &'a [f32]) -> Self {
-        let gradients_of = |triangle: u32| {
-            let [a, b, c] = sheet.faces.corners(triangle).map(|corner| corner.as_dvec3());
-            let normal = (b - a).cross(c - a);
-            let scaled = normal / normal.length_squared();
-            [c - b, a - c, b - a].map(|opposite| scaled.cross(opposite))
+    /// The places whose gradients on these triangles are nearest to warp and weft; none if they are not found.
+    fn fitted(&self, triangles: &[[u32; 3]], areas: &[f32]) -> Option<Vec<DVec2>> {
+        let corners = |triangle| self.faces.corners(triangle).map(|corner| corner.as_dvec3());
+        let corners = (0..triangles.len() as u32).map(corners);
+        let fit = GradientFit::new(triangles, corners, areas, self.places.len());
+        let coordinate = |axis: usize| {
+            let laid = self.places.iter().map(|place| place[axis]).collect();
+            fit.solved(laid, |_| false, |triangle| self.axes[triangle][axis])
         };
-        let gradients: Vec<[DVec3; 3]> = (0..triangles.len() as u32).map(gradients_of).collect();
-        let mut diagonal = vec![0.0; sheet.places.len()];
-        for ((corners, gradients), &area) in triangles.iter().zip(&gradients).zip(areas) {
-            for (&corner, gradient) in corners.iter().zip(gradients) {
-                diagonal[corner as usize] += gradient.length_squared() * f64::from(area);
-            }
-        }
-        Self { triangles, areas, axes: sheet.axes.clone(), gradients, diagonal }
-    }
-
-    /// The derivatives of ½ Σ A (|∇u − `wanted` warp|² + |∇v − `wanted` weft|²) by u and v of each place, m.
-    fn derivatives(&self, values: &[DVec2], wanted: f64) -> Vec<DVec2> {
-        let mut derivatives = vec![DVec2::ZERO; values.len()];
-        let triangles = self.triangles.iter().zip(&self.gradients).zip(self.areas).zip(&self.axes);
-        for (((corners, gradients), &area), [warp, weft]) in triangles {
-            let (mut of_u, mut of_v) = (*warp * -wanted, *weft * -wanted);
-            for (&corner, gradient) in corners.iter().zip(gradients) {
-                let value = values[corner as usize];
-                of_u += *gradient * value.x;
-                of_v += *gradient * value.y;
-            }
-            for (&corner, gradient) in corners.iter().zip(gradients) {
-                let derivative = DVec2::new(gradient.dot(of_u), gradient.dot(of_v));
-                derivatives[corner as usize] += derivative * f64::from(area);
-            }
-        }
-        derivatives
-    }
-
-    /// The solution, from places near it, by conjugate gradients (Hestenes and Stiefel 1952).
-    fn solved(&self, mut places: Vec<DVec2>) -> Vec<DVec2> {
-        let dot = |a: &[DVec2], b: &[DVec2]| a.iter().zip(b).map(|(a, b)| a.dot(*b)).sum::<f64>();
-        let conditioned = |residual: &[DVec2]| -> Vec<DVec2> {
-            residual.iter().zip(&self.diagonal).map(|(value, scale)| *value / *scale).collect()
-        };
-        let mut residual = self.derivatives(&places, 1.0);
-        residual.iter_mut().for_each(|value| *value = -*value);
-        let mut step = conditioned(&residual);
-        let mut size = dot(&residual, &step);
-        let accurate = ACCURATE * size;
-        for _ in 0..STEPS {
-            if size <= accurate {
-                break;
-            }
-            let change = self.derivatives(&step, 0.0);
-            let length = size / dot(&step, &change);
-            for (place, step) in places.iter_mut().zip(&step) {
-                *place += *step * length;
-            }
-            for (residual, change) in residual.iter_mut().zip(&change) {
-                *residual -= *change * length;
-            }
-            let scaled = conditioned(&residual);
-            let before = core::mem::replace(&mut size, dot(&residual, &scaled));
-            for (step, scaled) in step.iter_mut().zip(scaled) {
-                *step = scaled + *step * (size / before);
-            }
-        }
-        places
+        let [warp, weft] = [coordinate(0)?, coordinate(1)?];
+        Some(warp.into_iter().zip(weft).map(|(u, v)| DVec2::new(u, v)).collect())
     }
 }

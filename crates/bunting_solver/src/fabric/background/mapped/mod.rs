@@ -8,14 +8,13 @@
 //! which keeps the angles.
 
 mod border;
-mod harmonic;
 mod regular;
 
 use glam::{DMat4, DVec3, DVec4, Vec2, Vec3};
 
 use self::border::{Sides, sides};
-use self::harmonic::Laplacian;
 use super::chart::Chart;
+use super::gradient_fit::GradientFit;
 use crate::fabric::laid_yarns::{Directions, Faces, Towards};
 use crate::fabric::mesh::{RestMesh, Surface};
 
@@ -36,31 +35,41 @@ impl Chart {
     /// or rims.
     pub(super) fn mapped(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         let sides = sides(mesh, surface)?;
-        let laplacian = Laplacian::of(mesh);
+        let corners = mesh.triangles.iter().map(|corners| mesh.positions_of(*corners));
+        let corners = corners.map(|corners| corners.map(Vec3::as_dvec3));
+        let count = mesh.positions.len();
+        let fit = GradientFit::new(&mesh.triangles, corners, &surface.triangle_areas, count);
+        let harmonic = |fixed: &[Option<f64>]| {
+            let start = fixed.iter().map(|fixed| fixed.unwrap_or(0.5)).collect();
+            fit.solved(start, |particle| fixed[particle].is_some(), |_| DVec3::ZERO)
+        };
         let (cut, [along, across]) = match sides {
             Sides::Four(sides) => {
                 let value = |[zero, one]: [usize; 2]| {
-                    let mut fixed = vec![None; mesh.positions.len()];
+                    let mut fixed = vec![None; count];
                     sides[zero].iter().for_each(|&at| fixed[at as usize] = Some(0.0));
                     sides[one].iter().for_each(|&at| fixed[at as usize] = Some(1.0));
-                    laplacian.solved(&fixed, &mesh.triangles, None)
+                    harmonic(&fixed)
                 };
                 let cut = Cut {
-                    particles: (0..mesh.positions.len() as u32).collect(),
+                    particles: (0..count as u32).collect(),
                     triangles: mesh.triangles.clone(),
-                    turns: vec![0.0; mesh.positions.len()],
+                    turns: vec![0.0; count],
                 };
                 (cut, [value([3, 1])?, value([0, 2])?])
             }
             Sides::Rims(rims) => {
-                let mut fixed = vec![None; mesh.positions.len()];
+                let mut fixed = vec![None; count];
                 for (rim, value) in rims.iter().zip([0.0, 1.0]) {
                     rim.iter().for_each(|&at| fixed[at as usize] = Some(value));
                 }
                 let cut = border::cut_open(mesh, &rims)?;
-                let along = laplacian.solved(&fixed, &mesh.triangles, None)?;
-                let free = vec![None; mesh.positions.len()];
-                let around = laplacian.solved(&free, &cut.triangles, Some(&cut))?;
+                let along = harmonic(&fixed)?;
+                let turning = |triangle: usize| {
+                    let turns = cut.triangles[triangle].map(|place| cut.turns[place as usize]);
+                    -fit.gradient(triangle, turns)
+                };
+                let around = fit.solved(vec![0.0; count], |_| false, turning)?;
                 (cut, [along, around])
             }
         };
@@ -73,7 +82,7 @@ impl Chart {
             values(&across).iter().zip(&cut.turns).map(|(value, turn)| value + turn).collect();
         let is_closed = cut.particles.len() > mesh.positions.len();
         let [along, across] = [(&along, true), (&across, !is_closed)].map(|(values, is_spaced)| {
-            Coordinate::of(mesh, surface, &cut.triangles, values, is_spaced)
+            Coordinate::of(&fit, surface, &cut.triangles, values, is_spaced)
         });
         let (along, across) = (along?, across?);
         let extent = Vec2::new(along.length, across.length);
@@ -85,7 +94,7 @@ impl Chart {
             positions.iter_mut().for_each(|at| at.x = last - at.x);
         }
         Some(Self::closed(Self {
-            warps: warps(mesh, surface, &positions, &cut)?,
+            warps: warps(mesh, surface, &fit, &positions, &cut)?,
             positions,
             own_places: cut.particles.len(),
             particles: cut.particles,
@@ -119,7 +128,7 @@ impl Coordinate {
     /// A coordinate from values between 0 and 1, if wanted one whose lines are evenly spaced in the mean; none if the
     /// values have no gradients.
     fn of(
-        mesh: &RestMesh,
+        fit: &GradientFit,
         surface: &Surface,
         triangles: &[[u32; 3]],
         values: &[f64],
@@ -128,10 +137,10 @@ impl Coordinate {
         // The spacing of lines, as a cubic of the value by least squares: each line counts as its length.
         let (mut normal, mut right) = (DMat4::ZERO, DVec4::ZERO);
         let (mut length, mut area) = (0.0, 0.0);
-        let at_rest = mesh.triangles.iter().zip(&surface.triangle_areas);
-        for ((corners, &of_triangle), places) in at_rest.zip(triangles) {
+        for (triangle, places) in triangles.iter().enumerate() {
+            let of_triangle = surface.triangle_areas[triangle];
             let of_corners = places.map(|place| values[place as usize]);
-            let steepness = gradient(mesh.positions_of(*corners), of_corners).length();
+            let steepness = fit.gradient(triangle, of_corners).length();
             let weight = f64::from(of_triangle) * steepness;
             let middle = of_corners.iter().sum::<f64>() / 3.0;
             let powers = DVec4::new(1.0, middle, middle * middle, middle.powi(3));
@@ -173,16 +182,14 @@ const UNLIKE_WARPS: f32 = 0.2;
 /// that hardly differ become a whole part of the grid.
 const LEAST_SPACING: f64 = 0.05;
 
-/// The gradient of a linear function on a triangle, 1/m, given its values at the corners.
-fn gradient(corners: [Vec3; 3], values: [f64; 3]) -> DVec3 {
-    let [a, b, c] = corners.map(|corner| corner.as_dvec3());
-    let normal = (b - a).cross(c - a);
-    let sum = (c - b) * values[0] + (a - c) * values[1] + (b - a) * values[2];
-    normal.cross(sum) / normal.length_squared()
-}
-
 /// cos² of the angle between the rows and the warp at each particle; none if it differs much between neighbours.
-fn warps(mesh: &RestMesh, surface: &Surface, positions: &[Vec2], cut: &Cut) -> Option<Vec<f32>> {
+fn warps(
+    mesh: &RestMesh,
+    surface: &Surface,
+    fit: &GradientFit,
+    positions: &[Vec2],
+    cut: &Cut,
+) -> Option<Vec<f32>> {
     let faces = Faces::new(&mesh.positions, &mesh.triangles, &surface.edges);
     let directions = Directions::of(&faces, &surface.corner_uv);
     let mut sums = vec![[0.0; 2]; mesh.positions.len()];
@@ -190,7 +197,7 @@ fn warps(mesh: &RestMesh, surface: &Surface, positions: &[Vec2], cut: &Cut) -> O
     for (triangle, corners) in (0_u32..).zip(&mesh.triangles) {
         let places = cut.triangles[triangle as usize];
         let downwards = places.map(|place| f64::from(positions[place as usize].y));
-        let across_rows = gradient(mesh.positions_of(*corners), downwards);
+        let across_rows = fit.gradient(triangle as usize, downwards);
         let warp = directions.of_triangle(triangle, Towards::Warp).as_dvec3();
         let cos2 = (1.0 - warp.dot(across_rows).powi(2) / across_rows.length_squared()) as f32;
         of_triangles.push(cos2);
