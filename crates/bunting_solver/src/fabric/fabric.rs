@@ -106,13 +106,15 @@ impl Fabric {
         let twist =
             grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas, None)).unwrap_or_default();
         let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
-        let shortest = match (&grid, &background) {
-            (None, None) => laid_yarns.least_spacing,
-            (_, of_mesh) => of_mesh.as_ref().map_or(&links, |grid| &grid.fabric.links).shortest(),
+        // A load runs along the straight lines of a background grid, not along the edges of the mesh, which zigzag.
+        let (reach, shortest) = match (&grid, &background) {
+            (_, Some(Background { fabric, .. })) => (fabric.reach(), fabric.links.shortest()),
+            (Some(_), None) => (tethers.reach, links.shortest()),
+            (None, None) => (tethers.reach, laid_yarns.least_spacing),
         };
         let mut fabric = Self {
             patch_grid_columns: cells.map(|grid| grid.columns as usize),
-            tautness: tethers.reach.sqrt() / shortest,
+            tautness: reach.sqrt() / shortest,
             shortest,
             probes: links.probes(),
             grid,
@@ -408,7 +410,7 @@ impl Fabric {
     }
 
     /// Tautness √L/l, m^−½, with L the [`reach`](Self::reach) and l the length of the shortest link of warp
-    /// and weft. The topmost links of a cloth of length L that hangs under gravity g vibrate at 2 √g times
+    /// and weft, both of the background grid if there is one. The topmost links of a cloth of length L that hangs under gravity g vibrate at 2 √g times
     /// this value, rad/s.
     pub(crate) fn tautness(&self) -> f32 {
         self.tautness

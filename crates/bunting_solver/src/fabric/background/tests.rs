@@ -96,6 +96,22 @@ fn cylinder(n: u32) -> FabricBuilder {
 }
 
 #[test]
+fn edges_that_zigzag_take_no_more_effort_than_a_grid() {
+    let grid = Grid::new(12, 12, 1.0, 1.0);
+    let shift = |at: &Vec3| {
+        let is_odd = (at.x * 11.0).round() as u32 % 2 == 1;
+        let is_inside = at.y < 0.0 && at.y > -1.0 && at.x < 1.0;
+        if is_odd && is_inside { *at + Vec3::Y * 0.03 } else { *at }
+    };
+    let positions = grid.positions().iter().map(shift).collect();
+    let mesh = FabricBuilder::new(positions, grid.triangles(false).into_flattened());
+    let [mesh, grid] = [mesh, FabricBuilder::grid(grid)]
+        .map(|builder| builder.pin_where(|at, _| at.x == 0.0).build().expect("a good fabric"));
+    assert!(mesh.background().is_some() && mesh.reach() > 1.01 * grid.reach());
+    assert!((mesh.tautness() / grid.tautness() - 1.0).abs() < 1e-3, "{}", mesh.tautness());
+}
+
+#[test]
 fn a_closed_mesh_has_a_grid_around_its_axis() {
     let fabric = cylinder(25).build().expect("a good fabric");
     let background = fabric.background().expect("it can be unfolded");

@@ -16,12 +16,17 @@ const GRID: usize = 33;
 /// 3 mm.
 const DEFLECTIONS: [f32; 3] = [1e-4, 2e-4, -1e-4];
 
-/// Mean position of the evenly spaced particles that rest at x = 1 m, m.
+/// Mean position of the edge of evenly spaced particles that rest at x = 1 m, m. Corners stand for half as much of the edge
+/// as others.
 fn mean_of_edge(cloth: &Cloth) -> DVec3 {
     let at_edge = cloth.fabric.rest_positions().iter().zip(&cloth.positions);
-    let edge = at_edge.filter(|(rest, _)| rest.x == 1.0).map(|(_, at)| at.as_dvec3());
-    let edge: Vec<DVec3> = edge.collect();
-    edge.iter().sum::<DVec3>() / edge.len() as f64
+    let (mut sum, mut length) = (DVec3::ZERO, 0.0);
+    for (rest, at) in at_edge.filter(|(rest, _)| rest.x == 1.0) {
+        let part = if rest.y == 0.0 || rest.y == -1.0 { 0.5 } else { 1.0 };
+        sum += at.as_dvec3() * part;
+        length += part;
+    }
+    sum / length
 }
 
 /// A flag in a wind, and its surface in each tick.
