@@ -410,8 +410,8 @@ impl Fabric {
     }
 
     /// Tautness √L/l, m^−½, with L the [`reach`](Self::reach) and l the length of the shortest link of warp
-    /// and weft, both of the background grid if there is one. The topmost links of a cloth of length L that hangs under gravity g vibrate at 2 √g times
-    /// this value, rad/s.
+    /// and weft, both of the background grid if there is one. The topmost links of a cloth of length L that
+    /// hangs under gravity g vibrate at 2 √g times this value, rad/s.
     pub(crate) fn tautness(&self) -> f32 {
         self.tautness
     }
