@@ -101,18 +101,12 @@ fn yarns_that_run_from_diagonal_to_diagonal_agree() {
     agrees(grid.pin_where(|_, uv| uv.x == 0.0), FabricMaterial::COTTON, yarns(2, 2));
 }
 
-/// Irregular triangles over the unit square, moved to other places, held where the second coordinate was zero.
+/// Irregular triangles over the unit square, moved to other places at the same heights, hung from the top.
 fn mesh(place: impl Fn(Vec3) -> Vec3) -> FabricBuilder {
     let flat = irregular(17, 0.0);
-    let held: Vec<u32> = (0..)
-        .zip(flat.rest_positions())
-        .filter(|(_, at)| at.y == 0.0)
-        .map(|(particle, _)| particle)
-        .collect();
     let positions = flat.rest_positions().iter().map(|&at| place(at)).collect();
-    FabricBuilder::new(positions, flat.triangles().as_flattened().to_vec())
-        .weld_distance(1e-5)
-        .pin(held)
+    let mesh = FabricBuilder::new(positions, flat.triangles().as_flattened().to_vec());
+    mesh.weld_distance(1e-5).pin_where(|at, _| at.y == 0.0)
 }
 
 #[test]

@@ -91,7 +91,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let before = lane3(position, lane);
         let Projection { to, normal, sticks } = contact.project(start, before)?;
         set_lane3(position, lane, contact.pose.transform_point(to));
-        Some(Push { particle, before, to, touch: Touch::new(normal, to, sticks) })
+        Some(Push { particle, before, to, touch: Touch { normal, at: to, sticks } })
     }
 
     /// Projects triangles, and adds what pushes their corners to the pushes of particles, which are in ascending order.
@@ -206,8 +206,8 @@ struct Push {
 impl Push {
     /// Adds a push of triangles that has moved the particle on. The normal stays that of the surface nearest to the particle.
     fn append(&mut self, next: Self) {
-        let touch = self.touch.sticking(self.touch.sticks || next.touch.sticks);
-        *self = Self { before: self.before, touch, ..next };
+        self.to = next.to;
+        self.touch.sticks |= next.touch.sticks;
     }
 }
 

@@ -39,8 +39,10 @@ pub(super) struct Corner {
     pub from: Vec3,
     /// Present position, m.
     pub to: Vec3,
-    /// The deepest of the contacts that have moved the corner.
+    /// The contact that has moved the corner farthest along its normal; it sticks if any has.
     pub touch: Option<Touch>,
+    /// How far that contact has moved the corner along its normal, m.
+    depth: f32,
     /// The plane nearest to the present position, if it has been computed.
     plane: Option<Plane>,
     /// The last sweep that may have moved the corner, counted from one; zero if none has.
@@ -49,13 +51,23 @@ pub(super) struct Corner {
 
 impl Corner {
     pub fn new(inverse_mass: f32, from: Vec3, to: Vec3) -> Self {
-        Self { inverse_mass, from, to, touch: None, plane: None, moved: 0 }
+        Self { inverse_mass, from, to, touch: None, depth: 0.0, plane: None, moved: 0 }
     }
 
+    /// Moves the corner. Of several contacts the deepest one gives the normal. The last one pushes a ball on a sheet to one
+    /// side, since the triangles around a corner are always solved in the same order; a mean lets thin shapes through, since
+    /// it points anywhere between their opposite sides.
     fn put(&mut self, to: Vec3, touch: Touch) {
         let depth = (to - self.to).dot(touch.normal);
-        let touch = Touch { depth, ..touch };
-        self.touch = Some(self.touch.map_or(touch, |former| former.or_deeper(touch)));
+        let deepest = match self.touch {
+            Some(former) if depth <= self.depth => former,
+            _ => {
+                self.depth = depth;
+                touch
+            }
+        };
+        let sticks = touch.sticks || self.touch.is_some_and(|former| former.sticks);
+        self.touch = Some(Touch { sticks, ..deepest });
         self.to = to;
         self.plane = None;
     }
@@ -140,7 +152,7 @@ fn meet(obstacle: &Obstacle, particles: [usize; 3], corners: &mut [Corner]) -> O
         && hit.depth.max(end.as_ref().map_or(0.0, |end| end.depth)) > OVERTAKEN
     {
         let met = weighted(&hit.weights, &between(&from, &to, *at));
-        let touch = Touch::new(hit.normal, met, true);
+        let touch = Touch { normal: hit.normal, at: met, sticks: true };
         return Some(Meeting::Overtaken { at: *at, touch });
     }
     end.or(hit.map(|(_, hit)| hit)).map(Meeting::Cut)
@@ -193,7 +205,7 @@ fn push_out(cut: &Cut, friction: f32, particles: [usize; 3], corners: &mut [Corn
     let shift = normal * depth - slide * held;
     let inverse_masses = particles.map(|corner| corners[corner].inverse_mass);
     let Some(parts) = cut.corner_shifts(inverse_masses) else { return false };
-    let touch = Touch::new(normal, point + shift, false);
+    let touch = Touch { normal, at: point + shift, sticks: false };
     for (corner, part) in particles.into_iter().zip(parts) {
         if part > 0.0 {
             let to = corners[corner].to + shift * part;

@@ -104,7 +104,7 @@ impl InverseMasses {
             let multiple =
                 |(inverse, area): (&f32, &f32)| if *area > 0.0 { area / inverse } else { 0.0 };
             let mut multiples: Vec<f32> = areas.map(multiple).collect();
-            // The nodes of a pair have half of the area each.
+            // The nodes of a pair have half of the area each, so that half of their multiple is none. Zeros stay.
             for &node in transfer.joined.as_flattened() {
                 let multiple = &mut multiples[node as usize];
                 *multiple = multiple.min(1.0).max(0.5 * *multiple);

@@ -9,8 +9,9 @@
 //!
 //! `chart` lays a flat mesh into the plane, `texture` a curved one, `unfold` one without texture, and `closed` finds
 //! the period of one that is closed around an axis. `coverage` measures how much of each cell is cloth, `interpolation`
-//! finds the weights, and `smooth` those of nodes on curved meshes. `mapped` finds charts whose lines are curved, and
-//! unevenly far apart: there each link and each cell has its own width and direction.
+//! finds the weights, and `smooth` those of nodes on curved meshes. `mapped` finds charts whose lines are
+//! curved, and unevenly far apart: there each link and each cell has its own width and direction. `gradient_fit` finds the
+//! functions with wanted gradients that `unfold` and `mapped` need.
 
 mod chart;
 mod closed;

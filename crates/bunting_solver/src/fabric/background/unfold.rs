@@ -138,6 +138,7 @@ impl<'a> Sheet<'a> {
         self.triangles[other as usize] = Some(places);
         Some(places.iter().map(|&place| self.places[place as usize]).sum::<DVec2>() / 3.0)
     }
+
     /// The places whose gradients on these triangles are nearest to warp and weft; none if they are not found.
     fn fitted(&self, triangles: &[[u32; 3]], areas: &[f32]) -> Option<Vec<DVec2>> {
         let corners = |triangle| self.faces.corners(triangle).map(|corner| corner.as_dvec3());
