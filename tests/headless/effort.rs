@@ -123,6 +123,42 @@ fn levels_become_coarser_where_a_storm_needs_more_substeps() {
     assert!(particles(&app) < calm, "{} particles after {calm}", particles(&app));
 }
 
+#[test]
+fn cloth_that_is_pulled_against_a_shape_is_solved_finer() {
+    /// Radius of the ball, m, and its way into the sheet.
+    const RADIUS: f32 = 0.1;
+    const WAY: f32 = 0.15;
+    const TICKS: usize = 60;
+    let mut app = app();
+    let sheet = ClothMesh::grid(33, 33, 1.0, 1.0);
+    let sides = AttachedVertices::list_where(&sheet, |uv| uv.x == 0.0 || uv.x == 1.0);
+    let held = Attachment::in_place(sides);
+    let material = ClothMaterial(FabricMaterial { damping: 4.0, ..FabricMaterial::COTTON });
+    let cloth = app.world_mut().spawn((sheet, material, held)).id();
+    run(&mut app, A_WHILE);
+    assert_eq!(effort(&app, cloth).cause(), EffortCause::Weight);
+    assert_eq!(substeps(&app, cloth), 2);
+
+    let middle = state(&app, cloth).positions()[16 * 33 + 16];
+    let behind = |way: f32| Transform::from_translation(middle - (RADIUS - way) * Vec3::Z);
+    let ball = app.world_mut().spawn((ClothCollider::ball(RADIUS), behind(-0.01))).id();
+    for tick in 0..TICKS {
+        let part = tick as f32 / TICKS as f32;
+        *app.world_mut().get_mut::<Transform>(ball).expect("a ball") = behind(part * WAY);
+        run(&mut app, 1);
+    }
+    run(&mut app, 2 * A_WHILE);
+    assert_eq!(effort(&app, cloth).cause(), EffortCause::Contacts);
+    assert!(substeps(&app, cloth) >= 4, "{}", substeps(&app, cloth));
+    let longest = stretches(&app, cloth).fold(0.0, f32::max);
+    assert!(longest < 1.5, "{longest}");
+
+    app.world_mut().despawn(ball);
+    run(&mut app, 5 * A_WHILE);
+    assert_eq!(effort(&app, cloth).cause(), EffortCause::Weight);
+    assert_eq!(substeps(&app, cloth), 2);
+}
+
 /// Velocity of the pole, m/s.
 #[derive(Resource)]
 struct Speed(f32);

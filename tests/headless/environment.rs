@@ -127,7 +127,7 @@ fn a_collider_that_moves_with_the_cloth_acts_like_one_at_rest() {
         let held = Attachment::in_place(ClothEdge::Top);
         let damped = ClothMaterial(FabricMaterial { damping: 3.0, ..FabricMaterial::DENIM });
         let curtain = app.world_mut().spawn((curtain, damped, held)).id();
-        let ball = Transform::from_xyz(0.5, -0.7, -0.1);
+        let ball = Transform::from_xyz(0.5, -0.7, -0.31);
         let ball = app.world_mut().spawn((ClothCollider::ball(0.3), ball)).id();
         app.add_systems(
             FixedUpdate,
@@ -135,6 +135,9 @@ fn a_collider_that_moves_with_the_cloth_acts_like_one_at_rest() {
                 for entity in [curtain, ball] {
                     let mut transform = transforms.get_mut(entity).expect("a transform");
                     transform.translation.x += speed * time.delta_secs();
+                    if entity == ball {
+                        transform.translation.z = (-0.31 + 0.2 * time.elapsed_secs()).min(-0.1);
+                    }
                 }
             },
         );

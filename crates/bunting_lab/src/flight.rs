@@ -167,7 +167,7 @@ fn fly_together(
         if substeps == Substeps::ByNeed {
             let [before, after] = &mut positions;
             batch.copy_positions(0, after);
-            need.note(fabric, &flights[0].flag.material(), &first, [before, after], TICK);
+            need.note(&batch, &flights[0].flag.material(), &first, [before, after], TICK);
             positions.swap(0, 1);
         }
         if tick >= ticks(SETTLING) {

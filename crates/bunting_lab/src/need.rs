@@ -1,12 +1,12 @@
 //! Substeps by need, as the plugin chooses them for each cloth.
 
 use bunting_solver::{
-    Drive, Effort, Fabric, FabricMaterial, FrameMotion, Loads, StepLimits, StepSettings,
+    ClothBatch, Drive, Effort, Fabric, FabricMaterial, FrameMotion, Loads, StepLimits, StepSettings,
 };
 use glam::Vec3;
 
-/// Chooses the substeps of one cloth tick by tick, from its frame's motion in the tick and from air and motion in the
-/// tick before.
+/// Chooses the substeps of one cloth tick by tick, from its frame's motion in the tick and from air, motion and
+/// contacts in the tick before.
 #[derive(Clone, Debug, Default)]
 pub struct Need {
     limits: StepLimits,
@@ -38,10 +38,10 @@ impl Need {
         settings
     }
 
-    /// Notes what acted on the cloth in that tick, and how its positions (m) have changed.
+    /// Notes what acted on the cloth in a batch's first lane in that tick, and how its positions (m) have changed.
     pub fn note(
         &mut self,
-        fabric: &Fabric,
+        batch: &ClothBatch,
         material: &FabricMaterial,
         drive: &Drive,
         [before, after]: [&[Vec3]; 2],
@@ -49,7 +49,8 @@ impl Need {
     ) {
         self.frame = drive.motion;
         self.loads.air = Loads::of_air(drive, material, tick);
-        self.loads.motion = Loads::of_motion(fabric, before, after, tick);
+        self.loads.motion = Loads::of_motion(batch.fabric(), before, after, tick);
+        self.loads.contacts = batch.contact_load(0);
     }
 
     /// Mean number of substeps in a tick.

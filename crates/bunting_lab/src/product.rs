@@ -212,7 +212,7 @@ impl Cloth {
         self.look();
         if let (Some(need), Some(before)) = (&mut self.need, &before) {
             let moved = [before, self.positions.as_slice()];
-            need.note(self.batch.fabric(), &material(&self.scene), &drive, moved, tick);
+            need.note(&self.batch, &material(&self.scene), &drive, moved, tick);
         }
     }
 

@@ -26,3 +26,8 @@ pub(crate) const LEAST_LINK_COMPLIANCE: f32 = 1e-6;
 /// Greatest compliance of a constraint, 1/m² and 1/m⁴; with it a constraint has no effect. Larger: multipliers
 /// are denormal numbers, which are slow.
 pub(crate) const GREATEST_COMPLIANCE: f32 = 1e14;
+
+/// The length L of cloth without pins where substeps are chosen, in links: κ = ¾ β²/ε of contacts (`step/effort.rs`), with
+/// the integrator's β = ⅔ and ε = 0.1 the greatest strain of links by contacts. Smaller: strips that are pulled hard over a
+/// shape slip too early. Larger: cloth that lies on a shape takes more substeps without need.
+pub(crate) const FREE_LENGTH: f32 = 0.75 * 4.0 / 9.0 / 0.1;

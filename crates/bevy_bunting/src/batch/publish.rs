@@ -60,7 +60,7 @@ pub(crate) fn publish_states(
         core::mem::swap(&mut state.normals, &mut surface.normals);
         state.blend();
         state.moved = true;
-        effort.note_motion(surface.motion);
+        effort.note_tick(surface.motion, surface.contacts);
         if !surface.is_finite {
             diverged.0.push(entity);
         }

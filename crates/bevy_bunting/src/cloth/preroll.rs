@@ -188,7 +188,7 @@ fn begin_prerolls(
         let drive = surroundings.drive(wind, frame, FrameMotion::NONE, &exposure);
         let air = Loads::of_air(&drive, &instance.material, tick);
         let (class, _) =
-            Loads { air, frame: exposure.acceleration().length(), motion: 0.0 }.class();
+            Loads { air, frame: exposure.acceleration().length(), ..Loads::default() }.class();
         let acceleration = class.acceleration(settings.gravity.length());
         let preroll = Preroll {
             settings: settings.limits(instance.level).of_fabric(&fabric, tick, acceleration),

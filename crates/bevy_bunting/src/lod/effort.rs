@@ -9,8 +9,8 @@ use crate::motion::pose::PoseHistory;
 
 /// The substeps of a cloth, and the reason for them; read only.
 ///
-/// A cloth takes more substeps than its weight needs while strong wind, an acceleration of its frame or its own motion
-/// needs them, within [`ClothSettings::steps`](crate::ClothSettings::steps). It gets more at once, and fewer after half
+/// A cloth takes more substeps than its weight needs while strong wind, an acceleration of its frame, its own motion or
+/// colliders that it is pulled against need them, within [`ClothSettings::steps`](crate::ClothSettings::steps). It gets more at once, and fewer after half
 /// a second.
 #[derive(Component, Clone, Debug, Default)]
 pub struct ClothEffort {
@@ -89,8 +89,9 @@ impl ClothEffort {
         self.loads.air = air;
     }
 
-    /// Notes the acceleration of turning links in this tick, m/s².
-    pub(crate) fn note_motion(&mut self, motion: f32) {
+    /// Notes the loads of turning links and of colliders in this tick, m/s².
+    pub(crate) fn note_tick(&mut self, motion: f32, contacts: f32) {
         self.loads.motion = motion;
+        self.loads.contacts = contacts;
     }
 }

@@ -63,7 +63,8 @@ pub struct ClothGizmos {
     /// red.
     pub levels: bool,
     /// A stroke for each substep of a tick, above the cloth's first particle, as many times 5 cm long as there are passes.
-    /// The colour tells what needs them: white for weight, aqua for air, orange for the frame, red for motion.
+    /// The colour tells what needs them: white for weight, aqua for air, orange for the frame, red for
+    /// motion, yellow for colliders.
     pub effort: bool,
     /// A line along the normal, 2 cm long, where a particle touches a collider (aqua), and where a cloth touches itself
     /// (yellow) or another cloth (orange). Contacts are those at the end of the last tick; a sleeping cloth has none.
@@ -179,6 +180,7 @@ fn draw_effort(effort: &ClothEffort, at: Vec3, gizmos: &mut Gizmos<ClothGizmos>)
         EffortCause::Air => AQUA,
         EffortCause::Frame => ORANGE,
         EffortCause::Motion => RED,
+        EffortCause::Contacts => YELLOW,
     };
     let [of_pass, apart] = STROKE;
     let settings = effort.settings();

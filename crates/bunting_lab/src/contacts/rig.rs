@@ -6,11 +6,12 @@ use std::time::{Duration, Instant};
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, Grid,
-    LaneCount, ParticlesMut, SelfCollision, StepSettings, SurfaceLift,
+    LaneCount, ParticlesMut, SelfCollision, StepLimits, StepSettings, SurfaceLift,
 };
 use glam::{Quat, Vec3};
 
 use crate::flight::almost_at_rest;
+use crate::need::Need;
 use crate::product::{DEFAULT, TICK};
 
 /// Acceleration of gravity, m/s².
@@ -62,7 +63,10 @@ pub(super) const fn substeps(count: u32) -> StepSettings {
 pub(super) struct Trial {
     pub batch: ClothBatch,
     pub material: FabricMaterial,
-    settings: StepSettings,
+    drive: Drive,
+    /// The settings of all ticks; none: substeps follow from need.
+    settings: Option<StepSettings>,
+    need: Need,
     colliders: Vec<Collider>,
     ticks: u32,
     time: Duration,
@@ -99,20 +103,29 @@ impl Trial {
     ) -> Self {
         let mut batch = ClothBatch::new(Arc::clone(fabric), LaneCount::One);
         batch.insert(start, material).expect("a good cloth");
-        batch.drive(0, Drive { gravity, ..Drive::NONE }).expect("a good drive");
-        Self {
+        let mut trial = Self {
             batch,
             material,
-            settings: DEFAULT,
+            drive: Drive::NONE,
+            settings: None,
+            need: Need::within(StepLimits::default()),
             colliders: Vec::new(),
             ticks: 0,
             time: Duration::ZERO,
-        }
+        };
+        trial.drive(Drive { gravity, ..Drive::NONE });
+        trial
     }
 
-    /// The trial with other settings.
+    /// The trial with the same settings in all ticks.
     pub fn with(self, settings: StepSettings) -> Self {
-        Self { settings, ..self }
+        Self { settings: Some(settings), ..self }
+    }
+
+    /// Sets what acts on the cloth from the next tick on.
+    pub fn drive(&mut self, drive: Drive) {
+        self.batch.drive(0, drive).expect("a good drive");
+        self.drive = drive;
     }
 
     /// Sets the colliders from the next tick on.
@@ -134,9 +147,12 @@ impl Trial {
 
     /// Advances by a tick, with forces that are added in each substep.
     pub fn tick_with(&mut self, mut forces: impl FnMut(&mut ParticlesMut<'_>)) {
+        let before = self.positions();
+        let by_need = || self.need.settings(self.batch.fabric(), &self.drive, TICK);
+        let settings = self.settings.unwrap_or_else(by_need);
         let start = Instant::now();
-        self.batch.begin_tick(TICK, self.settings);
-        for _ in 0..self.settings.substeps {
+        self.batch.begin_tick(TICK, settings);
+        for _ in 0..settings.substeps {
             self.batch.integrate();
             forces(&mut self.batch.particles_mut(0).expect("a cloth"));
             self.batch.solve_constraints();
@@ -144,6 +160,8 @@ impl Trial {
         }
         self.time += start.elapsed();
         self.ticks += 1;
+        let after = self.positions();
+        self.need.note(&self.batch, &self.material, &self.drive, [&before, &after], TICK);
     }
 
     /// Advances by some seconds.
@@ -179,6 +197,11 @@ impl Trial {
     pub fn centre(&self) -> Vec3 {
         let positions = self.positions();
         positions.iter().sum::<Vec3>() / positions.len() as f32
+    }
+
+    /// Number of ticks so far.
+    pub fn ticks(&self) -> u32 {
+        self.ticks
     }
 
     /// Mean time of a tick, µs.

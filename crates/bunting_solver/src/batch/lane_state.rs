@@ -7,6 +7,7 @@ use crate::anchors::pin_reports::PinReports;
 use crate::contact::candidates::Candidates;
 use crate::contact::collider::Collider;
 use crate::contact::itself::state::SelfContacts;
+use crate::contact::pressing::Pressing;
 use crate::contact::reaction::ReactionSum;
 use crate::fabric::FabricMaterial;
 use crate::stability::added_mass::AddedMass;
@@ -31,6 +32,8 @@ pub(crate) struct LaneState {
     pub is_grouped: bool,
     /// What the cloth has done to each collider in this tick; empty if none reports it.
     pub reactions: Vec<ReactionSum>,
+    /// How hard colliders press the cloth in this tick.
+    pub pressing: Pressing,
     /// Moment about the pole of this substep's corrections from outside the cloth, by contacts and by users, in
     /// units of the density, m⁴.
     pub external_moment: f32,
@@ -67,6 +70,7 @@ impl LaneState {
             self_contacts: None,
             is_grouped: false,
             reactions: Vec::new(),
+            pressing: Pressing::default(),
             external_moment: 0.0,
             history: IntegratorHistory::default(),
             pin_strain: PinStrain::default(),

@@ -24,6 +24,9 @@ pub struct LaneSurface {
     pub is_finite: bool,
     /// Acceleration of links that turned in the last tick, see [`Loads::of_motion`](crate::Loads::of_motion), m/s².
     pub motion: f32,
+    /// Load by colliders that pressed the cloth in the last tick, see
+    /// [`ClothBatch::contact_load`](crate::ClothBatch::contact_load), m/s².
+    pub contacts: f32,
 }
 
 /// Number of particles whose positions and normals in all lanes fit into the nearest cache, at 384 bytes
@@ -39,8 +42,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let particles = self.fabric.particle_count();
         let surfaces = &mut into[..self.lanes.len()];
         for ((cloth, surface), motion) in surfaces.iter_mut().enumerate().zip(self.motion_loads()) {
-            if self.lanes[cloth].is_some() {
+            if let Some(state) = &self.lanes[cloth] {
                 surface.motion = motion;
+                surface.contacts = self.contact_load(cloth, state);
                 surface.is_finite = true;
                 surface.positions.resize(particles, Vec3::ZERO);
                 surface.normals.resize(particles, Vec3::ZERO);

@@ -212,6 +212,15 @@ impl ClothBatch {
         with_batch!(&self.0, batch => batch.contact_points(lane))
     }
 
+    /// The part [`contacts`](crate::Loads::contacts) of a lane's [`Loads`](crate::Loads): κ p l/L, with p the acceleration by which
+    /// colliders steadily pressed its particles in the last tick (root mean square over all of them), l the length of the shortest link and L the cloth's length, m/s²; zero for an empty lane.
+    #[must_use]
+    pub fn contact_load(&self, lane: usize) -> f32 {
+        with_batch!(&self.0, batch => {
+            batch.lanes[lane].as_ref().map_or(0.0, |state| batch.contact_load(lane, state))
+        })
+    }
+
     /// What a lane's cloth did in the last tick to each collider that [`reports_as`](Collider::reports_as) a number, in
     /// the order of the colliders.
     pub fn reactions(&self, lane: usize) -> impl Iterator<Item = ContactReaction> {

@@ -10,6 +10,7 @@ use crate::contact::candidates::Candidates;
 use crate::contact::collider::Collider;
 use crate::contact::near::swept_box;
 use crate::contact::obstacle::Obstacle;
+use crate::contact::pressing::Pressing;
 use crate::contact::reaction::ReactionSum;
 use crate::contact::swept_boxes::{Sweep, SweptBoxes};
 use crate::fabric::Fabric;
@@ -24,6 +25,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         for (cloth, state) in self.lanes.iter_mut().enumerate() {
             let Some(state) = state else { continue };
             let by_forces = moved_by_forces(state, tick);
+            state.pressing = Pressing::default();
             let LaneState { material, drive, colliders, contacts, reactions, .. } = state;
             contacts.resize_with(colliders.len(), Candidates::default);
             let reports = colliders.iter().any(|collider| collider.reports_as.is_some());

@@ -11,6 +11,7 @@ use crate::contact::candidates::Candidates;
 use crate::contact::collider::Collider;
 use crate::contact::ground::RISE_SPEED;
 use crate::contact::obstacle::Obstacle;
+use crate::contact::pressing::Pressing;
 use crate::contact::reach::Reach;
 use crate::contact::reaction::ReactionSum;
 use crate::contact::surface::{Projection, Surface};
@@ -49,9 +50,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let mut sums = reactions.iter_mut();
         for (collider, candidates) in state.colliders.iter().zip(&state.contacts) {
             let reaction = sums.next().filter(|_| collider.reports_as.is_some());
-            let mut outcome = Outcome { moment: 0.0, reaction };
+            let mut outcome = Outcome { moment: 0.0, pressing: state.pressing, reaction };
             self.solve_candidates(cloth, state, (collider, candidates), &mut outcome);
             state.external_moment += outcome.moment;
+            state.pressing = outcome.pressing;
         }
         state.reactions = reactions;
     }
@@ -87,10 +89,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     fn solve_contact(&mut self, cloth: usize, particle: u32, contact: &Contact) -> Option<Push> {
         let (pack, lane) = self.layout.locate(particle as usize, cloth);
         let start = lane3(&self.scratch[pack], lane);
-        let position = &mut self.positions.packs_mut()[pack];
-        let before = lane3(position, lane);
+        let before = lane3(&self.positions.packs()[pack], lane);
         let Projection { to, normal, sticks } = contact.project(start, before)?;
-        set_lane3(position, lane, contact.pose.transform_point(to));
+        let after = contact.pose.transform_point(to);
+        if self.is_drawn_out(cloth, particle, after) {
+            return None;
+        }
+        set_lane3(&mut self.positions.packs_mut()[pack], lane, after);
         Some(Push { particle, before, to, touch: Touch { normal, at: to, sticks } })
     }
 
@@ -115,10 +120,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let of_particles = pushes.len();
         for (&particle, corner) in candidates.corners.iter().zip(&corners) {
             let Some(touch) = corner.touch else { continue };
+            let after = contact.pose.transform_point(corner.to);
+            if self.is_drawn_out(cloth, particle, after) {
+                continue;
+            }
             let (pack, lane) = self.layout.locate(particle as usize, cloth);
             let position = &mut self.positions.packs_mut()[pack];
             let before = lane3(position, lane);
-            set_lane3(position, lane, contact.pose.transform_point(corner.to));
+            set_lane3(position, lane, after);
             let push = Push { particle, before, to: corner.to, touch };
             match pushes[..of_particles].binary_search_by_key(&particle, |push| push.particle) {
                 Ok(known) => pushes[known].append(push),
@@ -174,10 +183,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if let Some(pole) = self.pole_of(cloth) {
             outcome.moment += pole.gained(inertia, predicted, [before, after]);
         }
+        let steady = given - thrown - impact;
+        outcome.pressing.add(steady / effective_step);
         if let Some(reaction) = &mut outcome.reaction {
             // A steady force acts for the whole substep, of which the formula takes β; an impact changes the velocity
             // once.
-            let steady = (given - thrown - impact) * (self.clock.step / effective_step);
+            let steady = steady * (self.clock.step / effective_step);
             let gained = contact.density * inertia * (steady + impact);
             let on_collider = contact.pose.rotation.inverse() * -gained;
             reaction.add(push.particle as usize, at, on_collider);
@@ -189,6 +200,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 struct Outcome<'a> {
     /// Moment of the corrections about the pole, m⁴.
     moment: f32,
+    pressing: Pressing,
     /// Reactions of the collider, if it reports them.
     reaction: Option<&'a mut ReactionSum>,
 }

@@ -23,6 +23,7 @@ use super::tethers::{Pin, Tether, Tethers};
 use super::topology;
 use super::twist::{Ribbon, RibbonProfile, Twist};
 use super::yarns::{Yarn, Yarns};
+use crate::constants::FREE_LENGTH;
 
 /// A piece of cloth at rest, with its pins. It is immutable; all cloths made of it share it in an `Arc`.
 ///
@@ -114,7 +115,7 @@ impl Fabric {
         };
         let mut fabric = Self {
             patch_grid_columns: cells.map(|grid| grid.columns as usize),
-            tautness: reach.sqrt() / shortest,
+            tautness: if reach > 0.0 { reach } else { FREE_LENGTH * shortest }.sqrt() / shortest,
             shortest,
             probes: links.probes(),
             grid,

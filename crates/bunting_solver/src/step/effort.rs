@@ -10,13 +10,18 @@
 //!   friction. One third, since vibration is seen on cloth that hangs still only.
 //! - *Motion*: ¾ ω² l, with ω the rate at which links turn (root mean square). Directions of links are frozen in a
 //!   pass, and what a turn leaves unsolved is carried along the L/l links of a chain: N = T ω √(L/l).
+//! - *Contacts*: what chains pull into a collider in a substep h, contacts push out again, and links there are strained
+//!   by (β h)² p/l, with p the acceleration by which contacts press steadily (root mean square over all particles). The acceleration κ p l/L, with κ = ¾ β²/ε, keeps that strain below ε.
 //! - *Flung cloth* moves fast on a wide path, v ω > 22 m/s² and v/ω > 0.2 L, and cracks like a whip where it turns back.
 //!   It takes 300 substeps a second at any size, as an acceleration ¾ (300/s)² l²/L.
+//!
+//! Cloth without pins has no such length, and counts as κ links long: then κ p l/L is p.
 //!
 //! [`StepLimits::of_fabric`]: crate::StepLimits::of_fabric
 
 use glam::Vec3;
 
+use crate::constants::FREE_LENGTH;
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::step::Drive;
 use crate::step::frame::FrameMotion;
@@ -52,7 +57,7 @@ const FLUNG_RATE: f32 = 300.0;
 const HELD: f32 = 0.5;
 
 /// Number of classes of effort.
-const CLASSES: usize = 7;
+const CLASSES: usize = 9;
 
 /// The reason for which a cloth takes the substeps that it takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -66,6 +71,8 @@ pub enum EffortCause {
     Frame,
     /// Its own motion.
     Motion,
+    /// Colliders that it is pressed against.
+    Contacts,
 }
 
 /// Accelerations that act on a cloth besides gravity, as far as its substeps follow from them, m/s².
@@ -85,6 +92,8 @@ pub struct Loads {
     pub frame: f32,
     /// Turn of the links, see [`of_motion`](Self::of_motion).
     pub motion: f32,
+    /// Pressure of colliders, see [`ClothBatch::contact_load`](crate::ClothBatch::contact_load).
+    pub contacts: f32,
 }
 
 impl Loads {
@@ -128,6 +137,12 @@ impl Loads {
         Self::of_probes(fabric, turns, displacements, tick)
     }
 
+    /// The load κ p l/L of colliders that press the cloth with an acceleration p, m/s².
+    #[must_use]
+    pub(crate) fn of_contacts(fabric: &Fabric, pressing: f32) -> f32 {
+        pressing * (FREE_LENGTH * fabric.shortest_link() / fabric.reach()).min(1.0)
+    }
+
     /// The same from sums over the probes of a fabric: of the squared angles by which they turn in the tick, rad², and of
     /// the squared displacements of their first ends, m².
     pub(crate) fn of_probes(fabric: &Fabric, turns: f32, displacements: f32, tick: f32) -> f32 {
@@ -140,7 +155,8 @@ impl Loads {
         let link = fabric.shortest_link();
         let turning = OF_TURN * squared_rate * link;
         let is_wide = squared_speed > squared_rate * (FLUNG_RADIUS * fabric.reach()).powi(2);
-        let is_flung = is_wide && squared_rate * squared_speed > FLUNG * FLUNG;
+        let has_end = fabric.reach() > 0.0;
+        let is_flung = has_end && is_wide && squared_rate * squared_speed > FLUNG * FLUNG;
         let flung = OF_TURN * (FLUNG_RATE * link).powi(2) / fabric.reach();
         if is_flung { turning.max(flung) } else { turning }
     }
@@ -149,9 +165,11 @@ impl Loads {
     #[must_use]
     pub fn class(&self) -> (EffortClass, EffortCause) {
         let steady = PART_OF_AIR_AND_FRAME * (self.air + self.frame);
-        let class = EffortClass::of(steady.max(self.motion));
+        let class = EffortClass::of(steady.max(self.motion).max(self.contacts));
         let cause = if class == EffortClass::default() {
             EffortCause::Weight
+        } else if self.contacts >= steady.max(self.motion) {
+            EffortCause::Contacts
         } else if self.motion >= steady {
             EffortCause::Motion
         } else if self.air >= self.frame {

@@ -52,7 +52,7 @@ fn worn(layers: Option<f32>, seconds: f32) -> (Watch, f64) {
         let [from, to] = [tick, tick + 1].map(|tick| tick as f32 * TICK);
         let motion = FrameMotion::between(shoulders(from), shoulders(to));
         let wind = SPEED * Vec3::new(0.2 * (TAU * 0.3 * from).sin(), 0.0, 1.0);
-        cloth.batch.drive(0, Drive { motion, wind, ..Drive::default() }).expect("a good drive");
+        cloth.drive(Drive { motion, wind, ..Drive::default() });
         let body = body(from).into_iter().zip(body(to)).map(|((shape, from), (_, to))| Collider {
             from,
             to,

@@ -29,7 +29,7 @@ fn flown(layers: Option<f32>, seconds: f32) -> (Watch, f64) {
     for tick in 0..(seconds / TICK) as usize {
         let drive =
             Drive { wind: turning_wind(tick as f32 * TICK, [0.6, 0.4]), ..Drive::default() };
-        cloth.batch.drive(0, drive).expect("a good drive");
+        cloth.drive(drive);
         cloth.tick();
         watch.note(&cloth);
     }

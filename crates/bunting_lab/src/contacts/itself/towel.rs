@@ -85,7 +85,7 @@ impl Fall {
         let gravity = -GRAVITY * Vec3::Y;
         let mut cloth =
             Trial::from(&fabric, &start, material, gravity).with(substeps(self.substeps));
-        cloth.batch.drive(0, Drive { gravity, ..Drive::default() }).expect("a good drive");
+        cloth.drive(Drive { gravity, ..Drive::default() });
         cloth.keep_layers_apart(Some(self.layers));
         let floor = SharedShape::halfspace(Vec3::Y);
         cloth.touch([Collider {
