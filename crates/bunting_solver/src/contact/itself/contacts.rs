@@ -115,6 +115,6 @@ impl LayerContacts {
             }
         }
         particles.is_near.clone_from(&particles.touched);
-        grew.then_some(zones)
+        (grew && !zones.are_given_up()).then_some(zones)
     }
 }

@@ -2,17 +2,18 @@
 //! displacement (Provot 1997, "Collision and self-collision handling in cloth model dedicated to design garments").
 //!
 //! Particles of features that pass through one another are one zone. A zone that meets further features when it has
-//! returned takes them in, until nothing passes through anything. A zone as large as the cloth would be the cloth as it
-//! began, shifted, so that this ends.
+//! returned takes them in, until nothing passes through anything. Zones that have grown too often are given up: features
+//! then pass through one another in this substep, and come apart as tangles do.
 
 use glam::Vec3;
 
 use crate::contact::itself::crossing::crossing;
-use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
+use crate::contact::itself::pairs::Pairs;
 use crate::contact::itself::particles::Particles;
 use crate::contact::itself::untangle::Tangles;
 
-/// Most times that zones grow. Fewer: features of large piles pass through one another. More: costs more in piles.
+/// Most times that zones grow. Fewer: features of large piles pass through one another. More: costs more in piles, and
+/// zones as large as the cloth leave its pins behind.
 const GROWTHS: usize = 24;
 
 /// Zones of particles, as a forest: each particle has a parent in its zone, the root itself.
@@ -49,6 +50,7 @@ pub(in crate::contact) struct RigidZones {
     /// Whether each particle has moved when zones were moved last; empty before.
     moved: Vec<bool>,
     growths: usize,
+    are_given_up: bool,
 }
 
 impl RigidZones {
@@ -59,23 +61,37 @@ impl RigidZones {
             corrected: particles.end.clone(),
             moved: Vec::new(),
             growths: 0,
+            are_given_up: false,
         }
     }
 
     /// Returns zones to where they began, moved by their mean displacement, until no pair passes through one another.
-    /// Returns whether any zone grew. Tangled features are left alone.
+    /// Returns whether any zone grew and none was given up. Tangled features are left alone.
     pub fn grow(&mut self, pairs: &Pairs, tangles: &Tangles, particles: &mut Particles) -> bool {
         let before = self.growths;
         // The pairs may be others than those of the last call.
         self.moved.clear();
         while self.unite_crossing(pairs, tangles, &particles.end) {
-            self.growths += 1;
-            if self.growths >= GROWTHS {
-                self.zones.unite(pairs.edges_triangles.iter().flat_map(EdgeTriangle::particles));
+            if self.growths == GROWTHS {
+                self.give_up(particles);
+                return false;
             }
+            self.growths += 1;
             self.move_zones(particles);
         }
         self.growths > before
+    }
+
+    /// Whether zones had grown too often.
+    pub fn are_given_up(&self) -> bool {
+        self.are_given_up
+    }
+
+    /// Puts all particles where they were before any zone returned.
+    fn give_up(&mut self, particles: &mut Particles) {
+        particles.end.clone_from(&self.corrected);
+        particles.touched.fill(false);
+        self.are_given_up = true;
     }
 
     /// Unites the zones of features that pass through one another; returns whether there were any.
@@ -174,5 +190,51 @@ impl Sums {
             0 => self.vector[root] / self.mass[root],
             pins => self.of_pins[root] / pins as f32,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::{GROWTHS, RigidZones};
+    use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
+    use crate::contact::itself::particles::Particles;
+    use crate::contact::itself::untangle::Tangles;
+
+    /// An edge that has passed through a triangle below it.
+    fn passed() -> (Pairs, Particles) {
+        let pair = EdgeTriangle { index: 0, edge: [0, 1], triangle: [2, 3, 4], patches: [0, 1] };
+        let pairs = Pairs { edges_triangles: vec![pair], ..Pairs::default() };
+        let mut particles = Particles::default();
+        particles.resize(5);
+        particles.start =
+            [[0.2, 1.0, 0.2], [0.3, 2.0, 0.3], [0.0; 3], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]
+                .map(Vec3::from)
+                .to_vec();
+        particles.end.clone_from(&particles.start);
+        particles.end[0].y = -0.5;
+        particles.inverse_mass.fill(1.0);
+        (pairs, particles)
+    }
+
+    #[test]
+    fn features_that_pass_return_with_their_mean_displacement() {
+        let (pairs, mut particles) = passed();
+        let mut zones = RigidZones::new(&particles);
+        assert!(zones.grow(&pairs, &Tangles::of_none(5), &mut particles) && !zones.are_given_up());
+        for (start, end) in particles.start.iter().zip(&particles.end) {
+            assert!(end.distance(*start - 0.3 * Vec3::Y) < 1e-6, "{start} {end}");
+        }
+    }
+
+    #[test]
+    fn zones_that_have_grown_too_often_are_given_up() {
+        let (pairs, mut particles) = passed();
+        let before = particles.end.clone();
+        let mut zones = RigidZones { growths: GROWTHS, ..RigidZones::new(&particles) };
+        assert!(!zones.grow(&pairs, &Tangles::of_none(5), &mut particles) && zones.are_given_up());
+        assert_eq!(particles.end, before);
+        assert!(!particles.touched.contains(&true));
     }
 }

@@ -21,6 +21,12 @@ const LEAST_COSINE: f32 = 0.1;
 pub(in crate::contact) struct Tangles(Vec<bool>);
 
 impl Tangles {
+    /// None of a cloth's particles.
+    #[cfg(test)]
+    pub fn of_none(particles: usize) -> Self {
+        Self(vec![false; particles])
+    }
+
     /// Whether any of some particles is of a tangled feature.
     pub fn contain_any(&self, particles: &[u32]) -> bool {
         particles.iter().any(|&particle| self.0[particle as usize])
