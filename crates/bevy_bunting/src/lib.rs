@@ -192,9 +192,8 @@ pub use lod::select::LodPlugin;
 pub use lod::sleep::{SleepPlugin, WakeCloth};
 pub use lod::viewer::{Lens, LodViewer};
 pub use motion::anchor_hold::AnchorHold;
-pub use motion::attachment::{
-    Anchor, AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost,
-};
+pub use motion::attached_vertices::{AttachedVertices, ClothCorner, ClothEdge};
+pub use motion::attachment::{Anchor, Attachment, TargetLost};
 pub use motion::inertia::ClothInertia;
 pub use motion::plugin::AttachmentPlugin;
 pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};

@@ -14,7 +14,8 @@ use crate::display::easing::DURATION;
 use crate::display::surface::ClothSurface;
 use crate::fabric::levels::ClothLevels;
 use crate::lod::lod_set::LodSet;
-use crate::motion::attachment::{Attachment, ClothEdge};
+use crate::motion::attached_vertices::ClothEdge;
+use crate::motion::attachment::Attachment;
 use crate::{ClothPlugins, WindField};
 
 const TICK: f32 = 1.0 / 64.0;

@@ -207,7 +207,7 @@ mod tests {
     use bunting_solver::{ClothSnapshot, FabricMaterial};
 
     use super::*;
-    use crate::motion::attachment::ClothEdge;
+    use crate::motion::attached_vertices::ClothEdge;
 
     fn at_once(found: Found) -> Arc<ClothLevels> {
         match found {

@@ -13,7 +13,8 @@ use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::lod::lod_set::LodSet;
-use crate::motion::attachment::{Attachment, ClothEdge};
+use crate::motion::attached_vertices::ClothEdge;
+use crate::motion::attachment::Attachment;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::{ClothPlugins, WindField};
 

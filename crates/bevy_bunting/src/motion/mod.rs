@@ -3,6 +3,7 @@
 pub mod anchor_hold;
 pub mod anchor_pins;
 pub mod anchor_poses;
+pub mod attached_vertices;
 pub mod attachment;
 pub mod follow;
 pub mod follow_anchors;

@@ -9,9 +9,8 @@ use bevy_transform::systems::{propagate_parent_transforms, sync_simple_transform
 use crate::environment::drive::drive_cloths;
 use crate::fabric::prepare::change_materials;
 use crate::motion::anchor_poses::{observe_anchors_in_frames, observe_anchors_in_ticks};
-use crate::motion::attachment::{
-    Anchor, AttachedVertices, Attachment, ClothCorner, ClothEdge, TargetLost,
-};
+use crate::motion::attached_vertices::{AttachedVertices, ClothCorner, ClothEdge};
+use crate::motion::attachment::{Anchor, Attachment, TargetLost};
 use crate::motion::follow::{follow_targets, stop_following};
 use crate::motion::follow_anchors::follow_anchors;
 use crate::motion::inertia::ClothInertia;

@@ -13,7 +13,8 @@ use bevy_reflect::std_traits::ReflectDefault;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::fabric::scale::bake;
-use crate::motion::attachment::{AttachedVertices, Attachment};
+use crate::motion::attached_vertices::AttachedVertices;
+use crate::motion::attachment::Attachment;
 use crate::picking::backend::ClothHit;
 
 /// What a pointer does to the pins of a cloth.

@@ -5,7 +5,8 @@ use bevy_mesh::Mesh;
 use bevy_reflect::Reflect;
 
 use crate::cloth::error::ClothError;
-use crate::motion::attachment::{AttachedVertices, Attachment};
+use crate::motion::attached_vertices::AttachedVertices;
+use crate::motion::attachment::Attachment;
 use crate::render::painted_weights::VertexPaint;
 
 /// The vertices of a mesh whose painted value is at least [`least`](Self::least): those that one anchor holds, see

@@ -1,0 +1,157 @@
+//! The vertices that an attachment holds: an edge, corners, a list, a rectangle.
+
+use bevy_math::Vec2;
+use bevy_reflect::Reflect;
+
+use crate::cloth::mesh::ClothMesh;
+
+/// Greatest distance in texture coordinates of a vertex on an edge from the extreme coordinate. Smaller:
+/// rounding excludes vertices. Larger: an edge holds several rows of fine meshes.
+const EDGE_TOLERANCE: f32 = 1e-4;
+
+/// An edge of a cloth, by texture coordinate: u grows to the right and v down.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // A curtain hangs by its upper edge.
+/// let hung = Attachment::in_place(ClothEdge::Top);
+/// # assert_eq!(hung.vertices, AttachedVertices::Edge(ClothEdge::Top));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting"]
+#[reflect(Debug, PartialEq, Clone)]
+pub enum ClothEdge {
+    /// Least u.
+    Left,
+    /// Greatest u.
+    Right,
+    /// Least v.
+    Top,
+    /// Greatest v.
+    Bottom,
+}
+
+/// A corner of a cloth, by texture coordinate: u grows to the right and v down.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // A sheet on a line, by two pegs.
+/// let pegs = AttachedVertices::Corners(vec![ClothCorner::TopLeft, ClothCorner::TopRight]);
+/// # Attachment::in_place(pegs);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Reflect)]
+#[type_path = "bevy_bunting"]
+#[reflect(Debug, PartialEq, Clone)]
+pub enum ClothCorner {
+    /// Least u and v.
+    TopLeft,
+    /// Greatest u, least v.
+    TopRight,
+    /// Least u, greatest v.
+    BottomLeft,
+    /// Greatest u and v.
+    BottomRight,
+}
+
+/// The vertices that an [`Attachment`](crate::Attachment) holds.
+///
+/// A coarser level of detail holds those of the vertices that it has.
+///
+/// ```
+/// use bevy_bunting::prelude::*;
+///
+/// // Every fourth vertex along the top of a grid of 33 columns.
+/// let rings = AttachedVertices::List((0..33).step_by(4).collect());
+/// # Attachment::in_place(rings);
+/// ```
+#[derive(Clone, Debug, PartialEq, Reflect)]
+#[type_path = "bevy_bunting"]
+#[reflect(Debug, PartialEq, Clone)]
+pub enum AttachedVertices {
+    /// All vertices on an edge.
+    Edge(ClothEdge),
+    /// For each of these corners, the vertex nearest to it.
+    Corners(Vec<ClothCorner>),
+    /// Vertices of the [`ClothMesh`](crate::ClothMesh) by index; of a grid, by `row * columns +
+    /// column`.
+    List(Vec<u32>),
+    /// All vertices whose texture coordinate lies in a rectangle or on its border. For other shapes, see
+    /// [`AttachedVertices::list_where`].
+    Within {
+        /// Least u and v.
+        low: Vec2,
+        /// Greatest u and v.
+        high: Vec2,
+    },
+    /// Only the rigid vertices, of weight 0, see [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
+    Rigid,
+}
+
+impl AttachedVertices {
+    /// [`List`](Self::List) of the vertices of a mesh whose texture coordinates satisfy a predicate; empty
+    /// for a mesh without texture coordinates.
+    #[must_use]
+    pub fn list_where(mesh: &ClothMesh, holds: impl Fn(Vec2) -> bool) -> Self {
+        let chosen = (0..).zip(mesh.uvs()).filter(|&(_, uv)| holds(uv));
+        Self::List(chosen.map(|(vertex, _)| vertex).collect())
+    }
+
+    /// Indices of the held vertices, given the texture coordinates of all vertices.
+    pub(crate) fn choose(&self, uv: &[Vec2]) -> Vec<u32> {
+        let low = uv.iter().copied().reduce(Vec2::min).unwrap_or_default();
+        let high = uv.iter().copied().reduce(Vec2::max).unwrap_or_default();
+        let all_where = |holds: &dyn Fn(Vec2) -> bool| {
+            (0..).zip(uv).filter(|&(_, &uv)| holds(uv)).map(|(vertex, _)| vertex).collect()
+        };
+        match self {
+            Self::Edge(ClothEdge::Left) => all_where(&|uv| uv.x <= low.x + EDGE_TOLERANCE),
+            Self::Edge(ClothEdge::Right) => all_where(&|uv| uv.x >= high.x - EDGE_TOLERANCE),
+            Self::Edge(ClothEdge::Top) => all_where(&|uv| uv.y <= low.y + EDGE_TOLERANCE),
+            Self::Edge(ClothEdge::Bottom) => all_where(&|uv| uv.y >= high.y - EDGE_TOLERANCE),
+            Self::Corners(corners) => {
+                corners.iter().filter_map(|corner| nearest(uv, corner.of(low, high))).collect()
+            }
+            Self::List(vertices) => vertices.clone(),
+            Self::Within { low, high } => {
+                all_where(&|at: Vec2| at.cmpge(*low).all() && at.cmple(*high).all())
+            }
+            Self::Rigid => Vec::new(),
+        }
+    }
+}
+
+impl From<ClothEdge> for AttachedVertices {
+    fn from(edge: ClothEdge) -> Self {
+        Self::Edge(edge)
+    }
+}
+
+impl From<ClothCorner> for AttachedVertices {
+    fn from(corner: ClothCorner) -> Self {
+        Self::Corners(vec![corner])
+    }
+}
+
+impl ClothCorner {
+    fn of(self, low: Vec2, high: Vec2) -> Vec2 {
+        match self {
+            Self::TopLeft => low,
+            Self::TopRight => Vec2::new(high.x, low.y),
+            Self::BottomLeft => Vec2::new(low.x, high.y),
+            Self::BottomRight => high,
+        }
+    }
+}
+
+fn nearest(uv: &[Vec2], corner: Vec2) -> Option<u32> {
+    (0..)
+        .zip(uv)
+        .min_by(|(_, a), (_, b)| a.distance_squared(corner).total_cmp(&b.distance_squared(corner)))
+        .map(|(vertex, _)| vertex)
+}
+
+#[cfg(test)]
+#[path = "attached_vertices_tests.rs"]
+mod tests;
