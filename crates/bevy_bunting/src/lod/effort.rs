@@ -10,8 +10,8 @@ use crate::motion::pose::PoseHistory;
 /// The substeps of a cloth, and the reason for them; read only.
 ///
 /// A cloth takes more substeps than its weight needs while strong wind, an acceleration of its frame, its own motion or
-/// colliders that it is pulled against need them, within [`ClothSettings::steps`](crate::ClothSettings::steps). It gets more at once, and fewer after half
-/// a second.
+/// colliders that it is pulled against need them, within [`ClothSettings::steps`](crate::ClothSettings::steps). It gets
+/// more at once, and fewer after half a second.
 #[derive(Component, Clone, Debug, Default)]
 pub struct ClothEffort {
     effort: Effort,

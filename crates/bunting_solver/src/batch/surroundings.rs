@@ -212,8 +212,9 @@ impl ClothBatch {
         with_batch!(&self.0, batch => batch.contact_points(lane))
     }
 
-    /// The part [`contacts`](crate::Loads::contacts) of a lane's [`Loads`](crate::Loads): κ p l/L, with p the acceleration by which
-    /// colliders steadily pressed its particles in the last tick (root mean square over all of them), l the length of the shortest link and L the cloth's length, m/s²; zero for an empty lane.
+    /// Load of the colliders that pressed a lane's cloth in the last tick, for [`Loads::contacts`](crate::Loads::contacts):
+    /// κ p l/L, with p the acceleration by which they steadily pressed its particles (root mean square over all), l the
+    /// length of the shortest link and L the cloth's length (`step/effort.rs`), m/s²; zero for an empty lane.
     #[must_use]
     pub fn contact_load(&self, lane: usize) -> f32 {
         with_batch!(&self.0, batch => {

@@ -200,6 +200,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 struct Outcome<'a> {
     /// Moment of the corrections about the pole, m⁴.
     moment: f32,
+    /// How hard this collider and those before it press the cloth in this tick.
     pressing: Pressing,
     /// Reactions of the collider, if it reports them.
     reaction: Option<&'a mut ReactionSum>,

@@ -11,11 +11,12 @@
 //! - *Motion*: ¾ ω² l, with ω the rate at which links turn (root mean square). Directions of links are frozen in a
 //!   pass, and what a turn leaves unsolved is carried along the L/l links of a chain: N = T ω √(L/l).
 //! - *Contacts*: what chains pull into a collider in a substep h, contacts push out again, and links there are strained
-//!   by (β h)² p/l, with p the acceleration by which contacts press steadily (root mean square over all particles). The acceleration κ p l/L, with κ = ¾ β²/ε, keeps that strain below ε.
+//!   by (β h)² p/l, with p the acceleration by which contacts press steadily (root mean square over all particles). The
+//!   acceleration κ p l/L, with κ = ¾ β²/ε, keeps that strain below ε.
 //! - *Flung cloth* moves fast on a wide path, v ω > 22 m/s² and v/ω > 0.2 L, and cracks like a whip where it turns back.
 //!   It takes 300 substeps a second at any size, as an acceleration ¾ (300/s)² l²/L.
 //!
-//! Cloth without pins has no such length, and counts as κ links long: then κ p l/L is p.
+//! Cloth without pins has no length L, and counts as κ links long: then κ p l/L is p.
 //!
 //! [`StepLimits::of_fabric`]: crate::StepLimits::of_fabric
 
@@ -155,6 +156,7 @@ impl Loads {
         let link = fabric.shortest_link();
         let turning = OF_TURN * squared_rate * link;
         let is_wide = squared_speed > squared_rate * (FLUNG_RADIUS * fabric.reach()).powi(2);
+        // Cloth without pins has no end that could crack.
         let has_end = fabric.reach() > 0.0;
         let is_flung = has_end && is_wide && squared_rate * squared_speed > FLUNG * FLUNG;
         let flung = OF_TURN * (FLUNG_RATE * link).powi(2) / fabric.reach();
