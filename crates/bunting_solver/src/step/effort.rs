@@ -58,7 +58,11 @@ const FLUNG_RATE: f32 = 300.0;
 const HELD: f32 = 0.5;
 
 /// Number of classes of effort.
-const CLASSES: usize = 9;
+const CLASSES: u8 = 9;
+
+/// The highest class that loads other than contacts lead to. Lower: whips gain energy. Higher: flung flags whose links
+/// are longer than 10 cm take more substeps.
+const HIGHEST_WITHOUT_CONTACTS: u8 = 6;
 
 /// The reason for which a cloth takes the substeps that it takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -167,10 +171,12 @@ impl Loads {
     #[must_use]
     pub fn class(&self) -> (EffortClass, EffortCause) {
         let steady = PART_OF_AIR_AND_FRAME * (self.air + self.frame);
-        let class = EffortClass::of(steady.max(self.motion).max(self.contacts));
+        let of_contacts = EffortClass::of(self.contacts, CLASSES - 1);
+        let of_others = EffortClass::of(steady.max(self.motion), HIGHEST_WITHOUT_CONTACTS);
+        let class = of_contacts.max(of_others);
         let cause = if class == EffortClass::default() {
             EffortCause::Weight
-        } else if self.contacts >= steady.max(self.motion) {
+        } else if of_contacts > of_others || self.contacts >= steady.max(self.motion) {
             EffortCause::Contacts
         } else if self.motion >= steady {
             EffortCause::Motion
@@ -190,13 +196,13 @@ pub struct EffortClass(u8);
 
 impl EffortClass {
     /// Number of classes.
-    pub const COUNT: usize = CLASSES;
+    pub const COUNT: usize = CLASSES as usize;
 
-    /// The least class whose cloths bear an acceleration, m/s².
-    fn of(acceleration: f32) -> Self {
+    /// The least class whose cloths bear an acceleration, m/s², and at most `highest`.
+    fn of(acceleration: f32, highest: u8) -> Self {
         let mut class = 0;
         let mut most = LEAST;
-        while acceleration > most && class + 1 < CLASSES as u8 {
+        while acceleration > most && class < highest {
             most *= RATIO;
             class += 1;
         }
@@ -358,6 +364,15 @@ mod tests {
             assert_eq!(substeps_of(n, 0.0, 17.0), calm, "flutter");
             assert_eq!(substeps_of(n, 2.7, 10.0), 6, "whip");
         }
+    }
+
+    #[test]
+    fn only_contacts_lead_to_the_highest_classes() {
+        let class = |loads: Loads| loads.class().0.index();
+        assert_eq!(class(Loads { contacts: 1e4, ..Loads::default() }), EffortClass::COUNT - 1);
+        let others = Loads { air: 1e5, frame: 1e5, motion: 1e5, contacts: 0.0 };
+        assert_eq!(class(others), usize::from(HIGHEST_WITHOUT_CONTACTS));
+        assert_eq!(Loads { contacts: 1e4, ..others }.class().1, EffortCause::Contacts);
     }
 
     #[test]
