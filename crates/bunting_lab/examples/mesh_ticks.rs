@@ -1,9 +1,9 @@
-//! Time of a tick of an irregular mesh, flat or bent, closed to a cylinder or to a funnel without texture, beside that
-//! of the grid of as many particles, in turn: a lone cloth, and eight; and the time in which its fabric is built.
+//! Time of a tick of an irregular mesh, flat, bent, with a hole, closed to a cylinder or to a funnel without texture, beside
+//! that of the grid of as many particles, in turn: a lone cloth, and eight; and the time in which its fabric is built.
 //!
 //! ```sh
 //! cargo run --release -p bunting_lab --example mesh_ticks -- \
-//!     COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel one|eight
+//!     COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel|holed one|eight
 //! ```
 
 use std::{f32::consts::TAU, sync::Arc, time::Instant};
@@ -75,7 +75,7 @@ impl Timed {
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [columns, ticks, kinds, lanes] = &arguments[..] else {
-        bail!("COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel one|eight")
+        bail!("COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel|holed one|eight")
     };
     let n: usize = columns.parse().context("COLUMNS")?;
     let lanes = if lanes == "one" { LaneCount::One } else { LaneCount::Eight };
@@ -92,6 +92,17 @@ fn main() -> Result<()> {
         let positions = sheet.bent(1.0 / TAU).into_iter().map(roll).collect();
         let mesh = FabricBuilder::new(positions, sheet.indices).weld_distance(1e-5);
         timed.push(Timed::new(kinds, mesh.pin_where(|at, _| at.y == 0.0), lanes)?);
+    }
+    if kinds == "holed" {
+        let sheet = Sheet::new(Triangulation::Delaunay, [n, n], DVec2::ONE, 1);
+        let middle = Vec3::new(0.5, -0.5, 0.0);
+        let is_cloth = |corner: &u32| sheet.positions[*corner as usize].distance(middle) > 0.15;
+        let kept = sheet.indices.chunks_exact(3).filter(|corners| corners.iter().all(is_cloth));
+        let corners: Vec<Vec3> =
+            kept.flatten().map(|&corner| sheet.positions[corner as usize]).collect();
+        let indices = (0..corners.len() as u32).collect();
+        let mesh = FabricBuilder::new(corners, indices);
+        timed.push(Timed::new("holed", mesh.pin_where(|at, _| at.x == 0.0), lanes)?);
     }
     if kinds == "scan" {
         let sheet = Sheet::new(Triangulation::Scan, [n, n], DVec2::ONE, 1);

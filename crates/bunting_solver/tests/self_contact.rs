@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use bunting_solver::{
-    BatchError, ClothBatch, ClothSnapshot, Collider, Fabric, FabricBuilder, FabricMaterial, Grid,
-    LaneCount, SelfCollision, StepSettings, has_fused_products, with_every_instruction_set,
+    BatchError, ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial,
+    FrameMotion, Grid, LaneCount, SelfCollision, StepSettings, has_fused_products,
+    with_every_instruction_set,
 };
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
@@ -144,6 +145,30 @@ fn layers_that_start_tangled_come_apart() {
     assert!(fastest < 0.5, "{fastest} m/s");
     let (_, height, _) = fly(None);
     assert!(height < 0.0, "{height} m above without contacts");
+}
+
+/// Layers held at one side touch as they do at rest while their frame moves evenly.
+#[test]
+fn layers_of_cloth_on_a_vehicle_touch_as_at_rest() {
+    let grid = FabricBuilder::grid(Grid::new(SIZE as u32, SIZE as u32, 0.5, 0.5));
+    let fabric = Arc::new(grid.pin_where(|_, uv| uv.y == 0.0).build().expect("a good fabric"));
+    let start = folded(&fabric, |_| 2.0 * THICKNESS);
+    let swing = |velocity: Vec3| {
+        let mut start = start.clone();
+        start.velocities.iter_mut().for_each(|it| *it = velocity);
+        let mut batch = batch_of(&fabric, &start, LaneCount::One, APART);
+        let motion = FrameMotion { translation: velocity * TICK, ..FrameMotion::NONE };
+        for _ in 0..20 {
+            let drive = Drive { motion, air_density: 0.0, ..Drive::default() };
+            batch.drive(0, drive).expect("a good drive");
+            batch.step(TICK, SETTINGS);
+        }
+        positions(&batch)
+    };
+    let (at_rest, moving) = (swing(Vec3::ZERO), swing(Vec3::new(20.0, 5.0, 10.0)));
+    let apart = |(one, other): (&Vec3, &Vec3)| one.distance(*other);
+    let farthest = at_rest.iter().zip(&moving).map(apart).fold(0.0, f32::max);
+    assert!(farthest < 1e-3, "{farthest} m apart");
 }
 
 #[test]

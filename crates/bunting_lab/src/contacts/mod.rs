@@ -16,6 +16,7 @@ mod rig;
 mod row;
 mod shapes;
 mod slope;
+mod torn;
 mod turntable;
 
 pub use row::Row;
@@ -24,13 +25,14 @@ pub use row::Row;
 pub type Family = fn(quick: bool) -> Vec<Row>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 9] = [
+pub const ALL: [(&str, Family); 10] = [
     ("slope", slope::rows),
     ("capstan", capstan::rows),
     ("turntable", turntable::rows),
     ("rest", rest::rows),
     ("fast", fast::rows),
     ("inside", inside::rows),
+    ("torn", torn::rows),
     ("drape", drape::rows),
     ("itself", itself::rows),
     ("cloths", cloths::rows),

@@ -17,6 +17,7 @@ pub(crate) mod pressing;
 mod reach;
 pub(crate) mod reaction;
 mod solve;
+mod starts;
 mod surface;
 mod sweep;
 mod swept_boxes;

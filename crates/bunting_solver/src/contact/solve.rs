@@ -80,6 +80,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if !candidates.triangles.is_empty() {
             self.solve_triangle_contacts(cloth, candidates, &contact, &mut pushes);
         }
+        self.take_back_tearing(cloth, &contact, &mut pushes);
         for push in &pushes {
             self.change_velocity(cloth, &contact, push, outcome);
         }
@@ -92,9 +93,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let before = lane3(&self.positions.packs()[pack], lane);
         let Projection { to, normal, sticks } = contact.project(start, before)?;
         let after = contact.pose.transform_point(to);
-        if self.is_drawn_out(cloth, particle, after) {
-            return None;
-        }
         set_lane3(&mut self.positions.packs_mut()[pack], lane, after);
         Some(Push { particle, before, to, touch: Touch { normal, at: to, sticks } })
     }
@@ -107,11 +105,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         contact: &Contact,
         pushes: &mut Vec<Push>,
     ) {
-        let positions = self.positions.packs_mut();
         let corner_of = |&particle: &u32| {
+            let (start, end) = (self.start_of(cloth, particle), self.position(cloth, particle));
+            let (from, to) = contact.path(start, end);
             let (pack, lane) = self.layout.locate(particle as usize, cloth);
-            let (from, to) =
-                contact.path(lane3(&self.scratch[pack], lane), lane3(&positions[pack], lane));
             let inverse_mass = self.masses.inverse[pack].lanes()[lane];
             Corner::new(inverse_mass, from, to)
         };
@@ -121,9 +118,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         for (&particle, corner) in candidates.corners.iter().zip(&corners) {
             let Some(touch) = corner.touch else { continue };
             let after = contact.pose.transform_point(corner.to);
-            if self.is_drawn_out(cloth, particle, after) {
-                continue;
-            }
             let (pack, lane) = self.layout.locate(particle as usize, cloth);
             let position = &mut self.positions.packs_mut()[pack];
             let before = lane3(position, lane);
@@ -149,7 +143,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let (pack, lane) = self.layout.locate(push.particle as usize, cloth);
         let effective_step = self.parameters.step.lanes()[lane];
         let start = lane3(&self.scratch[pack], lane);
-        let (before, after) = (push.before, contact.pose.transform_point(push.to));
+        let (before, after) = (push.before, contact.end(push));
         let Touch { at, sticks, .. } = push.touch;
         let normal = contact.pose.rotation * push.touch.normal;
 
@@ -207,12 +201,12 @@ struct Outcome<'a> {
 }
 
 /// The push of a collider to a particle.
-struct Push {
-    particle: u32,
+pub(super) struct Push {
+    pub particle: u32,
     /// Position of the particle before the push, m, in the cloth's frame.
-    before: Vec3,
+    pub before: Vec3,
     /// New position of the particle, m, in the collider's frame.
-    to: Vec3,
+    pub to: Vec3,
     touch: Touch,
 }
 
@@ -275,6 +269,11 @@ impl<'a> Contact<'a> {
         self
     }
 
+    /// Whether a point of the cloth's frame, m, is within the shape at the end of the substep.
+    pub fn contains(&self, at: Vec3) -> bool {
+        self.surface.contains(self.pose.inverse_transform_point(at))
+    }
+
     /// Normal of the surface, in the cloth's frame, near a point at the end of the substep, m; none beyond the clearance.
     pub fn normal_at(&self, at: Vec3) -> Option<Vec3> {
         let normal = self.surface.normal_at(self.pose.inverse_transform_point(at))?;
@@ -301,6 +300,16 @@ impl<'a> Contact<'a> {
     fn solve_triangles(&self, triangles: &[[u32; 3]], corners: &mut [Corner]) {
         let obstacle = Obstacle::new(self.collider, self.thickness);
         solve_triangles(&obstacle, self.surface.friction, triangles, corners);
+    }
+
+    /// Position of a particle after a push, m, in the cloth's frame.
+    pub fn end(&self, push: &Push) -> Vec3 {
+        self.pose.transform_point(push.to)
+    }
+
+    /// Motion of a point of the collider in the substep relative to the cloth's frame, m.
+    pub fn motion_in_frame(&self, point: Vec3) -> Vec3 {
+        self.pose.transform_point(point) - self.old_pose.transform_point(point)
     }
 
     /// Motion of a point of the collider in the substep, m, in the cloth's present frame.

@@ -146,7 +146,7 @@ impl Surface<'_> {
     }
 
     /// Whether a point is inside the shape, or in the ground.
-    fn contains(&self, at: Vec3) -> bool {
+    pub fn contains(&self, at: Vec3) -> bool {
         match self.ground {
             Some(field) => ground::depth(field, at).is_some_and(|depth| depth > 0.0),
             None => self.shape.contains_local_point(at),

@@ -75,6 +75,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     fn gather_particles(&mut self, cloth: usize, particles: &mut Particles) {
         let Particles { start, end, touched, inverse_mass, .. } = particles;
         self.layout.read(&self.scratch, cloth, start);
+        for pin in self.fabric_of(cloth).fabric.pins() {
+            start[pin.particle as usize] = self.start_of(cloth, pin.particle);
+        }
         self.layout.read(self.positions.packs_mut(), cloth, end);
         touched.fill(false);
         self.layout.read_numbers(&self.masses.inverse, cloth, inverse_mass);
