@@ -43,6 +43,9 @@ impl Batches {
     }
 }
 
+/// The frame of the world.
+const HERE: (Vec3, Quat) = (Vec3::ZERO, Quat::IDENTITY);
+
 /// A sheet of half a metre in the plane y = 0 of its frame.
 fn sheet(particles: u32, is_held: bool) -> (Arc<Fabric>, ClothSnapshot) {
     let mut grid = FabricBuilder::grid(Grid::new(particles, particles, 0.5, 0.5));
@@ -174,4 +177,31 @@ fn contacts_turn_a_flag_about_its_pole_no_faster_than_it_falls() {
         fastest = velocities.iter().fold(fastest, |most, velocity| most.max(velocity.length()));
     }
     assert!(fastest < 1.5, "{fastest} m/s, and 1.0 m/s by a fall of 5 cm");
+}
+
+/// A sheet on a vehicle turns and drives through another, such that the held edges of both cross.
+#[test]
+fn held_edges_that_cross_leave_cloths_finite() {
+    let grid = FabricBuilder::grid(Grid::new(13, 13, 1.0, 1.0));
+    let fabric = Arc::new(grid.pin_where(|at, _| at.y == 0.0).build().expect("a good fabric"));
+    let mut behind = ClothSnapshot::at_rest(&fabric);
+    behind.positions.iter_mut().for_each(|at| at.z += 0.03);
+    let starts = [ClothSnapshot::at_rest(&fabric), behind];
+    let sheet =
+        |start| batch(&(Arc::clone(&fabric), start), FabricMaterial::COTTON, LaneCount::One, HERE);
+    let mut batches = Batches(starts.map(sheet).into());
+    let mut group = ClothGroup::default();
+    let pose = |tick: usize| {
+        let time = tick as f32 * TICK;
+        (Vec3::new(2.0, 0.0, 1.0) * time, Quat::from_rotation_y(-time))
+    };
+    for tick in 0..30 {
+        let motion = FrameMotion::between(pose(tick), pose(tick + 1));
+        let gravity = pose(tick + 1).1.inverse() * (-9.81 * Vec3::Y);
+        batches.0[0].drive(0, Drive { gravity, motion, ..Drive::NONE }).expect("a good drive");
+        let vehicle = GroupMember { motion, ..member(pose(tick)) };
+        batches.step(&mut group, &[vehicle, member(HERE)]);
+        let are_finite = |cloth: usize| batches.positions(cloth).iter().all(|at| at.is_finite());
+        assert!(are_finite(0) && are_finite(1), "tick {tick}");
+    }
 }

@@ -3,9 +3,12 @@
 //! A banner that is driven against a post, or a pin within a shape, leaves particles no place on this side of the
 //! surface. Cloth that cannot tear would be drawn out without limit, and be thrown to and fro by its links and the shape.
 
+use glam::Vec3;
+
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
 use crate::contact::solve::{Contact, Push};
+use crate::fabric::Tether;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::set_lane3;
 
@@ -17,7 +20,7 @@ const DRAWN_OUT: f32 = 3.0;
 /// that press taut cloth pass through it. Larger: caught cloth is stretched that far, and trembles.
 const TORN: f32 = 4.0;
 
-/// Part of the motion of the surface in a substep by which a link may be longer. Smaller: fast shapes that draw cloth out
+/// Part of the motion of the surface in a substep, relative to the nearest pin, by which a link may be longer. Smaller: fast shapes that draw cloth out
 /// pass through it. Larger: cloth is stretched farther before it comes free of a shape that drives on.
 const DRAWN_ALONG: f32 = 4.0;
 
@@ -62,15 +65,24 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Whether a push draws a particle out too far from its pin, or farther from a pin within the shape than its tether
     /// reaches.
     fn is_drawn_out(&self, cloth: usize, contact: &Contact, push: &Push) -> bool {
-        let tethers = self.fabric_of(cloth).fabric.tethers();
-        let Ok(index) = tethers.binary_search_by_key(&push.particle, |tether| tether.particle)
-        else {
-            return false;
-        };
-        let pin = self.position(cloth, tethers[index].pin);
-        let reach = self.parameters.tether_stretch[0].lanes()[cloth] * tethers[index].length;
+        let Some(tether) = self.tether_of(cloth, push.particle) else { return false };
+        let pin = self.position(cloth, tether.pin);
+        let reach = self.parameters.tether_stretch[0].lanes()[cloth] * tether.length;
         let distance = contact.end(push).distance(pin);
         distance > DRAWN_OUT * reach || distance > reach && contact.contains(pin)
+    }
+
+    /// The tether of a particle to its nearest pin.
+    fn tether_of(&self, cloth: usize, particle: u32) -> Option<&Tether> {
+        let tethers = self.fabric_of(cloth).fabric.tethers();
+        let index = tethers.binary_search_by_key(&particle, |tether| tether.particle).ok()?;
+        Some(&tethers[index])
+    }
+
+    /// Motion of a particle's nearest pin in the substep, m, in the present frame.
+    fn way_of_pin(&self, cloth: usize, particle: u32) -> Vec3 {
+        let Some(tether) = self.tether_of(cloth, particle) else { return Vec3::ZERO };
+        self.position(cloth, tether.pin) - self.start_of(cloth, tether.pin)
     }
 
     /// Indices, in ascending order, of the pushes that make a link too long.
@@ -87,7 +99,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 let is_of_end = |push: &Push| push.particle == link.particles[end];
                 let Some(index) = pushes.iter().position(is_of_end) else { continue };
                 let push = &pushes[index];
-                let drawn_along = DRAWN_ALONG * contact.motion_in_frame(push.to).length();
+                let way = contact.surface_motion(push.to) - self.way_of_pin(cloth, push.particle);
+                let drawn_along = DRAWN_ALONG * way.length();
                 if length > most + drawn_along && length > push.before.distance(other) {
                     tearing.push(index);
                 }

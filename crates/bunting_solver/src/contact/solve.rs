@@ -307,13 +307,8 @@ impl<'a> Contact<'a> {
         self.pose.transform_point(push.to)
     }
 
-    /// Motion of a point of the collider in the substep relative to the cloth's frame, m.
-    pub fn motion_in_frame(&self, point: Vec3) -> Vec3 {
-        self.pose.transform_point(point) - self.old_pose.transform_point(point)
-    }
-
     /// Motion of a point of the collider in the substep, m, in the cloth's present frame.
-    fn surface_motion(&self, point: Vec3) -> Vec3 {
+    pub fn surface_motion(&self, point: Vec3) -> Vec3 {
         let before = self.frame.to_new(self.old_pose.transform_point(point));
         self.pose.transform_point(point) - before
     }

@@ -121,6 +121,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn set_drive(&mut self, cloth: usize, drive: &Drive, clock: &Clock) {
         let lanes = Y::lanes(cloth);
         self.parameters.set_drive(lanes.clone(), drive, clock);
+        if let Some(local) = &mut self.local_wind {
+            let turn = drive.motion.turn_to_end(clock.begun, clock.settings.substeps).inverse();
+            local.turns[lanes.clone()].fill(turn);
+        }
         let gravity = lane3(&self.parameters.gravity_step, lanes.start);
         let pole = self.pole_of(cloth).and_then(|pole| pole.upright(gravity));
         if let (Some(pole), Some(packs)) = (pole, &mut self.numbers.pole) {

@@ -5,7 +5,7 @@
 //! with velocities less wᵢ, at positions that make the triangle in the middle of the substep the same. So the sum itself, and
 //! cloths in one wind, know nothing of this.
 
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 use crate::batch::BatchError;
 use crate::batch::lane_batch::LaneBatch;
@@ -18,8 +18,10 @@ use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
 /// Wind at the particles of a batch.
 #[derive(Clone, Debug)]
 pub(crate) struct LocalWind<P: Pack> {
-    /// Velocities of the wind less those of the drive, m/s.
+    /// Velocities of the wind less those of the drive, along the axes at the end of the tick, m/s.
     winds: Vec<Pack3<P>>,
+    /// The turn of directions in each lane from those axes to the ones at the end of the substep.
+    pub turns: Vec<Quat>,
     /// Velocities of the particles less these, m/s.
     relative: Vec<Pack3<P>>,
     /// Positions while the air is summed, m.
@@ -78,7 +80,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         let none = vec![splat3(Vec3::ZERO); self.layout.pack_count()];
         let local = self.local_wind.get_or_insert_with(|| {
-            Box::new(LocalWind { winds: none.clone(), relative: none.clone(), kept: none.clone() })
+            Box::new(LocalWind {
+                winds: none.clone(),
+                turns: vec![Quat::IDENTITY; P::WIDTH],
+                relative: none.clone(),
+                kept: none.clone(),
+            })
         });
         local.winds = none;
         for (cloth, winds) in of_cloths {
@@ -91,14 +98,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Sums the air as [`gather_air`](Self::gather_air) does, in winds that differ from particle to particle.
     pub fn gather_local_air(&mut self, local: &mut LocalWind<P>) {
-        let LocalWind { winds, relative, kept } = local;
+        let LocalWind { winds, turns, relative, kept } = local;
         let half_step = 0.5 * self.clock.step;
         let positions = self.positions.packs_mut();
         kept.clone_from(positions);
         relative.clone_from(&self.velocity);
         for ((at, velocity), wind) in positions.iter_mut().zip(relative.iter_mut()).zip(winds) {
-            for lane in 0..P::WIDTH {
-                let wind = lane3(wind, lane);
+            for (lane, &turn) in turns.iter().enumerate() {
+                let wind = turn * lane3(wind, lane);
                 let relative = lane3(velocity, lane) - wind;
                 set_lane3(velocity, lane, relative);
                 let shifted = lane3(at, lane) + wind * half_step;

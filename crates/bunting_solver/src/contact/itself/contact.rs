@@ -8,7 +8,7 @@ use glam::Vec3;
 
 use crate::constants::LEAST_LENGTH;
 use crate::contact::itself::near::Kind;
-use crate::contact::itself::particles::{Particles, relative};
+use crate::contact::itself::particles::{Particles, inverse_mass, relative};
 
 /// Part of a contact's distance by which its particles may move before its closest points are found again. Larger: normals
 /// are those of features that have moved on. Smaller: costs more.
@@ -104,10 +104,7 @@ impl Contact {
             return false;
         }
         *reach = 0.0;
-        let inverse = self.inverse_mass(particles);
-        if inverse <= 0.0 {
-            return false;
-        }
+        let Some(inverse) = self.inverse_mass(particles) else { return false };
         let slide = relative(&particles.end, self.particles, self.factors)
             - relative(&particles.start, self.particles, self.factors);
         let slide = slide - self.normal * slide.dot(self.normal);
@@ -133,10 +130,11 @@ impl Contact {
         if approach.abs() < LEAST_APPROACH {
             return false;
         }
+        let Some(inverse) = self.inverse_mass(particles) else { return false };
         let slide = velocity - self.normal * velocity.dot(self.normal);
         let most = self.friction * approach.max(0.0);
         let held = (most / slide.length().max(LEAST_LENGTH)).min(1.0);
-        let change = (self.normal * approach - slide * held) / self.inverse_mass(particles);
+        let change = (self.normal * approach - slide * held) / inverse;
         self.stopped += approach;
         // As far as the features approached each other at the start of the substep, this is an impact.
         let past = relative(&particles.past_velocity, self.particles, self.factors);
@@ -152,11 +150,8 @@ impl Contact {
         true
     }
 
-    /// Inverse mass of the relative motion of the features, 1/m².
-    fn inverse_mass(&self, particles: &Particles) -> f32 {
-        let of = |(&particle, factor): (&u32, f32)| {
-            particles.inverse_mass[particle as usize] * factor * factor
-        };
-        self.particles.iter().zip(self.factors).map(of).sum()
+    /// Inverse mass of the relative motion of the features, 1/m²; none if their points are almost pinned.
+    fn inverse_mass(&self, particles: &Particles) -> Option<f32> {
+        inverse_mass(particles, self.particles().zip(self.factors))
     }
 }

@@ -4,6 +4,10 @@ use glam::Vec3;
 
 use crate::contact::itself::pairs::Pairs;
 
+/// Least sum of the squared factors of particles that are not pinned. Smaller: contacts beside pins move particles far
+/// away. Larger: layers beside pins pass through one another until they return.
+const LEAST_FREE: f32 = 0.05;
+
 /// The particles of a cloth in a substep.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Particles {
@@ -86,4 +90,19 @@ pub(in crate::contact) fn relative(
 ) -> Vec3 {
     let terms = particles.iter().zip(factors);
     terms.fold(Vec3::ZERO, |sum, (&particle, factor)| sum + vectors[particle as usize] * factor)
+}
+
+/// Inverse mass of the relative motion of features, 1/m², given the factors of their particles; none if the points that
+/// touch are almost pinned.
+pub(in crate::contact) fn inverse_mass(
+    particles: &Particles,
+    factors: impl Iterator<Item = (usize, f32)>,
+) -> Option<f32> {
+    let (mut sum, mut free) = (0.0, 0.0);
+    for (particle, factor) in factors {
+        let inverse_mass = particles.inverse_mass[particle];
+        sum += inverse_mass * factor * factor;
+        free += if inverse_mass > 0.0 { factor * factor } else { 0.0 };
+    }
+    (free > LEAST_FREE).then_some(sum)
 }

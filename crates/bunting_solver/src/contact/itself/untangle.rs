@@ -7,7 +7,7 @@ use glam::Vec3;
 use crate::contact::itself::crossing::{Crossing, crossing};
 use crate::contact::itself::mesh::{ContactMesh, Edge};
 use crate::contact::itself::pairs::{EdgeTriangle, Pairs};
-use crate::contact::itself::particles::Particles;
+use crate::contact::itself::particles::{Particles, inverse_mass};
 
 /// Speed at which tangled features come apart, m/s. Smaller: cloth stays tangled for long. Larger: links beside tangled
 /// features are stretched.
@@ -83,14 +83,7 @@ fn push(pair: &EdgeTriangle, crossing: &Crossing, by: Vec3, particles: &mut Part
     let [of_a, of_b, of_c] = crossing.coordinates;
     let factors = [1.0 - crossing.along, crossing.along, -of_a, -of_b, -of_c];
     let of_pair = pair.particles().map(|particle| particle as usize);
-    let inverse: f32 = of_pair
-        .iter()
-        .zip(factors)
-        .map(|(&at, factor)| particles.inverse_mass[at] * factor * factor)
-        .sum();
-    if inverse <= 0.0 {
-        return;
-    }
+    let Some(inverse) = inverse_mass(particles, of_pair.into_iter().zip(factors)) else { return };
     for (&particle, factor) in of_pair.iter().zip(factors) {
         particles.end[particle] += by * (particles.inverse_mass[particle] * factor / inverse);
         particles.touched[particle] = true;
