@@ -46,7 +46,7 @@ impl Cone {
 
     /// The cone about an axis, given the sum of the normals and the cosine of the angle with the farthest one.
     #[inline(always)]
-    fn new(sum: Vec3, axis: Vec3, cosine: f32) -> Self {
+    pub fn new(sum: Vec3, axis: Vec3, cosine: f32) -> Self {
         if cosine < LEAST_COSINE {
             return Self { sum, ..Self::ALL };
         }
@@ -55,6 +55,18 @@ impl Cone {
         // The difference of both angles.
         let margin = LEAST_COSINE * cosine + GREATEST_SINE * sine;
         Self { sum, axis, cosine, sine, squared_margin: margin * margin }
+    }
+
+    /// Whether no number differs by more than a tolerance.
+    #[cfg(test)]
+    pub fn is_near(&self, other: &Self, tolerance: f32) -> bool {
+        let Self { sum, axis, cosine, sine, squared_margin: margin } = self;
+        sum.abs_diff_eq(other.sum, tolerance)
+            && axis.abs_diff_eq(other.axis, tolerance)
+            && (cosine - other.cosine).abs() < tolerance
+            && (sine - other.sine).abs() < tolerance
+            && (*margin == other.squared_margin
+                || (margin - other.squared_margin).abs() < tolerance)
     }
 
     /// A cone that contains others.

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use crate::contact::itself::cell_groups::CellGroups;
 use crate::contact::itself::patches::{Cell, Patch, patches_of};
 use crate::fabric::Fabric;
 
@@ -35,6 +36,7 @@ pub(crate) struct ContactMesh {
     pub(in crate::contact) represented: Vec<Represented>,
     pub(in crate::contact) patches: Vec<Patch>,
     pub(in crate::contact) cells: Vec<Cell>,
+    pub(in crate::contact) groups: CellGroups,
 }
 
 impl ContactMesh {
@@ -68,7 +70,8 @@ impl ContactMesh {
             }
         }
         set_inner_ends(&mut edges, fabric.particle_count());
-        Self { triangles, edges, represented, patches, cells }
+        let groups = CellGroups::of(&cells);
+        Self { triangles, edges, represented, patches, cells, groups }
     }
 
     /// The features of several cloths, the particles of each after those of the one before.
@@ -94,6 +97,7 @@ impl ContactMesh {
             all.cells.extend(part.cells.iter().map(|cell| cell.moved(cells, triangles, first)));
             first += particles;
         }
+        all.groups = CellGroups::of(&all.cells);
         all
     }
 

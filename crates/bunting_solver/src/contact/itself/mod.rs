@@ -11,6 +11,7 @@
 
 mod apart;
 mod boxes;
+mod cell_groups;
 mod closest;
 mod cloth;
 mod contact;
