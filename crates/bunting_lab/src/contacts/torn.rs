@@ -1,10 +1,11 @@
 //! Pinned cloth that a shape would tear, as it leaves particles no place on its side: the shape passes through, and the
 //! cloth hangs unstretched.
 
-use bunting_solver::{Collider, FabricBuilder, Grid, StepSettings};
+use std::sync::Arc;
+
+use bunting_solver::{Collider, FabricBuilder, FabricMaterial, Grid, StepSettings};
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
-use std::sync::Arc;
 
 use super::{
     rig::{GRAVITY, Trial, cotton, moving, substeps},
@@ -18,7 +19,7 @@ const SIZE: u32 = 33;
 /// Greatest strain of a link, of one: links beside a shape may be bent around its edge.
 const STRAIN: f64 = 0.1;
 
-/// Greatest strain of a link of cloth that is caught on a corner of a shape around its pins, of one.
+/// The same where cloth is caught on the edges of a shape around its pins: its links may have four lengths.
 const CAUGHT: f64 = 3.0;
 
 /// Damping, 1/s: without it a sheet swings for long when a shape has let it go.
@@ -28,12 +29,13 @@ const DAMPING: f32 = 2.0;
 const SECONDS: [f32; 2] = [6.0, 1.0];
 
 pub(super) fn rows(quick: bool) -> Vec<Row> {
+    /// Height at which a post stops in the sheet, drawn out to 1.4 times its length, m.
+    const STOPS_AT: f32 = 0.5;
     let steps: &[u32] = if quick { &[2] } else { &[1, 2, 4] };
     let of_steps = |&steps: &u32| {
         [
-            // The post goes on, and stops where the sheet is drawn out to 1.4 times its length.
             driven("goes on", 2.0, steps),
-            driven("stops", 0.5, steps),
+            driven("stops", STOPS_AT, steps),
             with_pins_within("pole", SharedShape::capsule_y(2.0, 0.08), STRAIN, steps),
             with_pins_within("box", SharedShape::cuboid(0.25, 0.2, 0.1), CAUGHT, steps),
         ]
@@ -46,7 +48,7 @@ fn held(both: bool, settings: StepSettings) -> Trial {
     let grid = FabricBuilder::grid(Grid::new(SIZE, SIZE, 1.0, 1.0));
     let held = grid.pin_where(|_, uv| uv.x == 0.0 || both && uv.x == 1.0);
     let fabric = Arc::new(held.build().expect("a good grid"));
-    let material = bunting_solver::FabricMaterial { damping: DAMPING, ..cotton(0.4) };
+    let material = FabricMaterial { damping: DAMPING, ..cotton(0.4) };
     Trial::new(&fabric, material, -GRAVITY * Vec3::Z).with(settings)
 }
 

@@ -20,8 +20,9 @@ const DRAWN_OUT: f32 = 3.0;
 /// that press taut cloth pass through it. Larger: caught cloth is stretched that far, and trembles.
 const TORN: f32 = 4.0;
 
-/// Part of the motion of the surface in a substep, relative to the nearest pin, by which a link may be longer. Smaller: fast shapes that draw cloth out
-/// pass through it. Larger: cloth is stretched farther before it comes free of a shape that drives on.
+/// Part of the motion of the surface in a substep, relative to the nearest pin, by which a link may be longer. Smaller:
+/// fast shapes that draw cloth out pass through it. Larger: cloth is stretched farther before it comes free of a shape
+/// that drives on.
 const DRAWN_ALONG: f32 = 4.0;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {

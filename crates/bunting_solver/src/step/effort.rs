@@ -14,7 +14,8 @@
 //!   by (β h)² p/l, with p the acceleration by which contacts press steadily (root mean square over all particles). The
 //!   acceleration κ p l/L, with κ = ¾ β²/ε, keeps that strain below ε.
 //! - *Flung cloth* moves fast on a wide path, v ω > 22 m/s² and v/ω > 0.2 L, and cracks like a whip where it turns back.
-//!   It takes 300 substeps a second at any size, as an acceleration ¾ (300/s)² l²/L.
+//!   It takes 300 substeps a second, as an acceleration ¾ (300/s)² l²/L; fewer where that is more than 640 m/s², as of
+//!   links longer than 10 cm in cloth of a metre.
 //!
 //! Cloth without pins has no length L, and counts as κ links long: then κ p l/L is p.
 //!
