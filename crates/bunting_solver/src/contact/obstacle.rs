@@ -164,16 +164,11 @@ impl<'a> Obstacle<'a> {
     }
 
     /// The point of a triangle that is nearest to the shape or deepest inside, found by steps along the triangle
-    /// against the normal of the nearest plane, which is the gradient of the distance (Macklin et al. 2020), of a ball
-    /// at once; none if the whole triangle is farther away than `within` (m), or if a plane is missing.
+    /// against the normal of the nearest plane, which is the gradient of the distance (Macklin et al. 2020); none if the
+    /// whole triangle is farther away than `within` (m), or if a plane is missing.
     pub fn deepest(&self, corners: &[Vec3; 3], within: f32) -> Option<(Vec3, Plane)> {
         let [a, b, c] = *corners;
         let triangle = Triangle::new(a, b, c);
-        if self.shape.as_ball().is_some() {
-            // The ball's centre is the origin.
-            let at = triangle.project_local_point(Vec3::ZERO, true).point;
-            return self.nearest_plane(at).filter(|it| it.distance < within).map(|it| (at, it));
-        }
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());
         let mut at = (a + b + c) / 3.0;
         let mut step = FIRST_STEP * longest;
@@ -205,31 +200,4 @@ impl<'a> Obstacle<'a> {
 pub(super) fn barycentric([a, b, c]: &[Vec3; 3], at: Vec3) -> Option<[f32; 3]> {
     let triangle = Triangle::new(*a, *b, *c);
     triangle.project_local_point_and_get_location(at, true).1.barycentric_coordinates()
-}
-
-#[cfg(test)]
-mod tests {
-    use glam::{Quat, Vec3};
-    use parry3d::shape::SharedShape;
-
-    use super::Obstacle;
-    use crate::contact::collider::Collider;
-
-    #[test]
-    fn the_deepest_point_in_a_ball_is_that_nearest_to_its_centre() {
-        const RADIUS: f32 = 0.2;
-        let ball = Collider::fixed(SharedShape::ball(RADIUS), Vec3::ZERO, Quat::IDENTITY);
-        let obstacle = Obstacle::new(&ball, 2e-3);
-        // The point nearest to the centre lies within the triangle, and on a side.
-        for (shift, expected) in [(0.0, 0.19), (0.04, 0.191_05), (0.1, 0.206_16)] {
-            let at = |x: f32, y: f32| Vec3::new(x + shift, y, 0.19);
-            let triangle = [at(-0.02, -0.02), at(0.02, -0.02), at(-0.02, 0.03)];
-            let (point, plane) = obstacle.deepest(&triangle, 1.0).expect("a point");
-            assert!((point.length() - expected).abs() < 1e-5, "{point} at {shift}");
-            assert!((plane.distance - (point.length() - RADIUS)).abs() < 1e-6, "{plane:?}");
-            let is_lower = |corner: &Vec3| corner.length() < point.length() - 1e-6;
-            assert!(!triangle.iter().any(is_lower), "{point} at {shift}");
-            assert_eq!(obstacle.deepest(&triangle, plane.distance - 1e-4).map(|it| it.0), None);
-        }
-    }
 }
