@@ -95,13 +95,7 @@ fn main() -> Result<()> {
     }
     if kinds == "holed" {
         let sheet = Sheet::new(Triangulation::Delaunay, [n, n], DVec2::ONE, 1);
-        let middle = Vec3::new(0.5, -0.5, 0.0);
-        let is_cloth = |corner: &u32| sheet.positions[*corner as usize].distance(middle) > 0.15;
-        let kept = sheet.indices.chunks_exact(3).filter(|corners| corners.iter().all(is_cloth));
-        let corners: Vec<Vec3> =
-            kept.flatten().map(|&corner| sheet.positions[corner as usize]).collect();
-        let indices = (0..corners.len() as u32).collect();
-        let mesh = FabricBuilder::new(corners, indices);
+        let mesh = sheet.with_hole(0.15);
         timed.push(Timed::new("holed", mesh.pin_where(|at, _| at.x == 0.0), lanes)?);
     }
     if kinds == "scan" {

@@ -126,10 +126,10 @@ fn ride(kind: Kind, lanes: LaneCount, acting: Acting, path: Path, frame_moves: b
         let along = |direction: Vec3| frames[1].1.inverse() * direction;
         let wind = along(Vec3::new(2.0, 0.0, 4.0) + path.velocity);
         let gravity = along(-9.81 * Vec3::Y);
-        let calm = acting == Acting::LocalWind;
-        let of_all = if calm { Vec3::ZERO } else { wind };
+        let is_local = acting == Acting::LocalWind;
+        let of_all = if is_local { Vec3::ZERO } else { wind };
         batch.drive(0, Drive { motion, gravity, wind: of_all, ..Drive::default() }).expect("good");
-        if calm {
+        if is_local {
             batch.set_local_wind(0, vec![wind; rest.len()]).expect("good winds");
         }
         if !frame_moves {

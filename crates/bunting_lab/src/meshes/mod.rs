@@ -151,6 +151,18 @@ impl Sheet {
 }
 
 impl Sheet {
+    /// A sheet of a metre with a hole of the given radius, m, in its middle.
+    #[must_use]
+    pub fn with_hole(&self, radius: f32) -> FabricBuilder {
+        let middle = Vec3::new(0.5, -0.5, 0.0);
+        let is_cloth = |corner: &u32| self.positions[*corner as usize].distance(middle) > radius;
+        let kept = self.indices.chunks_exact(3).filter(|corners| corners.iter().all(is_cloth));
+        let corners: Vec<Vec3> =
+            kept.flatten().map(|&corner| self.positions[corner as usize]).collect();
+        let indices = (0..corners.len() as u32).collect();
+        FabricBuilder::new(corners, indices)
+    }
+
     /// The positions of the sheet bent about a vertical axis, to a radius, m.
     #[must_use]
     pub fn bent(&self, radius: f32) -> Vec<Vec3> {

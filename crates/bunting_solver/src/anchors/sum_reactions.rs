@@ -67,12 +67,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.lanes[cloth] = Some(state);
     }
 
-    /// A vector of a particle.
-    fn vector(&self, packs: &[[P; 3]], particle: usize, cloth: usize) -> Vec3 {
-        let (pack, lane) = self.layout.locate(particle, cloth);
-        lane3(&packs[pack], lane)
-    }
-
     /// Adds an impulse at each pin, N·s along the axes in this substep, given its index in the groups and its particle.
     fn add_at_pins(
         &mut self,

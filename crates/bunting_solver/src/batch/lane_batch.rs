@@ -22,7 +22,7 @@ use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, Fabric, GridTransfer};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
-use crate::simd::vec3::{Pack3, set_lane3, splat3};
+use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
 use crate::stability::pole::Pole;
 use crate::step::clock::Clock;
 use crate::step::guides::Guides;
@@ -230,6 +230,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// The fabric of a lane's cloth.
     pub fn fabric_of(&self, cloth: usize) -> &LaneFabric {
         &self.fabrics[Y::fabric_of(cloth)]
+    }
+
+    /// The vector of a particle among those of all.
+    pub fn vector(&self, packs: &[Pack3<P>], particle: usize, cloth: usize) -> Vec3 {
+        let (pack, lane) = self.layout.locate(particle, cloth);
+        lane3(&packs[pack], lane)
     }
 
     /// The line about which a cloth is free to turn in this substep.

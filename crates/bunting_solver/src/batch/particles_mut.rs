@@ -139,13 +139,11 @@ impl<P: Pack, Y: Layout<P>> ParticleAccess for LaneBatch<P, Y> {
     }
 
     fn position(&self, particle: usize, cloth: usize) -> Vec3 {
-        let (pack, lane) = self.layout.locate(particle, cloth);
-        lane3(&self.positions.packs()[pack], lane)
+        self.vector(self.positions.packs(), particle, cloth)
     }
 
     fn velocity(&self, particle: usize, cloth: usize) -> Vec3 {
-        let (pack, lane) = self.layout.locate(particle, cloth);
-        lane3(&self.velocity[pack], lane)
+        self.vector(&self.velocity, particle, cloth)
     }
 
     fn set_position(&mut self, particle: usize, cloth: usize, position: Vec3) {

@@ -67,7 +67,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// reaches.
     fn is_drawn_out(&self, cloth: usize, contact: &Contact, push: &Push) -> bool {
         let Some(tether) = self.tether_of(cloth, push.particle) else { return false };
-        let pin = self.position(cloth, tether.pin);
+        let pin = self.position_of(cloth, tether.pin);
         let reach = self.parameters.tether_stretch[0].lanes()[cloth] * tether.length;
         let distance = contact.end(push).distance(pin);
         distance > DRAWN_OUT * reach || distance > reach && contact.contains(pin)
@@ -83,14 +83,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Motion of a particle's nearest pin in the substep, m, in the present frame.
     fn way_of_pin(&self, cloth: usize, particle: u32) -> Vec3 {
         let Some(tether) = self.tether_of(cloth, particle) else { return Vec3::ZERO };
-        self.position(cloth, tether.pin) - self.start_of(cloth, tether.pin)
+        self.position_of(cloth, tether.pin) - self.start_of(cloth, tether.pin)
     }
 
     /// Indices, in ascending order, of the pushes that make a link too long.
     fn pushes_at_torn_links(&self, cloth: usize, contact: &Contact, pushes: &[Push]) -> Vec<usize> {
         let mut tearing = Vec::new();
         for link in self.fabric_of(cloth).fabric.links() {
-            let ends = link.particles.map(|end| self.position(cloth, end));
+            let ends = link.particles.map(|end| self.position_of(cloth, end));
             let length = ends[0].distance(ends[1]);
             let most = TORN * link.rest_length;
             if length <= most {

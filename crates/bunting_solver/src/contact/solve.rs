@@ -106,7 +106,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         pushes: &mut Vec<Push>,
     ) {
         let corner_of = |&particle: &u32| {
-            let (start, end) = (self.start_of(cloth, particle), self.position(cloth, particle));
+            let (start, end) = (self.start_of(cloth, particle), self.position_of(cloth, particle));
             let (from, to) = contact.path(start, end);
             let (pack, lane) = self.layout.locate(particle as usize, cloth);
             let inverse_mass = self.masses.inverse[pack].lanes()[lane];

@@ -101,13 +101,7 @@ fn bent(columns: usize, rows: usize, at: impl Fn(f32, f32) -> Vec3) -> Arc<Fabri
 /// A sheet of about `columns` × `rows` vertices and a metre with a hole of 0.6 m in its middle, which hangs from its top edge.
 fn holed(columns: usize, rows: usize) -> Arc<Fabric> {
     let sheet = Sheet::new(Triangulation::Delaunay, [columns, rows], DVec2::ONE, 1);
-    let middle = Vec3::new(0.5, -0.5, 0.0);
-    let is_cloth = |corner: &u32| sheet.positions[*corner as usize].distance(middle) > 0.3;
-    let kept = sheet.indices.chunks_exact(3).filter(|corners| corners.iter().all(is_cloth));
-    let corners: Vec<Vec3> =
-        kept.flatten().map(|&corner| sheet.positions[corner as usize]).collect();
-    let indices = (0..corners.len() as u32).collect();
-    let mesh = FabricBuilder::new(corners, indices).pin_where(|at, _| at.y == 0.0);
+    let mesh = sheet.with_hole(0.3).pin_where(|at, _| at.y == 0.0);
     Arc::new(mesh.build().expect("a good mesh"))
 }
 

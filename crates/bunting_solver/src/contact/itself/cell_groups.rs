@@ -1,6 +1,8 @@
 //! Eight cells whose triangles join their particles in the same way: their cones are computed at once, one cell in each
 //! lane, and a particle is gathered once for all triangles of its cell.
 
+use core::ops::Range;
+
 use fearless_simd::{Simd, f32x4, f32x8};
 use glam::Vec3;
 
@@ -12,7 +14,7 @@ use crate::simd::lane::{Lane, Pack};
 use crate::simd::level::dispatch;
 use crate::simd::registers::Pack8;
 use crate::simd::transpose::joined;
-use crate::simd::vec3::V3;
+use crate::simd::vec3::{V3, lane3};
 
 /// Most particles of a cell in a group: those of eight triangles in a strip.
 const MOST_PARTICLES: usize = 10;
@@ -31,8 +33,8 @@ struct CellGroup {
 #[derive(Clone, Debug, Default)]
 pub(in crate::contact) struct CellGroups {
     groups: Vec<CellGroup>,
-    /// Indices of all other cells.
-    others: Vec<usize>,
+    /// Indices of all other cells, in runs.
+    others: Vec<Range<usize>>,
 }
 
 impl CellGroups {
@@ -53,7 +55,10 @@ impl CellGroups {
                     first = group.end;
                 }
                 _ => {
-                    all.others.push(first);
+                    match all.others.last_mut() {
+                        Some(run) if run.end == first => run.end += 1,
+                        _ => all.others.push(first..first + 1),
+                    }
                     first += 1;
                 }
             }
@@ -63,13 +68,17 @@ impl CellGroups {
 
     /// Computes the cones about the normals of all cells at the end of their paths.
     pub fn compute_cones(&self, cells: &[Cell], paths: &[Path], cones: &mut [Cone]) {
-        for group in &self.groups {
-            let cones = &mut cones[group.first..group.first + Pack8::WIDTH];
-            dispatch!(token => group.compute_cones(token, paths, cones));
+        dispatch!(token => compute_groups(token, &self.groups, paths, cones));
+        for run in &self.others {
+            compute_cones(&cells[run.clone()], paths, &mut cones[run.clone()]);
         }
-        for &at in &self.others {
-            compute_cones(&cells[at..=at], paths, &mut cones[at..=at]);
-        }
+    }
+}
+
+#[inline(always)]
+fn compute_groups<S: Simd>(token: S, groups: &[CellGroup], paths: &[Path], cones: &mut [Cone]) {
+    for group in groups {
+        group.compute_cones(token, paths, &mut cones[group.first..group.first + Pack8::WIDTH]);
     }
 }
 
@@ -130,7 +139,7 @@ impl CellGroup {
 fn lanes_of<S: Simd>(vectors: V3<f32x8<S>>) -> [Vec3; Pack8::WIDTH] {
     let mut stored = [Pack8::splat(0.0); 3];
     vectors.store(&mut stored);
-    core::array::from_fn(|lane| Vec3::from_array(stored.map(|values| values.lanes()[lane])))
+    core::array::from_fn(|lane| lane3(&stored, lane))
 }
 
 #[cfg(test)]
@@ -144,14 +153,14 @@ mod tests {
     fn groups_have_the_cones_of_their_cells() {
         let fabric = FabricBuilder::grid(Grid::new(33, 33, 1.0, 1.0)).build().expect("a good grid");
         let mesh = ContactMesh::of(&fabric);
-        assert!(mesh.groups.groups.len() * Pack8::WIDTH > mesh.cells.len() / 2);
+        assert!(mesh.cell_groups.groups.len() * Pack8::WIDTH > mesh.cells.len() / 2);
         // Waves that are shorter to the right, where they fold.
         let waved = |at: &Vec3| *at + 0.1 * Vec3::Z * libm::sinf(40.0 * at.x * at.x + 3.0 * at.y);
         let rest = fabric.rest_positions().iter();
         let paths: Vec<Path> = rest.map(|at| [end_at(*at), end_at(waved(at))]).collect();
         let [mut one_by_one, mut at_once] = [(); 2].map(|()| vec![Cone::ALL; mesh.cells.len()]);
         compute_cones(&mesh.cells, &paths, &mut one_by_one);
-        mesh.groups.compute_cones(&mesh.cells, &paths, &mut at_once);
+        mesh.cell_groups.compute_cones(&mesh.cells, &paths, &mut at_once);
         let flat = one_by_one.iter().filter(|cone| cone.is_flat()).count();
         assert!((mesh.cells.len() / 4..mesh.cells.len()).contains(&flat), "{flat} are flat");
         for (one, other) in one_by_one.iter().zip(&at_once) {

@@ -36,7 +36,7 @@ pub(crate) struct ContactMesh {
     pub(in crate::contact) represented: Vec<Represented>,
     pub(in crate::contact) patches: Vec<Patch>,
     pub(in crate::contact) cells: Vec<Cell>,
-    pub(in crate::contact) groups: CellGroups,
+    pub(in crate::contact) cell_groups: CellGroups,
 }
 
 impl ContactMesh {
@@ -70,8 +70,8 @@ impl ContactMesh {
             }
         }
         set_inner_ends(&mut edges, fabric.particle_count());
-        let groups = CellGroups::of(&cells);
-        Self { triangles, edges, represented, patches, cells, groups }
+        let cell_groups = CellGroups::of(&cells);
+        Self { triangles, edges, represented, patches, cells, cell_groups }
     }
 
     /// The features of several cloths, the particles of each after those of the one before.
@@ -97,7 +97,7 @@ impl ContactMesh {
             all.cells.extend(part.cells.iter().map(|cell| cell.moved(cells, triangles, first)));
             first += particles;
         }
-        all.groups = CellGroups::of(&all.cells);
+        all.cell_groups = CellGroups::of(&all.cells);
         all
     }
 

@@ -92,7 +92,7 @@ impl Search {
         self.has_boxes.resize(mesh.patches.len(), false);
         self.patches.clear();
         self.patches.resize(mesh.patches.len().div_ceil(Pack8::WIDTH), Boxes::empty());
-        mesh.groups.compute_cones(&mesh.cells, &self.paths, &mut self.cones_of_cells);
+        mesh.cell_groups.compute_cones(&mesh.cells, &self.paths, &mut self.cones_of_cells);
         self.forget_triangles(mesh);
         (0..mesh.patches.len()).for_each(|patch| self.bound(cloth, patch));
         for one in 0..mesh.patches.len() {
