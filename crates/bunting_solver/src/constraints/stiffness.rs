@@ -44,7 +44,7 @@ impl Stiffness<'_> {
 
     /// Compliance of each class of links, 1/m².
     pub fn of_links(&self, fabric: &Fabric) -> Vec<f32> {
-        let least = LEAST_LINK_COMPLIANCE / fabric.particle_areas()[0];
+        let least = LEAST_LINK_COMPLIANCE / fabric.first_whole_area();
         let classes = fabric.link_classes().iter();
         let stiffnesses = classes.map(|class| match self.scheme {
             Scheme::Yarns if fabric.has_shear_cells() => class.uncoupled_stiffness(self.material),
@@ -59,7 +59,7 @@ impl Stiffness<'_> {
 
     /// Compliance of a square of cloth along warp, weft and diagonals, 1/m².
     pub fn of_moduli(&self, fabric: &Fabric) -> [f32; 3] {
-        let least = LEAST_LINK_COMPLIANCE / fabric.particle_areas()[0];
+        let least = LEAST_LINK_COMPLIANCE / fabric.first_whole_area();
         let [warp, weft, shear] = self.material.lattice_moduli();
         // Diagonals that resist shear by G resist stretch along warp and weft by as much.
         let moduli = [warp - shear, weft - shear, 2.0 * shear];

@@ -68,14 +68,14 @@ impl<P: Pack> TwistFactors<P, PerLane<P>> {
 pub(crate) fn factorise(profile: &RibbonProfile, compliance: f32) -> Vec<TwistRow<f32>> {
     let pairs: Vec<f64> =
         profile.inverse_areas.iter().map(|[a, b]| f64::from(*a) + f64::from(*b)).collect();
-    let softness = f64::from(compliance / profile.coefficient);
     let mut last = 0.0;
-    let row = |ends: &[f64]| {
+    let row = |(ends, coefficient): (&[f64], &f32)| {
+        let softness = f64::from(compliance / coefficient);
         let lower = -ends[0] * last;
         last = 1.0 / (ends[0] + ends[1] + softness + lower * ends[0]);
         TwistRow { lower: lower as f32, inverse_diagonal: last as f32 }
     };
-    pairs.windows(2).map(row).collect()
+    pairs.windows(2).zip(&profile.coefficients).map(row).collect()
 }
 
 /// The rows of a profile whose moments are zero.

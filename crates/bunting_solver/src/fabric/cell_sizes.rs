@@ -9,6 +9,8 @@ use super::grid::Grid;
 pub(super) struct CellSizes {
     /// Area of each cell, m².
     pub areas: Vec<f32>,
+    /// Stiffness of each cell against twist, in units of the material's bending stiffness, 1/m².
+    pub twists: Vec<f32>,
     /// Of each particle the mean distance of its neighbours in its row, and in its column, m.
     pub spacings: Vec<[f32; 2]>,
     /// Of each particle the width of cloth that its row stands for there, and its column, m.
@@ -38,7 +40,39 @@ impl CellSizes {
             spacings.push([along.0, across.0]);
             widths.push([if at_seam { 0.5 * across.1 } else { across.1 }, along.1]);
         }
-        Self { areas: grid.cells().map(area).collect(), spacings, widths }
+        let areas: Vec<f32> = grid.cells().map(area).collect();
+        Self { twists: areas.iter().map(|area| 2.0 / area).collect(), areas, spacings, widths }
+    }
+
+    /// The sizes where only a part of each cell is cloth.
+    pub fn covered(grid: &Grid, parts: &[f32]) -> Self {
+        let [dx, dy] = grid.spacing();
+        let (columns, rows) = (grid.columns as i32, grid.rows as i32);
+        let part = |column: i32, row: i32| {
+            let is_cell = (0..columns - 1).contains(&column) && (0..rows - 1).contains(&row);
+            if is_cell { parts[(row * (columns - 1) + column) as usize] } else { 0.0 }
+        };
+        let mut widths = Vec::new();
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |at| (row, at))) {
+            // A row at a node is as wide as the narrower of its two links there.
+            let right = |column: i32| 0.5 * (part(column, row - 1) + part(column, row));
+            let down = |row: i32| 0.5 * (part(column - 1, row) + part(column, row));
+            widths.push([
+                dy * right(column - 1).min(right(column)),
+                dx * down(row - 1).min(down(row)),
+            ]);
+        }
+        Self {
+            areas: parts.iter().map(|part| part * dx * dy).collect(),
+            twists: parts.iter().map(|part| 2.0 * part / (dx * dy)).collect(),
+            spacings: vec![[dx, dy]; widths.len()],
+            widths,
+        }
+    }
+
+    /// The part of each particle's cells that is cloth, given the particles' areas, m².
+    pub fn parts_of(&self, areas: &[f32], grid: &Grid) -> Vec<f32> {
+        areas.iter().zip(grid.particle_areas()).map(|(area, whole)| area / whole).collect()
     }
 
     /// Area of each particle, m²: a quarter of each cell that it borders.

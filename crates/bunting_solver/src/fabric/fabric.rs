@@ -46,6 +46,7 @@ pub struct Fabric {
     twist: Twist,
     rest_bends: Option<RestBends>,
     tethers: Tethers,
+    covered: Vec<f32>,
     tautness: f32,
     shortest: f32,
     probes: Vec<Probe>,
@@ -131,6 +132,7 @@ impl Fabric {
             twist,
             rest_bends: None,
             tethers,
+            covered: Vec::new(),
             topology: None,
             background,
         };
@@ -140,8 +142,8 @@ impl Fabric {
 
     /// The constraints of a background grid, whose nodes have no hinges.
     fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
-        let BackgroundMesh { grid, mesh, coverage, curved_lines, is_flat, transfer, .. } =
-            background;
+        let BackgroundMesh { grid, mut mesh, coverage, transfer, is_flat, .. } = background;
+        let BackgroundMesh { cut_cells, curved_lines, are_alike, .. } = background;
         let (links, yarns) = match &curved_lines {
             Some(lines) => {
                 let links = Links::of_curved_lines(&mesh, &grid, &coverage, lines);
@@ -151,25 +153,30 @@ impl Fabric {
             }
             None => {
                 let links = Links::of(&mesh, Some(&grid), Some(&coverage), &[]);
-                let yarns = Yarns::of(&mesh.positions, &links.list);
+                let places = if are_alike { mesh.positions.clone() } else { grid.positions() };
+                let yarns = Yarns::of(&places, &links.list);
                 (links, yarns)
             }
         };
-        let sizes = curved_lines.as_ref().map(|lines| &lines.sizes);
+        let sizes = curved_lines.as_ref().map(|lines| &lines.sizes).or(cut_cells.as_ref());
         let is_closed = !transfer.joined.is_empty();
         let mut chains =
             Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid), is_closed);
-        if sizes.is_some() {
+        if !are_alike {
             chains.measure_diagonals(&mesh.positions);
         }
         let edges = topology::edges(&mesh.triangles).unwrap_or_default();
+        mesh.triangles = grid.triangles(false);
         let inverse_areas = &mesh.inverse_areas;
         let fabric = Self {
             bending: Bending::of(&grid, inverse_areas, is_closed, sizes),
             twist: Twist::of(&grid, inverse_areas, sizes),
             rest_bends: (!is_flat).then(|| RestBends::of(&grid, &mesh.positions, is_closed)),
             hinges: Hinges::of(&mesh, &[]),
-            tethers: Tethers::of(&mesh, &edges, is_flat, tethered),
+            tethers: Tethers::of(&mesh, &edges, is_flat && cut_cells.is_none(), tethered),
+            covered: cut_cells
+                .as_ref()
+                .map_or(Vec::new(), |sizes| sizes.parts_of(&mesh.areas, &grid)),
             tautness: 0.0,
             shortest: 0.0,
             probes: Vec::new(),
@@ -224,6 +231,16 @@ impl Fabric {
     #[must_use]
     pub fn particle_areas(&self) -> &[f32] {
         &self.mesh.areas
+    }
+
+    /// The part of a node's cells that is cloth; one of particles, and where no cell is cut.
+    pub(crate) fn part_of(&self, particle: usize) -> f32 {
+        self.covered.get(particle).copied().unwrap_or(1.0)
+    }
+
+    /// Area of the first particle, m², if all of its cells are cloth.
+    pub(crate) fn first_whole_area(&self) -> f32 {
+        self.mesh.areas[0] / self.part_of(0)
     }
 
     /// Area of the whole fabric, m².

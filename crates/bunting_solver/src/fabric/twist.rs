@@ -20,8 +20,8 @@ pub(crate) struct Ribbon {
 /// Values that ribbons of one kind share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RibbonProfile {
-    /// Stiffness of a cell in units of the material's bending stiffness, 1/m².
-    pub coefficient: f32,
+    /// Stiffness of each cell in units of the material's bending stiffness, 1/m².
+    pub coefficients: Vec<f32>,
     /// One over the area of each particle, 1/m²; zero if it is pinned.
     pub inverse_areas: Vec<[f32; 2]>,
 }
@@ -48,13 +48,13 @@ impl Twist {
         let inverse_area = |particle: u32| inverse_areas[particle as usize];
         let [dx, _] = grid.spacing();
         let cell_area = dx * grid.height / (grid.rows - 1) as f32;
-        // The mean area of a ribbon's cells.
-        let mean_area = |line: u32| {
-            let Some(sizes) = sizes else { return cell_area };
+        let coefficients = |line: u32| -> Vec<f32> {
             let columns = grid.columns - 1;
             let (first, step) = if along_columns { (line, columns) } else { (line * columns, 1) };
-            let sum: f32 = (0..along - 1).map(|at| sizes.areas[(first + at * step) as usize]).sum();
-            sum / (along - 1) as f32
+            let of_cell = |cell: u32| {
+                sizes.map_or(2.0 / cell_area, |sizes| sizes.twists[(first + cell * step) as usize])
+            };
+            (0..along - 1).map(of_cell).collect()
         };
         let mut profiles: Vec<RibbonProfile> = Vec::new();
         let mut classes = Classes::new();
@@ -62,7 +62,7 @@ impl Twist {
             let pair = |place: u32| [particle(line, place), particle(line + 1, place)];
             let pairs: Vec<[u32; 2]> = (0..along).map(pair).collect();
             let profile = RibbonProfile {
-                coefficient: 2.0 / mean_area(line),
+                coefficients: coefficients(line),
                 inverse_areas: pairs.iter().map(|pair| pair.map(inverse_area)).collect(),
             };
             let (class, is_new) = classes.class_of(profile.key());
@@ -81,6 +81,6 @@ impl RibbonProfile {
     /// Key that is equal for profiles that differ by rounding only.
     fn key(&self) -> Vec<u32> {
         let areas = self.inverse_areas.as_flattened().iter();
-        core::iter::once(&self.coefficient).chain(areas).map(|&value| rounded_bits(value)).collect()
+        self.coefficients.iter().chain(areas).map(|&value| rounded_bits(value)).collect()
     }
 }

@@ -64,9 +64,10 @@ pub(crate) fn twist(fabric: &Fabric, positions: &[Vec3]) -> f64 {
     let at = |particle: u32| positions[particle as usize].as_dvec3();
     let across = |[from, to]: [u32; 2]| at(to) - at(from);
     let of_ribbon = |ribbon: &Ribbon| -> f64 {
-        let coefficient = fabric.ribbon_profiles()[ribbon.profile as usize].coefficient;
+        let coefficients = &fabric.ribbon_profiles()[ribbon.profile as usize].coefficients;
         let turns = ribbon.pairs.windows(2).map(|cell| across(cell[1]) - across(cell[0]));
-        f64::from(coefficient) * turns.map(|turn| turn.length_squared()).sum::<f64>()
+        let of_cell = |(turn, &of): (DVec3, &f32)| f64::from(of) * turn.length_squared();
+        turns.zip(coefficients).map(of_cell).sum::<f64>()
     };
     fabric.ribbons().iter().map(of_ribbon).sum()
 }

@@ -176,20 +176,21 @@ fn upright_reduction(fabric: &Fabric, pole: &Pole, step: f32) -> Vec<f32> {
 /// at every resolution.
 fn inertia_per_strain(fabric: &Fabric, material: &FabricMaterial, step: f32) -> f32 {
     let stiffest = material.warp_stiffness.max(material.weft_stiffness);
-    let most = fabric.particle_areas()[0] / LEAST_LINK_COMPLIANCE;
+    let most = fabric.first_whole_area() / LEAST_LINK_COMPLIANCE;
     INERTIA_PER_TENSION * (step * step * stiffest / material.area_density).min(most)
 }
 
-/// The inertia that each particle needs, m², where each of some particles supports a load, m³/s².
+/// The inertia that each particle needs, m², where each of some particles supports a load, m³/s². A node at the border of
+/// a cut grid carries as much less as it stands for less cloth.
 fn needed(fabric: &Fabric, supports: &[u32], load: f32, step: f32) -> impl Iterator<Item = f32> {
     let rest = fabric.rest_positions();
     let spacing = fabric.links().iter().map(|link| link.rest_length).fold(f32::MAX, f32::min);
-    rest.iter().map(move |at| {
+    rest.iter().enumerate().map(move |(particle, at)| {
         let away = supports.iter().map(|&support| at.distance(rest[support as usize]));
         let nearest = away.fold(f32::MAX, f32::min);
         // A point load spreads with the distance from its support.
         let tension = load / (nearest / spacing).max(1.0);
-        INERTIA_PER_TENSION * step * step * tension / spacing
+        INERTIA_PER_TENSION * step * step * tension / spacing * fabric.part_of(particle)
     })
 }
 

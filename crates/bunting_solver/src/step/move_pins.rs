@@ -52,6 +52,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 now.iter().for_each(|pin| positions[pin.particle as usize] = end(pin));
                 are_pins_near(fabric, positions)
             });
+            self.update_held_nodes(cloth);
         }
     }
 
@@ -85,6 +86,20 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let of_frame = if frame_moves { lane3(velocity, lane) } else { Vec3::ZERO };
             set_lane3(velocity, lane, of_frame + (pin.to - pin.from) * rate);
         }
+        self.update_held_nodes(cloth);
+    }
+
+    /// Gives the nodes that pins hold the velocities of these: air acts on the cells beside them.
+    fn update_held_nodes(&mut self, cloth: usize) {
+        let (Some(grid), Some(background)) = (&mut self.background, self.fabric.background())
+        else {
+            return;
+        };
+        let of_particle = |particle: u32| {
+            let (pack, lane) = self.layout.locate(particle as usize, cloth);
+            lane3(&self.velocity[pack], lane)
+        };
+        grid.set_held_velocities(cloth, &background.transfer.held, of_particle);
     }
 
     /// Updates all that depends on the positions of a cloth's pins.

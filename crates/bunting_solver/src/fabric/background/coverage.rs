@@ -10,19 +10,41 @@ const COVERED_ONCE: f32 = 1.01;
 /// Least part of a grid that a mesh must cover to fill it. Smaller: nodes outside the mesh.
 const FILLED: f32 = 0.995;
 
-/// Least part of a cell that counts as cloth. Smaller: links without stiffness.
+/// Least part of a cell that counts as cloth where there is any. Smaller: nodes beyond the border, which the particles
+/// there follow, hang by links without stiffness.
 const LEAST_COVERAGE: f32 = 0.1;
 
-/// The part of each cell that counts as cloth; none if the triangles cover a part of a cell twice, or do not fill the grid.
-pub(super) fn filled_once(
-    positions: &[Vec2],
-    triangles: &[[u32; 3]],
-    grid: &Grid,
-) -> Option<Vec<f32>> {
+/// Part of a cell without cloth that counts as cloth. Smaller: masses and stiffnesses differ by more than single precision
+/// resolves. Larger: holes are filled.
+const EMPTY_COVERAGE: f32 = 1e-6;
+
+/// Least part of a cell in which there is cloth. Smaller: rounding.
+const LEAST_CLOTH: f32 = 1e-5;
+
+/// The cells of a grid under a mesh.
+pub(super) struct Coverage {
+    /// The part of each cell that counts as cloth.
+    pub parts: Vec<f32>,
+    /// Whether the mesh fills the grid.
+    pub is_filled: bool,
+    /// The triangles in each cell.
+    pub triangles: Vec<Vec<u32>>,
+}
+
+impl Coverage {
+    /// Whether there is cloth in a cell.
+    pub fn has_cloth(&self, cell: usize) -> bool {
+        self.is_filled || !self.triangles[cell].is_empty()
+    }
+}
+
+/// How much of each cell is cloth; none if the triangles cover a part of a cell twice.
+pub(super) fn once(positions: &[Vec2], triangles: &[[u32; 3]], grid: &Grid) -> Option<Coverage> {
     let spacing = Vec2::from(grid.spacing());
     let cells = [grid.columns - 1, grid.rows - 1];
     let mut covered = vec![0.0; (cells[0] * cells[1]) as usize];
-    for triangle in triangles {
+    let mut in_cell = vec![Vec::new(); covered.len()];
+    for (index, triangle) in (0..).zip(triangles) {
         // In units of cells.
         let corners = triangle.map(|corner| positions[corner as usize] / spacing);
         let low = corners[0].min(corners[1]).min(corners[2]);
@@ -33,14 +55,25 @@ pub(super) fn filled_once(
         for row in range(low.y, high.y, cells[1]) {
             for column in range(low.x, high.x, cells[0]) {
                 let corner = Vec2::new(column as f32, row as f32);
-                covered[(row * cells[0] + column) as usize] += area_in_cell(&corners, corner);
+                let area = area_in_cell(&corners, corner);
+                let cell = (row * cells[0] + column) as usize;
+                covered[cell] += area;
+                if area > LEAST_CLOTH {
+                    in_cell[cell].push(index);
+                }
             }
         }
     }
     let is_once = covered.iter().all(|&part| part < COVERED_ONCE);
     let is_filled = covered.iter().sum::<f32>() > FILLED * covered.len() as f32;
-    (is_once && is_filled)
-        .then(|| covered.into_iter().map(|part| part.max(LEAST_COVERAGE)).collect())
+    let part = |(part, triangles): (f32, &Vec<u32>)| {
+        if is_filled || !triangles.is_empty() { part.max(LEAST_COVERAGE) } else { EMPTY_COVERAGE }
+    };
+    is_once.then(|| Coverage {
+        parts: covered.into_iter().zip(&in_cell).map(part).collect(),
+        is_filled,
+        triangles: in_cell,
+    })
 }
 
 /// Area of a triangle within the unit square at a corner (Sutherland and Hodgman 1974).

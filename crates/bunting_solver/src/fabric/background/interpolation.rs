@@ -180,19 +180,19 @@ impl Interpolation {
     }
 }
 
-/// Weights of the particles at each node: barycentric in the triangle that the node lies in. None if a node lies outside
-/// the mesh.
+/// Weights of the particles at each node: barycentric in the triangle that the node lies in. Rows of nodes outside the
+/// mesh are empty.
 pub(super) fn nodes_from_particles(
     positions: &[Vec2],
     triangles: &[[u32; 3]],
     grid: &Grid,
-) -> Option<Interpolation> {
+) -> Interpolation {
     let mut weights = Interpolation::default();
     for within in barycentric(positions, triangles, &node_positions(grid), grid) {
-        let (_, terms) = within.filter(|(least, _)| *least > INSIDE)?;
-        weights.push(terms);
+        let within = within.filter(|(least, _)| *least > INSIDE);
+        weights.push(within.into_iter().flat_map(|(_, terms)| terms));
     }
-    Some(weights)
+    weights
 }
 
 /// Weights of the nodes at each place of a free particle: bilinear in its cell.

@@ -16,10 +16,13 @@
 mod chart;
 mod closed;
 mod coverage;
+mod cut;
 mod gradient_fit;
 mod interpolation;
+mod laid_nodes;
 mod laplacian;
 mod mapped;
+mod moved;
 mod smooth;
 #[cfg(test)]
 mod tests;
@@ -29,7 +32,8 @@ mod unfold;
 use glam::{Mat3, Vec2, Vec3};
 
 use self::chart::Chart;
-use self::interpolation::{nodes_from_particles, particles_from_nodes};
+use self::interpolation::particles_from_nodes;
+use self::laid_nodes::{Fit, LaidNodes};
 use super::cell_sizes::CellSizes;
 use super::grid::Grid;
 use super::mesh::{RestMesh, Surface};
@@ -90,12 +94,16 @@ pub(super) struct BackgroundMesh {
     pub mesh: RestMesh,
     /// How much cloth each cell stands for, in units of its area.
     pub coverage: Vec<f32>,
+    /// The sizes of cells of which only a part is cloth.
+    pub cut_cells: Option<CellSizes>,
     /// cos² of the angle between the rows and the warp.
     pub warp_cos2: f32,
     /// Of each cell, where lines of nodes are curved.
     pub curved_lines: Option<CurvedLines>,
-    /// Whether the nodes lie in a plane at rest.
+    /// Whether the nodes lie in a plane at rest, and are evenly spaced.
     pub is_flat: bool,
+    /// Whether all cells are alike at rest, so that their diagonals are.
+    pub are_alike: bool,
     pub transfer: GridTransfer,
 }
 
@@ -113,27 +121,26 @@ impl BackgroundMesh {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
         }
-        let straight = Chart::of(mesh, surface).and_then(|chart| Self::on(mesh, &chart));
-        straight.or_else(|| Self::on(mesh, &Chart::mapped(mesh, surface)?))
+        let straight = Chart::of(mesh, surface);
+        let straight = |fit| Self::on(mesh, surface, straight.as_ref()?, fit);
+        let mapped = |fit| Self::on(mesh, surface, &Chart::mapped(mesh, surface)?, fit);
+        straight(Fit::Filled)
+            .or_else(|| mapped(Fit::Filled))
+            .or_else(|| straight(Fit::Cut))
+            .or_else(|| straight(Fit::Moved))
     }
 
     /// The grid of a mesh on a chart.
-    fn on(mesh: &RestMesh, chart: &Chart) -> Option<Self> {
+    fn on(mesh: &RestMesh, surface: &Surface, chart: &Chart, fit: Fit) -> Option<Self> {
         let grid = chart.grid();
-        let nodes = nodes_from_particles(&chart.positions, &chart.triangles, &grid)?;
-        let coverage = coverage::filled_once(&chart.positions, &chart.triangles, &grid)?;
         let is_free: Vec<bool> = chart.particles.iter().map(|&at| !mesh.is_pinned(at)).collect();
-        let mut has_row = is_free.clone();
+        let laid = LaidNodes::of(surface, chart, &grid, &is_free, fit)?;
+        let mut has_row = is_free;
         has_row[chart.own_places..].fill(false);
-        let places = particles_from_nodes(&chart.positions, &has_row, &grid);
-        let particles = places.mean_rows(&chart.particles, mesh.positions.len());
-        let nodes = match chart.plane {
-            Some(_) => nodes,
-            None => smooth::smoothed(nodes, &chart.positions, &grid, &is_free),
-        };
-        let nodes = nodes.with_columns(&chart.particles);
+        let particles = particles_from_nodes(&chart.positions, &has_row, &grid);
+        let particles = particles.mean_rows(&chart.particles, mesh.positions.len());
         let mut transfer = GridTransfer {
-            nodes,
+            nodes: laid.rows.with_columns(&chart.particles),
             particles,
             means: Interpolation::default(),
             held: Interpolation::default(),
@@ -145,19 +152,27 @@ impl BackgroundMesh {
         let free_areas: Vec<f32> =
             free_areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect();
         transfer.moved_areas = transfer.node_masses(&free_areas);
-        let positions = rest_positions(mesh, chart, &grid, &transfer);
+        let positions = rest_positions(mesh, chart, &laid.places, &transfer);
         let curved_lines = (!chart.warps.is_empty()).then(|| CurvedLines {
             sizes: CellSizes::of(&grid, &positions, chart.is_closed),
             warps: warps_of_cells(&transfer.nodes, &chart.warps, &grid),
         });
-        let nodes = node_mesh(mesh, &grid, &transfer, positions, curved_lines.as_ref());
+        let sizes = curved_lines.as_ref().map(|lines| &lines.sizes).or(laid.cut_cells.as_ref());
+        let mut nodes = node_mesh(mesh, &grid, &transfer, positions, sizes);
+        nodes.free_where(&laid.is_outside);
+        // Paths along the cloth run through cells that have some.
+        let cells = nodes.triangles.chunks(2).zip(&laid.has_cloth);
+        let with_cloth = cells.filter(|(_, has_cloth)| **has_cloth);
+        nodes.triangles = with_cloth.flat_map(|(cell, _)| cell).copied().collect();
         if curved_lines.is_some() && !mapped::is_regular(&grid, &nodes) {
             return None;
         }
         let is_free = |node: usize| !nodes.is_pinned(node as u32);
         transfer.means = transfer.particles.adjoint(&mesh.areas, &transfer.moved_areas, is_free);
         transfer.held = transfer.nodes.rows_where(|node| !is_free(node));
-        if chart.plane.is_none() {
+        let are_moved = fit == Fit::Moved;
+        let is_flat = chart.plane.is_some() && !are_moved;
+        if !is_flat {
             transfer.heights = heights(mesh, chart, &grid, &nodes, &transfer);
         }
         let is_held = is_held(mesh, chart, &grid, &nodes);
@@ -167,10 +182,12 @@ impl BackgroundMesh {
         }
         is_held.then_some(Self {
             mesh: nodes,
-            coverage,
+            coverage: laid.parts,
+            cut_cells: laid.cut_cells,
             warp_cos2: chart.warp_cos2,
+            are_alike: curved_lines.is_none() && !are_moved,
             curved_lines,
-            is_flat: chart.plane.is_some(),
+            is_flat,
             transfer,
             grid,
         })
@@ -264,14 +281,14 @@ fn is_held(mesh: &RestMesh, chart: &Chart, grid: &Grid, nodes: &RestMesh) -> boo
 fn rest_positions(
     mesh: &RestMesh,
     chart: &Chart,
-    grid: &Grid,
+    places: &[Vec2],
     transfer: &GridTransfer,
 ) -> Vec<Vec3> {
-    let in_space = |(at, row): (Vec2, &[Term])| match &chart.plane {
-        Some(plane) => plane.in_space(at),
+    let in_space = |(at, row): (&Vec2, &[Term])| match &chart.plane {
+        Some(plane) => plane.in_space(*at),
         None => row.iter().map(|term| mesh.positions[term.from as usize] * term.weight).sum(),
     };
-    chart::node_positions(grid).into_iter().zip(transfer.nodes.rows()).map(in_space).collect()
+    places.iter().zip(transfer.nodes.rows()).map(in_space).collect()
 }
 
 /// The nodes as particles. Those that stand for pinned particles are pinned. They have the areas of a grid's
@@ -282,14 +299,14 @@ fn node_mesh(
     grid: &Grid,
     transfer: &GridTransfer,
     positions: Vec<Vec3>,
-    curved_lines: Option<&CurvedLines>,
+    sizes: Option<&CellSizes>,
 ) -> RestMesh {
     let is_free = |row: &[Term]| {
         let free = row.iter().filter(|term| !mesh.is_pinned(term.from));
         free.map(|term| term.weight).sum::<f32>() > LEAST_FREE
     };
-    let areas = match curved_lines {
-        Some(lines) => lines.sizes.particle_areas(grid),
+    let areas = match sizes {
+        Some(sizes) => sizes.particle_areas(grid),
         None => grid.particle_areas(),
     };
     let rows = transfer.nodes.rows().zip(&areas);

@@ -20,9 +20,10 @@ const LEAST_PIVOT: f64 = 1e-6;
 /// Greatest sum of the magnitudes of a row's weights. Larger: a node moves by more than the particles around it.
 const GREATEST_SUM: f32 = 3.0;
 
-/// Numbers of the coefficients of a quartic and of a quadratic.
+/// Numbers of the coefficients of a quartic, of a quadratic and of a plane.
 const QUARTIC: usize = 15;
 const QUADRATIC: usize = 6;
+pub(super) const PLANE: usize = 3;
 
 /// Rows of nodes by fits to the places around them; the given rows where there are too few places, and of nodes that
 /// stand for pins.
@@ -32,32 +33,15 @@ pub(super) fn smoothed(
     grid: &Grid,
     is_free: &[bool],
 ) -> Interpolation {
-    let spacing = Vec2::from(grid.spacing());
-    let mut in_cell = vec![Vec::new(); (grid.columns * grid.rows) as usize];
-    for (place, at) in (0_u32..).zip(positions) {
-        let cell = (*at / spacing).floor().max(Vec2::ZERO);
-        let column = (cell.x as u32).min(grid.columns - 1);
-        in_cell[grid.index(column, (cell.y as u32).min(grid.rows - 1)) as usize].push(place);
-    }
-    let reach = RADIUS.ceil() as u32;
+    let places = PlacesInCells::new(positions, grid);
     let mut smoothed = Interpolation::default();
     for (node, row) in rows.rows().enumerate() {
-        let (column, line) = (node as u32 % grid.columns, node as u32 / grid.columns);
-        let at = Vec2::new(column as f32, line as f32);
-        let columns = column.saturating_sub(reach)..(column + reach).min(grid.columns);
-        let lines = line.saturating_sub(reach)..(line + reach).min(grid.rows);
-        let cells = lines.flat_map(|line| columns.clone().map(move |column| (column, line)));
-        let near: Vec<(u32, DVec3)> = cells
-            .flat_map(|(column, line)| &in_cell[grid.index(column, line) as usize])
-            .filter_map(|&place| {
-                let away = (positions[place as usize] / spacing - at).as_dvec2() / RADIUS;
-                let nearness = 1.0 - away.length_squared();
-                (nearness > 0.0).then(|| (place, away.extend(nearness * nearness)))
-            })
-            .collect();
+        let near = places.around(node as u32, RADIUS);
         let free = row.iter().filter(|term| is_free[term.from as usize]);
         let is_smooth = free.map(|term| term.weight).sum::<f32>() > LEAST_FREE;
-        let fits = || fit::<QUARTIC>(&near).or_else(|| fit::<QUADRATIC>(&near));
+        let smooth = |terms: &Vec<Term>| sum_of_magnitudes(terms) < GREATEST_SUM;
+        let quartic = || fit::<QUARTIC>(&near).filter(smooth);
+        let fits = || quartic().or_else(|| fit::<QUADRATIC>(&near).filter(smooth));
         match is_smooth.then(fits).flatten() {
             Some(terms) => smoothed.push(terms),
             None => smoothed.push(row.iter().copied()),
@@ -66,9 +50,49 @@ pub(super) fn smoothed(
     smoothed
 }
 
+/// Places in the plane by the cells that they lie in.
+pub(super) struct PlacesInCells<'a> {
+    positions: &'a [Vec2],
+    grid: &'a Grid,
+    in_cell: Vec<Vec<u32>>,
+}
+
+impl<'a> PlacesInCells<'a> {
+    pub fn new(positions: &'a [Vec2], grid: &'a Grid) -> Self {
+        let spacing = Vec2::from(grid.spacing());
+        let mut in_cell = vec![Vec::new(); (grid.columns * grid.rows) as usize];
+        for (place, at) in (0_u32..).zip(positions) {
+            let cell = (*at / spacing).floor().max(Vec2::ZERO);
+            let column = (cell.x as u32).min(grid.columns - 1);
+            in_cell[grid.index(column, (cell.y as u32).min(grid.rows - 1)) as usize].push(place);
+        }
+        Self { positions, grid, in_cell }
+    }
+
+    /// The places within a radius around a node, in cells, relative to the node in units of the radius. The third
+    /// coordinate is a weight, which falls to zero at the radius.
+    pub fn around(&self, node: u32, radius: f64) -> Vec<(u32, DVec3)> {
+        let Self { positions, grid, in_cell } = self;
+        let spacing = Vec2::from(grid.spacing());
+        let reach = radius.ceil() as u32;
+        let (column, line) = (node % grid.columns, node / grid.columns);
+        let at = Vec2::new(column as f32, line as f32);
+        let columns = column.saturating_sub(reach)..(column + reach).min(grid.columns);
+        let lines = line.saturating_sub(reach)..(line + reach).min(grid.rows);
+        let cells = lines.flat_map(|line| columns.clone().map(move |column| (column, line)));
+        let places = cells.flat_map(|(column, line)| &in_cell[grid.index(column, line) as usize]);
+        let weighted = places.filter_map(|&place| {
+            let away = (positions[place as usize] / spacing - at).as_dvec2() / radius;
+            let nearness = 1.0 - away.length_squared();
+            (nearness > 0.0).then(|| (place, away.extend(nearness * nearness)))
+        });
+        weighted.collect()
+    }
+}
+
 /// Weights of the values at places, given relative to the node with a weight as third coordinate, in the value at the
 /// node of the polynomial that is fitted to them; none if they do not determine it.
-fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
+pub(super) fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
     let mut system = [[0.0; TERMS]; TERMS];
     for (_, at) in near {
         let powers = powers::<TERMS>(at);
@@ -104,10 +128,12 @@ fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
         let powers = powers::<TERMS>(at).into_iter();
         (at.z * powers.zip(solution).map(|(power, factor)| power * factor).sum::<f64>()) as f32
     };
-    let terms: Vec<Term> =
-        near.iter().map(|(place, at)| Term { from: *place, weight: weight(at) }).collect();
-    let sum: f32 = terms.iter().map(|term| term.weight.abs()).sum();
-    (sum < GREATEST_SUM).then_some(terms)
+    Some(near.iter().map(|(place, at)| Term { from: *place, weight: weight(at) }).collect())
+}
+
+/// Sum of the magnitudes of a row's weights.
+pub(super) fn sum_of_magnitudes(terms: &[Term]) -> f32 {
+    terms.iter().map(|term| term.weight.abs()).sum()
 }
 
 /// The first products of powers of two coordinates, those of lower degree first.

@@ -1,7 +1,7 @@
 use glam::{Vec2, Vec3};
 
 use super::Term;
-use crate::fabric::{FabricBuilder, Grid, Interpolation, LinkFamily};
+use crate::fabric::{Fabric, FabricBuilder, Grid, Interpolation, LinkFamily};
 
 /// A sheet of `n` × `n` vertices over a square metre, those within moved by up to a fifth of a cell.
 fn sheet(n: u32) -> FabricBuilder {
@@ -62,6 +62,37 @@ fn weights_reproduce_planes_and_keep_the_mass() {
     let masses = transfer.node_masses(fabric.particle_areas());
     let mass: f32 = masses.iter().sum();
     assert!((mass / fabric.area() - 1.0).abs() < 1e-3, "{mass}");
+}
+
+#[test]
+fn a_disk_has_a_grid_that_reaches_beyond_its_border() {
+    // A vertex on the border, and the first that lies between nodes.
+    let pinned = |vertex| disk(12).pin([793, vertex]).build().expect("a good fabric");
+    let is_between = |fabric: &Fabric| {
+        let background = fabric.background().expect("a flat mesh has a grid");
+        !background.transfer.heights.is_empty()
+    };
+    let fabric = (0..700).map(pinned).find(is_between).expect("vertices between nodes");
+    let background = fabric.background().expect("a flat mesh has a grid");
+    let (grid, transfer) = (&background.fabric, &background.transfer);
+    let [particles, nodes] = [&fabric, &**grid].map(|of| of.rest_positions());
+    assert!(nodes.iter().any(|at| at.length() > 0.6), "outside the disk");
+    assert!((grid.area() / fabric.area() - 1.0).abs() < 0.01, "{} m²", grid.area());
+    // Two nodes are moved to the pins, and no others are held.
+    let pins: Vec<Vec3> =
+        fabric.pins().iter().map(|pin| particles[pin.particle as usize]).collect();
+    let held: Vec<Vec3> = grid.pins().iter().map(|pin| nodes[pin.particle as usize]).collect();
+    let is_there = |pin: &Vec3| held.iter().any(|at| at.distance(*pin) < 1e-6);
+    assert!(held.len() == 2 && pins.iter().all(is_there), "{held:?} {pins:?}");
+    assert!(error(&transfer.nodes, particles, nodes) < 1e-4);
+    // Heights make up for what nodes were moved by.
+    let is_moved = |row: &[Term]| row.iter().any(|term| grid.is_pinned(term.from as usize));
+    let plane = |at: &Vec3| 0.3 + at.dot(Vec3::new(1.0, -2.0, 0.0));
+    for (particle, row) in transfer.particles.rows().enumerate().filter(|(_, row)| !is_moved(row)) {
+        let sum: f32 = row.iter().map(|term| plane(&nodes[term.from as usize]) * term.weight).sum();
+        assert!(row.is_empty() || (sum - plane(&particles[particle])).abs() < 1e-5);
+    }
+    assert_eq!(transfer.heights.len(), fabric.particle_count() - 2);
 }
 
 #[test]
@@ -154,12 +185,19 @@ fn meshes_that_are_no_charts_keep_their_own_chains() {
     let overlapping = FabricBuilder::new(doubled, twice).weld_distance(0.0);
     assert!(!has_grid(overlapping), "two sheets at one place");
     assert!(!has_grid(sheet(4)), "small");
-    assert!(!has_grid(disk(8)), "nodes would lie outside");
-    // Of vertices that are denser along the rows than nodes some lie near a node, and others between nodes.
-    let dense = Grid::new(24, 6, 1.0, 1.0);
-    let dense = FabricBuilder::new(dense.positions(), dense.triangles(false).into_flattened());
-    let is_held = |vertex: u32| has_grid(dense.clone().pin([vertex]));
-    assert_eq!([true, false].map(|held| (0..144).any(|at| is_held(at) == held)), [true; 2]);
+    // From the middle of a side to the middle of the sheet, between columns of nodes.
+    let slit = |corners: &&[u32]| {
+        let corner = |at: &u32| sheet(22).positions()[*at as usize];
+        let middle: Vec3 = corners.iter().map(corner).sum::<Vec3>() / 3.0;
+        (middle.x - 0.5).abs() > 0.02 || middle.y > -0.5
+    };
+    let kept: Vec<u32> = sheet(22).indices().chunks(3).filter(slit).flatten().copied().collect();
+    assert!(has_grid(sheet(22)) && kept.len() < sheet(22).indices().len());
+    let with_slit = FabricBuilder::new(sheet(22).positions().to_vec(), kept);
+    assert!(!has_grid(with_slit.repair().expect("a mesh").0), "a slit");
+    let bent_disk = disk(8).positions().iter().map(|at| *at + Vec3::Z * at.x * at.x).collect();
+    let bent_disk = FabricBuilder::new(bent_disk, disk(8).indices().to_vec());
+    assert!(!has_grid(bent_disk), "curved, and nodes would lie outside");
     assert!(!has_grid(FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0))), "a grid");
 }
 

@@ -1,0 +1,112 @@
+//! Grids that reach beyond the border of a mesh, or across its holes.
+//!
+//! Cells that the border cuts stand for the part of them that is cloth, and cells without cloth for almost none. All nodes are
+//! there: those outside the mesh hang by the cells that it shares, and those far from it by next to nothing.
+
+use glam::Vec2;
+
+use super::coverage::Coverage;
+use super::interpolation::{Interpolation, Term};
+use super::smooth::{PLANE, PlacesInCells, fit, sum_of_magnitudes};
+use crate::fabric::grid::Grid;
+use crate::fabric::topology::Edge;
+
+/// Radius around a node outside the mesh within which a plane is fitted to the places there, in cells: the first that is
+/// tried. Each further one is twice as large. Smaller: fits to few places.
+const FIRST_RADIUS: f64 = 2.0;
+
+/// Most places that a plane is fitted to. More: single weights are as small as rounding.
+const MOST_TERMS: usize = 24;
+
+/// Greatest sum of the magnitudes of the weights of a plane. Larger: a node moves by many times what the particles move by.
+const GREATEST_SUM: f32 = 12.0;
+
+/// Least part of the grid's cells with cloth. Smaller: most nodes cost time for nothing.
+const LEAST_FILLED: f32 = 0.45;
+
+/// How much farther than the cells around a node the ways between the triangles in these may run, in cells. Smaller: ragged borders
+/// count as slits. Larger: short slits are closed.
+const FARTHER: u32 = 1;
+
+/// Whether a mesh can have a grid that it does not fill: what of it lies in the cells around a node hangs together in them and
+/// in the next ones. The two sides of a slit would hang together by the nodes between them.
+pub(super) fn is_whole(coverage: &Coverage, grid: &Grid, edges: &[Edge]) -> bool {
+    let count = coverage.parts.len();
+    let with_cloth = (0..count).filter(|&cell| coverage.has_cloth(cell)).count();
+    if (with_cloth as f32) < LEAST_FILLED * count as f32 {
+        return false;
+    }
+    let neighbours = neighbours(coverage, edges);
+    let triangles_within = |(column, row): (u32, u32), reach: u32| {
+        let around = |at: u32, count: u32| at.saturating_sub(reach)..(at + reach).min(count - 1);
+        let columns = around(column, grid.columns);
+        let cells = around(row, grid.rows).flat_map(move |row| {
+            columns.clone().map(move |column| (row * (grid.columns - 1) + column) as usize)
+        });
+        let mut triangles: Vec<u32> =
+            cells.flat_map(|cell| &coverage.triangles[cell]).copied().collect();
+        triangles.sort_unstable();
+        triangles.dedup();
+        triangles
+    };
+    let mut is_near = vec![false; neighbours.len()];
+    let mut places = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |at| (at, row)));
+    places.all(|place| {
+        let around = triangles_within(place, 1);
+        let Some(&first) = around.first() else { return true };
+        let near = triangles_within(place, 1 + FARTHER);
+        near.iter().for_each(|&triangle| is_near[triangle as usize] = true);
+        let mut next = vec![first];
+        while let Some(triangle) = next.pop() {
+            if core::mem::replace(&mut is_near[triangle as usize], false) {
+                next.extend(&neighbours[triangle as usize]);
+            }
+        }
+        let is_whole = !around.iter().any(|&triangle| is_near[triangle as usize]);
+        near.iter().for_each(|&triangle| is_near[triangle as usize] = false);
+        is_whole
+    })
+}
+
+/// The triangles beside each triangle.
+fn neighbours(coverage: &Coverage, edges: &[Edge]) -> Vec<Vec<u32>> {
+    let count = coverage.triangles.iter().flatten().max().map_or(0, |last| last + 1);
+    let mut neighbours = vec![Vec::new(); count as usize];
+    for edge in edges {
+        if let Some(other) = edge.other_side {
+            let [one, other] = [edge.side.triangle, other.triangle];
+            neighbours[one as usize].push(other);
+            neighbours[other as usize].push(one);
+        }
+    }
+    neighbours
+}
+
+/// The rows, and where they are empty planes that are fitted to the free places nearby: pins have no velocity of their own.
+pub(super) fn extrapolated(
+    rows: Interpolation,
+    positions: &[Vec2],
+    is_free: &[bool],
+    grid: &Grid,
+) -> Interpolation {
+    let places = PlacesInCells::new(positions, grid);
+    let farthest = f64::from(grid.columns + grid.rows);
+    let mut all = Interpolation::default();
+    for (node, row) in rows.rows().enumerate() {
+        if !row.is_empty() {
+            all.push(row.iter().copied());
+            continue;
+        }
+        let radii = core::iter::successors(Some(FIRST_RADIUS), |radius| Some(2.0 * radius));
+        let mut radii = radii.take_while(|radius| *radius < 2.0 * farthest);
+        let plane = radii.find_map(|radius| {
+            let mut near = places.around(node as u32, radius);
+            near.retain(|(place, _)| is_free[*place as usize]);
+            let distance = near.len().div_ceil(MOST_TERMS).max(1);
+            let plane = fit::<PLANE>(&near.into_iter().step_by(distance).collect::<Vec<_>>());
+            plane.filter(|terms| sum_of_magnitudes(terms) < GREATEST_SUM)
+        });
+        all.push(plane.unwrap_or_else(|| vec![Term { from: 0, weight: 1.0 }]));
+    }
+    all
+}
