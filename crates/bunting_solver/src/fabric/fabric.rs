@@ -238,9 +238,15 @@ impl Fabric {
         self.covered.get(particle).copied().unwrap_or(1.0)
     }
 
-    /// Area of the first particle, m², if all of its cells are cloth.
+    /// Area of the first particle, m², as if all of its cells were cloth.
     pub(crate) fn first_whole_area(&self) -> f32 {
-        self.mesh.areas[0] / self.part_of(0)
+        match (&self.grid, self.covered.is_empty()) {
+            (Some(grid), false) => {
+                let [dx, dy] = grid.spacing();
+                0.25 * dx * dy
+            }
+            _ => self.mesh.areas[0],
+        }
     }
 
     /// Area of the whole fabric, m².

@@ -73,7 +73,10 @@ impl Tethers {
     }
 }
 
+/// The pinned particles of the edges: nodes of a grid where there is no cloth have none.
 fn pins(mesh: &RestMesh, edges: &[Edge]) -> Vec<Pin> {
+    let mut has_edge = vec![false; mesh.positions.len()];
+    edges.iter().flat_map(|edge| edge.ends).for_each(|end| has_edge[end as usize] = true);
     let particles = 0..mesh.positions.len() as u32;
     let mut isolated: Vec<bool> =
         particles.clone().map(|particle| mesh.is_pinned(particle)).collect();
@@ -83,7 +86,7 @@ fn pins(mesh: &RestMesh, edges: &[Edge]) -> Vec<Pin> {
         }
     }
     particles
-        .filter(|&particle| mesh.is_pinned(particle))
+        .filter(|&particle| mesh.is_pinned(particle) && has_edge[particle as usize])
         .map(|particle| Pin { particle, isolated: isolated[particle as usize] })
         .collect()
 }

@@ -14,10 +14,6 @@ const FILLED: f32 = 0.995;
 /// there follow, hang by links without stiffness.
 const LEAST_COVERAGE: f32 = 0.1;
 
-/// Part of a cell without cloth that counts as cloth. Smaller: masses and stiffnesses differ by more than single precision
-/// resolves. Larger: holes are filled.
-const EMPTY_COVERAGE: f32 = 1e-6;
-
 /// Least part of a cell in which there is cloth. Smaller: rounding.
 const LEAST_CLOTH: f32 = 1e-5;
 
@@ -67,7 +63,7 @@ pub(super) fn once(positions: &[Vec2], triangles: &[[u32; 3]], grid: &Grid) -> O
     let is_once = covered.iter().all(|&part| part < COVERED_ONCE);
     let is_filled = covered.iter().sum::<f32>() > FILLED * covered.len() as f32;
     let part = |(part, triangles): (f32, &Vec<u32>)| {
-        if is_filled || !triangles.is_empty() { part.max(LEAST_COVERAGE) } else { EMPTY_COVERAGE }
+        if is_filled || !triangles.is_empty() { part.max(LEAST_COVERAGE) } else { 0.0 }
     };
     is_once.then(|| Coverage {
         parts: covered.into_iter().zip(&in_cell).map(part).collect(),

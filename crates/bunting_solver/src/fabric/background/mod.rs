@@ -169,7 +169,8 @@ impl BackgroundMesh {
         }
         let is_free = |node: usize| !nodes.is_pinned(node as u32);
         transfer.means = transfer.particles.adjoint(&mesh.areas, &transfer.moved_areas, is_free);
-        transfer.held = transfer.nodes.rows_where(|node| !is_free(node));
+        let stands_for_pins = |node: usize| !is_free(node) && nodes.areas[node] > 0.0;
+        transfer.held = transfer.nodes.rows_where(stands_for_pins);
         let are_moved = fit == Fit::Moved;
         let is_flat = chart.plane.is_some() && !are_moved;
         if !is_flat {
@@ -291,7 +292,8 @@ fn rest_positions(
     places.iter().zip(transfer.nodes.rows()).map(in_space).collect()
 }
 
-/// The nodes as particles. Those that stand for pinned particles are pinned. They have the areas of a grid's
+/// The nodes as particles. Those that stand for pinned particles are pinned, and those without cloth have no area and do not
+/// move. The others have the areas of a grid's
 /// particles: with those of the particles that they move, which differ from node
 /// to node by chance, a swing loses motion to short waves.
 fn node_mesh(
@@ -313,7 +315,7 @@ fn node_mesh(
     RestMesh {
         positions,
         inverse_areas: rows
-            .map(|(row, area)| if is_free(row) { 1.0 / area } else { 0.0 })
+            .map(|(row, area)| if is_free(row) && *area > 0.0 { 1.0 / area } else { 0.0 })
             .collect(),
         uv: chart::node_positions(grid),
         triangles: grid.triangles(false),
