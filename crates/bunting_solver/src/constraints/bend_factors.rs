@@ -106,7 +106,7 @@ pub(crate) fn factorise(profile: &BendProfile, compliance: f32) -> LineFactors {
     // Values of the last two rows: one over the diagonal, and the element of L one left of it.
     let (mut last, mut before_last) = ((0.0, 0.0), (0.0, 0.0));
     let row = |(row, &weight): (usize, &f32)| {
-        let softness = f64::from(compliance) / f64::from(weight);
+        let softness = softness(compliance, weight);
         let diagonal = mobilities[row] + 4.0 * mobilities[row + 1] + mobilities[row + 2] + softness;
         let first_band =
             if row >= 1 { -2.0 * (mobilities[row] + mobilities[row + 1]) } else { 0.0 };
@@ -119,16 +119,19 @@ pub(crate) fn factorise(profile: &BendProfile, compliance: f32) -> LineFactors {
         BendRow { first_lower, second_lower, inverse_diagonal: 1.0 / pivot }
     };
     let rows: Vec<BendRow<f64>> = profile.coefficients.iter().enumerate().map(row).collect();
-    let closing = profile.closing.map(|weight| {
-        let softness = f64::from(compliance) / f64::from(weight);
-        closing(&mobilities, &rows, softness)
-    });
+    let closing =
+        profile.closing.map(|weight| closing(&mobilities, &rows, softness(compliance, weight)));
     let single = |row: &BendRow<f64>| BendRow {
         first_lower: row.first_lower as f32,
         second_lower: row.second_lower as f32,
         inverse_diagonal: row.inverse_diagonal as f32,
     };
     LineFactors { rows: rows.iter().map(single).collect(), closing: closing.unwrap_or_default() }
+}
+
+/// Compliance of a row of a weight, 1/m⁴; infinite where there is nothing that bends.
+fn softness(compliance: f32, weight: f32) -> f64 {
+    if weight > 0.0 { f64::from(compliance) / f64::from(weight) } else { f64::INFINITY }
 }
 
 /// Compliance of the distance between the ends of a closed line, in units of their mobility: against a division by zero

@@ -70,7 +70,8 @@ pub(crate) fn factorise(profile: &RibbonProfile, compliance: f32) -> Vec<TwistRo
         profile.inverse_areas.iter().map(|[a, b]| f64::from(*a) + f64::from(*b)).collect();
     let mut last = 0.0;
     let row = |(ends, coefficient): (&[f64], &f32)| {
-        let softness = f64::from(compliance / coefficient);
+        let softness =
+            if *coefficient > 0.0 { f64::from(compliance / coefficient) } else { f64::INFINITY };
         let lower = -ends[0] * last;
         last = 1.0 / (ends[0] + ends[1] + softness + lower * ends[0]);
         TwistRow { lower: lower as f32, inverse_diagonal: last as f32 }

@@ -4,10 +4,6 @@ use glam::Vec3;
 
 use super::grid::Grid;
 
-/// Least part of a cell that bends and twists. Smaller: systems of lines across holes have no solution in single precision.
-/// Larger: cloth at holes is drawn to where it is at rest.
-const LEAST_PART: f32 = 1e-6;
-
 /// The sizes of a grid's cells, and what follows from them at its particles.
 #[derive(Clone, Debug)]
 pub(super) struct CellSizes {
@@ -62,13 +58,13 @@ impl CellSizes {
             let right = |column: i32| 0.5 * (part(column, row - 1) + part(column, row));
             let down = |row: i32| 0.5 * (part(column - 1, row) + part(column, row));
             widths.push([
-                dy * right(column - 1).min(right(column)).max(LEAST_PART),
-                dx * down(row - 1).min(down(row)).max(LEAST_PART),
+                dy * right(column - 1).min(right(column)),
+                dx * down(row - 1).min(down(row)),
             ]);
         }
         Self {
             areas: parts.iter().map(|part| part * dx * dy).collect(),
-            twists: parts.iter().map(|part| 2.0 * part.max(LEAST_PART) / (dx * dy)).collect(),
+            twists: parts.iter().map(|part| 2.0 * part / (dx * dy)).collect(),
             spacings: vec![[dx, dy]; widths.len()],
             widths,
         }

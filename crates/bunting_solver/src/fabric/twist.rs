@@ -20,7 +20,7 @@ pub(crate) struct Ribbon {
 /// Values that ribbons of one kind share.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RibbonProfile {
-    /// Stiffness of each cell in units of the material's bending stiffness, 1/m².
+    /// Stiffness of each cell in units of the material's bending stiffness, 1/m²; zero where there is no cloth.
     pub coefficients: Vec<f32>,
     /// One over the area of each particle, 1/m²; zero if it is pinned.
     pub inverse_areas: Vec<[f32; 2]>,
