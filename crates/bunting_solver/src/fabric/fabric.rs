@@ -45,8 +45,8 @@ pub struct Fabric {
     bending: Bending,
     twist: Twist,
     rest_bends: Option<RestBends>,
-    tethers: Tethers,
-    covered: Vec<f32>,
+    pub(super) tethers: Tethers,
+    pub(super) covered: Vec<f32>,
     tautness: f32,
     shortest: f32,
     probes: Vec<Probe>,
@@ -110,7 +110,9 @@ impl Fabric {
         let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
         // A load runs along the straight lines of a background grid, not along the edges of the mesh, which zigzag.
         let (reach, shortest) = match (&grid, &background) {
-            (_, Some(Background { fabric, .. })) => (fabric.reach(), fabric.links.shortest()),
+            (_, Some(Background { fabric, .. })) => {
+                (fabric.carried_length(), fabric.links.shortest())
+            }
             (Some(_), None) => (tethers.reach, links.shortest()),
             (None, None) => (tethers.reach, laid_yarns.least_spacing),
         };
@@ -231,22 +233,6 @@ impl Fabric {
     #[must_use]
     pub fn particle_areas(&self) -> &[f32] {
         &self.mesh.areas
-    }
-
-    /// The part of a node's cells that is cloth; one of particles, and where no cell is cut.
-    pub(crate) fn part_of(&self, particle: usize) -> f32 {
-        self.covered.get(particle).copied().unwrap_or(1.0)
-    }
-
-    /// Area of the first particle, m², as if all of its cells were cloth.
-    pub(crate) fn first_whole_area(&self) -> f32 {
-        match (&self.grid, self.covered.is_empty()) {
-            (Some(grid), false) => {
-                let [dx, dy] = grid.spacing();
-                0.25 * dx * dy
-            }
-            _ => self.mesh.areas[0],
-        }
     }
 
     /// Area of the whole fabric, m².

@@ -19,6 +19,7 @@ mod chains;
 mod clamp;
 mod classes;
 mod colour;
+mod covered;
 mod curved_links;
 mod error;
 #[expect(clippy::module_inception, reason = "the file of the type that gives the folder its name")]

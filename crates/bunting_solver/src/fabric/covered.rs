@@ -1,0 +1,36 @@
+//! What a grid of which only a part is cloth tells the rules of its stability.
+
+use super::fabric::Fabric;
+
+/// Part of a node's cells below which it lies at a border that cuts them. Larger: rounding.
+const WHOLE: f32 = 0.99;
+
+/// How many times as much tension as elsewhere there is at a hole, or where a border makes a cut grid narrower: threefold at
+/// a round hole (Kirsch 1898), less in the mean over a cell. Smaller: rings that hang from their inner rim vibrate. Larger:
+/// sheets with a hole cost more than twice as much as grids.
+const CONCENTRATION: f32 = 2.0;
+
+impl Fabric {
+    /// The part of a node's cells that is cloth; one of particles, and where no cell is cut.
+    pub(crate) fn part_of(&self, particle: usize) -> f32 {
+        self.covered.get(particle).copied().unwrap_or(1.0)
+    }
+
+    /// Area of the first particle, m², as if all of its cells were cloth.
+    pub(crate) fn first_whole_area(&self) -> f32 {
+        match self.grid().filter(|_| !self.covered.is_empty()) {
+            Some(grid) => {
+                let [dx, dy] = grid.spacing();
+                0.25 * dx * dy
+            }
+            None => self.particle_areas()[0],
+        }
+    }
+
+    /// Length of the cloth whose weight the topmost links carry, m: the [`reach`](Self::reach), and more where tension
+    /// is concentrated.
+    pub(super) fn carried_length(&self) -> f32 {
+        let is_cut = self.covered.iter().any(|&part| part < WHOLE);
+        self.reach() * if is_cut { CONCENTRATION } else { 1.0 }
+    }
+}
