@@ -163,6 +163,16 @@ impl Sheet {
         FabricBuilder::new(corners, indices)
     }
 
+    /// The positions of a sheet of a metre drawn out to a disk about the origin, of a radius, m.
+    #[must_use]
+    pub fn round(&self, radius: f32) -> Vec<Vec3> {
+        let to_disk = |at: &Vec3| {
+            let (x, y) = (2.0 * at.x - 1.0, 2.0 * at.y + 1.0);
+            Vec3::new(x * (1.0 - 0.5 * y * y).sqrt(), y * (1.0 - 0.5 * x * x).sqrt(), 0.0) * radius
+        };
+        self.positions.iter().map(to_disk).collect()
+    }
+
     /// The positions of the sheet bent about a vertical axis, to a radius, m.
     #[must_use]
     pub fn bent(&self, radius: f32) -> Vec<Vec3> {

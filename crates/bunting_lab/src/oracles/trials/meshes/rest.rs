@@ -29,11 +29,16 @@ const DROOP: f64 = 0.05;
 const ARC_RADIUS: f32 = 0.3;
 /// Part of its width that the tapered sheet loses over its height. Larger: stress is not along the height.
 const TAPER: f64 = 0.2;
+/// Part of its width that a pennant loses. It does not map onto a rectangle, and its grid is cut by its border.
+const POINTED: f64 = 0.95;
 /// Radii of the rims of a funnel of a metre's height, m.
 const FUNNEL: [f32; 2] = [0.4, 0.1];
 /// Isotropic but for shear, and ten times as soft.
 const SOFT: FabricMaterial =
     FabricMaterial { warp_stiffness: 1e3, weft_stiffness: 1e3, shear_stiffness: 50.0, ..ISOTROPIC };
+/// Isotropic, and five times as soft.
+const ELASTIC: FabricMaterial =
+    FabricMaterial { warp_stiffness: 2e3, weft_stiffness: 2e3, shear_stiffness: 1e3, ..ISOTROPIC };
 /// Time after which a cloth that hangs by two corners is at rest, s. After 10 s grids, too, still move in one of five starts:
 /// they leave a near equilibrium.
 const SETTLED: f64 = 20.0;
@@ -55,7 +60,8 @@ pub(super) fn cases(triangulation: Triangulation) -> Vec<Case> {
     cases.extend(two_corners(triangulation));
     cases.extend(cylinder(triangulation));
     cases.extend(without_background(triangulation));
-    cases.extend(tapered(triangulation));
+    cases.extend(tapered(triangulation, TAPER, ISOTROPIC));
+    cases.extend(tapered(triangulation, POINTED, ELASTIC));
     cases
         .extend([ISOTROPIC, SOFT].into_iter().flat_map(|material| funnel(triangulation, material)));
     cases
@@ -129,24 +135,27 @@ fn without_background(triangulation: Triangulation) -> [Case; 4] {
     [a, b, c, d]
 }
 
-/// δ/L of a sheet that is half a metre wide at its top, from which it hangs, and narrower below, and its speed at rest.
-fn tapered(triangulation: Triangulation) -> [Case; 2] {
+/// δ/L of a sheet that is half a metre wide at its top, from which it hangs, and narrower below by a part, and its speed at
+/// rest.
+fn tapered(triangulation: Triangulation, taper: f64, material: FabricMaterial) -> [Case; 2] {
     let size = DVec2::new(0.5, 1.0);
     let mut sheet = Sheet::new(triangulation, [17, 33], size, 1);
     for at in &mut sheet.positions {
-        let narrower = 1.0 + TAPER as f32 * at.y;
+        let narrower = 1.0 + taper as f32 * at.y;
         at.x = (at.x - 0.25) * narrower;
     }
     let fabric = sheet.fabric(0.0, at_top);
-    let mut cloth = Cloth::new(fabric, ISOTROPIC, |at| at);
+    let mut cloth = Cloth::new(fabric, material, |at| at);
     cloth.run(4.0);
     let stretch = -1.0 - cloth.mean(|at| at.y == -1.0).y;
     // At a depth of y of a sheet of width w₀ (1 − t y) hang σ g w₀ ((1 − y) − t (1 − y²)/2), on that width.
-    let strain = |y: f64| ((1.0 - y) - 0.5 * TAPER * (1.0 - y * y)) / (1.0 - TAPER * y);
+    let strain = |y: f64| ((1.0 - y) - 0.5 * taper * (1.0 - y * y)) / (1.0 - taper * y);
     let strains: Vec<f64> =
         (0..1000).map(|part| strain((f64::from(part) + 0.5) / 1000.0)).collect();
-    let expected = f64::from(ISOTROPIC.area_density) * GRAVITY / 1e4 * mean(&strains);
-    let name = format!("tapered sheet, hung from its top, {triangulation:?}");
+    let stiffness = f64::from(material.warp_stiffness);
+    let expected = f64::from(material.area_density) * GRAVITY / stiffness * mean(&strains);
+    let shape = if taper < 0.5 { "tapered sheet" } else { "pennant" };
+    let name = format!("{shape}, hung from its top, {triangulation:?}");
     let speed = cloth.speed();
     [
         Case::new(name.clone(), expected, stretch, STRETCH[0]),
