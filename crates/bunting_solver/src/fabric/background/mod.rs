@@ -1,5 +1,5 @@
-//! The background grid of a triangle mesh that fills a rectangle, and is flat at rest, has a texture that is like it, or can
-//! be unfolded, or that maps onto a rectangle, as tapered sheets and funnels do.
+//! The background grid of a triangle mesh that is flat at rest; or that fills a rectangle, and has a texture that is like it or can
+//! be unfolded; or that maps onto a rectangle, as tapered sheets and funnels do.
 //!
 //! Links along the edges of an irregular mesh are no paths along which a load runs: chains of them are short and
 //! zigzag, and what they leave to relaxation converges slowly. So such a mesh gets a regular grid, as particles have
@@ -8,8 +8,9 @@
 //! particles, and the particles follow the nodes.
 //!
 //! `chart` lays a flat mesh into the plane, `texture` a curved one, `unfold` one without texture, and `closed` finds
-//! the period of one that is closed around an axis. `coverage` measures how much of each cell is cloth, `interpolation`
-//! finds the weights, and `smooth` those of nodes on curved meshes. `mapped` finds charts whose lines are
+//! the period of one that is closed around an axis. `laid_nodes` lays a grid onto the chart: `coverage` measures how much of
+//! each cell is cloth, `interpolation` finds the weights, `smooth` those of nodes on curved meshes, and `cut` those beyond the border
+//! of flat ones; `moved` moves nodes to pins. `mapped` finds charts whose lines are
 //! curved, and unevenly far apart: there each link and each cell has its own width and direction. `gradient_fit` finds the
 //! functions with wanted gradients that `unfold` and `mapped` need.
 
@@ -115,8 +116,8 @@ pub(super) struct CurvedLines {
 }
 
 impl BackgroundMesh {
-    /// The grid of a mesh; none of a mesh that is small, or neither fills a rectangle in the plane without distortion or
-    /// overlap nor maps onto one: laid yarns hold such meshes better (`fabric/laid_yarns/`).
+    /// The grid of a mesh; none of a mesh that is small, or overlaps itself, or is curved and neither fills a rectangle in
+    /// the plane without distortion nor maps onto one: laid yarns hold such meshes (`fabric/laid_yarns/`).
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
