@@ -3,24 +3,15 @@
 use glam::Vec2;
 
 use super::chart::{Chart, node_positions};
+use super::coverage::{self, Coverage};
 use super::interpolation::{Interpolation, nodes_from_particles};
-use super::{coverage, cut, moved, smooth};
+use super::{cut, moved, smooth};
 use crate::fabric::cell_sizes::CellSizes;
 use crate::fabric::grid::Grid;
 use crate::fabric::mesh::Surface;
 
-/// How closely a grid follows its mesh.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Fit {
-    /// The mesh fills the grid.
-    Filled,
-    /// The grid may reach beyond the border of the mesh, and across its holes.
-    Cut,
-    /// The same, and the nodes nearest to pins are moved to them.
-    Moved,
-}
-
 /// The nodes of a grid on a chart.
+#[derive(Clone)]
 pub(super) struct LaidNodes {
     /// Of each node the places of the chart that it is read from.
     pub rows: Interpolation,
@@ -34,52 +25,56 @@ pub(super) struct LaidNodes {
     pub has_cloth: Vec<bool>,
     /// The sizes of cells of which only a part may be cloth.
     pub cut_cells: Option<CellSizes>,
+    /// Whether some nodes are moved to pins.
+    pub are_moved: bool,
 }
 
 impl LaidNodes {
-    /// The nodes of a grid; none if the mesh overlaps itself, or the grid does not fit as it should.
-    pub fn of(
-        surface: &Surface,
-        chart: &Chart,
-        grid: &Grid,
-        is_free: &[bool],
-        fit: Fit,
-    ) -> Option<Self> {
-        // Nodes beyond the border of a curved mesh would have no place that is known.
-        if fit != Fit::Filled && chart.plane.is_none() {
-            return None;
-        }
+    /// The nodes of a grid that the mesh fills; none if it does not, or overlaps itself.
+    pub fn filled(chart: &Chart, grid: &Grid, is_free: &[bool]) -> Option<Self> {
         let Chart { positions: places, triangles, .. } = chart;
         let coverage = coverage::once(places, triangles, grid)?;
         let mut rows = nodes_from_particles(places, triangles, grid);
-        let is_outside: Vec<bool> = rows.rows().map(|row| row.is_empty()).collect();
-        if coverage.is_filled {
-            if is_outside.contains(&true) {
-                return None;
-            }
-            if chart.plane.is_none() {
-                rows = smooth::smoothed(rows, places, grid, is_free);
-            }
-        } else {
-            if fit == Fit::Filled || !cut::is_whole(&coverage, grid, &surface.edges) {
-                return None;
-            }
-            rows = cut::extrapolated(rows, places, is_free, grid);
+        if !coverage.is_filled || rows.rows().any(|row| row.is_empty()) {
+            return None;
         }
-        let is_cut = fit == Fit::Moved || !coverage.is_filled;
-        let laid = Self {
+        if chart.plane.is_none() {
+            rows = smooth::smoothed(rows, places, grid, is_free);
+        }
+        Some(Self::new(rows, coverage, grid))
+    }
+
+    /// The nodes of a grid that may reach beyond the border of a flat mesh, and across its holes; none if it overlaps itself,
+    /// or the grid would sew up a slit.
+    pub fn cut(surface: &Surface, chart: &Chart, grid: &Grid, is_free: &[bool]) -> Option<Self> {
+        // Nodes beyond the border of a curved mesh would have no place that is known.
+        chart.plane.as_ref()?;
+        let Chart { positions: places, triangles, .. } = chart;
+        let coverage = coverage::once(places, triangles, grid)?;
+        if !coverage.is_filled && !cut::is_whole(&coverage, grid, &surface.edges) {
+            return None;
+        }
+        let rows = nodes_from_particles(places, triangles, grid);
+        let mut laid = Self::new(rows, coverage, grid);
+        laid.rows = cut::extrapolated(laid.rows, places, is_free, grid);
+        laid.cut_cells = Some(CellSizes::covered(grid, &laid.parts));
+        Some(laid)
+    }
+
+    fn new(rows: Interpolation, coverage: Coverage, grid: &Grid) -> Self {
+        Self {
+            is_outside: rows.rows().map(|row| row.is_empty()).collect(),
             rows,
             places: node_positions(grid),
-            is_outside,
             has_cloth: (0..coverage.parts.len()).map(|cell| coverage.has_cloth(cell)).collect(),
-            cut_cells: is_cut.then(|| CellSizes::covered(grid, &coverage.parts)),
             parts: coverage.parts,
-        };
-        Some(if fit == Fit::Moved { laid.moved_to_pins(chart, grid, is_free) } else { laid })
+            cut_cells: None,
+            are_moved: false,
+        }
     }
 
     /// The same nodes, but for those that pins take with them.
-    fn moved_to_pins(mut self, chart: &Chart, grid: &Grid, is_free: &[bool]) -> Self {
+    pub fn moved_to_pins(mut self, chart: &Chart, grid: &Grid, is_free: &[bool]) -> Self {
         let places_of_nodes = moved::to_pins(chart, grid, is_free);
         self.rows = moved::rows(self.rows, &places_of_nodes);
         for (node, place) in places_of_nodes {
@@ -87,6 +82,7 @@ impl LaidNodes {
             self.is_outside[node as usize] = false;
         }
         moved::enlarge(&mut self.parts, grid, &self.places);
+        self.are_moved = true;
         self
     }
 }

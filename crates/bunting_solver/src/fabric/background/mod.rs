@@ -34,7 +34,7 @@ use glam::{Mat3, Vec2, Vec3};
 
 use self::chart::Chart;
 use self::interpolation::particles_from_nodes;
-use self::laid_nodes::{Fit, LaidNodes};
+use self::laid_nodes::LaidNodes;
 use super::cell_sizes::CellSizes;
 use super::grid::Grid;
 use super::mesh::{RestMesh, Surface};
@@ -123,19 +123,33 @@ impl BackgroundMesh {
             return None;
         }
         let straight = Chart::of(mesh, surface);
-        let straight = |fit| Self::on(mesh, surface, straight.as_ref()?, fit);
-        let mapped = |fit| Self::on(mesh, surface, &Chart::mapped(mesh, surface)?, fit);
-        straight(Fit::Filled)
-            .or_else(|| mapped(Fit::Filled))
-            .or_else(|| straight(Fit::Cut))
-            .or_else(|| straight(Fit::Moved))
+        straight
+            .as_ref()
+            .and_then(|chart| Self::filled(mesh, chart))
+            .or_else(|| Self::filled(mesh, &Chart::mapped(mesh, surface)?))
+            .or_else(|| Self::cut(mesh, surface, straight.as_ref()?))
     }
 
-    /// The grid of a mesh on a chart.
-    fn on(mesh: &RestMesh, surface: &Surface, chart: &Chart, fit: Fit) -> Option<Self> {
+    /// The grid of a mesh that fills it.
+    fn filled(mesh: &RestMesh, chart: &Chart) -> Option<Self> {
+        let (grid, is_free) = (chart.grid(), free_places(mesh, chart));
+        let laid = LaidNodes::filled(chart, &grid, &is_free)?;
+        Self::on(mesh, chart, laid, is_free)
+    }
+
+    /// The grid of a flat mesh that reaches beyond its border. If its nodes do not hold the mesh where its pins do, some are
+    /// moved to these.
+    fn cut(mesh: &RestMesh, surface: &Surface, chart: &Chart) -> Option<Self> {
+        let (grid, is_free) = (chart.grid(), free_places(mesh, chart));
+        let laid = LaidNodes::cut(surface, chart, &grid, &is_free)?;
+        Self::on(mesh, chart, laid.clone(), is_free.clone())
+            .or_else(|| Self::on(mesh, chart, laid.moved_to_pins(chart, &grid, &is_free), is_free))
+    }
+
+    /// The grid of a mesh on a chart, given its nodes and which places are of free particles; none if it does not hold the
+    /// mesh where its pins do.
+    fn on(mesh: &RestMesh, chart: &Chart, laid: LaidNodes, is_free: Vec<bool>) -> Option<Self> {
         let grid = chart.grid();
-        let is_free: Vec<bool> = chart.particles.iter().map(|&at| !mesh.is_pinned(at)).collect();
-        let laid = LaidNodes::of(surface, chart, &grid, &is_free, fit)?;
         let mut has_row = is_free;
         has_row[chart.own_places..].fill(false);
         let particles = particles_from_nodes(&chart.positions, &has_row, &grid);
@@ -172,8 +186,7 @@ impl BackgroundMesh {
         transfer.means = transfer.particles.adjoint(&mesh.areas, &transfer.moved_areas, is_free);
         let stands_for_pins = |node: usize| !is_free(node) && nodes.areas[node] > 0.0;
         transfer.held = transfer.nodes.rows_where(stands_for_pins);
-        let are_moved = fit == Fit::Moved;
-        let is_flat = chart.plane.is_some() && !are_moved;
+        let is_flat = chart.plane.is_some() && !laid.are_moved;
         if !is_flat {
             transfer.heights = heights(mesh, chart, &grid, &nodes, &transfer);
         }
@@ -187,13 +200,18 @@ impl BackgroundMesh {
             coverage: laid.parts,
             cut_cells: laid.cut_cells,
             warp_cos2: chart.warp_cos2,
-            are_alike: curved_lines.is_none() && !are_moved,
+            are_alike: curved_lines.is_none() && !laid.are_moved,
             curved_lines,
             is_flat,
             transfer,
             grid,
         })
     }
+}
+
+/// Whether the particle at each place of a chart is free.
+fn free_places(mesh: &RestMesh, chart: &Chart) -> Vec<bool> {
+    chart.particles.iter().map(|&at| !mesh.is_pinned(at)).collect()
 }
 
 impl GridTransfer {
