@@ -1,7 +1,7 @@
 //! Grids that reach beyond the border of a mesh, or across its holes.
 //!
-//! Cells that the border cuts stand for the part of them that is cloth, and cells without cloth for almost none. All nodes are
-//! there: those outside the mesh hang by the cells that it shares, and those far from it by next to nothing.
+//! Cells that the border cuts stand for the part of them that is cloth, and cells without cloth for nothing. Nodes outside the
+//! mesh hang by the cells that they share with it; those that share none do not move.
 
 use glam::Vec2;
 
@@ -37,12 +37,18 @@ pub(super) fn is_whole(coverage: &Coverage, grid: &Grid, edges: &[Edge]) -> bool
         return false;
     }
     let neighbours = neighbours(coverage, edges);
-    let triangles_within = |(column, row): (u32, u32), reach: u32| {
+    let is_at_border = |triangle: &u32| neighbours[*triangle as usize].len() < 3;
+    let has_border: Vec<bool> =
+        coverage.triangles.iter().map(|triangles| triangles.iter().any(is_at_border)).collect();
+    let cells_within = |(column, row): (u32, u32), reach: u32| {
         let around = |at: u32, count: u32| at.saturating_sub(reach)..(at + reach).min(count - 1);
         let columns = around(column, grid.columns);
-        let cells = around(row, grid.rows).flat_map(move |row| {
+        around(row, grid.rows).flat_map(move |row| {
             columns.clone().map(move |column| (row * (grid.columns - 1) + column) as usize)
-        });
+        })
+    };
+    let triangles_within = |place: (u32, u32), reach: u32| {
+        let cells = cells_within(place, reach);
         let mut triangles: Vec<u32> =
             cells.flat_map(|cell| &coverage.triangles[cell]).copied().collect();
         triangles.sort_unstable();
@@ -52,6 +58,9 @@ pub(super) fn is_whole(coverage: &Coverage, grid: &Grid, edges: &[Edge]) -> bool
     let mut is_near = vec![false; neighbours.len()];
     let mut places = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |at| (at, row)));
     places.all(|place| {
+        if !cells_within(place, 1 + FARTHER).any(|cell| has_border[cell]) {
+            return true;
+        }
         let around = triangles_within(place, 1);
         let Some(&first) = around.first() else { return true };
         let near = triangles_within(place, 1 + FARTHER);
