@@ -33,10 +33,11 @@ pub struct GoldenScene {
 }
 
 /// Every scene.
-pub const ALL: [GoldenScene; 6] = [
+pub const ALL: [GoldenScene; 7] = [
     alone("flag on a vehicle", flag_on_a_vehicle),
     alone("stiff sheet by two corners", stiff_sheet),
     alone("mesh with a hole in wind", mesh_in_wind),
+    alone("bent mesh with a hole in wind", bent_mesh_in_wind),
     alone("Gauss–Seidel curtain on a ball", gauss_seidel),
     alone("free sheet on a floor, level changes", free_sheet),
     GoldenScene { name: "eight flags through the plugin", run: plugin, is_in_pool: true },
@@ -161,7 +162,23 @@ fn holed_mesh() -> FabricBuilder {
 }
 
 fn mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
-    let fabric = Arc::new(holed_mesh().build().expect("a mesh"));
+    in_wind(holed_mesh(), lanes, ticks)
+}
+
+/// The same mesh on an arc, with yarns laid across its triangles.
+fn bent_mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
+    let flat = holed_mesh();
+    let around = |at: &Vec3| {
+        let (sin, cos) = libm::sincosf(at.x / 0.5);
+        Vec3::new(0.5 * sin, at.y, 0.5 * cos)
+    };
+    let positions = flat.positions().iter().map(around).collect();
+    let bent = FabricBuilder::new(positions, flat.indices().to_vec());
+    in_wind(bent.pin_where(|at, _| at.x == 0.0), lanes, ticks)
+}
+
+fn in_wind(mesh: FabricBuilder, lanes: LaneCount, ticks: u32) -> u64 {
+    let fabric = Arc::new(mesh.build().expect("a mesh"));
     Pair::new(&fabric, lanes, FabricMaterial::COTTON, yarns(3, 2))
         .run(ticks, |tick| Drive { wind: gusts(tick), ..Drive::default() })
 }
