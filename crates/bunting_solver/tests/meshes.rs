@@ -333,6 +333,21 @@ fn with_a_hole(fabric: &Fabric) -> Fabric {
     builder.build().expect("a good fabric")
 }
 
+/// A sheet drawn out to a disk, hung from two vertices of its rim: nodes of its grid are moved to them.
+fn disk(flat: &Fabric) -> Fabric {
+    let round = |at: &Vec3| {
+        let (x, y) = (2.0 * at.x - 1.0, 2.0 * at.y + 1.0);
+        let wide = |other: f32| libm::sqrtf(1.0 - 0.5 * other * other);
+        Vec3::new(x * wide(y), y * wide(x), 0.0) * 0.56
+    };
+    let positions: Vec<Vec3> = flat.rest_positions().iter().map(round).collect();
+    let is_at_rim = |at: &Vec3| at.length() > 0.559 && at.y > 0.0;
+    let rim: Vec<u32> =
+        (0..).zip(&positions).filter(|(_, at)| is_at_rim(at)).map(|(it, _)| it).collect();
+    let builder = FabricBuilder::new(positions, flat.triangles().as_flattened().to_vec());
+    builder.pin([rim[1], rim[rim.len() / 2]]).build().expect("a good fabric")
+}
+
 #[test]
 fn a_mesh_has_the_same_bits_at_every_width() {
     let limp = FabricMaterial::FLAG_POLYESTER;
@@ -344,6 +359,7 @@ fn a_mesh_has_the_same_bits_at_every_width() {
         irregular(30, 0.5),
         with_a_hole(&flat),
         bent(&with_a_hole(&flat), 0.3),
+        disk(&flat),
         bent(&flat, 0.3),
         bent_with(&irregular(12, 0.0), CLOSED, Vec::new()),
         funnel(&irregular(20, 0.0), [CLOSED, 2.0 * CLOSED]),

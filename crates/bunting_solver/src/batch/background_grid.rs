@@ -9,7 +9,7 @@ use crate::batch::layout::{Layout, Positions};
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::single_mesh::{HeightPacks, pack_count};
 use crate::batch::snapshot::ClothSnapshot;
-use crate::fabric::{Background, Fabric, GridTransfer, Interpolation};
+use crate::fabric::{Background, Fabric, GridTransfer};
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::{lane3, set_lane3, splat3};
@@ -120,20 +120,9 @@ impl<P: Pack> BackgroundGrid<P> {
         });
     }
 
-    /// Gives the nodes of a cloth that pins hold the velocities of these, given that of each particle, m/s.
-    pub fn set_held_velocities(
-        &mut self,
-        cloth: usize,
-        held: &Interpolation,
-        of_particle: impl Fn(u32) -> Vec3,
-    ) {
-        with_grid!(self, batch => {
-            for (node, row) in held.rows().enumerate().filter(|(_, row)| !row.is_empty()) {
-                let velocity = row.iter().map(|term| of_particle(term.from) * term.weight).sum();
-                let (pack, lane) = batch.layout.locate(node, cloth);
-                set_lane3(&mut batch.velocity[pack], lane, velocity);
-            }
-        });
+    /// Sets the velocities of some nodes of a cloth, m/s.
+    pub fn set_velocities(&mut self, cloth: usize, of_nodes: &[(usize, Vec3)]) {
+        with_grid!(self, batch => batch.set_node_velocities(cloth, of_nodes));
     }
 
     /// Sets the inverse masses of a cloth's nodes, 1/m².

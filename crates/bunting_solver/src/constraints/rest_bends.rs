@@ -27,6 +27,8 @@ struct NodeFrame<C> {
     at: u32,
     /// Indices of its neighbours before and after it in its row, above and below it.
     neighbours: [u32; 4],
+    /// Positive in lanes whose node has a neighbour above it, and below it.
+    has_in_column: [C; 2],
     /// Positive in lanes whose node has neighbours before and after it in its row.
     has_in_row: [C; 2],
     /// As `RestBends::of_nodes`, m.
@@ -45,14 +47,15 @@ impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
             let constant = |of_node: &dyn Fn(usize) -> f32| {
                 Y::Constant::of(|lane| nodes.get(lane).map_or(0.0, |&node| of_node(node)))
             };
-            let has = |side: usize| move |node: usize| rest.neighbours[node][side] != node as u32;
+            let has = |side: usize| move |node: usize| rest.has_neighbour(node, side);
             let at = layout.index_of_pack(pack);
             let step = |side: usize, index: u32| {
                 if nodes.iter().any(|&node| has(side)(node)) { index } else { at }
             };
             let [_, _, above, below] = rest.neighbours[nodes[0]];
             let in_column = |node: u32| layout.index_of_pack(layout.locate(node as usize, 0).0);
-            let sides = [0, 1];
+            let masks =
+                |sides: [usize; 2]| sides.map(|side| constant(&|node| f32::from(has(side)(node))));
             NodeFrame {
                 at,
                 neighbours: [
@@ -61,7 +64,8 @@ impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
                     in_column(above),
                     in_column(below),
                 ],
-                has_in_row: sides.map(|side| constant(&|node| f32::from(has(side)(node)))),
+                has_in_row: masks([0, 1]),
+                has_in_column: masks([2, 3]),
                 at_rest: [0, 1, 2].map(|kind| {
                     [0, 1, 2].map(|axis| constant(&|node| rest.of_nodes[node][kind][axis]))
                 }),
@@ -130,7 +134,12 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for TurnRestBends<'_, P, S> {
             let before: V3<L> = before.or_where_not(zero.lt(has_before.load(token)), at);
             let after = self.nodes.position(token, after);
             let after: V3<L> = after.or_where_not(zero.lt(has_after.load(token)), at);
-            let across = self.nodes.position(token, below) - self.nodes.position(token, above);
+            let [has_above, has_below] = &frame.has_in_column;
+            let above = self.nodes.position(token, above);
+            let above: V3<L> = above.or_where_not(zero.lt(has_above.load(token)), at);
+            let below = self.nodes.position(token, below);
+            let below: V3<L> = below.or_where_not(zero.lt(has_below.load(token)), at);
+            let across = below - above;
             let along = after - before;
             let normal = unit(token, along.cross(across));
             let tangent = unit(token, along);

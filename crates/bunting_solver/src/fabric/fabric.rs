@@ -63,13 +63,16 @@ pub(crate) struct Background {
     pub transfer: GridTransfer,
     /// cos² of the angle between its rows and the warp.
     pub warp_cos2: f32,
+    /// Number of nodes around which there is cloth.
+    pub node_count: usize,
 }
 
 impl Background {
     fn of(mesh: BackgroundMesh, tethered: bool) -> Self {
         let warp_cos2 = mesh.warp_cos2;
         let (fabric, transfer) = Fabric::of_background(mesh, tethered);
-        Self { fabric: Arc::new(fabric), transfer, warp_cos2 }
+        let node_count = fabric.mesh.areas.iter().filter(|area| **area > 0.0).count();
+        Self { fabric: Arc::new(fabric), transfer, warp_cos2, node_count }
     }
 }
 
@@ -173,7 +176,7 @@ impl Fabric {
         let fabric = Self {
             bending: Bending::of(&grid, inverse_areas, is_closed, sizes),
             twist: Twist::of(&grid, inverse_areas, sizes),
-            rest_bends: (!is_flat).then(|| RestBends::of(&grid, &mesh.positions, is_closed)),
+            rest_bends: (!is_flat).then(|| RestBends::of(&grid, &mesh, is_closed)),
             hinges: Hinges::of(&mesh, &[]),
             tethers: Tethers::of(&mesh, &edges, is_flat && cut_cells.is_none(), tethered),
             covered: cut_cells

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::error::FabricError;
+use super::links::LinkFamily;
 use super::yarns::Yarn;
 
 /// A rectangular grid of particles.
@@ -46,6 +47,15 @@ impl Grid {
         let steps = yarn.particles.windows(2);
         yarn.particles.len() == self.rows as usize
             && steps.into_iter().all(|ends| ends[1] == ends[0] + self.columns)
+    }
+
+    /// The family of a link between two particles of a cell, the lower one first.
+    pub(super) fn family(&self, [from, to]: [u32; 2]) -> LinkFamily {
+        match to - from {
+            1 => LinkFamily::Warp,
+            step if step == self.columns => LinkFamily::Weft,
+            _ => LinkFamily::Diagonal,
+        }
     }
 
     /// The particles before and after a place in its row, and those above and below it: the particle itself where the grid

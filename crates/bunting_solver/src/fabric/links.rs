@@ -157,7 +157,12 @@ impl Links {
                 }
             }
         }
-        let links = sums.into_iter().map(|(ends, sum)| (ends, sum.class(), sum.family()));
+        // Nodes of a background grid may be moved, but lie in rows and columns all the same.
+        let background = grid.filter(|_| coverage.is_some());
+        let links = sums.into_iter().map(|(ends, sum)| {
+            let family = background.map_or_else(|| sum.family(), |grid| grid.family(ends));
+            (ends, sum.class(), family)
+        });
         Self::of_classes(mesh, links)
     }
 

@@ -9,6 +9,7 @@ use glam::Vec3;
 use super::fabric::Fabric;
 use super::grid::Grid;
 use super::links::LinkFamily;
+use super::mesh::RestMesh;
 use super::yarns::Yarn;
 
 /// The second differences at rest of a grid's nodes.
@@ -20,20 +21,25 @@ pub(crate) struct RestBends {
     /// Of each node those before and after it in its row, and those above and below it: the node itself where the grid
     /// ends.
     pub neighbours: Vec<[u32; 4]>,
+    /// Whether there is cloth around each node.
+    pub has_cloth: Vec<bool>,
     /// Whether the first and the last row are at one place.
     pub is_closed: bool,
 }
 
 impl RestBends {
-    /// The second differences of nodes at their positions at rest, m. The first and the last row of a closed grid are at
-    /// one place.
-    pub(super) fn of(grid: &Grid, positions: &[Vec3], is_closed: bool) -> Self {
+    /// The second differences of nodes at rest. The first and the last row of a closed grid are at one place, and a grid ends
+    /// where its nodes have no area.
+    pub(super) fn of(grid: &Grid, nodes: &RestMesh, is_closed: bool) -> Self {
+        let positions = &nodes.positions;
         let places = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |at| (at, row)));
         let neighbours: Vec<[u32; 4]> =
             places.map(|place| grid.neighbours(place, is_closed)).collect();
+        let has_cloth: Vec<bool> = nodes.areas.iter().map(|area| *area > 0.0).collect();
         let of_node = |(node, near): (u32, &[u32; 4])| {
             let at = |node: u32| positions[node as usize];
-            let [before, after, above, below] = *near;
+            let at_end = |other: u32| if has_cloth[other as usize] { other } else { node };
+            let [before, after, above, below] = near.map(at_end);
             let (along, across) = (at(after) - at(before), at(below) - at(above));
             let normal = along.cross(across).normalize_or_zero();
             let tangent = along.normalize_or_zero();
@@ -51,7 +57,14 @@ impl RestBends {
             };
             [second(before, after), second(above, below), twist].map(in_frame)
         };
-        Self { of_nodes: (0..).zip(&neighbours).map(of_node).collect(), neighbours, is_closed }
+        let of_nodes = (0..).zip(&neighbours).map(of_node).collect();
+        Self { of_nodes, neighbours, has_cloth, is_closed }
+    }
+
+    /// Whether a node has a neighbour with cloth on one of its sides: before it, after it, above and below it.
+    pub fn has_neighbour(&self, node: usize, side: usize) -> bool {
+        let neighbour = self.neighbours[node][side] as usize;
+        neighbour != node && self.has_cloth[neighbour]
     }
 }
 

@@ -93,9 +93,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         for cloth in 0..self.lanes.len() {
             let Some(state) = &mut self.lanes[cloth] else { continue };
             let (sums, particles) = match (sums, self.fabric.background()) {
-                (_, Some(grid)) if state.follows_nodes => {
-                    (state.motion_of_nodes, grid.fabric.particle_count())
-                }
+                (_, Some(grid)) if state.follows_nodes => (state.motion_of_nodes, grid.node_count),
                 (Some(sums), _) => {
                     (sums.of_lane(Y::lanes(cloth).start), self.fabric.particle_count())
                 }

@@ -7,7 +7,7 @@ use glam::Vec3;
 use crate::batch::BatchError;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
-use crate::fabric::Fabric;
+use crate::fabric::{Fabric, Term};
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, lane3, set_lane3};
 use crate::stability::pin_strain::{PinStrain, are_pins_near};
@@ -43,7 +43,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 let (pack, lane) = self.layout.locate(pin.particle as usize, cloth);
                 set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
             }
-            let MovingPins { now, next, positions, stay_near } = &mut state.moving_pins;
+            let MovingPins { now, next, positions, of_nodes, stay_near } = &mut state.moving_pins;
             *now = mem::take(next);
             let fabric = &self.fabrics[Y::fabric_of(cloth)].fabric;
             read_pins(&self.layout, self.positions.packs_mut(), cloth, fabric, positions);
@@ -52,7 +52,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 now.iter().for_each(|pin| positions[pin.particle as usize] = end(pin));
                 are_pins_near(fabric, positions)
             });
-            self.update_held_nodes(cloth);
+            if now.is_empty() {
+                of_nodes.clear();
+                let of_nodes = self.velocities_of_held_nodes(cloth);
+                if let Some(grid) = &mut self.background {
+                    grid.set_velocities(cloth, &of_nodes);
+                }
+            }
         }
     }
 
@@ -86,20 +92,22 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let of_frame = if frame_moves { lane3(velocity, lane) } else { Vec3::ZERO };
             set_lane3(velocity, lane, of_frame + (pin.to - pin.from) * rate);
         }
-        self.update_held_nodes(cloth);
+        let of_nodes = self.velocities_of_held_nodes(cloth);
+        if let Some(state) = &mut self.lanes[cloth] {
+            state.moving_pins.of_nodes = of_nodes;
+        }
     }
 
-    /// Gives the nodes that pins hold the velocities of these: air acts on the cells beside them.
-    fn update_held_nodes(&mut self, cloth: usize) {
-        let (Some(grid), Some(background)) = (&mut self.background, self.fabric.background())
-        else {
-            return;
+    /// The nodes that a cloth's pins hold, and the velocities of these, m/s: air acts on the cells beside them.
+    fn velocities_of_held_nodes(&self, cloth: usize) -> Vec<(usize, Vec3)> {
+        let Some(background) = self.fabric.background() else { return Vec::new() };
+        let of_pin = |term: &Term| {
+            let (pack, lane) = self.layout.locate(term.from as usize, cloth);
+            lane3(&self.velocity[pack], lane) * term.weight
         };
-        let of_particle = |particle: u32| {
-            let (pack, lane) = self.layout.locate(particle as usize, cloth);
-            lane3(&self.velocity[pack], lane)
-        };
-        grid.set_held_velocities(cloth, &background.transfer.held, of_particle);
+        let rows = background.transfer.held.rows().enumerate();
+        let held = rows.filter(|(_, row)| !row.is_empty());
+        held.map(|(node, row)| (node, row.iter().map(of_pin).sum())).collect()
     }
 
     /// Updates all that depends on the positions of a cloth's pins.

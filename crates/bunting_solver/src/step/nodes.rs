@@ -7,10 +7,13 @@
 //! Where the particles follow the nodes (`step/follow.rs`), the nodes also undo the turn about the pole, are
 //! under-relaxed at rest, and damped internally; elsewhere particles are, and pass that on.
 
+use glam::Vec3;
+
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::simd::lane::Pack;
+use crate::simd::vec3::set_lane3;
 use crate::stability::pole::PoleTurn;
 use crate::step::clock::Clock;
 
@@ -40,6 +43,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if frame_moved {
             self.carry_state();
         }
+        for (cloth, state) in cloths.iter().enumerate() {
+            if let Some(state) = state {
+                self.set_node_velocities(cloth, &state.moving_pins.of_nodes);
+            }
+        }
         let feels_air = !self.fabric.patches().is_empty() && self.parameters.any_feels_air();
         if feels_air {
             self.gather_air();
@@ -49,6 +57,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             if let Some(state) = state {
                 state.motion_of_nodes = sums.of_lane(Y::lanes(cloth).start);
             }
+        }
+    }
+
+    /// Sets the velocities of some nodes of a cloth, m/s.
+    pub fn set_node_velocities(&mut self, cloth: usize, of_nodes: &[(usize, Vec3)]) {
+        for &(node, velocity) in of_nodes {
+            let (pack, lane) = self.layout.locate(node, cloth);
+            set_lane3(&mut self.velocity[pack], lane, velocity);
         }
     }
 

@@ -62,6 +62,10 @@ impl SingleMesh {
     pub fn of(fabric: &Arc<Fabric>) -> Option<Self> {
         let grid = &fabric.background()?.fabric;
         SingleCloth::<Pack8>::of(grid)?;
+        // Such cells would not have the same bits.
+        if grid.has_moved_nodes() {
+            return None;
+        }
         // Columns that are closed and others would lie in one pack.
         if grid.is_closed() && !grid.has_whole_columns() {
             return None;

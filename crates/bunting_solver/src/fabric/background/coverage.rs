@@ -23,15 +23,10 @@ pub(super) struct Coverage {
     pub parts: Vec<f32>,
     /// Whether the mesh fills the grid.
     pub is_filled: bool,
+    /// Whether there is cloth in each cell.
+    pub has_cloth: Vec<bool>,
     /// The triangles in each cell.
     pub triangles: Vec<Vec<u32>>,
-}
-
-impl Coverage {
-    /// Whether there is cloth in a cell.
-    pub fn has_cloth(&self, cell: usize) -> bool {
-        self.is_filled || !self.triangles[cell].is_empty()
-    }
 }
 
 /// How much of each cell is cloth; none if the triangles cover a part of a cell twice.
@@ -62,12 +57,14 @@ pub(super) fn once(positions: &[Vec2], triangles: &[[u32; 3]], grid: &Grid) -> O
     }
     let is_once = covered.iter().all(|&part| part < COVERED_ONCE);
     let is_filled = covered.iter().sum::<f32>() > FILLED * covered.len() as f32;
-    let part = |(part, triangles): (f32, &Vec<u32>)| {
-        if is_filled || !triangles.is_empty() { part.max(LEAST_COVERAGE) } else { 0.0 }
-    };
+    let has_cloth: Vec<bool> =
+        covered.iter().map(|&part| is_filled || part > LEAST_CLOTH).collect();
+    let part =
+        |(part, has_cloth): (f32, &bool)| if *has_cloth { part.max(LEAST_COVERAGE) } else { 0.0 };
     is_once.then(|| Coverage {
-        parts: covered.into_iter().zip(&in_cell).map(part).collect(),
+        parts: covered.into_iter().zip(&has_cloth).map(part).collect(),
         is_filled,
+        has_cloth,
         triangles: in_cell,
     })
 }

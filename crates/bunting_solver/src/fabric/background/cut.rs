@@ -30,13 +30,12 @@ const FARTHER: u32 = 1;
 
 /// Whether a mesh can have a grid that it does not fill: what of it lies in the cells around a node hangs together in them and
 /// in the next ones. The two sides of a slit would hang together by the nodes between them.
-pub(super) fn is_whole(coverage: &Coverage, grid: &Grid, edges: &[Edge]) -> bool {
-    let count = coverage.parts.len();
-    let with_cloth = (0..count).filter(|&cell| coverage.has_cloth(cell)).count();
-    if (with_cloth as f32) < LEAST_FILLED * count as f32 {
+pub(super) fn is_whole(coverage: &Coverage, grid: &Grid, triangles: usize, edges: &[Edge]) -> bool {
+    let with_cloth = coverage.has_cloth.iter().filter(|has_cloth| **has_cloth).count();
+    if (with_cloth as f32) < LEAST_FILLED * coverage.parts.len() as f32 {
         return false;
     }
-    let neighbours = neighbours(coverage, edges);
+    let neighbours = neighbours(triangles, edges);
     let is_at_border = |triangle: &u32| neighbours[*triangle as usize].len() < 3;
     let has_border: Vec<bool> =
         coverage.triangles.iter().map(|triangles| triangles.iter().any(is_at_border)).collect();
@@ -78,9 +77,8 @@ pub(super) fn is_whole(coverage: &Coverage, grid: &Grid, edges: &[Edge]) -> bool
 }
 
 /// The triangles beside each triangle.
-fn neighbours(coverage: &Coverage, edges: &[Edge]) -> Vec<Vec<u32>> {
-    let count = coverage.triangles.iter().flatten().max().map_or(0, |last| last + 1);
-    let mut neighbours = vec![Vec::new(); count as usize];
+fn neighbours(triangles: usize, edges: &[Edge]) -> Vec<Vec<u32>> {
+    let mut neighbours = vec![Vec::new(); triangles];
     for edge in edges {
         if let Some(other) = edge.other_side {
             let [one, other] = [edge.side.triangle, other.triangle];
@@ -92,18 +90,25 @@ fn neighbours(coverage: &Coverage, edges: &[Edge]) -> Vec<Vec<u32>> {
 }
 
 /// The rows, and where they are empty planes that are fitted to the free places nearby: pins have no velocity of their own.
+/// Nodes without cloth are read from any place.
 pub(super) fn extrapolated(
     rows: Interpolation,
     positions: &[Vec2],
     is_free: &[bool],
+    has_cloth: &[bool],
     grid: &Grid,
 ) -> Interpolation {
+    let any = || vec![Term { from: 0, weight: 1.0 }];
     let places = PlacesInCells::new(positions, grid);
     let farthest = f64::from(grid.columns + grid.rows);
     let mut all = Interpolation::default();
     for (node, row) in rows.rows().enumerate() {
         if !row.is_empty() {
             all.push(row.iter().copied());
+            continue;
+        }
+        if !has_cloth[node] {
+            all.push(any());
             continue;
         }
         let radii = core::iter::successors(Some(FIRST_RADIUS), |radius| Some(2.0 * radius));
@@ -115,7 +120,7 @@ pub(super) fn extrapolated(
             let plane = fit::<PLANE>(&near.into_iter().step_by(distance).collect::<Vec<_>>());
             plane.filter(|terms| sum_of_magnitudes(terms) < GREATEST_SUM)
         });
-        all.push(plane.unwrap_or_else(|| vec![Term { from: 0, weight: 1.0 }]));
+        all.push(plane.unwrap_or_else(any));
     }
     all
 }

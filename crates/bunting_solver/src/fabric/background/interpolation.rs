@@ -128,6 +128,20 @@ impl Interpolation {
         self.grouped()
     }
 
+    /// The same rows without the terms that are not `wanted`, each with the same sum of its weights.
+    pub fn with_terms_of(&self, wanted: &[bool]) -> Self {
+        let mut all = Self::default();
+        for row in self.rows() {
+            let kept = row.iter().filter(|term| wanted[term.from as usize]);
+            let sum = |terms: &mut dyn Iterator<Item = &Term>| -> f32 {
+                terms.map(|term| term.weight).sum()
+            };
+            let factor = sum(&mut row.iter()) / sum(&mut kept.clone());
+            all.push(kept.map(|term| Term { weight: term.weight * factor, ..*term }));
+        }
+        all
+    }
+
     /// The rows that are `wanted`. The others are empty.
     pub fn rows_where(&self, wanted: impl Fn(usize) -> bool) -> Self {
         let mut rows = Self::default();

@@ -22,6 +22,8 @@ pub(super) struct LaidNodes {
     /// The part of each cell that counts as cloth.
     pub parts: Vec<f32>,
     /// Whether there is cloth in each cell.
+    pub cells_with_cloth: Vec<bool>,
+    /// Whether there is cloth around each node.
     pub has_cloth: Vec<bool>,
     /// The sizes of cells of which only a part may be cloth.
     pub cut_cells: Option<CellSizes>,
@@ -51,22 +53,26 @@ impl LaidNodes {
         chart.plane.as_ref()?;
         let Chart { positions: places, triangles, .. } = chart;
         let coverage = coverage::once(places, triangles, grid)?;
-        if !coverage.is_filled && !cut::is_whole(&coverage, grid, &surface.edges) {
+        if !coverage.is_filled && !cut::is_whole(&coverage, grid, triangles.len(), &surface.edges) {
             return None;
         }
         let rows = nodes_from_particles(places, triangles, grid);
         let mut laid = Self::new(rows, coverage, grid);
-        laid.rows = cut::extrapolated(laid.rows, places, is_free, grid);
+        laid.rows = cut::extrapolated(laid.rows, places, is_free, &laid.has_cloth, grid);
         laid.cut_cells = Some(CellSizes::covered(grid, &laid.parts));
         Some(laid)
     }
 
     fn new(rows: Interpolation, coverage: Coverage, grid: &Grid) -> Self {
+        let mut has_cloth = vec![false; (grid.columns * grid.rows) as usize];
+        let cells = grid.cells().zip(&coverage.has_cloth).filter(|(_, has_cloth)| **has_cloth);
+        cells.flat_map(|((corners, _), _)| corners).for_each(|at| has_cloth[at as usize] = true);
         Self {
             is_outside: rows.rows().map(|row| row.is_empty()).collect(),
             rows,
             places: node_positions(grid),
-            has_cloth: (0..coverage.parts.len()).map(|cell| coverage.has_cloth(cell)).collect(),
+            has_cloth,
+            cells_with_cloth: coverage.has_cloth,
             parts: coverage.parts,
             cut_cells: None,
             are_moved: false,

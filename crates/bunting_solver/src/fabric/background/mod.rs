@@ -67,8 +67,8 @@ pub(crate) struct GridTransfer {
     pub held: Interpolation,
     /// Area of the free particles that the displacement of each node moves, m².
     pub moved_areas: Vec<f32>,
-    /// How far each free particle of a mesh that is curved at rest lies above the surface between nodes; empty for flat
-    /// meshes. Without them each substep would flatten the mesh, as a particle between nodes lies below the arc through
+    /// How far each free particle of a mesh that is curved at rest, or whose nodes are moved, lies above the surface between
+    /// nodes; else empty. Without them each substep would flatten the mesh, as a particle between nodes lies below the arc through
     /// them.
     pub heights: Vec<Height>,
     /// Pairs of nodes at one place, where a mesh is closed around an axis.
@@ -152,7 +152,11 @@ impl BackgroundMesh {
         let grid = chart.grid();
         let mut has_row = is_free;
         has_row[chart.own_places..].fill(false);
-        let particles = particles_from_nodes(&chart.positions, &has_row, &grid);
+        let mut particles = particles_from_nodes(&chart.positions, &has_row, &grid);
+        if laid.has_cloth.contains(&false) {
+            // Tips of less than a hundred-thousandth of a cell have nodes without cloth.
+            particles = particles.with_terms_of(&laid.has_cloth);
+        }
         let particles = particles.mean_rows(&chart.particles, mesh.positions.len());
         let mut transfer = GridTransfer {
             nodes: laid.rows.with_columns(&chart.particles),
@@ -176,7 +180,7 @@ impl BackgroundMesh {
         let mut nodes = node_mesh(mesh, &grid, &transfer, positions, sizes);
         nodes.free_where(&laid.is_outside);
         // Paths along the cloth run through cells that have some.
-        let cells = nodes.triangles.chunks(2).zip(&laid.has_cloth);
+        let cells = nodes.triangles.chunks(2).zip(&laid.cells_with_cloth);
         let with_cloth = cells.filter(|(_, has_cloth)| **has_cloth);
         nodes.triangles = with_cloth.flat_map(|(cell, _)| cell).copied().collect();
         if curved_lines.is_some() && !mapped::is_regular(&grid, &nodes) {
@@ -289,7 +293,8 @@ fn is_held(mesh: &RestMesh, chart: &Chart, grid: &Grid, nodes: &RestMesh) -> boo
         let corners = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE].map(|corner| cell + corner);
         corners.into_iter().any(|node| {
             let is_near = node.distance(at / spacing) < HELD_WITHIN;
-            is_near && nodes.is_pinned(grid.index(node.x as u32, node.y as u32))
+            let index = grid.index(node.x as u32, node.y as u32);
+            is_near && nodes.is_pinned(index) && nodes.areas[index as usize] > 0.0
         })
     };
     let places = chart.particles.iter().zip(&chart.positions).take(chart.own_places);
