@@ -380,7 +380,7 @@ impl Fabric {
     }
 
     /// The grid that solves stretch, shear and bending in place of the mesh's own links; none of grids, and of meshes
-    /// that are small, curved without a texture like their shape, or overlap themselves.
+    /// that are small, overlap themselves, have slits, or are curved and neither fill a rectangle nor map onto one.
     pub(crate) fn background(&self) -> Option<&Background> {
         self.background.as_ref()
     }

@@ -1,7 +1,7 @@
 //! Tethers: bounds on the distance of each free particle from its nearest pin, and from its farthest pin.
 //!
-//! Distances are geodesic at rest ("long range attachments", Kim 2012): straight on a grid, along the edges of
-//! other meshes.
+//! Distances are geodesic at rest ("long range attachments", Kim 2012): straight on a grid without holes, along the
+//! edges of other meshes.
 
 use std::collections::BTreeMap;
 

@@ -62,7 +62,7 @@ impl SingleMesh {
     pub fn of(fabric: &Arc<Fabric>) -> Option<Self> {
         let grid = &fabric.background()?.fabric;
         SingleCloth::<Pack8>::of(grid)?;
-        // Such cells would not have the same bits.
+        // Grids with moved nodes do not have the same bits there (`docs/notebook/meshes.md`).
         if grid.has_moved_nodes() {
             return None;
         }
