@@ -1,5 +1,6 @@
-//! Time of a tick of an irregular mesh, flat, bent, a disk, with a hole, closed to a cylinder or to a funnel
-//! without texture, beside that of the grid of as many particles, in turn: a lone cloth, and eight; and the time in which its fabric is built.
+//! Time of a tick of an irregular mesh, flat, bent, round, with a hole, closed to a cylinder or to a funnel without texture,
+//! beside that of the grid of as many particles, in turn: a lone cloth, and eight; and the time in which its fabric is
+//! built.
 //!
 //! ```sh
 //! cargo run --release -p bunting_lab --example mesh_ticks -- \

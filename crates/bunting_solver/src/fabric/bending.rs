@@ -27,8 +27,8 @@ pub(crate) struct BendProfile {
     pub inverse_spacing: f32,
     /// One over the area of each particle, 1/m²; zero if it is pinned.
     pub inverse_areas: Vec<f32>,
-    /// For each particle but the first and the last, zero where there is no cloth: stiffness against a unit change of direction there, in units
-    /// of the material's bending stiffness.
+    /// For each particle but the first and the last: stiffness against a unit change of direction there, in units
+    /// of the material's bending stiffness; zero where there is no cloth.
     pub coefficients: Vec<f32>,
     /// The same at the ends of a closed line, which are at one place.
     pub closing: Option<f32>,

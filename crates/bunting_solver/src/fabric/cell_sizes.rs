@@ -1,4 +1,4 @@
-//! Sizes of the cells of a grid whose lines are curved and unevenly far apart, measured at its positions at rest.
+//! Sizes of the cells of a grid that differ: its lines are curved and unevenly far apart, or only a part of a cell is cloth.
 
 use glam::Vec3;
 

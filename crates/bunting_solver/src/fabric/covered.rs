@@ -1,4 +1,4 @@
-//! What a grid of which only a part is cloth tells the rules of its stability.
+//! Grids that a border cuts: how much of a node's cells is cloth, and what follows from that for stability.
 
 use super::fabric::Fabric;
 

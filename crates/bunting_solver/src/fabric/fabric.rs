@@ -149,19 +149,15 @@ impl Fabric {
     fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
         let BackgroundMesh { grid, mut mesh, coverage, transfer, is_flat, .. } = background;
         let BackgroundMesh { cut_cells, curved_lines, are_alike, .. } = background;
-        let (links, yarns) = match &curved_lines {
-            Some(lines) => {
-                let links = Links::of_curved_lines(&mesh, &grid, &coverage, lines);
-                // In the chart lines are straight.
-                let yarns = Yarns::of(&grid.positions(), &links.list);
-                (links, yarns)
-            }
-            None => {
-                let links = Links::of(&mesh, Some(&grid), Some(&coverage), &[]);
-                let places = if are_alike { mesh.positions.clone() } else { grid.positions() };
-                let yarns = Yarns::of(&places, &links.list);
-                (links, yarns)
-            }
+        let links = match &curved_lines {
+            Some(lines) => Links::of_curved_lines(&mesh, &grid, &coverage, lines),
+            None => Links::of(&mesh, Some(&grid), Some(&coverage), &[]),
+        };
+        let yarns = if are_alike {
+            Yarns::of(&mesh.positions, &links.list)
+        } else {
+            // In the chart lines are straight, those of moved nodes too.
+            Yarns::of(&grid.positions(), &links.list)
         };
         let sizes = curved_lines.as_ref().map(|lines| &lines.sizes).or(cut_cells.as_ref());
         let is_closed = !transfer.joined.is_empty();

@@ -40,16 +40,6 @@ pub(super) struct Surface {
 }
 
 impl RestMesh {
-    /// Makes some particles free, but for those without area.
-    pub(super) fn free_where(&mut self, is_free: &[bool]) {
-        let particles = self.inverse_areas.iter_mut().zip(&self.areas).zip(is_free);
-        for ((inverse_area, area), _) in
-            particles.filter(|((_, area), is_free)| **is_free && **area > 0.0)
-        {
-            *inverse_area = 1.0 / area;
-        }
-    }
-
     /// Merges vertices into particles and measures their triangles.
     ///
     /// # Errors

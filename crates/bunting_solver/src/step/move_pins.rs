@@ -43,7 +43,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 let (pack, lane) = self.layout.locate(pin.particle as usize, cloth);
                 set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
             }
-            let MovingPins { now, next, positions, of_nodes, stay_near } = &mut state.moving_pins;
+            let MovingPins { now, next, positions, node_velocities, stay_near } =
+                &mut state.moving_pins;
             *now = mem::take(next);
             let fabric = &self.fabrics[Y::fabric_of(cloth)].fabric;
             read_pins(&self.layout, self.positions.packs_mut(), cloth, fabric, positions);
@@ -52,11 +53,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 now.iter().for_each(|pin| positions[pin.particle as usize] = end(pin));
                 are_pins_near(fabric, positions)
             });
+            // Held nodes come to rest with their pins.
             if now.is_empty() {
-                of_nodes.clear();
-                let of_nodes = self.velocities_of_held_nodes(cloth);
+                node_velocities.clear();
+                let at_rest = self.velocities_of_held_nodes(cloth);
                 if let Some(grid) = &mut self.background {
-                    grid.set_velocities(cloth, &of_nodes);
+                    grid.set_velocities(cloth, &at_rest);
                 }
             }
         }
@@ -92,13 +94,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let of_frame = if frame_moves { lane3(velocity, lane) } else { Vec3::ZERO };
             set_lane3(velocity, lane, of_frame + (pin.to - pin.from) * rate);
         }
-        let of_nodes = self.velocities_of_held_nodes(cloth);
+        let node_velocities = self.velocities_of_held_nodes(cloth);
         if let Some(state) = &mut self.lanes[cloth] {
-            state.moving_pins.of_nodes = of_nodes;
+            state.moving_pins.node_velocities = node_velocities;
         }
     }
 
-    /// The nodes that a cloth's pins hold, and the velocities of these, m/s: air acts on the cells beside them.
+    /// The nodes that a cloth's pins hold, with the pins' velocities, m/s: air acts on the cells beside them.
     fn velocities_of_held_nodes(&self, cloth: usize) -> Vec<(usize, Vec3)> {
         let Some(background) = self.fabric.background() else { return Vec::new() };
         let of_pin = |term: &Term| {

@@ -43,9 +43,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if frame_moved {
             self.carry_state();
         }
+        // After the frame's motion, which gives all nodes that are held the velocity of the frame alone.
         for (cloth, state) in cloths.iter().enumerate() {
             if let Some(state) = state {
-                self.set_node_velocities(cloth, &state.moving_pins.of_nodes);
+                self.set_node_velocities(cloth, &state.moving_pins.node_velocities);
             }
         }
         let feels_air = !self.fabric.patches().is_empty() && self.parameters.any_feels_air();

@@ -130,14 +130,13 @@ impl Interpolation {
 
     /// The same rows without the terms that are not `wanted`, each with the same sum of its weights.
     pub fn with_terms_of(&self, wanted: &[bool]) -> Self {
+        let sum = |terms: &[Term]| terms.iter().map(|term| term.weight).sum::<f32>();
         let mut all = Self::default();
         for row in self.rows() {
-            let kept = row.iter().filter(|term| wanted[term.from as usize]);
-            let sum = |terms: &mut dyn Iterator<Item = &Term>| -> f32 {
-                terms.map(|term| term.weight).sum()
-            };
-            let factor = sum(&mut row.iter()) / sum(&mut kept.clone());
-            all.push(kept.map(|term| Term { weight: term.weight * factor, ..*term }));
+            let kept = row.iter().copied().filter(|term| wanted[term.from as usize]);
+            let kept: Vec<Term> = kept.collect();
+            let factor = sum(row) / sum(&kept);
+            all.push(kept.iter().map(|term| Term { weight: term.weight * factor, ..*term }));
         }
         all
     }

@@ -36,8 +36,11 @@ impl LaidNodes {
     pub fn filled(chart: &Chart, grid: &Grid, is_free: &[bool]) -> Option<Self> {
         let Chart { positions: places, triangles, .. } = chart;
         let coverage = coverage::once(places, triangles, grid)?;
+        if !coverage.is_filled {
+            return None;
+        }
         let mut rows = nodes_from_particles(places, triangles, grid);
-        if !coverage.is_filled || rows.rows().any(|row| row.is_empty()) {
+        if rows.rows().any(|row| row.is_empty()) {
             return None;
         }
         if chart.plane.is_none() {
@@ -79,7 +82,7 @@ impl LaidNodes {
         }
     }
 
-    /// The same nodes, but for those that pins take with them.
+    /// The same nodes, those nearest to pins moved to these.
     pub fn moved_to_pins(mut self, chart: &Chart, grid: &Grid, is_free: &[bool]) -> Self {
         let places_of_nodes = moved::to_pins(chart, grid, is_free);
         self.rows = moved::rows(self.rows, &places_of_nodes);
@@ -87,7 +90,7 @@ impl LaidNodes {
             self.places[node as usize] = chart.positions[place as usize];
             self.is_outside[node as usize] = false;
         }
-        moved::enlarge(&mut self.parts, grid, &self.places);
+        moved::rescale(&mut self.parts, grid, &self.places);
         self.are_moved = true;
         self
     }

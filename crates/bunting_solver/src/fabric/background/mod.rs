@@ -154,7 +154,7 @@ impl BackgroundMesh {
         has_row[chart.own_places..].fill(false);
         let mut particles = particles_from_nodes(&chart.positions, &has_row, &grid);
         if laid.has_cloth.contains(&false) {
-            // Tips of less than a hundred-thousandth of a cell have nodes without cloth.
+            // A tip may lie in a cell in which it is too small to count as cloth.
             particles = particles.with_terms_of(&laid.has_cloth);
         }
         let particles = particles.mean_rows(&chart.particles, mesh.positions.len());
@@ -177,8 +177,7 @@ impl BackgroundMesh {
             warps: warps_of_cells(&transfer.nodes, &chart.warps, &grid),
         });
         let sizes = curved_lines.as_ref().map(|lines| &lines.sizes).or(laid.cut_cells.as_ref());
-        let mut nodes = node_mesh(mesh, &grid, &transfer, positions, sizes);
-        nodes.free_where(&laid.is_outside);
+        let mut nodes = node_mesh(mesh, &grid, &transfer, positions, sizes, &laid.is_outside);
         // Paths along the cloth run through cells that have some.
         let cells = nodes.triangles.chunks(2).zip(&laid.cells_with_cloth);
         let with_cloth = cells.filter(|(_, has_cloth)| **has_cloth);
@@ -316,16 +315,16 @@ fn rest_positions(
     places.iter().zip(transfer.nodes.rows()).map(in_space).collect()
 }
 
-/// The nodes as particles. Those that stand for pinned particles are pinned, and those without cloth have no area and do not
-/// move. The others have the areas of a grid's
-/// particles: with those of the particles that they move, which differ from node
-/// to node by chance, a swing loses motion to short waves.
+/// The nodes as particles. Nodes that stand for pinned particles are pinned, but not outside the mesh; nodes without cloth have no
+/// area and do not move. The others have the areas of a grid's particles: with those of the particles that they move,
+/// which differ from node to node by chance, a swing loses motion to short waves.
 fn node_mesh(
     mesh: &RestMesh,
     grid: &Grid,
     transfer: &GridTransfer,
     positions: Vec<Vec3>,
     sizes: Option<&CellSizes>,
+    is_outside: &[bool],
 ) -> RestMesh {
     let is_free = |row: &[Term]| {
         let free = row.iter().filter(|term| !mesh.is_pinned(term.from));
@@ -335,11 +334,18 @@ fn node_mesh(
         Some(sizes) => sizes.particle_areas(grid),
         None => grid.particle_areas(),
     };
-    let rows = transfer.nodes.rows().zip(&areas);
+    let inverse_area = |((row, area), is_outside): ((&[Term], &f32), &bool)| {
+        let moves = *area > 0.0 && (*is_outside || is_free(row));
+        if moves { 1.0 / area } else { 0.0 }
+    };
     RestMesh {
         positions,
-        inverse_areas: rows
-            .map(|(row, area)| if is_free(row) && *area > 0.0 { 1.0 / area } else { 0.0 })
+        inverse_areas: transfer
+            .nodes
+            .rows()
+            .zip(&areas)
+            .zip(is_outside)
+            .map(inverse_area)
             .collect(),
         uv: chart::node_positions(grid),
         triangles: grid.triangles(false),

@@ -1,4 +1,4 @@
-//! Grids some of whose nodes are moved: pins that lie between nodes take the nearest ones with them.
+//! Grids some of whose nodes are moved: the nearest node to a pin that lies between nodes is moved to it.
 
 use std::collections::BTreeMap;
 
@@ -26,7 +26,7 @@ pub(super) fn to_pins(chart: &Chart, grid: &Grid, is_free: &[bool]) -> BTreeMap<
     nearest.into_iter().map(|(node, (_, place))| (node, place)).collect()
 }
 
-/// The rows, those of moved nodes with their place alone.
+/// The rows, where each moved node is read from the place of its pin alone.
 pub(super) fn rows(rows: Interpolation, places: &BTreeMap<u32, u32>) -> Interpolation {
     let mut all = Interpolation::default();
     for (node, row) in (0..).zip(rows.rows()) {
@@ -38,9 +38,9 @@ pub(super) fn rows(rows: Interpolation, places: &BTreeMap<u32, u32>) -> Interpol
     all
 }
 
-/// Makes parts of evenly spaced cells parts of the cells between nodes at their places: a cell that is smaller has as much
-/// cloth.
-pub(super) fn enlarge(parts: &mut [f32], grid: &Grid, places: &[Vec2]) {
+/// Makes each part of an evenly spaced cell a part of the cell between the nodes at their places, with the same area of cloth
+/// but no more than the cell's.
+pub(super) fn rescale(parts: &mut [f32], grid: &Grid, places: &[Vec2]) {
     let [dx, dy] = grid.spacing();
     for ((corners, _), part) in grid.cells().zip(parts) {
         let [a, b, c, d] = corners.map(|at| places[at as usize]);
