@@ -382,7 +382,8 @@ fn a_mesh_that_moves_to_another_batch_keeps_its_bits() {
     let funnel = funnel(&irregular(20, 0.0), [CLOSED, 2.0 * CLOSED]);
     let holed = with_a_hole(&flat);
     let bent_holed = bent(&holed, 0.3);
-    let fabrics = [irregular(13, 0.0), holed, bent_holed, bent(&flat, 0.3), untextured, funnel];
+    let (plane, bent) = (irregular(13, 0.0), bent(&flat, 0.3));
+    let fabrics = [plane, holed, bent_holed, disk(&flat), bent, untextured, funnel];
     for fabric in fabrics.map(Arc::new) {
         let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
         let wind = Vec3::new(6.0, 0.0, 4.0);

@@ -1,5 +1,7 @@
 //! Compliances and factorised systems of the constraints: of one cloth, and in lanes.
 
+use core::ops::Range;
+
 use crate::constraints::bend_factors::{self, BendFactors, LineFactors};
 use crate::constraints::stiffness::{Stiffness, resists_twist};
 use crate::constraints::twist_factors::{self, TwistFactors, TwistRow};
@@ -15,13 +17,19 @@ pub(crate) struct Factors<P: Pack, C> {
     pub bending: Vec<BendFactors<P, C>>,
     /// Factors of each profile of ribbons.
     pub twist: Vec<TwistFactors<P, C>>,
+    /// One in lanes whose cloth resists twist, zero in others.
+    pub twists: P,
 }
 
 impl<P: Pack, C> Factors<P, C> {
     /// Whether any lane resists twist.
     pub fn resist_twist(&self) -> bool {
-        let first = self.twist.first().and_then(|factors| factors.rows.first());
-        first.is_some_and(|row| row.inverse_diagonal.lanes().iter().any(|&inverse| inverse != 0.0))
+        self.twists.lanes().contains(&1.0)
+    }
+
+    /// Sets whether some lanes resist twist.
+    pub fn set_twists(&mut self, lanes: Range<usize>, of_cloth: &ClothFactors) {
+        self.twists.lanes_mut()[lanes].fill(if of_cloth.twists { 1.0 } else { 0.0 });
     }
 }
 
@@ -30,6 +38,8 @@ pub(crate) struct ClothFactors {
     pub link_compliance: Vec<f32>,
     pub bending: Vec<LineFactors>,
     pub twist: Vec<Vec<TwistRow<f32>>>,
+    /// Whether the cloth resists twist.
+    pub twists: bool,
 }
 
 impl ClothFactors {
@@ -49,6 +59,7 @@ impl ClothFactors {
             link_compliance: stiffness.of_links(fabric),
             bending: fabric.bend_profiles().iter().map(bend).collect(),
             twist: fabric.ribbon_profiles().iter().map(twist).collect(),
+            twists,
         }
     }
 }

@@ -27,11 +27,6 @@ impl Fabric {
         }
     }
 
-    /// Whether nodes of a grid whose cells may be cut are moved to pins.
-    pub(crate) fn has_moved_nodes(&self) -> bool {
-        self.rest_bends().is_some() && !self.covered.is_empty()
-    }
-
     /// Length of the cloth whose weight the topmost links carry, m: the [`reach`](Self::reach), and more where tension
     /// is concentrated.
     pub(super) fn carried_length(&self) -> f32 {

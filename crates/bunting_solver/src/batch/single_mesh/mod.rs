@@ -62,10 +62,6 @@ impl SingleMesh {
     pub fn of(fabric: &Arc<Fabric>) -> Option<Self> {
         let grid = &fabric.background()?.fabric;
         SingleCloth::<Pack8>::of(grid)?;
-        // Grids with moved nodes do not have the same bits there (`docs/notebook/meshes.md`).
-        if grid.has_moved_nodes() {
-            return None;
-        }
         // Columns that are closed and others would lie in one pack.
         if grid.is_closed() && !grid.has_whole_columns() {
             return None;
@@ -80,6 +76,7 @@ impl SingleMesh {
                 link_compliance: Vec::new(),
                 bending: Vec::new(),
                 twist: Vec::new(),
+                twists: Pack8::splat(0.0),
             },
             tethers,
             patches: PatchPacks::new(fabric.patches(), particles),
