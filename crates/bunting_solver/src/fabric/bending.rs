@@ -142,7 +142,7 @@ mod tests {
         // From 0.02 m to 0.03 m between columns.
         let graded = |at: Vec3| Vec3::new(at.x * (0.8 + 0.2 * at.x), at.y, 0.0);
         let rest: Vec<Vec3> = grid.positions().into_iter().map(graded).collect();
-        let sizes = CellSizes::of(&grid, &rest, false);
+        let sizes = CellSizes::of(&grid, &rest, false, &vec![1.0; grid.cells().count()]);
         let bending = Bending::of(&grid, &vec![1.0; rest.len()], false, Some(&sizes));
         let height = |at: Vec3| 0.5 * CURVATURE * at.x * at.x;
         let (mut energy, mut area) = (0.0, 0.0);

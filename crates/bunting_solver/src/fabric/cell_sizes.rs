@@ -7,8 +7,10 @@ use super::grid::Grid;
 /// The sizes of a grid's cells, and what follows from them at its particles.
 #[derive(Clone, Debug)]
 pub(super) struct CellSizes {
-    /// Area of each cell, m².
+    /// Area of cloth in each cell, m².
     pub areas: Vec<f32>,
+    /// Area of each cell, m².
+    whole: Vec<f32>,
     /// Stiffness of each cell against twist, in units of the material's bending stiffness, 1/m².
     pub twists: Vec<f32>,
     /// Of each particle the mean distance of its neighbours in its row, and in its column, m.
@@ -18,70 +20,106 @@ pub(super) struct CellSizes {
 }
 
 impl CellSizes {
-    /// The sizes at positions at rest, m. The first and the last row of a closed grid are at one place, and each stands
-    /// for the cells on one side.
-    pub fn of(grid: &Grid, positions: &[Vec3], is_closed: bool) -> Self {
+    /// The sizes at positions at rest, m, given the part of each cell that is cloth. The first and the last row of a closed grid
+    /// are at one place, and each stands for the cells on one side.
+    pub fn of(grid: &Grid, positions: &[Vec3], is_closed: bool, parts: &[f32]) -> Self {
         let area = |(corners, _): ([u32; 4], bool)| {
             let [a, b, c, d] = corners.map(|at| positions[at as usize]);
             0.5 * (d - a).cross(c - b).length()
         };
+        let whole: Vec<f32> = grid.cells().map(area).collect();
         let (mut spacings, mut widths) = (Vec::new(), Vec::new());
         for node in 0..grid.columns * grid.rows {
             let (column, row) = (node % grid.columns, node / grid.columns);
-            let distance =
-                |other: u32| positions[node as usize].distance(positions[other as usize]);
-            let [before, after, above, below] = grid.neighbours((column, row), is_closed);
-            let [along, across] = [[before, after], [above, below]].map(|pair| {
-                let sum: f32 = pair.map(distance).iter().sum();
-                let is_end = pair.contains(&node);
-                (if is_end { sum } else { 0.5 * sum }, 0.5 * sum)
-            });
+            let neighbours = grid.neighbours((column, row), is_closed);
+            let distances = neighbours
+                .map(|other| positions[node as usize].distance(positions[other as usize]));
+            let [before, after, above, below] = distances;
+            let cell =
+                |right: bool, down: bool| cell_beside(grid, (column, row), right, down, is_closed);
+            let part = |right, down| cell(right, down).map_or(0.0, |cell| parts[cell]);
+            // Widths of the links of the row before and after the node, and of the column above and below it.
+            let of_row = [false, true]
+                .map(|right| 0.5 * (above * part(right, false) + below * part(right, true)));
+            let of_column = [false, true]
+                .map(|down| 0.5 * (before * part(false, down) + after * part(true, down)));
+            let exist = neighbours.map(|other| other != node);
             let at_seam = is_closed && (row == 0 || row + 1 == grid.rows);
-            spacings.push([along.0, across.0]);
-            widths.push([if at_seam { 0.5 * across.1 } else { across.1 }, along.1]);
-        }
-        let areas: Vec<f32> = grid.cells().map(area).collect();
-        Self { twists: areas.iter().map(|area| 2.0 / area).collect(), areas, spacings, widths }
-    }
-
-    /// The sizes where only a part of each cell is cloth, or nothing.
-    pub fn covered(grid: &Grid, parts: &[f32]) -> Self {
-        let [dx, dy] = grid.spacing();
-        let (columns, rows) = (grid.columns as i32, grid.rows as i32);
-        let part = |column: i32, row: i32| {
-            let is_cell = (0..columns - 1).contains(&column) && (0..rows - 1).contains(&row);
-            if is_cell { parts[(row * (columns - 1) + column) as usize] } else { 0.0 }
-        };
-        let mut widths = Vec::new();
-        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |at| (row, at))) {
-            // A row at a node is as wide as the narrower of its two links there.
-            let right = |column: i32| 0.5 * (part(column, row - 1) + part(column, row));
-            let down = |row: i32| 0.5 * (part(column - 1, row) + part(column, row));
+            let row_width = narrower(of_row, [exist[0], exist[1]]);
             widths.push([
-                dy * right(column - 1).min(right(column)),
-                dx * down(row - 1).min(down(row)),
+                if at_seam { 0.5 * row_width } else { row_width },
+                narrower(of_column, [exist[2], exist[3]]),
             ]);
+            let [dx, dy] = grid.spacing();
+            spacings.push([mean([before, after], of_row, dx), mean([above, below], of_column, dy)]);
         }
+        let twist =
+            |(whole, part): (&f32, &f32)| if *part > 0.0 { 2.0 * part / whole } else { 0.0 };
         Self {
-            areas: parts.iter().map(|part| part * dx * dy).collect(),
-            twists: parts.iter().map(|part| 2.0 * part / (dx * dy)).collect(),
-            spacings: vec![[dx, dy]; widths.len()],
+            twists: whole.iter().zip(parts).map(twist).collect(),
+            areas: whole.iter().zip(parts).map(|(whole, part)| whole * part).collect(),
+            whole,
+            spacings,
             widths,
         }
     }
 
-    /// The part of each particle's cells that is cloth, given the particles' areas, m².
-    pub fn parts_of(&self, areas: &[f32], grid: &Grid) -> Vec<f32> {
-        areas.iter().zip(grid.particle_areas()).map(|(area, whole)| area / whole).collect()
+    /// The part of each particle's cells that is cloth.
+    pub fn parts_of_particles(&self, grid: &Grid) -> Vec<f32> {
+        let part = |(cloth, whole): (f32, f32)| if cloth > 0.0 { cloth / whole } else { 0.0 };
+        let whole = self.quarters(grid, &self.whole);
+        self.particle_areas(grid).into_iter().zip(whole).map(part).collect()
     }
 
-    /// Area of each particle, m²: a quarter of each cell that it borders.
+    /// Area of each particle, m²: a quarter of the cloth in each cell that it borders.
     pub fn particle_areas(&self, grid: &Grid) -> Vec<f32> {
+        self.quarters(grid, &self.areas)
+    }
+
+    fn quarters(&self, grid: &Grid, of_cells: &[f32]) -> Vec<f32> {
         let mut areas = vec![0.0; self.spacings.len()];
-        for ((corners, _), area) in grid.cells().zip(&self.areas) {
+        for ((corners, _), area) in grid.cells().zip(of_cells) {
             corners.into_iter().for_each(|at| areas[at as usize] += 0.25 * area);
         }
         areas
+    }
+}
+
+/// The cell to the right of a node or to its left, and below it or above; none beyond the grid.
+fn cell_beside(
+    grid: &Grid,
+    (column, row): (u32, u32),
+    right: bool,
+    down: bool,
+    is_closed: bool,
+) -> Option<usize> {
+    let (columns, rows) = (grid.columns - 1, grid.rows - 1);
+    let beside = |at: u32, forwards: bool| if forwards { Some(at) } else { at.checked_sub(1) };
+    let column = beside(column, right).filter(|&column| column < columns)?;
+    let row = if is_closed {
+        (row + rows - u32::from(!down)) % rows
+    } else {
+        beside(row, down).filter(|&row| row < rows)?
+    };
+    Some((row * columns + column) as usize)
+}
+
+/// The smaller of two widths, of those that exist: a line is as wide at a node as the narrower of its links there.
+fn narrower([one, other]: [f32; 2], exist: [bool; 2]) -> f32 {
+    match exist {
+        [true, true] => one.min(other),
+        [true, false] => one,
+        [false, _] => other,
+    }
+}
+
+/// The mean of the lengths of the links that have a width, m; if none has, that of a cell.
+fn mean([one, other]: [f32; 2], [of_one, of_other]: [f32; 2], of_cell: f32) -> f32 {
+    match [of_one > 0.0, of_other > 0.0] {
+        [true, true] => 0.5 * (one + other),
+        [true, false] => one,
+        [false, true] => other,
+        [false, false] => of_cell,
     }
 }
 
@@ -93,7 +131,7 @@ mod tests {
     #[test]
     fn a_regular_grid_has_the_sizes_of_its_spacing() {
         let grid = Grid::new(4, 5, 0.3, 0.8);
-        let sizes = CellSizes::of(&grid, &grid.positions(), false);
+        let sizes = CellSizes::of(&grid, &grid.positions(), false, &[1.0; 12]);
         let close = |a: f32, b: f32| (a - b).abs() < 1e-6;
         let areas = sizes.particle_areas(&grid);
         assert!(areas.iter().zip(grid.particle_areas()).all(|(&a, b)| close(a, b)), "{areas:?}");

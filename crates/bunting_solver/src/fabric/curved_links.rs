@@ -3,23 +3,20 @@
 
 use std::collections::BTreeMap;
 
-use super::background::CurvedLines;
 use super::grid::Grid;
 use super::links::{LEAST_STIFFNESS, LinkClass, LinkFamily, Links};
 use super::mesh::RestMesh;
 
 impl Links {
-    /// Links of a grid whose lines are curved, given how much of each cell is cloth. A link along a line stands for half of each cell beside it.
-    pub fn of_curved_lines(
-        mesh: &RestMesh,
-        grid: &Grid,
-        coverage: &[f32],
-        lines: &CurvedLines,
-    ) -> Self {
+    /// Links of a grid whose lines are curved, given how much of each cell is cloth, and cos² of the angle between
+    /// its rows and the warp. A link along a line stands for half of each cell beside it.
+    pub fn of_curved_lines(mesh: &RestMesh, grid: &Grid, coverage: &[f32], warps: &[f32]) -> Self {
         let mut sums: BTreeMap<[u32; 2], CellSum> = BTreeMap::new();
-        let cells = grid.cells().zip(coverage).zip(lines.sizes.areas.iter().zip(&lines.warps));
-        for (((corners, _), &part), (&area, &warp)) in cells {
+        let cells = grid.cells().zip(coverage).zip(warps).filter(|((_, part), _)| **part > 0.0);
+        for (((corners, _), &part), &warp) in cells {
             let [top_left, top_right, bottom_left, bottom_right] = corners;
+            let [a, b, c, d] = mesh.positions_of(corners);
+            let area = 0.5 * (d - a).cross(c - b).length();
             let mut add = |ends: [u32; 2], family| {
                 let [from, to] = ends;
                 let squared = {

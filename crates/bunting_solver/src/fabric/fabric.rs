@@ -148,9 +148,9 @@ impl Fabric {
     /// The constraints of a background grid, whose nodes have no hinges.
     fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
         let BackgroundMesh { grid, mut mesh, coverage, transfer, is_flat, .. } = background;
-        let BackgroundMesh { cut_cells, curved_lines, are_alike, .. } = background;
-        let links = match &curved_lines {
-            Some(lines) => Links::of_curved_lines(&mesh, &grid, &coverage, lines),
+        let BackgroundMesh { is_cut, sizes, warps, are_alike, .. } = background;
+        let links = match &warps {
+            Some(warps) => Links::of_curved_lines(&mesh, &grid, &coverage, warps),
             None => Links::of(&mesh, Some(&grid), Some(&coverage), &[]),
         };
         let yarns = if are_alike {
@@ -159,7 +159,7 @@ impl Fabric {
             // In the chart lines are straight, those of moved nodes too.
             Yarns::of(&grid.positions(), &links.list)
         };
-        let sizes = curved_lines.as_ref().map(|lines| &lines.sizes).or(cut_cells.as_ref());
+        let sizes = sizes.as_ref();
         let is_closed = !transfer.joined.is_empty();
         let mut chains =
             Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid), is_closed);
@@ -174,10 +174,10 @@ impl Fabric {
             twist: Twist::of(&grid, inverse_areas, sizes),
             rest_bends: (!is_flat).then(|| RestBends::of(&grid, &mesh, is_closed)),
             hinges: Hinges::of(&mesh, &[]),
-            tethers: Tethers::of(&mesh, &edges, is_flat && cut_cells.is_none(), tethered),
-            covered: cut_cells
-                .as_ref()
-                .map_or(Vec::new(), |sizes| sizes.parts_of(&mesh.areas, &grid)),
+            tethers: Tethers::of(&mesh, &edges, is_flat && !is_cut, tethered),
+            covered: sizes
+                .filter(|_| is_cut)
+                .map_or(Vec::new(), |sizes| sizes.parts_of_particles(&grid)),
             tautness: 0.0,
             shortest: 0.0,
             probes: Vec::new(),

@@ -190,11 +190,11 @@ fn cells<P: Pack>(chains: &Chains<P>, shape: GridShape) -> Vec<Cell> {
     chains.diagonals().map(of_diagonal).collect()
 }
 
-/// Lengths at rest of the two diagonals of each cell, m; one in lanes without a cell.
+/// Lengths at rest of the two diagonals of each cell, m; one in lanes without a cell, or without cloth in it.
 fn diagonal_lengths<P: Pack>(cells: &[Cell], shape: GridShape, rest: &[Vec3]) -> Vec<[P; 2]> {
     let length = |ends: [u32; 2]| {
         P::of(|lane| match ends.map(|end| shape.particle(end + lane as u32)) {
-            [Some(one), Some(other)] => rest[one].distance(rest[other]),
+            [Some(one), Some(other)] if rest[one] != rest[other] => rest[one].distance(rest[other]),
             _ => 1.0,
         })
     };

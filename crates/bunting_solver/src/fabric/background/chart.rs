@@ -5,6 +5,7 @@ use glam::{Vec2, Vec3};
 
 use super::texture::scale_of_texture;
 use super::unfold::Unfolded;
+use super::warps::warps_of_rows;
 use crate::fabric::grid::Grid;
 use crate::fabric::links::warp_direction;
 use crate::fabric::mesh::{RestMesh, Surface};
@@ -73,12 +74,13 @@ impl Chart {
         warps.are_along(warp).then(|| Self::in_plane(mesh, surface, normal, warp))
     }
 
-    /// The chart of a curved mesh that is unfolded; none if that is impossible, or distorts it.
+    /// The chart of a curved mesh that is unfolded; none if that is impossible. Where that distorts the mesh, the lines of the
+    /// chart are curved.
     fn unfolded(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         let Unfolded { places, particles, triangles } = Unfolded::of(mesh, surface)?;
         let uv = |corners: &[u32; 3]| corners.map(|place| places[place as usize].as_vec2());
         let corner_uv: Vec<[Vec2; 3]> = triangles.iter().map(uv).collect();
-        scale_of_texture(mesh, surface, &corner_uv)?;
+        let is_distorted = scale_of_texture(mesh, surface, &corner_uv).is_none();
         let edges = topology::edges(&triangles).ok()?;
         let flat = RestMesh {
             positions: places.iter().map(|at| at.as_vec2().extend(0.0)).collect(),
@@ -88,9 +90,15 @@ impl Chart {
             inverse_areas: Vec::new(),
             triangles,
         };
+        let on_mesh = surface;
         let surface = Surface { edges, corner_uv, ..surface.clone() };
         let chart = Self::in_plane(&flat, &surface, Vec3::Z, Vec3::X);
-        Some(Self { particles, plane: None, ..chart })
+        let warps = if is_distorted {
+            warps_of_rows(mesh, on_mesh, &chart.positions, &chart.triangles)?
+        } else {
+            Vec::new()
+        };
+        Some(Self { particles, plane: None, warps, ..chart })
     }
 
     /// The chart of a flat mesh along its warp, or along the sides of its bounding rectangle if it fills that better.
@@ -143,6 +151,13 @@ impl Chart {
         let count = |extent: f32| (extent / spacing).round().max(2.0) as u32;
         // The first row of a closed chart is there once more.
         Grid::new(count(width), count(height) + u32::from(self.is_closed), width, height)
+    }
+
+    /// Whether some particles have two places.
+    pub fn has_seam(&self) -> bool {
+        let mut particles = self.particles[..self.own_places].to_vec();
+        particles.sort_unstable();
+        particles.windows(2).any(|two| two[0] == two[1])
     }
 
     /// Spacing of the grid, m: N particles of an area A are in rows and columns, of which those on the border stand for

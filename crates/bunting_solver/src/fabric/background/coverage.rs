@@ -18,6 +18,7 @@ const LEAST_COVERAGE: f32 = 0.1;
 const LEAST_CLOTH: f32 = 1e-5;
 
 /// The cells of a grid under a mesh.
+#[derive(Clone)]
 pub(super) struct Coverage {
     /// The part of each cell that counts as cloth.
     pub parts: Vec<f32>,
@@ -29,10 +30,25 @@ pub(super) struct Coverage {
     pub triangles: Vec<Vec<u32>>,
 }
 
-/// How much of each cell is cloth; none if the triangles cover a part of a cell twice.
-pub(super) fn once(positions: &[Vec2], triangles: &[[u32; 3]], grid: &Grid) -> Option<Coverage> {
+/// How much of each cell is cloth, given the places of the nodes if some are moved; none if the triangles cover a part of a cell
+/// twice.
+pub(super) fn once(
+    positions: &[Vec2],
+    triangles: &[[u32; 3]],
+    grid: &Grid,
+    moved: Option<&[Vec2]>,
+) -> Option<Coverage> {
     let spacing = Vec2::from(grid.spacing());
     let cells = [grid.columns - 1, grid.rows - 1];
+    let sides: Vec<CellSides> = match moved {
+        Some(places) => grid
+            .cells()
+            .map(|(corners, _)| CellSides::between(corners.map(|at| places[at as usize] / spacing)))
+            .collect(),
+        None => Vec::new(),
+    };
+    // Nodes are moved by up to half a cell.
+    let reach = if moved.is_some() { 1.0 } else { 0.0 };
     let mut covered = vec![0.0; (cells[0] * cells[1]) as usize];
     let mut in_cell = vec![Vec::new(); covered.len()];
     for (index, triangle) in (0..).zip(triangles) {
@@ -41,13 +57,15 @@ pub(super) fn once(positions: &[Vec2], triangles: &[[u32; 3]], grid: &Grid) -> O
         let low = corners[0].min(corners[1]).min(corners[2]);
         let high = corners[0].max(corners[1]).max(corners[2]);
         let range = |low: f32, high: f32, count: u32| {
-            (low.max(0.0) as u32).min(count - 1)..(high.max(0.0) as u32 + 1).min(count)
+            let (low, high) = ((low - reach).max(0.0) as u32, (high + reach).max(0.0) as u32);
+            low.min(count - 1)..(high + 1).min(count)
         };
         for row in range(low.y, high.y, cells[1]) {
             for column in range(low.x, high.x, cells[0]) {
-                let corner = Vec2::new(column as f32, row as f32);
-                let area = area_in_cell(&corners, corner);
                 let cell = (row * cells[0] + column) as usize;
+                let corner = Vec2::new(column as f32, row as f32);
+                let straight = CellSides::SQUARE.moved(corner);
+                let area = sides.get(cell).unwrap_or(&straight).part_within(&corners);
                 covered[cell] += area;
                 if area > LEAST_CLOTH {
                     in_cell[cell].push(index);
@@ -69,25 +87,55 @@ pub(super) fn once(positions: &[Vec2], triangles: &[[u32; 3]], grid: &Grid) -> O
     })
 }
 
-/// Area of a triangle within the unit square at a corner (Sutherland and Hodgman 1974).
-fn area_in_cell(triangle: &[Vec2; 3], corner: Vec2) -> f32 {
-    let mut polygon: Vec<Vec2> = triangle.iter().map(|&at| at - corner).collect();
-    for (normal, offset) in [(Vec2::X, 0.0), (Vec2::NEG_X, 1.0), (Vec2::Y, 0.0), (Vec2::NEG_Y, 1.0)]
-    {
-        let inside = |at: Vec2| normal.dot(at) + offset;
-        let mut clipped = Vec::with_capacity(polygon.len() + 1);
-        for (index, &from) in polygon.iter().enumerate() {
-            let to = polygon[(index + 1) % polygon.len()];
-            let (here, there) = (inside(from), inside(to));
-            if here >= 0.0 {
-                clipped.push(from);
-            }
-            if (here >= 0.0) != (there >= 0.0) {
-                clipped.push(from.lerp(to, here / (here - there)));
-            }
-        }
-        polygon = clipped;
+/// A convex cell, in units of cells.
+struct CellSides {
+    origin: Vec2,
+    /// Normals of the sides, inwards, and distances of the origin from them.
+    sides: [(Vec2, f32); 4],
+    area: f32,
+}
+
+impl CellSides {
+    const SQUARE: Self = Self {
+        origin: Vec2::ZERO,
+        sides: [(Vec2::X, 0.0), (Vec2::NEG_X, 1.0), (Vec2::Y, 0.0), (Vec2::NEG_Y, 1.0)],
+        area: 1.0,
+    };
+
+    const fn moved(self, origin: Vec2) -> Self {
+        Self { origin, ..self }
     }
-    let next = polygon.iter().cycle().skip(1);
-    0.5 * polygon.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f32>().abs()
+
+    /// The cell between four corners, row by row.
+    fn between([a, b, c, d]: [Vec2; 4]) -> Self {
+        let side = |from: Vec2, to: Vec2| {
+            let normal = (to - from).perp();
+            (normal, normal.dot(a - from))
+        };
+        let area = 0.5 * (d - a).perp_dot(c - b);
+        Self { origin: a, sides: [side(a, b), side(b, d), side(d, c), side(c, a)], area }
+    }
+
+    /// The part of the cell that is within a triangle (Sutherland and Hodgman 1974).
+    fn part_within(&self, triangle: &[Vec2; 3]) -> f32 {
+        let mut polygon: Vec<Vec2> = triangle.iter().map(|&at| at - self.origin).collect();
+        for (normal, offset) in self.sides {
+            let inside = |at: Vec2| normal.dot(at) + offset;
+            let mut clipped = Vec::with_capacity(polygon.len() + 1);
+            for (index, &from) in polygon.iter().enumerate() {
+                let to = polygon[(index + 1) % polygon.len()];
+                let (here, there) = (inside(from), inside(to));
+                if here >= 0.0 {
+                    clipped.push(from);
+                }
+                if (here >= 0.0) != (there >= 0.0) {
+                    clipped.push(from.lerp(to, here / (here - there)));
+                }
+            }
+            polygon = clipped;
+        }
+        let next = polygon.iter().cycle().skip(1);
+        let doubled = polygon.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f32>();
+        0.5 * doubled.abs() / self.area
+    }
 }

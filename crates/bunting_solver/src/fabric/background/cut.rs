@@ -3,17 +3,19 @@
 //! Cells that the border cuts stand for the part of them that is cloth, and cells without cloth for nothing. Nodes outside the
 //! mesh hang by the cells that they share with it; those that share none do not move.
 
-use glam::Vec2;
-
+use super::chart::Chart;
 use super::coverage::Coverage;
 use super::interpolation::{Interpolation, Term};
-use super::smooth::{PLANE, PlacesInCells, fit, sum_of_magnitudes};
+use super::smooth::{PLANE, PlacesInCells, QUADRATIC, fit, sum_of_magnitudes};
 use crate::fabric::grid::Grid;
 use crate::fabric::topology::Edge;
 
 /// Radius around a node outside the mesh within which a plane is fitted to the places there, in cells: the first that is
 /// tried. Each further one is twice as large. Smaller: fits to few places.
 const FIRST_RADIUS: f64 = 2.0;
+
+/// The same for quadratics on curved meshes. Smaller: too few places.
+const CURVED_RADIUS: f64 = 4.0;
 
 /// Most places that a plane is fitted to. More: single weights are as small as rounding.
 const MOST_TERMS: usize = 24;
@@ -30,12 +32,16 @@ const FARTHER: u32 = 1;
 
 /// Whether a mesh can have a grid that it does not fill: what of it lies in the cells around a node hangs together in them and
 /// in the next ones. The two sides of a slit would hang together by the nodes between them.
-pub(super) fn is_whole(coverage: &Coverage, grid: &Grid, triangles: usize, edges: &[Edge]) -> bool {
+pub(super) fn is_whole(chart: &Chart, coverage: &Coverage, grid: &Grid, edges: &[Edge]) -> bool {
+    // The two sides of a seam would not hang together.
+    if chart.is_closed || chart.has_seam() {
+        return false;
+    }
     let with_cloth = coverage.has_cloth.iter().filter(|has_cloth| **has_cloth).count();
     if (with_cloth as f32) < LEAST_FILLED * coverage.parts.len() as f32 {
         return false;
     }
-    let neighbours = neighbours(triangles, edges);
+    let neighbours = neighbours(chart.triangles.len(), edges);
     let is_at_border = |triangle: &u32| neighbours[*triangle as usize].len() < 3;
     let has_border: Vec<bool> =
         coverage.triangles.iter().map(|triangles| triangles.iter().any(is_at_border)).collect();
@@ -93,13 +99,13 @@ fn neighbours(triangles: usize, edges: &[Edge]) -> Vec<Vec<u32>> {
 /// Nodes without cloth are read from any place.
 pub(super) fn extrapolated(
     rows: Interpolation,
-    positions: &[Vec2],
+    chart: &Chart,
     is_free: &[bool],
     has_cloth: &[bool],
     grid: &Grid,
 ) -> Interpolation {
     let any = || vec![Term { from: 0, weight: 1.0 }];
-    let places = PlacesInCells::new(positions, grid);
+    let places = PlacesInCells::new(&chart.positions, grid);
     let farthest = f64::from(grid.columns + grid.rows);
     let mut all = Interpolation::default();
     for (node, row) in rows.rows().enumerate() {
@@ -113,13 +119,17 @@ pub(super) fn extrapolated(
         }
         let radii = core::iter::successors(Some(FIRST_RADIUS), |radius| Some(2.0 * radius));
         let mut radii = radii.take_while(|radius| *radius < 2.0 * farthest);
-        let plane = radii.find_map(|radius| {
+        let near = |radius: f64| {
             let mut near = places.around(node as u32, radius);
             near.retain(|(place, _)| is_free[*place as usize]);
             let distance = near.len().div_ceil(MOST_TERMS).max(1);
-            let plane = fit::<PLANE>(&near.into_iter().step_by(distance).collect::<Vec<_>>());
-            plane.filter(|terms| sum_of_magnitudes(terms) < GREATEST_SUM)
-        });
+            near.into_iter().step_by(distance).collect::<Vec<_>>()
+        };
+        let is_small = |terms: &Vec<Term>| sum_of_magnitudes(terms) < GREATEST_SUM;
+        let curve = || fit::<QUADRATIC>(&near(CURVED_RADIUS)).filter(is_small);
+        let plane = chart.plane.is_none().then(curve).flatten();
+        let plane =
+            plane.or_else(|| radii.find_map(|radius| fit::<PLANE>(&near(radius)).filter(is_small)));
         all.push(plane.unwrap_or_else(any));
     }
     all

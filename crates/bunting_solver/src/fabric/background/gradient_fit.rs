@@ -67,6 +67,12 @@ impl<'a> GradientFit<'a> {
     }
 }
 
+/// The gradient in a triangle of the function with these values at its corners, 1/m.
+pub(super) fn gradient(corners: [DVec3; 3], [a, b, c]: [f64; 3]) -> DVec3 {
+    let [of_a, of_b, of_c] = gradients_of(corners);
+    of_a * a + of_b * b + of_c * c
+}
+
 /// The gradients of the functions that are one at a corner of a triangle and zero at the others, 1/m.
 fn gradients_of([a, b, c]: [DVec3; 3]) -> [DVec3; 3] {
     let normal = (b - a).cross(c - a);

@@ -1,17 +1,17 @@
 //! The nodes of a grid on a chart: where they lie, which particles they are read from, and how much cloth is around them.
 
+use std::collections::BTreeMap;
+
 use glam::Vec2;
 
 use super::chart::{Chart, node_positions};
-use super::coverage::{self, Coverage};
+use super::coverage::Coverage;
 use super::interpolation::{Interpolation, nodes_from_particles};
-use super::{cut, moved, smooth};
-use crate::fabric::cell_sizes::CellSizes;
+use super::{coverage, cut, moved, smooth};
 use crate::fabric::grid::Grid;
 use crate::fabric::mesh::Surface;
 
 /// The nodes of a grid on a chart.
-#[derive(Clone)]
 pub(super) struct LaidNodes {
     /// Of each node the places of the chart that it is read from.
     pub rows: Interpolation,
@@ -25,73 +25,81 @@ pub(super) struct LaidNodes {
     pub cells_with_cloth: Vec<bool>,
     /// Whether there is cloth around each node.
     pub has_cloth: Vec<bool>,
-    /// The sizes of cells of which only a part may be cloth.
-    pub cut_cells: Option<CellSizes>,
+    /// Whether some nodes lie outside the mesh, or some cells are not filled.
+    pub are_cut: bool,
     /// Whether some nodes are moved to pins.
     pub are_moved: bool,
 }
 
 impl LaidNodes {
-    /// The nodes of a grid that the mesh fills; none if it does not, or overlaps itself.
-    pub fn filled(chart: &Chart, grid: &Grid, is_free: &[bool]) -> Option<Self> {
-        let Chart { positions: places, triangles, .. } = chart;
-        let coverage = coverage::once(places, triangles, grid)?;
-        if !coverage.is_filled {
+    /// The nodes of a grid, which may reach beyond the border of a mesh and across its holes; none if that would sew up a slit,
+    /// or if the mesh overlaps itself. `coverage` is that of nodes that are not moved.
+    pub fn of(
+        surface: &Surface,
+        chart: &Chart,
+        grid: &Grid,
+        coverage: Coverage,
+        is_free: &[bool],
+    ) -> Option<Self> {
+        Self::moved(surface, chart, grid, coverage, is_free, &BTreeMap::new())
+    }
+
+    /// The same, with the nodes nearest to pins moved to these.
+    pub fn moved_to_pins(
+        surface: &Surface,
+        chart: &Chart,
+        grid: &Grid,
+        is_free: &[bool],
+    ) -> Option<Self> {
+        let pins = moved::to_pins(chart, grid, is_free);
+        let places = moved::places(chart, grid, &pins);
+        let coverage = coverage::once(&chart.positions, &chart.triangles, grid, Some(&places))?;
+        Self::moved(surface, chart, grid, coverage, is_free, &pins)
+    }
+
+    fn moved(
+        surface: &Surface,
+        chart: &Chart,
+        grid: &Grid,
+        coverage: Coverage,
+        is_free: &[bool],
+        pins: &BTreeMap<u32, u32>,
+    ) -> Option<Self> {
+        let Chart { positions, triangles, .. } = chart;
+        if !coverage.is_filled && !cut::is_whole(chart, &coverage, grid, &surface.edges) {
             return None;
         }
-        let mut rows = nodes_from_particles(places, triangles, grid);
-        if rows.rows().any(|row| row.is_empty()) {
-            return None;
-        }
+        let mut rows = nodes_from_particles(positions, triangles, grid);
+        let is_outside: Vec<bool> = (0..)
+            .zip(rows.rows())
+            .map(|(node, row)| row.is_empty() && !pins.contains_key(&node))
+            .collect();
         if chart.plane.is_none() {
-            rows = smooth::smoothed(rows, places, grid, is_free);
+            rows = smooth::smoothed(rows, positions, grid, is_free);
         }
-        Some(Self::new(rows, coverage, grid))
-    }
-
-    /// The nodes of a grid that may reach beyond the border of a flat mesh, and across its holes; none if it overlaps itself,
-    /// or the grid would sew up a slit.
-    pub fn cut(surface: &Surface, chart: &Chart, grid: &Grid, is_free: &[bool]) -> Option<Self> {
-        // Nodes beyond the border of a curved mesh would have no place that is known.
-        chart.plane.as_ref()?;
-        let Chart { positions: places, triangles, .. } = chart;
-        let coverage = coverage::once(places, triangles, grid)?;
-        if !coverage.is_filled && !cut::is_whole(&coverage, grid, triangles.len(), &surface.edges) {
-            return None;
+        if !pins.is_empty() {
+            rows = moved::rows(rows, pins);
         }
-        let rows = nodes_from_particles(places, triangles, grid);
-        let mut laid = Self::new(rows, coverage, grid);
-        laid.rows = cut::extrapolated(laid.rows, places, is_free, &laid.has_cloth, grid);
-        laid.cut_cells = Some(CellSizes::covered(grid, &laid.parts));
-        Some(laid)
-    }
-
-    fn new(rows: Interpolation, coverage: Coverage, grid: &Grid) -> Self {
         let mut has_cloth = vec![false; (grid.columns * grid.rows) as usize];
         let cells = grid.cells().zip(&coverage.has_cloth).filter(|(_, has_cloth)| **has_cloth);
         cells.flat_map(|((corners, _), _)| corners).for_each(|at| has_cloth[at as usize] = true);
-        Self {
-            is_outside: rows.rows().map(|row| row.is_empty()).collect(),
+        let is_any_outside = is_outside.contains(&true);
+        if is_any_outside {
+            rows = cut::extrapolated(rows, chart, is_free, &has_cloth, grid);
+        }
+        Some(Self {
             rows,
-            places: node_positions(grid),
+            places: if pins.is_empty() {
+                node_positions(grid)
+            } else {
+                moved::places(chart, grid, pins)
+            },
             has_cloth,
             cells_with_cloth: coverage.has_cloth,
             parts: coverage.parts,
-            cut_cells: None,
-            are_moved: false,
-        }
-    }
-
-    /// The same nodes, those nearest to pins moved to these.
-    pub fn moved_to_pins(mut self, chart: &Chart, grid: &Grid, is_free: &[bool]) -> Self {
-        let places_of_nodes = moved::to_pins(chart, grid, is_free);
-        self.rows = moved::rows(self.rows, &places_of_nodes);
-        for (node, place) in places_of_nodes {
-            self.places[node as usize] = chart.positions[place as usize];
-            self.is_outside[node as usize] = false;
-        }
-        moved::rescale(&mut self.parts, grid, &self.places);
-        self.are_moved = true;
-        self
+            are_cut: is_any_outside || !coverage.is_filled,
+            is_outside,
+            are_moved: !pins.is_empty(),
+        })
     }
 }

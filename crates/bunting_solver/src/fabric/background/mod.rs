@@ -19,22 +19,26 @@ mod closed;
 mod coverage;
 mod cut;
 mod gradient_fit;
+mod hold;
 mod interpolation;
 mod laid_nodes;
 mod laplacian;
 mod mapped;
 mod moved;
+mod on_chart;
 mod smooth;
 #[cfg(test)]
 mod tests;
 mod texture;
 mod unfold;
+mod warps;
 
 use glam::{Mat3, Vec2, Vec3};
 
 use self::chart::Chart;
 use self::interpolation::particles_from_nodes;
 use self::laid_nodes::LaidNodes;
+use self::on_chart::OnChart;
 use super::cell_sizes::CellSizes;
 use super::grid::Grid;
 use super::mesh::{RestMesh, Surface};
@@ -44,15 +48,15 @@ pub(crate) use self::interpolation::{Interpolation, RowGroup, Term};
 /// Fewest particles of a mesh with a background grid. Smaller meshes have no paths that are long.
 const FEWEST_PARTICLES: usize = 30;
 
-/// Greatest distance of a pinned particle from a pinned node, in cells. Larger: a cloth hangs by less than its pins.
-const HELD_WITHIN: f32 = 0.8;
-
 /// Least mass of a node, as a part of the particles' mean mass. Smaller: nodes around which no particle lies weigh
 /// nothing.
 const LEAST_MASS: f32 = 0.2;
 
 /// Part of a node's weights that must be of free particles; else the node is pinned.
 const LEAST_FREE: f32 = 0.5;
+
+/// The same where nodes are moved to pins: others are pinned only among pins.
+const LEAST_FREE_BESIDE_MOVED: f32 = 0.01;
 
 /// Weights with which a grid reads a mesh's particles and moves them.
 #[derive(Clone, Debug)]
@@ -95,24 +99,19 @@ pub(super) struct BackgroundMesh {
     pub mesh: RestMesh,
     /// How much cloth each cell stands for, in units of its area.
     pub coverage: Vec<f32>,
-    /// The sizes of cells of which only a part is cloth.
-    pub cut_cells: Option<CellSizes>,
+    /// Whether only a part of some cells is cloth.
+    pub is_cut: bool,
+    /// The sizes of cells that are not alike.
+    pub sizes: Option<CellSizes>,
     /// cos² of the angle between the rows and the warp.
     pub warp_cos2: f32,
-    /// Of each cell, where lines of nodes are curved.
-    pub curved_lines: Option<CurvedLines>,
+    /// cos² of the angle between the rows and the warp in each cell, where lines of nodes are curved.
+    pub warps: Option<Vec<f32>>,
     /// Whether the nodes lie in a plane at rest, and are evenly spaced.
     pub is_flat: bool,
     /// Whether all cells are alike at rest, so that their diagonals are.
     pub are_alike: bool,
     pub transfer: GridTransfer,
-}
-
-/// The cells of a grid whose lines are curved.
-pub(super) struct CurvedLines {
-    pub sizes: CellSizes,
-    /// cos² of the angle between the rows and the warp in each cell.
-    pub warps: Vec<f32>,
 }
 
 impl BackgroundMesh {
@@ -122,44 +121,38 @@ impl BackgroundMesh {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
         }
-        let straight = Chart::of(mesh, surface);
-        straight
-            .as_ref()
-            .and_then(|chart| Self::filled(mesh, chart))
-            .or_else(|| Self::filled(mesh, &Chart::mapped(mesh, surface)?))
-            .or_else(|| Self::cut(mesh, surface, straight.as_ref()?))
+        let on_chart = |chart: Chart| OnChart::of(mesh, surface, chart);
+        let straight = Chart::of(mesh, surface).and_then(on_chart);
+        let has_straight_lines = |on: &&OnChart| on.coverage.is_filled && on.chart.warps.is_empty();
+        if let Some(straight) = straight.as_ref().filter(has_straight_lines)
+            && let Some(found) = straight.background()
+        {
+            return Some(found);
+        }
+        let mapped = Chart::mapped(mesh, surface).and_then(on_chart);
+        let mapped = mapped.filter(|chart| chart.coverage.is_filled);
+        mapped
+            .and_then(|chart| chart.background())
+            .or_else(|| straight.filter(|on| !has_straight_lines(&on))?.background())
     }
 
-    /// The grid of a mesh that fills it.
-    fn filled(mesh: &RestMesh, chart: &Chart) -> Option<Self> {
-        let (grid, is_free) = (chart.grid(), free_places(mesh, chart));
-        let laid = LaidNodes::filled(chart, &grid, &is_free)?;
-        Self::on(mesh, chart, laid, is_free)
-    }
-
-    /// The grid of a flat mesh that reaches beyond its border. If its nodes do not hold the mesh where its pins do, some are
-    /// moved to these.
-    fn cut(mesh: &RestMesh, surface: &Surface, chart: &Chart) -> Option<Self> {
-        let (grid, is_free) = (chart.grid(), free_places(mesh, chart));
-        let laid = LaidNodes::cut(surface, chart, &grid, &is_free)?;
-        Self::on(mesh, chart, laid.clone(), is_free.clone())
-            .or_else(|| Self::on(mesh, chart, laid.moved_to_pins(chart, &grid, &is_free), is_free))
-    }
-
-    /// The grid of a mesh on a chart, given its nodes and which places are of free particles; none if it does not hold the
-    /// mesh where its pins do.
-    fn on(mesh: &RestMesh, chart: &Chart, laid: LaidNodes, is_free: Vec<bool>) -> Option<Self> {
-        let grid = chart.grid();
-        let mut has_row = is_free;
+    /// The grid of a mesh on a chart, given its nodes; none if its cells are too unlike one another.
+    fn on(chart: &OnChart, mut laid: LaidNodes) -> Option<Self> {
+        let OnChart { mesh, chart, grid, is_free, .. } = chart;
+        let (grid, mut has_row) = (*grid, is_free.clone());
         has_row[chart.own_places..].fill(false);
-        let mut particles = particles_from_nodes(&chart.positions, &has_row, &grid);
+        let mut particles = if laid.are_moved {
+            moved::particles_from_nodes(&chart.positions, &has_row, &grid, &laid.places)
+        } else {
+            particles_from_nodes(&chart.positions, &has_row, &grid)
+        };
         if laid.has_cloth.contains(&false) {
             // A tip may lie in a cell in which it is too small to count as cloth.
             particles = particles.with_terms_of(&laid.has_cloth);
         }
         let particles = particles.mean_rows(&chart.particles, mesh.positions.len());
         let mut transfer = GridTransfer {
-            nodes: laid.rows.with_columns(&chart.particles),
+            nodes: core::mem::take(&mut laid.rows).with_columns(&chart.particles),
             particles,
             means: Interpolation::default(),
             held: Interpolation::default(),
@@ -172,17 +165,19 @@ impl BackgroundMesh {
             free_areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect();
         transfer.moved_areas = transfer.node_masses(&free_areas);
         let positions = rest_positions(mesh, chart, &laid.places, &transfer);
-        let curved_lines = (!chart.warps.is_empty()).then(|| CurvedLines {
-            sizes: CellSizes::of(&grid, &positions, chart.is_closed),
-            warps: warps_of_cells(&transfer.nodes, &chart.warps, &grid),
+        let has_curved_lines = !chart.warps.is_empty();
+        let sizes = (has_curved_lines || laid.are_cut || laid.are_moved).then(|| {
+            // The part of a cell in a grid that is filled is one but for rounding.
+            let whole = vec![1.0; laid.parts.len()];
+            let parts = if laid.are_cut { &laid.parts } else { &whole };
+            CellSizes::of(&grid, &positions, chart.is_closed, parts)
         });
-        let sizes = curved_lines.as_ref().map(|lines| &lines.sizes).or(laid.cut_cells.as_ref());
-        let mut nodes = node_mesh(mesh, &grid, &transfer, positions, sizes, &laid.is_outside);
+        let mut nodes = node_mesh(mesh, &grid, &transfer, positions, sizes.as_ref(), &laid);
         // Paths along the cloth run through cells that have some.
         let cells = nodes.triangles.chunks(2).zip(&laid.cells_with_cloth);
         let with_cloth = cells.filter(|(_, has_cloth)| **has_cloth);
         nodes.triangles = with_cloth.flat_map(|(cell, _)| cell).copied().collect();
-        if curved_lines.is_some() && !mapped::is_regular(&grid, &nodes) {
+        if has_curved_lines && !mapped::is_regular(&grid, &nodes, &laid.cells_with_cloth) {
             return None;
         }
         let is_free = |node: usize| !nodes.is_pinned(node as u32);
@@ -193,28 +188,23 @@ impl BackgroundMesh {
         if !is_flat {
             transfer.heights = heights(mesh, chart, &grid, &nodes, &transfer);
         }
-        let is_held = is_held(mesh, chart, &grid, &nodes);
         let GridTransfer { nodes: first, particles, means, held, .. } = &mut transfer;
         for rows in [first, particles, means, held] {
             *rows = core::mem::take(rows).grouped();
         }
-        is_held.then_some(Self {
+        Some(Self {
+            warps: has_curved_lines.then(|| warps_of_cells(&transfer.nodes, &chart.warps, &grid)),
             mesh: nodes,
+            is_cut: laid.are_cut,
             coverage: laid.parts,
-            cut_cells: laid.cut_cells,
+            sizes,
             warp_cos2: chart.warp_cos2,
-            are_alike: curved_lines.is_none() && !laid.are_moved,
-            curved_lines,
+            are_alike: !has_curved_lines && !laid.are_moved,
             is_flat,
             transfer,
             grid,
         })
     }
-}
-
-/// Whether the particle at each place of a chart is free.
-fn free_places(mesh: &RestMesh, chart: &Chart) -> Vec<bool> {
-    chart.particles.iter().map(|&at| !mesh.is_pinned(at)).collect()
 }
 
 impl GridTransfer {
@@ -283,24 +273,6 @@ fn first_and_last_row(grid: &Grid) -> Vec<[u32; 2]> {
     (0..grid.columns).map(|column| [0, grid.rows - 1].map(|row| grid.index(column, row))).collect()
 }
 
-/// Whether the grid is held where the mesh is: near each pinned particle a node is pinned.
-fn is_held(mesh: &RestMesh, chart: &Chart, grid: &Grid, nodes: &RestMesh) -> bool {
-    let spacing = Vec2::from(grid.spacing());
-    let last = Vec2::new((grid.columns - 1) as f32, (grid.rows - 1) as f32);
-    let is_near_pinned_node = |at: Vec2| {
-        let cell = (at / spacing).floor().min(last - 1.0).max(Vec2::ZERO);
-        let corners = [Vec2::ZERO, Vec2::X, Vec2::Y, Vec2::ONE].map(|corner| cell + corner);
-        corners.into_iter().any(|node| {
-            let is_near = node.distance(at / spacing) < HELD_WITHIN;
-            let index = grid.index(node.x as u32, node.y as u32);
-            is_near && nodes.is_pinned(index) && nodes.areas[index as usize] > 0.0
-        })
-    };
-    let places = chart.particles.iter().zip(&chart.positions).take(chart.own_places);
-    let mut pinned = places.filter(|(particle, _)| mesh.is_pinned(**particle));
-    pinned.all(|(_, &at)| is_near_pinned_node(at))
-}
-
 /// Positions of the nodes at rest, m.
 fn rest_positions(
     mesh: &RestMesh,
@@ -324,11 +296,12 @@ fn node_mesh(
     transfer: &GridTransfer,
     positions: Vec<Vec3>,
     sizes: Option<&CellSizes>,
-    is_outside: &[bool],
+    laid: &LaidNodes,
 ) -> RestMesh {
+    let least_free = if laid.are_moved { LEAST_FREE_BESIDE_MOVED } else { LEAST_FREE };
     let is_free = |row: &[Term]| {
         let free = row.iter().filter(|term| !mesh.is_pinned(term.from));
-        free.map(|term| term.weight).sum::<f32>() > LEAST_FREE
+        free.map(|term| term.weight).sum::<f32>() > least_free
     };
     let areas = match sizes {
         Some(sizes) => sizes.particle_areas(grid),
@@ -344,7 +317,7 @@ fn node_mesh(
             .nodes
             .rows()
             .zip(&areas)
-            .zip(is_outside)
+            .zip(&laid.is_outside)
             .map(inverse_area)
             .collect(),
         uv: chart::node_positions(grid),

@@ -22,7 +22,7 @@ const GREATEST_SUM: f32 = 3.0;
 
 /// Numbers of the coefficients of a quartic, of a quadratic and of a plane.
 const QUARTIC: usize = 15;
-const QUADRATIC: usize = 6;
+pub(super) const QUADRATIC: usize = 6;
 pub(super) const PLANE: usize = 3;
 
 /// Rows of nodes by fits to the places around them; the given rows where there are too few places, and of nodes that

@@ -15,7 +15,7 @@ use glam::{DMat4, DVec3, DVec4, Vec2, Vec3};
 use self::border::{Sides, sides};
 use super::chart::Chart;
 use super::gradient_fit::GradientFit;
-use crate::fabric::laid_yarns::{Directions, Faces, Towards};
+use super::warps::warps_of_rows;
 use crate::fabric::mesh::{RestMesh, Surface};
 
 pub(super) use self::regular::is_regular;
@@ -94,7 +94,7 @@ impl Chart {
             positions.iter_mut().for_each(|at| at.x = last - at.x);
         }
         Some(Self::closed(Self {
-            warps: warps(mesh, surface, &fit, &positions, &cut)?,
+            warps: warps_of_rows(mesh, surface, &positions, &cut.triangles)?,
             positions,
             own_places: cut.particles.len(),
             particles: cut.particles,
@@ -174,43 +174,6 @@ impl Coordinate {
     }
 }
 
-/// Greatest difference of cos² of the angle between rows and warp in a triangle from the mean around its corners. Larger:
-/// cells at seams of pieces with different warps are sheared as if cut on the bias.
-const UNLIKE_WARPS: f32 = 0.2;
-
 /// Least spacing of lines where they are densest before they are spaced evenly, as a part of the mean. Smaller: rows
 /// that hardly differ become a whole part of the grid.
 const LEAST_SPACING: f64 = 0.05;
-
-/// cos² of the angle between the rows and the warp at each particle; none if it differs much between neighbours.
-fn warps(
-    mesh: &RestMesh,
-    surface: &Surface,
-    fit: &GradientFit,
-    positions: &[Vec2],
-    cut: &Cut,
-) -> Option<Vec<f32>> {
-    let faces = Faces::new(&mesh.positions, &mesh.triangles, &surface.edges);
-    let directions = Directions::of(&faces, &surface.corner_uv);
-    let mut sums = vec![[0.0; 2]; mesh.positions.len()];
-    let mut of_triangles = Vec::new();
-    for (triangle, corners) in (0_u32..).zip(&mesh.triangles) {
-        let places = cut.triangles[triangle as usize];
-        let downwards = places.map(|place| f64::from(positions[place as usize].y));
-        let across_rows = fit.gradient(triangle as usize, downwards);
-        let warp = directions.of_triangle(triangle, Towards::Warp).as_dvec3();
-        let cos2 = (1.0 - warp.dot(across_rows).powi(2) / across_rows.length_squared()) as f32;
-        of_triangles.push(cos2);
-        let area = surface.triangle_areas[triangle as usize];
-        for &corner in corners {
-            let [sum, whole] = &mut sums[corner as usize];
-            *sum += area * cos2;
-            *whole += area;
-        }
-    }
-    let warps: Vec<f32> = sums.iter().map(|[sum, whole]| sum / whole).collect();
-    let is_alike = |(corners, of_triangle): (&[u32; 3], &f32)| {
-        corners.iter().all(|&corner| (warps[corner as usize] - of_triangle).abs() < UNLIKE_WARPS)
-    };
-    mesh.triangles.iter().zip(&of_triangles).all(is_alike).then_some(warps)
-}

@@ -15,8 +15,8 @@ const UNLIKE: f32 = 2.5;
 /// Least part of the mean area that a cell has. Smaller: the shortest links ask for more substeps than laid yarns.
 const LEAST_AREA: f32 = 0.05;
 
-/// Whether all cells of a grid are near rectangles, and neighbours are alike.
-pub(in super::super) fn is_regular(grid: &Grid, nodes: &RestMesh) -> bool {
+/// Whether all cells of a grid in which there is cloth are near rectangles, and neighbours are alike.
+pub(in super::super) fn is_regular(grid: &Grid, nodes: &RestMesh, has_cloth: &[bool]) -> bool {
     let cell = |corners: [u32; 4]| {
         let [a, b, c, d] = nodes.positions_of(corners);
         let [right, down] = [(b - a) + (d - c), (c - a) + (d - b)].map(|side| 0.5 * side);
@@ -26,13 +26,22 @@ pub(in super::super) fn is_regular(grid: &Grid, nodes: &RestMesh) -> bool {
         let is_good = sine > LEAST_SINE && ratio < LONGEST && ratio > 1.0 / LONGEST;
         is_good.then_some(area)
     };
-    let areas: Option<Vec<f32>> = grid.cells().map(|(corners, _)| cell(corners)).collect();
+    let with_cloth = || grid.cells().zip(has_cloth).filter(|(_, has_cloth)| **has_cloth);
+    let areas: Option<Vec<f32>> = with_cloth().map(|((corners, _), _)| cell(corners)).collect();
     let Some(areas) = areas else { return false };
     let mean = areas.iter().sum::<f32>() / areas.len() as f32;
+    if areas.iter().any(|&area| area <= LEAST_AREA * mean) {
+        return false;
+    }
+    // Cells without cloth have no area.
+    let mut of_cells = vec![0.0; has_cloth.len()];
+    let cells = of_cells.iter_mut().zip(has_cloth).filter(|(_, has_cloth)| **has_cloth);
+    cells.zip(&areas).for_each(|((of_cell, _), area)| *of_cell = *area);
     let columns = (grid.columns - 1) as usize;
-    let is_alike = |one: f32, other: f32| one < UNLIKE * other && other < UNLIKE * one;
-    let rows = areas.chunks(columns);
+    let is_alike =
+        |one: f32, other: f32| one * other == 0.0 || (one < UNLIKE * other && other < UNLIKE * one);
+    let rows = of_cells.chunks(columns);
     let along = rows.clone().all(|row| row.windows(2).all(|two| is_alike(two[0], two[1])));
-    let across = areas.iter().zip(&areas[columns..]).all(|(&one, &other)| is_alike(one, other));
-    along && across && areas.iter().all(|&area| area > LEAST_AREA * mean)
+    let below = of_cells.iter().zip(&of_cells[columns..]);
+    along && below.into_iter().all(|(&one, &other)| is_alike(one, other))
 }
