@@ -77,7 +77,19 @@ impl Chart {
     /// The chart of a curved mesh that is unfolded; none if that is impossible. Where that distorts the mesh, the lines of the
     /// chart are curved.
     fn unfolded(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
-        let Unfolded { places, particles, triangles } = Unfolded::of(mesh, surface)?;
+        Self::of_unfolded(mesh, surface, Unfolded::of(mesh, surface)?)
+    }
+
+    /// The same without seams; none of a flat mesh.
+    pub fn without_seams(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
+        if plane_normal(mesh).is_some() {
+            return None;
+        }
+        Self::of_unfolded(mesh, surface, Unfolded::without_seams(mesh, surface)?)
+    }
+
+    fn of_unfolded(mesh: &RestMesh, surface: &Surface, unfolded: Unfolded) -> Option<Self> {
+        let Unfolded { places, particles, triangles } = unfolded;
         let uv = |corners: &[u32; 3]| corners.map(|place| places[place as usize].as_vec2());
         let corner_uv: Vec<[Vec2; 3]> = triangles.iter().map(uv).collect();
         let is_distorted = scale_of_texture(mesh, surface, &corner_uv).is_none();

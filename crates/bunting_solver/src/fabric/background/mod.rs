@@ -123,17 +123,13 @@ impl BackgroundMesh {
         }
         let on_chart = |chart: Chart| OnChart::of(mesh, surface, chart);
         let straight = Chart::of(mesh, surface).and_then(on_chart);
-        let has_straight_lines = |on: &&OnChart| on.coverage.is_filled && on.chart.warps.is_empty();
-        if let Some(straight) = straight.as_ref().filter(has_straight_lines)
-            && let Some(found) = straight.background()
-        {
-            return Some(found);
-        }
-        let mapped = Chart::mapped(mesh, surface).and_then(on_chart);
-        let mapped = mapped.filter(|chart| chart.coverage.is_filled);
-        mapped
-            .and_then(|chart| chart.background())
-            .or_else(|| straight.filter(|on| !has_straight_lines(&on))?.background())
+        let fills = |on: &&OnChart| on.coverage.is_filled && on.chart.warps.is_empty();
+        let mapped = || Chart::mapped(mesh, surface).and_then(on_chart);
+        let found = straight.as_ref().filter(fills).and_then(OnChart::background);
+        found
+            .or_else(|| mapped().filter(|on| on.coverage.is_filled)?.background())
+            .or_else(|| straight.as_ref().filter(|on| !fills(on))?.background())
+            .or_else(|| on_chart(Chart::without_seams(mesh, surface)?)?.background())
     }
 
     /// The grid of a mesh on a chart, given its nodes; none if its cells are too unlike one another.

@@ -36,8 +36,20 @@ impl Unfolded {
         let mut sheet = Sheet::new(mesh, surface);
         sheet.lay();
         let triangles: Vec<[u32; 3]> = sheet.triangles.iter().copied().collect::<Option<_>>()?;
-        let places = sheet.fitted(&triangles, &surface.triangle_areas)?;
+        let places = sheet.fitted(&triangles, &surface.triangle_areas, &sheet.places)?;
         Some(Self { places, particles: sheet.particles, triangles })
+    }
+
+    /// The mesh unfolded without seams: where two ways around meet, both give way.
+    pub fn without_seams(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
+        let mut sheet = Sheet::new(mesh, surface);
+        sheet.lay();
+        let first = |places: &Vec<u32>| Some(sheet.places[*places.first()? as usize]);
+        let start: Vec<DVec2> =
+            sheet.places_of_particle.iter().map(first).collect::<Option<_>>()?;
+        let places = sheet.fitted(&mesh.triangles, &surface.triangle_areas, &start)?;
+        let particles = (0..places.len() as u32).collect();
+        Some(Self { places, particles, triangles: mesh.triangles.clone() })
     }
 }
 
@@ -139,14 +151,15 @@ impl<'a> Sheet<'a> {
         Some(places.iter().map(|&place| self.places[place as usize]).sum::<DVec2>() / 3.0)
     }
 
-    /// The places whose gradients on these triangles are nearest to warp and weft; none if they are not found.
-    fn fitted(&self, triangles: &[[u32; 3]], areas: &[f32]) -> Option<Vec<DVec2>> {
+    /// The places whose gradients on these triangles are nearest to warp and weft, from others near them; none if they are not
+    /// found.
+    fn fitted(&self, triangles: &[[u32; 3]], areas: &[f32], start: &[DVec2]) -> Option<Vec<DVec2>> {
         let corners = |triangle| self.faces.corners(triangle).map(|corner| corner.as_dvec3());
         let corners = (0..triangles.len() as u32).map(corners);
-        let fit = GradientFit::new(triangles, corners, areas, self.places.len());
+        let fit = GradientFit::new(triangles, corners, areas, start.len());
         let coordinate = |axis: usize| {
-            let laid = self.places.iter().map(|place| place[axis]).collect();
-            fit.solved(laid, |_| false, |triangle| self.axes[triangle][axis])
+            let start = start.iter().map(|place| place[axis]).collect();
+            fit.solved(start, |_| false, |triangle| self.axes[triangle][axis])
         };
         let [warp, weft] = [coordinate(0)?, coordinate(1)?];
         Some(warp.into_iter().zip(weft).map(|(u, v)| DVec2::new(u, v)).collect())
