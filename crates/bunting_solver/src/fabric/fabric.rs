@@ -153,12 +153,8 @@ impl Fabric {
             Some(warps) => Links::of_curved_lines(&mesh, &grid, &coverage, warps),
             None => Links::of(&mesh, Some(&grid), Some(&coverage), &[]),
         };
-        let yarns = if are_alike {
-            Yarns::of(&mesh.positions, &links.list)
-        } else {
-            // In the chart lines are straight, those of moved nodes too.
-            Yarns::of(&grid.positions(), &links.list)
-        };
+        // In the chart all lines are straight.
+        let yarns = Yarns::of(&grid.positions(), &links.list);
         let sizes = sizes.as_ref();
         let is_closed = !transfer.joined.is_empty();
         let mut chains =
