@@ -348,6 +348,18 @@ fn disk(flat: &Fabric) -> Fabric {
     builder.pin([rim[1], rim[rim.len() / 2]]).build().expect("a good fabric")
 }
 
+/// A round part of a ball of 0.7 m, hung from its upper rim: it is unfolded with curved lines.
+fn cap(flat: &Fabric) -> Fabric {
+    let disk = disk(flat);
+    let on_ball = |at: &Vec3| {
+        let (out, up) = libm::sincosf(at.length() / 0.7);
+        (at.normalize_or_zero() * out + Vec3::Z * up) * 0.7
+    };
+    let positions = disk.rest_positions().iter().map(on_ball).collect();
+    let builder = FabricBuilder::new(positions, disk.triangles().as_flattened().to_vec());
+    builder.pin_where(|at, _| at.y > 0.42).build().expect("a good fabric")
+}
+
 #[test]
 fn a_mesh_has_the_same_bits_at_every_width() {
     let limp = FabricMaterial::FLAG_POLYESTER;
@@ -360,6 +372,9 @@ fn a_mesh_has_the_same_bits_at_every_width() {
         with_a_hole(&flat),
         bent(&with_a_hole(&flat), 0.3),
         disk(&flat),
+        bent(&disk(&flat), 0.4),
+        cap(&flat),
+        of_two_pieces(&flat, |at| at.y == 0.0),
         bent(&flat, 0.3),
         bent_with(&irregular(12, 0.0), CLOSED, Vec::new()),
         funnel(&irregular(20, 0.0), [CLOSED, 2.0 * CLOSED]),
@@ -382,8 +397,10 @@ fn a_mesh_that_moves_to_another_batch_keeps_its_bits() {
     let funnel = funnel(&irregular(20, 0.0), [CLOSED, 2.0 * CLOSED]);
     let holed = with_a_hole(&flat);
     let bent_holed = bent(&holed, 0.3);
+    let pieces = of_two_pieces(&flat, |at| at.y == 0.0);
     let (plane, bent) = (irregular(13, 0.0), bent(&flat, 0.3));
-    let fabrics = [plane, holed, bent_holed, disk(&flat), bent, untextured, funnel];
+    let disk = disk(&flat);
+    let fabrics = [plane, holed, bent_holed, disk, cap(&flat), pieces, bent, untextured, funnel];
     for fabric in fabrics.map(Arc::new) {
         let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
         let wind = Vec3::new(6.0, 0.0, 4.0);

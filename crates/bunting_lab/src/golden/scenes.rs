@@ -1,4 +1,4 @@
-//! The six scenes; each runs different parts of the solver.
+//! The scenes; each runs different parts of the solver.
 
 use std::{sync::Arc, time::Duration};
 
@@ -10,7 +10,7 @@ use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion,
     Grid, LaneCount, LevelTransfer, StepSettings,
 };
-use glam::{Quat, Vec3};
+use glam::{Quat, Vec3, Vec3Swizzles};
 use parry3d::shape::SharedShape;
 
 use super::hash::StateHash;
@@ -33,11 +33,12 @@ pub struct GoldenScene {
 }
 
 /// Every scene.
-pub const ALL: [GoldenScene; 7] = [
+pub const ALL: [GoldenScene; 8] = [
     alone("flag on a vehicle", flag_on_a_vehicle),
     alone("stiff sheet by two corners", stiff_sheet),
     alone("mesh with a hole in wind", mesh_in_wind),
     alone("bent mesh with a hole in wind", bent_mesh_in_wind),
+    alone("mesh of two pieces in wind", two_pieces_in_wind),
     alone("Gauss–Seidel curtain on a ball", gauss_seidel),
     alone("free sheet on a floor, level changes", free_sheet),
     GoldenScene { name: "eight flags through the plugin", run: plugin, is_in_pool: true },
@@ -165,7 +166,7 @@ fn mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
     in_wind(holed_mesh(), lanes, ticks)
 }
 
-/// The same mesh on an arc, with yarns laid across its triangles.
+/// The same mesh on an arc.
 fn bent_mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
     let flat = holed_mesh();
     let around = |at: &Vec3| {
@@ -175,6 +176,19 @@ fn bent_mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
     let positions = flat.positions().iter().map(around).collect();
     let bent = FabricBuilder::new(positions, flat.indices().to_vec());
     in_wind(bent.pin_where(|at, _| at.x == 0.0), lanes, ticks)
+}
+
+/// The same mesh of two pieces with warps at right angles, which has yarns laid across its triangles.
+fn two_pieces_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
+    let whole = holed_mesh();
+    let corners: Vec<Vec3> =
+        whole.indices().iter().map(|&corner| whole.positions()[corner as usize]).collect();
+    let uv = corners.chunks_exact(3).flat_map(|corners| {
+        let is_left = corners.iter().map(|at| at.x).sum::<f32>() < 3.0 * 0.6;
+        corners.iter().map(move |at| if is_left { at.xy() } else { at.yx() })
+    });
+    let pieces = FabricBuilder::new(corners.clone(), (0..corners.len() as u32).collect());
+    in_wind(pieces.uv(uv.collect()).pin_where(|at, _| at.x == 0.0), lanes, ticks)
 }
 
 fn in_wind(mesh: FabricBuilder, lanes: LaneCount, ticks: u32) -> u64 {

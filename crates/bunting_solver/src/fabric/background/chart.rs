@@ -80,9 +80,10 @@ impl Chart {
         Self::of_unfolded(mesh, surface, Unfolded::of(mesh, surface)?)
     }
 
-    /// The same without seams; none of a flat mesh.
+    /// The same without seams; none of a flat mesh, and of one without a border.
     pub fn without_seams(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
-        if plane_normal(mesh).is_some() {
+        let has_border = surface.edges.iter().any(|edge| edge.other_side.is_none());
+        if !has_border || plane_normal(mesh).is_some() {
             return None;
         }
         Self::of_unfolded(mesh, surface, Unfolded::without_seams(mesh, surface)?)
