@@ -30,6 +30,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if self.clock.begun == 1 {
             self.find_diagonal_targets();
         }
+        if self.fabric.is_cut() {
+            self.solve_passes_of_cut_grid(passes);
+            return;
+        }
         self.solve_diagonals();
         for _ in 0..passes {
             self.solve_warp_and_weft(Pass::Again);

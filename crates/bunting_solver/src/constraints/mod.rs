@@ -14,6 +14,7 @@ mod bending;
 mod chain;
 mod closed_chain;
 mod corrections;
+mod cut_grid;
 pub(crate) mod factors;
 mod gauss_seidel;
 mod guide;

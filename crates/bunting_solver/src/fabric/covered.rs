@@ -2,9 +2,6 @@
 
 use super::fabric::Fabric;
 
-/// Part of a node's cells below which it lies at a border that cuts them. Larger: rounding.
-const WHOLE: f32 = 0.99;
-
 /// How many times as much tension as elsewhere there is at a hole, or where a border makes a cut grid narrower: threefold at
 /// a round hole (Kirsch 1898), less in the mean over a cell. Smaller: rings that hang from their inner rim vibrate. Larger:
 /// sheets with a hole cost more than twice as much as grids.
@@ -16,9 +13,14 @@ impl Fabric {
         self.covered.get(particle).copied().unwrap_or(1.0)
     }
 
+    /// Whether this is a background grid that the border of its mesh cuts.
+    pub(crate) fn is_cut(&self) -> bool {
+        !self.covered.is_empty()
+    }
+
     /// Area of the first particle, m², as if all of its cells were cloth.
     pub(crate) fn first_whole_area(&self) -> f32 {
-        match self.grid().filter(|_| !self.covered.is_empty()) {
+        match self.grid().filter(|_| self.is_cut()) {
             Some(grid) => {
                 let [dx, dy] = grid.spacing();
                 0.25 * dx * dy
@@ -30,7 +32,6 @@ impl Fabric {
     /// Length of the cloth whose weight the topmost links carry, m: the [`reach`](Self::reach), and more where tension
     /// is concentrated.
     pub(super) fn carried_length(&self) -> f32 {
-        let is_cut = self.covered.iter().any(|&part| part < WHOLE);
-        self.reach() * if is_cut { CONCENTRATION } else { 1.0 }
+        self.reach() * if self.is_cut() { CONCENTRATION } else { 1.0 }
     }
 }
