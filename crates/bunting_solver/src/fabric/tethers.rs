@@ -57,6 +57,10 @@ pub(crate) struct Tethers {
     pub reach: f32,
 }
 
+/// Most pins that are the farthest of some particles. More: a mesh that hangs from a round rim takes long to build, as the paths
+/// to each are found by themselves.
+const MOST_FAR_PINS: usize = 16;
+
 impl Tethers {
     /// Pins and tethers; without tethers if the fabric is not `tethered`. Paths on a `flat` mesh are straight.
     pub(super) fn of(mesh: &RestMesh, edges: &[Edge], flat: bool, tethered: bool) -> Self {
@@ -116,13 +120,24 @@ fn far_tethers(
     near: &[Tether],
     reach: f32,
 ) -> Vec<Tether> {
-    let mut particles_of_pin: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
-    for &Tether { particle, .. } in near {
-        let distance = |pin: &Pin| rest[particle as usize].distance(rest[pin.particle as usize]);
-        let distances = pins.iter().map(distance).enumerate();
-        if let Some((farthest, _)) = distances.max_by(|one, other| one.1.total_cmp(&other.1)) {
-            particles_of_pin.entry(farthest).or_default().push(particle);
+    let place = |pin: usize| rest[pins[pin].particle as usize];
+    let farthest_of = |among: &[usize]| {
+        let mut particles_of_pin: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+        for &Tether { particle, .. } in near {
+            let distances = among
+                .iter()
+                .map(|&pin| (pin, rest[particle as usize].distance_squared(place(pin))));
+            if let Some((farthest, _)) = distances.max_by(|one, other| one.1.total_cmp(&other.1)) {
+                particles_of_pin.entry(farthest).or_default().push(particle);
+            }
         }
+        particles_of_pin
+    };
+    let all: Vec<usize> = (0..pins.len()).collect();
+    let mut particles_of_pin = farthest_of(&all);
+    if particles_of_pin.len() > MOST_FAR_PINS {
+        let far_pins: Vec<usize> = particles_of_pin.into_keys().collect();
+        particles_of_pin = farthest_of(&spread(far_pins, place));
     }
     let tethers_to_pin = |(pin, particles): (usize, Vec<u32>)| {
         let lengths = paths.distances(pins[pin]);
@@ -135,6 +150,24 @@ fn far_tethers(
         })
     };
     particles_of_pin.into_iter().flat_map(tethers_to_pin).collect()
+}
+
+/// [`MOST_FAR_PINS`] of some pins, each the farthest from those before.
+fn spread(mut pins: Vec<usize>, place: impl Fn(usize) -> Vec3) -> Vec<usize> {
+    let mut chosen = vec![pins.remove(0)];
+    let mut distances: Vec<f32> =
+        pins.iter().map(|&pin| place(pin).distance(place(chosen[0]))).collect();
+    while chosen.len() < MOST_FAR_PINS {
+        let Some((next, _)) = distances.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)) else {
+            break;
+        };
+        let next = pins[next];
+        for (distance, &pin) in distances.iter_mut().zip(&pins) {
+            *distance = distance.min(place(pin).distance(place(next)));
+        }
+        chosen.push(next);
+    }
+    chosen
 }
 
 #[cfg(test)]

@@ -17,6 +17,9 @@ const LEAST_COVERAGE: f32 = 0.1;
 /// Least part of a cell in which there is cloth. Smaller: rounding.
 const LEAST_CLOTH: f32 = 1e-5;
 
+/// Most corners of a triangle that is clipped by the four sides of a cell: seven, and more where rounding makes it not convex.
+const MOST_CORNERS: usize = 12;
+
 /// The cells of a grid under a mesh.
 #[derive(Clone)]
 pub(super) struct Coverage {
@@ -118,22 +121,32 @@ impl CellSides {
 
     /// The part of the cell that is within a triangle (Sutherland and Hodgman 1974).
     fn part_within(&self, triangle: &[Vec2; 3]) -> f32 {
-        let mut polygon: Vec<Vec2> = triangle.iter().map(|&at| at - self.origin).collect();
+        let mut polygon = [Vec2::ZERO; MOST_CORNERS];
+        polygon[..3].copy_from_slice(&triangle.map(|at| at - self.origin));
+        let mut count = 3;
         for (normal, offset) in self.sides {
             let inside = |at: Vec2| normal.dot(at) + offset;
-            let mut clipped = Vec::with_capacity(polygon.len() + 1);
-            for (index, &from) in polygon.iter().enumerate() {
-                let to = polygon[(index + 1) % polygon.len()];
+            let mut clipped = [Vec2::ZERO; MOST_CORNERS];
+            let mut kept = 0;
+            let mut push = |at: Vec2| {
+                if let Some(corner) = clipped.get_mut(kept) {
+                    *corner = at;
+                    kept += 1;
+                }
+            };
+            for (index, &from) in polygon[..count].iter().enumerate() {
+                let to = polygon[(index + 1) % count];
                 let (here, there) = (inside(from), inside(to));
                 if here >= 0.0 {
-                    clipped.push(from);
+                    push(from);
                 }
                 if (here >= 0.0) != (there >= 0.0) {
-                    clipped.push(from.lerp(to, here / (here - there)));
+                    push(from.lerp(to, here / (here - there)));
                 }
             }
-            polygon = clipped;
+            (polygon, count) = (clipped, kept);
         }
+        let polygon = &polygon[..count];
         let next = polygon.iter().cycle().skip(1);
         let doubled = polygon.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f32>();
         0.5 * doubled.abs() / self.area

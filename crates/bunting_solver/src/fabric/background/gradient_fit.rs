@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::laplacian::Laplacian;
 
 /// Square of the residual that is left, relative to the integral of the squared gradients.
-const ACCURATE: f64 = 1e-14;
+const ACCURATE: f64 = 1e-10;
 
 /// The functions that are linear on each triangle.
 pub(super) struct GradientFit<'a> {
