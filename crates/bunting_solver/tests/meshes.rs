@@ -295,6 +295,63 @@ fn a_mesh_that_is_cut_on_the_bias_stretches_by_shear() {
     assert!(error.abs() < 0.05, "{error}");
 }
 
+/// The node nearest to a pin that no neighbour shares is moved to it. Where it stayed, half a cell away, edges at the pin were strained
+/// by 175 %.
+#[test]
+fn a_mesh_that_hangs_from_single_vertices_keeps_its_edges() {
+    let flat = irregular(21, 0.0);
+    let rest = flat.rest_positions();
+    let nearest = |to: Vec3| {
+        let distance = |at: &u32| rest[*at as usize].distance(to);
+        let all = 0..rest.len() as u32;
+        all.min_by(|a, b| distance(a).total_cmp(&distance(b))).expect("a particle")
+    };
+    for pins in [[(0.325, -0.225), (0.725, -0.125)], [(0.02, -0.48), (0.57, -0.03)]] {
+        let pins = pins.map(|(x, y)| nearest(Vec3::new(x, y, 0.0)));
+        let builder = FabricBuilder::new(rest.to_vec(), flat.triangles().as_flattened().to_vec());
+        let fabric = Arc::new(builder.pin(pins).build().expect("a good fabric"));
+        let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
+        let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
+        let cloth = batch.insert(&ClothSnapshot::at_rest(&fabric), CLOTH).expect("room");
+        for _ in 0..480 {
+            batch.step(TICK, settings);
+        }
+        let mut at = Vec::new();
+        batch.copy_positions(cloth, &mut at);
+        let sides = fabric.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
+        for [a, b] in sides.filter(|ends| ends.iter().any(|end| pins.contains(end))) {
+            let [a, b] = [a, b].map(|end| end as usize);
+            let strain = at[a].distance(at[b]) / rest[a].distance(rest[b]) - 1.0;
+            assert!(strain < 0.25, "{} – {}: {strain}", rest[a], rest[b]);
+        }
+    }
+}
+
+/// Curved meshes with round borders and holes sink as they do at a high effort, and alike in every triangulation.
+#[test]
+fn curved_meshes_with_any_border_sink_as_at_a_high_effort() {
+    let flat = irregular(21, 0.0);
+    let fabrics = [("hole", bent(&with_a_hole(&flat), 0.3)), ("cap", cap(&flat))];
+    for (name, fabric) in fabrics {
+        let fabric = Arc::new(fabric);
+        let mean = |settings: StepSettings| {
+            let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
+            let cloth = batch.insert(&ClothSnapshot::at_rest(&fabric), CLOTH).expect("room");
+            for _ in 0..240 {
+                batch.step(TICK, settings);
+            }
+            let mut at = Vec::new();
+            batch.copy_positions(cloth, &mut at);
+            let sunk: f32 = fabric.rest_positions().iter().zip(&at).map(|(a, b)| a.y - b.y).sum();
+            sunk / at.len() as f32
+        };
+        let own = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
+        let sunk = mean(own);
+        let exact = mean(StepSettings { substeps: 16, passes: 4, ..own });
+        assert!((sunk / exact - 1.0).abs() < 0.15, "{name}: {sunk} for {exact} m");
+    }
+}
+
 /// Positions of the last of some cloths, each in its own wind, m/s, after half a second.
 fn flown(
     fabric: &Arc<Fabric>,

@@ -372,7 +372,7 @@ impl Fabric {
     }
 
     /// The grid that solves stretch, shear and bending in place of the mesh's own links; none of grids, and of meshes
-    /// that are small, overlap themselves, have slits, or are curved and neither fill a rectangle nor map onto one.
+    /// that are small, have slits, or cannot be laid into the plane without overlapping themselves.
     pub(crate) fn background(&self) -> Option<&Background> {
         self.background.as_ref()
     }

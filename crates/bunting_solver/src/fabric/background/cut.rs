@@ -14,13 +14,13 @@ use crate::fabric::topology::Edge;
 /// tried. Each further one is twice as large. Smaller: fits to few places.
 const FIRST_RADIUS: f64 = 2.0;
 
-/// The same for quadratics on curved meshes. Smaller: too few places.
+/// The same for a quadratic on a curved mesh. Smaller: too few places.
 const CURVED_RADIUS: f64 = 4.0;
 
-/// Most places that a plane is fitted to. More: single weights are as small as rounding.
+/// Most places that a plane or a quadratic is fitted to. More: single weights are as small as rounding.
 const MOST_TERMS: usize = 24;
 
-/// Greatest sum of the magnitudes of the weights of a plane. Larger: a node moves by many times what the particles move by.
+/// Greatest sum of the magnitudes of the weights of a fit. Larger: a node moves by many times what the particles move by.
 const GREATEST_SUM: f32 = 12.0;
 
 /// Least part of the grid's cells with cloth. Smaller: most nodes cost time for nothing.
@@ -95,8 +95,8 @@ fn neighbours(triangles: usize, edges: &[Edge]) -> Vec<Vec<u32>> {
     neighbours
 }
 
-/// The rows, and where they are empty planes that are fitted to the free places nearby: pins have no velocity of their own.
-/// Nodes without cloth are read from any place.
+/// The rows, and where they are empty those of fits to the free places nearby, as pins have no velocity of their own: of a plane,
+/// and on curved meshes of a quadratic, as nodes on tangents would lie off the surface. Nodes without cloth are read from any place.
 pub(super) fn extrapolated(
     rows: Interpolation,
     chart: &Chart,
@@ -126,11 +126,11 @@ pub(super) fn extrapolated(
             near.into_iter().step_by(distance).collect::<Vec<_>>()
         };
         let is_small = |terms: &Vec<Term>| sum_of_magnitudes(terms) < GREATEST_SUM;
-        let curve = || fit::<QUADRATIC>(&near(CURVED_RADIUS)).filter(is_small);
-        let plane = chart.plane.is_none().then(curve).flatten();
-        let plane =
-            plane.or_else(|| radii.find_map(|radius| fit::<PLANE>(&near(radius)).filter(is_small)));
-        all.push(plane.unwrap_or_else(any));
+        let quadratic = || fit::<QUADRATIC>(&near(CURVED_RADIUS)).filter(is_small);
+        let plane = || radii.find_map(|radius| fit::<PLANE>(&near(radius)).filter(is_small));
+        let is_curved = chart.plane.is_none();
+        let found = is_curved.then(quadratic).flatten().or_else(plane);
+        all.push(found.unwrap_or_else(any));
     }
     all
 }

@@ -1,5 +1,5 @@
-//! The background grid of a triangle mesh that is flat at rest; or that fills a rectangle, and has a texture that is like it or can
-//! be unfolded; or that maps onto a rectangle, as tapered sheets and funnels do.
+//! The background grid of a triangle mesh that is flat at rest, or has a texture that is like it, or can be unfolded, or maps onto a
+//! rectangle, as tapered sheets and funnels do.
 //!
 //! Links along the edges of an irregular mesh are no paths along which a load runs: chains of them are short and
 //! zigzag, and what they leave to relaxation converges slowly. So such a mesh gets a regular grid, as particles have
@@ -9,10 +9,11 @@
 //!
 //! `chart` lays a flat mesh into the plane, `texture` a curved one, `unfold` one without texture, and `closed` finds
 //! the period of one that is closed around an axis. `laid_nodes` lays a grid onto the chart: `coverage` measures how much of
-//! each cell is cloth, `interpolation` finds the weights, `smooth` those of nodes on curved meshes, and `cut` those beyond the border
-//! of flat ones; `moved` moves nodes to pins. `mapped` finds charts whose lines are
-//! curved, and unevenly far apart: there each link and each cell has its own width and direction. `gradient_fit` finds the
-//! functions with wanted gradients that `unfold` and `mapped` need.
+//! each cell is cloth, `interpolation` finds the weights, `smooth` those of nodes on curved meshes, and `cut` those beyond the
+//! border. `hold` finds out whether nodes hold the mesh where its pins do; if not, `moved` moves some to the pins. `mapped` finds
+//! charts whose lines are curved, and unevenly far apart, as those of a mesh are that unfolds with distortion: there each link and
+//! each cell has its own width and, by `warps`, its own direction. `gradient_fit` finds the functions with wanted gradients that
+//! `unfold` and `mapped` need.
 
 mod chart;
 mod closed;
@@ -115,8 +116,9 @@ pub(super) struct BackgroundMesh {
 }
 
 impl BackgroundMesh {
-    /// The grid of a mesh; none of a mesh that is small, or overlaps itself, or is curved and neither fills a rectangle in
-    /// the plane without distortion nor maps onto one: laid yarns hold such meshes (`fabric/laid_yarns/`).
+    /// The grid of a mesh: on a chart with straight lines that it fills, on one of a rectangle that it maps onto, or on one that it
+    /// does not fill. None of a mesh that is small, that overlaps itself on each chart, or whose grid would sew up a slit: laid yarns
+    /// hold such meshes (`fabric/laid_yarns/`).
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
