@@ -8,8 +8,8 @@ use crate::fabric::mesh::RestMesh;
 /// Greatest distance of a pinned particle from a pinned node, in cells. Larger: a cloth hangs by less than its pins.
 const HELD_WITHIN: f32 = 0.8;
 
-/// The same for a pinned particle beside which no other is pinned. Larger: its node follows free particles as well, and the
-/// edges at the pin are strained by more than 100 %.
+/// The same for a pinned particle beside which no other is pinned. Larger: its node follows free particles as well, and
+/// edges at the pin may be strained by more than 100 %.
 const SINGLE_HELD_WITHIN: f32 = 0.1;
 
 /// How a grid holds its mesh.
