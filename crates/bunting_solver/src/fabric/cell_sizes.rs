@@ -13,7 +13,7 @@ pub(super) struct CellSizes {
     whole: Vec<f32>,
     /// Stiffness of each cell against twist, in units of the material's bending stiffness, 1/m².
     pub twists: Vec<f32>,
-    /// Of each particle the mean distance of its neighbours in its row, and in its column, m.
+    /// Of each particle the mean distance of its neighbours in its row, and in its column, m, of those to which there is cloth.
     pub spacings: Vec<[f32; 2]>,
     /// Of each particle the width of cloth that its row stands for there, and its column, m.
     pub widths: Vec<[f32; 2]>,
@@ -27,7 +27,11 @@ impl CellSizes {
             let [a, b, c, d] = corners.map(|at| positions[at as usize]);
             0.5 * (d - a).cross(c - b).length()
         };
-        let whole: Vec<f32> = grid.cells().map(area).collect();
+        // Nodes without cloth are anywhere.
+        let [dx, dy] = grid.spacing();
+        let cells = grid.cells().zip(parts);
+        let whole = cells.map(|(cell, part)| if *part > 0.0 { area(cell) } else { dx * dy });
+        let whole: Vec<f32> = whole.collect();
         let (mut spacings, mut widths) = (Vec::new(), Vec::new());
         for node in 0..grid.columns * grid.rows {
             let (column, row) = (node % grid.columns, node / grid.columns);
@@ -50,7 +54,6 @@ impl CellSizes {
                 if at_seam { 0.5 * row_width } else { row_width },
                 narrower(of_column, [exist[2], exist[3]]),
             ]);
-            let [dx, dy] = grid.spacing();
             spacings.push([mean([before, after], of_row, dx), mean([above, below], of_column, dy)]);
         }
         let twist =

@@ -48,7 +48,8 @@ pub(crate) struct Tethers {
     pub pins: Vec<Pin>,
     /// Tether of each free particle to its nearest pin.
     pub near: Vec<Tether>,
-    /// Tethers to the farthest pin, of free particles that lie farther from it than [`reach`](Self::reach).
+    /// Tethers to the farthest pin, or of many to one that lies far, of free particles that lie farther from it than
+    /// [`reach`](Self::reach).
     ///
     /// With tethers to the nearest pin alone, the lower corner of a flag may end up beneath its pole.
     /// Particles closer to their farthest pin are held by tethers to the nearest pin.

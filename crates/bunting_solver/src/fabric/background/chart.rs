@@ -95,6 +95,9 @@ impl Chart {
         let corner_uv: Vec<[Vec2; 3]> = triangles.iter().map(uv).collect();
         let is_distorted = scale_of_texture(mesh, surface, &corner_uv).is_none();
         let edges = topology::edges(&triangles).ok()?;
+        if edges.iter().all(|edge| edge.other_side.is_some()) {
+            return None;
+        }
         let flat = RestMesh {
             positions: places.iter().map(|at| at.as_vec2().extend(0.0)).collect(),
             uv: Vec::new(),

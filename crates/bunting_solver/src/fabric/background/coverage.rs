@@ -17,6 +17,9 @@ const LEAST_COVERAGE: f32 = 0.1;
 /// Least part of a cell in which there is cloth. Smaller: rounding.
 const LEAST_CLOTH: f32 = 1e-5;
 
+/// Least area of half a cell between moved nodes, in units of cells. Smaller: cells that are turned over.
+const LEAST_HALF: f32 = 0.02;
+
 /// Most corners of a triangle that is clipped by the four sides of a cell: seven, and more where rounding makes it not convex.
 const MOST_CORNERS: usize = 12;
 
@@ -33,8 +36,8 @@ pub(super) struct Coverage {
     pub triangles: Vec<Vec<u32>>,
 }
 
-/// How much of each cell is cloth, given the places of the nodes if some are moved; none if the triangles cover a part of a cell
-/// twice.
+/// How much of each cell is cloth, given the places of the nodes if some are moved; none if the triangles cover a
+/// cell by more than its area, or if cells between moved nodes are turned over.
 pub(super) fn once(
     positions: &[Vec2],
     triangles: &[[u32; 3]],
@@ -43,11 +46,13 @@ pub(super) fn once(
 ) -> Option<Coverage> {
     let spacing = Vec2::from(grid.spacing());
     let cells = [grid.columns - 1, grid.rows - 1];
-    let sides: Vec<CellSides> = match moved {
-        Some(places) => grid
-            .cells()
-            .map(|(corners, _)| CellSides::between(corners.map(|at| places[at as usize] / spacing)))
-            .collect(),
+    let between = |places: &[Vec2]| -> Option<Vec<MovedCell>> {
+        let corners = grid.cells().map(|(corners, _)| corners);
+        let places = corners.map(|corners| corners.map(|at| places[at as usize] / spacing));
+        places.map(MovedCell::between).collect()
+    };
+    let moved_cells = match moved {
+        Some(places) => between(places)?,
         None => Vec::new(),
     };
     // Nodes are moved by up to half a cell.
@@ -67,8 +72,10 @@ pub(super) fn once(
             for column in range(low.x, high.x, cells[0]) {
                 let cell = (row * cells[0] + column) as usize;
                 let corner = Vec2::new(column as f32, row as f32);
-                let straight = CellSides::SQUARE.moved(corner);
-                let area = sides.get(cell).unwrap_or(&straight).part_within(&corners);
+                let area = match moved_cells.get(cell) {
+                    Some(cell) => cell.part_within(&corners),
+                    None => Convex::cell(corner).area_within(&corners),
+                };
                 covered[cell] += area;
                 if area > LEAST_CLOTH {
                     in_cell[cell].push(index);
@@ -90,37 +97,55 @@ pub(super) fn once(
     })
 }
 
-/// A convex cell, in units of cells.
-struct CellSides {
-    origin: Vec2,
-    /// Normals of the sides, inwards, and distances of the origin from them.
-    sides: [(Vec2, f32); 4],
+/// A cell between moved nodes, in two triangles.
+struct MovedCell {
+    halves: [Convex<3>; 2],
     area: f32,
 }
 
-impl CellSides {
-    const SQUARE: Self = Self {
-        origin: Vec2::ZERO,
-        sides: [(Vec2::X, 0.0), (Vec2::NEG_X, 1.0), (Vec2::Y, 0.0), (Vec2::NEG_Y, 1.0)],
-        area: 1.0,
-    };
-
-    const fn moved(self, origin: Vec2) -> Self {
-        Self { origin, ..self }
+impl MovedCell {
+    /// The cell between four corners, row by row, cut along a diagonal that lies in it; none if there is none.
+    fn between([a, b, c, d]: [Vec2; 4]) -> Option<Self> {
+        let area = |[a, b, c]: [Vec2; 3]| 0.5 * (b - a).perp_dot(c - a);
+        let halves = [[[a, b, d], [a, d, c]], [[a, b, c], [b, d, c]]];
+        let is_good = |halves: &[[Vec2; 3]; 2]| halves.iter().all(|half| area(*half) > LEAST_HALF);
+        let halves = halves.into_iter().find(is_good)?;
+        Some(Self { area: halves.map(area).iter().sum(), halves: halves.map(Convex::triangle) })
     }
 
-    /// The cell between four corners, row by row.
-    fn between([a, b, c, d]: [Vec2; 4]) -> Self {
+    fn part_within(&self, triangle: &[Vec2; 3]) -> f32 {
+        self.halves.iter().map(|half| half.area_within(triangle)).sum::<f32>() / self.area
+    }
+}
+
+/// A convex polygon, in units of cells.
+struct Convex<const SIDES: usize> {
+    origin: Vec2,
+    /// Normals of the sides, inwards, and distances of the origin from them.
+    sides: [(Vec2, f32); SIDES],
+}
+
+impl Convex<4> {
+    /// The cell with a corner.
+    const fn cell(corner: Vec2) -> Self {
+        let sides = [(Vec2::X, 0.0), (Vec2::NEG_X, 1.0), (Vec2::Y, 0.0), (Vec2::NEG_Y, 1.0)];
+        Self { origin: corner, sides }
+    }
+}
+
+impl Convex<3> {
+    fn triangle([a, b, c]: [Vec2; 3]) -> Self {
         let side = |from: Vec2, to: Vec2| {
             let normal = (to - from).perp();
             (normal, normal.dot(a - from))
         };
-        let area = 0.5 * (d - a).perp_dot(c - b);
-        Self { origin: a, sides: [side(a, b), side(b, d), side(d, c), side(c, a)], area }
+        Self { origin: a, sides: [side(a, b), side(b, c), side(c, a)] }
     }
+}
 
-    /// The part of the cell that is within a triangle (Sutherland and Hodgman 1974).
-    fn part_within(&self, triangle: &[Vec2; 3]) -> f32 {
+impl<const SIDES: usize> Convex<SIDES> {
+    /// The area that is within a triangle (Sutherland and Hodgman 1974).
+    fn area_within(&self, triangle: &[Vec2; 3]) -> f32 {
         let mut polygon = [Vec2::ZERO; MOST_CORNERS];
         polygon[..3].copy_from_slice(&triangle.map(|at| at - self.origin));
         let mut count = 3;
@@ -149,6 +174,6 @@ impl CellSides {
         let polygon = &polygon[..count];
         let next = polygon.iter().cycle().skip(1);
         let doubled = polygon.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f32>();
-        0.5 * doubled.abs() / self.area
+        0.5 * doubled.abs()
     }
 }

@@ -96,14 +96,15 @@ fn neighbours(triangles: usize, edges: &[Edge]) -> Vec<Vec<u32>> {
 }
 
 /// The rows, and where they are empty those of fits to the free places nearby, as pins have no velocity of their own: of a plane,
-/// and on curved meshes of a quadratic, as nodes on tangents would lie off the surface. Nodes without cloth are read from any place.
+/// and on curved meshes of a quadratic, as nodes on tangents would lie off the surface. Where free places determine no fit, pins
+/// count as well. Nodes without cloth are read from any place. None if a node of a curved mesh has no fit.
 pub(super) fn extrapolated(
     rows: Interpolation,
     chart: &Chart,
     is_free: &[bool],
     has_cloth: &[bool],
     grid: &Grid,
-) -> Interpolation {
+) -> Option<Interpolation> {
     let any = || vec![Term { from: 0, weight: 1.0 }];
     let places = PlacesInCells::new(&chart.positions, grid);
     let farthest = f64::from(grid.columns + grid.rows);
@@ -118,19 +119,27 @@ pub(super) fn extrapolated(
             continue;
         }
         let radii = core::iter::successors(Some(FIRST_RADIUS), |radius| Some(2.0 * radius));
-        let mut radii = radii.take_while(|radius| *radius < 2.0 * farthest);
-        let near = |radius: f64| {
+        let radii = radii.take_while(|radius| *radius < 2.0 * farthest);
+        let near = |radius: f64, counts: &dyn Fn(u32) -> bool| {
             let mut near = places.around(node as u32, radius);
-            near.retain(|(place, _)| is_free[*place as usize]);
+            near.retain(|(place, _)| counts(*place));
             let distance = near.len().div_ceil(MOST_TERMS).max(1);
             near.into_iter().step_by(distance).collect::<Vec<_>>()
         };
         let is_small = |terms: &Vec<Term>| sum_of_magnitudes(terms) < GREATEST_SUM;
-        let quadratic = || fit::<QUADRATIC>(&near(CURVED_RADIUS)).filter(is_small);
-        let plane = || radii.find_map(|radius| fit::<PLANE>(&near(radius)).filter(is_small));
+        let free = |place: u32| is_free[place as usize];
+        let quadratic = || fit::<QUADRATIC>(&near(CURVED_RADIUS, &free)).filter(is_small);
+        let plane = |counts: &dyn Fn(u32) -> bool| {
+            let fit = |radius| fit::<PLANE>(&near(radius, counts)).filter(is_small);
+            radii.clone().find_map(fit)
+        };
         let is_curved = chart.plane.is_none();
-        let found = is_curved.then(quadratic).flatten().or_else(plane);
-        all.push(found.unwrap_or_else(any));
+        let found = is_curved.then(quadratic).flatten();
+        match found.or_else(|| plane(&free)).or_else(|| plane(&|_| true)) {
+            Some(terms) => all.push(terms),
+            None if is_curved => return None,
+            None => all.push(any()),
+        }
     }
-    all
+    Some(all)
 }

@@ -208,37 +208,6 @@ pub(super) fn nodes_from_particles(
     weights
 }
 
-/// Weights of the nodes at each place of a free particle: bilinear in its cell.
-pub(super) fn particles_from_nodes(
-    positions: &[Vec2],
-    is_free: &[bool],
-    grid: &Grid,
-) -> Interpolation {
-    let spacing = Vec2::from(grid.spacing());
-    let last = Vec2::new((grid.columns - 2) as f32, (grid.rows - 2) as f32);
-    let mut weights = Interpolation::default();
-    for (&position, &is_free) in positions.iter().zip(is_free) {
-        if !is_free {
-            weights.push([]);
-            continue;
-        }
-        let at = position / spacing;
-        let cell = at.floor().clamp(Vec2::ZERO, last);
-        let Vec2 { x, y } = at - cell;
-        let term = |right, down, weight| Term {
-            from: grid.index(cell.x as u32 + right, cell.y as u32 + down),
-            weight,
-        };
-        weights.push([
-            term(0, 0, (1.0 - x) * (1.0 - y)),
-            term(1, 0, x * (1.0 - y)),
-            term(0, 1, (1.0 - x) * y),
-            term(1, 1, x * y),
-        ]);
-    }
-    weights
-}
-
 /// For each node the triangle in which its least barycentric coordinate is greatest, of those near it: that coordinate
 /// and the terms.
 fn barycentric(

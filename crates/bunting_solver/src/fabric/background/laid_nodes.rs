@@ -85,7 +85,10 @@ impl LaidNodes {
         cells.flat_map(|((corners, _), _)| corners).for_each(|at| has_cloth[at as usize] = true);
         let is_any_outside = is_outside.contains(&true);
         if is_any_outside {
-            rows = cut::extrapolated(rows, chart, is_free, &has_cloth, grid);
+            if chart.is_closed || chart.has_seam() {
+                return None;
+            }
+            rows = cut::extrapolated(rows, chart, is_free, &has_cloth, grid)?;
         }
         Some(Self {
             rows,

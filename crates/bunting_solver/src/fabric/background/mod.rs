@@ -9,12 +9,13 @@
 //!
 //! `chart` lays a flat mesh into the plane, `texture` a curved one, `unfold` one without texture, and `closed` finds
 //! the period of one that is closed around an axis. `laid_nodes` lays a grid onto the chart: `coverage` measures how much of
-//! each cell is cloth, `interpolation` finds the weights, `smooth` those of nodes on curved meshes, and `cut` those beyond the
+//! each cell is cloth, `interpolation` and `cells` find the weights, `smooth` those of nodes on curved meshes, and `cut` those beyond the
 //! border. `hold` finds out whether nodes hold the mesh where its pins do; if not, `moved` moves some to the pins. `mapped` finds
 //! charts whose lines are curved, and unevenly far apart, as those of a mesh are that unfolds with distortion: there each link and
 //! each cell has its own width and, by `warps`, its own direction. `gradient_fit` finds the functions with wanted gradients that
 //! `unfold` and `mapped` need.
 
+mod cells;
 mod chart;
 mod closed;
 mod coverage;
@@ -36,8 +37,8 @@ mod warps;
 
 use glam::{Mat3, Vec2, Vec3};
 
+use self::cells::{InCell, particles_from_nodes};
 use self::chart::Chart;
-use self::interpolation::particles_from_nodes;
 use self::laid_nodes::LaidNodes;
 use self::on_chart::OnChart;
 use super::cell_sizes::CellSizes;
@@ -139,11 +140,7 @@ impl BackgroundMesh {
         let OnChart { mesh, chart, grid, is_free, .. } = chart;
         let (grid, mut has_row) = (*grid, is_free.clone());
         has_row[chart.own_places..].fill(false);
-        let mut particles = if laid.are_moved {
-            moved::particles_from_nodes(&chart.positions, &has_row, &grid, &laid.places)
-        } else {
-            particles_from_nodes(&chart.positions, &has_row, &grid)
-        };
+        let mut particles = particles_from_nodes(&chart.positions, &has_row, &grid, &laid);
         if laid.has_cloth.contains(&false) {
             // A tip may lie in a cell in which it is too small to count as cloth.
             particles = particles.with_terms_of(&laid.has_cloth);
@@ -184,7 +181,7 @@ impl BackgroundMesh {
         transfer.held = transfer.nodes.rows_where(stands_for_pins);
         let is_flat = chart.plane.is_some() && !laid.are_moved;
         if !is_flat {
-            transfer.heights = heights(mesh, chart, &grid, &nodes, &transfer);
+            transfer.heights = heights(mesh, chart, &grid, &nodes, &transfer, &laid);
         }
         let GridTransfer { nodes: first, particles, means, held, .. } = &mut transfer;
         for rows in [first, particles, means, held] {
@@ -226,22 +223,19 @@ fn heights(
     grid: &Grid,
     nodes: &RestMesh,
     transfer: &GridTransfer,
+    laid: &LaidNodes,
 ) -> Vec<Height> {
-    let spacing = Vec2::from(grid.spacing());
-    let last = Vec2::new((grid.columns - 2) as f32, (grid.rows - 2) as f32);
     let mut is_done = vec![false; mesh.positions.len()];
     let rows: Vec<&[Term]> = transfer.particles.rows().collect();
     let mut heights = Vec::new();
     for (&at, &particle) in chart.positions.iter().zip(&chart.particles).take(chart.own_places) {
-        let cell = (at / spacing).floor().clamp(Vec2::ZERO, last);
-        let corner =
-            |right: u32, down: u32| grid.index(cell.x as u32 + right, cell.y as u32 + down);
-        let corners = [corner(0, 0), corner(1, 1), corner(1, 0), corner(0, 1)];
         // A particle on a seam has the height of one side.
         if mesh.is_pinned(particle) || is_done[particle as usize] {
             continue;
         }
         is_done[particle as usize] = true;
+        let [first, right, below_first, last] = InCell::of(at, grid, laid).corners;
+        let corners = [first, last, right, below_first];
         let row = rows[particle as usize];
         let below: Vec3 =
             row.iter().map(|term| nodes.positions[term.from as usize] * term.weight).sum();

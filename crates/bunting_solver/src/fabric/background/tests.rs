@@ -163,6 +163,36 @@ fn a_closed_mesh_has_a_grid_around_its_axis() {
     assert!((mass / fabric.area() - 1.0).abs() < 1e-3, "{mass}");
 }
 
+fn bent_disk() -> FabricBuilder {
+    let bent = disk(8).positions().iter().map(|at| *at + Vec3::Z * at.x * at.x).collect();
+    FabricBuilder::new(bent, disk(8).indices().to_vec())
+}
+
+/// Planes that are fitted to free places alone do not exist there: nodes beyond the border were all at one place.
+#[test]
+fn nodes_of_a_curved_mesh_with_few_free_vertices_are_apart() {
+    for pinned in [|_: Vec3| true, |at: Vec3| at.y.abs() > 1e-3, |at: Vec3| at.length() > 1e-3] {
+        let fabric = bent_disk().pin_where(move |at, _| pinned(at)).build().expect("a fabric");
+        let nodes = &fabric.background().expect("it has a grid").fabric;
+        let shortest = nodes.links().iter().map(|link| link.rest_length).fold(f32::MAX, f32::min);
+        assert!(shortest > 1e-3, "{shortest} m");
+    }
+}
+
+#[test]
+fn the_parts_of_a_curved_grid_are_those_of_a_flat_one() {
+    let part = |builder: FabricBuilder| {
+        let fabric = builder.build().expect("a good fabric");
+        let nodes = &fabric.background().expect("it has a grid").fabric;
+        let with_cloth = (0..nodes.particle_count()).filter(|at| nodes.particle_areas()[*at] > 0.0);
+        let parts: Vec<f32> = with_cloth.map(|at| nodes.part_of(at)).collect();
+        (parts.iter().sum::<f32>() / parts.len() as f32, parts.into_iter().fold(1.0, f32::min))
+    };
+    let ((flat, least_flat), (bent, least_bent)) = (part(disk(8)), part(bent_disk()));
+    assert!((bent / flat - 1.0).abs() < 0.05, "{bent} for {flat}");
+    assert!(least_bent > 0.5 * least_flat, "{least_bent} for {least_flat}");
+}
+
 #[test]
 fn meshes_that_are_no_charts_keep_their_own_chains() {
     let has_grid =
@@ -199,9 +229,7 @@ fn meshes_that_are_no_charts_keep_their_own_chains() {
     assert!(has_grid(sheet(22)) && kept.len() < sheet(22).indices().len());
     let with_slit = FabricBuilder::new(sheet(22).positions().to_vec(), kept);
     assert!(!has_grid(with_slit.repair().expect("a mesh").0), "a slit");
-    let bent_disk = disk(8).positions().iter().map(|at| *at + Vec3::Z * at.x * at.x).collect();
-    let bent_disk = FabricBuilder::new(bent_disk, disk(8).indices().to_vec());
-    assert!(has_grid(bent_disk), "curved, with nodes outside");
+    assert!(has_grid(bent_disk()), "curved, with nodes outside");
     assert!(!has_grid(FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0))), "a grid");
 }
 
