@@ -412,6 +412,15 @@ fn cap(flat: &Fabric) -> Fabric {
     builder.pin_where(|at, _| at.y > 0.42).build().expect("a good fabric")
 }
 
+/// One row of quads, hung from a corner: of two columns of nodes diagonals join consecutive ones.
+fn ribbon() -> Fabric {
+    let place = |at: u32| Vec3::new((at % 40) as f32 / 39.0, -0.03 * (at / 40) as f32, 0.0);
+    let quad = |at: u32| [at, at + 40, at + 1, at + 1, at + 40, at + 41];
+    let builder =
+        FabricBuilder::new((0..80).map(place).collect(), (0..39).flat_map(quad).collect());
+    builder.pin([0]).build().expect("a good fabric")
+}
+
 #[test]
 fn a_mesh_has_the_same_bits_at_every_width() {
     let limp = FabricMaterial::FLAG_POLYESTER;
@@ -427,6 +436,7 @@ fn a_mesh_has_the_same_bits_at_every_width() {
         bent(&disk(&flat), 0.4),
         cap(&flat),
         of_two_pieces(&flat, |at| at.y == 0.0),
+        ribbon(),
         bent(&flat, 0.3),
         bent_with(&irregular(12, 0.0), CLOSED, Vec::new()),
         funnel(&irregular(20, 0.0), [CLOSED, 2.0 * CLOSED]),

@@ -49,12 +49,15 @@ impl Grid {
             && steps.into_iter().all(|ends| ends[1] == ends[0] + self.columns)
     }
 
-    /// The family of a link between two particles of a cell, the lower one first.
-    pub(super) fn family(&self, [from, to]: [u32; 2]) -> LinkFamily {
-        match to - from {
-            1 => LinkFamily::Warp,
-            step if step == self.columns => LinkFamily::Weft,
-            _ => LinkFamily::Diagonal,
+    /// The family of a link between two particles of a cell. Of two columns a diagonal joins consecutive particles, too.
+    pub(super) fn family(&self, ends: [u32; 2]) -> LinkFamily {
+        let [one, other] = ends.map(|end| (end % self.columns, end / self.columns));
+        if one.1 == other.1 {
+            LinkFamily::Warp
+        } else if one.0 == other.0 {
+            LinkFamily::Weft
+        } else {
+            LinkFamily::Diagonal
         }
     }
 
