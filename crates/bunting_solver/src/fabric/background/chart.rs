@@ -106,11 +106,10 @@ impl Chart {
             inverse_areas: Vec::new(),
             triangles,
         };
-        let on_mesh = surface;
-        let surface = Surface { edges, corner_uv, ..surface.clone() };
-        let chart = Self::in_plane(&flat, &surface, Vec3::Z, Vec3::X);
+        let unfolded = Surface { edges, corner_uv, ..surface.clone() };
+        let chart = Self::in_plane(&flat, &unfolded, Vec3::Z, Vec3::X);
         let warps = if is_distorted {
-            warps_of_rows(mesh, on_mesh, &chart.positions, &chart.triangles)?
+            warps_of_rows(mesh, surface, &chart.positions, &chart.triangles)?
         } else {
             Vec::new()
         };

@@ -7,9 +7,8 @@ use glam::Vec2;
 use super::chart::{Chart, node_positions};
 use super::coverage::Coverage;
 use super::interpolation::{Interpolation, nodes_from_particles};
+use super::on_chart::OnChart;
 use super::{coverage, cut, moved, smooth};
-use crate::fabric::grid::Grid;
-use crate::fabric::mesh::Surface;
 
 /// The nodes of a grid on a chart.
 pub(super) struct LaidNodes {
@@ -32,37 +31,23 @@ pub(super) struct LaidNodes {
 }
 
 impl LaidNodes {
-    /// The nodes of a grid, which may reach beyond the border of a mesh and across its holes; none if that would sew up a slit,
-    /// or if the mesh overlaps itself. `coverage` is that of nodes that are not moved.
-    pub fn of(
-        surface: &Surface,
-        chart: &Chart,
-        grid: &Grid,
-        coverage: Coverage,
-        is_free: &[bool],
-    ) -> Option<Self> {
-        Self::moved(surface, chart, grid, coverage, is_free, &BTreeMap::new())
+    /// The nodes of a grid, which may reach beyond the border of a mesh and across its holes; none if that would sew up a slit.
+    pub fn of(on: &OnChart) -> Option<Self> {
+        Self::moved(on, on.coverage.clone(), &BTreeMap::new())
     }
 
-    /// The same, with the nodes nearest to pins moved to these.
-    pub fn moved_to_pins(
-        surface: &Surface,
-        chart: &Chart,
-        grid: &Grid,
-        is_free: &[bool],
-    ) -> Option<Self> {
+    /// The same, with the nodes nearest to pins moved to these; none also if cells between them are turned over.
+    pub fn moved_to_pins(on: &OnChart) -> Option<Self> {
+        let OnChart { chart, grid, is_free, .. } = on;
         let pins = moved::to_pins(chart, grid, is_free);
         let places = moved::places(chart, grid, &pins);
         let coverage = coverage::once(&chart.positions, &chart.triangles, grid, Some(&places))?;
-        Self::moved(surface, chart, grid, coverage, is_free, &pins)
+        Self::moved(on, coverage, &pins)
     }
 
     fn moved(
-        surface: &Surface,
-        chart: &Chart,
-        grid: &Grid,
+        OnChart { surface, chart, grid, is_free, .. }: &OnChart,
         coverage: Coverage,
-        is_free: &[bool],
         pins: &BTreeMap<u32, u32>,
     ) -> Option<Self> {
         let Chart { positions, triangles, .. } = chart;

@@ -32,19 +32,13 @@ impl<'a> OnChart<'a> {
     /// The grid of the mesh; none if it does not hold the mesh where its pins do. Some nodes are moved to pins if these lie
     /// between nodes.
     pub fn background(&self) -> Option<BackgroundMesh> {
-        let Self { surface, chart, grid, is_free, coverage, .. } = self;
-        let laid = LaidNodes::of(surface, chart, grid, coverage.clone(), is_free)?;
-        let straight = BackgroundMesh::on(self, laid);
+        let straight = BackgroundMesh::on(self, LaidNodes::of(self)?);
         let hold = |found: &BackgroundMesh| Hold::of(self, &found.mesh);
         if straight.as_ref().is_some_and(|found| hold(found) == Hold::AtPins) {
             return straight;
         }
         // The first row of a closed chart would be moved, and its last row not.
-        let moved = if chart.is_closed {
-            None
-        } else {
-            LaidNodes::moved_to_pins(surface, chart, grid, is_free)
-        };
+        let moved = if self.chart.is_closed { None } else { LaidNodes::moved_to_pins(self) };
         let moved = moved.and_then(|laid| BackgroundMesh::on(self, laid));
         let is_held = |found: &BackgroundMesh| hold(found) != Hold::Loose;
         moved.filter(is_held).or_else(|| straight.filter(is_held))
