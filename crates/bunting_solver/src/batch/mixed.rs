@@ -86,7 +86,7 @@ impl<P: Pack> Mixed<P> {
                 link_compliance: vec![P::splat(0.0); chains.target_count()],
                 bending: bending.collect(),
                 twist: twist.collect(),
-                twists: P::splat(0.0),
+                resists_twist: P::splat(0.0),
             },
             chains,
             patches: fabric.patches().iter().map(patch).collect(),
@@ -211,7 +211,7 @@ impl<P: Pack> Layout<P> for Mixed<P> {
 
     fn set_stiffness(&mut self, lane: usize, fabric: &Fabric, stiffness: &Stiffness) {
         let of_cloth = ClothFactors::new(fabric, stiffness);
-        self.factors.set_twists(lane..lane + 1, &of_cloth);
+        self.factors.set_resists_twist(lane..lane + 1, &of_cloth);
         let Factors { link_compliance, bending, twist, .. } = &mut self.factors;
         for (target, class) in fabric.chains().classes() {
             let compliance = of_cloth.link_compliance[class as usize];

@@ -47,7 +47,7 @@ impl<P: Pack> SideBySide<P> {
                 link_compliance: vec![zero; fabric.link_classes().len()],
                 bending: bending.map(|profile| BendFactors::new(&[Some(profile)])).collect(),
                 twist: twist.map(|profile| TwistFactors::new(&[Some(profile)])).collect(),
-                twists: P::splat(0.0),
+                resists_twist: P::splat(0.0),
             },
             modulus_compliance: [zero; 3],
             hinge_compliance: vec![zero; fabric.hinge_classes().len()],
@@ -132,7 +132,7 @@ impl<P: Pack> Layout<P> for SideBySide<P> {
     fn set_stiffness(&mut self, cloth: usize, fabric: &Fabric, stiffness: &Stiffness) {
         let lane = cloth;
         let of_cloth = ClothFactors::new(fabric, stiffness);
-        self.factors.set_twists(lane..lane + 1, &of_cloth);
+        self.factors.set_resists_twist(lane..lane + 1, &of_cloth);
         let Factors { link_compliance, bending, twist, .. } = &mut self.factors;
         for (pack, compliance) in link_compliance.iter_mut().zip(of_cloth.link_compliance) {
             pack.lanes_mut()[lane] = compliance;

@@ -1,9 +1,9 @@
 //! The chains of a grid that the border of a mesh cuts.
 //!
-//! Where yarns end at the border, they give their load to their neighbours by shear, which warp and weft and diagonals that are solved
-//! once would carry over one row in a substep: a disk that hangs from a chord sinks by 37 % too far, a pennant by 87 %.
-//! Therefore the diagonals are solved in each pass, too. Their tension is kept from pass to pass, as that of warp and weft is, in
-//! their targets, which hold for the whole tick and are put back afterwards.
+//! A yarn that ends at the border gives its load to its neighbours by shear. Diagonals that are solved once carry that load over one
+//! row in a substep: a stiff disk that hangs from a chord sinks by 37 % too far, a pennant by 87 %. Therefore diagonals are solved in
+//! each pass. Their tension is kept from pass to pass, as that of warp and weft is, in their targets. These hold for the whole tick,
+//! and are put back after the passes.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Layout;

@@ -18,18 +18,18 @@ pub(crate) struct Factors<P: Pack, C> {
     /// Factors of each profile of ribbons.
     pub twist: Vec<TwistFactors<P, C>>,
     /// One in lanes whose cloth resists twist, zero in others.
-    pub twists: P,
+    pub resists_twist: P,
 }
 
 impl<P: Pack, C> Factors<P, C> {
     /// Whether any lane resists twist.
     pub fn resist_twist(&self) -> bool {
-        self.twists.lanes().contains(&1.0)
+        self.resists_twist.lanes().contains(&1.0)
     }
 
     /// Sets whether some lanes resist twist.
-    pub fn set_twists(&mut self, lanes: Range<usize>, of_cloth: &ClothFactors) {
-        self.twists.lanes_mut()[lanes].fill(if of_cloth.twists { 1.0 } else { 0.0 });
+    pub fn set_resists_twist(&mut self, lanes: Range<usize>, of_cloth: &ClothFactors) {
+        self.resists_twist.lanes_mut()[lanes].fill(if of_cloth.resists_twist { 1.0 } else { 0.0 });
     }
 }
 
@@ -39,7 +39,7 @@ pub(crate) struct ClothFactors {
     pub bending: Vec<LineFactors>,
     pub twist: Vec<Vec<TwistRow<f32>>>,
     /// Whether the cloth resists twist.
-    pub twists: bool,
+    pub resists_twist: bool,
 }
 
 impl ClothFactors {
@@ -59,7 +59,7 @@ impl ClothFactors {
             link_compliance: stiffness.of_links(fabric),
             bending: fabric.bend_profiles().iter().map(bend).collect(),
             twist: fabric.ribbon_profiles().iter().map(twist).collect(),
-            twists,
+            resists_twist: twists,
         }
     }
 }

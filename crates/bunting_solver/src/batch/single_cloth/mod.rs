@@ -90,7 +90,7 @@ impl<P: Pack> SingleCloth<P> {
                 link_compliance: vec![P::splat(0.0); chains.classes.len()],
                 bending: bending.collect(),
                 twist: twist.collect(),
-                twists: P::splat(0.0),
+                resists_twist: P::splat(0.0),
             },
             linked: chains.classes.iter().map(linked).collect(),
             tethers: [fabric.far_tethers(), fabric.tethers()]
@@ -225,7 +225,7 @@ impl<P: Pack> Layout<P> for SingleCloth<P> {
 
     fn set_stiffness(&mut self, _: usize, fabric: &Fabric, stiffness: &Stiffness) {
         let of_cloth = ClothFactors::new(fabric, stiffness);
-        self.factors.set_twists(0..P::WIDTH, &of_cloth);
+        self.factors.set_resists_twist(0..P::WIDTH, &of_cloth);
         let Factors { link_compliance, bending, twist, .. } = &mut self.factors;
         for (pack, classes) in link_compliance.iter_mut().zip(&self.chains.classes) {
             let of_class = |class: u32| of_cloth.link_compliance.get(class as usize);

@@ -76,7 +76,7 @@ impl SingleMesh {
                 link_compliance: Vec::new(),
                 bending: Vec::new(),
                 twist: Vec::new(),
-                twists: Pack8::splat(0.0),
+                resists_twist: Pack8::splat(0.0),
             },
             tethers,
             patches: PatchPacks::new(fabric.patches(), particles),

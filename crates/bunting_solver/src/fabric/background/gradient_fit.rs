@@ -38,8 +38,7 @@ impl<'a> GradientFit<'a> {
 
     /// The gradient in a triangle of the function with these values at its corners, 1/m.
     pub fn gradient(&self, triangle: usize, values: [f64; 3]) -> DVec3 {
-        let [a, b, c] = self.gradients[triangle];
-        a * values[0] + b * values[1] + c * values[2]
+        combined(self.gradients[triangle], values)
     }
 
     /// The function u with the least integral of |∇u − `wanted`|², the wanted gradient of each triangle, from one near it.
@@ -68,9 +67,13 @@ impl<'a> GradientFit<'a> {
 }
 
 /// The gradient in a triangle of the function with these values at its corners, 1/m.
-pub(super) fn gradient(corners: [DVec3; 3], [a, b, c]: [f64; 3]) -> DVec3 {
-    let [of_a, of_b, of_c] = gradients_of(corners);
-    of_a * a + of_b * b + of_c * c
+pub(super) fn gradient(corners: [DVec3; 3], values: [f64; 3]) -> DVec3 {
+    combined(gradients_of(corners), values)
+}
+
+/// The sum of the corners' gradients times their values.
+fn combined([a, b, c]: [DVec3; 3], values: [f64; 3]) -> DVec3 {
+    a * values[0] + b * values[1] + c * values[2]
 }
 
 /// The gradients of the functions that are one at a corner of a triangle and zero at the others, 1/m.

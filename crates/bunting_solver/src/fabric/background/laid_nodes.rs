@@ -33,7 +33,7 @@ pub(super) struct LaidNodes {
 impl LaidNodes {
     /// The nodes of a grid, which may reach beyond the border of a mesh and across its holes; none if that would sew up a slit.
     pub fn of(on: &OnChart) -> Option<Self> {
-        Self::moved(on, on.coverage.clone(), &BTreeMap::new())
+        Self::at(on, node_positions(&on.grid), on.coverage.clone(), &BTreeMap::new())
     }
 
     /// The same, with the nodes nearest to pins moved to these; none also if cells between them are turned over.
@@ -42,11 +42,13 @@ impl LaidNodes {
         let pins = moved::to_pins(chart, grid, is_free);
         let places = moved::places(chart, grid, &pins);
         let coverage = coverage::once(&chart.positions, &chart.triangles, grid, Some(&places))?;
-        Self::moved(on, coverage, &pins)
+        Self::at(on, places, coverage, &pins)
     }
 
-    fn moved(
+    /// Nodes at their places, of which some are those of pins.
+    fn at(
         OnChart { surface, chart, grid, is_free, .. }: &OnChart,
+        places: Vec<Vec2>,
         coverage: Coverage,
         pins: &BTreeMap<u32, u32>,
     ) -> Option<Self> {
@@ -77,11 +79,7 @@ impl LaidNodes {
         }
         Some(Self {
             rows,
-            places: if pins.is_empty() {
-                node_positions(grid)
-            } else {
-                moved::places(chart, grid, pins)
-            },
+            places,
             has_cloth,
             cells_with_cloth: coverage.has_cloth,
             parts: coverage.parts,
