@@ -6,8 +6,9 @@ use super::faces::Faces;
 use super::lay::Towards;
 use crate::fabric::links::{LinkFamily, along_u};
 
-/// Least sine of the angle between a triangle's normal and the axis that warp follows, of meshes without texture.
-/// Smaller: the directions of triangles at right angles to the axis are rounding errors.
+/// Least sine of the angle between a triangle's normal and a direction that is laid into its plane. Smaller: what is
+/// left of a direction at right angles to the plane is rounding error, which may point out of it. Larger: more triangles
+/// have another direction than their neighbours.
 const LEAST_SINE: f32 = 0.1;
 
 /// Least doubled area of a triangle in its texture, as a part of the square of its longest side there. Smaller: its
@@ -70,8 +71,7 @@ fn warps(faces: &Faces, corner_uv: &[[Vec2; 3]]) -> Vec<Vec3> {
     if warps.iter().all(|warp| *warp == Vec3::ZERO) {
         let axis = axis(faces);
         for (warp, normal) in warps.iter_mut().zip(&faces.normals) {
-            let within = axis - *normal * normal.dot(axis);
-            *warp = if within.length() > LEAST_SINE { within.normalize() } else { Vec3::ZERO };
+            *warp = within(axis, *normal).unwrap_or_default();
         }
     }
     spread(faces, &mut warps);
@@ -130,10 +130,8 @@ fn spread(faces: &Faces, warps: &mut [Vec3]) {
             for triangle in faces.neighbours(from) {
                 if !has(&warps[triangle as usize]) {
                     let normal = faces.normals[triangle as usize];
-                    let warp = warps[from as usize];
-                    let within = warp - normal * normal.dot(warp);
-                    warps[triangle as usize] =
-                        within.try_normalize().unwrap_or_else(|| any_direction(faces, triangle));
+                    warps[triangle as usize] = within(warps[from as usize], normal)
+                        .unwrap_or_else(|| any_direction(faces, triangle));
                     front.push(triangle);
                 }
             }
@@ -147,6 +145,12 @@ fn spread(faces: &Faces, warps: &mut [Vec3]) {
         front = vec![start as u32];
         next_start = start + 1;
     }
+}
+
+/// A direction laid into the plane with a normal; none if it is nearly at right angles to the plane.
+fn within(direction: Vec3, normal: Vec3) -> Option<Vec3> {
+    let within = direction - normal * normal.dot(direction);
+    (within.length() > LEAST_SINE).then(|| within.normalize())
 }
 
 fn any_direction(faces: &Faces, triangle: u32) -> Vec3 {

@@ -30,6 +30,10 @@ const LEAST_MARK: f32 = 0.05;
 /// Most triangles that a line to a neighbouring yarn's start crosses.
 const MOST_STEPS_ASIDE: usize = 64;
 
+/// Most pieces of all lines in one direction, per triangle; most meshes need one or two, long tubes seven. Smaller: of
+/// narrow tubes, about which lines wind, parts get no yarns. Larger: spikes and slivers take more time and memory.
+pub(super) const MOST_PIECES: usize = 64;
+
 /// A piece of a yarn within one triangle.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
@@ -53,18 +57,21 @@ pub(super) struct Layer<'a> {
     faces: &'a Faces<'a>,
     directions: &'a Directions,
     near: Near,
+    /// Pieces that may yet be laid in the direction at hand.
+    left: usize,
 }
 
 impl<'a> Layer<'a> {
     /// No lines as yet; they will be about as far apart as given, m.
     pub fn new(faces: &'a Faces<'a>, directions: &'a Directions, distance: f32) -> Self {
-        Self { faces, directions, near: Near::new(distance) }
+        Self { faces, directions, near: Near::new(distance), left: 0 }
     }
 
     /// All lines in one direction, with their distances in each triangle, m.
     pub fn lay(&mut self, towards: Towards, distances: &[f32]) -> Vec<Line> {
         let way = Way { towards, distances };
         let mut lines = Vec::new();
+        self.left = MOST_PIECES * self.faces.count();
         for triangle in 0..self.faces.count() as u32 {
             let at = self.faces.centre(triangle);
             let mut starts = vec![(triangle, at)];
@@ -117,13 +124,13 @@ impl<'a> Layer<'a> {
         (line, headings)
     }
 
-    /// Follows the directions from a start, up to a border or another line.
+    /// Follows the directions from a start, up to a border or another line, or until no more pieces may be laid.
     fn follow(&mut self, start: Heading, way: Way, headings: &mut Vec<Heading>) -> Line {
         let towards = way.towards;
         let mut line = Line::default();
         let mut heading = start;
         let (mut length, mut unmarked) = (0.0, 0.0);
-        loop {
+        while self.left > 0 {
             let exit @ (crossing, _) = self.faces.exit(&heading);
             let passed = crossing.at - heading.at;
             let distance = way.distance(heading.triangle);
@@ -137,6 +144,7 @@ impl<'a> Layer<'a> {
                 return line;
             }
             let family = self.directions.family(heading.triangle, heading.direction, towards);
+            self.left -= 1;
             line.pieces.push(Piece { triangle: heading.triangle, family, length: passed.length() });
             // Long pieces are marked all along, and of short ones some.
             unmarked += passed.length();
@@ -163,6 +171,7 @@ impl<'a> Layer<'a> {
                 None => return line,
             }
         }
+        line
     }
 
     /// Points to both sides of a line, at the distance of lines.

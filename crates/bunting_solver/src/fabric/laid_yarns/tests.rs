@@ -2,7 +2,8 @@ use std::collections::HashMap;
 
 use glam::Vec3;
 
-use super::{BAND, LaidYarn};
+use super::lay::MOST_PIECES;
+use super::{BAND, LaidYarn, Towards};
 use crate::fabric::{Fabric, FabricBuilder, LinkFamily};
 
 /// A mesh of `n` × `n` vertices in uneven cells, rolled up about a vertical axis to a closed funnel twice as wide
@@ -137,5 +138,42 @@ fn laying_ends_where_directions_turn_about_points() {
         let fabric = ball(rings, around).build().expect("a good fabric");
         let links = fabric.laid_yarns().link_count();
         assert!((1..50 * fabric.particle_count()).contains(&links), "{links} links");
+    }
+}
+
+/// A closed prism with edges of 1 m around, rings of vertices a distance apart, m, and ends of triangles about a vertex.
+fn prism(around: u32, rings: u32, apart: f32) -> FabricBuilder {
+    let radius = 0.5 / libm::sinf(core::f32::consts::PI / around as f32);
+    let place = |ring: u32, at: u32| {
+        let (sin, cos) = libm::sincosf(core::f32::consts::TAU * at as f32 / around as f32);
+        Vec3::new(radius * cos, apart * ring as f32, radius * sin)
+    };
+    let positions = (0..rings).flat_map(|ring| (0..around).map(move |at| place(ring, at)));
+    let vertex = |ring: u32, at: u32| ring * around + at % around;
+    let mut indices = Vec::new();
+    for at in 0..around {
+        for ring in 0..rings - 1 {
+            let [a, b] = [vertex(ring, at), vertex(ring, at + 1)];
+            let [c, d] = [vertex(ring + 1, at), vertex(ring + 1, at + 1)];
+            indices.extend([a, c, b, b, c, d]);
+        }
+    }
+    for at in 1..around - 1 {
+        indices.extend([0, at, at + 1].map(|at| vertex(0, at)));
+        indices.extend([0, at + 1, at].map(|at| vertex(rings - 1, at)));
+    }
+    FabricBuilder::new(positions.collect(), indices)
+}
+
+#[test]
+fn laying_ends_on_closed_prisms() {
+    // The ends are at right angles to the warp of the sides. About the narrower one, lines wind hundreds of times.
+    for (around, rings, apart) in [(5, 14, 30.0), (24, 2, 8000.0)] {
+        let fabric = prism(around, rings, apart).build().expect("a good fabric");
+        let yarns = fabric.laid_yarns();
+        let most = MOST_PIECES * Towards::ALL.len() * fabric.triangles().len();
+        assert!((1..most).contains(&yarns.link_count()), "{} links", yarns.link_count());
+        let mut links = yarns.list.iter().flat_map(|yarn| &yarn.links);
+        assert!(links.all(|link| link.rest_length.is_finite() && link.slenderness.is_finite()));
     }
 }
