@@ -225,21 +225,67 @@ fn of_two_pieces(flat: &Fabric, is_pinned: fn(Vec3) -> bool) -> Fabric {
 }
 
 #[test]
-fn a_load_crosses_a_seam_of_pieces_with_different_warps() {
-    let expected = CLOTH.area_density * GRAVITY / (2.0 * CLOTH.weft_stiffness);
+fn each_piece_of_a_texture_stretches_by_its_own_warp() {
+    const WARP: f32 = 1e3;
+    const WEFT: f32 = 4e3;
+    let material = FabricMaterial { warp_stiffness: WARP, weft_stiffness: WEFT, ..CLOTH };
+    // The upper half carries the lower one as well, on its weft.
+    let load = material.area_density * GRAVITY;
+    let expected = load * (0.375 / WEFT + 0.125 / WARP);
     for n in [17, 33] {
-        let [sunk, speed] =
-            hung(&Arc::new(of_two_pieces(&irregular(n, 0.0), |at| at.y == 0.0)), CLOTH);
+        let fabric = Arc::new(of_two_pieces(&irregular(n, 0.0), |at| at.y == 0.0));
+        let [sunk, speed] = hung(&fabric, material);
         let error = sunk / expected - 1.0;
-        assert!(speed < 1e-3 && error.abs() < 0.05, "{n} × {n}: {error}, {speed} m/s");
+        assert!(speed < 1e-3 && error.abs() < 0.03, "{n} × {n}: {error}, {speed} m/s");
     }
+}
+
+/// A sheet with a slit of a millimetre from the middle of its lower edge up to its centre. It has laid yarns.
+fn with_a_slit(flat: &Fabric, is_pinned: fn(Vec3) -> bool) -> Fabric {
+    let count = flat.particle_count() as u32;
+    let n = libm::sqrtf(count as f32) as u32;
+    let middle = n / 2;
+    let in_slit = |vertex: u32| vertex % n == middle && vertex / n > middle;
+    let mut positions = flat.rest_positions().to_vec();
+    let mut other_side = Vec::new();
+    for vertex in (0..count).filter(|&vertex| in_slit(vertex)) {
+        positions[vertex as usize].x -= 5e-4;
+        other_side.push(flat.rest_positions()[vertex as usize] + Vec3::X * 5e-4);
+    }
+    positions.extend(other_side);
+    let mut indices = flat.triangles().to_vec();
+    for corners in &mut indices {
+        let is_right = corners.iter().any(|vertex| vertex % n > middle);
+        let opened = corners.iter_mut().filter(|vertex| is_right && in_slit(**vertex));
+        opened.for_each(|vertex| *vertex = count + *vertex / n - middle - 1);
+    }
+    let builder = FabricBuilder::new(positions, indices.into_flattened());
+    builder.pin_where(|at, _| is_pinned(at)).build().expect("a good fabric")
+}
+
+/// Both halves hang on their own: in a wind from the front the lower ends of the slit part.
+#[test]
+fn a_slit_is_not_sewn_up() {
+    let at_sides = |at: Vec3| at.y == 0.0 && (at.x - 0.5).abs() > 0.4;
+    let fabric = Arc::new(with_a_slit(&irregular(21, 0.0), at_sides));
+    let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
+    batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::FLAG_POLYESTER).expect("room");
+    batch.drive(0, Drive { wind: Vec3::Z * 4.0, ..Drive::default() }).expect("a lane");
+    for _ in 0..120 {
+        batch.step(TICK, StepLimits::default().of_fabric(&fabric, TICK, GRAVITY));
+    }
+    let at = batch.snapshot(0).positions;
+    let ends = fabric.rest_positions().iter().zip(&at);
+    let ends = ends.filter(|(rest, _)| rest.y == -1.0 && (rest.x - 0.5).abs() < 1e-3);
+    let ends: Vec<Vec3> = ends.map(|(_, at)| *at).collect();
+    assert!(ends.len() == 2 && ends[0].distance(ends[1]) > 0.02, "{ends:?}");
 }
 
 /// The families of yarns agree slowly. Without a first pass that goes farther the error was +7 %, with it −3 %.
 #[test]
 fn the_yarns_of_a_stiff_mesh_come_nearer_to_one_another_in_a_pass_that_goes_farther() {
     let expected = ISOTROPIC.area_density * GRAVITY / (2.0 * ISOTROPIC.weft_stiffness);
-    let fabric = Arc::new(of_two_pieces(&irregular(17, 0.0), |at| at.y == 0.0));
+    let fabric = Arc::new(with_a_slit(&irregular(17, 0.0), |at| at.y == 0.0));
     let [sunk, speed] = hung(&fabric, ISOTROPIC);
     let error = sunk / expected - 1.0;
     assert!(speed < 1e-3 && error.abs() < 0.05, "{error}, {speed} m/s");
@@ -270,7 +316,7 @@ fn a_closed_mesh_does_not_open_at_its_seam() {
 
 #[test]
 fn a_flag_without_a_background_grid_keeps_its_edges_in_wind() {
-    let fabric = Arc::new(of_two_pieces(&irregular(17, 0.0), |at| at.x == 0.0));
+    let fabric = Arc::new(with_a_slit(&irregular(17, 0.0), |at| at.x == 0.0));
     let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
     let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
     batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::FLAG_POLYESTER).expect("room");
@@ -328,7 +374,11 @@ fn a_curved_mesh_that_hangs_from_single_vertices_keeps_its_edges() {
 #[test]
 fn curved_meshes_with_any_border_sink_as_at_a_high_effort() {
     let flat = irregular(21, 0.0);
-    let fabrics = [("hole", bent(&with_a_hole(&flat), 0.3)), ("cap", cap(&flat))];
+    let fabrics = [
+        ("hole", bent(&with_a_hole(&flat), 0.3)),
+        ("closed with a hole", bent(&with_a_hole(&flat), CLOSED)),
+        ("cap", cap(&flat)),
+    ];
     for (name, fabric) in fabrics {
         let fabric = Arc::new(fabric);
         let mean = |settings: StepSettings| {
@@ -432,6 +482,8 @@ fn a_mesh_has_the_same_bits_at_every_width() {
         bent(&disk(&flat), 0.4),
         cap(&flat),
         of_two_pieces(&flat, |at| at.y == 0.0),
+        with_a_slit(&flat, |at| at.y == 0.0),
+        bent(&with_a_hole(&flat), CLOSED),
         ribbon(),
         bent(&flat, 0.3),
         bent_with(&irregular(12, 0.0), CLOSED, Vec::new()),
@@ -456,10 +508,12 @@ fn a_mesh_that_moves_to_another_batch_keeps_its_bits() {
     let holed = with_a_hole(&flat);
     let bent_holed = bent(&holed, 0.3);
     let pieces = of_two_pieces(&flat, |at| at.y == 0.0);
+    let slit = with_a_slit(&flat, |at| at.y == 0.0);
+    let closed_holed = bent(&holed, CLOSED);
     let (plane, bent) = (irregular(13, 0.0), bent(&flat, 0.3));
     let disk = disk(&flat);
-    let fabrics = [plane, holed, bent_holed, disk, cap(&flat), pieces, bent, untextured, funnel];
-    for fabric in fabrics.map(Arc::new) {
+    let curved = [cap(&flat), bent, bent_holed, closed_holed, untextured, funnel];
+    for fabric in [plane, holed, disk, pieces, slit].into_iter().chain(curved).map(Arc::new) {
         let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
         let wind = Vec3::new(6.0, 0.0, 4.0);
         let drive = || Drive { wind, ..Drive::default() };

@@ -160,6 +160,10 @@ fn closing(mobilities: &[f64], rows: &[BendRow<f64>], softness: f64) -> Vec<[f32
     let coupling = product(0, 1);
     let determinant = bend * distance - coupling * coupling;
     let [by_bend, by_distance] = &moved;
+    if softness.is_infinite() {
+        let apart = by_distance.iter().map(|by| [0.0, (by / distance) as f32]);
+        return apart.collect();
+    }
     let of_particle = |(by_bend, by_distance): (&f64, &f64)| {
         [
             ((by_bend * distance - by_distance * coupling) / determinant) as f32,

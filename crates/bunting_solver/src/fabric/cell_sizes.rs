@@ -11,6 +11,8 @@ pub(super) struct CellSizes {
     pub areas: Vec<f32>,
     /// Area of each cell, m².
     whole: Vec<f32>,
+    /// Whether the first and the last row are at one place.
+    is_closed: bool,
     /// Stiffness of each cell against twist, in units of the material's bending stiffness, 1/m².
     pub twists: Vec<f32>,
     /// Of each particle the mean distance of its neighbours in its row, and in its column, m, of those to which there is cloth.
@@ -62,6 +64,7 @@ impl CellSizes {
             twists: whole.iter().zip(parts).map(twist).collect(),
             areas: whole.iter().zip(parts).map(|(whole, part)| whole * part).collect(),
             whole,
+            is_closed,
             spacings,
             widths,
         }
@@ -74,7 +77,7 @@ impl CellSizes {
         self.particle_areas(grid).into_iter().zip(whole).map(part).collect()
     }
 
-    /// Area of each particle, m²: a quarter of the cloth in each cell that it borders.
+    /// Area of each particle, m²: a quarter of the cloth in each cell that it borders. Two at one place have half of it each.
     pub fn particle_areas(&self, grid: &Grid) -> Vec<f32> {
         self.quarters(grid, &self.areas)
     }
@@ -83,6 +86,14 @@ impl CellSizes {
         let mut areas = vec![0.0; self.spacings.len()];
         for ((corners, _), area) in grid.cells().zip(of_cells) {
             corners.into_iter().for_each(|at| areas[at as usize] += 0.25 * area);
+        }
+        if self.is_closed {
+            let count = areas.len();
+            let (first, last) = areas.split_at_mut(count - grid.columns as usize);
+            for (first, last) in first.iter_mut().zip(last) {
+                let mean = 0.5 * (*first + *last);
+                (*first, *last) = (mean, mean);
+            }
         }
         areas
     }

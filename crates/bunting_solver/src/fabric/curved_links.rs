@@ -1,5 +1,5 @@
-//! Links of a background grid whose lines are curved and unevenly far apart: each has the width of the cells beside it,
-//! and the moduli of the material along it.
+//! Links of a background grid whose lines are curved and unevenly far apart, or whose cells have different warps: each has the width
+//! of the cells beside it, and the moduli of the material along it.
 
 use std::collections::BTreeMap;
 
@@ -7,10 +7,20 @@ use super::grid::Grid;
 use super::links::{LEAST_STIFFNESS, LinkClass, LinkFamily, Links};
 use super::mesh::RestMesh;
 
+/// Least difference of cos² of the angle between rows and warp in two cells of pieces with different warps. Larger: links at seams
+/// shear as if they were cut on the bias.
+const UNLIKE_WARPS: f32 = 0.2;
+
 impl Links {
-    /// Links of a grid whose lines are curved, given how much of each cell is cloth, and cos² of the angle between
+    /// Links of a grid with cells of different warps, given how much of each cell is cloth, and cos² of the angle between
     /// its rows and the warp. A link along a line stands for half of each cell beside it.
-    pub fn of_curved_lines(mesh: &RestMesh, grid: &Grid, coverage: &[f32], warps: &[f32]) -> Self {
+    pub fn of_curved_lines(
+        mesh: &RestMesh,
+        grid: &Grid,
+        coverage: &[f32],
+        warps: &[f32],
+        is_closed: bool,
+    ) -> Self {
         let mut sums: BTreeMap<[u32; 2], CellSum> = BTreeMap::new();
         let cells = grid.cells().zip(coverage).zip(warps).filter(|((_, part), _)| **part > 0.0);
         for (((corners, _), &part), &warp) in cells {
@@ -30,8 +40,11 @@ impl Links {
                         LinkFamily::Diagonal => 0.5 * squared / area,
                         _ => 0.5 * area / squared,
                     };
-                sum.warps += warp;
-                sum.cells += 1.0;
+                // At seams, links have the warp of one piece: in between there would be cloth that is cut on the bias.
+                if sum.cells == 0.0 || (sum.warps / sum.cells - warp).abs() < UNLIKE_WARPS {
+                    sum.warps += warp;
+                    sum.cells += 1.0;
+                }
             };
             add([top_left, top_right], LinkFamily::Warp);
             add([bottom_left, bottom_right], LinkFamily::Warp);
@@ -41,7 +54,7 @@ impl Links {
             add([top_right, bottom_left], LinkFamily::Diagonal);
         }
         let links = sums.into_iter().map(|(ends, sum)| (ends, sum.class(), sum.family));
-        Self::of_classes(mesh, links)
+        Self::of_classes(mesh, links, Some(grid).filter(|_| is_closed))
     }
 }
 

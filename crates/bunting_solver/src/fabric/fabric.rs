@@ -94,7 +94,7 @@ impl Fabric {
             mesh.set_areas(grid.particle_areas());
             patches::quarter(&mut patches, grid);
         }
-        let links = Links::of(&mesh, grid.as_ref(), None, &surface.corner_uv);
+        let links = Links::of(&mesh, grid.as_ref(), None, &surface.corner_uv, false);
         // Only a grid is solved along its own links.
         let (yarns, laid_yarns) = match (&grid, &background) {
             (Some(_), _) => (Yarns::of(&mesh.positions, &links.list), LaidYarns::default()),
@@ -149,14 +149,14 @@ impl Fabric {
     fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
         let BackgroundMesh { grid, mut mesh, coverage, transfer, is_flat, .. } = background;
         let BackgroundMesh { is_cut, sizes, warps, are_alike, .. } = background;
+        let is_closed = !transfer.joined.is_empty();
         let links = match &warps {
-            Some(warps) => Links::of_curved_lines(&mesh, &grid, &coverage, warps),
-            None => Links::of(&mesh, Some(&grid), Some(&coverage), &[]),
+            Some(warps) => Links::of_curved_lines(&mesh, &grid, &coverage, warps, is_closed),
+            None => Links::of(&mesh, Some(&grid), Some(&coverage), &[], is_closed),
         };
         // In the chart all lines are straight.
         let yarns = Yarns::of(&grid.positions(), &links.list);
         let sizes = sizes.as_ref();
-        let is_closed = !transfer.joined.is_empty();
         let mut chains =
             Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid), is_closed);
         if !are_alike {

@@ -49,6 +49,23 @@ impl Grid {
             && steps.into_iter().all(|ends| ends[1] == ends[0] + self.columns)
     }
 
+    /// The pairs of neighbours in columns that no link joins, of the columns in which links join some.
+    pub(super) fn gaps_of_columns(&self, links: &[[u32; 2]]) -> Vec<[u32; 2]> {
+        let Self { columns, rows, .. } = *self;
+        let mut is_joined = vec![false; (columns * rows) as usize];
+        for &[one, other] in links {
+            if one.abs_diff(other) == columns {
+                is_joined[one.min(other) as usize] = true;
+            }
+        }
+        let starts = |column: u32| (0..rows - 1).map(move |row| self.index(column, row));
+        let is_joined = |start: &u32| is_joined[*start as usize];
+        let has_links =
+            (0..columns).filter(|&column| starts(column).any(|start| is_joined(&start)));
+        let gaps = has_links.flat_map(starts).filter(|start| !is_joined(start));
+        gaps.map(|start| [start, start + columns]).collect()
+    }
+
     /// The family of a link between two particles of a cell. Of two columns a diagonal joins consecutive particles, too.
     pub(super) fn family(&self, ends: [u32; 2]) -> LinkFamily {
         let [one, other] = ends.map(|end| (end % self.columns, end / self.columns));

@@ -68,6 +68,9 @@ pub(crate) struct LinkClass {
 }
 
 impl LinkClass {
+    /// Without stiffness.
+    const NONE: Self = Self { coefficients: [0.0; 3], floor: 0.0, warp_cos2: 1.0 };
+
     /// Stiffness of the link for a material, N/m, if diagonals resist stretch, too: with
     /// [`FabricMaterial::lattice_moduli`].
     pub fn stiffness(&self, material: &FabricMaterial) -> f32 {
@@ -130,12 +133,13 @@ impl Links {
     /// between two pinned particles moves nothing and is left out.
     ///
     /// `corner_uv` are the texture coordinates at the corners of the triangles of a mesh. `coverage` is the part of each
-    /// cell of a grid that is cloth: the cell has this part of the stiffness.
+    /// cell of a grid that is cloth: the cell has this part of the stiffness. The columns of a closed grid are whole.
     pub fn of(
         mesh: &RestMesh,
         grid: Option<&Grid>,
         coverage: Option<&[f32]>,
         corner_uv: &[[Vec2; 3]],
+        is_closed: bool,
     ) -> Self {
         let mut sums = BTreeMap::new();
         match grid {
@@ -163,18 +167,27 @@ impl Links {
             let family = background.map_or_else(|| sum.family(), |grid| grid.family(ends));
             (ends, sum.class(), family)
         });
-        Self::of_classes(mesh, links)
+        Self::of_classes(mesh, links, grid.filter(|_| is_closed))
     }
 
-    /// Links between particles, with their stiffnesses and families.
+    /// Links between particles, with their stiffnesses and families. The columns of a closed grid are whole: where a hole or pins
+    /// cut them, links without stiffness join their parts.
     pub(super) fn of_classes(
         mesh: &RestMesh,
         links: impl Iterator<Item = ([u32; 2], LinkClass, LinkFamily)>,
+        closed: Option<&Grid>,
     ) -> Self {
         let is_free = |ends: &[u32; 2]| !ends.iter().all(|&end| mesh.is_pinned(end));
+        let mut links: Vec<_> = links.filter(|(ends, ..)| is_free(ends)).collect();
+        if let Some(grid) = closed {
+            let all: Vec<[u32; 2]> = links.iter().map(|(ends, ..)| *ends).collect();
+            let missing = grid.gaps_of_columns(&all).into_iter();
+            links.extend(missing.map(|ends| (ends, LinkClass::NONE, LinkFamily::Weft)));
+            links.sort_unstable_by_key(|(ends, ..)| *ends);
+        }
         let mut table = Vec::new();
         let mut classes = Classes::new();
-        let links = links.filter(|(ends, ..)| is_free(ends)).map(|(particles, value, family)| {
+        let links = links.into_iter().map(|(particles, value, family)| {
             let [a, b, c] = value.coefficients;
             let (class, is_new) =
                 classes.class_of([a, b, c, value.floor, value.warp_cos2].map(rounded_bits));
@@ -195,7 +208,11 @@ impl Links {
 
     /// Length of the shortest link of warp and weft, m.
     pub fn shortest(&self) -> f32 {
-        let stretching = self.list.iter().filter(|link| link.family != LinkFamily::Diagonal);
+        let is_stretched = |link: &&Link| {
+            let class = &self.classes[link.class as usize];
+            link.family != LinkFamily::Diagonal && *class != LinkClass::NONE
+        };
+        let stretching = self.list.iter().filter(is_stretched);
         stretching.map(|link| link.rest_length).fold(f32::INFINITY, f32::min)
     }
 

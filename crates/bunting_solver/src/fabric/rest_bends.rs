@@ -10,7 +10,6 @@ use super::fabric::Fabric;
 use super::grid::Grid;
 use super::links::LinkFamily;
 use super::mesh::RestMesh;
-use super::yarns::Yarn;
 
 /// The second differences at rest of a grid's nodes.
 #[derive(Clone, Debug)]
@@ -72,13 +71,6 @@ impl Fabric {
     /// Whether the first and the last row of a background grid are at one place.
     pub(crate) fn is_closed(&self) -> bool {
         self.rest_bends().is_some_and(|rest| rest.is_closed)
-    }
-
-    /// Whether all yarns down the columns of a grid run from its first row to its last.
-    pub(crate) fn has_whole_columns(&self) -> bool {
-        let Some(grid) = self.grid() else { return false };
-        let is_down = |yarn: &&Yarn| yarn.particles[1] == yarn.particles[0] + grid.columns;
-        self.yarns().iter().filter(is_down).all(|yarn| grid.is_whole_column(yarn))
     }
 
     /// Length of a grid's diagonals at rest, m, the mean where it is curved there; zero of other meshes.

@@ -62,10 +62,6 @@ impl SingleMesh {
     pub fn of(fabric: &Arc<Fabric>) -> Option<Self> {
         let grid = &fabric.background()?.fabric;
         SingleCloth::<Pack8>::of(grid)?;
-        // Columns that are closed and others would lie in one pack.
-        if grid.is_closed() && !grid.has_whole_columns() {
-            return None;
-        }
         let particles = fabric.particle_count();
         let tethers = [fabric.far_tethers(), fabric.tethers()]
             .map(|tethers| TetherPacks::new(tethers, |at| locate(at as usize), |pack| pack as u32));

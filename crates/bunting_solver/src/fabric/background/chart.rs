@@ -42,6 +42,8 @@ pub(super) struct Chart {
     pub is_closed: bool,
     /// Three places for each triangle.
     pub triangles: Vec<[u32; 3]>,
+    /// The triangle of the mesh that each of them is.
+    pub of_mesh: Vec<u32>,
     /// cos² of the angle between the first axis and the warp.
     pub warp_cos2: f32,
     /// The plane of a flat mesh.
@@ -52,6 +54,8 @@ pub(super) struct Chart {
     pub warps: Vec<f32>,
     /// Of the mesh, m².
     pub area: f32,
+    /// Length of its border, m.
+    pub border: f32,
 }
 
 /// The plane of a flat mesh.
@@ -113,7 +117,7 @@ impl Chart {
         } else {
             Vec::new()
         };
-        Some(Self { particles, plane: None, warps, ..chart })
+        Some(Self { particles, plane: None, warps, border: border_length(mesh, surface), ..chart })
     }
 
     /// The chart of a flat mesh along its warp, or along the sides of its bounding rectangle if it fills that better.
@@ -128,6 +132,7 @@ impl Chart {
         let along = best.plane.as_ref().map_or(warp, |plane| plane.axes[0]);
         let warp_cos2 = along.dot(warp).powi(2).min(1.0);
         // Rounding does not turn a warp.
+        best.border = border_length(mesh, surface);
         best.warp_cos2 = if warp_cos2 > ALONG * ALONG { 1.0 } else { warp_cos2 };
         best
     }
@@ -151,11 +156,13 @@ impl Chart {
             own_places: mesh.positions.len(),
             is_closed: false,
             triangles: mesh.triangles.clone(),
+            of_mesh: (0..mesh.triangles.len() as u32).collect(),
             warp_cos2: 1.0,
             plane: Some(Plane { origin: height + axes[0] * low.x + axes[1] * low.y, axes }),
             extent: high - low,
             warps: Vec::new(),
             area,
+            border: 0.0,
         }
     }
 
@@ -163,9 +170,14 @@ impl Chart {
     pub fn grid(&self) -> Grid {
         let Vec2 { x: width, y: height } = self.extent;
         let spacing = self.spacing();
-        let count = |extent: f32| (extent / spacing).round().max(2.0) as u32;
         // The first row of a closed chart is there once more.
-        Grid::new(count(width), count(height) + u32::from(self.is_closed), width, height)
+        let nodes = |extent: f32| (extent / spacing).round().max(1.0) as u32 + 1;
+        Grid::new(nodes(width), nodes(height), width, height)
+    }
+
+    /// Number of triangles of the mesh.
+    pub fn triangle_count(&self) -> usize {
+        self.of_mesh.iter().map(|&triangle| triangle as usize + 1).max().unwrap_or(0)
     }
 
     /// Whether some particles have two places.
@@ -175,10 +187,12 @@ impl Chart {
         particles.windows(2).any(|two| two[0] == two[1])
     }
 
-    /// Spacing of the grid, m: N particles of an area A are in rows and columns, of which those on the border stand for
-    /// half cells.
+    /// Spacing h of the grid, m. In a square lattice with a border of length L, area A has N = A/h² + L/2h + 1 vertices, by
+    /// Pick's theorem, and one fewer where it is closed around an axis.
     pub(super) fn spacing(&self) -> f32 {
-        (self.area / self.own_places as f32).sqrt()
+        let vertices = self.own_places as f32 - if self.is_closed { 0.0 } else { 1.0 };
+        let quarter = 0.25 * self.border;
+        (quarter + (quarter * quarter + vertices * self.area).sqrt()) / vertices
     }
 }
 
@@ -206,6 +220,12 @@ fn plane_normal(mesh: &RestMesh) -> Option<Vec3> {
     let is_flat = mesh.positions.iter().all(|&at| (at - first).dot(normal).abs() < FLAT * extent);
     let is_front = mesh.triangles.iter().all(|triangle| scaled(triangle).dot(normal) > 0.0);
     (is_flat && is_front).then_some(normal)
+}
+
+/// Length of a mesh's border, m.
+pub(super) fn border_length(mesh: &RestMesh, surface: &Surface) -> f32 {
+    let border = surface.edges.iter().filter(|edge| edge.other_side.is_none());
+    border.map(|edge| mesh.positions_of(edge.ends)).map(|[a, b]| a.distance(b)).sum()
 }
 
 /// The warps of a mesh's triangles that have texture, times their areas.

@@ -84,6 +84,7 @@ impl Chart {
             positions: Vec::new(),
             particles: Vec::new(),
             triangles: Vec::new(),
+            of_mesh: Vec::new(),
             own_places: own.len(),
             is_closed: true,
             extent: Vec2::new(high - low, length),
@@ -100,7 +101,7 @@ impl Chart {
             place(particle, 0);
         });
         let beyond = REPEATED * spacing;
-        for corners in &self.triangles {
+        for (corners, &of_mesh) in self.triangles.iter().zip(&self.of_mesh) {
             let particles = corners.map(|corner| self.particles[corner as usize]);
             let turns = [0, 1, 2].map(|at| {
                 let laid = self.positions[corners[at] as usize].y;
@@ -114,6 +115,7 @@ impl Chart {
                 {
                     let repeated = [0, 1, 2].map(|at| place(particles[at], turns[at]));
                     wrapped.triangles.push(repeated);
+                    wrapped.of_mesh.push(of_mesh);
                 }
             }
         }

@@ -4,11 +4,9 @@
 //! mesh hang by the cells that they share with it; those that share none do not move.
 
 use super::chart::Chart;
-use super::coverage::Coverage;
 use super::interpolation::{Interpolation, Term};
 use super::smooth::{PLANE, PlacesInCells, QUADRATIC, fit, sum_of_magnitudes};
 use crate::fabric::grid::Grid;
-use crate::fabric::topology::Edge;
 
 /// Radius around a node outside the mesh within which a plane is fitted to the places there, in cells: the first that is
 /// tried. Each further one is twice as large. Smaller: fits to few places.
@@ -22,78 +20,6 @@ const MOST_TERMS: usize = 24;
 
 /// Greatest sum of the magnitudes of the weights of a fit. Larger: a node moves by many times what the particles move by.
 const GREATEST_SUM: f32 = 12.0;
-
-/// Least part of the grid's cells with cloth. Smaller: most nodes cost time for nothing.
-const LEAST_FILLED: f32 = 0.45;
-
-/// How much farther than the cells around a node the ways between the triangles in these may run, in cells. Smaller: ragged borders
-/// count as slits. Larger: short slits are closed.
-const FARTHER: u32 = 1;
-
-/// Whether a mesh can have a grid that it does not fill: what of it lies in the cells around a node hangs together in them and
-/// in the next ones. The two sides of a slit would hang together by the nodes between them.
-pub(super) fn is_whole(chart: &Chart, coverage: &Coverage, grid: &Grid, edges: &[Edge]) -> bool {
-    // The two sides of a seam would not hang together.
-    if chart.is_closed || chart.has_seam() {
-        return false;
-    }
-    let with_cloth = coverage.has_cloth.iter().filter(|has_cloth| **has_cloth).count();
-    if (with_cloth as f32) < LEAST_FILLED * coverage.parts.len() as f32 {
-        return false;
-    }
-    let neighbours = neighbours(chart.triangles.len(), edges);
-    let is_at_border = |triangle: &u32| neighbours[*triangle as usize].len() < 3;
-    let has_border: Vec<bool> =
-        coverage.triangles.iter().map(|triangles| triangles.iter().any(is_at_border)).collect();
-    let cells_within = |(column, row): (u32, u32), reach: u32| {
-        let around = |at: u32, count: u32| at.saturating_sub(reach)..(at + reach).min(count - 1);
-        let columns = around(column, grid.columns);
-        around(row, grid.rows).flat_map(move |row| {
-            columns.clone().map(move |column| (row * (grid.columns - 1) + column) as usize)
-        })
-    };
-    let triangles_within = |place: (u32, u32), reach: u32| {
-        let cells = cells_within(place, reach);
-        let mut triangles: Vec<u32> =
-            cells.flat_map(|cell| &coverage.triangles[cell]).copied().collect();
-        triangles.sort_unstable();
-        triangles.dedup();
-        triangles
-    };
-    let mut is_near = vec![false; neighbours.len()];
-    let mut places = (0..grid.rows).flat_map(|row| (0..grid.columns).map(move |at| (at, row)));
-    places.all(|place| {
-        if !cells_within(place, 1 + FARTHER).any(|cell| has_border[cell]) {
-            return true;
-        }
-        let around = triangles_within(place, 1);
-        let Some(&first) = around.first() else { return true };
-        let near = triangles_within(place, 1 + FARTHER);
-        near.iter().for_each(|&triangle| is_near[triangle as usize] = true);
-        let mut next = vec![first];
-        while let Some(triangle) = next.pop() {
-            if core::mem::replace(&mut is_near[triangle as usize], false) {
-                next.extend(&neighbours[triangle as usize]);
-            }
-        }
-        let is_whole = !around.iter().any(|&triangle| is_near[triangle as usize]);
-        near.iter().for_each(|&triangle| is_near[triangle as usize] = false);
-        is_whole
-    })
-}
-
-/// The triangles beside each triangle.
-fn neighbours(triangles: usize, edges: &[Edge]) -> Vec<Vec<u32>> {
-    let mut neighbours = vec![Vec::new(); triangles];
-    for edge in edges {
-        if let Some(other) = edge.other_side {
-            let [one, other] = [edge.side.triangle, other.triangle];
-            neighbours[one as usize].push(other);
-            neighbours[other as usize].push(one);
-        }
-    }
-    neighbours
-}
 
 /// The rows, and where they are empty those of fits to the free places nearby, as pins have no velocity of their own: of a plane,
 /// and on curved meshes of a quadratic, as nodes on tangents would lie off the surface. Where free places determine no fit, pins

@@ -8,6 +8,7 @@ use super::chart::{Chart, node_positions};
 use super::coverage::Coverage;
 use super::interpolation::{Interpolation, nodes_from_particles};
 use super::on_chart::OnChart;
+use super::whole::is_whole;
 use super::{coverage, cut, moved, smooth};
 
 /// The nodes of a grid on a chart.
@@ -20,6 +21,8 @@ pub(super) struct LaidNodes {
     pub is_outside: Vec<bool>,
     /// The part of each cell that counts as cloth.
     pub parts: Vec<f32>,
+    /// The triangles of the chart in each cell.
+    pub triangles: Vec<Vec<u32>>,
     /// Whether there is cloth in each cell.
     pub cells_with_cloth: Vec<bool>,
     /// Whether there is cloth around each node.
@@ -53,7 +56,7 @@ impl LaidNodes {
         pins: &BTreeMap<u32, u32>,
     ) -> Option<Self> {
         let Chart { positions, triangles, .. } = chart;
-        if !coverage.is_filled && !cut::is_whole(chart, &coverage, grid, &surface.edges) {
+        if !is_whole(chart, &coverage, grid, &surface.edges) {
             return None;
         }
         let mut rows = nodes_from_particles(positions, triangles, grid);
@@ -70,9 +73,17 @@ impl LaidNodes {
         let mut has_cloth = vec![false; (grid.columns * grid.rows) as usize];
         let cells = grid.cells().zip(&coverage.has_cloth).filter(|(_, has_cloth)| **has_cloth);
         cells.flat_map(|((corners, _), _)| corners).for_each(|at| has_cloth[at as usize] = true);
+        if chart.is_closed {
+            // The first and the last row are at one place.
+            let (first, last) = has_cloth.split_at_mut(((grid.rows - 1) * grid.columns) as usize);
+            for (first, last) in first.iter_mut().zip(last) {
+                let has = *first || *last;
+                (*first, *last) = (has, has);
+            }
+        }
         let is_any_outside = is_outside.contains(&true);
         if is_any_outside {
-            if chart.is_closed || chart.has_seam() {
+            if chart.has_seam() {
                 return None;
             }
             rows = cut::extrapolated(rows, chart, is_free, &has_cloth, grid)?;
@@ -83,6 +94,7 @@ impl LaidNodes {
             has_cloth,
             cells_with_cloth: coverage.has_cloth,
             parts: coverage.parts,
+            triangles: coverage.triangles,
             are_cut: is_any_outside || !coverage.is_filled,
             is_outside,
             are_moved: !pins.is_empty(),

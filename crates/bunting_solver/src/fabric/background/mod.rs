@@ -28,12 +28,14 @@ mod laplacian;
 mod mapped;
 mod moved;
 mod on_chart;
+mod pieces;
 mod smooth;
 #[cfg(test)]
 mod tests;
 mod texture;
 mod unfold;
 mod warps;
+mod whole;
 
 use glam::{Mat3, Vec2, Vec3};
 
@@ -107,7 +109,7 @@ pub(super) struct BackgroundMesh {
     pub sizes: Option<CellSizes>,
     /// cos² of the angle between the rows and the warp.
     pub warp_cos2: f32,
-    /// cos² of the angle between the rows and the warp in each cell, where lines of nodes are curved.
+    /// cos² of the angle between the rows and the warp in each cell, where lines of nodes are curved, or the texture has pieces.
     pub warps: Option<Vec<f32>>,
     /// Whether the nodes lie in a plane at rest, and are evenly spaced.
     pub is_flat: bool,
@@ -124,20 +126,23 @@ impl BackgroundMesh {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
         }
-        let on_chart = |chart: Chart| OnChart::of(mesh, surface, chart);
-        let straight = Chart::of(mesh, surface).and_then(on_chart);
+        let of_largest = pieces::of_largest_piece(mesh, surface);
+        let laid = of_largest.as_ref().unwrap_or(surface);
+        let of_pieces = of_largest.as_ref().map(|_| surface);
+        let on_chart = |chart: Chart| OnChart::of(mesh, laid, of_pieces, chart);
+        let straight = Chart::of(mesh, laid).and_then(on_chart);
         let fills = |on: &&OnChart| on.coverage.is_filled && on.chart.warps.is_empty();
-        let mapped = || Chart::mapped(mesh, surface).and_then(on_chart);
+        let mapped = || Chart::mapped(mesh, laid).and_then(on_chart);
         let found = straight.as_ref().filter(fills).and_then(OnChart::background);
         found
             .or_else(|| mapped().filter(|on| on.coverage.is_filled)?.background())
             .or_else(|| straight.as_ref().filter(|on| !fills(on))?.background())
-            .or_else(|| on_chart(Chart::without_seams(mesh, surface)?)?.background())
+            .or_else(|| on_chart(Chart::without_seams(mesh, laid)?)?.background())
     }
 
     /// The grid of a mesh on a chart, given its nodes; none if its cells are too unlike one another.
-    fn on(chart: &OnChart, mut laid: LaidNodes) -> Option<Self> {
-        let OnChart { mesh, chart, grid, is_free, .. } = chart;
+    fn on(on: &OnChart, mut laid: LaidNodes) -> Option<Self> {
+        let OnChart { mesh, chart, grid, is_free, .. } = on;
         let (grid, mut has_row) = (*grid, is_free.clone());
         has_row[chart.own_places..].fill(false);
         let mut particles = particles_from_nodes(&chart.positions, &has_row, &grid, &laid);
@@ -187,13 +192,18 @@ impl BackgroundMesh {
         for rows in [first, particles, means, held] {
             *rows = core::mem::take(rows).grouped();
         }
+        let warps = match on.of_pieces {
+            Some(surface) => Some(pieces::warps_of_cells(on, surface, &laid.triangles)),
+            None => has_curved_lines.then(|| warps_of_cells(&transfer.nodes, &chart.warps, &grid)),
+        };
         Some(Self {
-            warps: has_curved_lines.then(|| warps_of_cells(&transfer.nodes, &chart.warps, &grid)),
+            // Those of cells hold where there are some.
+            warp_cos2: if warps.is_some() { 1.0 } else { chart.warp_cos2 },
+            warps,
             mesh: nodes,
             is_cut: laid.are_cut,
             coverage: laid.parts,
             sizes,
-            warp_cos2: chart.warp_cos2,
             are_alike: !has_curved_lines && !laid.are_moved,
             is_flat,
             transfer,

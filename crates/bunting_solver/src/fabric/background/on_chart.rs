@@ -12,6 +12,8 @@ use crate::fabric::mesh::{RestMesh, Surface};
 pub(super) struct OnChart<'a> {
     pub mesh: &'a RestMesh,
     pub surface: &'a Surface,
+    /// The surface with its whole texture, if that has pieces with different warps.
+    pub of_pieces: Option<&'a Surface>,
     pub chart: Chart,
     pub grid: Grid,
     /// Whether the particle at each place of the chart is free.
@@ -22,11 +24,16 @@ pub(super) struct OnChart<'a> {
 
 impl<'a> OnChart<'a> {
     /// None if the mesh overlaps itself.
-    pub fn of(mesh: &'a RestMesh, surface: &'a Surface, chart: Chart) -> Option<Self> {
+    pub fn of(
+        mesh: &'a RestMesh,
+        surface: &'a Surface,
+        of_pieces: Option<&'a Surface>,
+        chart: Chart,
+    ) -> Option<Self> {
         let grid = chart.grid();
         let coverage = coverage::once(&chart.positions, &chart.triangles, &grid, None)?;
         let is_free = chart.particles.iter().map(|&at| !mesh.is_pinned(at)).collect();
-        Some(Self { mesh, surface, chart, grid, is_free, coverage })
+        Some(Self { mesh, surface, of_pieces, chart, grid, is_free, coverage })
     }
 
     /// The grid of the mesh; none if it does not hold the mesh where its pins do. Some nodes are moved to pins if these lie

@@ -130,6 +130,16 @@ fn cylinder(n: u32) -> FabricBuilder {
     FabricBuilder::new(positions, triangles).weld_distance(1e-4)
 }
 
+/// The cylinder with its lower half cut open along the line where its sides meet.
+fn slit_cylinder(n: u32) -> FabricBuilder {
+    let whole = cylinder(n);
+    let mut positions = whole.positions().to_vec();
+    for row in n / 2..n {
+        positions[(row * n) as usize] += Vec3::X * 1e-3;
+    }
+    FabricBuilder::new(positions, whole.indices().to_vec()).weld_distance(1e-4)
+}
+
 #[test]
 fn edges_that_zigzag_take_no_more_effort_than_a_grid() {
     let grid = Grid::new(12, 12, 1.0, 1.0);
@@ -150,6 +160,8 @@ fn edges_that_zigzag_take_no_more_effort_than_a_grid() {
 fn a_closed_mesh_has_a_grid_around_its_axis() {
     let fabric = cylinder(25).build().expect("a good fabric");
     let background = fabric.background().expect("it can be unfolded");
+    let grid = background.fabric.grid().expect("a grid");
+    assert_eq!([grid.columns, grid.rows], [25, 25], "one node at each vertex");
     let transfer = &background.transfer;
     let nodes = background.fabric.rest_positions();
     assert_eq!(transfer.joined.len(), 25);
@@ -161,6 +173,21 @@ fn a_closed_mesh_has_a_grid_around_its_axis() {
     }
     let mass: f32 = transfer.moved_areas.iter().sum();
     assert!((mass / fabric.area() - 1.0).abs() < 1e-3, "{mass}");
+}
+
+/// Nodes lie on the vertices of a mesh in rows and columns, whatever its sides.
+#[test]
+fn the_grid_of_a_regular_mesh_is_its_own() {
+    for (columns, rows) in [(12, 12), (31, 11), (9, 40)] {
+        let own = Grid::new(columns, rows, (columns - 1) as f32 * 0.1, (rows - 1) as f32 * 0.1);
+        let mesh = FabricBuilder::new(own.positions(), own.triangles(true).into_flattened());
+        let fabric = mesh.build().expect("a good fabric");
+        let nodes = &fabric.background().expect("a flat mesh has a grid").fabric;
+        let near =
+            |node: &Vec3| own.positions().iter().map(|at| at.distance(*node)).fold(1.0, f32::min);
+        assert_eq!(nodes.particle_count(), own.positions().len());
+        assert!(nodes.rest_positions().iter().all(|node| near(node) < 1e-4), "{columns} × {rows}");
+    }
 }
 
 fn bent_disk() -> FabricBuilder {
@@ -229,6 +256,7 @@ fn meshes_that_are_no_charts_keep_their_own_chains() {
     assert!(has_grid(sheet(22)) && kept.len() < sheet(22).indices().len());
     let with_slit = FabricBuilder::new(sheet(22).positions().to_vec(), kept);
     assert!(!has_grid(with_slit.repair().expect("a mesh").0), "a slit");
+    assert!(!has_grid(slit_cylinder(25)), "a narrow slit across the seam of a closed grid");
     assert!(has_grid(bent_disk()), "curved, with nodes outside");
     assert!(!has_grid(FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0))), "a grid");
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use glam::{Vec2, Vec3};
 
-use super::chart::Chart;
+use super::chart::{Chart, border_length};
 use crate::fabric::mesh::{RestMesh, Surface};
 
 /// Greatest square of a length in the cloth over that in the texture, and one over the least, both in units of the
@@ -85,12 +85,14 @@ impl Chart {
             own_places: particles.len(),
             is_closed: false,
             particles,
+            of_mesh: (0..triangles.len() as u32).collect(),
             triangles,
             warp_cos2: 1.0,
             plane: None,
             extent: (high - low) * scale,
             warps: Vec::new(),
             area: surface.triangle_areas.iter().sum(),
+            border: border_length(mesh, surface),
         })
     }
 }

@@ -13,7 +13,7 @@ mod regular;
 use glam::{DMat4, DVec3, DVec4, Vec2, Vec3};
 
 use self::border::{Sides, sides};
-use super::chart::Chart;
+use super::chart::{Chart, border_length};
 use super::gradient_fit::GradientFit;
 use super::warps::warps_of_rows;
 use crate::fabric::mesh::{RestMesh, Surface};
@@ -99,10 +99,12 @@ impl Chart {
             own_places: cut.particles.len(),
             particles: cut.particles,
             is_closed: false,
+            of_mesh: (0..cut.triangles.len() as u32).collect(),
             triangles: cut.triangles,
             warp_cos2: 1.0,
             plane: None,
             area: extent.element_product(),
+            border: border_length(mesh, surface),
             extent,
         }))
     }

@@ -1,0 +1,101 @@
+//! Whether a grid holds together only what hangs together in its mesh.
+//!
+//! The two sides of a slit hang by the same nodes where these lie between them: the grid would sew the slit up.
+
+use super::chart::Chart;
+use super::coverage::Coverage;
+use crate::fabric::grid::Grid;
+use crate::fabric::topology::Edge;
+
+/// Least part of the grid's cells with cloth. Smaller: most nodes cost time for nothing.
+const LEAST_FILLED: f32 = 0.45;
+
+/// How much farther than the cells around a node the ways between the triangles in these may run, in cells. Smaller: ragged borders
+/// count as slits. Larger: short slits are closed.
+const FARTHER: i64 = 1;
+
+/// No triangle.
+const NONE: u32 = u32::MAX;
+
+/// Whether what of a mesh lies in the cells around each node hangs together in them and in the next ones.
+pub(super) fn is_whole(chart: &Chart, coverage: &Coverage, grid: &Grid, edges: &[Edge]) -> bool {
+    if chart.has_seam() {
+        // The two sides of a seam hang together, but not in the grid.
+        return coverage.is_filled;
+    }
+    let with_cloth = coverage.has_cloth.iter().filter(|has_cloth| **has_cloth).count();
+    if (with_cloth as f32) < LEAST_FILLED * coverage.parts.len() as f32 {
+        return false;
+    }
+    let neighbours = neighbours(chart.triangle_count(), edges);
+    let is_at_border = |&triangle: &u32| neighbours[triangle as usize].contains(&NONE);
+    let in_cells = coverage.triangles.iter().map(|triangles| {
+        let of_mesh = |&triangle: &u32| chart.of_mesh[triangle as usize];
+        triangles.iter().map(of_mesh).collect::<Vec<u32>>()
+    });
+    let in_cells: Vec<Vec<u32>> = in_cells.collect();
+    let has_border: Vec<bool> =
+        in_cells.iter().map(|triangles| triangles.iter().any(is_at_border)).collect();
+    let around = Around { grid, is_closed: chart.is_closed };
+    let mut is_near = vec![false; neighbours.len()];
+    let (mut next, mut near) = (Vec::new(), Vec::new());
+    (0..grid.columns * grid.rows).all(|node| {
+        if !around.cells(node, 1 + FARTHER).any(|cell| has_border[cell]) {
+            return true;
+        }
+        let triangles = |reach| around.cells(node, reach).flat_map(|cell| &in_cells[cell]).copied();
+        let Some(first) = triangles(1).next() else { return true };
+        near.clear();
+        near.extend(triangles(1 + FARTHER));
+        near.iter().for_each(|&triangle| is_near[triangle as usize] = true);
+        next.push(first);
+        while let Some(triangle) = next.pop() {
+            if core::mem::replace(&mut is_near[triangle as usize], false) {
+                next.extend(neighbours[triangle as usize].into_iter().filter(|it| *it != NONE));
+            }
+        }
+        let is_whole = !triangles(1).any(|triangle| is_near[triangle as usize]);
+        near.iter().for_each(|&triangle| is_near[triangle as usize] = false);
+        is_whole
+    })
+}
+
+/// The cells around the nodes of a grid.
+struct Around<'a> {
+    grid: &'a Grid,
+    /// Whether the cells of the last row are beside those of the first.
+    is_closed: bool,
+}
+
+impl Around<'_> {
+    /// The cells up to so many columns and rows from a node.
+    fn cells(&self, node: u32, reach: i64) -> impl Iterator<Item = usize> {
+        let [columns, rows] = [self.grid.columns, self.grid.rows].map(i64::from);
+        let [column, row] = [node % self.grid.columns, node / self.grid.columns].map(i64::from);
+        let (columns, rows) = (columns - 1, rows - 1);
+        let is_closed = self.is_closed;
+        let lines = (row - reach..row + reach).filter_map(move |line| {
+            let is_within = (0..rows).contains(&line);
+            (is_within || is_closed).then(|| line.rem_euclid(rows))
+        });
+        let within = (column - reach).max(0)..(column + reach).min(columns);
+        lines.flat_map(move |line| within.clone().map(move |at| (line * columns + at) as usize))
+    }
+}
+
+/// The triangles beside each triangle; [`NONE`] at the border.
+fn neighbours(triangles: usize, edges: &[Edge]) -> Vec<[u32; 3]> {
+    let mut neighbours = vec![[NONE; 3]; triangles];
+    let mut add = |to: u32, other: u32| {
+        if let Some(free) = neighbours[to as usize].iter_mut().find(|it| **it == NONE) {
+            *free = other;
+        }
+    };
+    for edge in edges {
+        if let Some(other) = edge.other_side {
+            add(edge.side.triangle, other.triangle);
+            add(other.triangle, edge.side.triangle);
+        }
+    }
+    neighbours
+}
