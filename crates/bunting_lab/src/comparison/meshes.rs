@@ -57,7 +57,7 @@ pub struct MeshRow {
     pub rms_error_m: f64,
 }
 
-/// The grid and three meshes of as many particles; those of two pieces have laid yarns.
+/// The grid and three meshes of as many particles; that with a slit has laid yarns.
 fn specimens(scene: &Scene) -> [(&'static str, Arc<Fabric>); 4] {
     let at_top = |at: Vec3| at.y == 0.0;
     let sheet = |triangulation| Sheet::new(triangulation, [SIZE; 2], DVec2::ONE, 1);
@@ -65,7 +65,7 @@ fn specimens(scene: &Scene) -> [(&'static str, Arc<Fabric>); 4] {
         ("grid", fabric(scene)),
         ("Delaunay", sheet(Triangulation::Delaunay).fabric(0.0, at_top)),
         ("random quads", sheet(Triangulation::Quads).fabric(0.0, at_top)),
-        ("two pieces", sheet(Triangulation::Quads).of_two_pieces(at_top)),
+        ("with a slit", sheet(Triangulation::Quads).with_slit().fabric(0.0, at_top)),
     ]
 }
 

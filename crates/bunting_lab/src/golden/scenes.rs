@@ -33,12 +33,14 @@ pub struct GoldenScene {
 }
 
 /// Every scene.
-pub const ALL: [GoldenScene; 8] = [
+pub const ALL: [GoldenScene; 10] = [
     alone("flag on a vehicle", flag_on_a_vehicle),
     alone("stiff sheet by two corners", stiff_sheet),
     alone("mesh with a hole in wind", mesh_in_wind),
     alone("bent mesh with a hole in wind", bent_mesh_in_wind),
     alone("mesh of two pieces in wind", two_pieces_in_wind),
+    alone("closed mesh with a hole in wind", closed_mesh_in_wind),
+    alone("ball of cloth in wind", ball_in_wind),
     alone("Gauss–Seidel curtain on a ball", gauss_seidel),
     alone("free sheet on a floor, level changes", free_sheet),
     GoldenScene { name: "eight flags through the plugin", run: plugin, is_in_pool: true },
@@ -178,7 +180,7 @@ fn bent_mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
     in_wind(bent.pin_where(|at, _| at.x == 0.0), lanes, ticks)
 }
 
-/// The same mesh of two pieces with warps at right angles, which has yarns laid across its triangles.
+/// The same mesh of two pieces with warps at right angles.
 fn two_pieces_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
     let whole = holed_mesh();
     let corners: Vec<Vec3> =
@@ -189,6 +191,45 @@ fn two_pieces_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
     });
     let pieces = FabricBuilder::new(corners.clone(), (0..corners.len() as u32).collect());
     in_wind(pieces.uv(uv.collect()).pin_where(|at, _| at.x == 0.0), lanes, ticks)
+}
+
+/// The same mesh rolled up until its sides meet.
+fn closed_mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
+    let flat = holed_mesh();
+    let radius = 1.2 / core::f32::consts::TAU;
+    let around = |at: &Vec3| {
+        let (sin, cos) = libm::sincosf(at.x / radius);
+        Vec3::new(radius * sin, at.y, radius * cos)
+    };
+    let positions = flat.positions().iter().map(around).collect();
+    let closed = FabricBuilder::new(positions, flat.indices().to_vec()).weld_distance(1e-4);
+    in_wind(closed.pin_where(|at, _| at.y == 0.0), lanes, ticks)
+}
+
+/// A ball without any opening: yarns are laid across its triangles.
+fn ball_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
+    const RINGS: u32 = 12;
+    const AROUND: u32 = 24;
+    let place = |ring: u32, at: u32| {
+        let (out, up) = libm::sincosf(core::f32::consts::PI * ring as f32 / RINGS as f32);
+        let (sin, cos) = libm::sincosf(core::f32::consts::TAU * at as f32 / AROUND as f32);
+        Vec3::new(out * cos, up, -out * sin) * 0.4
+    };
+    let rings = (1..RINGS).flat_map(|ring| (0..AROUND).map(move |at| place(ring, at)));
+    let positions = rings.chain([place(0, 0), place(RINGS, 0)]).collect();
+    let [top, bottom] = [0, 1].map(|pole| (RINGS - 1) * AROUND + pole);
+    let vertex = |ring: u32, at: u32| (ring - 1) * AROUND + at % AROUND;
+    let mut indices = Vec::new();
+    for at in 0..AROUND {
+        indices.extend([top, vertex(1, at), vertex(1, at + 1)]);
+        for ring in 1..RINGS - 1 {
+            let [a, b] = [vertex(ring, at), vertex(ring, at + 1)];
+            let [c, d] = [vertex(ring + 1, at), vertex(ring + 1, at + 1)];
+            indices.extend([a, c, b, b, c, d]);
+        }
+        indices.extend([bottom, vertex(RINGS - 1, at + 1), vertex(RINGS - 1, at)]);
+    }
+    in_wind(FabricBuilder::new(positions, indices).pin_where(|at, _| at.y > 0.39), lanes, ticks)
 }
 
 fn in_wind(mesh: FabricBuilder, lanes: LaneCount, ticks: u32) -> u64 {

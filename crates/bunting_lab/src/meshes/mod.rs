@@ -163,6 +163,62 @@ impl Sheet {
         FabricBuilder::new(corners, indices)
     }
 
+    /// The sheet with a slit a thousandth as wide as the sheet is high, along edges of triangles from the middle of its lower side to
+    /// its centre.
+    #[must_use]
+    pub fn with_slit(&self) -> Self {
+        let Self { mut positions, mut indices } = self.clone();
+        let height = -self.positions.iter().map(|at| at.y).fold(0.0, f32::min);
+        let slit = self.path_up(height);
+        if slit.len() < 2 {
+            return self.clone();
+        }
+        let places: Vec<Vec3> = slit.iter().map(|&at| self.positions[at as usize]).collect();
+        // The place of the slit at a height.
+        let middle = |y: f32| {
+            let piece = places.windows(2).find(|ends| y <= ends[1].y);
+            let (from, to) = piece.map_or((places[0], places[1]), |ends| (ends[0], ends[1]));
+            from.x + (to.x - from.x) * (y - from.y) / (to.y - from.y)
+        };
+        let opened = &slit[..slit.len() - 1];
+        let first = positions.len() as u32;
+        let gap = Vec3::X * (5e-4 * height);
+        for &vertex in opened {
+            let at = positions[vertex as usize];
+            positions.push(at + gap);
+            positions[vertex as usize] = at - gap;
+        }
+        for corners in indices.chunks_exact_mut(3) {
+            let centre = corners.iter().map(|&at| self.positions[at as usize]).sum::<Vec3>() / 3.0;
+            for corner in corners {
+                let in_slit = opened.iter().position(|at| at == corner);
+                if let Some(at) = in_slit.filter(|_| centre.x > middle(centre.y)) {
+                    *corner = first + at as u32;
+                }
+            }
+        }
+        Self { positions, indices }
+    }
+
+    /// Vertices from the middle of the lower side up to the centre, each joined to the next by an edge.
+    fn path_up(&self, height: f32) -> Vec<u32> {
+        let width = self.positions.iter().map(|at| at.x).fold(0.0, f32::max);
+        let centre = Vec3::new(0.5 * width, -0.5 * height, 0.0);
+        let place = |vertex: u32| self.positions[vertex as usize];
+        let nearest = |vertices: &mut dyn Iterator<Item = u32>, to: Vec3| {
+            vertices.min_by(|a, b| place(*a).distance(to).total_cmp(&place(*b).distance(to)))
+        };
+        let count = self.positions.len() as u32;
+        let start = nearest(&mut (0..count), centre.with_y(-height));
+        let next = |&from: &u32| {
+            let beside = self.indices.chunks_exact(3).filter(|corners| corners.contains(&from));
+            let above = |vertex: &u32| place(*vertex).y > place(from).y;
+            let mut above = beside.flatten().copied().filter(above);
+            nearest(&mut above, centre).filter(|vertex| place(*vertex).y < centre.y)
+        };
+        std::iter::successors(start, next).collect()
+    }
+
     /// The positions of a sheet of a metre drawn out to a disk about the origin, of a radius, m.
     #[must_use]
     pub fn round(&self, radius: f32) -> Vec<Vec3> {

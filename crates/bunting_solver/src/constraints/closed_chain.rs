@@ -40,7 +40,6 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             // Each end has half of the mass there.
             let seam_mass = half * particles.inverse_mass::<L>(token, first[at]);
             let closing = seam - particles.position(token, before_end[at]);
-            let is_marked = zero.lt(L::load(token, &rows[last][at].unknown));
 
             // Forwards over all links but the closing one.
             let (mut from, mut mass, mut before) = (seam, seam_mass, closing);
@@ -116,6 +115,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             let one = particles.one_if_linked::<L>(token, class);
             let row = &mut rows[last][at];
             let one = if pass == Pass::Overlong { one * L::load(token, &row.unknown) } else { one };
+            let is_solved = zero.lt(one);
             let of_closing = one * right / diagonal;
             closing.store(&mut row.along);
             of_closing.store(&mut row.unknown);
@@ -148,13 +148,9 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 next_tension = tension;
             }
             let moved = seam.plus_scaled(closing_tension - next_tension, seam_mass);
-            let (mut at_start, mut at_end) = (moved, moved);
-            if pass == Pass::Overlong {
-                at_start = moved.or_where_not(is_marked, start);
-                at_end = moved.or_where_not(is_marked, opposite);
-            }
-            particles.set_position(token, first[at], at_start);
-            particles.set_position(token, end[at], at_end);
+            // Lanes without a chain hold particles of other rows.
+            particles.set_position(token, first[at], moved.or_where_not(is_solved, start));
+            particles.set_position(token, end[at], moved.or_where_not(is_solved, opposite));
         }
     }
 }

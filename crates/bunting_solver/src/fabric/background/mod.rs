@@ -204,7 +204,9 @@ impl BackgroundMesh {
             is_cut: laid.are_cut,
             coverage: laid.parts,
             sizes,
-            are_alike: !has_curved_lines && !laid.are_moved,
+            are_alike: !has_curved_lines
+                && !laid.are_moved
+                && (chart.plane.is_some() || !laid.are_cut),
             is_flat,
             transfer,
             grid,

@@ -59,7 +59,7 @@ pub(super) fn cases(triangulation: Triangulation) -> Vec<Case> {
     cases.push(turned_cantilever(triangulation));
     cases.extend(two_corners(triangulation));
     cases.extend(cylinder(triangulation));
-    cases.extend(without_background(triangulation));
+    cases.extend(without_chart(triangulation));
     cases.extend(tapered(triangulation, TAPER, ISOTROPIC));
     cases.extend(tapered(triangulation, POINTED, ELASTIC));
     cases
@@ -111,9 +111,10 @@ fn cylinder(triangulation: Triangulation) -> [Case; 2] {
     ]
 }
 
-/// δ/L of two meshes that have no background grid and hang from their tops, of a cloth that stretches by a thousandth, and
-/// their speeds at rest: an arc without texture, and two pieces whose warps are at right angles.
-fn without_background(triangulation: Triangulation) -> [Case; 4] {
+/// δ/L of meshes whose textures do not say how they lie in the plane, hung from their tops, of a cloth that stretches by a
+/// thousandth, and their speeds at rest: an arc without texture, two pieces whose warps are at right angles, and a sheet with a slit,
+/// which has laid yarns.
+fn without_chart(triangulation: Triangulation) -> [Case; 6] {
     let material = SOFT;
     let sheet = Sheet::new(triangulation, [33, 33], DVec2::ONE, 1);
     let arc = FabricBuilder::new(sheet.bent(ARC_RADIUS), sheet.indices.clone());
@@ -130,9 +131,13 @@ fn without_background(triangulation: Triangulation) -> [Case; 4] {
             bound(format!("{name}, speed at rest, m/s"), REST[0], speed),
         ]
     };
-    let [[a, b], [c, d]] =
-        [("arc without texture", arc), ("two pieces", sheet.of_two_pieces(at_top))].map(of_cloth);
-    [a, b, c, d]
+    let [[a, b], [c, d], [e, f]] = [
+        ("arc without texture", arc),
+        ("two pieces", sheet.of_two_pieces(at_top)),
+        ("sheet with a slit", sheet.with_slit().fabric(0.0, at_top)),
+    ]
+    .map(of_cloth);
+    [a, b, c, d, e, f]
 }
 
 /// δ/L of a sheet that is half a metre wide at its top, from which it hangs, and narrower below by a part, and its speed at
