@@ -11,6 +11,9 @@ use crate::fabric::mesh::{RestMesh, Surface};
 /// mesh's mean. Larger: cells that are no rectangles at rest are sheared to rectangles.
 const DISTORTION: f32 = 1.6;
 
+/// Part of a mesh's area that may be distorted more. Smaller: slivers, as at the tips of pennants, tell of the whole mesh.
+const MOST_UNLIKE: f32 = 0.01;
+
 /// Places in the texture that triangles use, in one connected piece.
 struct Places {
     uv: Vec<Vec2>,
@@ -113,13 +116,15 @@ pub(super) fn scale_of_texture(
         sum.sum::<f32>() / area
     };
     let scale = Vec2::new(mean(0), mean(2)).map(f32::sqrt);
-    let is_good = |&([u_u, u_v, v_v], side): &([f32; 3], f32)| {
+    let is_like = |&([u_u, u_v, v_v], _): &([f32; 3], f32)| {
         let (p, q) = (u_u / (scale.x * scale.x), v_v / (scale.y * scale.y));
         let off = u_v / (scale.x * scale.y);
         // Eigenvalues of the metric.
         let (middle, radius) = (0.5 * (p + q), (0.25 * (p - q) * (p - q) + off * off).sqrt());
-        let is_near_one = middle + radius < DISTORTION && middle - radius > 1.0 / DISTORTION;
-        is_near_one && side == metrics[0].1
+        middle + radius < DISTORTION && middle - radius > 1.0 / DISTORTION
     };
-    metrics.iter().all(is_good).then_some(scale)
+    let shows_back = metrics.iter().any(|(_, side)| *side != metrics[0].1);
+    let unlike = metrics.iter().zip(&surface.triangle_areas).filter(|(it, _)| !is_like(it));
+    let unlike: f32 = unlike.map(|(_, area)| area).sum();
+    (!shows_back && unlike < MOST_UNLIKE * area).then_some(scale)
 }
