@@ -467,6 +467,37 @@ fn ribbon() -> Fabric {
     builder.pin([0]).build().expect("a good fabric")
 }
 
+/// Without loads nothing moves: each mesh has its shape at rest. Cells beside holes of curved ones pulled by 0.8 mm.
+#[test]
+fn a_mesh_without_loads_keeps_its_shape() {
+    let flat = irregular(21, 0.0);
+    let holed = with_a_hole(&flat);
+    let fabrics = [
+        ("hole", bent(&holed, 0.3)),
+        ("closed with a hole", bent(&holed, CLOSED)),
+        ("closed", bent(&flat, CLOSED)),
+        ("disk", bent(&disk(&flat), 0.4)),
+        ("cap", cap(&flat)),
+        ("pieces", of_two_pieces(&flat, |at| at.y == 0.0)),
+        ("slit", with_a_slit(&flat, |at| at.y == 0.0)),
+        ("funnel", funnel(&flat, [CLOSED, 2.0 * CLOSED])),
+    ];
+    for (name, fabric) in fabrics {
+        let fabric = Arc::new(fabric);
+        let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
+        let rest = ClothSnapshot::at_rest(&fabric);
+        batch.insert(&rest, FabricMaterial::FLAG_POLYESTER).expect("room");
+        let drive = Drive { gravity: Vec3::ZERO, air_density: 0.0, ..Drive::default() };
+        batch.drive(0, drive).expect("a lane");
+        for _ in 0..20 {
+            batch.step(TICK, StepLimits::default().of_fabric(&fabric, TICK, GRAVITY));
+        }
+        let at = batch.snapshot(0).positions;
+        let moved = rest.positions.iter().zip(&at).map(|(a, b)| a.distance(*b)).fold(0.0, f32::max);
+        assert!(moved < 3e-4, "{name}: {moved} m");
+    }
+}
+
 #[test]
 fn a_mesh_has_the_same_bits_at_every_width() {
     let limp = FabricMaterial::FLAG_POLYESTER;

@@ -128,3 +128,44 @@ pub(super) fn scale_of_texture(
     let unlike: f32 = unlike.map(|(_, area)| area).sum();
     (!shows_back && unlike < MOST_UNLIKE * area).then_some(scale)
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, Vec3};
+
+    use super::scale_of_texture;
+    use crate::fabric::grid::Grid;
+    use crate::fabric::mesh::{RestMesh, Surface};
+
+    /// The scale of the texture of a sheet, given the place in it of each vertex.
+    fn scale(of: impl Fn(Vec3) -> Vec2) -> Option<Vec2> {
+        let grid = Grid::new(22, 22, 1.0, 1.0);
+        let triangles = grid.triangles(false);
+        let mesh = RestMesh {
+            positions: grid.positions(),
+            uv: Vec::new(),
+            areas: Vec::new(),
+            inverse_areas: Vec::new(),
+            particle_of_vertex: Vec::new(),
+            triangles: triangles.clone(),
+        };
+        let corner_uv: Vec<[Vec2; 3]> =
+            triangles.iter().map(|corners| mesh.positions_of(*corners).map(&of)).collect();
+        let areas = vec![1.0 / triangles.len() as f32; triangles.len()];
+        let surface =
+            Surface { triangle_areas: areas, corner_uv: corner_uv.clone(), edges: Vec::new() };
+        scale_of_texture(&mesh, &surface, &corner_uv)
+    }
+
+    #[test]
+    fn a_few_triangles_do_not_tell_of_a_whole_texture() {
+        let like = |at: Vec3| at.truncate() * 2.0;
+        let near = |at: Vec3, x: f32| (at - Vec3::new(x, -10.0 / 21.0, 0.0)).length() < 1e-3;
+        let one_moved =
+            |at: Vec3| like(at) + if near(at, 10.0 / 21.0) { Vec2::X * 0.05 } else { Vec2::ZERO };
+        let found = scale(one_moved).expect("like the shape but for a vertex");
+        assert!((found - 0.5).abs().max_element() < 0.02, "{found}");
+        assert!(scale(|at| like(at) * Vec2::new(1.0 + at.x, 1.0)).is_none(), "twice as wide");
+        assert!(scale(|at| like(at) * Vec2::new((at.x - 0.5).abs(), 1.0)).is_none(), "a back");
+    }
+}
