@@ -161,8 +161,9 @@ fn closing(mobilities: &[f64], rows: &[BendRow<f64>], softness: f64) -> Vec<[f32
     let determinant = bend * distance - coupling * coupling;
     let [by_bend, by_distance] = &moved;
     if softness.is_infinite() {
-        let apart = by_distance.iter().map(|by| [0.0, (by / distance) as f32]);
-        return apart.collect();
+        // There is no cloth that bends where the ends meet.
+        let together = by_distance.iter().map(|by| [0.0, (by / distance) as f32]);
+        return together.collect();
     }
     let of_particle = |(by_bend, by_distance): (&f64, &f64)| {
         [

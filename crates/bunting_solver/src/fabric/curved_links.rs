@@ -14,7 +14,7 @@ const UNLIKE_WARPS: f32 = 0.2;
 impl Links {
     /// Links of a grid with cells of different warps, given how much of each cell is cloth, and cos² of the angle between
     /// its rows and the warp. A link along a line stands for half of each cell beside it.
-    pub fn of_curved_lines(
+    pub fn of_cells_with_warps(
         mesh: &RestMesh,
         grid: &Grid,
         coverage: &[f32],

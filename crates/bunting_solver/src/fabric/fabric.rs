@@ -151,7 +151,7 @@ impl Fabric {
         let BackgroundMesh { is_cut, sizes, warps, are_alike, .. } = background;
         let is_closed = !transfer.joined.is_empty();
         let links = match &warps {
-            Some(warps) => Links::of_curved_lines(&mesh, &grid, &coverage, warps, is_closed),
+            Some(warps) => Links::of_cells_with_warps(&mesh, &grid, &coverage, warps, is_closed),
             None => Links::of(&mesh, Some(&grid), Some(&coverage), &[], is_closed),
         };
         // In the chart all lines are straight.

@@ -131,8 +131,8 @@ impl Chart {
         }
         let along = best.plane.as_ref().map_or(warp, |plane| plane.axes[0]);
         let warp_cos2 = along.dot(warp).powi(2).min(1.0);
-        // Rounding does not turn a warp.
         best.border = border_length(mesh, surface);
+        // Rounding does not turn a warp.
         best.warp_cos2 = if warp_cos2 > ALONG * ALONG { 1.0 } else { warp_cos2 };
         best
     }
@@ -187,8 +187,8 @@ impl Chart {
         particles.windows(2).any(|two| two[0] == two[1])
     }
 
-    /// Spacing h of the grid, m. In a square lattice with a border of length L, area A has N = A/h² + L/2h + 1 vertices, by
-    /// Pick's theorem, and one fewer where it is closed around an axis.
+    /// Spacing h of the grid, m, by Pick's theorem: a square lattice of area A has N = A/h² + L/2h + 1 vertices within a border of
+    /// length L and on it, and one fewer where it is closed around an axis. A mesh in rows and columns has its nodes on its vertices.
     pub(super) fn spacing(&self) -> f32 {
         let vertices = self.own_places as f32 - if self.is_closed { 0.0 } else { 1.0 };
         let quarter = 0.25 * self.border;

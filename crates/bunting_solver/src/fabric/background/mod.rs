@@ -12,7 +12,8 @@
 //! each cell is cloth, `interpolation` and `cells` find the weights, `smooth` those of nodes on curved meshes, and `cut` those beyond the
 //! border. `hold` finds out whether nodes hold the mesh where its pins do; if not, `moved` moves some to the pins. `mapped` finds
 //! charts whose lines are curved, and unevenly far apart, as those of a mesh are that unfolds with distortion: there each link and
-//! each cell has its own width and, by `warps`, its own direction. `gradient_fit` finds the functions with wanted gradients that
+//! each cell has its own width and, by `warps`, its own direction. Cells also have directions of their own where the texture has
+//! `pieces`. `whole` refuses grids that would sew up slits. `gradient_fit` finds the functions with wanted gradients that
 //! `unfold` and `mapped` need.
 
 mod cells;

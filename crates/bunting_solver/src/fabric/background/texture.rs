@@ -11,7 +11,8 @@ use crate::fabric::mesh::{RestMesh, Surface};
 /// mesh's mean. Larger: cells that are no rectangles at rest are sheared to rectangles.
 const DISTORTION: f32 = 1.6;
 
-/// Part of a mesh's area that may be distorted more. Smaller: slivers, as at the tips of pennants, tell of the whole mesh.
+/// Part of a mesh's area that may be distorted more. Smaller: slivers, as at the tips of pennants, tell of the whole mesh. Larger:
+/// cells that are no rectangles are sheared to rectangles.
 const MOST_UNLIKE: f32 = 0.01;
 
 /// Places in the texture that triangles use, in one connected piece.
