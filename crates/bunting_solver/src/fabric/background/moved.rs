@@ -23,7 +23,41 @@ pub(super) fn to_pins(chart: &Chart, grid: &Grid, is_free: &[bool]) -> BTreeMap<
             *best = (distance, place);
         }
     }
-    nearest.into_iter().map(|(node, (_, place))| (node, place)).collect()
+    let mut pins: BTreeMap<u32, u32> =
+        nearest.iter().map(|(&node, &(_, place))| (node, place)).collect();
+    if chart.is_closed {
+        let last = (grid.rows - 1) * grid.columns;
+        for ends in (0..grid.columns).map(|column| [column, last + column]) {
+            let found = ends.map(|node| nearest.get(&node).copied());
+            ends.iter().for_each(|node| {
+                pins.remove(node);
+            });
+            pins.extend(
+                at_both_ends(chart, grid, found)
+                    .map_or(Vec::new(), |at| ends.into_iter().zip(at).collect()),
+            );
+        }
+    }
+    pins
+}
+
+/// The places in the first and in the last row of a closed chart of the nearer of two pins, given their distances and places.
+fn at_both_ends(
+    chart: &Chart,
+    grid: &Grid,
+    [first, last]: [Option<(f32, u32)>; 2],
+) -> Option<[u32; 2]> {
+    let is_first = first.is_some_and(|(near, _)| last.is_none_or(|(other, _)| near <= other));
+    let (_, place) = if is_first { first? } else { last? };
+    let turn = if is_first { chart.extent.y } else { -chart.extent.y };
+    let opposite = chart.positions[place as usize] + Vec2::Y * turn;
+    let close = 0.01 * grid.spacing()[1];
+    let mut places = (0..).zip(&chart.positions).zip(&chart.particles);
+    let is_opposite = |at: &Vec2, particle: u32| {
+        particle == chart.particles[place as usize] && at.distance(opposite) < close
+    };
+    let (other, _) = places.find(|((_, at), particle)| is_opposite(at, **particle))?.0;
+    Some(if is_first { [place, other] } else { [other, place] })
 }
 
 /// The places of all nodes, those of moved ones given by their pins.

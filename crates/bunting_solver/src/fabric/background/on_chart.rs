@@ -44,8 +44,7 @@ impl<'a> OnChart<'a> {
         if straight.as_ref().is_some_and(|found| hold(found) == Hold::AtPins) {
             return straight;
         }
-        // The first row of a closed chart would be moved, and its last row not.
-        let moved = if self.chart.is_closed { None } else { LaidNodes::moved_to_pins(self) };
+        let moved = LaidNodes::moved_to_pins(self);
         let moved = moved.and_then(|laid| BackgroundMesh::on(self, laid));
         let is_held = |found: &BackgroundMesh| hold(found) != Hold::Loose;
         moved.filter(is_held).or_else(|| straight.filter(is_held))

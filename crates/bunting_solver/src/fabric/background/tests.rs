@@ -120,14 +120,16 @@ fn cells_stand_for_all_of_the_cloth() {
 /// A square metre of `n` × `n` vertices, rolled up about a vertical axis until its sides meet, without texture.
 fn cylinder(n: u32) -> FabricBuilder {
     let sheet = Grid::new(n, n, 1.0, 1.0);
+    rolled_up(&sheet.positions(), sheet.triangles(false).into_flattened())
+}
+
+fn rolled_up(flat: &[Vec3], triangles: Vec<u32>) -> FabricBuilder {
     let radius = 1.0 / core::f32::consts::TAU;
     let roll = |at: &Vec3| {
         let (sin, cos) = libm::sincosf(at.x / radius);
         Vec3::new(radius * sin, at.y, radius * cos)
     };
-    let positions = sheet.positions().iter().map(roll).collect();
-    let triangles = sheet.triangles(false).into_flattened();
-    FabricBuilder::new(positions, triangles).weld_distance(1e-4)
+    FabricBuilder::new(flat.iter().map(roll).collect(), triangles).weld_distance(1e-4)
 }
 
 /// The cylinder with its lower half cut open along the line where its sides meet.
@@ -173,6 +175,23 @@ fn a_closed_mesh_has_a_grid_around_its_axis() {
     }
     let mass: f32 = transfer.moved_areas.iter().sum();
     assert!((mass / fabric.area() - 1.0).abs() < 1e-3, "{mass}");
+}
+
+/// Nodes are moved to pins between nodes, on both sides of the seam.
+#[test]
+fn a_closed_mesh_is_held_at_single_pins() {
+    let flat = sheet(24);
+    for pin in [24 * 7 + 11, 24 * 9, 24 * 12 + 1] {
+        let mesh = rolled_up(flat.positions(), flat.indices().to_vec()).pin([pin]);
+        let fabric = mesh.build().expect("a good fabric");
+        let particle = fabric.particle_of_vertex()[pin as usize] as usize;
+        let nodes = &fabric.background().expect("it can be unfolded").fabric;
+        let pinned = (0..nodes.particle_count()).filter(|&node| nodes.is_pinned(node));
+        let at = |node: usize| nodes.rest_positions()[node];
+        let away = pinned.map(|node| at(node).distance(fabric.rest_positions()[particle]));
+        let farthest = away.clone().fold(0.0, f32::max);
+        assert!(away.count() > 0 && farthest < 0.1 / 23.0, "{farthest} m");
+    }
 }
 
 /// Nodes lie on the vertices of a mesh in rows and columns, whatever its sides.
