@@ -171,7 +171,8 @@ impl Chart {
         let Vec2 { x: width, y: height } = self.extent;
         let spacing = self.spacing();
         // The first row of a closed chart is there once more.
-        let nodes = |extent: f32| (extent / spacing).round().max(1.0) as u32 + 1;
+        let last = if self.is_lattice() { 1 } else { 0 };
+        let nodes = |extent: f32| ((extent / spacing).round() as u32 + last).max(2);
         Grid::new(nodes(width), nodes(height), width, height)
     }
 
@@ -187,12 +188,22 @@ impl Chart {
         particles.windows(2).any(|two| two[0] == two[1])
     }
 
-    /// Spacing h of the grid, m, by Pick's theorem: a square lattice of area A has N = A/h² + L/2h + 1 vertices within a border of
-    /// length L and on it, and one fewer where it is closed around an axis. A mesh in rows and columns has its nodes on its vertices.
+    /// Spacing h of the grid, m. In a square lattice with a border of length L, an area A has N = A/h² + L/2h + 1 vertices, by Pick's
+    /// theorem, and one fewer where it is closed around an axis: a mesh in rows and columns has its nodes on its vertices.
     pub(super) fn spacing(&self) -> f32 {
-        let vertices = self.own_places as f32 - if self.is_closed { 0.0 } else { 1.0 };
+        let vertices = self.own_places as f32;
+        if !self.is_lattice() {
+            return (self.area / vertices).sqrt();
+        }
+        let vertices = vertices - if self.is_closed { 0.0 } else { 1.0 };
         let quarter = 0.25 * self.border;
         (quarter + (quarter * quarter + vertices * self.area).sqrt()) / vertices
+    }
+
+    /// Whether nodes may lie on the vertices of a mesh in rows and columns. In others a node at a ragged border would take over the air
+    /// that a vertex there feels, which is that at the middle of a single triangle.
+    fn is_lattice(&self) -> bool {
+        self.is_closed || self.area > FILLED * self.extent.element_product()
     }
 }
 
