@@ -9,11 +9,8 @@ use crate::simd::vec3::V3;
 /// Indices in row-major order of the packs of the first row of a closed grid and of the last; none of other fabrics.
 pub(crate) fn joined_rows<P: Pack, Y: Layout<P>>(fabric: &Fabric, layout: &Y) -> Vec<[u32; 2]> {
     let Some(grid) = fabric.grid().filter(|_| fabric.is_closed()) else { return Vec::new() };
-    let index = |column: u32, row: u32| {
-        layout.index_of_pack(layout.locate(grid.index(column, row) as usize, 0).0)
-    };
-    let mut joined: Vec<[u32; 2]> =
-        (0..grid.columns).map(|column| [0, grid.rows - 1].map(|row| index(column, row))).collect();
+    let index = |node: u32| layout.index_of_pack(layout.locate(node as usize, 0).0);
+    let mut joined: Vec<[u32; 2]> = grid.ends_of_columns().map(|ends| ends.map(index)).collect();
     joined.dedup();
     joined
 }

@@ -88,11 +88,9 @@ impl CellSizes {
             corners.into_iter().for_each(|at| areas[at as usize] += 0.25 * area);
         }
         if self.is_closed {
-            let count = areas.len();
-            let (first, last) = areas.split_at_mut(count - grid.columns as usize);
-            for (first, last) in first.iter_mut().zip(last) {
-                let mean = 0.5 * (*first + *last);
-                (*first, *last) = (mean, mean);
+            for ends in grid.ends_of_columns() {
+                let [first, last] = ends.map(|end| areas[end as usize]);
+                ends.iter().for_each(|&end| areas[end as usize] = 0.5 * (first + last));
             }
         }
         areas

@@ -49,6 +49,12 @@ impl Grid {
             && steps.into_iter().all(|ends| ends[1] == ends[0] + self.columns)
     }
 
+    /// The first and the last particle of each column, which are at one place where a grid is closed.
+    pub(crate) fn ends_of_columns(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
+        let last = (self.rows - 1) * self.columns;
+        (0..self.columns).map(move |column| [column, last + column])
+    }
+
     /// The pairs of neighbours in columns that no link joins, of the columns in which links join some.
     pub(super) fn gaps_of_columns(&self, links: &[[u32; 2]]) -> Vec<[u32; 2]> {
         let Self { columns, rows, .. } = *self;

@@ -170,15 +170,10 @@ impl Chart {
     pub fn grid(&self) -> Grid {
         let Vec2 { x: width, y: height } = self.extent;
         let spacing = self.spacing();
-        // The first row of a closed chart is there once more.
-        let last = if self.is_lattice() { 1 } else { 0 };
+        // Of a lattice the spacing is that of its nodes, of which there is one more than cells. A closed one has its first row twice.
+        let last = u32::from(self.is_lattice());
         let nodes = |extent: f32| ((extent / spacing).round() as u32 + last).max(2);
         Grid::new(nodes(width), nodes(height), width, height)
-    }
-
-    /// Number of triangles of the mesh.
-    pub fn triangle_count(&self) -> usize {
-        self.of_mesh.iter().map(|&triangle| triangle as usize + 1).max().unwrap_or(0)
     }
 
     /// Whether some particles have two places.

@@ -10,6 +10,7 @@ use super::interpolation::{Interpolation, nodes_from_particles};
 use super::on_chart::OnChart;
 use super::whole::is_whole;
 use super::{coverage, cut, moved, smooth};
+use crate::fabric::laid_yarns::Faces;
 
 /// The nodes of a grid on a chart.
 pub(super) struct LaidNodes {
@@ -50,13 +51,14 @@ impl LaidNodes {
 
     /// Nodes at their places, of which some are those of pins.
     fn at(
-        OnChart { surface, chart, grid, is_free, .. }: &OnChart,
+        OnChart { mesh, surface, chart, grid, is_free, .. }: &OnChart,
         places: Vec<Vec2>,
         coverage: Coverage,
         pins: &BTreeMap<u32, u32>,
     ) -> Option<Self> {
         let Chart { positions, triangles, .. } = chart;
-        if !is_whole(chart, &coverage, grid, &surface.edges) {
+        let faces = Faces::new(&mesh.positions, &mesh.triangles, &surface.edges);
+        if !is_whole(chart, &coverage, grid, &faces) {
             return None;
         }
         let mut rows = nodes_from_particles(positions, triangles, grid);
@@ -74,11 +76,9 @@ impl LaidNodes {
         let cells = grid.cells().zip(&coverage.has_cloth).filter(|(_, has_cloth)| **has_cloth);
         cells.flat_map(|((corners, _), _)| corners).for_each(|at| has_cloth[at as usize] = true);
         if chart.is_closed {
-            // The first and the last row are at one place.
-            let (first, last) = has_cloth.split_at_mut(((grid.rows - 1) * grid.columns) as usize);
-            for (first, last) in first.iter_mut().zip(last) {
-                let has = *first || *last;
-                (*first, *last) = (has, has);
+            for ends in grid.ends_of_columns() {
+                let has = ends.iter().any(|&end| has_cloth[end as usize]);
+                ends.iter().for_each(|&end| has_cloth[end as usize] = has);
             }
         }
         let is_any_outside = is_outside.contains(&true);

@@ -159,7 +159,7 @@ impl BackgroundMesh {
             held: Interpolation::default(),
             moved_areas: Vec::new(),
             heights: Vec::new(),
-            joined: if chart.is_closed { first_and_last_row(&grid) } else { Vec::new() },
+            joined: if chart.is_closed { grid.ends_of_columns().collect() } else { Vec::new() },
         };
         let free_areas = mesh.areas.iter().zip(&mesh.inverse_areas);
         let free_areas: Vec<f32> =
@@ -271,11 +271,6 @@ fn warps_of_cells(nodes: &Interpolation, of_particles: &[f32], grid: &Grid) -> V
     let of_nodes: Vec<f32> = nodes.rows().map(of_node).collect();
     let mean = |corners: [u32; 4]| corners.map(|at| 0.25 * of_nodes[at as usize]).iter().sum();
     grid.cells().map(|(corners, _)| f32::clamp(mean(corners), 0.0, 1.0)).collect()
-}
-
-/// The nodes of the first and of the last row of a grid, in pairs.
-fn first_and_last_row(grid: &Grid) -> Vec<[u32; 2]> {
-    (0..grid.columns).map(|column| [0, grid.rows - 1].map(|row| grid.index(column, row))).collect()
 }
 
 /// Positions of the nodes at rest, m.

@@ -26,16 +26,12 @@ pub(super) fn to_pins(chart: &Chart, grid: &Grid, is_free: &[bool]) -> BTreeMap<
     let mut pins: BTreeMap<u32, u32> =
         nearest.iter().map(|(&node, &(_, place))| (node, place)).collect();
     if chart.is_closed {
-        let last = (grid.rows - 1) * grid.columns;
-        for ends in (0..grid.columns).map(|column| [column, last + column]) {
+        for ends in grid.ends_of_columns() {
+            pins.retain(|node, _| !ends.contains(node));
             let found = ends.map(|node| nearest.get(&node).copied());
-            ends.iter().for_each(|node| {
-                pins.remove(node);
-            });
-            pins.extend(
-                at_both_ends(chart, grid, found)
-                    .map_or(Vec::new(), |at| ends.into_iter().zip(at).collect()),
-            );
+            if let Some(places) = at_both_ends(chart, grid, found) {
+                pins.extend(ends.into_iter().zip(places));
+            }
         }
     }
     pins

@@ -5,7 +5,7 @@
 use super::chart::Chart;
 use super::coverage::Coverage;
 use crate::fabric::grid::Grid;
-use crate::fabric::topology::Edge;
+use crate::fabric::laid_yarns::Faces;
 
 /// Least part of the grid's cells with cloth. Smaller: most nodes cost time for nothing.
 const LEAST_FILLED: f32 = 0.45;
@@ -14,11 +14,8 @@ const LEAST_FILLED: f32 = 0.45;
 /// count as slits. Larger: short slits are closed.
 const FARTHER: i64 = 1;
 
-/// No triangle.
-const NONE: u32 = u32::MAX;
-
 /// Whether what of a mesh lies in the cells around each node hangs together in them and in the next ones.
-pub(super) fn is_whole(chart: &Chart, coverage: &Coverage, grid: &Grid, edges: &[Edge]) -> bool {
+pub(super) fn is_whole(chart: &Chart, coverage: &Coverage, grid: &Grid, faces: &Faces) -> bool {
     if chart.has_seam() {
         // The two sides of a seam hang together, but not in the grid.
         return coverage.is_filled;
@@ -27,8 +24,7 @@ pub(super) fn is_whole(chart: &Chart, coverage: &Coverage, grid: &Grid, edges: &
     if (with_cloth as f32) < LEAST_FILLED * coverage.parts.len() as f32 {
         return false;
     }
-    let neighbours = neighbours(chart.triangle_count(), edges);
-    let is_at_border = |&triangle: &u32| neighbours[triangle as usize].contains(&NONE);
+    let is_at_border = |&triangle: &u32| faces.neighbours(triangle).count() < 3;
     let in_cells = coverage.triangles.iter().map(|triangles| {
         let of_mesh = |&triangle: &u32| chart.of_mesh[triangle as usize];
         triangles.iter().map(of_mesh).collect::<Vec<u32>>()
@@ -37,7 +33,7 @@ pub(super) fn is_whole(chart: &Chart, coverage: &Coverage, grid: &Grid, edges: &
     let has_border: Vec<bool> =
         in_cells.iter().map(|triangles| triangles.iter().any(is_at_border)).collect();
     let around = Around { grid, is_closed: chart.is_closed };
-    let mut is_near = vec![false; neighbours.len()];
+    let mut is_near = vec![false; faces.count()];
     let (mut next, mut near) = (Vec::new(), Vec::new());
     (0..grid.columns * grid.rows).all(|node| {
         if !around.cells(node, 1 + FARTHER).any(|cell| has_border[cell]) {
@@ -51,7 +47,7 @@ pub(super) fn is_whole(chart: &Chart, coverage: &Coverage, grid: &Grid, edges: &
         next.push(first);
         while let Some(triangle) = next.pop() {
             if core::mem::replace(&mut is_near[triangle as usize], false) {
-                next.extend(neighbours[triangle as usize].into_iter().filter(|it| *it != NONE));
+                next.extend(faces.neighbours(triangle));
             }
         }
         let is_whole = !triangles(1).any(|triangle| is_near[triangle as usize]);
@@ -81,21 +77,4 @@ impl Around<'_> {
         let within = (column - reach).max(0)..(column + reach).min(columns);
         lines.flat_map(move |line| within.clone().map(move |at| (line * columns + at) as usize))
     }
-}
-
-/// The triangles beside each triangle; [`NONE`] at the border.
-fn neighbours(triangles: usize, edges: &[Edge]) -> Vec<[u32; 3]> {
-    let mut neighbours = vec![[NONE; 3]; triangles];
-    let mut add = |to: u32, other: u32| {
-        if let Some(free) = neighbours[to as usize].iter_mut().find(|it| **it == NONE) {
-            *free = other;
-        }
-    };
-    for edge in edges {
-        if let Some(other) = edge.other_side {
-            add(edge.side.triangle, other.triangle);
-            add(other.triangle, edge.side.triangle);
-        }
-    }
-    neighbours
 }
