@@ -24,6 +24,7 @@ mod curved_links;
 mod error;
 #[expect(clippy::module_inception, reason = "the file of the type that gives the folder its name")]
 mod fabric;
+mod farthest;
 mod grid;
 mod hinges;
 mod laid_yarns;

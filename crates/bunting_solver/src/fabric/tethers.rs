@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use glam::Vec3;
 
+use super::farthest::Places;
 use super::mesh::RestMesh;
 use super::rest_paths::RestPaths;
 use super::topology::Edge;
@@ -124,13 +125,11 @@ fn far_tethers(
     let place = |pin: usize| rest[pins[pin].particle as usize];
     let farthest_of = |among: &[usize]| {
         let mut particles_of_pin: BTreeMap<usize, Vec<u32>> = BTreeMap::new();
+        let places: Vec<Vec3> = among.iter().map(|&pin| place(pin)).collect();
+        let places = Places::new(&places);
         for &Tether { particle, .. } in near {
-            let distances = among
-                .iter()
-                .map(|&pin| (pin, rest[particle as usize].distance_squared(place(pin))));
-            if let Some((farthest, _)) = distances.max_by(|one, other| one.1.total_cmp(&other.1)) {
-                particles_of_pin.entry(farthest).or_default().push(particle);
-            }
+            let farthest = among[places.farthest(rest[particle as usize])];
+            particles_of_pin.entry(farthest).or_default().push(particle);
         }
         particles_of_pin
     };
