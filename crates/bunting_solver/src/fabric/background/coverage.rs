@@ -20,6 +20,9 @@ const LEAST_CLOTH: f32 = 1e-5;
 /// Least area of half a cell between moved nodes, in units of cells. Smaller: cells that are turned over.
 const LEAST_HALF: f32 = 0.02;
 
+/// Least distance of a triangle from a cell in which it covers nothing, in cells. Smaller: rounding.
+const BESIDE: f32 = 0.01;
+
 /// Most corners of a triangle that is clipped by the four sides of a cell: seven, and more where rounding makes it not convex.
 const MOST_CORNERS: usize = 12;
 
@@ -73,6 +76,7 @@ pub(super) fn once(
                 let cell = (row * cells[0] + column) as usize;
                 let corner = Vec2::new(column as f32, row as f32);
                 let area = match moved_cells.get(cell) {
+                    Some(cell) if cell.is_beside(low, high) => 0.0,
                     Some(cell) => cell.part_within(&corners),
                     None => Convex::cell(corner).area_within(&corners),
                 };
@@ -101,6 +105,9 @@ pub(super) fn once(
 struct MovedCell {
     halves: [Convex<3>; 2],
     area: f32,
+    /// The corners of its bounding rectangle.
+    low: Vec2,
+    high: Vec2,
 }
 
 impl MovedCell {
@@ -110,7 +117,17 @@ impl MovedCell {
         let halves = [[[a, b, d], [a, d, c]], [[a, b, c], [b, d, c]]];
         let is_good = |halves: &[[Vec2; 3]; 2]| halves.iter().all(|half| area(*half) > LEAST_HALF);
         let halves = halves.into_iter().find(is_good)?;
-        Some(Self { area: halves.map(area).iter().sum(), halves: halves.map(Convex::triangle) })
+        Some(Self {
+            area: halves.map(area).iter().sum(),
+            halves: halves.map(Convex::triangle),
+            low: a.min(b).min(c).min(d),
+            high: a.max(b).max(c).max(d),
+        })
+    }
+
+    /// Whether it lies beside the bounding rectangle of a triangle.
+    fn is_beside(&self, low: Vec2, high: Vec2) -> bool {
+        low.cmpgt(self.high + BESIDE).any() || high.cmplt(self.low - BESIDE).any()
     }
 
     fn part_within(&self, triangle: &[Vec2; 3]) -> f32 {
