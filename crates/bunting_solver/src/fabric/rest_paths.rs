@@ -1,8 +1,5 @@
 //! Shortest paths between particles at rest.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use glam::Vec3;
 
 use super::tethers::Pin;
@@ -11,24 +8,18 @@ use super::tethers::Pin;
 pub(super) enum RestPaths<'a> {
     /// Straight between these particles, m.
     Straight(&'a [Vec3]),
-    /// Along edges: the neighbours of each particle, and their distances, m. They are never shorter than paths across
-    /// the triangles.
-    AlongEdges(Vec<Vec<(u32, f32)>>),
+    /// Along edges. They are never shorter than paths across the triangles.
+    AlongEdges(Neighbours),
 }
 
 impl<'a> RestPaths<'a> {
     /// On a `flat` mesh the shortest path between two particles is straight.
-    pub fn new(rest: &'a [Vec3], edges: impl Iterator<Item = [u32; 2]>, flat: bool) -> Self {
-        if flat {
-            return Self::Straight(rest);
-        }
-        let mut neighbours = vec![Vec::new(); rest.len()];
-        for [a, b] in edges {
-            let length = rest[a as usize].distance(rest[b as usize]);
-            neighbours[a as usize].push((b, length));
-            neighbours[b as usize].push((a, length));
-        }
-        Self::AlongEdges(neighbours)
+    pub fn new(
+        rest: &'a [Vec3],
+        edges: impl Iterator<Item = [u32; 2]> + Clone,
+        flat: bool,
+    ) -> Self {
+        if flat { Self::Straight(rest) } else { Self::AlongEdges(Neighbours::new(rest, edges)) }
     }
 
     /// For each particle the distance to the nearest pin, m, and the index of the pin; none if no path leads to one.
@@ -54,27 +45,101 @@ fn nearest_straight(rest: &[Vec3], at: Vec3, pins: &[Pin]) -> Option<(f32, usize
     distances.min_by(|one, other| one.0.total_cmp(&other.0))
 }
 
-/// By Dijkstra 1959.
-fn nearest_along(neighbours: &[Vec<(u32, f32)>], pins: &[Pin]) -> Vec<Option<(f32, usize)>> {
-    /// Bits of the distance, which are ordered like distances, and the index of the pin.
-    type Path = (u32, usize);
-    let mut shortest: Vec<Option<Path>> = vec![None; neighbours.len()];
-    let mut open: BinaryHeap<Reverse<(Path, u32)>> = BinaryHeap::new();
-    let mut offer = |open: &mut BinaryHeap<_>, path: Path, particle: u32| {
-        let known = &mut shortest[particle as usize];
+/// Bits of the length of a path, m, which are ordered like lengths, and the index of its pin.
+type Path = (u32, u32);
+
+/// By Dijkstra 1959, but with paths that are about as long in any order.
+fn nearest_along(neighbours: &Neighbours, pins: &[Pin]) -> Vec<Option<(f32, usize)>> {
+    let mut paths = OpenPaths {
+        shortest: vec![None; neighbours.count()],
+        by_length: Vec::new(),
+        step: neighbours.mean_length(),
+    };
+    for (index, pin) in (0..).zip(pins) {
+        paths.offer((0, index), pin.particle);
+    }
+    let mut steps = 0;
+    while let Some(open) = paths.by_length.get_mut(steps) {
+        let Some((path @ (bits, pin), particle)) = open.pop() else {
+            steps += 1;
+            continue;
+        };
+        // Else a shorter path was found since.
+        if paths.shortest[particle as usize] == Some(path) {
+            for &(neighbour, edge) in neighbours.of(particle) {
+                paths.offer(((f32::from_bits(bits) + edge).to_bits(), pin), neighbour);
+            }
+        }
+    }
+    let path = |(bits, pin): Path| (f32::from_bits(bits), pin as usize);
+    paths.shortest.into_iter().map(|shortest| shortest.map(path)).collect()
+}
+
+/// Paths from which longer ones may lead on.
+struct OpenPaths {
+    /// The shortest path known to each particle.
+    shortest: Vec<Option<Path>>,
+    /// Paths and the particles at their ends, by the number of whole steps in their lengths.
+    by_length: Vec<Vec<(Path, u32)>>,
+    /// The mean length of an edge, m: there are at most as many steps in a path as there are edges. Smaller: more lists. Larger: more
+    /// paths are followed before a shorter one is found.
+    step: f32,
+}
+
+impl OpenPaths {
+    fn offer(&mut self, path: Path, particle: u32) {
+        let known = &mut self.shortest[particle as usize];
         if known.is_none_or(|known| path < known) {
             *known = Some(path);
-            open.push(Reverse((path, particle)));
-        }
-    };
-    for (index, pin) in pins.iter().enumerate() {
-        offer(&mut open, (0, index), pin.particle);
-    }
-    while let Some(Reverse(((bits, pin), particle))) = open.pop() {
-        for &(neighbour, edge) in &neighbours[particle as usize] {
-            offer(&mut open, ((f32::from_bits(bits) + edge).to_bits(), pin), neighbour);
+            let steps = (f32::from_bits(path.0) / self.step) as usize;
+            if self.by_length.len() <= steps {
+                self.by_length.resize_with(steps + 1, Vec::new);
+            }
+            self.by_length[steps].push((path, particle));
         }
     }
-    let path = |path: Option<Path>| path.map(|(bits, pin)| (f32::from_bits(bits), pin));
-    shortest.into_iter().map(path).collect()
+}
+
+/// The neighbours of each particle along edges, one particle after the other.
+pub(super) struct Neighbours {
+    /// For each particle the index of its first neighbour, and one beyond the last.
+    starts: Vec<u32>,
+    /// Particles and their distances, m.
+    neighbours: Vec<(u32, f32)>,
+}
+
+impl Neighbours {
+    fn new(rest: &[Vec3], edges: impl Iterator<Item = [u32; 2]> + Clone) -> Self {
+        let mut starts = vec![0; rest.len() + 1];
+        edges.clone().flatten().for_each(|end| starts[end as usize + 1] += 1);
+        for particle in 0..rest.len() {
+            starts[particle + 1] += starts[particle];
+        }
+        let mut next = starts.clone();
+        let mut neighbours = vec![(0, 0.0); 2 * edges.clone().count()];
+        for [a, b] in edges {
+            let length = rest[a as usize].distance(rest[b as usize]);
+            for (from, to) in [(a, b), (b, a)] {
+                let next = &mut next[from as usize];
+                neighbours[*next as usize] = (to, length);
+                *next += 1;
+            }
+        }
+        Self { starts, neighbours }
+    }
+
+    fn count(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// The mean length of an edge, m.
+    fn mean_length(&self) -> f32 {
+        let sum: f32 = self.neighbours.iter().map(|(_, length)| length).sum();
+        sum / self.neighbours.len() as f32
+    }
+
+    fn of(&self, particle: u32) -> &[(u32, f32)] {
+        let [start, end] = [0, 1].map(|by| self.starts[particle as usize + by] as usize);
+        &self.neighbours[start..end]
+    }
 }
