@@ -39,25 +39,32 @@ pub(super) fn default_distance(positions: &[Vec3]) -> f32 {
     DEFAULT_FRACTION * (high - low).max_element()
 }
 
+/// Width of the cells in which near particles are looked for, in distances of merging. Smaller: a vertex is near more cells. Larger:
+/// more particles lie in each.
+const CELL: f32 = 8.0;
+
+/// How far around a vertex particles are looked for, in distances of merging. Smaller: rounding hides particles that lie as far away as
+/// they may.
+const REACH: f32 = 2.0;
+
 /// Merges each vertex into the first particle at most `distance` metres away. A distance of zero merges
 /// nothing.
 ///
-/// Particles are found in cells of a hash grid as wide as the distance, so that all candidates lie in the 27
-/// cells around a vertex.
+/// Particles are found in cells of a hash grid.
 pub(super) fn weld(positions: &[Vec3], distance: f32) -> Weld {
     if distance <= 0.0 {
         let each: Vec<u32> = (0..positions.len() as u32).collect();
         return Weld { particle_of_vertex: each.clone(), vertex_of_particle: each };
     }
-    let cell_of = |position: Vec3| ((position - positions[0]) / distance).floor().as_ivec3();
     let mut particles_in: HashMap<IVec3, Vec<u32>> = HashMap::new();
     let mut vertex_of_particle: Vec<u32> = Vec::with_capacity(positions.len());
     let particle_of_vertex = positions
         .iter()
         .enumerate()
         .map(|(vertex, &position)| {
-            let home = cell_of(position);
-            let near = cells_around(home)
+            let at = (position - positions[0]) / distance;
+            let [low, home, high] = [-REACH, 0.0, REACH].map(|by| ((at + by) / CELL).floor().as_ivec3());
+            let near = cells_between(low, high)
                 .filter_map(|cell| particles_in.get(&cell))
                 .flatten()
                 .copied()
@@ -77,9 +84,9 @@ pub(super) fn weld(positions: &[Vec3], distance: f32) -> Weld {
     Weld { particle_of_vertex, vertex_of_particle }
 }
 
-fn cells_around(home: IVec3) -> impl Iterator<Item = IVec3> {
-    (-1..=1).flat_map(move |x| {
-        (-1..=1).flat_map(move |y| (-1..=1).map(move |z| home.saturating_add(IVec3::new(x, y, z))))
+fn cells_between(low: IVec3, high: IVec3) -> impl Iterator<Item = IVec3> {
+    (low.x..=high.x).flat_map(move |x| {
+        (low.y..=high.y).flat_map(move |y| (low.z..=high.z).map(move |z| IVec3::new(x, y, z)))
     })
 }
 
