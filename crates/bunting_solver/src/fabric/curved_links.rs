@@ -1,8 +1,7 @@
 //! Links of a background grid whose lines are curved and unevenly far apart, or whose cells have different warps: each has the width
 //! of the cells beside it, and the moduli of the material along it.
 
-use std::collections::BTreeMap;
-
+use super::edge_sums::EdgeSums;
 use super::grid::Grid;
 use super::links::{LEAST_STIFFNESS, LinkClass, LinkFamily, Links};
 use super::mesh::RestMesh;
@@ -21,19 +20,18 @@ impl Links {
         warps: &[f32],
         is_closed: bool,
     ) -> Self {
-        let mut sums: BTreeMap<[u32; 2], CellSum> = BTreeMap::new();
+        let mut sums = EdgeSums::new(mesh.positions.len());
         let cells = grid.cells().zip(coverage).zip(warps).filter(|((_, part), _)| **part > 0.0);
         for (((corners, _), &part), &warp) in cells {
             let [top_left, top_right, bottom_left, bottom_right] = corners;
             let [a, b, c, d] = mesh.positions_of(corners);
             let area = 0.5 * (d - a).cross(c - b).length();
             let mut add = |ends: [u32; 2], family| {
-                let [from, to] = ends;
                 let squared = {
                     let [one, other] = mesh.positions_of(ends);
                     one.distance_squared(other)
                 };
-                let sum = sums.entry([from.min(to), from.max(to)]).or_insert(CellSum::none(family));
+                let sum = sums.at(ends, || CellSum::none(family));
                 sum.coefficient += part
                     * match family {
                         // G γ² A/2 in both diagonals, whose lengths change by γ A/d.
@@ -53,7 +51,7 @@ impl Links {
             add([top_left, bottom_right], LinkFamily::Diagonal);
             add([top_right, bottom_left], LinkFamily::Diagonal);
         }
-        let links = sums.into_iter().map(|(ends, sum)| (ends, sum.class(), sum.family));
+        let links = sums.sorted().map(|(ends, sum)| (ends, sum.class(), sum.family));
         Self::of_classes(mesh, links, Some(grid).filter(|_| is_closed))
     }
 }

@@ -7,12 +7,11 @@
 //! split both ways, this is the textbook k = Y × width / length for warp and weft and G L²/(2 Δx Δy) for
 //! diagonals, exactly.
 
-use std::collections::BTreeMap;
-
 use glam::{DMat3, DVec3, Vec2, Vec3};
 
 use super::classes::{Classes, rounded_bits};
 use super::colour::colour;
+use super::edge_sums::EdgeSums;
 use super::grid::Grid;
 use super::material::FabricMaterial;
 use super::mesh::RestMesh;
@@ -141,7 +140,7 @@ impl Links {
         corner_uv: &[[Vec2; 3]],
         is_closed: bool,
     ) -> Self {
-        let mut sums = BTreeMap::new();
+        let mut sums = EdgeSums::new(mesh.positions.len());
         match grid {
             // A cell is split both ways, and each way contributes half.
             Some(grid) => {
@@ -163,7 +162,7 @@ impl Links {
         }
         // Nodes of a background grid may be moved, but lie in rows and columns all the same.
         let background = grid.filter(|_| coverage.is_some());
-        let links = sums.into_iter().map(|(ends, sum)| {
+        let links = sums.sorted().map(|(ends, sum)| {
             let family = background.map_or_else(|| sum.family(), |grid| grid.family(ends));
             (ends, sum.class(), family)
         });
@@ -268,7 +267,7 @@ impl LinkSum {
 
 /// Adds the contributions of a fraction `part` of a triangle to the links along its edges.
 fn add_triangle(
-    sums: &mut BTreeMap<[u32; 2], LinkSum>,
+    sums: &mut EdgeSums<LinkSum>,
     mesh: &RestMesh,
     triangle: [u32; 3],
     uv: [Vec2; 3],
@@ -290,10 +289,10 @@ fn add_triangle(
     let system = DMat3::from_cols(rows[0], rows[1], rows[2]);
     let normal = system.transpose() * system + DMat3::from_diagonal(DVec3::splat(RIDGE));
     let solution = normal.inverse() * system.transpose();
-    for (index, ends @ [from, to]) in edges.into_iter().enumerate() {
+    for (index, ends) in edges.into_iter().enumerate() {
         let [one, other] = mesh.positions_of(ends);
         let scale = part * area / f64::from(other.distance_squared(one));
-        let sum = sums.entry([from.min(to), from.max(to)]).or_default();
+        let sum = sums.at(ends, LinkSum::default);
         let found = (solution.row(index) * scale).to_array();
         for (coefficient, found) in sum.coefficients.iter_mut().zip(found) {
             *coefficient += found;

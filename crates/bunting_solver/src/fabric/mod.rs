@@ -21,6 +21,7 @@ mod classes;
 mod colour;
 mod covered;
 mod curved_links;
+mod edge_sums;
 mod error;
 #[expect(clippy::module_inception, reason = "the file of the type that gives the folder its name")]
 mod fabric;
