@@ -1,6 +1,8 @@
 //! A mesh laid into the plane: a flat one along its warp or along the sides of its bounding rectangle, a curved one by
 //! its texture, or unfolded.
 
+use core::ops::Range;
+
 use glam::{Vec2, Vec3};
 
 use super::texture::scale_of_texture;
@@ -18,6 +20,11 @@ const FLAT: f32 = 1e-4;
 /// Part of its narrowest bounding rectangle above which a mesh counts as a rectangle, along whose sides it is laid.
 /// Larger: rectangles with rounded corners have rows that end at slanting borders.
 const FILLED: f32 = 0.97;
+
+/// Area of a mesh that is known roughly, and may fill its bounding rectangle without overlapping itself, in units of the rectangle's.
+/// Larger from: cylinders with ragged seams of few cells, which are closed when they are known accurately, do not count. Smaller to:
+/// meshes count as overlapping that do not when they are known accurately.
+const MAY_FILL: Range<f32> = 0.8..1.05;
 
 /// How much more of its narrowest rectangle than of that along the warp a mesh must fill to be laid along the former.
 /// Smaller: rounding turns a mesh.
@@ -67,24 +74,26 @@ pub(super) struct Plane {
 
 impl Chart {
     /// The chart of a mesh; none if it is folded or of pieces with different warps, or if it has no texture that is
-    /// like it and cannot be unfolded.
-    pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
+    /// like it and cannot be unfolded. If it is unfolded and then does not fill its rectangle, it may turn out that it is not needed.
+    pub fn of(
+        mesh: &RestMesh,
+        surface: &Surface,
+        is_needed_unfilled: impl FnOnce() -> bool,
+    ) -> Option<Self> {
         let Some(normal) = plane_normal(mesh) else {
-            let unfolded = || Self::unfolded(mesh, surface);
-            return Self::by_texture(mesh, surface).or_else(unfolded).map(Self::closed);
+            let flat = |unfolded| Some(Self::of_unfolded(mesh, surface, unfolded)?.closed());
+            let goes_on = |rough: Unfolded| {
+                flat(rough).is_none_or(|chart| chart.may_fill()) || is_needed_unfilled()
+            };
+            let by_texture = Self::by_texture(mesh, surface).map(Self::closed);
+            return by_texture.or_else(|| flat(Unfolded::of(mesh, surface, goes_on)?));
         };
         let warps = Warps::of(mesh, surface);
         let warp = warps.mean().unwrap_or_else(|| normal.any_orthonormal_vector());
         warps.are_along(warp).then(|| Self::in_plane(mesh, surface, normal, warp))
     }
 
-    /// The chart of a curved mesh that is unfolded; none if that is impossible. Where that distorts the mesh, the lines of the
-    /// chart are curved.
-    fn unfolded(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
-        Self::of_unfolded(mesh, surface, Unfolded::of(mesh, surface)?)
-    }
-
-    /// The same without seams; none of a flat mesh, and of one without a border.
+    /// The chart of a curved mesh that is unfolded without seams; none of a flat mesh, and of one without a border.
     pub fn without_seams(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         let has_border = surface.edges.iter().any(|edge| edge.other_side.is_none());
         if !has_border || plane_normal(mesh).is_some() {
@@ -93,6 +102,7 @@ impl Chart {
         Self::of_unfolded(mesh, surface, Unfolded::without_seams(mesh, surface)?)
     }
 
+    /// Where unfolding distorts the mesh, the lines of the chart are curved.
     fn of_unfolded(mesh: &RestMesh, surface: &Surface, unfolded: Unfolded) -> Option<Self> {
         let Unfolded { places, particles, triangles } = unfolded;
         let uv = |corners: &[u32; 3]| corners.map(|place| places[place as usize].as_vec2());
@@ -174,6 +184,16 @@ impl Chart {
         let last = u32::from(self.is_lattice());
         let nodes = |extent: f32| ((extent / spacing).round() as u32 + last).max(2);
         Grid::new(nodes(width), nodes(height), width, height)
+    }
+
+    /// Whether a chart that differs a little may fill its rectangle, and not overlap itself.
+    fn may_fill(&self) -> bool {
+        let area = |corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|corner| self.positions[corner as usize]);
+            0.5 * (b - a).perp_dot(c - a).abs()
+        };
+        let covered: f32 = self.triangles.iter().map(area).sum();
+        self.is_closed || MAY_FILL.contains(&(covered / self.extent.element_product()))
     }
 
     /// Whether some particles have two places.

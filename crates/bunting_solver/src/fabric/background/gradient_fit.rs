@@ -1,6 +1,6 @@
 //! Functions on a mesh whose gradients come nearest to wanted ones.
 
-use glam::DVec3;
+use glam::{BVec2, DVec2, DVec3};
 
 use super::laplacian::Laplacian;
 
@@ -41,28 +41,32 @@ impl<'a> GradientFit<'a> {
         combined(self.gradients[triangle], values)
     }
 
-    /// The function u with the least integral of |∇u − `wanted`|², the wanted gradient of each triangle, from one near it.
-    /// Some of its values are fixed. None if it is not found.
+    /// The two functions u with the least integrals of |∇u − `wanted`|², the wanted gradients of each triangle, from two near them.
+    /// Some of their values are fixed. None if they are not found, or not wanted after they are known roughly.
     pub fn solved(
         &self,
-        mut values: Vec<f64>,
-        is_fixed: impl Fn(usize) -> bool,
-        wanted: impl Fn(usize) -> DVec3,
-    ) -> Option<Vec<f64>> {
-        let mut right_side = vec![0.0; values.len()];
-        let mut scale = 0.0;
+        values: &[DVec2],
+        is_fixed: impl Fn(usize) -> BVec2,
+        wanted: impl Fn(usize) -> [DVec3; 2],
+        goes_on: impl FnOnce(Vec<DVec2>) -> bool,
+    ) -> Option<Vec<DVec2>> {
+        let mut right_sides = vec![DVec2::ZERO; values.len()];
+        let mut scales = DVec2::ZERO;
         for (triangle, corners) in self.triangles.iter().enumerate() {
             let area = f64::from(self.areas[triangle]);
-            let present = self.gradient(triangle, corners.map(|corner| values[corner as usize]));
-            let wanted = wanted(triangle);
-            for (&corner, gradient) in corners.iter().zip(&self.gradients[triangle]) {
-                right_side[corner as usize] += area * gradient.dot(wanted - present);
+            for (axis, wanted) in wanted(triangle).into_iter().enumerate() {
+                let of_corners = corners.map(|corner| values[corner as usize][axis]);
+                let present = self.gradient(triangle, of_corners);
+                for (&corner, gradient) in corners.iter().zip(&self.gradients[triangle]) {
+                    right_sides[corner as usize][axis] += area * gradient.dot(wanted - present);
+                }
+                scales[axis] += area * (present.length_squared() + wanted.length_squared());
             }
-            scale += area * (present.length_squared() + wanted.length_squared());
         }
-        let change = self.laplacian.solve(right_side, is_fixed, ACCURATE * scale)?;
-        values.iter_mut().zip(change).for_each(|(value, change)| *value += change);
-        Some(values)
+        let changed = |by: &[DVec2]| values.iter().zip(by).map(|(value, by)| value + by).collect();
+        let goes_on = |by: &[DVec2]| goes_on(changed(by));
+        let by = self.laplacian.solve(right_sides, is_fixed, ACCURATE * scales, goes_on)?;
+        Some(changed(&by))
     }
 }
 

@@ -1,7 +1,13 @@
-//! The Laplacian of linear functions on triangles, as a sparse matrix.
+//! The Laplacian of linear functions on triangles, as a sparse matrix. Two functions at a time are solved for, as they share the
+//! matrix.
+
+use glam::{BVec2, DVec2};
 
 /// Most steps of conjugate gradients.
 const STEPS: usize = 3000;
+
+/// How much less accurate a rough solution is. Larger: it tells less of the accurate one. Smaller: it takes as long.
+const ROUGH: f64 = 1e4;
 
 /// A row for each corner of triangles: the sum over its neighbours of a weight times the difference of both values.
 pub(super) struct Laplacian {
@@ -44,53 +50,65 @@ impl Laplacian {
         Self { starts, neighbours: rows.concat(), diagonal }
     }
 
-    /// The product with a vector.
-    fn times(&self, values: &[f64]) -> Vec<f64> {
-        let rows = values.iter().zip(self.starts.windows(2));
-        rows.map(|(value, ends)| {
+    /// Finds the products with two vectors, and returns the scalar products of both with these.
+    fn multiply(&self, vectors: &[DVec2], products: &mut [DVec2]) -> DVec2 {
+        let mut along = DVec2::ZERO;
+        let rows = vectors.iter().zip(products).zip(self.starts.windows(2));
+        for ((&values, products), ends) in rows {
             let neighbours = &self.neighbours[ends[0] as usize..ends[1] as usize];
-            let terms = neighbours.iter().map(|it| it.weight * (value - values[it.row as usize]));
-            terms.sum::<f64>()
-        })
-        .collect()
+            let terms = neighbours.iter().map(|it| it.weight * (values - vectors[it.row as usize]));
+            *products = terms.sum();
+            along += values * *products;
+        }
+        along
     }
 
-    /// The vector whose product with this matrix is the right side, but in rows with fixed values, where it is zero; by
-    /// conjugate gradients (Hestenes and Stiefel 1952), until the square of the residual over the diagonal is `accurate`.
-    /// None if that is not reached.
+    /// The two vectors whose products with this matrix are the right sides, but in rows with fixed values, where they are zero; by
+    /// conjugate gradients (Hestenes and Stiefel 1952), until the squares of the residuals over the diagonal are `accurate`.
+    /// None if that is not reached, or not wanted after a rough solution.
     pub fn solve(
         &self,
-        right_side: Vec<f64>,
-        is_fixed: impl Fn(usize) -> bool,
-        accurate: f64,
-    ) -> Option<Vec<f64>> {
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let is_solved = |(row, diagonal): &(usize, &f64)| !is_fixed(*row) && **diagonal > 0.0;
-        let inverse_of = |entry| if is_solved(&entry) { 1.0 / entry.1 } else { 0.0 };
-        let inverse: Vec<f64> = self.diagonal.iter().enumerate().map(inverse_of).collect();
-        let conditioned = |residual: &[f64]| -> Vec<f64> {
-            residual.iter().zip(&inverse).map(|(value, inverse)| value * inverse).collect()
+        right_sides: Vec<DVec2>,
+        is_fixed: impl Fn(usize) -> BVec2,
+        accurate: DVec2,
+        goes_on: impl FnOnce(&[DVec2]) -> bool,
+    ) -> Option<Vec<DVec2>> {
+        let inverse_of = |(row, &diagonal): (usize, &f64)| {
+            let inverse = if diagonal > 0.0 { 1.0 / diagonal } else { 0.0 };
+            DVec2::select(is_fixed(row), DVec2::ZERO, DVec2::splat(inverse))
         };
-        let mut solution = vec![0.0; right_side.len()];
-        let mut residual = right_side;
-        let mut step = conditioned(&residual);
-        let mut size = dot(&residual, &step);
+        let inverses: Vec<DVec2> = self.diagonal.iter().enumerate().map(inverse_of).collect();
+        let mut solutions = vec![DVec2::ZERO; right_sides.len()];
+        let mut residuals = right_sides;
+        let scaled = residuals.iter().zip(&inverses).map(|(residual, inverse)| residual * inverse);
+        let mut steps: Vec<DVec2> = scaled.collect();
+        let mut sizes: DVec2 = residuals.iter().zip(&steps).map(|(a, b)| a * b).sum();
+        let mut changes = vec![DVec2::ZERO; steps.len()];
+        let mut goes_on = Some(goes_on);
         for _ in 0..STEPS {
-            if size <= accurate {
-                return Some(solution);
+            let is_open = !sizes.cmple(accurate);
+            if !is_open.any() {
+                return Some(solutions);
             }
-            let change = self.times(&step);
-            let length = size / dot(&step, &change);
-            for (value, step) in solution.iter_mut().zip(&step) {
-                *value += step * length;
+            if sizes.cmple(ROUGH * accurate).all()
+                && let Some(goes_on) = goes_on.take()
+                && !goes_on(&solutions)
+            {
+                return None;
             }
-            for (residual, change) in residual.iter_mut().zip(&change) {
-                *residual -= change * length;
+            let along = self.multiply(&steps, &mut changes);
+            // The vector that is found first stays.
+            let lengths = DVec2::select(is_open, sizes / along, DVec2::ZERO);
+            let mut next = DVec2::ZERO;
+            for row in 0..steps.len() {
+                solutions[row] += steps[row] * lengths;
+                residuals[row] -= changes[row] * lengths;
+                next += residuals[row] * (residuals[row] * inverses[row]);
             }
-            let scaled = conditioned(&residual);
-            let before = core::mem::replace(&mut size, dot(&residual, &scaled));
-            for (step, scaled) in step.iter_mut().zip(scaled) {
-                *step = scaled + *step * (size / before);
+            let growth = DVec2::select(is_open, next / sizes, DVec2::ZERO);
+            sizes = DVec2::select(is_open, next, sizes);
+            for row in 0..steps.len() {
+                steps[row] = residuals[row] * inverses[row] + steps[row] * growth;
             }
         }
         None
@@ -99,6 +117,8 @@ impl Laplacian {
 
 #[cfg(test)]
 mod tests {
+    use glam::{BVec2, DVec2};
+
     use super::Laplacian;
 
     /// Of two triangles side by side.
@@ -107,18 +127,37 @@ mod tests {
         Laplacian::of(&[[0, 1, 2], [2, 1, 3]], |triangle| weights[triangle], 4)
     }
 
+    /// Values of which the first one and, of the second vector, the last one is known to be zero.
+    const WANTED: [DVec2; 4] = [
+        DVec2::new(0.0, 3.0),
+        DVec2::new(3.0, -1.0),
+        DVec2::new(-1.0, 0.5),
+        DVec2::new(0.5, 0.0),
+    ];
+
+    fn is_fixed(row: usize) -> BVec2 {
+        BVec2::new(row == 0, row == 3)
+    }
+
     #[test]
-    fn a_right_side_is_solved_for() {
+    fn right_sides_are_solved_for() {
         let laplacian = laplacian();
-        let wanted = [0.0, 3.0, -1.0, 0.5];
-        let right_side = laplacian.times(&wanted);
-        let found = laplacian.solve(right_side, |row| row == 0, 1e-20).expect("a solution");
-        assert!(found.iter().zip(wanted).all(|(found, wanted)| (found - wanted).abs() < 1e-8));
+        let mut right_sides = vec![DVec2::ZERO; 4];
+        laplacian.multiply(&WANTED, &mut right_sides);
+        let solve = |accurate: f64, goes_on: bool| {
+            let right_sides = right_sides.clone();
+            laplacian.solve(right_sides, is_fixed, DVec2::splat(accurate), |_| goes_on)
+        };
+        let found = solve(1e-20, true).expect("a solution");
+        assert!(found.iter().zip(WANTED).all(|(found, wanted)| found.distance(wanted) < 1e-8));
+        assert!(solve(1e-2, true).is_some() && solve(1e-2, false).is_none(), "after a rough one");
     }
 
     #[test]
     fn a_right_side_that_is_no_product_is_refused() {
         // A constant changes no product, so that the rows of every product have no sum.
-        assert!(laplacian().solve(vec![1.0; 4], |_| false, 1e-20).is_none());
+        let right_sides = vec![DVec2::new(0.0, 1.0); 4];
+        let found = laplacian().solve(right_sides, |_| BVec2::FALSE, DVec2::splat(1e-20), |_| true);
+        assert!(found.is_none());
     }
 }

@@ -38,6 +38,8 @@ mod unfold;
 mod warps;
 mod whole;
 
+use core::cell::OnceCell;
+
 use glam::{Mat3, Vec2, Vec3};
 
 use self::cells::{InCell, particles_from_nodes};
@@ -131,12 +133,17 @@ impl BackgroundMesh {
         let laid = of_largest.as_ref().unwrap_or(surface);
         let of_pieces = of_largest.as_ref().map(|_| surface);
         let on_chart = |chart: Chart| OnChart::of(mesh, laid, of_pieces, chart);
-        let straight = Chart::of(mesh, laid).and_then(on_chart);
+        let on_mapped = || {
+            let on = Chart::mapped(mesh, laid).and_then(on_chart);
+            on.filter(|on| on.coverage.is_filled)?.background()
+        };
+        let mapped = OnceCell::new();
+        let is_not_mapped = || mapped.get_or_init(on_mapped).is_none();
+        let straight = Chart::of(mesh, laid, is_not_mapped).and_then(on_chart);
         let fills = |on: &&OnChart| on.coverage.is_filled && on.chart.warps.is_empty();
-        let mapped = || Chart::mapped(mesh, laid).and_then(on_chart);
         let found = straight.as_ref().filter(fills).and_then(OnChart::background);
         found
-            .or_else(|| mapped().filter(|on| on.coverage.is_filled)?.background())
+            .or_else(|| mapped.into_inner().unwrap_or_else(on_mapped))
             .or_else(|| straight.as_ref().filter(|on| !fills(on))?.background())
             .or_else(|| on_chart(Chart::without_seams(mesh, laid)?)?.background())
     }

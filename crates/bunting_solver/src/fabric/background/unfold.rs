@@ -7,7 +7,7 @@
 use core::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{BVec2, DVec2, DVec3, Vec3};
 
 use super::gradient_fit::GradientFit;
 use crate::fabric::laid_yarns::{Directions, Faces, Towards};
@@ -31,13 +31,23 @@ pub(super) struct Unfolded {
 }
 
 impl Unfolded {
-    /// The unfolded mesh; none if it has several pieces, or pieces with different warps.
-    pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
+    /// The unfolded mesh; none if it has several pieces, or pieces with different warps, or if it is not wanted after it is known
+    /// roughly.
+    pub fn of(
+        mesh: &RestMesh,
+        surface: &Surface,
+        goes_on: impl FnOnce(Self) -> bool,
+    ) -> Option<Self> {
         let mut sheet = Sheet::new(mesh, surface);
         sheet.lay();
         let triangles: Vec<[u32; 3]> = sheet.triangles.iter().copied().collect::<Option<_>>()?;
-        let places = sheet.fitted(&triangles, &surface.triangle_areas, &sheet.places)?;
-        Some(Self { places, particles: sheet.particles, triangles })
+        let at = |places: Vec<DVec2>| {
+            let (particles, triangles) = (sheet.particles.clone(), triangles.clone());
+            Self { places, particles, triangles }
+        };
+        let goes_on = |rough: Vec<DVec2>| goes_on(at(rough));
+        let areas = &surface.triangle_areas;
+        sheet.fitted(&triangles, areas, &sheet.places, goes_on).map(at)
     }
 
     /// The mesh unfolded without seams: where two ways around meet, both give way.
@@ -47,7 +57,7 @@ impl Unfolded {
         let first = |places: &Vec<u32>| Some(sheet.places[*places.first()? as usize]);
         let start: Vec<DVec2> =
             sheet.places_of_particle.iter().map(first).collect::<Option<_>>()?;
-        let places = sheet.fitted(&mesh.triangles, &surface.triangle_areas, &start)?;
+        let places = sheet.fitted(&mesh.triangles, &surface.triangle_areas, &start, |_| true)?;
         let particles = (0..places.len() as u32).collect();
         Some(Self { places, particles, triangles: mesh.triangles.clone() })
     }
@@ -152,16 +162,17 @@ impl<'a> Sheet<'a> {
     }
 
     /// The places whose gradients on these triangles are nearest to warp and weft, from others near them; none if they are not
-    /// found.
-    fn fitted(&self, triangles: &[[u32; 3]], areas: &[f32], start: &[DVec2]) -> Option<Vec<DVec2>> {
+    /// found, or not wanted after they are known roughly.
+    fn fitted(
+        &self,
+        triangles: &[[u32; 3]],
+        areas: &[f32],
+        start: &[DVec2],
+        goes_on: impl FnOnce(Vec<DVec2>) -> bool,
+    ) -> Option<Vec<DVec2>> {
         let corners = |triangle| self.faces.corners(triangle).map(|corner| corner.as_dvec3());
         let corners = (0..triangles.len() as u32).map(corners);
         let fit = GradientFit::new(triangles, corners, areas, start.len());
-        let coordinate = |axis: usize| {
-            let start = start.iter().map(|place| place[axis]).collect();
-            fit.solved(start, |_| false, |triangle| self.axes[triangle][axis])
-        };
-        let [warp, weft] = [coordinate(0)?, coordinate(1)?];
-        Some(warp.into_iter().zip(weft).map(|(u, v)| DVec2::new(u, v)).collect())
+        fit.solved(start, |_| BVec2::FALSE, |triangle| self.axes[triangle], goes_on)
     }
 }

@@ -10,7 +10,7 @@
 mod border;
 mod regular;
 
-use glam::{DMat4, DVec3, DVec4, Vec2, Vec3};
+use glam::{DMat4, DVec2, DVec3, DVec4, Vec2, Vec3};
 
 use self::border::{Sides, sides};
 use super::chart::{Chart, border_length};
@@ -39,47 +39,41 @@ impl Chart {
         let corners = corners.map(|corners| corners.map(Vec3::as_dvec3));
         let count = mesh.positions.len();
         let fit = GradientFit::new(&mesh.triangles, corners, &surface.triangle_areas, count);
-        let harmonic = |fixed: &[Option<f64>]| {
-            let start = fixed.iter().map(|fixed| fixed.unwrap_or(0.5)).collect();
-            fit.solved(start, |particle| fixed[particle].is_some(), |_| DVec3::ZERO)
-        };
-        let (cut, [along, across]) = match sides {
+        let (cut, coordinates) = match sides {
             Sides::Four(sides) => {
-                let value = |[zero, one]: [usize; 2]| {
-                    let mut fixed = vec![None; count];
-                    sides[zero].iter().for_each(|&at| fixed[at as usize] = Some(0.0));
-                    sides[one].iter().for_each(|&at| fixed[at as usize] = Some(1.0));
-                    harmonic(&fixed)
-                };
+                let mut fixed = vec![[None; 2]; count];
+                for (axis, [zero, one]) in [[3, 1], [0, 2]].into_iter().enumerate() {
+                    sides[zero].iter().for_each(|&at| fixed[at as usize][axis] = Some(0.0));
+                    sides[one].iter().for_each(|&at| fixed[at as usize][axis] = Some(1.0));
+                }
                 let cut = Cut {
                     particles: (0..count as u32).collect(),
                     triangles: mesh.triangles.clone(),
                     turns: vec![0.0; count],
                 };
-                (cut, [value([3, 1])?, value([0, 2])?])
+                (cut, flattest(&fit, &fixed, [0.5; 2], |_| [DVec3::ZERO; 2])?)
             }
             Sides::Rims(rims) => {
-                let mut fixed = vec![None; count];
+                let mut fixed = vec![[None; 2]; count];
                 for (rim, value) in rims.iter().zip([0.0, 1.0]) {
-                    rim.iter().for_each(|&at| fixed[at as usize] = Some(value));
+                    rim.iter().for_each(|&at| fixed[at as usize][0] = Some(value));
                 }
                 let cut = border::cut_open(mesh, &rims)?;
-                let along = harmonic(&fixed)?;
                 let turning = |triangle: usize| {
                     let turns = cut.triangles[triangle].map(|place| cut.turns[place as usize]);
-                    -fit.gradient(triangle, turns)
+                    [DVec3::ZERO, -fit.gradient(triangle, turns)]
                 };
-                let around = fit.solved(vec![0.0; count], |_| false, turning)?;
-                (cut, [along, around])
+                let coordinates = flattest(&fit, &fixed, [0.5, 0.0], turning)?;
+                (cut, coordinates)
             }
         };
-        let values = |of: &[f64]| -> Vec<f64> {
-            let places = cut.particles.iter().map(|&particle| of[particle as usize]);
-            places.collect()
+        let values = |axis: usize| {
+            let places = cut.particles.iter().map(|&particle| coordinates[particle as usize][axis]);
+            places.collect::<Vec<f64>>()
         };
-        let along = values(&along);
+        let along = values(0);
         let across: Vec<f64> =
-            values(&across).iter().zip(&cut.turns).map(|(value, turn)| value + turn).collect();
+            values(1).iter().zip(&cut.turns).map(|(value, turn)| value + turn).collect();
         let is_closed = cut.particles.len() > mesh.positions.len();
         let [along, across] = [(&along, true), (&across, !is_closed)].map(|(values, is_spaced)| {
             Coordinate::of(&fit, surface, &cut.triangles, values, is_spaced)
@@ -108,6 +102,22 @@ impl Chart {
             extent,
         }))
     }
+}
+
+/// The two functions with gradients nearest to wanted ones, some of whose values are fixed. The others are looked for from these
+/// values.
+fn flattest(
+    fit: &GradientFit,
+    fixed: &[[Option<f64>; 2]],
+    others: [f64; 2],
+    wanted: impl Fn(usize) -> [DVec3; 2],
+) -> Option<Vec<DVec2>> {
+    let start = |fixed: &[Option<f64>; 2]| {
+        DVec2::from([0, 1].map(|axis| fixed[axis].unwrap_or(others[axis])))
+    };
+    let start: Vec<DVec2> = fixed.iter().map(start).collect();
+    let is_fixed = |particle: usize| fixed[particle].map(|fixed| fixed.is_some()).into();
+    fit.solved(&start, is_fixed, wanted, |_| true)
 }
 
 /// Twice the area of the triangles in the plane.
