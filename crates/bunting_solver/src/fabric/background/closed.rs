@@ -42,10 +42,10 @@ impl Chart {
 
     /// From the first to the second place of the particles that have two; none unless these are alike.
     fn period(&self, spacing: f32) -> Option<Vec2> {
-        let mut first = BTreeMap::new();
+        let mut first = vec![None; self.particle_count()];
         let mut periods: Vec<Vec2> = Vec::new();
         for (&at, &particle) in self.positions.iter().zip(&self.particles) {
-            let from = *first.entry(particle).or_insert(at);
+            let from = *first[particle as usize].get_or_insert(at);
             if from != at {
                 let away = at - from;
                 let is_opposite = periods.first().is_some_and(|first| first.dot(away) < 0.0);
@@ -55,6 +55,10 @@ impl Chart {
         let mean = periods.iter().sum::<Vec2>() / periods.len() as f32;
         let is_alike = periods.iter().all(|period| period.distance(mean) < ALIKE * spacing);
         (is_alike && mean.length() > LEAST_PERIOD * spacing).then_some(mean)
+    }
+
+    fn particle_count(&self) -> usize {
+        self.particles.iter().max().map_or(0, |&last| last as usize + 1)
     }
 
     /// The chart turned by a quarter.
@@ -71,18 +75,17 @@ impl Chart {
         let length = period.y.abs();
         // A period that is not quite along the axis is sheared onto it.
         self.positions.iter_mut().for_each(|at| at.x -= at.y * period.x / period.y);
-        let mut own: BTreeMap<u32, Vec2> = BTreeMap::new();
-        for (at, &particle) in self.positions.iter().zip(&self.particles) {
-            own.entry(particle).or_insert(Vec2::new(at.x, at.y.rem_euclid(length)));
+        // Of several places of a particle the first one.
+        let mut own = vec![Vec2::ZERO; self.particle_count()];
+        for (at, &particle) in self.positions.iter().zip(&self.particles).rev() {
+            own[particle as usize] = Vec2::new(at.x, at.y.rem_euclid(length));
         }
-        let low = own.values().map(|at| at.x).fold(f32::INFINITY, f32::min);
-        let high = own.values().map(|at| at.x).fold(f32::NEG_INFINITY, f32::max);
-        own.values_mut().for_each(|at| at.x -= low);
-        // Places by their particles and the periods that they lie away from the particles' own.
-        let mut places: BTreeMap<(u32, i32), u32> = BTreeMap::new();
+        let low = own.iter().map(|at| at.x).fold(f32::INFINITY, f32::min);
+        let high = own.iter().map(|at| at.x).fold(f32::NEG_INFINITY, f32::max);
+        own.iter_mut().for_each(|at| at.x -= low);
         let mut wrapped = Self {
-            positions: Vec::new(),
-            particles: Vec::new(),
+            positions: own.clone(),
+            particles: (0..own.len() as u32).collect(),
             triangles: Vec::new(),
             of_mesh: Vec::new(),
             own_places: own.len(),
@@ -90,31 +93,34 @@ impl Chart {
             extent: Vec2::new(high - low, length),
             ..self
         };
+        // Other places by their particles and the periods that they lie away from the particles' own.
+        let mut repeated: BTreeMap<(u32, i32), u32> = BTreeMap::new();
         let mut place = |particle: u32, turns: i32| {
-            *places.entry((particle, turns)).or_insert_with(|| {
-                wrapped.positions.push(own[&particle] + Vec2::Y * (turns as f32 * length));
+            if turns == 0 {
+                return particle;
+            }
+            *repeated.entry((particle, turns)).or_insert_with(|| {
+                let at = own[particle as usize] + Vec2::Y * (turns as f32 * length);
+                wrapped.positions.push(at);
                 wrapped.particles.push(particle);
                 wrapped.positions.len() as u32 - 1
             })
         };
-        own.keys().for_each(|&particle| {
-            place(particle, 0);
-        });
         let beyond = REPEATED * spacing;
         for (corners, &of_mesh) in self.triangles.iter().zip(&self.of_mesh) {
             let particles = corners.map(|corner| self.particles[corner as usize]);
             let turns = [0, 1, 2].map(|at| {
                 let laid = self.positions[corners[at] as usize].y;
-                ((laid - own[&particles[at]].y) / length).round() as i32
+                ((laid - own[particles[at] as usize].y) / length).round() as i32
             });
             for by in -MOST_TURNS..=MOST_TURNS {
                 let turns = turns.map(|of| of - turns[0] + by);
-                let heights = [0, 1, 2].map(|at| own[&particles[at]].y + turns[at] as f32 * length);
+                let heights = [0, 1, 2].map(|at| own[particles[at] as usize].y + turns[at] as f32 * length);
                 if heights.iter().any(|&y| y > -beyond)
                     && heights.iter().any(|&y| y < length + beyond)
                 {
-                    let repeated = [0, 1, 2].map(|at| place(particles[at], turns[at]));
-                    wrapped.triangles.push(repeated);
+                    let places = [0, 1, 2].map(|at| place(particles[at], turns[at]));
+                    wrapped.triangles.push(places);
                     wrapped.of_mesh.push(of_mesh);
                 }
             }

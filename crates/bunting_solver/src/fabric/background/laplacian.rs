@@ -13,7 +13,9 @@ const ROUGH: f64 = 1e4;
 pub(super) struct Laplacian {
     /// For each row the index of its first neighbour, and one beyond the last row.
     starts: Vec<u32>,
-    neighbours: Vec<Neighbour>,
+    neighbours: Vec<u32>,
+    /// The weight of each neighbour.
+    weights: Vec<f64>,
     /// Sum of the weights of each row.
     diagonal: Vec<f64>,
 }
@@ -47,7 +49,13 @@ impl Laplacian {
         }));
         let sum = |row: &Vec<Neighbour>| row.iter().map(|neighbour| neighbour.weight).sum();
         let diagonal = rows.iter().map(sum).collect();
-        Self { starts, neighbours: rows.concat(), diagonal }
+        let all = || rows.iter().flatten();
+        Self {
+            starts,
+            neighbours: all().map(|neighbour| neighbour.row).collect(),
+            weights: all().map(|neighbour| neighbour.weight).collect(),
+            diagonal,
+        }
     }
 
     /// Finds the products with two vectors, and returns the scalar products of both with these.
@@ -55,9 +63,9 @@ impl Laplacian {
         let mut along = DVec2::ZERO;
         let rows = vectors.iter().zip(products).zip(self.starts.windows(2));
         for ((&values, products), ends) in rows {
-            let neighbours = &self.neighbours[ends[0] as usize..ends[1] as usize];
-            let terms = neighbours.iter().map(|it| it.weight * (values - vectors[it.row as usize]));
-            *products = terms.sum();
+            let range = ends[0] as usize..ends[1] as usize;
+            let neighbours = self.neighbours[range.clone()].iter().zip(&self.weights[range]);
+            *products = neighbours.map(|(&row, weight)| weight * (values - vectors[row as usize])).sum();
             along += values * *products;
         }
         along
