@@ -45,53 +45,65 @@ fn nearest_straight(rest: &[Vec3], at: Vec3, pins: &[Pin]) -> Option<(f32, usize
     distances.min_by(|one, other| one.0.total_cmp(&other.0))
 }
 
-/// Bits of the length of a path, m, which are ordered like lengths, and the index of its pin.
-type Path = (u32, u32);
+/// The bits of the length of a path, m, which are ordered like lengths, above the index of its pin.
+type Path = u64;
+
+/// Longer than any path.
+const NO_PATH: Path = Path::MAX;
+
+fn path(length: f32, pin: u32) -> Path {
+    Path::from(length.to_bits()) << u32::BITS | Path::from(pin)
+}
+
+fn length_of(path: Path) -> f32 {
+    f32::from_bits((path >> u32::BITS) as u32)
+}
 
 /// By Dijkstra 1959, but with paths that are about as long in any order.
 fn nearest_along(neighbours: &Neighbours, pins: &[Pin]) -> Vec<Option<(f32, usize)>> {
     let mut paths = OpenPaths {
-        shortest: vec![None; neighbours.count()],
+        shortest: vec![NO_PATH; neighbours.count()],
         by_length: Vec::new(),
-        step: neighbours.mean_length(),
+        steps_per_metre: 1.0 / neighbours.mean_length(),
     };
     for (index, pin) in (0..).zip(pins) {
-        paths.offer((0, index), pin.particle);
+        paths.offer(0.0, index, pin.particle);
     }
     let mut steps = 0;
     while let Some(open) = paths.by_length.get_mut(steps) {
-        let Some((path @ (bits, pin), particle)) = open.pop() else {
+        let Some((path, particle)) = open.pop() else {
             steps += 1;
             continue;
         };
         // Else a shorter path was found since.
-        if paths.shortest[particle as usize] == Some(path) {
+        if paths.shortest[particle as usize] == path {
             for &(neighbour, edge) in neighbours.of(particle) {
-                paths.offer(((f32::from_bits(bits) + edge).to_bits(), pin), neighbour);
+                paths.offer(length_of(path) + edge, path as u32, neighbour);
             }
         }
     }
-    let path = |(bits, pin): Path| (f32::from_bits(bits), pin as usize);
-    paths.shortest.into_iter().map(|shortest| shortest.map(path)).collect()
+    let nearest = |path: Path| (path != NO_PATH).then(|| (length_of(path), path as u32 as usize));
+    paths.shortest.into_iter().map(nearest).collect()
 }
 
 /// Paths from which longer ones may lead on.
 struct OpenPaths {
     /// The shortest path known to each particle.
-    shortest: Vec<Option<Path>>,
+    shortest: Vec<Path>,
     /// Paths and the particles at their ends, by the number of whole steps in their lengths.
     by_length: Vec<Vec<(Path, u32)>>,
-    /// The mean length of an edge, m: there are at most as many steps in a path as there are edges. Smaller: more lists. Larger: more
-    /// paths are followed before a shorter one is found.
-    step: f32,
+    /// One over the mean length of an edge, 1/m: there are about as many steps in a path as edges, at most. Larger: more lists. Smaller:
+    /// more paths are followed before a shorter one is found.
+    steps_per_metre: f32,
 }
 
 impl OpenPaths {
-    fn offer(&mut self, path: Path, particle: u32) {
+    fn offer(&mut self, length: f32, pin: u32, particle: u32) {
         let known = &mut self.shortest[particle as usize];
-        if known.is_none_or(|known| path < known) {
-            *known = Some(path);
-            let steps = (f32::from_bits(path.0) / self.step) as usize;
+        let path = path(length, pin);
+        if path < *known {
+            *known = path;
+            let steps = (length * self.steps_per_metre) as usize;
             if self.by_length.len() <= steps {
                 self.by_length.resize_with(steps + 1, Vec::new);
             }

@@ -63,7 +63,8 @@ pub(super) fn weld(positions: &[Vec3], distance: f32) -> Weld {
         .enumerate()
         .map(|(vertex, &position)| {
             let at = (position - positions[0]) / distance;
-            let [low, home, high] = [-REACH, 0.0, REACH].map(|by| ((at + by) / CELL).floor().as_ivec3());
+            let [low, home, high] =
+                [-REACH, 0.0, REACH].map(|by| ((at + by) / CELL).floor().as_ivec3());
             let near = cells_between(low, high)
                 .filter_map(|cell| particles_in.get(&cell))
                 .flatten()

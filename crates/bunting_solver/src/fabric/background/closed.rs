@@ -115,7 +115,8 @@ impl Chart {
             });
             for by in -MOST_TURNS..=MOST_TURNS {
                 let turns = turns.map(|of| of - turns[0] + by);
-                let heights = [0, 1, 2].map(|at| own[particles[at] as usize].y + turns[at] as f32 * length);
+                let heights =
+                    [0, 1, 2].map(|at| own[particles[at] as usize].y + turns[at] as f32 * length);
                 if heights.iter().any(|&y| y > -beyond)
                     && heights.iter().any(|&y| y < length + beyond)
                 {

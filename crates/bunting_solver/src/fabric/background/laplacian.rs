@@ -65,7 +65,8 @@ impl Laplacian {
         for ((&values, products), ends) in rows {
             let range = ends[0] as usize..ends[1] as usize;
             let neighbours = self.neighbours[range.clone()].iter().zip(&self.weights[range]);
-            *products = neighbours.map(|(&row, weight)| weight * (values - vectors[row as usize])).sum();
+            *products =
+                neighbours.map(|(&row, weight)| weight * (values - vectors[row as usize])).sum();
             along += values * *products;
         }
         along
@@ -136,12 +137,8 @@ mod tests {
     }
 
     /// Values of which the first one and, of the second vector, the last one is known to be zero.
-    const WANTED: [DVec2; 4] = [
-        DVec2::new(0.0, 3.0),
-        DVec2::new(3.0, -1.0),
-        DVec2::new(-1.0, 0.5),
-        DVec2::new(0.5, 0.0),
-    ];
+    const WANTED: [DVec2; 4] =
+        [DVec2::new(0.0, 3.0), DVec2::new(3.0, -1.0), DVec2::new(-1.0, 0.5), DVec2::new(0.5, 0.0)];
 
     fn is_fixed(row: usize) -> BVec2 {
         BVec2::new(row == 0, row == 3)
