@@ -70,8 +70,9 @@ impl Pieces<'_> {
     /// The first triangle of the piece of each triangle.
     fn of_triangles(&self) -> Vec<u32> {
         let mut pieces: Vec<Option<u32>> = vec![None; self.faces.count()];
+        let mut next = Vec::new();
         for first in 0..self.faces.count() as u32 {
-            let mut next = vec![first];
+            next.push(first);
             while let Some(triangle) = next.pop() {
                 let piece = &mut pieces[triangle as usize];
                 if piece.is_none() {

@@ -24,14 +24,13 @@ pub(super) fn is_whole(chart: &Chart, coverage: &Coverage, grid: &Grid, faces: &
     if (with_cloth as f32) < LEAST_FILLED * coverage.parts.len() as f32 {
         return false;
     }
-    let is_at_border = |&triangle: &u32| faces.neighbours(triangle).count() < 3;
-    let in_cells = coverage.triangles.iter().map(|triangles| {
-        let of_mesh = |&triangle: &u32| chart.of_mesh[triangle as usize];
-        triangles.iter().map(of_mesh).collect::<Vec<u32>>()
-    });
-    let in_cells: Vec<Vec<u32>> = in_cells.collect();
+    let in_cell = |cell: usize| {
+        let triangles = coverage.triangles[cell].iter();
+        triangles.map(|&triangle| chart.of_mesh[triangle as usize])
+    };
+    let is_at_border = |triangle: u32| faces.neighbours(triangle).count() < 3;
     let has_border: Vec<bool> =
-        in_cells.iter().map(|triangles| triangles.iter().any(is_at_border)).collect();
+        (0..coverage.triangles.len()).map(|cell| in_cell(cell).any(is_at_border)).collect();
     let around = Around { grid, is_closed: chart.is_closed };
     let mut is_near = vec![false; faces.count()];
     let (mut next, mut near) = (Vec::new(), Vec::new());
@@ -39,7 +38,7 @@ pub(super) fn is_whole(chart: &Chart, coverage: &Coverage, grid: &Grid, faces: &
         if !around.cells(node, 1 + FARTHER).any(|cell| has_border[cell]) {
             return true;
         }
-        let triangles = |reach| around.cells(node, reach).flat_map(|cell| &in_cells[cell]).copied();
+        let triangles = |reach| around.cells(node, reach).flat_map(in_cell);
         let Some(first) = triangles(1).next() else { return true };
         near.clear();
         near.extend(triangles(1 + FARTHER));
