@@ -1,6 +1,8 @@
 //! The Laplacian of linear functions on triangles, as a sparse matrix. Two functions at a time are solved for, as they share the
 //! matrix.
 
+use core::ops::Range;
+
 use glam::{BVec2, DVec2};
 
 /// Most steps of conjugate gradients.
@@ -11,13 +13,23 @@ const ROUGH: f64 = 1e4;
 
 /// A row for each corner of triangles: the sum over its neighbours of a weight times the difference of both values.
 pub(super) struct Laplacian {
-    /// For each row the index of its first neighbour, and one beyond the last row.
-    starts: Vec<u32>,
+    /// Rows of as many neighbours, so that loops over these have a length that processors predict.
+    groups: Vec<RowGroup>,
+    /// The neighbours of the rows, group by group.
     neighbours: Vec<u32>,
     /// The weight of each neighbour.
     weights: Vec<f64>,
     /// Sum of the weights of each row.
     diagonal: Vec<f64>,
+}
+
+/// Rows with the same number of neighbours.
+struct RowGroup {
+    length: usize,
+    /// In ascending order.
+    rows: Vec<u32>,
+    /// Indices of their neighbours, row by row.
+    neighbours: Range<usize>,
 }
 
 #[derive(Clone, Copy)]
@@ -42,34 +54,38 @@ impl Laplacian {
                 }
             }
         }
-        let mut starts = vec![0];
-        starts.extend(rows.iter().scan(0, |end, row| {
-            *end += row.len() as u32;
-            Some(*end)
-        }));
+        let mut order: Vec<u32> = (0..count as u32).collect();
+        let length = |row: u32| rows[row as usize].len();
+        order.sort_by_key(|&row| length(row));
+        let mut end = 0;
+        let groups = order.chunk_by(|&one, &other| length(one) == length(other)).map(|grouped| {
+            let (length, start) = (length(grouped[0]), end);
+            end += length * grouped.len();
+            RowGroup { length, rows: grouped.to_vec(), neighbours: start..end }
+        });
+        let all = || order.iter().flat_map(|&row| &rows[row as usize]);
         let sum = |row: &Vec<Neighbour>| row.iter().map(|neighbour| neighbour.weight).sum();
-        let diagonal = rows.iter().map(sum).collect();
-        let all = || rows.iter().flatten();
         Self {
-            starts,
+            groups: groups.filter(|group| group.length > 0).collect(),
             neighbours: all().map(|neighbour| neighbour.row).collect(),
             weights: all().map(|neighbour| neighbour.weight).collect(),
-            diagonal,
+            diagonal: rows.iter().map(sum).collect(),
         }
     }
 
     /// Finds the products with two vectors, and returns the scalar products of both with these.
     fn multiply(&self, vectors: &[DVec2], products: &mut [DVec2]) -> DVec2 {
-        let mut along = DVec2::ZERO;
-        let rows = vectors.iter().zip(products).zip(self.starts.windows(2));
-        for ((&values, products), ends) in rows {
-            let range = ends[0] as usize..ends[1] as usize;
-            let neighbours = self.neighbours[range.clone()].iter().zip(&self.weights[range]);
-            *products =
-                neighbours.map(|(&row, weight)| weight * (values - vectors[row as usize])).sum();
-            along += values * *products;
+        for RowGroup { length, rows, neighbours } in &self.groups {
+            let weights = self.weights[neighbours.clone()].chunks_exact(*length);
+            let neighbours = self.neighbours[neighbours.clone()].chunks_exact(*length);
+            for ((&row, neighbours), weights) in rows.iter().zip(neighbours).zip(weights) {
+                let values = vectors[row as usize];
+                let terms = neighbours.iter().zip(weights);
+                let terms = terms.map(|(&at, weight)| weight * (values - vectors[at as usize]));
+                products[row as usize] = terms.sum();
+            }
         }
-        along
+        vectors.iter().zip(products).map(|(value, product)| *value * *product).sum()
     }
 
     /// The two vectors whose products with this matrix are the right sides, but in rows with fixed values, where they are zero; by
