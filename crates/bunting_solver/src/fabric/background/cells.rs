@@ -44,6 +44,10 @@ impl InCell {
             let at = coordinates(place, corners.map(|node| laid.places[node as usize]))?;
             Some(Self { corners, at })
         };
+        // Most places lie well within the first cell, and so in no other.
+        if let Some(within) = between(cell).filter(|it| it.inside() > ON_LINE && has_cloth(it)) {
+            return within;
+        }
         let found: Vec<Self> = cells.filter_map(between).collect();
         let nearest = |it: &Self| it.outside() + if has_cloth(it) { 0.0 } else { ON_LINE };
         let nearest = found.into_iter().min_by(|a, b| nearest(a).total_cmp(&nearest(b)));
@@ -53,6 +57,11 @@ impl InCell {
     /// How far the place lies outside, in cells.
     fn outside(&self) -> f32 {
         self.at.distance(self.at.clamp(Vec2::ZERO, Vec2::ONE))
+    }
+
+    /// How far the place lies inside, in cells; below zero outside.
+    fn inside(&self) -> f32 {
+        self.at.min(1.0 - self.at).min_element()
     }
 
     /// The weights of the corners: bilinear.
@@ -87,14 +96,43 @@ fn corners(cell: IVec2, grid: &Grid) -> [u32; 4] {
     [corner(0, 0), corner(1, 0), corner(0, 1), corner(1, 1)]
 }
 
-/// Coordinates of a place between the corners of a cell, row by row, by Newton's method; none if it fails.
+/// Coordinates of a place between the corners of a cell, row by row, by Newton's method; none if it fails, as it may for places far
+/// outside.
 fn coordinates(place: Vec2, [a, b, c, d]: [Vec2; 4]) -> Option<Vec2> {
     let mut at = Vec2::splat(0.5);
+    let mut step = Vec2::ZERO;
     for _ in 0..NEWTON_STEPS {
         let off = a.lerp(b, at.x).lerp(c.lerp(d, at.x), at.y) - place;
         let by_x = (b - a).lerp(d - c, at.y);
         let by_y = (c - a).lerp(d - b, at.x);
-        at -= Mat2::from_cols(by_x, by_y).inverse() * off;
+        step = Mat2::from_cols(by_x, by_y).inverse() * off;
+        at -= step;
     }
-    at.is_finite().then_some(at)
+    (step.abs().max_element() < ON_LINE).then_some(at)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::coordinates;
+
+    /// Corners of a cell of which one is moved.
+    const CELL: [Vec2; 4] =
+        [Vec2::ZERO, Vec2::new(0.999, 0.051), Vec2::new(0.419, 0.595), Vec2::new(1.05, 1.05)];
+
+    #[test]
+    fn a_place_within_a_cell_has_its_coordinates() {
+        let [a, b, c, d] = CELL;
+        let at = Vec2::new(0.3, 0.8);
+        let found = coordinates(a.lerp(b, at.x).lerp(c.lerp(d, at.x), at.y), CELL);
+        assert!(found.is_some_and(|found| found.distance(at) < 1e-5), "{found:?}");
+    }
+
+    #[test]
+    fn a_place_beside_a_cell_does_not_count_as_within() {
+        let found = coordinates(Vec2::new(-0.2554, 1.1809), CELL);
+        let is_within = |at: Vec2| at.cmpge(Vec2::ZERO).all() && at.cmple(Vec2::ONE).all();
+        assert!(!found.is_some_and(is_within), "{found:?}");
+    }
 }
