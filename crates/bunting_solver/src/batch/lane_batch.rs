@@ -167,7 +167,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             }
         }
         let chains = layout.chains(&fabric);
-        let longest_line = fabric.grid().map_or(0, |grid| grid.columns.max(grid.rows) as usize);
+        let longest_line = fabric.longest_line();
         let is_lone = P::WIDTH == 1;
         let lone_mesh = if is_lone { LoneMesh::of(&fabric).map(Box::new) } else { None };
         let (mut yarn_links, mut band_rows) = (Vec::new(), Vec::new());
@@ -196,10 +196,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             link_target: vec![P::splat(0.0); chains.target_count()],
             targets_of_tick: Vec::new(),
             rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
-            by_closing: vec![
-                P::splat(0.0);
-                if fabric.is_closed() { CHAINS_PER_PAIR * chains.longest() } else { 0 }
-            ],
+            by_closing: vec![P::splat(0.0); CHAINS_PER_PAIR * chains.longest_closed()],
             yarn_links,
             band_rows,
             lone_mesh,

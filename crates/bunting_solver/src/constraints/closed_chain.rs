@@ -37,8 +37,9 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             let start: V3<L> = particles.position(token, first[at]);
             let opposite: V3<L> = particles.position(token, end[at]);
             let seam = start.plus_scaled(opposite - start, half);
-            // Each end has half of the mass there.
-            let seam_mass = half * particles.inverse_mass::<L>(token, first[at]);
+            // Of two ends each has half of the mass there.
+            let one_or_half = if first[at] == end[at] { L::splat(token, 1.0) } else { half };
+            let seam_mass = one_or_half * particles.inverse_mass::<L>(token, first[at]);
             let closing = seam - particles.position(token, before_end[at]);
 
             // Forwards over all links but the closing one.

@@ -49,8 +49,10 @@ impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
             };
             let has = |side: usize| move |node: usize| rest.has_neighbour(node, side);
             let at = layout.index_of_pack(pack);
-            let step = |side: usize, index: u32| {
-                if nodes.iter().any(|&node| has(side)(node)) { index } else { at }
+            // The neighbours of a pack's nodes in their rows are a pack as well.
+            let in_row = |side: usize| match nodes.iter().find(|&&node| has(side)(node)) {
+                Some(&node) => (at + rest.neighbours[node][side]).wrapping_sub(node as u32),
+                None => at,
             };
             let [_, _, above, below] = rest.neighbours[nodes[0]];
             let in_column = |node: u32| layout.index_of_pack(layout.locate(node as usize, 0).0);
@@ -58,12 +60,7 @@ impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
                 |sides: [usize; 2]| sides.map(|side| constant(&|node| f32::from(has(side)(node))));
             NodeFrame {
                 at,
-                neighbours: [
-                    step(0, at.saturating_sub(1)),
-                    step(1, at + 1),
-                    in_column(above),
-                    in_column(below),
-                ],
+                neighbours: [in_row(0), in_row(1), in_column(above), in_column(below)],
                 has_in_row: masks([0, 1]),
                 has_in_column: masks([2, 3]),
                 at_rest: [0, 1, 2].map(|kind| {

@@ -90,7 +90,7 @@ impl Bending {
 
 impl BendProfile {
     /// A line of particles. `sizes` are their distances, m, and the widths of cloth that the line represents there, m.
-    fn new(
+    pub(super) fn new(
         particles: &[u32],
         sizes: &[(f32, f32)],
         inverse_areas: &[f32],

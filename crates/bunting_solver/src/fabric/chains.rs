@@ -126,7 +126,7 @@ impl Chains {
                 particles: yarn.particles.clone(),
                 links: (0..count).map(|at| ChainLink::of(link(at))).collect(),
                 sweep_order: order.map(|at| (at, link(at).class)).collect(),
-                is_closed: is_joined && is_column(yarn),
+                is_closed: is_joined && is_column(yarn) || yarn.is_ring(),
             }
         };
         let mut chains = Self::of_colours(colours.ranges().iter().map(|range| {
@@ -135,7 +135,7 @@ impl Chains {
             (family, yarns.iter().map(chain).collect())
         }));
         if let Some(grid) = grid {
-            chains.cells = chains.cells_of(grid);
+            chains.find_cells(grid.cells().map(|(corners, _)| corners));
         }
         chains
     }
@@ -150,13 +150,14 @@ impl Chains {
         self.diagonal_lengths = self.cells.iter().map(of_cell).collect();
     }
 
-    /// The cells of a grid, with the targets of the diagonals that are links.
-    fn cells_of(&self, grid: &Grid) -> Vec<Cell> {
+    /// Notes the cells with these corners, with the targets of the diagonals that are links.
+    pub(super) fn find_cells(&mut self, corners: impl Iterator<Item = [u32; 4]>) {
         let targets: HashMap<[u32; 2], u32> =
             self.diagonals().map(|([a, b], target)| ([a.min(b), a.max(b)], target)).collect();
         let cell = |[top_left, top_right, bottom_left, bottom_right]: [u32; 4]| {
-            let falling = targets.get(&[top_left, bottom_right]);
-            let rising = targets.get(&[top_right, bottom_left]);
+            let target = |one: u32, other: u32| targets.get(&[one.min(other), one.max(other)]);
+            let falling = target(top_left, bottom_right);
+            let rising = target(top_right, bottom_left);
             let corners = [top_left, top_right, bottom_left, bottom_right];
             let mirrored = [top_right, top_left, bottom_right, bottom_left];
             match (falling, rising) {
@@ -167,7 +168,7 @@ impl Chains {
                 (None, None) => None,
             }
         };
-        grid.cells().filter_map(|(corners, _)| cell(corners)).collect()
+        self.cells = corners.filter_map(cell).collect();
     }
 }
 
@@ -188,8 +189,13 @@ impl<C: Copy> Chains<C> {
         };
         for (family, of_colour) in colours {
             let (first_pair, first_link) = (chains.pairs.len(), chains.sweep_links.len());
-            for pair in of_colour.chunks(CHAINS_PER_PAIR) {
-                chains.push_pair(family, pair);
+            // Closed chains of different lengths end in different rows.
+            let alike = |one: &Chain<C>, other: &Chain<C>| {
+                one.is_closed == other.is_closed
+                    && (!one.is_closed || one.links.len() == other.links.len())
+            };
+            for run in of_colour.chunk_by(alike) {
+                run.chunks(CHAINS_PER_PAIR).for_each(|pair| chains.push_pair(family, pair));
             }
             chains.colours.push(ChainColour {
                 family,
@@ -233,6 +239,12 @@ impl<C: Copy> Chains<C> {
     /// Number of target lengths, including those of links that fill up a shorter chain.
     pub fn target_count(&self) -> usize {
         self.pairs.last().map_or(0, |pair| pair.targets.end)
+    }
+
+    /// Greatest number of rows of links in a pair of closed chains.
+    pub fn longest_closed(&self) -> usize {
+        let closed = self.pairs.iter().filter(|pair| pair.is_closed);
+        closed.map(|pair| pair.links.len()).max().unwrap_or(0)
     }
 
     /// Greatest number of rows of links in a pair.

@@ -1,10 +1,9 @@
 //! The fabric: a mesh at rest, and everything computed from it before a cloth moves.
 
-use std::sync::Arc;
-
 use glam::{Vec2, Vec3};
 
-use super::background::{BackgroundMesh, GridTransfer};
+use super::background::BackgroundMesh;
+use super::background_fabric::Background;
 use super::bending::{BendLine, BendProfile, Bending};
 use super::chains::Chains;
 use super::colour::Colours;
@@ -16,11 +15,11 @@ use super::material::FabricMaterial;
 use super::mesh::{RestMesh, Surface};
 use super::normals::vertex_normals;
 use super::patches::{self, Patch};
+use super::quads::Net;
 use super::rest_bends::RestBends;
 use super::rest_paths::RestPaths;
 use super::strip::{self, StripRow};
 use super::tethers::{Pin, Tether, Tethers};
-use super::topology;
 use super::twist::{Ribbon, RibbonProfile, Twist};
 use super::yarns::{Yarn, Yarns};
 use crate::constants::FREE_LENGTH;
@@ -32,48 +31,26 @@ use crate::constants::FREE_LENGTH;
 /// particle.
 #[derive(Clone, Debug)]
 pub struct Fabric {
-    grid: Option<Grid>,
-    mesh: RestMesh,
-    patches: Vec<Patch>,
-    patch_grid_columns: Option<usize>,
-    links: Links,
-    yarns: Yarns,
-    chains: Chains,
-    laid_yarns: LaidYarns,
-    strips: Vec<Vec<StripRow>>,
-    hinges: Hinges,
-    bending: Bending,
-    twist: Twist,
-    rest_bends: Option<RestBends>,
+    pub(super) grid: Option<Grid>,
+    pub(super) mesh: RestMesh,
+    pub(super) patches: Vec<Patch>,
+    pub(super) patch_grid_columns: Option<usize>,
+    pub(super) links: Links,
+    pub(super) yarns: Yarns,
+    pub(super) chains: Chains,
+    pub(super) laid_yarns: LaidYarns,
+    pub(super) strips: Vec<Vec<StripRow>>,
+    pub(super) hinges: Hinges,
+    pub(super) bending: Bending,
+    pub(super) twist: Twist,
+    pub(super) rest_bends: Option<RestBends>,
     pub(super) tethers: Tethers,
     pub(super) covered: Vec<f32>,
-    tautness: f32,
-    shortest: f32,
-    probes: Vec<Probe>,
+    pub(super) tautness: f32,
+    pub(super) shortest: f32,
+    pub(super) probes: Vec<Probe>,
     pub(super) topology: Option<u64>,
-    background: Option<Background>,
-}
-
-/// The grid that solves stretch, shear and bending of a mesh.
-#[derive(Clone, Debug)]
-pub(crate) struct Background {
-    /// The grid, whose particles are called nodes.
-    pub fabric: Arc<Fabric>,
-    /// How it reads the mesh's particles and moves them.
-    pub transfer: GridTransfer,
-    /// cos² of the angle between its rows and the warp.
-    pub warp_cos2: f32,
-    /// Number of nodes around which there is cloth.
-    pub node_count: usize,
-}
-
-impl Background {
-    fn of(mesh: BackgroundMesh, tethered: bool) -> Self {
-        let warp_cos2 = mesh.warp_cos2;
-        let (fabric, transfer) = Fabric::of_background(mesh, tethered);
-        let node_count = fabric.mesh.areas.iter().filter(|area| **area > 0.0).count();
-        Self { fabric: Arc::new(fabric), transfer, warp_cos2, node_count }
-    }
+    pub(super) background: Option<Background>,
 }
 
 impl Fabric {
@@ -86,7 +63,9 @@ impl Fabric {
     ) -> Self {
         let background = match &grid {
             Some(_) => None,
-            None => BackgroundMesh::of(&mesh, surface).map(|grid| Background::of(grid, tethered)),
+            None => BackgroundMesh::of(&mesh, surface)
+                .map(|grid| Background::of(grid, tethered))
+                .or_else(|| Some(Background::of_net(Net::of(&mesh, surface)?, surface, tethered))),
         };
         let mut patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
         let cells = grid.filter(|grid| patches::are_cells(&patches, grid));
@@ -143,53 +122,6 @@ impl Fabric {
         };
         fabric.topology = fabric.hash_topology();
         fabric
-    }
-
-    /// The constraints of a background grid, whose nodes have no hinges.
-    fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
-        let BackgroundMesh { grid, mut mesh, coverage, transfer, is_flat, .. } = background;
-        let BackgroundMesh { is_cut, sizes, warps, are_alike, .. } = background;
-        let is_closed = !transfer.joined.is_empty();
-        let links = match &warps {
-            Some(warps) => Links::of_cells_with_warps(&mesh, &grid, &coverage, warps, is_closed),
-            None => Links::of(&mesh, Some(&grid), Some(&coverage), &[], is_closed),
-        };
-        // In the chart all lines are straight.
-        let yarns = Yarns::of(&grid.positions(), &links.list);
-        let sizes = sizes.as_ref();
-        let mut chains =
-            Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid), is_closed);
-        if !are_alike {
-            chains.measure_diagonals(&mesh.positions);
-        }
-        let edges = topology::edges(&mesh.triangles).unwrap_or_default();
-        mesh.triangles = grid.triangles(false);
-        let inverse_areas = &mesh.inverse_areas;
-        let fabric = Self {
-            bending: Bending::of(&grid, inverse_areas, is_closed, sizes),
-            twist: Twist::of(&grid, inverse_areas, sizes),
-            rest_bends: (!is_flat).then(|| RestBends::of(&grid, &mesh, is_closed)),
-            hinges: Hinges::of(&mesh, &[]),
-            tethers: Tethers::of(&mesh, &edges, is_flat && !is_cut, tethered),
-            covered: sizes
-                .filter(|_| is_cut)
-                .map_or(Vec::new(), |sizes| sizes.parts_of_particles(&grid)),
-            tautness: 0.0,
-            shortest: 0.0,
-            probes: Vec::new(),
-            patches: patches::cells(&mesh.triangles, &grid, sizes),
-            patch_grid_columns: Some(grid.columns as usize),
-            background: None,
-            laid_yarns: LaidYarns::default(),
-            strips: Vec::new(),
-            topology: None,
-            grid: Some(grid),
-            mesh,
-            links,
-            yarns,
-            chains,
-        };
-        (fabric, transfer)
     }
 
     /// Positions at rest in the cloth's frame, m, one per particle.
@@ -281,6 +213,13 @@ impl Fabric {
     #[must_use]
     pub fn grid(&self) -> Option<&Grid> {
         self.grid.as_ref()
+    }
+
+    /// Greatest number of particles of a row or a column of a grid, or of a line along which a net bends.
+    pub(crate) fn longest_line(&self) -> usize {
+        let of_lines = self.bending.lines.iter().map(|line| line.particles.len()).max();
+        let of_grid = self.grid.map_or(0, |grid| grid.columns.max(grid.rows) as usize);
+        of_grid.max(of_lines.unwrap_or(0))
     }
 
     /// One over the area of each particle, 1/m²; zero if it is pinned, as if it had infinite mass (thesis,

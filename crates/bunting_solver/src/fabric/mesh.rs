@@ -97,6 +97,12 @@ impl RestMesh {
         self.areas = areas;
     }
 
+    /// Area of each particle, m², zero if it is pinned.
+    pub fn free_areas(&self) -> Vec<f32> {
+        let areas = self.areas.iter().zip(&self.inverse_areas);
+        areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect()
+    }
+
     /// Whether a particle is pinned.
     pub fn is_pinned(&self, particle: u32) -> bool {
         self.inverse_areas[particle as usize] == 0.0

@@ -12,6 +12,7 @@
 //! `patches` pairs triangles for sums over them.
 
 mod background;
+mod background_fabric;
 mod bending;
 mod builder;
 mod cell_sizes;
@@ -34,6 +35,7 @@ mod material;
 mod mesh;
 mod normals;
 mod patches;
+mod quads;
 mod rest_bends;
 mod rest_paths;
 mod shared_topology;
@@ -45,9 +47,9 @@ mod weld;
 mod yarns;
 
 pub(crate) use background::{GridTransfer, Height, Interpolation, RowGroup, Term};
+pub(crate) use background_fabric::Background;
 pub(crate) use bending::{BendLine, BendProfile};
 pub(crate) use chains::{CHAINS_PER_PAIR, Cell, Chain, ChainLink, ChainPair, Chains, SweepLink};
-pub(crate) use fabric::Background;
 pub(crate) use hinges::{Hinge, angle as hinge_angle};
 pub(crate) use laid_yarns::{BAND, Coupling, LaidLink, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
 pub(crate) use patches::Patch;

@@ -35,6 +35,31 @@ impl RestBends {
         let neighbours: Vec<[u32; 4]> =
             places.map(|place| grid.neighbours(place, is_closed)).collect();
         let has_cloth: Vec<bool> = nodes.areas.iter().map(|area| *area > 0.0).collect();
+        let opposite = |node: u32, after: u32, below: u32| {
+            // A closed grid has no cells below its last row.
+            let has_cell = after != node && node / grid.columns + 1 < grid.rows;
+            has_cell.then_some(below + 1)
+        };
+        Self::with(positions, neighbours, has_cloth, is_closed, opposite)
+    }
+
+    /// The second differences of the nodes of a net, which resists no twist.
+    pub(super) fn of_neighbours(
+        positions: &[Vec3],
+        neighbours: Vec<[u32; 4]>,
+        has_cloth: Vec<bool>,
+    ) -> Self {
+        Self::with(positions, neighbours, has_cloth, false, |_, _, _| None)
+    }
+
+    /// The second differences of nodes with their neighbours, given the node opposite to each one in the cell behind and below it.
+    fn with(
+        positions: &[Vec3],
+        neighbours: Vec<[u32; 4]>,
+        has_cloth: Vec<bool>,
+        is_closed: bool,
+        opposite: impl Fn(u32, u32, u32) -> Option<u32>,
+    ) -> Self {
         let of_node = |(node, near): (u32, &[u32; 4])| {
             let at = |node: u32| positions[node as usize];
             let at_end = |other: u32| if has_cloth[other as usize] { other } else { node };
@@ -48,11 +73,9 @@ impl RestBends {
                 true => Vec3::ZERO,
                 false => at(first) - 2.0 * at(node) + at(last),
             };
-            // A closed grid has no cells below its last row.
-            let has_cell = after != node && node / grid.columns + 1 < grid.rows;
-            let twist = match has_cell {
-                true => at(node) - at(after) - at(below) + at(below + 1),
-                false => Vec3::ZERO,
+            let twist = match opposite(node, after, below) {
+                Some(opposite) => at(node) - at(after) - at(below) + at(opposite),
+                None => Vec3::ZERO,
             };
             [second(before, after), second(above, below), twist].map(in_frame)
         };

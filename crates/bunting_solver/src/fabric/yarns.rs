@@ -18,6 +18,13 @@ pub(crate) struct Yarn {
     pub links: Vec<u32>,
 }
 
+impl Yarn {
+    /// Whether it ends where it begins.
+    pub(super) fn is_ring(&self) -> bool {
+        self.particles.first() == self.particles.last()
+    }
+}
+
 /// The yarns of a fabric.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Yarns {

@@ -45,7 +45,7 @@ pub(crate) struct RowGroup {
 impl Interpolation {
     /// Adds a row. Terms that are rounding are left out, and the others keep the sum of the weights: a sum that is 10⁻⁶
     /// too small moves particles a metre from the origin by 10⁻⁶ m, 4 % of the stretch of a stiff cloth.
-    pub(super) fn push(&mut self, row: impl IntoIterator<Item = Term>) {
+    pub(in crate::fabric) fn push(&mut self, row: impl IntoIterator<Item = Term>) {
         let first = self.terms.len();
         let mut left_out = 0.0;
         for term in row {

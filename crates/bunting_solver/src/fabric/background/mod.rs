@@ -66,7 +66,7 @@ const LEAST_FREE: f32 = 0.5;
 const LEAST_FREE_BESIDE_MOVED: f32 = 0.01;
 
 /// Weights with which a grid reads a mesh's particles and moves them.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct GridTransfer {
     /// Of each node the particles that its position is interpolated from.
     pub nodes: Interpolation,
@@ -168,10 +168,7 @@ impl BackgroundMesh {
             heights: Vec::new(),
             joined: if chart.is_closed { grid.ends_of_columns().collect() } else { Vec::new() },
         };
-        let free_areas = mesh.areas.iter().zip(&mesh.inverse_areas);
-        let free_areas: Vec<f32> =
-            free_areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect();
-        transfer.moved_areas = transfer.node_masses(&free_areas);
+        transfer.moved_areas = transfer.node_masses(&mesh.free_areas());
         let positions = rest_positions(mesh, chart, &laid.places, &transfer);
         let has_curved_lines = !chart.warps.is_empty();
         let sizes = (has_curved_lines || laid.are_cut || laid.are_moved).then(|| {

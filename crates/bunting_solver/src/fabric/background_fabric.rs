@@ -1,0 +1,130 @@
+//! The fabrics that solve a mesh in its place: background grids, and nets of quads.
+
+use std::sync::Arc;
+
+use super::background::{BackgroundMesh, GridTransfer};
+use super::bending::Bending;
+use super::chains::Chains;
+use super::fabric::Fabric;
+use super::hinges::Hinges;
+use super::laid_yarns::LaidYarns;
+use super::links::Links;
+use super::mesh::Surface;
+use super::patches;
+use super::quads::Net;
+use super::rest_bends::RestBends;
+use super::tethers::Tethers;
+use super::topology;
+use super::twist::Twist;
+use super::yarns::Yarns;
+
+/// The grid that solves stretch, shear and bending of a mesh.
+#[derive(Clone, Debug)]
+pub(crate) struct Background {
+    /// The grid, whose particles are called nodes.
+    pub fabric: Arc<Fabric>,
+    /// How it reads the mesh's particles and moves them.
+    pub transfer: GridTransfer,
+    /// cos² of the angle between its rows and the warp.
+    pub warp_cos2: f32,
+    /// Number of nodes around which there is cloth.
+    pub node_count: usize,
+}
+
+impl Background {
+    /// The grid of a mesh.
+    pub(super) fn of(mesh: BackgroundMesh, tethered: bool) -> Self {
+        let warp_cos2 = mesh.warp_cos2;
+        let (fabric, transfer) = Fabric::of_background(mesh, tethered);
+        let node_count = fabric.mesh.areas.iter().filter(|area| **area > 0.0).count();
+        Self { fabric: Arc::new(fabric), transfer, warp_cos2, node_count }
+    }
+
+    /// The net of a mesh of quads.
+    pub(super) fn of_net(mut net: Net, surface: &Surface, tethered: bool) -> Self {
+        let transfer = core::mem::take(&mut net.transfer);
+        let fabric = Fabric::of_net(net, surface, tethered);
+        let node_count = fabric.particle_count();
+        Self { fabric: Arc::new(fabric), transfer, warp_cos2: 1.0, node_count }
+    }
+}
+
+impl Fabric {
+    /// The constraints of a net, whose nodes have no hinges.
+    fn of_net(net: Net, surface: &Surface, tethered: bool) -> Self {
+        let Net { mesh, links, yarns, corners, bending, rest_bends, .. } = net;
+        let mut chains = Chains::of(&yarns.list, &yarns.colours, &links.list, None, false);
+        chains.find_cells(corners.into_iter());
+        chains.measure_diagonals(&mesh.positions);
+        Self {
+            bending,
+            twist: Twist::default(),
+            rest_bends: Some(rest_bends),
+            hinges: Hinges::of(&mesh, &[]),
+            tethers: Tethers::of(&mesh, &surface.edges, false, tethered),
+            // Its lines end inside the cloth, too, and give their load to others by shear.
+            covered: vec![1.0; mesh.positions.len()],
+            tautness: 0.0,
+            shortest: 0.0,
+            probes: Vec::new(),
+            patches: patches::patches(&mesh.triangles, &surface.triangle_areas),
+            patch_grid_columns: None,
+            background: None,
+            laid_yarns: LaidYarns::default(),
+            strips: Vec::new(),
+            topology: None,
+            grid: None,
+            mesh,
+            links,
+            yarns,
+            chains,
+        }
+    }
+
+    /// The constraints of a background grid, whose nodes have no hinges.
+    fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
+        let BackgroundMesh { grid, mut mesh, coverage, transfer, is_flat, .. } = background;
+        let BackgroundMesh { is_cut, sizes, warps, are_alike, .. } = background;
+        let is_closed = !transfer.joined.is_empty();
+        let links = match &warps {
+            Some(warps) => Links::of_cells_with_warps(&mesh, &grid, &coverage, warps, is_closed),
+            None => Links::of(&mesh, Some(&grid), Some(&coverage), &[], is_closed),
+        };
+        // In the chart all lines are straight.
+        let yarns = Yarns::of(&grid.positions(), &links.list);
+        let sizes = sizes.as_ref();
+        let mut chains =
+            Chains::of(&yarns.list, &yarns.colours, &links.list, Some(&grid), is_closed);
+        if !are_alike {
+            chains.measure_diagonals(&mesh.positions);
+        }
+        let edges = topology::edges(&mesh.triangles).unwrap_or_default();
+        mesh.triangles = grid.triangles(false);
+        let inverse_areas = &mesh.inverse_areas;
+        let fabric = Self {
+            bending: Bending::of(&grid, inverse_areas, is_closed, sizes),
+            twist: Twist::of(&grid, inverse_areas, sizes),
+            rest_bends: (!is_flat).then(|| RestBends::of(&grid, &mesh, is_closed)),
+            hinges: Hinges::of(&mesh, &[]),
+            tethers: Tethers::of(&mesh, &edges, is_flat && !is_cut, tethered),
+            covered: sizes
+                .filter(|_| is_cut)
+                .map_or(Vec::new(), |sizes| sizes.parts_of_particles(&grid)),
+            tautness: 0.0,
+            shortest: 0.0,
+            probes: Vec::new(),
+            patches: patches::cells(&mesh.triangles, &grid, sizes),
+            patch_grid_columns: Some(grid.columns as usize),
+            background: None,
+            laid_yarns: LaidYarns::default(),
+            strips: Vec::new(),
+            topology: None,
+            grid: Some(grid),
+            mesh,
+            links,
+            yarns,
+            chains,
+        };
+        (fabric, transfer)
+    }
+}

@@ -1,0 +1,80 @@
+//! The quads of a mesh, which edges halve into triangles.
+
+use core::f32::consts::FRAC_PI_2;
+
+use super::Cell;
+use crate::fabric::mesh::RestMesh;
+use crate::fabric::topology::Edge;
+
+/// Greatest departure of an angle of a quad from a right one, rad. Larger: the lines of a net of random triangles zigzag.
+const MOST_DEPARTURE: f32 = 0.7;
+
+/// Least part of the triangles that must be halves of quads. Smaller: where cells are triangles, lines end.
+const LEAST_PART: f32 = 0.95;
+
+/// Greatest ratio of the lengths of two sides of cells. Larger: short links need many substeps, as those at the poles of a ball do.
+const MOST_RATIO: f32 = 4.0;
+
+/// The cells of a mesh most of whose triangles are halves of quads, the best quads first; the other triangles are cells, too.
+/// None if other triangles are more than a few, if two triangles face opposite ways, as on a Möbius strip, or if sides are too unlike.
+pub(super) fn cells(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
+    if edges.iter().any(|edge| edge.other_side.is_some() && quad(mesh, edge).is_none()) {
+        return None;
+    }
+    let halved = edges.iter().filter_map(|edge| {
+        let cell = quad(mesh, edge)?;
+        let departure = departure(mesh, &cell);
+        (departure < MOST_DEPARTURE).then_some((departure, edge.side.triangle, cell))
+    });
+    let mut quads: Vec<(f32, u32, Cell)> = halved.collect();
+    quads.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let mut is_free = vec![true; mesh.triangles.len()];
+    let mut cells = Vec::new();
+    for (_, _, cell) in quads {
+        if cell.triangles.iter().all(|at| is_free[*at as usize]) {
+            cell.triangles.iter().for_each(|at| is_free[*at as usize] = false);
+            cells.push(cell);
+        }
+    }
+    if ((2 * cells.len()) as f32) < LEAST_PART * mesh.triangles.len() as f32 {
+        return None;
+    }
+    let left = (0..).zip(&mesh.triangles).zip(&is_free).filter(|(_, is_free)| **is_free);
+    cells.extend(left.map(|((triangle, corners), _)| Cell {
+        nodes: corners.to_vec(),
+        triangles: vec![triangle],
+    }));
+    let lengths = cells.iter().flat_map(Cell::sides).map(|ends| {
+        let [one, other] = mesh.positions_of(ends);
+        one.distance(other)
+    });
+    let (least, most) = lengths.fold((f32::INFINITY, 0.0_f32), |(least, most), length| {
+        (least.min(length), most.max(length))
+    });
+    (most < MOST_RATIO * least).then_some(cells)
+}
+
+/// The quad that an edge between two triangles halves, if both face the same way.
+fn quad(mesh: &RestMesh, edge: &Edge) -> Option<Cell> {
+    let other = edge.other_side?;
+    let [one, two] = [edge.side, other].map(|side| {
+        let corners = mesh.triangles[side.triangle as usize];
+        let first = corners.iter().position(|at| *at == side.opposite).unwrap_or_default();
+        [0, 1, 2].map(|by| corners[(first + by) % 3])
+    });
+    let faces_alike = [one[1], one[2]] == [two[2], two[1]];
+    faces_alike.then(|| Cell {
+        nodes: vec![one[0], one[1], two[0], one[2]],
+        triangles: vec![edge.side.triangle, other.triangle],
+    })
+}
+
+/// The greatest departure of an angle from a right one, rad.
+fn departure(mesh: &RestMesh, cell: &Cell) -> f32 {
+    let angle = |at: usize| {
+        let [before, here, after] =
+            mesh.positions_of([3, 0, 1].map(|by| cell.nodes[(at + by) % 4]));
+        (before - here).angle_between(after - here)
+    };
+    (0..4).map(|at| (angle(at) - FRAC_PI_2).abs()).fold(0.0, f32::max)
+}

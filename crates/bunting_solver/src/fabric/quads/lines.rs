@@ -1,0 +1,125 @@
+//! The lines of a net: sides of cells, each joined to those that go straight on from it.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use glam::Vec3;
+
+use super::{Cell, pair};
+
+/// Least cosine of the angle by which a line turns at a node. Larger: lines end at sharp folds. Smaller: they turn back.
+const STRAIGHT: f32 = 0.0;
+
+/// A line of nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Line {
+    /// The first one is also the last one of a ring.
+    pub nodes: Vec<u32>,
+}
+
+impl Line {
+    pub fn is_ring(&self) -> bool {
+        self.nodes.first() == self.nodes.last()
+    }
+
+    /// Each node with those before and after it on the line.
+    pub fn threes(&self) -> impl Iterator<Item = [u32; 3]> {
+        let inner = self.nodes.windows(3).map(|three| [three[0], three[1], three[2]]);
+        let closing = match self.nodes[..] {
+            [first, second, .., before, last] if first == last => Some([before, first, second]),
+            _ => None,
+        };
+        inner.chain(closing)
+    }
+}
+
+/// The lines through all sides of the cells.
+pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Vec<Line> {
+    let sides: BTreeSet<[u32; 2]> =
+        cells.iter().flat_map(Cell::sides).map(|[one, other]| pair(one, other)).collect();
+    let goes_on = continuations(cells, &sides, positions);
+    let next = |from: u32, at: u32| goes_on.get(&(from, at)).copied();
+    let mut is_taken: BTreeSet<[u32; 2]> = BTreeSet::new();
+    let mut lines = Vec::new();
+    for &[one, other] in &sides {
+        if is_taken.contains(&[one, other]) {
+            continue;
+        }
+        // Back to the beginning of the line, or once around.
+        let (mut at, mut after) = (one, other);
+        while let Some(before) = next(after, at) {
+            (at, after) = (before, at);
+            if (at, after) == (one, other) {
+                break;
+            }
+        }
+        is_taken.insert(pair(at, after));
+        let mut nodes = vec![at, after];
+        while let Some(to) = next(at, after) {
+            if !is_taken.insert(pair(after, to)) {
+                break;
+            }
+            nodes.push(to);
+            (at, after) = (after, to);
+        }
+        lines.push(Line { nodes });
+    }
+    lines
+}
+
+/// Root mean square of half of the differences of turns at neighbouring nodes of a line, rad. A line that is curved evenly within the
+/// surface has none, one that zigzags its turns.
+pub(super) fn zigzag(lines: &[Line], positions: &[Vec3], normals: &[Vec3]) -> f32 {
+    let at = |node: u32| positions[node as usize];
+    let turn = |[before, here, after]: [u32; 3]| {
+        let normal = normals[here as usize];
+        let [to, on] = [at(here) - at(before), at(after) - at(here)];
+        to.cross(on).dot(normal).atan2(to.reject_from(normal).dot(on))
+    };
+    let (mut sum, mut count) = (0.0, 0.0);
+    for line in lines {
+        let turns: Vec<f32> = line.threes().map(turn).collect();
+        for pair in turns.windows(2) {
+            sum += (0.5 * (pair[1] - pair[0])).powi(2);
+            count += 1.0;
+        }
+    }
+    (sum / f32::max(count, 1.0)).sqrt()
+}
+
+/// The node that follows two neighbours on their line.
+fn continuations(
+    cells: &[Cell],
+    sides: &BTreeSet<[u32; 2]>,
+    positions: &[Vec3],
+) -> BTreeMap<(u32, u32), u32> {
+    let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); positions.len()];
+    for &[one, other] in sides {
+        neighbours[one as usize].push(other);
+        neighbours[other as usize].push(one);
+    }
+    // Two sides of one cell are no line.
+    let around = cells.iter().flat_map(Cell::threes);
+    let turns: BTreeSet<(u32, [u32; 2])> =
+        around.map(|[before, at, after]| (at, pair(before, after))).collect();
+    let mut goes_on = BTreeMap::new();
+    for (node, near) in (0..).zip(&neighbours) {
+        let direction = |to: u32| (positions[to as usize] - positions[node as usize]).normalize();
+        let mut pairs: Vec<(f32, u32, u32)> = Vec::new();
+        for (at, &one) in near.iter().enumerate() {
+            for &other in &near[at + 1..] {
+                let straight = -direction(one).dot(direction(other));
+                if straight > STRAIGHT && !turns.contains(&(node, pair(one, other))) {
+                    pairs.push((straight, one, other));
+                }
+            }
+        }
+        pairs.sort_by(|one, other| other.0.total_cmp(&one.0));
+        for (_, one, other) in pairs {
+            if !goes_on.contains_key(&(one, node)) && !goes_on.contains_key(&(other, node)) {
+                goes_on.insert((one, node), other);
+                goes_on.insert((other, node), one);
+            }
+        }
+    }
+    goes_on
+}

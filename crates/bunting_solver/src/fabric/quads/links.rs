@@ -1,0 +1,143 @@
+//! The links of a net: each stands for half of the cells beside it, and has the moduli of the material in its own direction.
+
+use std::collections::BTreeMap;
+
+use super::lines::Line;
+use super::{Cell, pair};
+use crate::fabric::colour::colour;
+use crate::fabric::edge_sums::EdgeSums;
+use crate::fabric::laid_yarns::{Directions, Towards};
+use crate::fabric::links::{LEAST_STIFFNESS, LinkClass, LinkFamily, Links};
+use crate::fabric::mesh::RestMesh;
+use crate::fabric::yarns::{Yarn, Yarns};
+
+/// Least difference of cos² of the angle between a link and the warp in two cells of pieces with different warps. Larger: links at
+/// seams have moduli between those of both pieces.
+const UNLIKE_WARPS: f32 = 0.2;
+
+/// Sums over the cells beside a link.
+struct LinkSum {
+    /// Width of cloth that the link stands for, m; of a diagonal the factor of the shear modulus.
+    size: f32,
+    is_diagonal: bool,
+    /// Sum of cos² of the angles between the link, or the sides of its cell, and the warp.
+    cos2: f32,
+    cells: f32,
+}
+
+/// The links along the sides of cells and across quads, with the width of cloth that each one along a side stands for, m.
+pub(super) fn links(
+    mesh: &RestMesh,
+    cells: &[Cell],
+    directions: &Directions,
+) -> (Links, BTreeMap<[u32; 2], f32>) {
+    let vector = |[from, to]: [u32; 2]| {
+        let [from, to] = mesh.positions_of([from, to]);
+        to - from
+    };
+    let mut sums = EdgeSums::new(mesh.positions.len());
+    for cell in cells {
+        let area = cell.area(&mesh.positions);
+        let warp = directions.of_triangle(cell.triangles[0], Towards::Warp);
+        let weft = directions.of_triangle(cell.triangles[0], Towards::Weft);
+        let cos2 = |ends: [u32; 2]| {
+            let [along, across] = [warp, weft].map(|axis| vector(ends).dot(axis).powi(2));
+            along / (along + across).max(f32::MIN_POSITIVE)
+        };
+        let mut add = |ends: [u32; 2], size: f32, is_diagonal: bool, cos2: f32| {
+            let none = || LinkSum { size: 0.0, is_diagonal, cos2: 0.0, cells: 0.0 };
+            let sum = sums.at(ends, none);
+            // A diagonal may join two nodes that a side joins elsewhere.
+            if sum.is_diagonal != is_diagonal {
+                return;
+            }
+            sum.size += size;
+            if sum.cells == 0.0 || (sum.cos2 / sum.cells - cos2).abs() < UNLIKE_WARPS {
+                sum.cos2 += cos2;
+                sum.cells += 1.0;
+            }
+        };
+        let sides: Vec<[u32; 2]> = cell.sides().collect();
+        let length = |side: usize| vector(sides[side]).length();
+        match cell.nodes[..] {
+            [a, b, c, d] => {
+                for side in 0..4 {
+                    // Opposite sides stand for the whole cell.
+                    let width = area / (length(side) + length((side + 2) % 4));
+                    add(sides[side], width, false, cos2(sides[side]));
+                }
+                for ends in [[a, c], [b, d]] {
+                    // G γ² A/2 in both diagonals, whose lengths change by γ A/d.
+                    let factor = 0.5 * vector(ends).length_squared() / area;
+                    add(ends, factor, true, cos2(sides[0]));
+                }
+            }
+            _ => (0..3).for_each(|side| {
+                // Three families of links share what two have elsewhere.
+                let width = 2.0 / 3.0 * area / length(side);
+                add(sides[side], width, false, cos2(sides[side]));
+            }),
+        }
+    }
+    let mut widths = BTreeMap::new();
+    let mut links = Vec::new();
+    for (ends, sum) in sums.sorted() {
+        let cos2 = sum.cos2 / sum.cells;
+        let family = match (sum.is_diagonal, cos2 > 0.5) {
+            (true, _) => LinkFamily::Diagonal,
+            (false, true) => LinkFamily::Warp,
+            (false, false) => LinkFamily::Weft,
+        };
+        let coefficient = match sum.is_diagonal {
+            true => sum.size,
+            false => sum.size / vector(ends).length(),
+        };
+        if !sum.is_diagonal {
+            widths.insert(ends, sum.size);
+        }
+        let of = |other| if family == other { coefficient } else { 0.0 };
+        let class = LinkClass {
+            coefficients: [LinkFamily::Warp, LinkFamily::Weft, LinkFamily::Diagonal].map(of),
+            floor: LEAST_STIFFNESS as f32 * coefficient,
+            warp_cos2: cos2.max(1.0 - cos2),
+        };
+        links.push((ends, class, family));
+    }
+    (Links::of_classes(mesh, links.into_iter(), None), widths)
+}
+
+/// Lines without the links between pins, which are none, and all diagonals.
+pub(super) fn yarns(mesh: &RestMesh, lines: &[Line], links: &Links) -> Yarns {
+    let [along, across]: [Vec<_>; 2] = [false, true].map(|is_diagonal| {
+        let list = (0..).zip(&links.list);
+        list.filter(|(_, link)| (link.family == LinkFamily::Diagonal) == is_diagonal).collect()
+    });
+    let number: BTreeMap<[u32; 2], u32> =
+        along.iter().map(|(at, link)| (pair(link.particles[0], link.particles[1]), *at)).collect();
+    let mut list: Vec<Yarn> = Vec::new();
+    for line in lines {
+        let link = |ends: &[u32]| number.get(&pair(ends[0], ends[1])).copied();
+        let mut steps: Vec<([u32; 2], Option<u32>)> =
+            line.nodes.windows(2).map(|ends| ([ends[0], ends[1]], link(ends))).collect();
+        let gap = steps.iter().position(|(_, link)| link.is_none());
+        if let (true, Some(gap)) = (line.is_ring(), gap) {
+            steps.rotate_left(gap);
+        }
+        for run in steps.split(|(_, link)| link.is_none()).filter(|run| !run.is_empty()) {
+            let ends = run.iter().map(|([_, to], _)| *to);
+            list.push(Yarn {
+                particles: core::iter::once(run[0].0[0]).chain(ends).collect(),
+                links: run.iter().filter_map(|(_, link)| *link).collect(),
+            });
+        }
+    }
+    list.extend(
+        across
+            .iter()
+            .map(|(at, link)| Yarn { particles: link.particles.to_vec(), links: vec![*at] }),
+    );
+    list.sort_by_key(|yarn| core::cmp::Reverse(yarn.links.len()));
+    let family = |yarn: &Yarn| links.list[yarn.links[0] as usize].family as u32;
+    let (list, colours) = colour(mesh.positions.len(), list, |yarn| &yarn.particles, family);
+    Yarns { list, colours }
+}

@@ -1,0 +1,91 @@
+use glam::Vec3;
+
+use crate::fabric::{Fabric, FabricBuilder};
+
+const AROUND: u32 = 24;
+const ROWS: u32 = 15;
+/// Row in which the slit ends.
+const TIP: u32 = 7;
+
+/// A tube with a slit from below, whose vertices are moved along it by a part of a cell in turns.
+fn slit_tube(moved: f32) -> FabricBuilder {
+    let place = |column: u32, row: u32| {
+        let (sin, cos) = libm::sincosf(core::f32::consts::TAU * column as f32 / AROUND as f32);
+        // Below its tip the slit opens a little.
+        let gap = if column == AROUND && row > TIP { 1e-3 } else { 0.0 };
+        let zigzag = if column % 2 == 1 { moved } else { 0.0 };
+        Vec3::new(0.2 * sin - gap, -0.05 * (row as f32 + zigzag), 0.2 * cos)
+    };
+    let rows = 0..ROWS - 1;
+    let quads = rows.flat_map(|row| (0..AROUND).map(move |column| (column, row)));
+    let positions = quads.flat_map(|(column, row)| {
+        [(0, 0), (0, 1), (1, 1), (1, 0)].map(|(right, down)| place(column + right, row + down))
+    });
+    let positions: Vec<Vec3> = positions.collect();
+    let first = (0..positions.len() as u32).step_by(4);
+    let corners = first.flat_map(|at| [0, 1, 2, 0, 2, 3].map(|by| at + by)).collect();
+    FabricBuilder::new(positions, corners).weld_distance(1e-4)
+}
+
+fn net(builder: FabricBuilder) -> Option<Fabric> {
+    let fabric = builder.build().expect("a good fabric");
+    let background = fabric.background()?;
+    background.fabric.grid().is_none().then(|| (*background.fabric).clone())
+}
+
+#[test]
+fn lines_close_around_a_tube_and_end_at_a_slit() {
+    let net = net(slit_tube(0.0)).expect("a net");
+    let lines = || net.yarns().iter().filter(|yarn| yarn.links.len() > 1);
+    let rings = lines().filter(|yarn| yarn.particles.first() == yarn.particles.last());
+    let around = lines().filter(|yarn| yarn.links.len() == AROUND as usize);
+    assert_eq!(rings.count(), TIP as usize + 1);
+    assert_eq!(around.count(), ROWS as usize);
+    let down = lines().filter(|yarn| yarn.links.len() == ROWS as usize - 1);
+    // At the tip one side of the slit goes on upwards, and the other one ends.
+    assert_eq!(down.count(), AROUND as usize);
+    assert_eq!(net.chains().cells.len() as u32, AROUND * (ROWS - 1));
+}
+
+/// Rows and columns stand for all of the cloth, each by itself.
+#[test]
+fn links_stand_for_all_of_the_cloth() {
+    let net = net(slit_tube(0.0)).expect("a net");
+    let area: f32 = net.particle_areas().iter().sum();
+    for family in [0, 1] {
+        let of_link = |link: &crate::fabric::Link| {
+            net.link_classes()[link.class as usize].coefficients[family] * link.rest_length.powi(2)
+        };
+        let cloth: f32 = net.links().iter().map(of_link).sum();
+        assert!((cloth / area - 1.0).abs() < 0.01, "{family}: {cloth} of {area} m²");
+    }
+}
+
+/// Lines that zigzag straighten under load.
+#[test]
+fn lines_that_zigzag_are_no_net() {
+    assert!(net(slit_tube(0.02)).is_some());
+    assert!(net(slit_tube(0.2)).is_none());
+}
+
+#[test]
+fn a_strip_whose_triangles_face_both_ways_has_no_net() {
+    const LENGTH: u32 = 60;
+    let place = |column: u32, row: u32| {
+        let turn = core::f32::consts::TAU * column as f32 / LENGTH as f32;
+        let ((sin, cos), (rise, out)) = (libm::sincosf(turn), libm::sincosf(0.5 * turn));
+        let across = 0.05 * (row as f32 - 1.0);
+        Vec3::new((0.5 + out * across) * sin, rise * across, (0.5 + out * across) * cos)
+    };
+    let quads = (0..2).flat_map(|row| (0..LENGTH).map(move |column| (column, row)));
+    let positions: Vec<Vec3> = quads
+        .flat_map(|(column, row)| {
+            [(0, 0), (0, 1), (1, 1), (1, 0)].map(|(right, down)| place(column + right, row + down))
+        })
+        .collect();
+    let first = (0..positions.len() as u32).step_by(4);
+    let corners = first.flat_map(|at| [0, 1, 2, 0, 2, 3].map(|by| at + by)).collect();
+    let strip = FabricBuilder::new(positions, corners).weld_distance(1e-4);
+    let strip = strip.build().expect("a Möbius strip");
+    assert!(strip.background().is_none());
+}
