@@ -272,15 +272,9 @@ fn trousers() -> Fabric {
             && (row < 7 || !(-1..1).contains(&column))
     };
     let bulge = |column: i32, row: i32| {
-        let is_within = |by: i32| {
-            (-by..by).all(|across| {
-                (-by..by).all(|down| {
-                    let open = row + down < 0 || row + down > 24;
-                    is_cloth(column + across, (row + down).clamp(0, 24))
-                        || open && is_cloth(column + across, row.clamp(0, 24))
-                })
-            })
-        };
+        let is_cloth = |across, down: i32| is_cloth(column + across, (row + down).clamp(0, 24));
+        let is_within =
+            |by: i32| (-by..by).all(|across| (-by..by).all(|down| is_cloth(across, down)));
         [0.0, 0.06, 0.08][(1..3).filter(|by| is_within(*by)).count()]
     };
     let cells = (0..25).flat_map(|row| (-6..6).map(move |column| (column, row)));

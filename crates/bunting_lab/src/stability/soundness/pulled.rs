@@ -36,7 +36,7 @@ const MATERIALS: [(f32, f32); 8] = [
     (2e4, 0.3),
 ];
 
-/// Cases of a saddle, a wave and a sheet with a hole that hang from an edge, of a tube, a ring and a sheet of
+/// Cases of a saddle, a wave, a sheet with a hole and trousers that hang from an edge, of a tube, a ring and a sheet of
 /// long cells that hang from two vertices, and of a dome, a sheet and a disk that hang from one.
 pub(super) fn cases() -> Vec<HardCase> {
     let meshes = [
@@ -81,6 +81,7 @@ pub(super) fn cases() -> Vec<HardCase> {
             ),
         ),
         ("sheet with a hole", holed(26, 21)),
+        ("pair of trousers", trousers()),
         ("sheet", hung(FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)), &[0])),
         ("sheet of long cells", hung(FabricBuilder::grid(Grid::new(31, 16, 0.44, 0.5)), &[0, 30])),
     ];
@@ -103,6 +104,34 @@ fn holed(columns: usize, rows: usize) -> Arc<Fabric> {
     let sheet = Sheet::new(Triangulation::Delaunay, [columns, rows], DVec2::ONE, 1);
     let mesh = sheet.with_hole(0.3).pin_where(|at, _| at.y == 0.0);
     Arc::new(mesh.build().expect("a good mesh"))
+}
+
+/// Trousers of a front and a back of quads of 4 cm, sewn along their sides, which hang by the waist. They bulge away from the seams.
+fn trousers() -> Arc<Fabric> {
+    let is_cloth = |column: i32, row: i32| {
+        (-6..6).contains(&column) && (row < 7 || !(-1..1).contains(&column))
+    };
+    let bulge = |column: i32, row: i32| {
+        let is_cloth = |across, down| is_cloth(column + across, row + down);
+        let is_within =
+            |by: i32| (-by..by).all(|across| (-by..by).all(|down| is_cloth(across, down)));
+        [0.0, 0.06, 0.08][(1..3).filter(|by| is_within(*by)).count()]
+    };
+    let cells = (0..25).flat_map(|row| (-6..6).map(move |column| (column, row)));
+    let mut corners = Vec::new();
+    for (column, row) in cells.filter(|(column, row)| is_cloth(*column, *row)) {
+        for (side, order) in [(1.0, [0, 1, 2, 3]), (-1.0, [3, 2, 1, 0])] {
+            let around = [(0, 0), (0, 1), (1, 1), (1, 0)];
+            corners.extend(order.map(|at: usize| {
+                let (column, row) = (column + around[at].0, row + around[at].1);
+                Vec3::new(0.04 * column as f32, -0.04 * row as f32, side * bulge(column, row))
+            }));
+        }
+    }
+    let quads = (0..corners.len() as u32).step_by(4);
+    let indices = quads.flat_map(|at| [0, 1, 2, 0, 2, 3].map(|by| at + by)).collect();
+    let mesh = FabricBuilder::new(corners, indices).weld_distance(1e-4);
+    Arc::new(mesh.pin_where(|at, _| at.y == 0.0).build().expect("a good mesh"))
 }
 
 /// A mesh that hangs from some of its vertices.

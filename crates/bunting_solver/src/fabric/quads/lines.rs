@@ -73,7 +73,7 @@ pub(super) fn zigzag(lines: &[Line], positions: &[Vec3], normals: &[Vec3]) -> f3
     let turn = |[before, here, after]: [u32; 3]| {
         let normal = normals[here as usize];
         let [to, on] = [at(here) - at(before), at(after) - at(here)];
-        to.cross(on).dot(normal).atan2(to.reject_from(normal).dot(on))
+        libm::atan2f(to.cross(on).dot(normal), to.reject_from(normal).dot(on))
     };
     let (mut sum, mut count) = (0.0, 0.0);
     for line in lines {

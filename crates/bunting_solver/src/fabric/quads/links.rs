@@ -61,10 +61,10 @@ pub(super) fn links(
         let length = |side: usize| vector(sides[side]).length();
         match cell.nodes[..] {
             [a, b, c, d] => {
-                for side in 0..4 {
+                for (side, &ends) in sides.iter().enumerate() {
                     // Opposite sides stand for the whole cell.
                     let width = area / (length(side) + length((side + 2) % 4));
-                    add(sides[side], width, false, cos2(sides[side]));
+                    add(ends, width, false, cos2(ends));
                 }
                 for ends in [[a, c], [b, d]] {
                     // G γ² A/2 in both diagonals, whose lengths change by γ A/d.
@@ -72,10 +72,10 @@ pub(super) fn links(
                     add(ends, factor, true, cos2(sides[0]));
                 }
             }
-            _ => (0..3).for_each(|side| {
+            _ => sides.iter().enumerate().for_each(|(side, &ends)| {
                 // Three families of links share what two have elsewhere.
                 let width = 2.0 / 3.0 * area / length(side);
-                add(sides[side], width, false, cos2(sides[side]));
+                add(ends, width, false, cos2(ends));
             }),
         }
     }
