@@ -24,13 +24,13 @@ pub(super) fn cells(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
     let halved = edges.iter().filter_map(|edge| {
         let cell = quad(mesh, edge)?;
         let departure = departure(mesh, &cell);
-        (departure < MOST_DEPARTURE).then_some((departure, edge.side.triangle, cell))
+        (departure < MOST_DEPARTURE).then_some((departure, cell))
     });
-    let mut quads: Vec<(f32, u32, Cell)> = halved.collect();
+    let mut quads: Vec<(f32, Cell)> = halved.collect();
     quads.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut is_free = vec![true; mesh.triangles.len()];
     let mut cells = Vec::new();
-    for (_, _, cell) in quads {
+    for (_, cell) in quads {
         if cell.triangles.iter().all(|at| is_free[*at as usize]) {
             cell.triangles.iter().for_each(|at| is_free[*at as usize] = false);
             cells.push(cell);
