@@ -41,9 +41,8 @@ impl Background {
     }
 
     /// The net of a mesh of quads.
-    pub(super) fn of_net(mut net: Net, surface: &Surface, tethered: bool) -> Self {
-        let transfer = core::mem::take(&mut net.transfer);
-        let fabric = Fabric::of_net(net, surface, tethered);
+    pub(super) fn of_net(net: Net, surface: &Surface, tethered: bool) -> Self {
+        let (fabric, transfer) = Fabric::of_net(net, surface, tethered);
         let node_count = fabric.particle_count();
         Self { fabric: Arc::new(fabric), transfer, warp_cos2: 1.0, node_count }
     }
@@ -51,12 +50,12 @@ impl Background {
 
 impl Fabric {
     /// The constraints of a net, whose nodes have no hinges.
-    fn of_net(net: Net, surface: &Surface, tethered: bool) -> Self {
-        let Net { mesh, links, yarns, corners, bending, rest_bends, .. } = net;
+    fn of_net(net: Net, surface: &Surface, tethered: bool) -> (Self, GridTransfer) {
+        let Net { mesh, links, yarns, corners, bending, rest_bends, transfer } = net;
         let mut chains = Chains::of(&yarns.list, &yarns.colours, &links.list, None, false);
         chains.find_cells(corners.into_iter());
         chains.measure_diagonals(&mesh.positions);
-        Self {
+        let fabric = Self {
             bending,
             twist: Twist::default(),
             rest_bends: Some(rest_bends),
@@ -78,7 +77,8 @@ impl Fabric {
             links,
             yarns,
             chains,
-        }
+        };
+        (fabric, transfer)
     }
 
     /// The constraints of a background grid, whose nodes have no hinges.

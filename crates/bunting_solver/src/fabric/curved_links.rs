@@ -3,11 +3,11 @@
 
 use super::edge_sums::EdgeSums;
 use super::grid::Grid;
-use super::links::{LEAST_STIFFNESS, LinkClass, LinkFamily, Links};
+use super::links::{LinkClass, LinkFamily, Links};
 use super::mesh::RestMesh;
 
-/// Least difference of cos² of the angle between rows and warp in two cells of pieces with different warps. Larger: links at seams
-/// shear as if they were cut on the bias.
+/// Least difference of cos² of an angle to the warp in two cells of pieces with different warps. Larger: links at seams shear as if
+/// they were cut on the bias.
 const UNLIKE_WARPS: f32 = 0.2;
 
 impl Links {
@@ -38,11 +38,7 @@ impl Links {
                         LinkFamily::Diagonal => 0.5 * squared / area,
                         _ => 0.5 * area / squared,
                     };
-                // At seams, links have the warp of one piece: in between there would be cloth that is cut on the bias.
-                if sum.cells == 0.0 || (sum.warps / sum.cells - warp).abs() < UNLIKE_WARPS {
-                    sum.warps += warp;
-                    sum.cells += 1.0;
-                }
+                sum.warp.add(warp);
             };
             add([top_left, top_right], LinkFamily::Warp);
             add([bottom_left, bottom_right], LinkFamily::Warp);
@@ -61,22 +57,38 @@ struct CellSum {
     family: LinkFamily,
     /// Factor of the family's modulus.
     coefficient: f32,
-    /// Sum of cos² of the angles between rows and warp.
-    warps: f32,
-    cells: f32,
+    /// cos² of the angle between rows and warp.
+    warp: MeanWarp,
 }
 
 impl CellSum {
     fn none(family: LinkFamily) -> Self {
-        Self { family, coefficient: 0.0, warps: 0.0, cells: 0.0 }
+        Self { family, coefficient: 0.0, warp: MeanWarp::default() }
     }
 
     fn class(&self) -> LinkClass {
-        let of = |family| if self.family == family { self.coefficient } else { 0.0 };
-        LinkClass {
-            coefficients: [LinkFamily::Warp, LinkFamily::Weft, LinkFamily::Diagonal].map(of),
-            floor: LEAST_STIFFNESS as f32 * self.coefficient,
-            warp_cos2: self.warps / self.cells,
+        LinkClass::of_family(self.family, self.coefficient, self.warp.mean())
+    }
+}
+
+/// The mean of cos² of an angle to the warp over the cells beside a link. At seams a link has the warp of one piece: in between
+/// there would be cloth that is cut on the bias.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct MeanWarp {
+    sum: f32,
+    cells: f32,
+}
+
+impl MeanWarp {
+    /// Counts a cell, unless its piece has another warp than those counted before.
+    pub fn add(&mut self, cos2: f32) {
+        if self.cells == 0.0 || (self.mean() - cos2).abs() < UNLIKE_WARPS {
+            self.sum += cos2;
+            self.cells += 1.0;
         }
+    }
+
+    pub fn mean(&self) -> f32 {
+        self.sum / self.cells
     }
 }

@@ -70,6 +70,13 @@ impl LinkClass {
     /// Without stiffness.
     const NONE: Self = Self { coefficients: [0.0; 3], floor: 0.0, warp_cos2: 1.0 };
 
+    /// Of a family's modulus alone.
+    pub fn of_family(family: LinkFamily, coefficient: f32, warp_cos2: f32) -> Self {
+        let mut coefficients = [0.0; 3];
+        coefficients[family as usize] = coefficient;
+        Self { coefficients, floor: LEAST_STIFFNESS as f32 * coefficient, warp_cos2 }
+    }
+
     /// Stiffness of the link for a material, N/m, if diagonals resist stretch, too: with
     /// [`FabricMaterial::lattice_moduli`].
     pub fn stiffness(&self, material: &FabricMaterial) -> f32 {

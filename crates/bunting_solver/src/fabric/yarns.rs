@@ -50,9 +50,14 @@ impl Yarns {
                 follow(links, &next, first, &mut in_yarn, &mut yarns);
             }
         }
+        Self::coloured(yarns, links, rest.len())
+    }
+
+    /// Gives yarns colours, the longest first.
+    pub(super) fn coloured(mut yarns: Vec<Yarn>, links: &[Link], particle_count: usize) -> Self {
         yarns.sort_by_key(|yarn| core::cmp::Reverse(yarn.links.len()));
         let family = |yarn: &Yarn| links[yarn.links[0] as usize].family as u32;
-        let (list, colours) = colour(rest.len(), yarns, |yarn| &yarn.particles, family);
+        let (list, colours) = colour(particle_count, yarns, |yarn| &yarn.particles, family);
         Self { list, colours }
     }
 }

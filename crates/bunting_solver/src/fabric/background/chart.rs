@@ -21,9 +21,9 @@ const FLAT: f32 = 1e-4;
 /// Larger: rectangles with rounded corners have rows that end at slanting borders.
 const FILLED: f32 = 0.97;
 
-/// Area of a mesh that is known roughly, and may fill its bounding rectangle without overlapping itself, in units of the rectangle's.
-/// Larger from: cylinders with ragged seams of few cells, which are closed when they are known accurately, do not count. Smaller to:
-/// meshes count as overlapping that do not when they are known accurately.
+/// Area of a roughly unfolded mesh, in units of its bounding rectangle's, that may turn out to fill the rectangle without overlapping
+/// itself. With a larger lower bound, cylinders of few cells with ragged seams are refused that close when they are unfolded
+/// accurately; with a smaller upper bound, meshes that only seem to overlap themselves.
 const MAY_FILL: Range<f32> = 0.8..1.05;
 
 /// How much more of its narrowest rectangle than of that along the warp a mesh must fill to be laid along the former.

@@ -52,8 +52,8 @@ use super::mesh::{RestMesh, Surface};
 
 pub(crate) use self::interpolation::{Interpolation, RowGroup, Term};
 
-/// Fewest particles of a mesh with a background grid. Smaller meshes have no paths that are long.
-const FEWEST_PARTICLES: usize = 30;
+/// Fewest particles of a mesh with a background grid, or with lines of quads. Smaller meshes have no paths that are long.
+pub(super) const FEWEST_PARTICLES: usize = 30;
 
 /// Least mass of a node, as a part of the particles' mean mass. Smaller: nodes around which no particle lies weigh
 /// nothing.
@@ -66,7 +66,7 @@ const LEAST_FREE: f32 = 0.5;
 const LEAST_FREE_BESIDE_MOVED: f32 = 0.01;
 
 /// Weights with which a grid reads a mesh's particles and moves them.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct GridTransfer {
     /// Of each node the particles that its position is interpolated from.
     pub nodes: Interpolation,

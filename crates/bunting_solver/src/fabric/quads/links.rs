@@ -4,25 +4,20 @@ use std::collections::BTreeMap;
 
 use super::lines::Line;
 use super::{Cell, pair};
-use crate::fabric::colour::colour;
+use crate::fabric::curved_links::MeanWarp;
 use crate::fabric::edge_sums::EdgeSums;
 use crate::fabric::laid_yarns::{Directions, Towards};
-use crate::fabric::links::{LEAST_STIFFNESS, LinkClass, LinkFamily, Links};
+use crate::fabric::links::{LinkClass, LinkFamily, Links};
 use crate::fabric::mesh::RestMesh;
 use crate::fabric::yarns::{Yarn, Yarns};
-
-/// Least difference of cos² of the angle between a link and the warp in two cells of pieces with different warps. Larger: links at
-/// seams have moduli between those of both pieces.
-const UNLIKE_WARPS: f32 = 0.2;
 
 /// Sums over the cells beside a link.
 struct LinkSum {
     /// Width of cloth that the link stands for, m; of a diagonal the factor of the shear modulus.
     size: f32,
     is_diagonal: bool,
-    /// Sum of cos² of the angles between the link, or the sides of its cell, and the warp.
-    cos2: f32,
-    cells: f32,
+    /// cos² of the angle between the link, or the first side of its cell, and the warp.
+    warp: MeanWarp,
 }
 
 /// The links along the sides of cells and across quads, with the width of cloth that each one along a side stands for, m.
@@ -45,17 +40,14 @@ pub(super) fn links(
             along / (along + across).max(f32::MIN_POSITIVE)
         };
         let mut add = |ends: [u32; 2], size: f32, is_diagonal: bool, cos2: f32| {
-            let none = || LinkSum { size: 0.0, is_diagonal, cos2: 0.0, cells: 0.0 };
+            let none = || LinkSum { size: 0.0, is_diagonal, warp: MeanWarp::default() };
             let sum = sums.at(ends, none);
             // A diagonal may join two nodes that a side joins elsewhere.
             if sum.is_diagonal != is_diagonal {
                 return;
             }
             sum.size += size;
-            if sum.cells == 0.0 || (sum.cos2 / sum.cells - cos2).abs() < UNLIKE_WARPS {
-                sum.cos2 += cos2;
-                sum.cells += 1.0;
-            }
+            sum.warp.add(cos2);
         };
         let sides: Vec<[u32; 2]> = cell.sides().collect();
         let length = |side: usize| vector(sides[side]).length();
@@ -82,7 +74,7 @@ pub(super) fn links(
     let mut widths = BTreeMap::new();
     let mut links = Vec::new();
     for (ends, sum) in sums.sorted() {
-        let cos2 = sum.cos2 / sum.cells;
+        let cos2 = sum.warp.mean();
         let family = match (sum.is_diagonal, cos2 > 0.5) {
             (true, _) => LinkFamily::Diagonal,
             (false, true) => LinkFamily::Warp,
@@ -95,12 +87,8 @@ pub(super) fn links(
         if !sum.is_diagonal {
             widths.insert(ends, sum.size);
         }
-        let of = |other| if family == other { coefficient } else { 0.0 };
-        let class = LinkClass {
-            coefficients: [LinkFamily::Warp, LinkFamily::Weft, LinkFamily::Diagonal].map(of),
-            floor: LEAST_STIFFNESS as f32 * coefficient,
-            warp_cos2: cos2.max(1.0 - cos2),
-        };
+        // Rows run along the side that is nearer to the warp.
+        let class = LinkClass::of_family(family, coefficient, cos2.max(1.0 - cos2));
         links.push((ends, class, family));
     }
     (Links::of_classes(mesh, links.into_iter(), None), widths)
@@ -108,12 +96,12 @@ pub(super) fn links(
 
 /// Lines without the links between pins, which are none, and all diagonals.
 pub(super) fn yarns(mesh: &RestMesh, lines: &[Line], links: &Links) -> Yarns {
-    let [along, across]: [Vec<_>; 2] = [false, true].map(|is_diagonal| {
+    let [sides, diagonals]: [Vec<_>; 2] = [false, true].map(|is_diagonal| {
         let list = (0..).zip(&links.list);
         list.filter(|(_, link)| (link.family == LinkFamily::Diagonal) == is_diagonal).collect()
     });
     let number: BTreeMap<[u32; 2], u32> =
-        along.iter().map(|(at, link)| (pair(link.particles[0], link.particles[1]), *at)).collect();
+        sides.iter().map(|(at, link)| (pair(link.particles[0], link.particles[1]), *at)).collect();
     let mut list: Vec<Yarn> = Vec::new();
     for line in lines {
         let link = |ends: &[u32]| number.get(&pair(ends[0], ends[1])).copied();
@@ -132,12 +120,9 @@ pub(super) fn yarns(mesh: &RestMesh, lines: &[Line], links: &Links) -> Yarns {
         }
     }
     list.extend(
-        across
+        diagonals
             .iter()
             .map(|(at, link)| Yarn { particles: link.particles.to_vec(), links: vec![*at] }),
     );
-    list.sort_by_key(|yarn| core::cmp::Reverse(yarn.links.len()));
-    let family = |yarn: &Yarn| links.list[yarn.links[0] as usize].family as u32;
-    let (list, colours) = colour(mesh.positions.len(), list, |yarn| &yarn.particles, family);
-    Yarns { list, colours }
+    Yarns::coloured(list, &links.list, mesh.positions.len())
 }

@@ -16,7 +16,7 @@ mod tests;
 
 use glam::Vec3;
 
-use super::background::{GridTransfer, Interpolation, Term};
+use super::background::{FEWEST_PARTICLES, GridTransfer, Interpolation, Term};
 use super::bending::Bending;
 use super::laid_yarns::{Directions, Faces};
 use super::links::Links;
@@ -28,9 +28,6 @@ use super::yarns::Yarns;
 /// Greatest zigzag of its lines, rad. Larger: lines straighten under load. Of a sheet whose vertices are moved by a fifth of a cell they
 /// have 0.23, and it stretches by 2.8 times as much as its material where that is 10⁻⁴.
 const MOST_ZIGZAG: f32 = 0.1;
-
-/// Fewest particles of a mesh with a net. Smaller meshes have no lines that are long.
-const FEWEST_PARTICLES: usize = 30;
 
 /// A net before it is a fabric.
 pub(super) struct Net {
