@@ -98,7 +98,8 @@ impl LinkClass {
     /// The sum of the moduli times those coefficients for which `counts` holds.
     fn combined(&self, moduli: [f32; 3], counts: fn(f32) -> bool) -> f32 {
         let terms = self.coefficients.iter().zip(moduli).filter(|(factor, _)| counts(**factor));
-        let sum: f32 = terms.map(|(factor, modulus)| factor * modulus).sum();
+        // The library's sum of no terms is −0, of which the compliance would be −∞.
+        let sum = terms.fold(0.0, |sum, (factor, modulus)| sum + factor * modulus);
         // A sum of ∞ − ∞ is not a number; the link is then inextensible.
         if sum.is_nan() { f32::INFINITY } else { sum }
     }
