@@ -1,5 +1,6 @@
 //! Soundness: a solver must not gain energy by itself, oscillate at rest, stay locked, or slow down.
 
+mod falling;
 mod free;
 mod hang;
 mod jerk;
@@ -23,6 +24,7 @@ const AT_REST: f64 = 1e-3;
 /// All cases.
 pub fn cases(quick: bool) -> Vec<HardCase> {
     let mut cases = free::cases(quick);
+    cases.extend(falling::cases());
     cases.extend(momentum::cases(quick));
     cases.extend(pulled::cases());
     cases.extend(strips::cases(quick));

@@ -81,7 +81,10 @@ pub(super) fn cases() -> Vec<HardCase> {
             ),
         ),
         ("sheet with a hole", holed(26, 21)),
-        ("pair of trousers", trousers()),
+        (
+            "pair of trousers",
+            Arc::new(trousers().pin_where(|at, _| at.y == 0.0).build().expect("a good mesh")),
+        ),
         ("sheet", hung(FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)), &[0])),
         ("sheet of long cells", hung(FabricBuilder::grid(Grid::new(31, 16, 0.44, 0.5)), &[0, 30])),
     ];
@@ -106,8 +109,8 @@ fn holed(columns: usize, rows: usize) -> Arc<Fabric> {
     Arc::new(mesh.build().expect("a good mesh"))
 }
 
-/// Trousers of a front and a back of quads of 4 cm, sewn along their sides, which hang by the waist. They bulge away from the seams.
-fn trousers() -> Arc<Fabric> {
+/// Trousers of a front and a back of quads of 4 cm, sewn along their sides, which bulge away from the seams.
+pub(super) fn trousers() -> FabricBuilder {
     let is_cloth = |column: i32, row: i32| {
         (-6..6).contains(&column) && (row < 7 || !(-1..1).contains(&column))
     };
@@ -130,8 +133,7 @@ fn trousers() -> Arc<Fabric> {
     }
     let quads = (0..corners.len() as u32).step_by(4);
     let indices = quads.flat_map(|at| [0, 1, 2, 0, 2, 3].map(|by| at + by)).collect();
-    let mesh = FabricBuilder::new(corners, indices).weld_distance(1e-4);
-    Arc::new(mesh.pin_where(|at, _| at.y == 0.0).build().expect("a good mesh"))
+    FabricBuilder::new(corners, indices).weld_distance(1e-4)
 }
 
 /// A mesh that hangs from some of its vertices.

@@ -54,6 +54,23 @@ impl InCell {
         nearest.unwrap_or(first)
     }
 
+    /// The corners of the cell, or of the nearest one with cloth around all of its corners; none if there is none near.
+    pub fn corners_with_cloth(&self, grid: &Grid, laid: &LaidNodes) -> Option<[u32; 4]> {
+        let has_cloth = |corners: &[u32; 4]| corners.iter().all(|&at| laid.has_cloth[at as usize]);
+        if has_cloth(&self.corners) {
+            return Some(self.corners);
+        }
+        let [first, ..] = self.corners;
+        let cell = IVec2::new((first % grid.columns) as i32, (first / grid.columns) as i32);
+        let last = IVec2::new(grid.columns as i32 - 2, grid.rows as i32 - 2);
+        let around = (-1..=1).flat_map(|down| (-1..=1).map(move |right| IVec2::new(right, down)));
+        let exists = |by: &IVec2| (cell + *by).clamp(IVec2::ZERO, last) == cell + *by;
+        let distance = |by: &IVec2| (self.at - 0.5).distance(by.as_vec2());
+        let with_cloth = around.filter(exists).filter(|by| has_cloth(&corners(cell + *by, grid)));
+        let nearest = with_cloth.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        Some(corners(cell + nearest, grid))
+    }
+
     /// How far the place lies outside, in cells.
     fn outside(&self) -> f32 {
         self.at.distance(self.at.clamp(Vec2::ZERO, Vec2::ONE))

@@ -119,6 +119,14 @@ impl Interpolation {
         self
     }
 
+    /// The same rows, but for the second one of each pair, which becomes the first one.
+    pub fn with_pairs_alike(mut self, pairs: &[[u32; 2]]) -> Self {
+        for &[first, second] in pairs {
+            self.rows[second as usize] = self.rows[first as usize].clone();
+        }
+        self
+    }
+
     /// The same rows, each at its number among `count`, and grouped. The others are empty.
     pub fn with_rows_at(mut self, numbers: &[u32], count: usize) -> Self {
         let rows = core::mem::replace(&mut self.rows, vec![0..0; count]);

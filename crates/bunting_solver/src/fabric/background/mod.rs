@@ -159,14 +159,17 @@ impl BackgroundMesh {
             particles = particles.with_terms_of(&laid.has_cloth);
         }
         let particles = particles.mean_rows(&chart.particles, mesh.positions.len());
+        let joined = if chart.is_closed { grid.ends_of_columns().collect() } else { Vec::new() };
+        let nodes = core::mem::take(&mut laid.rows).with_columns(&chart.particles);
         let mut transfer = GridTransfer {
-            nodes: core::mem::take(&mut laid.rows).with_columns(&chart.particles),
+            // By rounding, a fit may be of another order at one end than at the other.
+            nodes: nodes.with_pairs_alike(&joined),
             particles,
             means: Interpolation::default(),
             held: Interpolation::default(),
             moved_areas: Vec::new(),
             heights: Vec::new(),
-            joined: if chart.is_closed { grid.ends_of_columns().collect() } else { Vec::new() },
+            joined,
         };
         transfer.moved_areas = transfer.node_masses(&mesh.free_areas());
         let positions = rest_positions(mesh, chart, &laid.places, &transfer);
@@ -209,9 +212,7 @@ impl BackgroundMesh {
             is_cut: laid.are_cut,
             coverage: laid.parts,
             sizes,
-            are_alike: !has_curved_lines
-                && !laid.are_moved
-                && (chart.plane.is_some() || !laid.are_cut),
+            are_alike: !has_curved_lines && !laid.are_moved && chart.plane.is_some(),
             is_flat,
             transfer,
             grid,
@@ -251,7 +252,9 @@ fn heights(
             continue;
         }
         is_done[particle as usize] = true;
-        let [first, right, below_first, last] = InCell::of(at, grid, laid).corners;
+        // A node without cloth stays where it is.
+        let cell = InCell::of(at, grid, laid).corners_with_cloth(grid, laid);
+        let Some([first, right, below_first, last]) = cell else { continue };
         let corners = [first, last, right, below_first];
         let row = rows[particle as usize];
         let below: Vec3 =
