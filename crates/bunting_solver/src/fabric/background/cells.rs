@@ -25,16 +25,14 @@ impl InCell {
     /// The cell of a place, m. It has cloth around all of its corners if one at the place has.
     pub fn of(place: Vec2, grid: &Grid, laid: &LaidNodes) -> Self {
         let at = place / Vec2::from(grid.spacing());
-        let last = IVec2::new(grid.columns as i32 - 2, grid.rows as i32 - 2);
-        let cell = at.floor().as_ivec2().clamp(IVec2::ZERO, last);
+        let cell = at.floor().as_ivec2().clamp(IVec2::ZERO, last_cell(grid));
         let straight = |cell: IVec2| Self { corners: corners(cell, grid), at: at - cell.as_vec2() };
         let has_cloth = |it: &Self| it.corners.iter().all(|&node| laid.has_cloth[node as usize]);
         let first = straight(cell);
         if !laid.are_moved && has_cloth(&first) {
             return first;
         }
-        let around = (-1..=1).flat_map(|down| (-1..=1).map(move |right| IVec2::new(right, down)));
-        let cells = around.map(|by| (cell + by).clamp(IVec2::ZERO, last));
+        let cells = cells_around(cell, grid);
         if !laid.are_moved {
             let mut touching = cells.map(straight).filter(|it| it.outside() < ON_LINE);
             return touching.find(has_cloth).unwrap_or(first);
@@ -62,13 +60,10 @@ impl InCell {
         }
         let [first, ..] = self.corners;
         let cell = IVec2::new((first % grid.columns) as i32, (first / grid.columns) as i32);
-        let last = IVec2::new(grid.columns as i32 - 2, grid.rows as i32 - 2);
-        let around = (-1..=1).flat_map(|down| (-1..=1).map(move |right| IVec2::new(right, down)));
-        let exists = |by: &IVec2| (cell + *by).clamp(IVec2::ZERO, last) == cell + *by;
-        let distance = |by: &IVec2| (self.at - 0.5).distance(by.as_vec2());
-        let with_cloth = around.filter(exists).filter(|by| has_cloth(&corners(cell + *by, grid)));
+        let distance = |other: &IVec2| (self.at - 0.5).distance((*other - cell).as_vec2());
+        let with_cloth = cells_around(cell, grid).filter(|it| has_cloth(&corners(*it, grid)));
         let nearest = with_cloth.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-        Some(corners(cell + nearest, grid))
+        Some(corners(nearest, grid))
     }
 
     /// How far the place lies outside, in cells.
@@ -105,6 +100,18 @@ pub(super) fn particles_from_nodes(
         }
     }
     weights
+}
+
+/// The last column and row of cells.
+fn last_cell(grid: &Grid) -> IVec2 {
+    IVec2::new(grid.columns as i32 - 2, grid.rows as i32 - 2)
+}
+
+/// The cell and those around it; at the border some more than once.
+fn cells_around(cell: IVec2, grid: &Grid) -> impl Iterator<Item = IVec2> {
+    let last = last_cell(grid);
+    let around = (-1..=1).flat_map(|down| (-1..=1).map(move |right| IVec2::new(right, down)));
+    around.map(move |by| (cell + by).clamp(IVec2::ZERO, last))
 }
 
 /// The corners of a cell, row by row.
