@@ -85,9 +85,9 @@ const ROUGH: f32 = 2.0;
 /// a substep. Smaller: cloth at rest counts as rough by its rounding.
 const SLOW: f32 = 5.0;
 
-/// RMS of the mean speed in two substeps below which a cloth hardly moves, in units of the speed that gravity adds in a substep, or in a
-/// [`SHORT_SUBSTEP`]. Smaller: limp flags, which oscillate with 0.7 to 1.2, are not relaxed. Larger: with 3 a flag in a light
-/// wind is held.
+/// RMS of the mean velocity in two substeps below which a cloth hardly moves, in units of the speed that gravity adds in a
+/// substep, or in a [`SHORT_SUBSTEP`]. Smaller: limp flags, which oscillate with 0.7 to 1.2, are not relaxed. Larger: with 3
+/// a flag in a light wind is held.
 const NEAR_REST: f32 = 2.0;
 
 /// Length of a substep, s, up to which that speed stays the same: links oscillate no slower in shorter substeps. Smaller: the
@@ -199,7 +199,7 @@ impl IntegratorHistory {
     }
 }
 
-/// Sums over the particles of a cloth, or over those in each lane, (m/s)².
+/// Sums over the particles of a cloth, or over those in each lane, (m/s)² but for displacements.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct MotionSums<T> {
     /// Sum of |v|².

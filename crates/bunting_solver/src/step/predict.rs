@@ -205,7 +205,7 @@ impl<L: Lane> Substep<L> {
     }
 }
 
-/// Sums over the particles of squared velocities and of their differences.
+/// Sums over the particles of squared velocities, of their differences, and of displacements in two substeps.
 struct Sums<L> {
     velocity: Sum<L>,
     displacement: Sum<L>,
