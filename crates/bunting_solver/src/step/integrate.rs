@@ -59,12 +59,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// newest values overwrite the oldest arrays, and the arrays swap their names.
     pub(super) fn predict(&mut self, feels_air: bool) -> MotionSums<P> {
         let zero = P::splat(0.0);
-        let mut sums = MotionSums {
-            velocity: zero,
-            displacement: zero,
-            first_difference: zero,
-            second_difference: zero,
-        };
+        let mut sums =
+            MotionSums { velocity: zero, first_difference: zero, second_difference: zero };
         P::run(Predict {
             areas: &self.masses.areas,
             inverse_areas: &self.masses.inverse_areas,

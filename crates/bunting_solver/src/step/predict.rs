@@ -68,10 +68,7 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
         let velocities = self.velocity.iter_mut().zip(self.older_velocity);
         let masses = self.inverse_masses.iter().zip(self.areas).zip(self.inverse_areas);
         for (
-            (
-                ((position, next), (displacement, older_displacement)),
-                ((velocity, velocity_before), oldest),
-            ),
+            (((position, next), (displacement, older_displacement)), ((velocity, older), oldest)),
             (((inverse_mass, area), inverse_area), &partial_sum),
         ) in positions
             .zip(displacements)
@@ -85,11 +82,9 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
             }
             let x: V3<L> = V3::load(token, position);
             let v: V3<L> = V3::load(token, velocity);
-            let v_before: V3<L> = V3::load(token, velocity_before);
+            let v_before: V3<L> = V3::load(token, older);
             let changes = [v - v_before, v_before - V3::load(token, oldest)];
-            let displacement = V3::load(token, displacement);
-            let older: V3<L> = V3::load(token, older_displacement);
-            sums.add(token, partial_sum, inverse_area, v, changes, displacement + older);
+            sums.add(token, partial_sum, inverse_area, v, changes);
             let turn = substep.turn_at(x);
             let damped = substep.damped(x, v, changes, turn);
 
@@ -102,7 +97,7 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
                 let explicit = (explicit + air_rounding) - air_rounding;
                 let change = response.implicit_change(explicit, true_part, v, damped);
                 forced = forced + change;
-                for (past, stored) in [(v, velocity), (v_before, velocity_before)] {
+                for (past, stored) in [(v, velocity), (v_before, older)] {
                     let shifted = (past + change).or_where_not(response.acts, past);
                     inverse_area.select3(token, shifted, past).store(stored);
                 }
@@ -110,8 +105,9 @@ impl<P: Pack, C: Constant<P>> Kernel<P> for Predict<'_, P, C> {
             let forced = (forced + rounding) - rounding;
             inverse_area.select3(token, forced, v).store(oldest);
 
-            let moved = substep.moved(forced, displacement, older, turn);
-            inverse_area.select3(token, moved, older).store(older_displacement);
+            let oldest: V3<L> = V3::load(token, older_displacement);
+            let moved = substep.moved(forced, V3::load(token, displacement), oldest, turn);
+            inverse_area.select3(token, moved, oldest).store(older_displacement);
             let predicted = ((x + moved) + rounding) - rounding;
             inverse_area.select3(token, predicted, x).store(next);
         }
@@ -205,10 +201,9 @@ impl<L: Lane> Substep<L> {
     }
 }
 
-/// Sums over the particles of squared velocities, of their differences, and of displacements in two substeps.
+/// Sums over the particles of squared velocities and of their differences.
 struct Sums<L> {
     velocity: Sum<L>,
-    displacement: Sum<L>,
     first_difference: Sum<L>,
     second_difference: Sum<L>,
 }
@@ -218,7 +213,6 @@ impl<L: Lane> Sums<L> {
     fn new(token: L::Token) -> Self {
         Self {
             velocity: Sum::new(token),
-            displacement: Sum::new(token),
             first_difference: Sum::new(token),
             second_difference: Sum::new(token),
         }
@@ -233,12 +227,10 @@ impl<L: Lane> Sums<L> {
         inverse_area: &C,
         v: V3<L>,
         [change, change_before]: [V3<L>; 2],
-        moved: V3<L>,
     ) {
         let zero = L::splat(token, 0.0);
         let second = change - change_before;
         self.velocity.add(partial, inverse_area.select(token, v.dot(v), zero));
-        self.displacement.add(partial, inverse_area.select(token, moved.dot(moved), zero));
         self.first_difference.add(partial, inverse_area.select(token, change.dot(change), zero));
         self.second_difference.add(partial, inverse_area.select(token, second.dot(second), zero));
     }
@@ -246,7 +238,6 @@ impl<L: Lane> Sums<L> {
     #[inline(always)]
     fn store<C: Constant<L::Pack>>(self, token: L::Token, into: &mut MotionSums<L::Pack>) {
         self.velocity.total::<C>(token).store(&mut into.velocity);
-        self.displacement.total::<C>(token).store(&mut into.displacement);
         self.first_difference.total::<C>(token).store(&mut into.first_difference);
         self.second_difference.total::<C>(token).store(&mut into.second_difference);
     }
