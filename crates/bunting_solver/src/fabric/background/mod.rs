@@ -162,7 +162,7 @@ impl BackgroundMesh {
         let joined = if chart.is_closed { grid.ends_of_columns().collect() } else { Vec::new() };
         let nodes = core::mem::take(&mut laid.rows).with_columns(&chart.particles);
         let mut transfer = GridTransfer {
-            // By rounding, a fit may be of another order at one end than at the other.
+            // Nodes beyond the border are fitted to every n-th place nearby, and these are others at the other end.
             nodes: nodes.with_pairs_alike(&joined),
             particles,
             means: Interpolation::default(),
