@@ -16,6 +16,7 @@ use glam::Vec3;
 use super::colour::Colours;
 use super::grid::Grid;
 use super::links::{Link, LinkFamily};
+use super::topology::ascending;
 use super::yarns::Yarn;
 
 /// Number of chains that are solved in step. With three or four, the state of the elimination no longer fits
@@ -153,9 +154,9 @@ impl Chains {
     /// Notes the cells with these corners, with the targets of the diagonals that are links.
     pub(super) fn find_cells(&mut self, corners: impl Iterator<Item = [u32; 4]>) {
         let targets: HashMap<[u32; 2], u32> =
-            self.diagonals().map(|([a, b], target)| ([a.min(b), a.max(b)], target)).collect();
+            self.diagonals().map(|(ends, target)| (ascending(ends), target)).collect();
         let cell = |[top_left, top_right, bottom_left, bottom_right]: [u32; 4]| {
-            let target = |one: u32, other: u32| targets.get(&[one.min(other), one.max(other)]);
+            let target = |one: u32, other: u32| targets.get(&ascending([one, other]));
             let falling = target(top_left, bottom_right);
             let rising = target(top_right, bottom_left);
             let corners = [top_left, top_right, bottom_left, bottom_right];

@@ -1,5 +1,7 @@
 //! Sums over the triangles or cells at each edge.
 
+use super::topology::ascending;
+
 /// A sum for each edge, found by the ends of the edge.
 pub(super) struct EdgeSums<S> {
     /// The last sum of the edges whose lower end is each particle.
@@ -20,8 +22,8 @@ impl<S> EdgeSums<S> {
     }
 
     /// The sum of the edge between two particles, which begins as `none`.
-    pub fn at(&mut self, [one, other]: [u32; 2], none: impl FnOnce() -> S) -> &mut S {
-        let ends = [one.min(other), one.max(other)];
+    pub fn at(&mut self, ends: [u32; 2], none: impl FnOnce() -> S) -> &mut S {
+        let ends = ascending(ends);
         let last = &mut self.last[ends[0] as usize];
         let mut known = *last;
         while let Some(index) = known {

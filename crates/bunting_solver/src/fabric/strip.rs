@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use super::chains::Chains;
 use super::grid::Grid;
 use super::links::Link;
+use super::topology::ascending;
 
 /// Most lines of a grid that is solved by strips. Fewer: wider grids sag in their own plane. More: wide grids, which
 /// chains hold well enough, take twice as long.
@@ -84,20 +85,15 @@ fn rows(
 /// The link between two particles, if there is one.
 fn finder(links: &[Link], chains: &Chains) -> impl Fn(u32, u32) -> Option<StripLink> {
     let classes: HashMap<[u32; 2], u32> =
-        links.iter().map(|link| (sorted(link.particles), link.class)).collect();
+        links.iter().map(|link| (ascending(link.particles), link.class)).collect();
     let of_sweep = chains.sweep_links.iter().map(|link| (link.particles, link.target));
     let targets: HashMap<[u32; 2], u32> = of_sweep
         .chain(chains.diagonals())
         .filter(|(ends, _)| ends[0] != ends[1])
-        .map(|(ends, target)| (sorted(ends), target))
+        .map(|(ends, target)| (ascending(ends), target))
         .collect();
     move |a, b| {
-        let ends = sorted([a, b]);
+        let ends = ascending([a, b]);
         Some(StripLink { class: *classes.get(&ends)?, target: *targets.get(&ends)? })
     }
-}
-
-/// The ends of a link, the lower first.
-fn sorted([a, b]: [u32; 2]) -> [u32; 2] {
-    [a.min(b), a.max(b)]
 }

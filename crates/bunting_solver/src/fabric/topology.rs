@@ -19,6 +19,11 @@ pub(super) struct Side {
     pub opposite: u32,
 }
 
+/// The ends of an edge or a link, the lower index first.
+pub(super) fn ascending([one, other]: [u32; 2]) -> [u32; 2] {
+    [one.min(other), one.max(other)]
+}
+
 /// All edges, sorted by their ends, so that a fabric does not depend on the order of a hash table.
 ///
 /// # Errors
@@ -27,7 +32,7 @@ pub(super) struct Side {
 pub(super) fn edges(triangles: &[[u32; 3]]) -> Result<Vec<Edge>, [u32; 2]> {
     let sides_of = |(triangle, &[a, b, c]): (u32, &[u32; 3])| {
         [(a, b, c), (b, c, a), (c, a, b)]
-            .map(|(from, to, opposite)| ([from.min(to), from.max(to)], Side { triangle, opposite }))
+            .map(|(from, to, opposite)| (ascending([from, to]), Side { triangle, opposite }))
     };
     let mut sides: Vec<([u32; 2], Side)> = (0..).zip(triangles).flat_map(sides_of).collect();
     // The sort is stable: the triangles at an edge keep their order.

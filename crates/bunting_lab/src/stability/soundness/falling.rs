@@ -35,21 +35,18 @@ pub(super) fn cases() -> Vec<HardCase> {
 
 /// Tubes of various heights and numbers of vertices without texture, with a hole of a radius, in units of their girth.
 fn tubes(radius: f32) -> Vec<Fabric> {
-    let middle = Vec3::new(0.5, -0.5, 0.0);
     let mut tubes = Vec::new();
     for (triangulation, columns) in [Triangulation::Delaunay, Triangulation::Scan]
         .into_iter()
         .flat_map(|triangulation| (14..30).step_by(3).map(move |columns| (triangulation, columns)))
     {
-        let sheet = Sheet::new(triangulation, [columns, 24], DVec2::ONE, 1);
+        let holed = Sheet::new(triangulation, [columns, 24], DVec2::ONE, 1).with_hole(radius);
+        let (positions, indices) = (holed.positions().to_vec(), holed.indices().to_vec());
+        let sheet = Sheet { positions, indices };
         let around = sheet.bent(1.0 / TAU);
-        let is_cloth = |corner: &u32| sheet.positions[*corner as usize].distance(middle) > radius;
-        let kept = sheet.indices.chunks_exact(3).filter(|corners| corners.iter().all(is_cloth));
         for height in [0.7, 1.0, 1.6] {
-            let at = |corner: &u32| around[*corner as usize] * Vec3::new(1.0, height, 1.0);
-            let corners: Vec<Vec3> = kept.clone().flatten().map(at).collect();
-            let indices = (0..corners.len() as u32).collect();
-            let mesh = FabricBuilder::new(corners, indices).weld_distance(1e-5);
+            let corners = around.iter().map(|at| *at * Vec3::new(1.0, height, 1.0)).collect();
+            let mesh = FabricBuilder::new(corners, sheet.indices.clone()).weld_distance(1e-5);
             tubes.push(mesh.build().expect("a good mesh"));
         }
     }

@@ -27,7 +27,7 @@ impl InCell {
         let at = place / Vec2::from(grid.spacing());
         let cell = at.floor().as_ivec2().clamp(IVec2::ZERO, last_cell(grid));
         let straight = |cell: IVec2| Self { corners: corners(cell, grid), at: at - cell.as_vec2() };
-        let has_cloth = |it: &Self| it.corners.iter().all(|&node| laid.has_cloth[node as usize]);
+        let has_cloth = |it: &Self| laid.have_cloth(&it.corners);
         let first = straight(cell);
         if !laid.are_moved && has_cloth(&first) {
             return first;
@@ -54,14 +54,13 @@ impl InCell {
 
     /// The corners of the cell, or of the nearest one with cloth around all of its corners; none if there is none near.
     pub fn corners_with_cloth(&self, grid: &Grid, laid: &LaidNodes) -> Option<[u32; 4]> {
-        let has_cloth = |corners: &[u32; 4]| corners.iter().all(|&at| laid.has_cloth[at as usize]);
-        if has_cloth(&self.corners) {
+        if laid.have_cloth(&self.corners) {
             return Some(self.corners);
         }
         let [first, ..] = self.corners;
         let cell = IVec2::new((first % grid.columns) as i32, (first / grid.columns) as i32);
         let distance = |other: &IVec2| (self.at - 0.5).distance((*other - cell).as_vec2());
-        let with_cloth = cells_around(cell, grid).filter(|it| has_cloth(&corners(*it, grid)));
+        let with_cloth = cells_around(cell, grid).filter(|it| laid.have_cloth(&corners(*it, grid)));
         let nearest = with_cloth.min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
         Some(corners(nearest, grid))
     }

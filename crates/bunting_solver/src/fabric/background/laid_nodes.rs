@@ -49,6 +49,11 @@ impl LaidNodes {
         Self::at(on, places, coverage, &pins)
     }
 
+    /// Whether there is cloth around all corners of a cell.
+    pub fn have_cloth(&self, corners: &[u32; 4]) -> bool {
+        corners.iter().all(|&node| self.has_cloth[node as usize])
+    }
+
     /// Nodes at their places, of which some are those of pins.
     fn at(
         OnChart { mesh, surface, chart, grid, is_free, .. }: &OnChart,

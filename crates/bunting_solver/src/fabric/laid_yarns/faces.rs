@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::fabric::topology::Edge;
+use crate::fabric::topology::{Edge, ascending};
 
 /// Least distance of a crossing from the ends of its edge, as a part of the edge. Smaller: a walk through a vertex goes
 /// around it in triangles of which it crosses nothing.
@@ -126,10 +126,9 @@ impl<'a> Faces<'a> {
         directions: impl Fn(u32) -> [Vec3; 4],
     ) -> Option<Heading> {
         let triangle = self.across[heading.triangle as usize][side]?;
-        let of_ends = |ends: &[u32; 2]| [ends[0].min(ends[1]), ends[0].max(ends[1])];
         let corners = self.particles(triangle);
         let entered = (0..3).find(|&side| {
-            of_ends(&[corners[side], corners[(side + 1) % 3]]) == of_ends(&crossing.ends)
+            ascending([corners[side], corners[(side + 1) % 3]]) == ascending(crossing.ends)
         })?;
         let [from, to] = crossing.ends.map(|end| self.positions[end as usize]);
         let along = (to - from).normalize_or_zero();

@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::Cell;
 use super::lines::Line;
-use super::{Cell, pair};
 use crate::fabric::bending::{BendLine, BendProfile, Bending};
 use crate::fabric::laid_yarns::{Directions, Towards};
 use crate::fabric::mesh::RestMesh;
 use crate::fabric::rest_bends::RestBends;
+use crate::fabric::topology::ascending;
 
 /// What the lines of a net are at each node: its row is the line that runs more along the warp, its column the other one.
 struct Crossings {
@@ -73,7 +74,10 @@ fn open_parts(line: &Line) -> Vec<Vec<u32>> {
 fn sizes(mesh: &RestMesh, nodes: &[u32], widths: &BTreeMap<[u32; 2], f32>) -> Vec<(f32, f32)> {
     let of_link = |ends: &[u32]| {
         let [one, other] = mesh.positions_of([ends[0], ends[1]]);
-        (one.distance(other), widths.get(&pair(ends[0], ends[1])).copied().unwrap_or_default())
+        (
+            one.distance(other),
+            widths.get(&ascending([ends[0], ends[1]])).copied().unwrap_or_default(),
+        )
     };
     let links: Vec<(f32, f32)> = nodes.windows(2).map(of_link).collect();
     let of_node = |at: usize| {

@@ -4,7 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::Vec3;
 
-use super::{Cell, pair};
+use super::Cell;
+use crate::fabric::topology::ascending;
 
 /// Least cosine of the angle by which a line turns at a node. Larger: lines end at sharp folds. Smaller: they turn back.
 const STRAIGHT: f32 = 0.0;
@@ -34,8 +35,7 @@ impl Line {
 
 /// The lines through all sides of the cells.
 pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Vec<Line> {
-    let sides: BTreeSet<[u32; 2]> =
-        cells.iter().flat_map(Cell::sides).map(|[one, other]| pair(one, other)).collect();
+    let sides: BTreeSet<[u32; 2]> = cells.iter().flat_map(Cell::sides).map(ascending).collect();
     let goes_on = continuations(cells, &sides, positions);
     let next = |from: u32, at: u32| goes_on.get(&(from, at)).copied();
     let mut is_taken: BTreeSet<[u32; 2]> = BTreeSet::new();
@@ -52,10 +52,10 @@ pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Vec<Line> {
                 break;
             }
         }
-        is_taken.insert(pair(at, after));
+        is_taken.insert(ascending([at, after]));
         let mut nodes = vec![at, after];
         while let Some(to) = next(at, after) {
-            if !is_taken.insert(pair(after, to)) {
+            if !is_taken.insert(ascending([after, to])) {
                 break;
             }
             nodes.push(to);
@@ -100,7 +100,7 @@ fn continuations(
     // Two sides of one cell are no line.
     let around = cells.iter().flat_map(Cell::threes);
     let turns: BTreeSet<(u32, [u32; 2])> =
-        around.map(|[before, at, after]| (at, pair(before, after))).collect();
+        around.map(|[before, at, after]| (at, ascending([before, after]))).collect();
     let mut goes_on = BTreeMap::new();
     for (node, near) in (0..).zip(&neighbours) {
         let direction = |to: u32| (positions[to as usize] - positions[node as usize]).normalize();
@@ -108,7 +108,7 @@ fn continuations(
         for (at, &one) in near.iter().enumerate() {
             for &other in &near[at + 1..] {
                 let straight = -direction(one).dot(direction(other));
-                if straight > STRAIGHT && !turns.contains(&(node, pair(one, other))) {
+                if straight > STRAIGHT && !turns.contains(&(node, ascending([one, other]))) {
                     pairs.push((straight, one, other));
                 }
             }

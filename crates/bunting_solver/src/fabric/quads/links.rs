@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use super::Cell;
 use super::lines::Line;
-use super::{Cell, pair};
 use crate::fabric::curved_links::MeanWarp;
 use crate::fabric::edge_sums::EdgeSums;
 use crate::fabric::laid_yarns::{Directions, Towards};
 use crate::fabric::links::{LinkClass, LinkFamily, Links};
 use crate::fabric::mesh::RestMesh;
+use crate::fabric::topology::ascending;
 use crate::fabric::yarns::{Yarn, Yarns};
 
 /// Sums over the cells beside a link.
@@ -101,10 +102,10 @@ pub(super) fn yarns(mesh: &RestMesh, lines: &[Line], links: &Links) -> Yarns {
         list.filter(|(_, link)| (link.family == LinkFamily::Diagonal) == is_diagonal).collect()
     });
     let number: BTreeMap<[u32; 2], u32> =
-        sides.iter().map(|(at, link)| (pair(link.particles[0], link.particles[1]), *at)).collect();
+        sides.iter().map(|(at, link)| (ascending(link.particles), *at)).collect();
     let mut list: Vec<Yarn> = Vec::new();
     for line in lines {
-        let link = |ends: &[u32]| number.get(&pair(ends[0], ends[1])).copied();
+        let link = |ends: &[u32]| number.get(&ascending([ends[0], ends[1]])).copied();
         let mut steps: Vec<([u32; 2], Option<u32>)> =
             line.nodes.windows(2).map(|ends| ([ends[0], ends[1]], link(ends))).collect();
         let gap = steps.iter().position(|(_, link)| link.is_none());

@@ -139,7 +139,3 @@ fn identity(mesh: &RestMesh) -> GridTransfer {
     transfer.moved_areas = transfer.node_masses(&mesh.free_areas());
     transfer
 }
-
-fn pair(one: u32, other: u32) -> [u32; 2] {
-    [one.min(other), one.max(other)]
-}

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use glam::Vec3;
 
 use super::Repairing;
+use crate::fabric::topology::ascending;
 
 /// Two triangles that are joined at an edge.
 pub(super) struct Joint {
@@ -21,8 +22,8 @@ impl Repairing {
         let mut at_edges: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
         for (index, corners) in self.triangles.iter().enumerate() {
             let [a, b, c] = self.particles(corners);
-            for (from, to) in [(a, b), (b, c), (c, a)] {
-                at_edges.entry([from.min(to), from.max(to)]).or_default().push(index);
+            for ends in [[a, b], [b, c], [c, a]] {
+                at_edges.entry(ascending(ends)).or_default().push(index);
             }
         }
         let mut joints = Vec::new();
@@ -59,6 +60,6 @@ impl Repairing {
         let along = (at_to - at_from).normalize_or_zero();
         let away = at_tip - at_from;
         let direction = (away - along * along.dot(away)).normalize_or_zero();
-        (direction, [from.min(to), from.max(to)])
+        (direction, ascending([from, to]))
     }
 }
