@@ -6,7 +6,6 @@ use glam::Vec3;
 use crate::batch::lane_batch::{BackgroundGrid, LaneBatch, SingleGrid};
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
-use crate::batch::single_cloth::SingleCloth;
 use crate::batch::single_mesh::{HeightPacks, pack_count};
 use crate::batch::snapshot::ClothSnapshot;
 use crate::fabric::{Background, Fabric, GridTransfer};
@@ -29,6 +28,10 @@ macro_rules! with_grid {
                 let $batch = &mut single.batch;
                 $body
             }
+            BackgroundGrid::SingleNet(single) => {
+                let $batch = &mut single.batch;
+                $body
+            }
         }
     };
 }
@@ -39,11 +42,17 @@ impl<P: Pack> BackgroundGrid<P> {
     pub fn of(fabric: &Fabric, is_single: bool) -> Option<Self> {
         let background = fabric.background()?;
         let grid = &background.fabric;
-        let single = if is_single { LaneBatch::single_cloth(grid) } else { None };
-        Some(match single {
-            Some(batch) => Self::Single(Box::new(SingleGrid::new(batch, fabric, background))),
-            None => Self::SideBySide(Box::new(LaneBatch::side_by_side(grid.clone()))),
-        })
+        let single = || {
+            let batch = LaneBatch::single_cloth(grid)?;
+            Some(Self::Single(Box::new(SingleGrid::new(batch, fabric, background))))
+        };
+        let single_net = || {
+            let batch = LaneBatch::single_net(grid)?;
+            Some(Self::SingleNet(Box::new(SingleGrid::new(batch, fabric, background))))
+        };
+        let single = if is_single { single().or_else(single_net) } else { None };
+        let side_by_side = || Self::SideBySide(Box::new(LaneBatch::side_by_side(grid.clone())));
+        Some(single.unwrap_or_else(side_by_side))
     }
 
     /// Marks a cloth's lanes as empty.
@@ -96,6 +105,7 @@ impl<P: Pack> BackgroundGrid<P> {
         match self {
             Self::SideBySide(batch) => batch.snapshot_with(cloth, integrator),
             Self::Single(single) => single.batch.snapshot_with(cloth, integrator),
+            Self::SingleNet(single) => single.batch.snapshot_with(cloth, integrator),
         }
     }
 
@@ -145,12 +155,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 }
 
-impl SingleGrid {
-    fn new(
-        batch: LaneBatch<Pack8, SingleCloth<Pack8>>,
-        fabric: &Fabric,
-        background: &Background,
-    ) -> Self {
+impl<Y: Layout<Pack8>> SingleGrid<Y> {
+    fn new(batch: LaneBatch<Pack8, Y>, fabric: &Fabric, background: &Background) -> Self {
         let zero = Pack4::splat(0.0);
         let count = batch.layout.pack_count() * Pack8::WIDTH;
         let place = |node: usize| {

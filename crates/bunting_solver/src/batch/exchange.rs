@@ -9,6 +9,7 @@ use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, OfCloth, Positions};
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::single_mesh::SingleMesh;
+use crate::batch::single_net::SingleNet;
 use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
 use crate::constraints::background::nodes_of;
 use crate::fabric::{Fabric, FabricMaterial};
@@ -171,6 +172,14 @@ impl<P: Pack> LaneBatch<P, SingleCloth<P>> {
     /// straight.
     pub fn single_cloth(fabric: &Arc<Fabric>) -> Option<Self> {
         let layout = SingleCloth::of(fabric)?;
+        Some(Self::new(Arc::clone(fabric), layout))
+    }
+}
+
+impl LaneBatch<Pack8, SingleNet> {
+    /// An empty batch of one net across the lanes; none unless the fabric is one.
+    pub fn single_net(fabric: &Arc<Fabric>) -> Option<Self> {
+        let layout = SingleNet::of(fabric)?;
         Some(Self::new(Arc::clone(fabric), layout))
     }
 }

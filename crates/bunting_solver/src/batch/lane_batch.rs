@@ -13,6 +13,7 @@ use crate::batch::probe_motion::ProbeMotion;
 use crate::batch::side_by_side::SideBySide;
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::single_mesh::HeightPacks;
+use crate::batch::single_net::SingleNet;
 use crate::constraints::join;
 use crate::constraints::laid_yarns::{BandRow, YarnLink};
 use crate::constraints::lone_mesh::LoneMesh;
@@ -118,15 +119,17 @@ pub(crate) enum BackgroundGrid<P: Pack> {
     /// One in each lane.
     SideBySide(Box<LaneBatch<P>>),
     /// That of a single mesh, across the lanes.
-    Single(Box<SingleGrid>),
+    Single(Box<SingleGrid<SingleCloth<Pack8>>>),
+    /// The net of a single mesh, across the lanes.
+    SingleNet(Box<SingleGrid<SingleNet>>),
 }
 
-/// The background grid of a single mesh. Its particles and nodes are interpolated from one another as vectors whose
+/// The background grid or the net of a single mesh. Its particles and nodes are interpolated from one another as vectors whose
 /// lanes are x, y, z and zero.
 #[derive(Clone, Debug)]
-pub(crate) struct SingleGrid {
-    pub batch: LaneBatch<Pack8, SingleCloth<Pack8>>,
-    /// Positions of the nodes, m, row by row, each row filled up to whole packs.
+pub(crate) struct SingleGrid<Y: Layout<Pack8>> {
+    pub batch: LaneBatch<Pack8, Y>,
+    /// Positions of the nodes, m, in the order of the batch's packs.
     pub nodes: Vec<Pack4>,
     /// What the grid does not resolve of the particles' positions, m.
     pub unresolved: Vec<Pack4>,

@@ -1,13 +1,13 @@
 //! The layouts of a batch: the pack and lane of each particle, and the order in which constraints are solved.
 //!
-//! There are four. [`SideBySide`](crate::batch::side_by_side::SideBySide) holds up to as many cloths of one
+//! There are five. [`SideBySide`](crate::batch::side_by_side::SideBySide) holds up to as many cloths of one
 //! fabric as there are lanes: a pack holds the same particle of each cloth, and numbers of the fabric are
 //! the same in all lanes. [`Mixed`](crate::batch::mixed::Mixed) does so with cloths of different fabrics of one
 //! topology: numbers of the fabric are each lane's own. [`SingleCloth`](crate::batch::single_cloth::SingleCloth) spreads one cloth across
 //! the lanes: a pack holds consecutive particles of a row of its grid, constraints that share no particle
 //! are solved in one pack, and numbers of the fabric are each lane's own, too.
 //! [`SingleMesh`](crate::batch::single_mesh::SingleMesh) does so with a mesh, whose constraints are those of its background
-//! grid.
+//! grid, and [`SingleNet`](crate::batch::single_net::SingleNet) with a net, whose lines are gathered.
 //!
 //! Kernels are written once for all, over [`Constant`] and [`Particles`].
 
@@ -19,7 +19,7 @@ use glam::Vec3;
 use crate::batch::masses::Masses;
 use crate::constraints::factors::Factors;
 use crate::constraints::stiffness::Stiffness;
-use crate::fabric::{BendLine, Chains, Fabric, Ribbon, Tether};
+use crate::fabric::{BendLine, Chains, Fabric, RestBends, Ribbon, Tether};
 use crate::geometry::corners::CornerSums;
 use crate::simd::constant::Constant;
 use crate::simd::lane::{Lane, Pack};
@@ -71,6 +71,22 @@ pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
     /// Index in row-major order of the first particle of a pack, by which [`Particles`] access it.
     fn index_of_pack(&self, pack: usize) -> u32 {
         pack as u32
+    }
+
+    /// Indices, as of [`index_of_pack`](Self::index_of_pack), of the neighbours of a pack's particles on a grid: those before
+    /// and after them in their rows, those above and below them. In lanes without a neighbour there is any particle.
+    fn neighbours_of_pack(&self, pack: usize, particles: &[usize], rest: &RestBends) -> [u32; 4] {
+        let at = self.index_of_pack(pack);
+        // The neighbours of a pack's particles in their rows are a pack as well.
+        let in_row = |side: usize| {
+            let has_neighbour = |&&particle: &&usize| rest.has_neighbour(particle, side);
+            particles.iter().find(has_neighbour).map_or(at, |&particle| {
+                (at + rest.neighbours[particle][side]).wrapping_sub(particle as u32)
+            })
+        };
+        let [_, _, above, below] = rest.neighbours[particles[0]];
+        let in_column = |of: u32| self.index_of_pack(self.locate(of as usize, 0).0);
+        [in_row(0), in_row(1), in_column(above), in_column(below)]
     }
 
     /// Reads the vectors of a cloth, particle by particle.

@@ -19,6 +19,7 @@ mod readout;
 pub(crate) mod side_by_side;
 pub(crate) mod single_cloth;
 pub(crate) mod single_mesh;
+pub(crate) mod single_net;
 mod single_tethers;
 pub(crate) mod snapshot;
 mod surfaces;

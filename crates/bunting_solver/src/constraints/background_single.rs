@@ -3,7 +3,7 @@
 //! memory.
 
 use crate::batch::lane_batch::{BackgroundGrid, LaneBatch, SingleGrid};
-use crate::batch::layout::Positions;
+use crate::batch::layout::{Layout, Positions};
 use crate::batch::single_mesh::{
     AddHeightPacks, MeshPositions, SingleMesh, read_vectors, write_vectors,
 };
@@ -12,6 +12,17 @@ use crate::fabric::GridTransfer;
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::Pack3;
+
+/// Evaluates an expression with the background grid or the net of a single mesh, if it has one.
+macro_rules! with_single {
+    ($background:expr, $grid:ident => $body:expr) => {
+        match $background {
+            Some(BackgroundGrid::Single($grid)) => $body,
+            Some(BackgroundGrid::SingleNet($grid)) => $body,
+            Some(BackgroundGrid::SideBySide(_)) | None => {}
+        }
+    };
+}
 
 impl LaneBatch<Pack8, SingleMesh> {
     /// Projects the predicted positions onto all constraints.
@@ -26,15 +37,16 @@ impl LaneBatch<Pack8, SingleMesh> {
             return;
         }
         if self.integrates_particles() {
-            let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
-            grid.project(self.positions.read_vectors());
-            if self.lanes[0].as_ref().is_some_and(|state| !state.moving_pins.is_empty()) {
-                grid.batch.update_tethered_pins(0);
-            }
+            let moves = self.lanes[0].as_ref().is_some_and(|state| !state.moving_pins.is_empty());
+            with_single!(&mut self.background, grid => {
+                grid.project(self.positions.read_vectors());
+                if moves {
+                    grid.batch.update_tethered_pins(0);
+                }
+            });
             self.draw_nodes();
         }
-        let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
-        grid.batch.solve_bending_before_stretch();
+        with_single!(&mut self.background, grid => grid.batch.solve_bending_before_stretch());
     }
 
     /// The second part of [`solve_constraints`](Self::solve_constraints): all other constraints.
@@ -43,25 +55,26 @@ impl LaneBatch<Pack8, SingleMesh> {
             return;
         }
         let integrates = self.integrates_particles();
-        let Some(BackgroundGrid::Single(grid)) = &mut self.background else { return };
-        grid.batch.solve_stretch_of_grid();
-        grid.batch.join_ends();
         if !integrates {
             // The particles' own vectors are those of pins alone.
             self.positions.read_vectors();
         }
-        grid.batch.update_node_velocities(&mut self.lanes);
-        grid.place_particles(&mut self.positions);
-        if !integrates && self.clock.begun == self.clock.settings.substeps {
-            grid.give_velocities(&mut self.velocity, self.layout.velocities_mut());
-        }
+        with_single!(&mut self.background, grid => {
+            grid.batch.solve_stretch_of_grid();
+            grid.batch.join_ends();
+            grid.batch.update_node_velocities(&mut self.lanes);
+            grid.place_particles(&mut self.positions);
+            if !integrates && self.clock.begun == self.clock.settings.substeps {
+                grid.give_velocities(&mut self.velocity, self.layout.velocities_mut());
+            }
+        });
         self.sum_reactions();
         self.solve_guides();
         self.solve_contacts();
     }
 }
 
-impl SingleGrid {
+impl<Y: Layout<Pack8>> SingleGrid<Y> {
     /// Moves the predicted nodes to where the particles are, m.
     fn project(&mut self, of: &[Pack4]) {
         let Self { batch, nodes, unresolved, lowered, transfer, heights } = self;

@@ -45,20 +45,21 @@ pub(crate) struct BendRow<T> {
 }
 
 impl<P: Pack, C: Constant<P>> BendFactors<P, C> {
-    /// Factors that are computed later, given the profile of each lane of a cloth; all profiles have the same
-    /// length.
+    /// Factors that are computed later, given the profile of each lane of a cloth. Shorter profiles are filled up by what nothing
+    /// moves.
     pub fn new(profiles: &[Option<&BendProfile>]) -> Self {
         let zero = P::splat(0.0);
         let row = BendRow { first_lower: zero, second_lower: zero, inverse_diagonal: zero };
-        let first = profiles.iter().flatten().next();
+        let longest = profiles.iter().flatten().max_by_key(|profile| profile.inverse_areas.len());
         let mobility = |lane: usize, particle: usize| {
-            profiles[lane].map_or(0.0, |profile| mobility(profile, particle))
+            let profile = profiles[lane].filter(|it| particle < it.inverse_areas.len());
+            profile.map_or(0.0, |profile| mobility(profile, particle))
         };
-        let particles = first.map_or(0, |profile| profile.inverse_areas.len());
-        let closes = first.is_some_and(|profile| profile.closing.is_some());
+        let particles = longest.map_or(0, |profile| profile.inverse_areas.len());
+        let closes = longest.is_some_and(|profile| profile.closing.is_some());
         Self {
             closing: vec![[zero; 2]; if closes { particles } else { 0 }],
-            rows: vec![row; first.map_or(0, |profile| profile.coefficients.len())],
+            rows: vec![row; longest.map_or(0, |profile| profile.coefficients.len())],
             mobilities: (0..particles)
                 .map(|particle| C::of(|lane| mobility(lane, particle)))
                 .collect(),

@@ -206,6 +206,11 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             self.solve_closed::<L, N>(token, pair, pass);
             return;
         }
+        if let ([ends, other_ends], [links]) = (&pair.particles[..], &pair.links[..]) {
+            let ends = [first_of::<N>(ends), first_of::<N>(other_ends)];
+            self.solve_links::<L, N>(token, ends, links, &pair.targets, pass);
+            return;
+        }
         self.eliminate::<L, N>(token, pair, pass);
         self.substitute::<L, N>(token, pair, pass);
     }

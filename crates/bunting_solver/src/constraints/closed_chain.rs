@@ -12,6 +12,31 @@ use crate::simd::constant::Constant;
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::V3;
 
+/// Where the ends of `N` chains are.
+#[derive(Clone, Copy)]
+struct Seam<L, const N: usize> {
+    /// The first and the last particle of each chain.
+    ends: [[u32; N]; 2],
+    /// The middle between their positions, m.
+    middle: [V3<L>; N],
+    /// Inverse mass of both together, 1/m².
+    mass: [L; N],
+    /// The closing link of each chain, m.
+    closing: [V3<L>; N],
+}
+
+/// The last row of `N` chains before the closing links.
+#[derive(Clone, Copy)]
+struct LastRow<L, const N: usize> {
+    /// The link, m.
+    along: [V3<L>; N],
+    /// Inverse mass at its end, 1/m².
+    mass: [L; N],
+    unknown: [L; N],
+    /// Answer of the unknown to a unit of the closing one.
+    by_closing: [L; N],
+}
+
 impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
     /// Solves `N` closed chains side by side. Both ends of each go to one place.
     #[inline(always)]
@@ -21,116 +46,205 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         pair: &ChainPair<S::Constant>,
         pass: Pass,
     ) {
-        let is_warm = pass.is_warm();
+        let seam = self.seam::<L, N>(token, pair);
+        let last_row = self.eliminate_to_closing::<L, N>(token, pair, pass, &seam);
+        let first_unknowns = self.substitute_to_first::<L, N>(token, pair, &last_row);
+        let closing =
+            self.find_closing::<L, N>(token, pair, pass, (&seam, &last_row, &first_unknowns));
+        self.substitute_closed::<L, N>(token, pair, pass, (&seam, &closing));
+    }
+
+    #[inline(always)]
+    fn seam<L: Lane<Pack = P>, const N: usize>(
+        &self,
+        token: L::Token,
+        pair: &ChainPair<S::Constant>,
+    ) -> Seam<L, N> {
         let last = pair.links.len() - 1;
-        let (zero, half) = (L::splat(token, 0.0), L::splat(token, 0.5));
-        // A link of zero length has no direction: its row becomes 0 = 0, and its unknown zero.
-        let least = L::splat(token, f32::MIN_POSITIVE);
-        let (rows, _) = self.rows.as_chunks_mut::<N>();
-        let (by_closing, _) = self.by_closing.as_chunks_mut::<N>();
-        let (targets, _) = self.target[pair.targets.clone()].as_chunks_mut::<N>();
-        let particles = &mut self.particles;
-        let first = first_of::<N>(&pair.particles[0]);
+        let first = *first_of::<N>(&pair.particles[0]);
         let before_end = first_of::<N>(&pair.particles[last]);
-        let end = first_of::<N>(&pair.particles[last + 1]);
+        let end = *first_of::<N>(&pair.particles[last + 1]);
+        let (zero3, half) = ([V3::<L>::splat(token, 0.0); N], L::splat(token, 0.5));
+        let mut seam = Seam { ends: [first, end], middle: zero3, mass: [half; N], closing: zero3 };
         for at in 0..N {
-            let start: V3<L> = particles.position(token, first[at]);
-            let opposite: V3<L> = particles.position(token, end[at]);
-            let seam = start.plus_scaled(opposite - start, half);
+            let start: V3<L> = self.particles.position(token, first[at]);
+            let opposite: V3<L> = self.particles.position(token, end[at]);
+            seam.middle[at] = start.plus_scaled(opposite - start, half);
             // Of two ends each has half of the mass there.
             let one_or_half = if first[at] == end[at] { L::splat(token, 1.0) } else { half };
-            let seam_mass = one_or_half * particles.inverse_mass::<L>(token, first[at]);
-            let closing = seam - particles.position(token, before_end[at]);
+            seam.mass[at] = one_or_half * self.particles.inverse_mass::<L>(token, first[at]);
+            seam.closing[at] = seam.middle[at] - self.particles.position(token, before_end[at]);
+        }
+        seam
+    }
 
-            // Forwards over all links but the closing one.
-            let (mut from, mut mass, mut before) = (seam, seam_mass, closing);
-            let (mut inverse, mut unknown, mut by) = (zero, zero, zero);
-            for link in 0..last {
+    /// Eliminates all unknowns but the closing ones, from the first links to those before the last.
+    #[inline(always)]
+    fn eliminate_to_closing<L: Lane<Pack = P>, const N: usize>(
+        &mut self,
+        token: L::Token,
+        pair: &ChainPair<S::Constant>,
+        pass: Pass,
+        seam: &Seam<L, N>,
+    ) -> LastRow<L, N> {
+        let last = pair.links.len() - 1;
+        let particles = &self.particles;
+        let (rows, _) = self.rows.as_chunks_mut::<N>();
+        let (by_closing, _) = self.by_closing.as_chunks_mut::<N>();
+        let (targets, _) = self.target[pair.targets.clone()].as_chunks::<N>();
+        // A link of zero length has no direction: its row becomes 0 = 0, and its unknown zero.
+        let least = L::splat(token, f32::MIN_POSITIVE);
+        let zero = [L::splat(token, 0.0); N];
+        let (mut from, mut inverse) = (seam.middle, zero);
+        let mut row =
+            LastRow { along: seam.closing, mass: seam.mass, unknown: zero, by_closing: zero };
+        for link in 0..last {
+            for at in 0..N {
                 let ChainLink { class, rest_length } = pair.links[link][at];
                 let compliance = L::load(token, &self.compliance[class as usize]);
-                let target = match is_warm {
+                let target = match pass.is_warm() {
                     true => L::load(token, &targets[link][at]),
                     false => rest_length.load(token),
                 };
                 let next: V3<L> = particles.position(token, pair.particles[link + 1][at]);
                 let next_mass: L = particles.inverse_mass(token, pair.particles[link + 1][at]);
-                let along = next - from;
+                let along = next - from[at];
                 let squared = along.dot(along);
                 let length = squared.sqrt();
                 let right = (-squared).plus_product(target, length);
-                let coupling = mass * before.dot(along);
-                let multiplier = coupling * inverse;
-                let diagonal = least.plus_product(mass + next_mass + compliance, squared);
+                let coupling = row.mass[at] * row.along[at].dot(along);
+                let multiplier = coupling * inverse[at];
+                let diagonal = least.plus_product(row.mass[at] + next_mass + compliance, squared);
                 let one = particles.one_if_linked::<L>(token, class);
-                let row = &mut rows[link][at];
-                let one =
-                    if pass == Pass::Overlong { one * L::load(token, &row.unknown) } else { one };
-                inverse = one / diagonal.minus_product(coupling, multiplier);
-                unknown = right.plus_product(coupling, unknown) * inverse;
+                let stored = &mut rows[link][at];
+                let one = match pass {
+                    Pass::Overlong => one * L::load(token, &stored.unknown),
+                    _ => one,
+                };
+                inverse[at] = one / diagonal.minus_product(coupling, multiplier);
+                row.unknown[at] = right.plus_product(coupling, row.unknown[at]) * inverse[at];
                 // The closing link is the one before the first, and the one behind the last but one.
-                let of_closing = if link == 0 { coupling } else { coupling * by };
+                let of_closing = if link == 0 { coupling } else { coupling * row.by_closing[at] };
                 let of_closing = match link + 1 == last {
-                    true => of_closing.plus_product(next_mass, along.dot(closing)),
+                    true => of_closing.plus_product(next_mass, along.dot(seam.closing[at])),
                     false => of_closing,
                 };
-                by = of_closing * inverse;
-                along.store(&mut row.along);
-                multiplier.store(&mut row.multiplier);
-                unknown.store(&mut row.unknown);
-                (compliance * length).store(&mut row.target_change);
-                by.store(&mut by_closing[link][at]);
-                (from, mass, before) = (next, next_mass, along);
+                row.by_closing[at] = of_closing * inverse[at];
+                along.store(&mut stored.along);
+                multiplier.store(&mut stored.multiplier);
+                row.unknown[at].store(&mut stored.unknown);
+                (compliance * length).store(&mut stored.target_change);
+                row.by_closing[at].store(&mut by_closing[link][at]);
+                (from[at], row.mass[at], row.along[at]) = (next, next_mass, along);
             }
+        }
+        row
+    }
 
-            // Backwards: the unknowns of the open chain, and their answers to the closing one.
-            let (of_last, by_last) = (unknown, by);
-            let mut multiplier = L::load(token, &rows[last - 1][at].multiplier);
-            for link in (0..last - 1).rev() {
+    /// Substitutes back to the first links: the unknowns of the open chains, and their answers to the closing ones. Returns
+    /// both for the first links.
+    #[inline(always)]
+    fn substitute_to_first<L: Lane<Pack = P>, const N: usize>(
+        &mut self,
+        token: L::Token,
+        pair: &ChainPair<S::Constant>,
+        last_row: &LastRow<L, N>,
+    ) -> [[L; N]; 2] {
+        let last = pair.links.len() - 1;
+        let (rows, _) = self.rows.as_chunks_mut::<N>();
+        let (by_closing, _) = self.by_closing.as_chunks_mut::<N>();
+        let LastRow { mut unknown, by_closing: mut by, .. } = *last_row;
+        let mut multiplier = unknown;
+        for at in 0..N {
+            multiplier[at] = L::load(token, &rows[last - 1][at].multiplier);
+        }
+        for link in (0..last - 1).rev() {
+            for at in 0..N {
                 let row = &mut rows[link][at];
-                unknown = L::load(token, &row.unknown).plus_product(multiplier, unknown);
-                by = L::load(token, &by_closing[link][at]).plus_product(multiplier, by);
-                multiplier = L::load(token, &row.multiplier);
-                unknown.store(&mut row.unknown);
-                by.store(&mut by_closing[link][at]);
+                let own = L::load(token, &row.unknown);
+                unknown[at] = own.plus_product(multiplier[at], unknown[at]);
+                let own_by = L::load(token, &by_closing[link][at]);
+                by[at] = own_by.plus_product(multiplier[at], by[at]);
+                multiplier[at] = L::load(token, &row.multiplier);
+                unknown[at].store(&mut row.unknown);
+                by[at].store(&mut by_closing[link][at]);
             }
+        }
+        [unknown, by]
+    }
 
-            // The closing link.
+    /// Finds the unknowns of the closing links.
+    #[inline(always)]
+    fn find_closing<L: Lane<Pack = P>, const N: usize>(
+        &mut self,
+        token: L::Token,
+        pair: &ChainPair<S::Constant>,
+        pass: Pass,
+        (seam, last_row, [unknown, by]): (&Seam<L, N>, &LastRow<L, N>, &[[L; N]; 2]),
+    ) -> [(L, L::Mask); N] {
+        let last = pair.links.len() - 1;
+        let (rows, _) = self.rows.as_chunks_mut::<N>();
+        let (by_closing, _) = self.by_closing.as_chunks_mut::<N>();
+        let (targets, _) = self.target[pair.targets.clone()].as_chunks::<N>();
+        let (zero, least) = (L::splat(token, 0.0), L::splat(token, f32::MIN_POSITIVE));
+        let mut found = [(zero, zero.lt(zero)); N];
+        for at in 0..N {
             let ChainLink { class, rest_length } = pair.links[last][at];
             let compliance = L::load(token, &self.compliance[class as usize]);
-            let target = match is_warm {
+            let target = match pass.is_warm() {
                 true => L::load(token, &targets[last][at]),
                 false => rest_length.load(token),
             };
+            let closing = seam.closing[at];
             let squared = closing.dot(closing);
             let length = squared.sqrt();
-            let to_last = mass * before.dot(closing);
-            let to_first = seam_mass * closing.dot(V3::load(token, &rows[0][at].along));
+            let to_last = last_row.mass[at] * last_row.along[at].dot(closing);
+            let to_first = seam.mass[at] * closing.dot(V3::load(token, &rows[0][at].along));
             let right = (-squared)
                 .plus_product(target, length)
-                .plus_product(to_last, of_last)
-                .plus_product(to_first, unknown);
+                .plus_product(to_last, last_row.unknown[at])
+                .plus_product(to_first, unknown[at]);
             let diagonal = least
-                .plus_product(mass + seam_mass + compliance, squared)
-                .minus_product(to_last, by_last)
-                .minus_product(to_first, by);
-            let one = particles.one_if_linked::<L>(token, class);
+                .plus_product(last_row.mass[at] + seam.mass[at] + compliance, squared)
+                .minus_product(to_last, last_row.by_closing[at])
+                .minus_product(to_first, by[at]);
+            let one = self.particles.one_if_linked::<L>(token, class);
             let row = &mut rows[last][at];
             let one = if pass == Pass::Overlong { one * L::load(token, &row.unknown) } else { one };
-            let is_solved = zero.lt(one);
             let of_closing = one * right / diagonal;
             closing.store(&mut row.along);
             of_closing.store(&mut row.unknown);
             (compliance * length).store(&mut row.target_change);
             zero.store(&mut by_closing[last][at]);
+            found[at] = (of_closing, zero.lt(one));
+        }
+        found
+    }
 
-            // Each particle is moved by the tensions of its two links at once.
-            let mut next_tension = V3::<L>::splat(token, 0.0);
-            let mut closing_tension = next_tension;
-            for link in (0..=last).rev() {
+    /// Moves each particle by the tensions of its two links at once, given the closing unknowns, and whether their chains are
+    /// solved.
+    #[inline(always)]
+    fn substitute_closed<L: Lane<Pack = P>, const N: usize>(
+        &mut self,
+        token: L::Token,
+        pair: &ChainPair<S::Constant>,
+        pass: Pass,
+        (seam, closing): (&Seam<L, N>, &[(L, L::Mask); N]),
+    ) {
+        let last = pair.links.len() - 1;
+        let particles = &mut self.particles;
+        let (rows, _) = self.rows.as_chunks::<N>();
+        let (by_closing, _) = self.by_closing.as_chunks::<N>();
+        let (targets, _) = self.target[pair.targets.clone()].as_chunks_mut::<N>();
+        let mut next_tension = [V3::<L>::splat(token, 0.0); N];
+        let mut closing_tension = next_tension;
+        for link in (0..=last).rev() {
+            for at in 0..N {
                 let row = &rows[link][at];
+                let (of_closing, _) = closing[at];
                 let unknown = L::load(token, &row.unknown)
                     .plus_product(L::load(token, &by_closing[link][at]), of_closing);
-                let target = match is_warm {
+                let target = match pass.is_warm() {
                     true => L::load(token, &targets[link][at]),
                     false => pair.links[link][at].rest_length.load(token),
                 };
@@ -138,20 +252,26 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 target.minus_product(change, unknown).store(&mut targets[link][at]);
                 let tension = V3::load(token, &row.along) * unknown;
                 if link == last {
-                    closing_tension = tension;
+                    closing_tension[at] = tension;
                 } else {
                     let particle = pair.particles[link + 1][at];
                     let inverse_mass = particles.inverse_mass(token, particle);
                     let position = particles.position(token, particle);
-                    let pull = tension - next_tension;
+                    let pull = tension - next_tension[at];
                     particles.correct(token, particle, position, (pull, inverse_mass));
                 }
-                next_tension = tension;
+                next_tension[at] = tension;
             }
-            let moved = seam.plus_scaled(closing_tension - next_tension, seam_mass);
-            // Lanes without a chain hold particles of other rows.
-            particles.set_position(token, first[at], moved.or_where_not(is_solved, start));
-            particles.set_position(token, end[at], moved.or_where_not(is_solved, opposite));
+        }
+        for at in 0..N {
+            let pull = closing_tension[at] - next_tension[at];
+            let moved = seam.middle[at].plus_scaled(pull, seam.mass[at]);
+            let (_, is_solved) = closing[at];
+            // Lanes without a chain hold particles of other rows, which another chain may have moved since.
+            for end in seam.ends {
+                let place = particles.position(token, end[at]);
+                particles.set_position(token, end[at], moved.or_where_not(is_solved, place));
+            }
         }
     }
 }

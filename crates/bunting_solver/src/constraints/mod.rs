@@ -26,6 +26,7 @@ mod mesh_sweep;
 mod overlong;
 pub(crate) mod rest_bends;
 pub(crate) mod shear;
+mod single_link;
 mod solve;
 mod stiff_bending;
 pub(crate) mod stiffness;

@@ -48,19 +48,11 @@ impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
                 Y::Constant::of(|lane| nodes.get(lane).map_or(0.0, |&node| of_node(node)))
             };
             let has = |side: usize| move |node: usize| rest.has_neighbour(node, side);
-            let at = layout.index_of_pack(pack);
-            // The neighbours of a pack's nodes in their rows are a pack as well.
-            let in_row = |side: usize| match nodes.iter().find(|&&node| has(side)(node)) {
-                Some(&node) => (at + rest.neighbours[node][side]).wrapping_sub(node as u32),
-                None => at,
-            };
-            let [_, _, above, below] = rest.neighbours[nodes[0]];
-            let in_column = |node: u32| layout.index_of_pack(layout.locate(node as usize, 0).0);
             let masks =
                 |sides: [usize; 2]| sides.map(|side| constant(&|node| f32::from(has(side)(node))));
             NodeFrame {
-                at,
-                neighbours: [in_row(0), in_row(1), in_column(above), in_column(below)],
+                at: layout.index_of_pack(pack),
+                neighbours: layout.neighbours_of_pack(pack, nodes, rest),
                 has_in_row: masks([0, 1]),
                 has_in_column: masks([2, 3]),
                 at_rest: [0, 1, 2].map(|kind| {

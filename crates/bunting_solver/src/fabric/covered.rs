@@ -18,6 +18,11 @@ impl Fabric {
         !self.covered.is_empty()
     }
 
+    /// Whether this is the net of a mesh.
+    pub(crate) fn is_net(&self) -> bool {
+        self.is_cut() && self.grid().is_none()
+    }
+
     /// Area of the first particle, m², as if all of its cells were cloth.
     pub(crate) fn first_whole_area(&self) -> f32 {
         match self.grid().filter(|_| self.is_cut()) {

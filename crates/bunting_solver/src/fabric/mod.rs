@@ -53,8 +53,10 @@ pub(crate) use chains::{CHAINS_PER_PAIR, Cell, Chain, ChainLink, ChainPair, Chai
 pub(crate) use hinges::{Hinge, angle as hinge_angle};
 pub(crate) use laid_yarns::{BAND, Coupling, LaidLink, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
 pub(crate) use patches::Patch;
+pub(crate) use rest_bends::RestBends;
 pub(crate) use strip::{StripLink, StripRow};
 pub(crate) use tethers::Tether;
+pub(crate) use topology::ascending;
 pub(crate) use twist::{Ribbon, RibbonProfile};
 pub(crate) use yarns::Yarn;
 

@@ -20,7 +20,7 @@ pub(super) struct Side {
 }
 
 /// The ends of an edge or a link, the lower index first.
-pub(super) fn ascending([one, other]: [u32; 2]) -> [u32; 2] {
+pub(crate) fn ascending([one, other]: [u32; 2]) -> [u32; 2] {
     [one.min(other), one.max(other)]
 }
 

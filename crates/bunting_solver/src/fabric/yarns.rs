@@ -20,7 +20,7 @@ pub(crate) struct Yarn {
 
 impl Yarn {
     /// Whether it ends where it begins.
-    pub(super) fn is_ring(&self) -> bool {
+    pub(crate) fn is_ring(&self) -> bool {
         self.particles.first() == self.particles.last()
     }
 }

@@ -69,6 +69,10 @@ pub(crate) trait Lane:
     fn load_at(token: Self::Token, values: &[f32], at: usize) -> Self;
     /// Stores the lanes to consecutive floats from index `at` on.
     fn store_at(self, values: &mut [f32], at: usize);
+    /// The first three numbers of the vectors with these indices, one vector in each lane.
+    fn gather<V: Pack>(token: Self::Token, vectors: &[V], at: &[u32]) -> [Self; 3];
+    /// Overwrites the vectors with these indices by those of the lanes, and by zero behind the third number.
+    fn scatter<V: Pack>(token: Self::Token, lanes: [Self; 3], vectors: &mut [V], at: &[u32]);
     fn sqrt(self) -> Self;
     fn abs(self) -> Self;
     fn lt(self, other: Self) -> Self::Mask;

@@ -7,6 +7,8 @@ use fearless_simd::{Level, Select, Simd, SimdBase, SimdFloat, f32x4, f32x8, f32x
 
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::level::{dispatch, fuses, level};
+use crate::simd::transpose::{joined, split};
+use crate::simd::vec3::V3;
 
 /// A single lane: the scalar solver, with which the wide ones are compared in tests.
 #[derive(Clone, Copy, Debug)]
@@ -103,12 +105,73 @@ impl Pack for Pack16 {
     }
 }
 
+/// Gathers and scatters lane by lane.
+macro_rules! one_by_one {
+    () => {
+        #[inline(always)]
+        fn gather<V: Pack>(token: Self::Token, vectors: &[V], at: &[u32]) -> [Self; 3] {
+            let mut packs = [Self::Pack::splat(0.0); 3];
+            for (lane, &at) in at.iter().enumerate() {
+                for (pack, number) in packs.iter_mut().zip(vectors[at as usize].lanes()) {
+                    pack.lanes_mut()[lane] = *number;
+                }
+            }
+            let [x, y, z] = &packs;
+            [Self::load(token, x), Self::load(token, y), Self::load(token, z)]
+        }
+
+        #[inline(always)]
+        fn scatter<V: Pack>(_: Self::Token, [x, y, z]: [Self; 3], vectors: &mut [V], at: &[u32]) {
+            let mut packs = [Self::Pack::splat(0.0); 3];
+            let [to_x, to_y, to_z] = &mut packs;
+            x.store(to_x);
+            y.store(to_y);
+            z.store(to_z);
+            for (lane, &at) in at.iter().enumerate() {
+                let mut vector = V::splat(0.0);
+                for (number, pack) in vector.lanes_mut().iter_mut().zip(&packs) {
+                    *number = pack.lanes()[lane];
+                }
+                vectors[at as usize] = vector;
+            }
+        }
+    };
+}
+
+/// Gathers and scatters vectors of four numbers whole, eight at once.
+macro_rules! transposed {
+    () => {
+        #[inline(always)]
+        fn gather<V: Pack>(token: S, vectors: &[V], at: &[u32]) -> [Self; 3] {
+            let at: &[u32; 8] = at.first_chunk().expect("an index in each lane");
+            let mut gathered = [<f32x4<S> as Lane>::splat(token, 0.0); 8];
+            for lane in 0..8 {
+                let vector = vectors[at[lane] as usize].lanes();
+                gathered[lane] = SimdBase::from_slice(token, vector);
+            }
+            let V3 { x, y, z } = joined(gathered);
+            [x, y, z]
+        }
+
+        #[inline(always)]
+        fn scatter<V: Pack>(token: S, [x, y, z]: [Self; 3], vectors: &mut [V], at: &[u32]) {
+            let at: &[u32; 8] = at.first_chunk().expect("an index in each lane");
+            let from = split(token, V3 { x, y, z });
+            for lane in 0..8 {
+                from[lane].store_slice(vectors[at[lane] as usize].lanes_mut());
+            }
+        }
+    };
+}
+
 macro_rules! lanes_of {
-    ($pack:ident, $vector:ident, $width:literal) => {
+    ($pack:ident, $vector:ident, $width:literal, $gathers:ident) => {
         impl<S: Simd> Lane for $vector<S> {
             type Pack = $pack;
             type Token = S;
             type Mask = <$vector<S> as SimdBase<S>>::Mask;
+
+            $gathers!();
 
             #[inline(always)]
             fn splat(token: S, value: f32) -> Self {
@@ -168,9 +231,9 @@ macro_rules! lanes_of {
     };
 }
 
-lanes_of!(Pack4, f32x4, 4);
-lanes_of!(Pack8, f32x8, 8);
-lanes_of!(Pack16, f32x16, 16);
+lanes_of!(Pack4, f32x4, 4, one_by_one);
+lanes_of!(Pack8, f32x8, 8, transposed);
+lanes_of!(Pack16, f32x16, 16, one_by_one);
 
 impl<S: Simd> Mask for fearless_simd::mask32x4<S> {
     #[inline(always)]
@@ -243,6 +306,8 @@ impl<S: Simd> Lane for Single<S> {
     type Pack = Pack1;
     type Token = S;
     type Mask = bool;
+
+    one_by_one!();
 
     #[inline(always)]
     fn splat(token: S, value: f32) -> Self {

@@ -35,9 +35,9 @@ pub(crate) fn joined<S: Simd>([a, b, c, d, e, f, g, h]: [f32x4<S>; 8]) -> V3<f32
 
 /// The eight vectors of given coordinates.
 #[inline(always)]
-pub(crate) fn split<S: Simd>(token: S, by: V3<f32x8<S>>) -> impl Iterator<Item = f32x4<S>> {
+pub(crate) fn split<S: Simd>(token: S, by: V3<f32x8<S>>) -> [f32x4<S>; 8] {
     let ((x, x_high), (y, y_high), (z, z_high)) = (by.x.split(), by.y.split(), by.z.split());
-    let low = vectors(token, [x, y, z]);
-    let high = vectors(token, [x_high, y_high, z_high]);
-    low.into_iter().chain(high)
+    let [a, b, c, d] = vectors(token, [x, y, z]);
+    let [e, f, g, h] = vectors(token, [x_high, y_high, z_high]);
+    [a, b, c, d, e, f, g, h]
 }

@@ -54,6 +54,19 @@ impl<L: Lane> V3<L> {
         }
     }
 
+    /// The vectors with these indices, one in each lane.
+    #[inline(always)]
+    pub fn gather<V: Pack>(token: L::Token, vectors: &[V], at: &[u32]) -> Self {
+        let [x, y, z] = L::gather(token, vectors, at);
+        Self { x, y, z }
+    }
+
+    /// Overwrites the vectors with these indices, one from each lane.
+    #[inline(always)]
+    pub fn scatter<V: Pack>(self, token: L::Token, vectors: &mut [V], at: &[u32]) {
+        L::scatter(token, [self.x, self.y, self.z], vectors, at);
+    }
+
     /// Stores three packs.
     #[inline(always)]
     pub fn store(self, pack: &mut Pack3<L::Pack>) {

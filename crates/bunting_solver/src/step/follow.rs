@@ -182,6 +182,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let nodes = match grid {
             BackgroundGrid::SideBySide(batch) => batch.motion_of(cloth),
             BackgroundGrid::Single(single) => single.batch.motion_of(cloth),
+            BackgroundGrid::SingleNet(single) => single.batch.motion_of(cloth),
         };
         let mut motion = self.motion_of(cloth);
         let GridTransfer { particles: rows, heights, .. } = &background.transfer;

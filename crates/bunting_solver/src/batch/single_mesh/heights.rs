@@ -1,6 +1,6 @@
 //! The heights of a single mesh's particles above the surface between the nodes of its background grid, eight at once.
 
-use super::vectors::{gather, pack_count};
+use super::vectors::pack_count;
 use crate::constraints::background::raised;
 use crate::fabric::Height;
 use crate::simd::lane::{Kernel, Lane, Pack};
@@ -61,10 +61,10 @@ impl Kernel<Pack8> for AddHeightPacks<'_> {
         let sign = L::splat(token, self.sign);
         for (HeightPack { nodes, along, height }, to) in self.heights.0.iter().zip(self.to) {
             let nodes: [V3<L>; 4] = [
-                gather(token, self.nodes, &nodes[0]),
-                gather(token, self.nodes, &nodes[1]),
-                gather(token, self.nodes, &nodes[2]),
-                gather(token, self.nodes, &nodes[3]),
+                V3::gather(token, self.nodes, &nodes[0]),
+                V3::gather(token, self.nodes, &nodes[1]),
+                V3::gather(token, self.nodes, &nodes[2]),
+                V3::gather(token, self.nodes, &nodes[3]),
             ];
             let [x, y] = along;
             let at = [L::load(token, x), L::load(token, y), L::load(token, height)];

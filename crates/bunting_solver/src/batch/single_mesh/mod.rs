@@ -16,20 +16,22 @@ use std::sync::Arc;
 use glam::Vec3;
 
 pub(crate) use self::heights::{AddHeightPacks, HeightPacks};
-use self::patches::PatchPacks;
+pub(crate) use self::patches::PatchPacks;
 pub(crate) use self::positions::MeshPositions;
-pub(crate) use self::vectors::{pack_count, read_vectors, write_vectors};
+pub(crate) use self::vectors::{
+    pack_constants, pack_count, read_packs, read_vectors, write_packs, write_vectors,
+};
 use crate::batch::layout::{Layout, OfCloth, Order};
 use crate::batch::single_cloth::SingleCloth;
+use crate::batch::single_net::SingleNet;
 use crate::batch::single_tethers::TetherPacks;
 use crate::batch::tether_pack::TetherPack;
 use crate::constraints::factors::Factors;
 use crate::constraints::stiffness::Stiffness;
 use crate::fabric::{BendLine, Chains, Fabric, Ribbon};
-use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
-use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
+use crate::simd::vec3::Pack3;
 
 /// One mesh across the lanes. It has no chains, lines or ribbons of its own.
 #[derive(Clone, Debug)]
@@ -58,10 +60,12 @@ fn locate(particle: usize) -> (usize, usize) {
 }
 
 impl SingleMesh {
-    /// The layout of a fabric; none unless it has a background grid that can lie across the lanes.
+    /// The layout of a fabric; none unless it has a background grid or a net that can lie across the lanes.
     pub fn of(fabric: &Arc<Fabric>) -> Option<Self> {
         let grid = &fabric.background()?.fabric;
-        SingleCloth::<Pack8>::of(grid)?;
+        if SingleCloth::<Pack8>::of(grid).is_none() {
+            SingleNet::of(grid)?;
+        }
         let particles = fabric.particle_count();
         let tethers = [fabric.far_tethers(), fabric.tethers()]
             .map(|tethers| TetherPacks::new(tethers, |at| locate(at as usize), |pack| pack as u32));
@@ -103,31 +107,15 @@ impl Layout<Pack8> for SingleMesh {
     }
 
     fn read(&self, packs: &[Pack3<Pack8>], _: usize, into: &mut Vec<Vec3>) {
-        into.resize(self.particles, Vec3::ZERO);
-        for (values, pack) in into.chunks_mut(Pack8::WIDTH).zip(packs) {
-            for (lane, value) in values.iter_mut().enumerate() {
-                *value = lane3(pack, lane);
-            }
-        }
+        read_packs(packs, self.particles, into);
     }
 
     fn write(&self, packs: &mut [Pack3<Pack8>], cloths: &[OfCloth]) {
-        for &(_, values) in cloths {
-            packs.fill(splat3(Vec3::ZERO));
-            for (values, pack) in values.unwrap_or_default().chunks(Pack8::WIDTH).zip(&mut *packs) {
-                for (lane, &value) in values.iter().enumerate() {
-                    set_lane3(pack, lane, value);
-                }
-            }
-        }
+        write_packs(packs, cloths);
     }
 
     fn constants(&self, of_particles: &[f32]) -> Vec<Pack8> {
-        let packs = of_particles.chunks(Pack8::WIDTH);
-        let constant = |pack: &[f32]| {
-            <Pack8 as Constant<Pack8>>::of(|lane| pack.get(lane).copied().unwrap_or(0.0))
-        };
-        packs.map(constant).collect()
+        pack_constants(of_particles)
     }
 
     /// All packs add to the first partial sum, whose lanes are the partial sums of the cloth.

@@ -5,7 +5,7 @@
 use fearless_simd::{Simd, SimdBase, f32x4};
 use glam::Vec3;
 
-use super::vectors::{gather, pack_count, read_vectors, write_vectors};
+use super::vectors::{pack_count, read_vectors, write_vectors};
 use crate::fabric::Patch;
 use crate::geometry::corners::{Contribution, CornerSums, Corners};
 use crate::simd::lane::{Lane, Pack};
@@ -73,10 +73,10 @@ impl<L: Lane<Pack = Pack8>> Corners<L> for &PatchPack {
     fn load(&self, token: L::Token, field: &[Pack4]) -> [V3<L>; 4] {
         let [a, b, c, d] = &self.corners;
         [
-            gather(token, field, a),
-            gather(token, field, b),
-            gather(token, field, c),
-            gather(token, field, d),
+            V3::gather(token, field, a),
+            V3::gather(token, field, b),
+            V3::gather(token, field, c),
+            V3::gather(token, field, d),
         ]
     }
 

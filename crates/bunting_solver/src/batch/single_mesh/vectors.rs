@@ -1,12 +1,15 @@
 //! Vectors of x, y, z and zero, and the packs of eight vectors each.
 
 use fearless_simd::{Simd, SimdBase, f32x4};
+use glam::Vec3;
 
-use crate::simd::lane::{Lane, Pack};
+use crate::batch::layout::OfCloth;
+use crate::simd::constant::Constant;
+use crate::simd::lane::Pack;
 use crate::simd::level::dispatch;
 use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::transpose::{coordinates, vectors};
-use crate::simd::vec3::{Pack3, V3, splat3};
+use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
 
 /// Number of vectors that are transposed at once.
 const QUAD: usize = 4;
@@ -63,22 +66,34 @@ fn write_all<S: Simd>(token: S, vectors: &[Pack4], into: &mut [Pack3<Pack8>]) {
     }
 }
 
-/// The vectors with given indices, one in each lane.
-#[inline(always)]
-pub(super) fn gather<L: Lane<Pack = Pack8>>(
-    token: L::Token,
-    vectors: &[Pack4],
-    at: &[u32; Pack8::WIDTH],
-) -> V3<L> {
-    let mut packs = splat3(glam::Vec3::ZERO);
-    let [to_x, to_y, to_z]: &mut Pack3<Pack8> = &mut packs;
-    for (lane, &at) in at.iter().enumerate() {
-        let [x, y, z, _] = vectors[at as usize].vector();
-        to_x.lanes_mut()[lane] = x;
-        to_y.lanes_mut()[lane] = y;
-        to_z.lanes_mut()[lane] = z;
+/// Reads as many vectors as there are particles in packs of consecutive ones.
+pub(crate) fn read_packs(packs: &[Pack3<Pack8>], count: usize, into: &mut Vec<Vec3>) {
+    into.resize(count, Vec3::ZERO);
+    for (values, pack) in into.chunks_mut(Pack8::WIDTH).zip(packs) {
+        for (lane, value) in values.iter_mut().enumerate() {
+            *value = lane3(pack, lane);
+        }
     }
-    V3::load(token, &packs)
+}
+
+/// Overwrites packs of consecutive particles of a single cloth.
+pub(crate) fn write_packs(packs: &mut [Pack3<Pack8>], cloths: &[OfCloth]) {
+    for &(_, values) in cloths {
+        packs.fill(splat3(Vec3::ZERO));
+        for (values, pack) in values.unwrap_or_default().chunks(Pack8::WIDTH).zip(&mut *packs) {
+            for (lane, &value) in values.iter().enumerate() {
+                set_lane3(pack, lane, value);
+            }
+        }
+    }
+}
+
+/// One number of each particle in packs of consecutive ones.
+pub(crate) fn pack_constants(of_particles: &[f32]) -> Vec<Pack8> {
+    let constant = |pack: &[f32]| {
+        <Pack8 as Constant<Pack8>>::of(|lane| pack.get(lane).copied().unwrap_or(0.0))
+    };
+    of_particles.chunks(Pack8::WIDTH).map(constant).collect()
 }
 
 #[cfg(test)]

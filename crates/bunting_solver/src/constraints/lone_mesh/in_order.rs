@@ -5,7 +5,7 @@
 //! after the other, then move particles as the list does, and backwards as the list does backwards.
 
 /// Packs of indices into a list of constraints, given the particles of each. A pack has no more than `most`.
-pub(super) fn packs_in_order<'a>(
+pub(crate) fn packs_in_order<'a>(
     most: usize,
     particle_count: usize,
     constraints: impl Iterator<Item = &'a [u32]>,

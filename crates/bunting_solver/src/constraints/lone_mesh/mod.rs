@@ -8,6 +8,8 @@ mod hinges;
 mod in_order;
 mod links;
 
+pub(crate) use self::in_order::packs_in_order;
+
 use fearless_simd::Simd;
 use glam::Vec3;
 

@@ -1,5 +1,6 @@
 //! Bending of a net along its lines.
 
+use core::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Cell;
@@ -51,7 +52,8 @@ pub(super) fn bending(
             }
         }
     }
-    bending.lines.sort_by_key(|line| !line.is_row);
+    // Lines of like length are solved side by side.
+    bending.lines.sort_by_key(|line| (!line.is_row, Reverse(line.particles.len())));
     let has_cloth = vec![true; mesh.positions.len()];
     let rest = RestBends::of_neighbours(&mesh.positions, crossings.neighbours, has_cloth);
     (bending, rest)

@@ -1,5 +1,8 @@
+use std::sync::Arc;
+
 use glam::Vec3;
 
+use crate::batch::lane_batch::{BackgroundGrid, LaneBatch};
 use crate::fabric::{Fabric, FabricBuilder};
 
 const AROUND: u32 = 24;
@@ -88,4 +91,12 @@ fn a_strip_whose_triangles_face_both_ways_has_no_net() {
     let strip = FabricBuilder::new(positions, corners).weld_distance(1e-4);
     let strip = strip.build().expect("a Möbius strip");
     assert!(strip.background().is_none());
+}
+
+/// A lone one is solved eight lines at once.
+#[test]
+fn the_net_of_a_single_mesh_lies_across_the_lanes() {
+    let fabric = Arc::new(slit_tube(0.0).build().expect("a good fabric"));
+    let single = LaneBatch::single_mesh(&fabric).expect("a mesh with a net");
+    assert!(matches!(single.background, Some(BackgroundGrid::SingleNet(_))));
 }

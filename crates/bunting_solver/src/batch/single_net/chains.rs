@@ -1,0 +1,123 @@
+//! Chains of a single net, in packs of lines of one colour.
+
+use std::collections::HashMap;
+
+use super::node_packs::NodePacks;
+use super::{LaneIndices, NO_INDEX};
+use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Yarn, ascending};
+use crate::simd::constant::Constant;
+use crate::simd::lane::Pack;
+use crate::simd::registers::Pack8;
+
+/// Packs of chains.
+#[derive(Clone, Debug)]
+pub(super) struct ChainPacks {
+    /// The `class` of a link is an index into `classes`.
+    pub chains: Chains<Pack8>,
+    /// For each class of links of packs, the fabric's class in each lane.
+    pub classes: Vec<LaneIndices>,
+}
+
+impl ChainPacks {
+    pub fn new(fabric: &Fabric, nodes: &mut NodePacks) -> Self {
+        let mut packer = Packer { fabric, nodes, classes: Vec::new(), known: HashMap::new() };
+        let colours = fabric.yarn_colours().ranges().iter().map(|range| {
+            let yarns = &fabric.yarns()[range.clone()];
+            let family = fabric.links()[yarns[0].links[0] as usize].family;
+            (family, packer.pack(yarns))
+        });
+        let mut chains = Chains::of_colours(colours.collect::<Vec<_>>().into_iter());
+        let classes = packer.classes;
+        (chains.cells, chains.diagonal_lengths) = cells(fabric, &chains, nodes);
+        Self { chains, classes }
+    }
+}
+
+/// Packs lines of one colour.
+struct Packer<'a> {
+    fabric: &'a Fabric,
+    nodes: &'a mut NodePacks,
+    classes: Vec<LaneIndices>,
+    /// The class with these classes of the fabric in its lanes.
+    known: HashMap<LaneIndices, u32>,
+}
+
+impl Packer<'_> {
+    /// Packs lines that share no node, the longest first. Closed ones of a pack are equally long.
+    fn pack(&mut self, yarns: &[Yarn]) -> Vec<Chain<Pack8>> {
+        let mut ordered: Vec<&Yarn> = yarns.iter().collect();
+        ordered.sort_by_key(|yarn| (!yarn.is_ring(), core::cmp::Reverse(yarn.links.len())));
+        let alike = |one: &&Yarn, other: &&Yarn| {
+            one.is_ring() == other.is_ring()
+                && (!one.is_ring() || one.links.len() == other.links.len())
+        };
+        let runs = ordered.chunk_by(alike).flat_map(|run| run.chunks(Pack8::WIDTH));
+        runs.map(|pack| self.chain(pack)).collect()
+    }
+
+    fn chain(&mut self, yarns: &[&Yarn]) -> Chain<Pack8> {
+        let lines: Vec<&[u32]> = yarns.iter().map(|yarn| &yarn.particles[..]).collect();
+        let particles = self.nodes.along(&lines);
+        let links: Vec<ChainLink<Pack8>> =
+            (0..particles.len() - 1).map(|at| self.link(yarns, at)).collect();
+        let count = links.len();
+        let order = (0..count).step_by(2).chain((1..count).step_by(2));
+        Chain {
+            sweep_order: order.map(|at| (at, links[at].class)).collect(),
+            particles,
+            links,
+            is_closed: yarns[0].is_ring(),
+        }
+    }
+
+    /// The links at a place of each line.
+    fn link(&mut self, yarns: &[&Yarn], at: usize) -> ChainLink<Pack8> {
+        let link = |lane: usize| {
+            let number = yarns.get(lane)?.links.get(at)?;
+            self.fabric.links().get(*number as usize)
+        };
+        let rest_length =
+            <Pack8 as Constant<Pack8>>::of(|lane| link(lane).map_or(0.0, |link| link.rest_length));
+        let of_lanes = core::array::from_fn(|lane| link(lane).map_or(NO_INDEX, |link| link.class));
+        let class = *self.known.entry(of_lanes).or_insert_with(|| {
+            self.classes.push(of_lanes);
+            self.classes.len() as u32 - 1
+        });
+        ChainLink { class, rest_length }
+    }
+}
+
+/// The cells whose diagonals are links, one for each link of a pack of diagonals, and the lengths of their two diagonals at
+/// rest, m; one in lanes without a cell.
+fn cells(
+    fabric: &Fabric,
+    chains: &Chains<Pack8>,
+    nodes: &mut NodePacks,
+) -> (Vec<Cell>, Vec<[Pack8; 2]>) {
+    // The other diagonal of the cell of each one. Where several cells have a diagonal, the last one sets its target.
+    let mut others: HashMap<[u32; 2], [u32; 2]> = HashMap::new();
+    for cell in &fabric.chains().cells {
+        let [first, left, right, last] = cell.corners;
+        others.insert(ascending([left, right]), [first, last]);
+        others.insert(ascending([first, last]), [left, right]);
+    }
+    let rest = fabric.rest_positions();
+    let of_link = |([from, to], target): ([u32; 2], u32)| {
+        let ends: [[u32; 2]; Pack8::WIDTH] = {
+            let [from, to] = [from, to].map(|end| nodes.of[end as usize]);
+            core::array::from_fn(|lane| [from[lane], to[lane]])
+        };
+        let opposite = ends.map(|ends| others.get(&ascending(ends)).copied());
+        let sides = [0, 1].map(|side| nodes.index_of(opposite.map(|of| of.map(|of| of[side]))));
+        let length = |of: &dyn Fn(usize) -> Option<[u32; 2]>| {
+            <Pack8 as Constant<Pack8>>::of(|lane| {
+                of(lane).map_or(1.0, |[a, b]| rest[a as usize].distance(rest[b as usize]))
+            })
+        };
+        let own = length(&|lane| opposite[lane].map(|_| ends[lane]));
+        let other = length(&|lane| opposite[lane]);
+        let [left, right] = sides;
+        (Cell { corners: [from, left, right, to], targets: [target; 2] }, [own, other])
+    };
+    chains.diagonals().map(of_link).unzip()
+}

@@ -1,0 +1,224 @@
+//! The single-net layout: the net of one mesh across the lanes.
+//!
+//! A pack of the state holds consecutive nodes. Lines of a net are no neighbours in memory, and differ in length: eight
+//! lines that share no node are solved in one pack, whose nodes are gathered as vectors of x, y, z and zero. Where a lane's
+//! line has ended, the lane holds [`NO_NODE`](node_packs::NodePacks), which nothing moves. The kernels are those of cloths side
+//! by side, and every line has the bits of scalar code.
+
+mod bend_lines;
+mod chains;
+mod node_packs;
+mod positions;
+
+use core::ops::Range;
+use std::sync::Arc;
+
+use glam::Vec3;
+
+use self::bend_lines::BendLinePacks;
+use self::chains::ChainPacks;
+use self::node_packs::NodePacks;
+use self::positions::NetPositions;
+use crate::batch::layout::{Layout, OfCloth, Order};
+use crate::batch::single_mesh::{
+    PatchPacks, pack_constants, pack_count, read_packs, read_vectors, write_packs,
+};
+use crate::batch::single_tethers::TetherPacks;
+use crate::batch::tether_pack::TetherPack;
+use crate::constraints::bend_factors::BendFactors;
+use crate::constraints::factors::{ClothFactors, Factors};
+use crate::constraints::stiffness::Stiffness;
+use crate::fabric::{BendLine, Chains, Fabric, RestBends, Ribbon};
+use crate::simd::constant::Constant;
+use crate::simd::lane::Pack;
+use crate::simd::registers::{Pack4, Pack8};
+use crate::simd::vec3::Pack3;
+
+/// For each lane of a pack an index into a list of the fabric; [`NO_INDEX`] in lanes without a constraint.
+type LaneIndices = [u32; Pack8::WIDTH];
+
+/// Index of no element.
+const NO_INDEX: u32 = u32::MAX;
+
+/// One net across the lanes, with its lines in packs.
+#[derive(Clone, Debug)]
+pub(crate) struct SingleNet {
+    particles: usize,
+    nodes: Arc<NodePacks>,
+    chains: ChainPacks,
+    /// For each class of links, one in lanes that have a link, zero in others.
+    linked: Vec<Pack8>,
+    bend_lines: BendLinePacks,
+    /// For each pack of nodes, the packs of their neighbours: before and after them in their rows, above and below them.
+    neighbours: Vec<[u32; 4]>,
+    factors: Factors<Pack8, Pack8>,
+    /// Tethers to the farthest pins, and to the nearest pins.
+    tethers: [TetherPacks<Pack8>; 2],
+    patches: PatchPacks,
+    /// Velocities as vectors, m/s.
+    velocity: Vec<Pack4>,
+}
+
+/// The pack and the lane of a node.
+#[inline]
+fn locate(node: usize) -> (usize, usize) {
+    (node / Pack8::WIDTH, node % Pack8::WIDTH)
+}
+
+impl SingleNet {
+    /// The layout of a fabric; none unless it is a net.
+    pub fn of(fabric: &Fabric) -> Option<Self> {
+        let rest = fabric.rest_bends().filter(|_| fabric.is_net())?;
+        let particles = fabric.particle_count();
+        let mut nodes = NodePacks::new(particles);
+        let chains = ChainPacks::new(fabric, &mut nodes);
+        let bend_lines = BendLinePacks::new(fabric, &mut nodes);
+        let neighbours = (0..pack_count(particles)).map(|pack| {
+            [0, 1, 2, 3].map(|side| {
+                nodes.index_of(core::array::from_fn(|lane| {
+                    rest.neighbours.get(pack * Pack8::WIDTH + lane).map(|near| near[side])
+                }))
+            })
+        });
+        let neighbours = neighbours.collect();
+        let linked = |of_lanes: &LaneIndices| {
+            <Pack8 as Constant<Pack8>>::of(|lane| f32::from(of_lanes[lane] != NO_INDEX))
+        };
+        let bending = bend_lines
+            .profiles
+            .iter()
+            .map(|of_lanes| BendFactors::new(&of_lanes_in(of_lanes, fabric.bend_profiles())));
+        Some(Self {
+            particles,
+            factors: Factors {
+                link_compliance: vec![Pack8::splat(0.0); chains.classes.len()],
+                bending: bending.collect(),
+                twist: Vec::new(),
+                resists_twist: Pack8::splat(0.0),
+            },
+            linked: chains.classes.iter().map(linked).collect(),
+            tethers: [fabric.far_tethers(), fabric.tethers()].map(|tethers| {
+                TetherPacks::new(tethers, |at| locate(at as usize), |pack| pack as u32)
+            }),
+            patches: PatchPacks::new(fabric.patches(), particles),
+            velocity: vec![Pack4::splat(0.0); pack_count(particles) * Pack8::WIDTH],
+            nodes: Arc::new(nodes),
+            chains,
+            bend_lines,
+            neighbours,
+        })
+    }
+}
+
+/// The elements of a list of the fabric that the lanes' indices refer to.
+fn of_lanes_in<'a, T>(of_lanes: &LaneIndices, list: &'a [T]) -> Vec<Option<&'a T>> {
+    of_lanes.iter().map(|&index| list.get(index as usize)).collect()
+}
+
+impl Layout<Pack8> for SingleNet {
+    type Constant = Pack8;
+    type Positions = NetPositions;
+    type Tether = TetherPack<Pack8>;
+    type Triangles<'a> = &'a mut PatchPacks;
+
+    const CLOTHS: usize = 1;
+
+    fn lanes(_: usize) -> Range<usize> {
+        0..Pack8::WIDTH
+    }
+
+    fn pack_count(&self) -> usize {
+        pack_count(self.particles)
+    }
+
+    #[inline]
+    fn locate(&self, particle: usize, _: usize) -> (usize, usize) {
+        locate(particle)
+    }
+
+    fn neighbours_of_pack(&self, pack: usize, _: &[usize], _: &RestBends) -> [u32; 4] {
+        self.neighbours[pack]
+    }
+
+    fn read(&self, packs: &[Pack3<Pack8>], _: usize, into: &mut Vec<Vec3>) {
+        read_packs(packs, self.particles, into);
+    }
+
+    fn write(&self, packs: &mut [Pack3<Pack8>], cloths: &[OfCloth]) {
+        write_packs(packs, cloths);
+    }
+
+    fn constants(&self, of_particles: &[f32]) -> Vec<Pack8> {
+        pack_constants(of_particles)
+    }
+
+    /// All packs add to the first partial sum, whose lanes are the partial sums of the cloth.
+    fn partial_sums(&self) -> Vec<u8> {
+        vec![0; self.pack_count()]
+    }
+
+    fn positions(&self, packs: Vec<Pack3<Pack8>>) -> NetPositions {
+        NetPositions::new(packs, Arc::clone(&self.nodes))
+    }
+
+    fn chains<'a>(&'a self, _: &'a Fabric) -> &'a Chains<Pack8> {
+        &self.chains.chains
+    }
+
+    fn order_of_chains(&self, _: usize) -> Order {
+        Order::RowMajor
+    }
+
+    fn linked(&self) -> &[Pack8] {
+        &self.linked
+    }
+
+    fn bend_lines<'a>(&'a self, _: &'a Fabric) -> impl Iterator<Item = (Order, &'a [BendLine])> {
+        core::iter::once((Order::RowMajor, &self.bend_lines.lines[..]))
+    }
+
+    fn ribbons<'a>(&'a self, _: &'a Fabric) -> (Order, &'a [Ribbon]) {
+        (Order::RowMajor, &[])
+    }
+
+    fn tethers<'a>(&'a self, _: &'a Fabric) -> [&'a [TetherPack<Pack8>]; 2] {
+        self.tethers.each_ref().map(|tethers| &tethers.packs[..])
+    }
+
+    fn factors(&self) -> &Factors<Pack8, Pack8> {
+        &self.factors
+    }
+
+    fn set_stiffness(&mut self, _: usize, fabric: &Fabric, stiffness: &Stiffness) {
+        let of_cloth = ClothFactors::new(fabric, stiffness);
+        let Factors { link_compliance, bending, .. } = &mut self.factors;
+        for (pack, classes) in link_compliance.iter_mut().zip(&self.chains.classes) {
+            let of_class = |class: u32| of_cloth.link_compliance.get(class as usize);
+            *pack = <Pack8 as Constant<Pack8>>::of(|lane| {
+                of_class(classes[lane]).copied().unwrap_or(0.0)
+            });
+        }
+        for (factors, profiles) in bending.iter_mut().zip(&self.bend_lines.profiles) {
+            for (lane, rows) in of_lanes_in(profiles, &of_cloth.bending).iter().enumerate() {
+                rows.iter().for_each(|rows| factors.set_lane(lane, rows));
+            }
+        }
+    }
+
+    fn set_pins(&mut self, _: usize, _: &Fabric, positions: &[Vec3]) {
+        self.tethers.iter_mut().for_each(|tethers| tethers.set_pins(positions));
+    }
+
+    fn triangles<'a>(&'a mut self, _: &'a Fabric) -> &'a mut PatchPacks {
+        &mut self.patches
+    }
+
+    fn moving_triangles<'a>(
+        &'a mut self,
+        _: &'a Fabric,
+        velocity: &'a [Pack3<Pack8>],
+    ) -> (&'a mut PatchPacks, &'a [Pack4]) {
+        read_vectors(velocity, &mut self.velocity);
+        (&mut self.patches, &self.velocity)
+    }
+}

@@ -1,0 +1,123 @@
+//! Positions of a single net: in packs, and as vectors that constraints gather and scatter.
+
+use std::sync::Arc;
+
+use super::node_packs::NodePacks;
+use crate::batch::layout::{Order, Particles, Positions};
+use crate::batch::single_mesh::{read_vectors, write_vectors};
+use crate::simd::lane::{Lane, Pack};
+use crate::simd::registers::{Pack4, Pack8};
+use crate::simd::vec3::{Pack3, V3};
+
+/// Positions of a single net, m. They are valid in the packs or in the vectors.
+#[derive(Clone, Debug)]
+pub(crate) struct NetPositions {
+    packs: Vec<Pack3<Pack8>>,
+    /// One of each node, and the one of lanes without a node.
+    vectors: Vec<Pack4>,
+    /// Whether the vectors hold the valid positions.
+    are_vectors_valid: bool,
+    nodes: Arc<NodePacks>,
+    /// Inverse masses per unit area density of each pack that is gathered, 1/m².
+    inverse_masses: Vec<Pack8>,
+}
+
+impl NetPositions {
+    pub(super) fn new(packs: Vec<Pack3<Pack8>>, nodes: Arc<NodePacks>) -> Self {
+        Self {
+            vectors: vec![Pack4::splat(0.0); packs.len() * Pack8::WIDTH + 1],
+            packs,
+            are_vectors_valid: false,
+            inverse_masses: vec![Pack8::splat(0.0); nodes.of.len()],
+            nodes,
+        }
+    }
+}
+
+impl Positions<Pack8> for NetPositions {
+    type Constant = Pack8;
+    type Particles<'a> = NetParticles<'a>;
+    type Field = [Pack4];
+
+    fn packs(&self) -> &[Pack3<Pack8>] {
+        debug_assert!(!self.are_vectors_valid, "constraints have the positions");
+        &self.packs
+    }
+
+    fn packs_mut(&mut self) -> &mut Vec<Pack3<Pack8>> {
+        if self.are_vectors_valid {
+            write_vectors(&self.vectors, &mut self.packs);
+            self.are_vectors_valid = false;
+        }
+        &mut self.packs
+    }
+
+    fn overwritten(&mut self) -> &mut [Pack3<Pack8>] {
+        self.are_vectors_valid = false;
+        &mut self.packs
+    }
+
+    fn particles<'a>(
+        &'a mut self,
+        _: Order,
+        _: &'a [Pack8],
+        linked: &'a [Pack8],
+    ) -> NetParticles<'a> {
+        self.field();
+        self.are_vectors_valid = true;
+        let Self { vectors, nodes, inverse_masses, .. } = self;
+        NetParticles { vectors, nodes: &nodes.of, inverse_masses, linked }
+    }
+
+    fn field(&mut self) -> &[Pack4] {
+        if !self.are_vectors_valid {
+            read_vectors(&self.packs, &mut self.vectors);
+        }
+        &self.vectors
+    }
+
+    fn set_inverse_masses(&mut self, of_particles: &[f32]) {
+        for (masses, nodes) in self.inverse_masses.iter_mut().zip(&self.nodes.of) {
+            for (mass, node) in masses.lanes_mut().iter_mut().zip(nodes) {
+                *mass = of_particles.get(*node as usize).copied().unwrap_or(0.0);
+            }
+        }
+    }
+
+    fn clear(&mut self) {
+        self.vectors.fill(Pack4::splat(0.0));
+        self.are_vectors_valid = false;
+    }
+}
+
+/// Nodes that are gathered, eight at once.
+pub(crate) struct NetParticles<'a> {
+    vectors: &'a mut [Pack4],
+    nodes: &'a [[u32; Pack8::WIDTH]],
+    inverse_masses: &'a [Pack8],
+    linked: &'a [Pack8],
+}
+
+impl Particles<Pack8> for NetParticles<'_> {
+    type Constant = Pack8;
+
+    #[inline(always)]
+    fn position<L: Lane<Pack = Pack8>>(&self, token: L::Token, at: u32) -> V3<L> {
+        V3::gather(token, self.vectors, &self.nodes[at as usize])
+    }
+
+    #[inline(always)]
+    fn set_position<L: Lane<Pack = Pack8>>(&mut self, token: L::Token, at: u32, position: V3<L>) {
+        position.scatter(token, self.vectors, &self.nodes[at as usize]);
+    }
+
+    #[inline(always)]
+    fn inverse_mass<L: Lane<Pack = Pack8>>(&self, token: L::Token, at: u32) -> L {
+        L::load(token, &self.inverse_masses[at as usize])
+    }
+
+    #[inline(always)]
+    fn one_if_linked<L: Lane<Pack = Pack8>>(&self, token: L::Token, class: u32) -> L {
+        L::load(token, &self.linked[class as usize])
+    }
+}
