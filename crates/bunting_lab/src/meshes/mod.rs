@@ -1,6 +1,7 @@
 //! Triangle meshes that are no grids, for trials of what artists model.
 
 mod delaunay;
+mod graded;
 
 use std::{f32::consts::TAU, sync::Arc};
 

@@ -37,6 +37,10 @@ const ALONG: f32 = 0.9986;
 /// warps. Larger: textures that are distorted a little count as pieces.
 const ONE_WARP: f32 = 0.9;
 
+/// Spacing of vertices, in units of that of the grid, from which on they are coarser. Smaller: on meshes that are even but random
+/// some nodes are fitted to more vertices than others. Larger: nodes have too few to be fitted to.
+const COARSE: f32 = 1.5;
+
 /// A mesh in the plane.
 pub(super) struct Chart {
     /// Places in the plane, m, from the corner of their bounding rectangle.
@@ -201,6 +205,24 @@ impl Chart {
         let mut particles = self.particles[..self.own_places].to_vec();
         particles.sort_unstable();
         particles.windows(2).any(|two| two[0] == two[1])
+    }
+
+    /// Spacing of the vertices around each place, in units of that of the grid: the width of a square of twice the mean area of the
+    /// triangles there. One where it is less than [`COARSE`].
+    pub(super) fn coarseness(&self, spacing: f32) -> Vec<f32> {
+        let mut sums = vec![(0.0, 0.0_f32); self.positions.len()];
+        for corners in &self.triangles {
+            let [a, b, c] = corners.map(|corner| self.positions[corner as usize]);
+            let double_area = (b - a).perp_dot(c - a).abs();
+            for &corner in corners {
+                let (area, count) = &mut sums[corner as usize];
+                *area += double_area;
+                *count += 1.0;
+            }
+        }
+        let of_place = |&(area, count): &(f32, f32)| (area / count.max(1.0)).sqrt() / spacing;
+        let coarse = |width: f32| if width > COARSE { width } else { 1.0 };
+        sums.iter().map(of_place).map(coarse).collect()
     }
 
     /// Spacing h of the grid, m. In a square lattice with a border of length L, an area A has N = A/h² + L/2h + 1 vertices, by Pick's

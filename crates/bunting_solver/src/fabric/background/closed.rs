@@ -17,7 +17,8 @@ const ALIKE: f32 = 0.25;
 /// Least period, in cells. Smaller: the repeated triangles overlap one another.
 const LEAST_PERIOD: f32 = 8.0;
 
-/// Width of the strip beyond the ends of the period in which triangles are repeated, in cells. Smaller: nodes at the
+/// Width of the strip beyond the ends of the period in which triangles are repeated, in cells, or as much wider as the coarsest
+/// triangles are. Smaller: nodes at the
 /// ends are fitted to the particles on one side.
 const REPEATED: f32 = 3.0;
 
@@ -75,6 +76,7 @@ impl Chart {
         let length = period.y.abs();
         // A period that is not quite along the axis is sheared onto it.
         self.positions.iter_mut().for_each(|at| at.x -= at.y * period.x / period.y);
+        let coarsest = self.coarseness(spacing).into_iter().fold(1.0, f32::max);
         // Of several places of a particle the first one.
         let mut own = vec![Vec2::ZERO; self.particle_count()];
         for (at, &particle) in self.positions.iter().zip(&self.particles).rev() {
@@ -106,7 +108,7 @@ impl Chart {
                 wrapped.positions.len() as u32 - 1
             })
         };
-        let beyond = REPEATED * spacing;
+        let beyond = REPEATED * spacing * coarsest;
         for (corners, &of_mesh) in self.triangles.iter().zip(&self.of_mesh) {
             let particles = corners.map(|corner| self.particles[corner as usize]);
             let turns = [0, 1, 2].map(|at| {

@@ -6,11 +6,17 @@ use glam::Vec2;
 
 use super::chart::{Chart, node_positions};
 use super::coverage::Coverage;
-use super::interpolation::{Interpolation, nodes_from_particles};
+use super::interpolation::{Interpolation, Term, nodes_from_particles};
 use super::on_chart::OnChart;
 use super::whole::is_whole;
 use super::{coverage, cut, moved, smooth};
+use crate::fabric::grid::Grid;
 use crate::fabric::laid_yarns::Faces;
+
+/// Greatest distance of a node that stands for pins from these, in cells. Larger: in triangles of several cells the nodes beside pins
+/// are held, too, and a cloth that hangs from coarse triangles stretches too little (by 16 % from some of six cells of 17). Smaller:
+/// nodes beside pins of even meshes are not held.
+const NEAR_PINS: f32 = 0.95;
 
 /// The nodes of a grid on a chart.
 pub(super) struct LaidNodes {
@@ -20,6 +26,8 @@ pub(super) struct LaidNodes {
     pub places: Vec<Vec2>,
     /// Whether each node lies outside the mesh.
     pub is_outside: Vec<bool>,
+    /// Whether each node lies as near to pins as one that stands for them.
+    pub is_near_pins: Vec<bool>,
     /// The part of each cell that counts as cloth.
     pub parts: Vec<f32>,
     /// The triangles of the chart in each cell.
@@ -71,8 +79,10 @@ impl LaidNodes {
             .zip(rows.rows())
             .map(|(node, row)| row.is_empty() && !pins.contains_key(&node))
             .collect();
+        let mut is_near_pins = near_pins(&rows, positions, grid, is_free);
+        pins.keys().for_each(|&node| is_near_pins[node as usize] = true);
         if chart.plane.is_none() {
-            rows = smooth::smoothed(rows, positions, grid, is_free);
+            rows = smooth::smoothed(rows, chart, grid, is_free, &is_near_pins);
         }
         if !pins.is_empty() {
             rows = moved::rows(rows, pins);
@@ -102,7 +112,20 @@ impl LaidNodes {
             triangles: coverage.triangles,
             are_cut: is_any_outside || !coverage.is_filled,
             is_outside,
+            is_near_pins,
             are_moved: !pins.is_empty(),
         })
     }
+}
+
+/// Whether each node lies near the pinned places that it is read from, or is read from none.
+fn near_pins(rows: &Interpolation, positions: &[Vec2], grid: &Grid, is_free: &[bool]) -> Vec<bool> {
+    let spacing = Vec2::from(grid.spacing());
+    let of_node = |(node, row): (Vec2, &[Term])| {
+        let pinned = || row.iter().filter(|term| !is_free[term.from as usize]);
+        let weight: f32 = pinned().map(|term| term.weight).sum();
+        let middle: Vec2 = pinned().map(|term| positions[term.from as usize] * term.weight).sum();
+        weight <= 0.0 || ((node - middle / weight) / spacing).length() < NEAR_PINS
+    };
+    node_positions(grid).into_iter().zip(rows.rows()).map(of_node).collect()
 }

@@ -314,19 +314,13 @@ fn node_mesh(
         Some(sizes) => sizes.particle_areas(grid),
         None => grid.particle_areas(),
     };
-    let inverse_area = |((row, area), is_outside): ((&[Term], &f32), &bool)| {
-        let moves = *area > 0.0 && (*is_outside || is_free(row));
-        if moves { 1.0 / area } else { 0.0 }
+    let inverse_area = |(node, (row, area)): (usize, (&[Term], &f32))| {
+        let moves = laid.is_outside[node] || !laid.is_near_pins[node] || is_free(row);
+        if *area > 0.0 && moves { 1.0 / area } else { 0.0 }
     };
     RestMesh {
         positions,
-        inverse_areas: transfer
-            .nodes
-            .rows()
-            .zip(&areas)
-            .zip(&laid.is_outside)
-            .map(inverse_area)
-            .collect(),
+        inverse_areas: transfer.nodes.rows().zip(&areas).enumerate().map(inverse_area).collect(),
         uv: chart::node_positions(grid),
         triangles: grid.triangles(false),
         particle_of_vertex: (0..areas.len() as u32).collect(),

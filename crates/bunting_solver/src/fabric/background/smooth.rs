@@ -4,13 +4,14 @@
 //! their links straighten under load. The value at a node of a quartic that is fitted to the particles around it lies
 //! on the surface up to fifth order, that of a quadratic, where there are few particles, up to third order.
 
-use glam::{DVec3, Vec2};
+use glam::{DVec2, DVec3, Vec2};
 
 use super::LEAST_FREE;
+use super::chart::Chart;
 use super::interpolation::{Interpolation, Term};
 use crate::fabric::grid::Grid;
 
-/// Radius around a node within which places count, in cells. Smaller: too few for a quartic. Larger: rows around a
+/// Radius around a node within which places count, in cells; larger where vertices are farther apart. Smaller: too few for a quartic. Larger: rows around a
 /// cylinder of sixteen cells zigzag, and the folds of a few cells are smoothed.
 const RADIUS: f64 = 2.8;
 
@@ -20,29 +21,47 @@ const LEAST_PIVOT: f64 = 1e-6;
 /// Greatest sum of the magnitudes of a row's weights. Larger: a node moves by more than the particles around it.
 const GREATEST_SUM: f32 = 3.0;
 
+/// The same of a node that stands for pins. Larger: beyond the last pin of a rim a node is extrapolated, and edges there are strained.
+/// Smaller: nodes between pins lie on the chords between these.
+const GREATEST_SUM_OF_PINS: f32 = 1.5;
+
+/// Greatest distance of a place from the line that others lie on, in units of the radius. Larger: places on a curved border count as
+/// on a line. Smaller: so does no border.
+const OFF_LINE: f64 = 0.05;
+
 /// Numbers of the coefficients of a quartic, of a quadratic and of a plane.
 const QUARTIC: usize = 15;
 pub(super) const QUADRATIC: usize = 6;
 pub(super) const PLANE: usize = 3;
 
-/// Rows of nodes by fits to the places around them; the given rows where there are too few places, and of nodes that
-/// stand for pins.
+/// Rows of nodes by fits to the places around them, to pinned ones alone of nodes that stand for pins; the given rows where there
+/// are too few places.
 pub(super) fn smoothed(
     rows: Interpolation,
-    positions: &[Vec2],
+    chart: &Chart,
     grid: &Grid,
     is_free: &[bool],
+    is_near_pins: &[bool],
 ) -> Interpolation {
-    let places = PlacesInCells::new(positions, grid);
+    let places = PlacesInCells::new(&chart.positions, grid);
+    let [width, height] = grid.spacing();
+    let coarseness = chart.coarseness((width * height).sqrt());
     let mut smoothed = Interpolation::default();
     for (node, row) in rows.rows().enumerate() {
-        let near = places.around(node as u32, RADIUS);
+        let coarse: f32 = row.iter().map(|term| term.weight * coarseness[term.from as usize]).sum();
+        let mut near = places.around(node as u32, RADIUS * f64::from(coarse).max(1.0));
         let free = row.iter().filter(|term| is_free[term.from as usize]);
-        let is_smooth = free.map(|term| term.weight).sum::<f32>() > LEAST_FREE;
-        let smooth = |terms: &Vec<Term>| sum_of_magnitudes(terms) < GREATEST_SUM;
+        let is_smooth =
+            free.map(|term| term.weight).sum::<f32>() > LEAST_FREE || !is_near_pins[node];
+        if !is_smooth {
+            near.retain(|(place, _)| !is_free[*place as usize]);
+        }
+        let greatest = if is_smooth { GREATEST_SUM } else { GREATEST_SUM_OF_PINS };
+        let smooth = |terms: &Vec<Term>| sum_of_magnitudes(terms) < greatest;
         let quartic = || fit::<QUARTIC>(&near).filter(smooth);
-        let fits = || quartic().or_else(|| fit::<QUADRATIC>(&near).filter(smooth));
-        match is_smooth.then(fits).flatten() {
+        let quadratic = || fit::<QUADRATIC>(&near).filter(smooth);
+        let along = || fit_along(&near).filter(|terms| !is_smooth && smooth(terms));
+        match quartic().or_else(quadratic).or_else(along) {
             Some(terms) => smoothed.push(terms),
             None => smoothed.push(row.iter().copied()),
         }
@@ -93,9 +112,16 @@ impl<'a> PlacesInCells<'a> {
 /// Weights of the values at places, given relative to the node with a weight as third coordinate, in the value at the
 /// node of the polynomial that is fitted to them; none if they do not determine it.
 pub(super) fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
+    fit_powers(near, powers::<TERMS>)
+}
+
+fn fit_powers<const TERMS: usize>(
+    near: &[(u32, DVec3)],
+    powers: fn(&DVec3) -> [f64; TERMS],
+) -> Option<Vec<Term>> {
     let mut system = [[0.0; TERMS]; TERMS];
     for (_, at) in near {
-        let powers = powers::<TERMS>(at);
+        let powers = powers(at);
         for (row, one) in system.iter_mut().zip(powers) {
             for (element, other) in row.iter_mut().zip(powers) {
                 *element += at.z * one * other;
@@ -125,15 +151,37 @@ pub(super) fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>
         *value /= system[index][index];
     }
     let weight = |at: &DVec3| {
-        let powers = powers::<TERMS>(at).into_iter();
+        let powers = powers(at).into_iter();
         (at.z * powers.zip(solution).map(|(power, factor)| power * factor).sum::<f64>()) as f32
     };
     Some(near.iter().map(|(place, at)| Term { from: *place, weight: weight(at) }).collect())
 }
 
+/// The same of the quartic or the parabola along the line on which places lie, as those of a pinned border do; none unless the node
+/// lies on it, too.
+fn fit_along(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
+    let mean = near.iter().map(|(_, at)| at.truncate()).sum::<DVec2>() / near.len() as f64;
+    // Twice the angle of the principal axis.
+    let twice = near.iter().map(|(_, at)| at.truncate() - mean).map(|away| away.rotate(away)).sum();
+    let axis = DVec2::from_angle(0.5 * DVec2::X.angle_to(twice));
+    let is_on = |away: DVec2| axis.perp_dot(away - mean).abs() < OFF_LINE;
+    if !is_on(DVec2::ZERO) || !near.iter().all(|(_, at)| is_on(at.truncate())) {
+        return None;
+    }
+    let place =
+        |(place, at): &(u32, DVec3)| (*place, DVec3::new(axis.dot(at.truncate()), 0.0, at.z));
+    let on_line: Vec<(u32, DVec3)> = near.iter().map(place).collect();
+    fit_powers(&on_line, powers_along::<5>).or_else(|| fit_powers(&on_line, powers_along::<3>))
+}
+
 /// Sum of the magnitudes of a row's weights.
 pub(super) fn sum_of_magnitudes(terms: &[Term]) -> f32 {
     terms.iter().map(|term| term.weight.abs()).sum()
+}
+
+/// The first powers of the first coordinate.
+fn powers_along<const TERMS: usize>(at: &DVec3) -> [f64; TERMS] {
+    core::array::from_fn(|power| at.x.powi(power as i32))
 }
 
 /// The first products of powers of two coordinates, those of lower degree first.

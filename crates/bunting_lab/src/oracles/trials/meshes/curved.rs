@@ -46,7 +46,10 @@ pub(super) fn cases(triangulation: Triangulation) -> [Case; 2] {
         cloth.run(seconds);
         let end = sheet.positions.iter().zip(&cloth.positions);
         let end = end.filter(|(at, _)| f64::from(at.x) > size.x - 1e-5);
-        end.map(|(_, at)| at.as_dvec3().truncate()).sum::<DVec2>() / across as f64
+        let (sum, count) = end.fold((DVec2::ZERO, 0.0), |(sum, count), (_, at)| {
+            (sum + at.as_dvec3().truncate(), count + 1.0)
+        });
+        sum / count
     };
     let gravity = LOAD * stiffness / (f64::from(material.area_density) * RADIUS.powi(3));
     let at_rest = end_under(0.0, 1.0);

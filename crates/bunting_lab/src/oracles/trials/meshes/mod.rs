@@ -3,6 +3,7 @@
 
 mod curved;
 mod flags;
+mod graded;
 mod rest;
 mod swing;
 
@@ -42,10 +43,10 @@ const REST: [f64; 2] = [1e-3, 5e-3];
 /// Everything that a mesh should do as a grid does.
 pub fn cases(_: &Mount) -> Vec<Case> {
     let of_each = TRIANGULATIONS.into_iter().flat_map(rest::cases);
-    // A strip of a scan yields 1.8 times too far; why was not found.
-    let arcs = [Triangulation::Delaunay, Triangulation::Quads].into_iter().flat_map(curved::cases);
+    let arcs = TRIANGULATIONS.into_iter().flat_map(curved::cases);
     of_each
         .chain(arcs)
+        .chain(graded::cases())
         .chain(swing::cases())
         .chain([6.0, 25.0].into_iter().flat_map(flags::cases))
         .collect()
