@@ -15,7 +15,7 @@ impl Sheet {
     #[must_use]
     pub fn graded(count: usize, ratio: f64) -> Self {
         let growth = ratio.ln();
-        // The integral of one over the squared length is the area of all vertices.
+        // The integral of one over the squared length, which is proportional to the number of vertices.
         let squares = (1.0 - ratio.powi(-2)) / (2.0 * growth);
         let shortest = (squares / (count as f64 * VERTEX_AREA)).sqrt();
         let length = |x: f64| shortest * (growth * x).exp();
@@ -40,7 +40,7 @@ impl Sheet {
             let farthest = candidates.iter().max_by(|a, b| nearest(a).total_cmp(&nearest(b)));
             points.extend(farthest.copied());
         }
-        // Points at random are in no circle of four.
+        // Shifted a little, so that no four of them lie on one circle.
         let scaled = points.iter().map(|at| *at * SCALE + 1e-5 * random.place());
         let triangles = delaunay::triangulate(&scaled.collect::<Vec<_>>());
         let in_space = |at: &DVec2| Vec3::new(at.x as f32, -at.y as f32, 0.0);

@@ -23,7 +23,6 @@ pub(crate) use self::vectors::{
 };
 use crate::batch::layout::{Layout, OfCloth, Order};
 use crate::batch::single_cloth::SingleCloth;
-use crate::batch::single_net::SingleNet;
 use crate::batch::single_tethers::TetherPacks;
 use crate::batch::tether_pack::TetherPack;
 use crate::constraints::factors::Factors;
@@ -55,7 +54,7 @@ impl SingleMesh {
 
 /// The pack and the lane of a particle.
 #[inline]
-fn locate(particle: usize) -> (usize, usize) {
+pub(crate) fn locate(particle: usize) -> (usize, usize) {
     (particle / Pack8::WIDTH, particle % Pack8::WIDTH)
 }
 
@@ -63,8 +62,8 @@ impl SingleMesh {
     /// The layout of a fabric; none unless it has a background grid or a net that can lie across the lanes.
     pub fn of(fabric: &Arc<Fabric>) -> Option<Self> {
         let grid = &fabric.background()?.fabric;
-        if SingleCloth::<Pack8>::of(grid).is_none() {
-            SingleNet::of(grid)?;
+        if !grid.is_net() {
+            SingleCloth::<Pack8>::of(grid)?;
         }
         let particles = fabric.particle_count();
         let tethers = [fabric.far_tethers(), fabric.tethers()]

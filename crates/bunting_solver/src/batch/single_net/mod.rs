@@ -2,8 +2,8 @@
 //!
 //! A pack of the state holds consecutive nodes. Lines of a net are no neighbours in memory, and differ in length: eight
 //! lines that share no node are solved in one pack, whose nodes are gathered as vectors of x, y, z and zero. Where a lane's
-//! line has ended, the lane holds [`NO_NODE`](node_packs::NodePacks), which nothing moves. The kernels are those of cloths side
-//! by side, and every line has the bits of scalar code.
+//! line has ended, the lane holds a vector that nothing moves (`node_packs.rs`). The kernels are those of cloths side by side, and
+//! every line has the bits of scalar code.
 
 mod bend_lines;
 mod chains;
@@ -21,7 +21,7 @@ use self::node_packs::NodePacks;
 use self::positions::NetPositions;
 use crate::batch::layout::{Layout, OfCloth, Order};
 use crate::batch::single_mesh::{
-    PatchPacks, pack_constants, pack_count, read_packs, read_vectors, write_packs,
+    PatchPacks, locate, pack_constants, pack_count, read_packs, read_vectors, write_packs,
 };
 use crate::batch::single_tethers::TetherPacks;
 use crate::batch::tether_pack::TetherPack;
@@ -57,12 +57,6 @@ pub(crate) struct SingleNet {
     patches: PatchPacks,
     /// Velocities as vectors, m/s.
     velocity: Vec<Pack4>,
-}
-
-/// The pack and the lane of a node.
-#[inline]
-fn locate(node: usize) -> (usize, usize) {
-    (node / Pack8::WIDTH, node % Pack8::WIDTH)
 }
 
 impl SingleNet {

@@ -37,8 +37,8 @@ const ALONG: f32 = 0.9986;
 /// warps. Larger: textures that are distorted a little count as pieces.
 const ONE_WARP: f32 = 0.9;
 
-/// Spacing of vertices, in units of that of the grid, from which on they are coarser. Smaller: on meshes that are even but random
-/// some nodes are fitted to more vertices than others. Larger: nodes have too few to be fitted to.
+/// Spacing of vertices, in units of the grid's, above which they count as coarse. Smaller: on meshes that are even but random some
+/// nodes are fitted to more vertices than others. Larger: some have too few vertices to be fitted to.
 const COARSE: f32 = 1.5;
 
 /// A mesh in the plane.
@@ -207,8 +207,8 @@ impl Chart {
         particles.windows(2).any(|two| two[0] == two[1])
     }
 
-    /// Spacing of the vertices around each place, in units of that of the grid: the width of a square of twice the mean area of the
-    /// triangles there. One where it is less than [`COARSE`].
+    /// Spacing of the vertices around each place, in units of the grid's: the side of a square of twice the mean area of the triangles
+    /// there. One where it is less than [`COARSE`].
     pub(super) fn coarseness(&self, spacing: f32) -> Vec<f32> {
         let mut sums = vec![(0.0, 0.0_f32); self.positions.len()];
         for corners in &self.triangles {

@@ -18,8 +18,7 @@ const ALIKE: f32 = 0.25;
 const LEAST_PERIOD: f32 = 8.0;
 
 /// Width of the strip beyond the ends of the period in which triangles are repeated, in cells, or as much wider as the coarsest
-/// triangles are. Smaller: nodes at the
-/// ends are fitted to the particles on one side.
+/// triangles are. Smaller: nodes at the ends are fitted to the particles on one side.
 const REPEATED: f32 = 3.0;
 
 /// Most periods that a triangle may lie away from its own. Smaller: triangles across the seam are lost, as each of

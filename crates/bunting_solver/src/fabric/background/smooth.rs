@@ -11,8 +11,8 @@ use super::chart::Chart;
 use super::interpolation::{Interpolation, Term};
 use crate::fabric::grid::Grid;
 
-/// Radius around a node within which places count, in cells; larger where vertices are farther apart. Smaller: too few for a quartic. Larger: rows around a
-/// cylinder of sixteen cells zigzag, and the folds of a few cells are smoothed.
+/// Radius around a node within which places count, in cells, or as much larger as vertices are farther apart. Smaller: too few for
+/// a quartic. Larger: rows around a cylinder of sixteen cells zigzag, and the folds of a few cells are smoothed.
 const RADIUS: f64 = 2.8;
 
 /// Least pivot of a fit's normal equations, relative to their largest element. Smaller: fits to places on few lines.
@@ -161,9 +161,16 @@ fn fit_powers<const TERMS: usize>(
 /// lies on it, too.
 fn fit_along(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
     let mean = near.iter().map(|(_, at)| at.truncate()).sum::<DVec2>() / near.len() as f64;
-    // Twice the angle of the principal axis.
-    let twice = near.iter().map(|(_, at)| at.truncate() - mean).map(|away| away.rotate(away)).sum();
-    let axis = DVec2::from_angle(0.5 * DVec2::X.angle_to(twice));
+    let aways = near.iter().map(|(_, at)| at.truncate() - mean);
+    // At twice the angle of the principal axis. The half of it follows without functions of angles, whose bits differ from
+    // machine to machine.
+    let twice = aways.map(|away| away.rotate(away)).sum::<DVec2>();
+    let length = twice.length();
+    let axis = match twice.x > 0.0 {
+        true => DVec2::new(length + twice.x, twice.y),
+        false => DVec2::new(twice.y, length - twice.x),
+    };
+    let axis = axis.normalize_or_zero();
     let is_on = |away: DVec2| axis.perp_dot(away - mean).abs() < OFF_LINE;
     if !is_on(DVec2::ZERO) || !near.iter().all(|(_, at)| is_on(at.truncate())) {
         return None;
@@ -181,7 +188,12 @@ pub(super) fn sum_of_magnitudes(terms: &[Term]) -> f32 {
 
 /// The first powers of the first coordinate.
 fn powers_along<const TERMS: usize>(at: &DVec3) -> [f64; TERMS] {
-    core::array::from_fn(|power| at.x.powi(power as i32))
+    let mut next = 1.0;
+    core::array::from_fn(|_| {
+        let power = next;
+        next *= at.x;
+        power
+    })
 }
 
 /// The first products of powers of two coordinates, those of lower degree first.
