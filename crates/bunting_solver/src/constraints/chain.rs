@@ -134,8 +134,19 @@ pub(super) enum Pass {
 impl Pass {
     /// Whether the pass starts from the stored targets.
     #[inline(always)]
-    pub(super) fn is_warm(self) -> bool {
+    fn is_warm(self) -> bool {
         self != Self::First
+    }
+
+    /// The target of a link before the pass, m, given the stored one and the length at rest.
+    #[inline(always)]
+    pub(super) fn target<L: Lane>(
+        self,
+        token: L::Token,
+        stored: &L::Pack,
+        rest_length: &impl Constant<L::Pack>,
+    ) -> L {
+        if self.is_warm() { L::load(token, stored) } else { rest_length.load(token) }
     }
 
     /// Whether the pass stores the new targets.
@@ -223,7 +234,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         pair: &ChainPair<S::Constant>,
         pass: Pass,
     ) {
-        let (is_warm, stores) = (pass.is_warm(), pass.stores_targets());
+        let stores = pass.stores_targets();
         let particles = &self.particles;
         let (rows, _) = self.rows.as_chunks_mut::<N>();
         let (targets, _) = self.target[pair.targets.clone()].as_chunks::<N>();
@@ -243,8 +254,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             for (at, &particle) in first_of::<N>(ends).iter().enumerate() {
                 let ChainLink { class, rest_length } = links[at];
                 let compliance = L::load(token, &self.compliance[class as usize]);
-                let target =
-                    if is_warm { L::load(token, &targets[at]) } else { rest_length.load(token) };
+                let target: L = pass.target(token, &targets[at], &rest_length);
                 let next: V3<L> = particles.position(token, particle);
                 let next_mass = particles.inverse_mass(token, particle);
                 let along = next - end[at];
@@ -283,7 +293,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         pair: &ChainPair<S::Constant>,
         pass: Pass,
     ) {
-        let (is_warm, stores) = (pass.is_warm(), pass.stores_targets());
+        let stores = pass.stores_targets();
         let particles = &mut self.particles;
         let (rows, _) = self.rows.as_chunks::<N>();
         let (targets, _) = self.target[pair.targets.clone()].as_chunks_mut::<N>();
@@ -299,11 +309,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 multiplier[at] = L::load(token, &row.multiplier);
                 if stores {
                     let target_change = L::load(token, &row.target_change);
-                    let target = if is_warm {
-                        L::load(token, &targets[at])
-                    } else {
-                        links[at].rest_length.load(token)
-                    };
+                    let target: L = pass.target(token, &targets[at], &links[at].rest_length);
                     target.minus_product(target_change, unknown[at]).store(&mut targets[at]);
                 }
                 let tension = V3::load(token, &row.along) * unknown[at];

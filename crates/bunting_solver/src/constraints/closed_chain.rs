@@ -8,7 +8,6 @@
 use crate::batch::layout::Particles;
 use crate::constraints::chain::{Pass, SolveChains, first_of};
 use crate::fabric::{ChainLink, ChainPair};
-use crate::simd::constant::Constant;
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::V3;
 
@@ -102,10 +101,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             for at in 0..N {
                 let ChainLink { class, rest_length } = pair.links[link][at];
                 let compliance = L::load(token, &self.compliance[class as usize]);
-                let target = match pass.is_warm() {
-                    true => L::load(token, &targets[link][at]),
-                    false => rest_length.load(token),
-                };
+                let target: L = pass.target(token, &targets[link][at], &rest_length);
                 let next: V3<L> = particles.position(token, pair.particles[link + 1][at]);
                 let next_mass: L = particles.inverse_mass(token, pair.particles[link + 1][at]);
                 let along = next - from[at];
@@ -191,10 +187,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         for at in 0..N {
             let ChainLink { class, rest_length } = pair.links[last][at];
             let compliance = L::load(token, &self.compliance[class as usize]);
-            let target = match pass.is_warm() {
-                true => L::load(token, &targets[last][at]),
-                false => rest_length.load(token),
-            };
+            let target: L = pass.target(token, &targets[last][at], &rest_length);
             let closing = seam.closing[at];
             let squared = closing.dot(closing);
             let length = squared.sqrt();
@@ -244,10 +237,8 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 let (of_closing, _) = closing[at];
                 let unknown = L::load(token, &row.unknown)
                     .plus_product(L::load(token, &by_closing[link][at]), of_closing);
-                let target = match pass.is_warm() {
-                    true => L::load(token, &targets[link][at]),
-                    false => pair.links[link][at].rest_length.load(token),
-                };
+                let rest_length = &pair.links[link][at].rest_length;
+                let target: L = pass.target(token, &targets[link][at], rest_length);
                 let change = L::load(token, &row.target_change);
                 target.minus_product(change, unknown).store(&mut targets[link][at]);
                 let tension = V3::load(token, &row.along) * unknown;

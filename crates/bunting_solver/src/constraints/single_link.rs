@@ -5,7 +5,6 @@ use core::ops::Range;
 use crate::batch::layout::Particles;
 use crate::constraints::chain::{Pass, SolveChains};
 use crate::fabric::{CHAINS_PER_PAIR, ChainLink};
-use crate::simd::constant::Constant;
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::V3;
 
@@ -28,10 +27,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             let ChainLink { class, rest_length } = links[at];
             let [a, b] = [ends[0][at], ends[1][at]];
             let compliance = L::load(token, &self.compliance[class as usize]);
-            let target = match pass.is_warm() {
-                true => L::load(token, &targets[at]),
-                false => rest_length.load(token),
-            };
+            let target: L = pass.target(token, &targets[at], &rest_length);
             let from: V3<L> = particles.position(token, a);
             let to: V3<L> = particles.position(token, b);
             let mass_a: L = particles.inverse_mass(token, a);

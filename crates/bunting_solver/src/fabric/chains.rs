@@ -37,6 +37,16 @@ pub(crate) struct Chain<C = f32> {
     pub is_closed: bool,
 }
 
+impl<C> Chain<C> {
+    /// A chain all of whose links are swept.
+    pub fn new(particles: Vec<u32>, links: Vec<ChainLink<C>>, is_closed: bool) -> Self {
+        let count = links.len();
+        let order = (0..count).step_by(2).chain((1..count).step_by(2));
+        let sweep_order = order.map(|at| (at, links[at].class)).collect();
+        Self { particles, links, sweep_order, is_closed }
+    }
+}
+
 /// A link of a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ChainLink<C = f32> {
@@ -120,15 +130,9 @@ impl Chains {
     ) -> Self {
         let is_column = |yarn: &Yarn| grid.is_some_and(|grid| grid.is_whole_column(yarn));
         let chain = |yarn: &Yarn| {
-            let count = yarn.links.len();
-            let order = (0..count).step_by(2).chain((1..count).step_by(2));
-            let link = |at: usize| &links[yarn.links[at] as usize];
-            Chain {
-                particles: yarn.particles.clone(),
-                links: (0..count).map(|at| ChainLink::of(link(at))).collect(),
-                sweep_order: order.map(|at| (at, link(at).class)).collect(),
-                is_closed: is_joined && is_column(yarn) || yarn.is_ring(),
-            }
+            let of_chain = yarn.links.iter().map(|link| ChainLink::of(&links[*link as usize]));
+            let is_closed = is_joined && is_column(yarn) || yarn.is_ring();
+            Chain::new(yarn.particles.clone(), of_chain.collect(), is_closed)
         };
         let mut chains = Self::of_colours(colours.ranges().iter().map(|range| {
             let yarns = &yarns[range.clone()];

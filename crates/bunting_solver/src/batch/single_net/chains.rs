@@ -58,16 +58,8 @@ impl Packer<'_> {
     fn chain(&mut self, yarns: &[&Yarn]) -> Chain<Pack8> {
         let lines: Vec<&[u32]> = yarns.iter().map(|yarn| &yarn.particles[..]).collect();
         let particles = self.nodes.along(&lines);
-        let links: Vec<ChainLink<Pack8>> =
-            (0..particles.len() - 1).map(|at| self.link(yarns, at)).collect();
-        let count = links.len();
-        let order = (0..count).step_by(2).chain((1..count).step_by(2));
-        Chain {
-            sweep_order: order.map(|at| (at, links[at].class)).collect(),
-            particles,
-            links,
-            is_closed: yarns[0].is_ring(),
-        }
+        let links = (0..particles.len() - 1).map(|at| self.link(yarns, at)).collect();
+        Chain::new(particles, links, yarns[0].is_ring())
     }
 
     /// The links at a place of each line.

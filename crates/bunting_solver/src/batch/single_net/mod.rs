@@ -17,7 +17,7 @@ use glam::Vec3;
 
 use self::bend_lines::BendLinePacks;
 use self::chains::ChainPacks;
-use self::node_packs::NodePacks;
+use self::node_packs::{NodePack, NodePacks};
 use self::positions::NetPositions;
 use crate::batch::layout::{Layout, OfCloth, Order};
 use crate::batch::single_mesh::{
@@ -44,7 +44,8 @@ const NO_INDEX: u32 = u32::MAX;
 #[derive(Clone, Debug)]
 pub(crate) struct SingleNet {
     particles: usize,
-    nodes: Arc<NodePacks>,
+    /// The nodes of each pack that constraints gather.
+    nodes: Arc<[NodePack]>,
     chains: ChainPacks,
     /// For each class of links, one in lanes that have a link, zero in others.
     linked: Vec<Pack8>,
@@ -96,7 +97,7 @@ impl SingleNet {
             }),
             patches: PatchPacks::new(fabric.patches(), particles),
             velocity: vec![Pack4::splat(0.0); pack_count(particles) * Pack8::WIDTH],
-            nodes: Arc::new(nodes),
+            nodes: nodes.of.into(),
             chains,
             bend_lines,
             neighbours,

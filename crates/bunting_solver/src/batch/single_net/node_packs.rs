@@ -6,15 +6,18 @@ use crate::batch::single_mesh::pack_count;
 use crate::simd::lane::Pack;
 use crate::simd::registers::Pack8;
 
-/// For each index by which constraints access particles: the nodes in the lanes. The first ones are the packs of the
-/// state. A lane without a node has the number behind all of these, at which there is a vector that nothing moves.
-#[derive(Clone, Debug)]
+/// The nodes in the lanes of a pack.
+pub(super) type NodePack = [u32; Pack8::WIDTH];
+
+/// The packs that constraints gather while they are found. The first ones are the packs of the state. A lane without a node has the
+/// number behind all of these, at which there is a vector that nothing moves.
 pub(super) struct NodePacks {
-    pub of: Vec<[u32; Pack8::WIDTH]>,
+    /// The pack at each index by which constraints access particles.
+    pub of: Vec<NodePack>,
     /// The number of a lane's node where it has none.
-    pub none: u32,
-    /// The index with these nodes in its lanes.
-    known: HashMap<[u32; Pack8::WIDTH], u32>,
+    none: u32,
+    /// The index of each pack.
+    known: HashMap<NodePack, u32>,
 }
 
 impl NodePacks {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::node_packs::NodePacks;
+use super::node_packs::NodePack;
 use crate::batch::layout::{Order, Particles, Positions};
 use crate::batch::single_mesh::{read_vectors, write_vectors};
 use crate::simd::lane::{Lane, Pack};
@@ -17,18 +17,19 @@ pub(crate) struct NetPositions {
     vectors: Vec<Pack4>,
     /// Whether the vectors hold the valid positions.
     are_vectors_valid: bool,
-    nodes: Arc<NodePacks>,
+    /// The nodes of each pack that is gathered.
+    nodes: Arc<[NodePack]>,
     /// Inverse masses per unit area density of each pack that is gathered, 1/m².
     inverse_masses: Vec<Pack8>,
 }
 
 impl NetPositions {
-    pub(super) fn new(packs: Vec<Pack3<Pack8>>, nodes: Arc<NodePacks>) -> Self {
+    pub(super) fn new(packs: Vec<Pack3<Pack8>>, nodes: Arc<[NodePack]>) -> Self {
         Self {
             vectors: vec![Pack4::splat(0.0); packs.len() * Pack8::WIDTH + 1],
             packs,
             are_vectors_valid: false,
-            inverse_masses: vec![Pack8::splat(0.0); nodes.of.len()],
+            inverse_masses: vec![Pack8::splat(0.0); nodes.len()],
             nodes,
         }
     }
@@ -66,7 +67,7 @@ impl Positions<Pack8> for NetPositions {
         self.field();
         self.are_vectors_valid = true;
         let Self { vectors, nodes, inverse_masses, .. } = self;
-        NetParticles { vectors, nodes: &nodes.of, inverse_masses, linked }
+        NetParticles { vectors, nodes, inverse_masses, linked }
     }
 
     fn field(&mut self) -> &[Pack4] {
@@ -77,7 +78,7 @@ impl Positions<Pack8> for NetPositions {
     }
 
     fn set_inverse_masses(&mut self, of_particles: &[f32]) {
-        for (masses, nodes) in self.inverse_masses.iter_mut().zip(&self.nodes.of) {
+        for (masses, nodes) in self.inverse_masses.iter_mut().zip(&*self.nodes) {
             for (mass, node) in masses.lanes_mut().iter_mut().zip(nodes) {
                 *mass = of_particles.get(*node as usize).copied().unwrap_or(0.0);
             }
@@ -93,7 +94,7 @@ impl Positions<Pack8> for NetPositions {
 /// Nodes that are gathered, eight at once.
 pub(crate) struct NetParticles<'a> {
     vectors: &'a mut [Pack4],
-    nodes: &'a [[u32; Pack8::WIDTH]],
+    nodes: &'a [NodePack],
     inverse_masses: &'a [Pack8],
     linked: &'a [Pack8],
 }

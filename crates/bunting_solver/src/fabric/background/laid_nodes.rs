@@ -14,8 +14,8 @@ use crate::fabric::grid::Grid;
 use crate::fabric::laid_yarns::Faces;
 
 /// Greatest distance of a node that stands for pins from these, in cells. Larger: in triangles of several cells the nodes beside pins
-/// are held, too, and a cloth that hangs from coarse triangles stretches too little (by 16 % from some of six cells of 17). Smaller:
-/// nodes beside pins of even meshes are not held.
+/// are held, too, and a cloth that hangs from coarse triangles stretches too little (a sheet of 17² vertices graded 1 : 10 by 16 %).
+/// Smaller: nodes beside pins of even meshes are not held.
 const NEAR_PINS: f32 = 0.95;
 
 /// The nodes of a grid on a chart.

@@ -51,16 +51,16 @@ pub(super) fn smoothed(
         let coarse: f32 = row.iter().map(|term| term.weight * coarseness[term.from as usize]).sum();
         let mut near = places.around(node as u32, RADIUS * f64::from(coarse).max(1.0));
         let free = row.iter().filter(|term| is_free[term.from as usize]);
-        let is_smooth =
-            free.map(|term| term.weight).sum::<f32>() > LEAST_FREE || !is_near_pins[node];
-        if !is_smooth {
+        let is_free_enough = free.map(|term| term.weight).sum::<f32>() > LEAST_FREE;
+        let stands_for_pins = is_near_pins[node] && !is_free_enough;
+        if stands_for_pins {
             near.retain(|(place, _)| !is_free[*place as usize]);
         }
-        let greatest = if is_smooth { GREATEST_SUM } else { GREATEST_SUM_OF_PINS };
+        let greatest = if stands_for_pins { GREATEST_SUM_OF_PINS } else { GREATEST_SUM };
         let smooth = |terms: &Vec<Term>| sum_of_magnitudes(terms) < greatest;
         let quartic = || fit::<QUARTIC>(&near).filter(smooth);
         let quadratic = || fit::<QUADRATIC>(&near).filter(smooth);
-        let along = || fit_along(&near).filter(|terms| !is_smooth && smooth(terms));
+        let along = || fit_along(&near).filter(|terms| stands_for_pins && smooth(terms));
         match quartic().or_else(quadratic).or_else(along) {
             Some(terms) => smoothed.push(terms),
             None => smoothed.push(row.iter().copied()),
@@ -115,6 +115,7 @@ pub(super) fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>
     fit_powers(near, powers::<TERMS>)
 }
 
+/// The same of a sum of given powers of the coordinates, the first of which is one.
 fn fit_powers<const TERMS: usize>(
     near: &[(u32, DVec3)],
     powers: fn(&DVec3) -> [f64; TERMS],
