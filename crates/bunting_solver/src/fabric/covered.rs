@@ -37,6 +37,7 @@ impl Fabric {
     /// Length of the cloth whose weight the topmost links carry, m: the [`reach`](Self::reach), and more where tension
     /// is concentrated.
     pub(super) fn carried_length(&self) -> f32 {
-        self.reach() * if self.is_cut() { CONCENTRATION } else { 1.0 }
+        let is_cut_grid = self.is_cut() && self.grid().is_some();
+        self.reach() * if is_cut_grid { CONCENTRATION } else { 1.0 }
     }
 }

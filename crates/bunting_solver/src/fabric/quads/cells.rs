@@ -10,13 +10,17 @@ use crate::fabric::topology::Edge;
 const MOST_DEPARTURE: f32 = 0.7;
 
 /// Least part of the triangles that must be halves of quads. Smaller: where cells are triangles, lines end.
-const LEAST_PART: f32 = 0.95;
+const LEAST_PART: f32 = 0.9;
 
 /// Greatest ratio of the lengths of two sides of cells. Larger: short links need many substeps, as those at the poles of a ball do.
 const MOST_RATIO: f32 = 4.0;
 
+/// Greatest number of cells around a node. Larger: where all meridians of a ball end at its pole, they throw that to and fro.
+const MOST_AROUND: u32 = 8;
+
 /// The cells of a mesh most of whose triangles are halves of quads, the best quads first; the other triangles are cells, too.
-/// None if other triangles are more than a few, if two triangles face opposite ways, as on a Möbius strip, or if sides are too unlike.
+/// None if other triangles are more than a few, if two triangles face opposite ways, as on a Möbius strip, if many cells meet at a node,
+/// or if sides are too unlike.
 pub(super) fn cells(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
     if edges.iter().any(|edge| edge.other_side.is_some() && quad(mesh, edge).is_none()) {
         return None;
@@ -44,6 +48,11 @@ pub(super) fn cells(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
         nodes: corners.to_vec(),
         triangles: vec![triangle],
     }));
+    let mut around = vec![0; mesh.positions.len()];
+    cells.iter().flat_map(|cell| &cell.nodes).for_each(|at| around[*at as usize] += 1);
+    if around.iter().any(|count| *count > MOST_AROUND) {
+        return None;
+    }
     let lengths = cells.iter().flat_map(Cell::sides).map(|ends| {
         let [one, other] = mesh.positions_of(ends);
         one.distance(other)

@@ -71,6 +71,40 @@ fn lines_that_zigzag_are_no_net() {
     assert!(net(slit_tube(0.2)).is_none());
 }
 
+/// Of each quad at the rims one triangle is cut off.
+#[test]
+fn a_net_may_have_a_few_triangles() {
+    let whole = slit_tube(0.0);
+    let is_at_rim =
+        |quad: usize| quad < AROUND as usize || quad / AROUND as usize == ROWS as usize - 2;
+    let quads = whole.indices().chunks(6).enumerate();
+    let left = quads.map(|(quad, corners)| if is_at_rim(quad) { &corners[..3] } else { corners });
+    let indices = left.flatten().copied().collect();
+    let mesh = FabricBuilder::new(whole.positions().to_vec(), indices).weld_distance(1e-4);
+    let serrated = net(mesh.repair().expect("a mesh that can be repaired").0).expect("a net");
+    assert_eq!(serrated.chains().cells.len() as u32, AROUND * (ROWS - 3));
+}
+
+/// A mesh whose lines all end at one node, in the middle of a lid of two rings of cells.
+#[test]
+fn a_tube_with_a_lid_has_no_net() {
+    let tube = slit_tube(0.0);
+    let rim = |quad: u32| tube.positions()[4 * (quad % AROUND) as usize];
+    let inner = |quad: u32| 0.5 * rim(quad) + 0.01 * Vec3::Y;
+    let cells = (0..AROUND).flat_map(|at| {
+        let (outer, outer_next) = (rim(at), rim(at + 1));
+        let (inner, inner_next) = (inner(at), inner(at + 1));
+        let quad = [outer, outer_next, inner_next, outer, inner_next, inner];
+        quad.into_iter().chain([inner, inner_next, 0.01 * Vec3::Y])
+    });
+    let places: Vec<Vec3> = cells.collect();
+    let first = tube.positions().len() as u32;
+    let indices = tube.indices().iter().copied().chain(first..first + places.len() as u32);
+    let positions = tube.positions().iter().copied().chain(places.iter().copied()).collect();
+    let closed = FabricBuilder::new(positions, indices.collect()).weld_distance(1e-4);
+    assert!(net(closed).is_none());
+}
+
 #[test]
 fn a_strip_whose_triangles_face_both_ways_has_no_net() {
     const LENGTH: u32 = 60;
