@@ -27,7 +27,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Diagonals must not come last, since they move particles far compared with the strain of warp and weft.
     pub fn solve_chains(&mut self, passes: u32) {
         self.solve_warp_and_weft(Pass::First);
-        if self.clock.begun == 1 || self.fabric.is_cut() {
+        if self.clock.begun == 1 || self.fabric.is_net() {
             self.find_diagonal_targets();
         }
         if self.fabric.is_cut() {

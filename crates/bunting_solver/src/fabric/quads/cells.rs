@@ -15,7 +15,7 @@ const LEAST_PART: f32 = 0.9;
 /// Greatest ratio of the lengths of two sides of cells. Larger: short links need many substeps, as those at the poles of a ball do.
 const MOST_RATIO: f32 = 4.0;
 
-/// Greatest number of cells around a node. Larger: where all meridians of a ball end at its pole, they throw that to and fro.
+/// Greatest number of cells around a node. Larger: a ball of twelve rings whose meridians all end at its poles never rests.
 const MOST_AROUND: u32 = 8;
 
 /// The cells of a mesh most of whose triangles are halves of quads, the best quads first; the other triangles are cells, too.
