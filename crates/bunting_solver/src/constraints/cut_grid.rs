@@ -2,8 +2,8 @@
 //!
 //! A yarn that ends at the border gives its load to its neighbours by shear. Diagonals that are solved once carry that load over one
 //! row in a substep: a stiff disk that hangs from a chord sinks by 37 % too far, a pennant by 87 %. Therefore diagonals are solved in
-//! each pass. Their tension is kept from pass to pass, as that of warp and weft is, in their targets. These hold for the whole tick,
-//! and are put back after the passes; those of nets are computed again in each substep (`shear.rs`).
+//! each pass. Their tension is kept from pass to pass, as that of warp and weft is, in their targets. On grids these hold for the
+//! whole tick, and are put back after the passes. On nets they are computed in each substep (`shear.rs`).
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Layout;
@@ -14,11 +14,20 @@ use crate::simd::lane::Pack;
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Solves diagonals, and warp and weft, in each pass after the first solution of warp and weft.
     pub(super) fn solve_passes_of_cut_grid(&mut self, passes: u32) {
-        self.targets_of_tick.clone_from(&self.link_target);
+        let hold_for_tick = !self.fabric.is_net();
+        if hold_for_tick {
+            self.targets_of_tick.clone_from(&self.link_target);
+        }
         for _ in 0..passes {
             self.solve_colours(Pass::Again, |family| family == LinkFamily::Diagonal);
             self.solve_warp_and_weft(Pass::Again);
         }
+        if hold_for_tick {
+            self.put_back_targets_of_diagonals();
+        }
+    }
+
+    fn put_back_targets_of_diagonals(&mut self) {
         let chains = self.layout.chains(&self.fabric);
         let colours = chains.colours.iter().filter(|it| it.family == LinkFamily::Diagonal);
         for pair in colours.flat_map(|colour| &chains.pairs[colour.pairs.clone()]) {

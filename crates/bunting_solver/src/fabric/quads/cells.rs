@@ -48,9 +48,7 @@ pub(super) fn cells(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
         nodes: corners.to_vec(),
         triangles: vec![triangle],
     }));
-    let mut around = vec![0; mesh.positions.len()];
-    cells.iter().flat_map(|cell| &cell.nodes).for_each(|at| around[*at as usize] += 1);
-    if around.iter().any(|count| *count > MOST_AROUND) {
+    if most_around(&cells, mesh.positions.len()) > MOST_AROUND {
         return None;
     }
     let lengths = cells.iter().flat_map(Cell::sides).map(|ends| {
@@ -61,6 +59,13 @@ pub(super) fn cells(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
         (least.min(length), most.max(length))
     });
     (most < MOST_RATIO * least).then_some(cells)
+}
+
+/// The greatest number of cells around one of the nodes.
+fn most_around(cells: &[Cell], node_count: usize) -> u32 {
+    let mut around = vec![0; node_count];
+    cells.iter().flat_map(|cell| &cell.nodes).for_each(|at| around[*at as usize] += 1);
+    around.into_iter().max().unwrap_or_default()
 }
 
 /// The quad that an edge between two triangles halves, if both face the same way.

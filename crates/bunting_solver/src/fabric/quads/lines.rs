@@ -66,8 +66,8 @@ pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Vec<Line> {
     lines
 }
 
-/// Mean of half of the differences of turns at neighbouring nodes of a line, rad. A line that is curved evenly within the surface has
-/// none, one that zigzags its turns. Few places that turn far, as corners of seams do, count for little.
+/// Mean magnitude of half of the difference of the turns at neighbouring nodes of a line, rad. A line that is curved evenly within the surface has
+/// none, one that zigzags its turns. The few places where lines turn far, as at corners of seams, count for little.
 pub(super) fn zigzag(lines: &[Line], positions: &[Vec3], normals: &[Vec3]) -> f32 {
     let at = |node: u32| positions[node as usize];
     let turn = |[before, here, after]: [u32; 3]| {
