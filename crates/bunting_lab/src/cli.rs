@@ -6,7 +6,7 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    budget, contacts, effort, forces, gate, lod, memory, oracles, pareto, report, schedule,
+    budget, contacts, effort, forces, fuzz, gate, lod, memory, oracles, pareto, report, schedule,
     stability,
 };
 use crate::output::Outcome;
@@ -45,6 +45,8 @@ enum Command {
     Contacts,
     /// Wind with a place and forces, compared with what their documentation states.
     Forces,
+    /// Meshes, pins, materials, winds and jerks at random.
+    Fuzz(fuzz::Selection),
     /// Bytes of a chain of levels and of batches.
     Memory,
     /// The hard cases.
@@ -75,6 +77,7 @@ impl Arguments {
             Command::Effort => effort::run(self.quick),
             Command::Contacts => contacts::run(self.quick),
             Command::Forces => forces::run(self.quick),
+            Command::Fuzz(selection) => fuzz::run(&selection),
             Command::Memory => memory::run(),
             Command::Oracles => oracles::run(),
             Command::Stability => stability::run(self.quick),

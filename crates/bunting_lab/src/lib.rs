@@ -15,6 +15,7 @@ pub mod effort;
 pub mod fleet;
 pub mod flight;
 pub mod forces;
+pub mod fuzz;
 pub mod game;
 pub mod golden;
 pub mod heap;

@@ -7,6 +7,7 @@ pub mod differences;
 pub mod effort;
 pub mod families;
 pub mod forces;
+pub mod fuzz;
 pub mod gate;
 pub mod lod;
 pub mod memory;

@@ -1,12 +1,15 @@
 //! Triangle meshes that are no grids, for trials of what artists model.
 
-mod delaunay;
+pub(crate) mod delaunay;
 mod graded;
+mod rings;
 
 use std::{f32::consts::TAU, sync::Arc};
 
 use bunting_solver::{Fabric, FabricBuilder};
 use glam::{DVec2, Vec2, Vec3};
+
+pub(crate) use rings::around;
 
 /// How the triangles of a rectangle lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,15 +33,25 @@ pub struct Sheet {
 }
 
 /// Candidates of which the one farthest from all points becomes the next (Mitchell 1991).
-const CANDIDATES: usize = 8;
+pub(crate) const CANDIDATES: usize = 8;
 /// Greatest shift of a cell's corner along each axis, in cells.
 const SHIFT: f64 = 0.2;
 
 /// Numbers from 0 to 1, one after the other (xorshift, Marsaglia 2003).
-struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
-    fn next(&mut self) -> f64 {
+    /// The numbers of a seed.
+    pub fn of_seed(seed: u64) -> Self {
+        let mut random = Self((seed + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        // Seeds that differ in few bits give numbers alike at first.
+        for _ in 0..8 {
+            random.next();
+        }
+        random
+    }
+
+    pub fn next(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
@@ -46,8 +59,18 @@ impl Random {
     }
 
     /// A place in the unit square.
-    fn place(&mut self) -> DVec2 {
+    pub fn place(&mut self) -> DVec2 {
         DVec2::new(self.next(), self.next())
+    }
+
+    /// A number between two others.
+    pub fn within(&mut self, least: f64, greatest: f64) -> f64 {
+        least + (greatest - least) * self.next()
+    }
+
+    /// A whole number from 0 on, less than `end`.
+    pub fn below(&mut self, end: usize) -> usize {
+        ((self.next() * end as f64) as usize).min(end - 1)
     }
 }
 

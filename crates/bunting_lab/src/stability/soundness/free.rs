@@ -1,6 +1,5 @@
 //! Meshes at rest, free or held at a vertex, without loads and damping: any motion is energy gained by an error.
 
-use std::f32::consts::TAU;
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -10,6 +9,7 @@ use bunting_solver::{
 use glam::Vec3;
 
 use super::{AT_REST, advance, fastest};
+use crate::meshes::around;
 use crate::product::DEFAULT;
 use crate::stability::case::HardCase;
 
@@ -58,31 +58,6 @@ fn moebius(across: f32, azimuth: f32) -> Vec3 {
     let aside = WIDTH * (across - 0.5);
     let away = RADIUS + aside * (0.5 * azimuth).cos();
     Vec3::new(away * azimuth.cos(), aside * (0.5 * azimuth).sin(), away * azimuth.sin())
-}
-
-/// A mesh of `rings` rings of `columns` quads, given the place of a ring, from 0 to 1, and an azimuth, rad. Where it is
-/// twisted, the first ring goes on as the last.
-pub(super) fn around(
-    columns: u32,
-    rings: u32,
-    is_twisted: bool,
-    at: impl Fn(f32, f32) -> Vec3,
-) -> FabricBuilder {
-    let vertex =
-        |ring, column| at(ring as f32 / rings as f32, TAU * column as f32 / columns as f32);
-    let vertices = (0..=rings).flat_map(|ring| (0..columns).map(move |column| (ring, column)));
-    let positions = vertices.map(|(ring, column)| vertex(ring, column)).collect();
-    let index = |ring: u32, column: u32| match column {
-        last if last == columns && is_twisted => (rings - ring) * columns,
-        column => ring * columns + column % columns,
-    };
-    let quads = (0..rings).flat_map(|ring| (0..columns).map(move |column| (ring, column)));
-    let triangles = quads.flat_map(|(ring, column)| {
-        let corner = |down: u32, right: u32| index(ring + down, column + right);
-        let [a, b, c, d] = [corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)];
-        [a, b, c, c, b, d]
-    });
-    FabricBuilder::new(positions, triangles.collect())
 }
 
 /// Case of a mesh at rest in eight lanes of polyester without damping: its RMS speed, with stretch

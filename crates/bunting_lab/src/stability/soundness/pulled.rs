@@ -1,16 +1,16 @@
 //! Curved meshes that wind has blown about and a jerk has pulled: in still air they must come to rest.
 
+use std::f32::consts::{PI, TAU};
 use std::sync::Arc;
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion, Grid,
-    LaneCount, StepLimits,
+    LaneCount, StepLimits, StepSettings,
 };
 use glam::{DVec2, Vec3};
 
-use super::free::around;
 use super::{AT_REST, GRAVITY, advance, fastest};
-use crate::meshes::{Sheet, Triangulation};
+use crate::meshes::{Sheet, Triangulation, around};
 use crate::product::TICK;
 use crate::stability::case::HardCase;
 
@@ -36,8 +36,12 @@ const MATERIALS: [(f32, f32); 8] = [
     (2e4, 0.3),
 ];
 
+/// Substeps beyond what the weight needs, as a storm takes.
+const MANY_SUBSTEPS: u32 = 8;
+
 /// Cases of a saddle, a wave, a sheet with a hole and trousers that hang from an edge, of a tube, a ring and a sheet of
-/// long cells that hang from two vertices, and of a dome, a sheet and a disk that hang from one.
+/// long cells that hang from two vertices, and of a dome, a sheet and a disk that hang from one; of trousers, a torus, a ball and a
+/// bowl with many substeps, too.
 pub(super) fn cases() -> Vec<HardCase> {
     let meshes = [
         ("saddle", bent(33, 11, |u, v| Vec3::new(u, v, 0.6 * (u * u - v * v)))),
@@ -81,14 +85,70 @@ pub(super) fn cases() -> Vec<HardCase> {
             ),
         ),
         ("sheet with a hole", holed(26, 21)),
-        (
-            "pair of trousers",
-            Arc::new(trousers().pin_where(|at, _| at.y == 0.0).build().expect("a good mesh")),
-        ),
+        ("pair of trousers", garment()),
         ("sheet", hung(FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)), &[0])),
         ("sheet of long cells", hung(FabricBuilder::grid(Grid::new(31, 16, 0.44, 0.5)), &[0, 30])),
     ];
-    meshes.map(|(name, fabric)| at_rest(name, fabric)).into()
+    let round = [("torus", torus()), ("ball with poles", ball_with_poles()), ("bowl", bowl())];
+    let with_many = [("pair of trousers", garment())].into_iter().chain(round.clone());
+    let with_many = with_many.map(|(name, fabric)| at_rest(name, fabric, Some(MANY_SUBSTEPS)));
+    let by_need = meshes.into_iter().chain(round).map(|(name, fabric)| at_rest(name, fabric, None));
+    by_need.chain(with_many).collect()
+}
+
+/// Trousers that hang from their waist.
+fn garment() -> Arc<Fabric> {
+    Arc::new(trousers().pin_where(|at, _| at.y == 0.0).build().expect("a good mesh"))
+}
+
+/// A torus that hangs from its upper ring.
+fn torus() -> Arc<Fabric> {
+    let mesh = around(25, 10, false, |ring, azimuth| {
+        let (sin, cos) = (TAU * ring).sin_cos();
+        let away = 0.3 + 0.06 * cos;
+        Vec3::new(away * azimuth.cos(), 0.06 * sin, away * azimuth.sin())
+    });
+    let mesh = mesh.weld_distance(1e-5).pin_where(|at, _| at.y > 0.055);
+    Arc::new(mesh.build().expect("a good mesh"))
+}
+
+/// A ball of twelve rings of quads between two fans of triangles, which hangs from its upper pole.
+fn ball_with_poles() -> Arc<Fabric> {
+    let (columns, rings) = (24, 12);
+    let at = |ring: u32, column: u32| {
+        let (polar, azimuth) =
+            (PI * ring as f32 / rings as f32, TAU * column as f32 / columns as f32);
+        0.3 * Vec3::new(polar.sin() * azimuth.cos(), polar.cos(), polar.sin() * azimuth.sin())
+    };
+    let inner = (1..rings).flat_map(|ring| (0..columns).map(move |column| (ring, column)));
+    let mut positions: Vec<Vec3> = inner.map(|(ring, column)| at(ring, column)).collect();
+    let last = positions.len() as u32;
+    positions.extend([Vec3::Y * 0.3, Vec3::NEG_Y * 0.3]);
+    let index = |ring: u32, column: u32| match ring {
+        0 => last,
+        ring if ring == rings => last + 1,
+        ring => (ring - 1) * columns + column % columns,
+    };
+    let quads = (0..rings).flat_map(|ring| (0..columns).map(move |column| (ring, column)));
+    let triangles = quads.flat_map(|(ring, column)| {
+        let [a, b] = [0, 1].map(|right| index(ring, column + right));
+        let [c, d] = [0, 1].map(|right| index(ring + 1, column + right));
+        [[a, b, c], [c, b, d]]
+    });
+    let has_area = |corners: &[u32; 3]| {
+        let [a, b, c] = *corners;
+        a != b && b != c && c != a
+    };
+    hung(FabricBuilder::new(positions, triangles.filter(has_area).flatten().collect()), &[last])
+}
+
+/// A bowl upside down that hangs from a vertex of its small hole.
+fn bowl() -> Arc<Fabric> {
+    let mesh = around(24, 8, false, |ring, azimuth| {
+        let polar = 0.2 + 1.4 * ring;
+        0.3 * Vec3::new(polar.sin() * azimuth.cos(), polar.cos(), polar.sin() * azimuth.sin())
+    });
+    hung(mesh, &[0])
 }
 
 /// A sheet of about `columns` × `rows` vertices that hangs from its top edge, given the place of each point of the unit
@@ -141,9 +201,10 @@ fn hung(mesh: FabricBuilder, from: &[u32]) -> Arc<Fabric> {
     Arc::new(mesh.pin(from.iter().copied()).build().expect("a good mesh"))
 }
 
-/// Case of the greatest RMS speed of a mesh in eight lanes of polyester.
-fn at_rest(name: &str, fabric: Arc<Fabric>) -> HardCase {
-    let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
+/// Case of the greatest RMS speed of a mesh in eight lanes of polyester, with the substeps that its weight needs, or others.
+fn at_rest(name: &str, fabric: Arc<Fabric>, substeps: Option<u32>) -> HardCase {
+    let by_need = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
+    let settings = StepSettings { substeps: substeps.unwrap_or(by_need.substeps), ..by_need };
     let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::Eight);
     let still = Drive::default();
     let materials = MATERIALS.map(|(stiffness, area_density)| FabricMaterial {
@@ -167,6 +228,7 @@ fn at_rest(name: &str, fabric: Arc<Fabric>) -> HardCase {
     batch.step(TICK, settings);
     (0..MATERIALS.len()).for_each(|lane| batch.drive(lane, still).expect("a good drive"));
     advance(&mut batch, SETTLING, settings);
-    let name = format!("{name} that was pulled: at rest");
+    let with = substeps.map_or(String::new(), |count| format!(", {count} substeps"));
+    let name = format!("{name} that was pulled{with}: at rest");
     HardCase::new(name, 0, "RMS speed, m/s", fastest(&batch), AT_REST)
 }

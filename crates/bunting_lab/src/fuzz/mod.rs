@@ -1,0 +1,8 @@
+//! Cloths at random: meshes, pins, materials, winds and jerks that no other case knows. What fails here becomes a row.
+
+mod garments;
+mod meshes;
+mod trial;
+
+pub use meshes::Family;
+pub use trial::{Trial, of_seed};

@@ -1,0 +1,184 @@
+//! A cloth at random in a wind, jerked, and left to rest.
+
+use std::{sync::Arc, time::Instant};
+
+use bunting_solver::{
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, FrameMotion, LaneCount, StepLimits,
+};
+use glam::Vec3;
+use serde::Serialize;
+
+use super::meshes::{Family, mesh};
+use crate::{
+    meshes::Random,
+    need::Need,
+    product::TICK,
+    scenes::GRAVITY,
+    stats::{Strain, worse},
+};
+
+/// Time for which the wind blows, s.
+const BLOWN: f32 = 3.0;
+/// Time after the jerk until the cloth should rest, s.
+const SETTLING: f32 = 20.0;
+/// Damping in that time, 1/s.
+const DAMPING: f32 = 4.0;
+/// Ticks that are timed, and how many at once.
+const TIMED: [usize; 2] = [6, 10];
+
+/// What became of a cloth.
+#[derive(Clone, Debug, Serialize)]
+pub struct Trial {
+    /// Number from which all of it follows.
+    pub seed: u64,
+    /// What the mesh is like.
+    pub family: Family,
+    /// Why the mesh is no cloth; all figures are then NaN.
+    pub refused: Option<String>,
+    /// What solves it.
+    pub solver: String,
+    /// Number of particles.
+    pub particles: usize,
+    /// Substeps and passes under its weight alone.
+    pub effort: [u32; 2],
+    /// Time of building, s.
+    pub build: f64,
+    /// Least time of a tick alone under its weight, in wind, over the particles, s.
+    pub tick: f64,
+    /// Strain of the mesh's edges in the wind.
+    pub blown: Strain,
+    /// Greatest stretch of an edge in the wind and at the end.
+    pub stretch: [f64; 2],
+    /// RMS speed at the end, m/s.
+    pub speed: f64,
+}
+
+/// The trial of a seed.
+pub fn of_seed(seed: u64) -> Trial {
+    let mut random = Random::of_seed(seed);
+    let family = Family::ALL[random.below(Family::ALL.len())];
+    let builder = mesh(family, &mut random);
+    let mut trial = Trial {
+        seed,
+        family,
+        refused: None,
+        solver: String::new(),
+        particles: 0,
+        effort: [0; 2],
+        build: f64::NAN,
+        tick: f64::NAN,
+        blown: Strain::default(),
+        stretch: [f64::NAN; 2],
+        speed: f64::NAN,
+    };
+    let start = Instant::now();
+    match builder.build() {
+        Ok(fabric) => {
+            trial.build = start.elapsed().as_secs_f64();
+            trial.run(Arc::new(fabric), &mut random);
+        }
+        Err(error) => trial.refused = Some(error.to_string()),
+    }
+    trial
+}
+
+impl Trial {
+    fn run(&mut self, fabric: Arc<Fabric>, random: &mut Random) {
+        self.solver = format!("{:?}", fabric.stretch_solver());
+        self.particles = fabric.particle_count();
+        let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY as f32);
+        self.effort = [settings.substeps, settings.passes];
+        let stretch = 10_f64.powf(random.within(2.5, 5.0)) as f32;
+        let material = FabricMaterial {
+            warp_stiffness: stretch,
+            weft_stiffness: stretch,
+            shear_stiffness: stretch * random.within(0.005, 0.4) as f32,
+            area_density: 10_f64.powf(random.within(-1.3, -0.3)) as f32,
+            ..FabricMaterial::FLAG_POLYESTER
+        };
+        let mut vector =
+            |size: f32| Vec3::from([0; 3].map(|_| random.within(-1.0, 1.0) as f32)) * size;
+        let (wind, jerk) = (vector(20.0), vector(0.5));
+        let mut cloth = Cloth::new(fabric, material);
+        let still = Drive::default();
+        cloth.advance(BLOWN, Drive { wind, ..still });
+        self.tick = cloth.time_of_tick(Drive { wind, ..still }) / self.particles as f64;
+        self.blown = Strain::of(cloth.strains());
+        let blown = cloth.greatest_stretch();
+        cloth.material(FabricMaterial { damping: DAMPING, ..material });
+        let motion = FrameMotion { translation: jerk, ..FrameMotion::NONE };
+        cloth.advance(TICK, Drive { motion, ..still });
+        cloth.advance(SETTLING, still);
+        self.stretch = [blown, cloth.greatest_stretch()];
+        self.speed = cloth.speed();
+    }
+}
+
+/// A cloth that is alone, with substeps by need.
+struct Cloth {
+    batch: ClothBatch,
+    material: FabricMaterial,
+    need: Need,
+    positions: Vec<Vec3>,
+}
+
+impl Cloth {
+    fn new(fabric: Arc<Fabric>, material: FabricMaterial) -> Self {
+        let rest = ClothSnapshot::at_rest(&fabric);
+        let mut batch = ClothBatch::new(fabric, LaneCount::One);
+        batch.insert(&rest, material).expect("a good cloth");
+        let positions = rest.positions;
+        Self { batch, material, need: Need::within(StepLimits::default()), positions }
+    }
+
+    fn material(&mut self, material: FabricMaterial) {
+        self.batch.set_material(0, material).expect("a good material");
+        self.material = material;
+    }
+
+    fn advance(&mut self, seconds: f32, drive: Drive) {
+        self.batch.drive(0, drive).expect("a good drive");
+        for _ in 0..(seconds / TICK).round() as usize {
+            let settings = self.need.settings(self.batch.fabric(), &drive, TICK);
+            self.batch.step(TICK, settings);
+            let before = self.positions.clone();
+            self.batch.copy_positions(0, &mut self.positions);
+            self.need.note(&self.batch, &self.material, &drive, [&before, &self.positions], TICK);
+        }
+    }
+
+    /// The least time of a tick under its weight alone, s.
+    fn time_of_tick(&mut self, drive: Drive) -> f64 {
+        self.batch.drive(0, drive).expect("a good drive");
+        let settings = StepLimits::default().of_fabric(self.batch.fabric(), TICK, GRAVITY as f32);
+        let [blocks, ticks] = TIMED;
+        let times = (0..blocks).map(|_| {
+            let start = Instant::now();
+            (0..ticks).for_each(|_| self.batch.step(TICK, settings));
+            start.elapsed().as_secs_f64() / ticks as f64
+        });
+        let least = times.fold(f64::INFINITY, f64::min);
+        self.batch.copy_positions(0, &mut self.positions);
+        least
+    }
+
+    fn strains(&self) -> impl Iterator<Item = f64> {
+        self.batch.fabric().links().iter().map(|link| {
+            let [from, to] = link.particles.map(|at| self.positions[at as usize]);
+            f64::from(from.distance(to) / link.rest_length) - 1.0
+        })
+    }
+
+    fn greatest_stretch(&self) -> f64 {
+        self.strains().fold(0.0, worse)
+    }
+
+    /// RMS speed, m/s; infinite if it is not a number.
+    fn speed(&self) -> f64 {
+        let mut velocities = Vec::new();
+        self.batch.copy_velocities(0, &mut velocities);
+        let squares = velocities.iter().map(|v: &Vec3| f64::from(v.length_squared()));
+        let mean = squares.sum::<f64>() / velocities.len() as f64;
+        if mean.is_finite() { mean.sqrt() } else { f64::INFINITY }
+    }
+}
