@@ -69,8 +69,6 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     /// Length that each link has under the tension found so far in the substep, l − α̃ λ, m, in the order in
     /// which the scheme solves links.
     pub link_target: Vec<P>,
-    /// Scratch array of these targets before the passes over a grid that a border cuts, m.
-    pub targets_of_tick: Vec<P>,
     /// Corrections that are not yet added to the positions, m, and what the positions' rounding has left out; empty
     /// unless the fabric [sums corrections](Fabric::sums_corrections).
     pub correction: Vec<Pack3<P>>,
@@ -197,7 +195,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             velocity: zero,
             relaxation: vec![P::splat(1.0); layout.pack_count()],
             link_target: vec![P::splat(0.0); chains.target_count()],
-            targets_of_tick: Vec::new(),
             rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
             by_closing: vec![P::splat(0.0); CHAINS_PER_PAIR * chains.longest_closed()],
             yarn_links,

@@ -27,12 +27,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Diagonals must not come last, since they move particles far compared with the strain of warp and weft.
     pub fn solve_chains(&mut self, passes: u32) {
         self.solve_warp_and_weft(Pass::First);
-        if self.clock.begun == 1 || self.fabric.is_net() {
+        if self.fabric.is_cut() || self.fabric.rest_bends().is_some() {
             self.find_diagonal_targets();
-        }
-        if self.fabric.is_cut() {
-            self.solve_passes_of_cut_grid(passes);
+            self.solve_passes_both_ways(passes);
             return;
+        }
+        if self.clock.begun == 1 {
+            self.find_diagonal_targets();
         }
         self.solve_diagonals();
         for _ in 0..passes {
@@ -42,21 +43,28 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Solves warp and weft once, and returns whether [`Pass::Overlong`] solved any chain.
     pub(super) fn solve_warp_and_weft(&mut self, pass: Pass) -> bool {
-        self.solve_colours(pass, |family| family != LinkFamily::Diagonal)
+        let colours = 0..self.colour_count();
+        self.solve_colours(colours, pass, |family| family != LinkFamily::Diagonal)
     }
 
     fn solve_diagonals(&mut self) {
-        self.solve_colours(Pass::Diagonals, |family| family == LinkFamily::Diagonal);
+        let colours = 0..self.colour_count();
+        self.solve_colours(colours, Pass::Diagonals, |family| family == LinkFamily::Diagonal);
     }
 
-    /// Solves the colours of some families, and returns whether [`Pass::Overlong`] solved any chain.
+    pub(super) fn colour_count(&self) -> usize {
+        self.layout.chains(&self.fabric).colours.len()
+    }
+
+    /// Solves those of some colours that are of some families, and returns whether [`Pass::Overlong`] solved any chain.
     pub(super) fn solve_colours(
         &mut self,
+        colours: impl Iterator<Item = usize>,
         pass: Pass,
         is_solved: impl Fn(LinkFamily) -> bool,
     ) -> bool {
         let mut is_any_overlong = false;
-        for colour in 0..self.layout.chains(&self.fabric).colours.len() {
+        for colour in colours {
             if is_solved(self.layout.chains(&self.fabric).colours[colour].family) {
                 self.solve_colour(colour, pass, &mut is_any_overlong);
             }

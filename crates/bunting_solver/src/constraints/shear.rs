@@ -7,8 +7,8 @@
 //! cell are at rest when they are equally long, as in a rectangle of any sides: the target's square is half
 //! the sum of their squares.
 //!
-//! The target is computed once a tick, since a cloth's own strain changes slowly. On nets it is computed in each substep: with
-//! targets of the tick trousers that a jerk has pulled do not come to rest at two substeps. It is bounded by the strain
+//! The target is computed once a tick, since a cloth's own strain changes slowly, but in each substep where passes keep the tension of
+//! diagonals (`both_ways.rs`). It is bounded by the strain
 //! that the loads may cause: a flag that snaps like a whip is stretched beyond this bound, and the diagonals
 //! then help to hold it.
 //!

@@ -67,6 +67,11 @@ impl Fabric {
                 .map(|grid| Background::of(grid, tethered))
                 .or_else(|| Some(Background::of_net(Net::of(&mesh, surface)?, surface, tethered))),
         };
+        if let Some(Background { fabric: net, .. }) =
+            background.as_ref().filter(|it| it.fabric.is_net())
+        {
+            mesh.set_areas(net.mesh.areas.clone());
+        }
         let mut patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
         let cells = grid.filter(|grid| patches::are_cells(&patches, grid));
         if let Some(grid) = &cells {

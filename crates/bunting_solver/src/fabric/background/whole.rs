@@ -7,12 +7,12 @@ use super::coverage::Coverage;
 use crate::fabric::grid::Grid;
 use crate::fabric::laid_yarns::Faces;
 
-/// Least part of the grid's cells with cloth. Smaller: most nodes cost time for nothing.
-const LEAST_FILLED: f32 = 0.45;
+/// Least part of the grid's cells with cloth. Smaller: nodes without cloth take more time than laid yarns.
+const LEAST_FILLED: f32 = 0.25;
 
 /// How much farther than the cells around a node the ways between the triangles in these may run, in cells. Smaller: ragged borders
-/// count as slits. Larger: short slits are closed.
-const FARTHER: i64 = 1;
+/// count as slits, as of a third of 80 flat meshes at random. Larger: short slits are closed.
+const FARTHER: i64 = 2;
 
 /// Whether what of a mesh lies in the cells around each node hangs together in them and in the next ones.
 pub(super) fn is_whole(chart: &Chart, coverage: &Coverage, grid: &Grid, faces: &Faces) -> bool {

@@ -12,15 +12,15 @@ const MOST_DEPARTURE: f32 = 0.7;
 /// Least part of the triangles that must be halves of quads. Smaller: where cells are triangles, lines end.
 const LEAST_PART: f32 = 0.9;
 
-/// Greatest ratio of the lengths of two sides of cells. Larger: short links need many substeps, as those at the poles of a ball do.
-const MOST_RATIO: f32 = 4.0;
+/// Greatest ratio of the lengths of two sides of cells. Larger: short links need so many substeps that laid yarns take less time.
+const MOST_RATIO: f32 = 8.0;
 
-/// Greatest number of cells around a node. Larger: a ball of twelve rings whose meridians all end at its poles never rests.
-const MOST_AROUND: u32 = 8;
+/// The same of a mesh without pins. Larger: with eight substeps free balls wander by rounding, which laid yarns make up for
+/// (`Fabric::sums_corrections`).
+const MOST_RATIO_OF_FREE: f32 = 4.0;
 
 /// The cells of a mesh most of whose triangles are halves of quads, the best quads first; the other triangles are cells, too.
-/// None if other triangles are more than a few, if two triangles face opposite ways, as on a Möbius strip, if many cells meet at a node,
-/// or if sides are too unlike.
+/// None if other triangles are more than a few, if two triangles face opposite ways, as on a Möbius strip, or if sides are too unlike.
 pub(super) fn cells(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
     if edges.iter().any(|edge| edge.other_side.is_some() && quad(mesh, edge).is_none()) {
         return None;
@@ -48,9 +48,6 @@ pub(super) fn cells(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
         nodes: corners.to_vec(),
         triangles: vec![triangle],
     }));
-    if most_around(&cells, mesh.positions.len()) > MOST_AROUND {
-        return None;
-    }
     let lengths = cells.iter().flat_map(Cell::sides).map(|ends| {
         let [one, other] = mesh.positions_of(ends);
         one.distance(other)
@@ -58,14 +55,9 @@ pub(super) fn cells(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
     let (least, most) = lengths.fold((f32::INFINITY, 0.0_f32), |(least, most), length| {
         (least.min(length), most.max(length))
     });
-    (most < MOST_RATIO * least).then_some(cells)
-}
-
-/// The greatest number of cells around one of the nodes.
-fn most_around(cells: &[Cell], node_count: usize) -> u32 {
-    let mut around = vec![0; node_count];
-    cells.iter().flat_map(|cell| &cell.nodes).for_each(|at| around[*at as usize] += 1);
-    around.into_iter().max().unwrap_or_default()
+    let has_pins = mesh.inverse_areas.contains(&0.0);
+    let most_ratio = if has_pins { MOST_RATIO } else { MOST_RATIO_OF_FREE };
+    (most < most_ratio * least).then_some(cells)
 }
 
 /// The quad that an edge between two triangles halves, if both face the same way.
