@@ -192,6 +192,9 @@ fn ride(kind: Kind, lanes: LaneCount, acting: Acting, path: Path, frame_moves: b
 fn cloth_moves_as_in_a_frame_at_rest() {
     /// m. Meshes that follow a grid do so in a frame that moves, and not with pins that move.
     const APART: f32 = 1.3e-3;
+    /// The same of a sheet with a hole that begins sharply folded and sheared at the fold, m. It is no bound on frames alone: in these four
+    /// ticks vertices that start 10⁻⁵ m elsewhere end 1 mm elsewhere, as they do in no other of these scenes.
+    const APART_FOLDED: f32 = 3e-3;
     let paths =
         [(Vec3::new(20.0, 3.0, 5.0), 0.0), (Vec3::ZERO, 2.0), (Vec3::new(2.0, 0.0, 1.0), -1.0)];
     for (velocity, rate) in paths {
@@ -206,7 +209,9 @@ fn cloth_moves_as_in_a_frame_at_rest() {
                 let apart = |(one, other): (&Vec3, &Vec3)| one.distance(*other);
                 let farthest = moves.iter().zip(&rests).map(apart).fold(0.0, f32::max);
                 let what = format!("{velocity} m/s, {rate} rad/s, {kind:?}, {acting:?}, {lanes:?}");
-                assert!(farthest < APART, "{farthest} m: {what}");
+                let is_folded = matches!((kind, acting), (Kind::Holed, Acting::Layers));
+                let bound = if is_folded { APART_FOLDED } else { APART };
+                assert!(farthest < bound, "{farthest} m: {what}");
             }
         }
     }

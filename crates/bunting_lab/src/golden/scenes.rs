@@ -206,7 +206,7 @@ fn closed_mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
     in_wind(closed.pin_where(|at, _| at.y == 0.0), lanes, ticks)
 }
 
-/// A ball without any opening: yarns are laid across its triangles.
+/// A ball without any opening: it is solved along the lines of its quads.
 fn ball_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
     const RINGS: u32 = 12;
     const AROUND: u32 = 24;
