@@ -88,7 +88,8 @@ fn group(family: String, solver: &str, trials: &[&Trial]) -> Vec<String> {
         |is: &dyn Fn(&Trial) -> bool| trials.iter().filter(|trial| is(trial)).count().to_string();
     let counts = |limits: &[f64], of: &dyn Fn(&Trial) -> f64| {
         // What is not a number exceeds all.
-        let over = |limit: &f64| count(&|trial: &Trial| !(of(trial) <= *limit));
+        let exceeds = |figure: f64, limit: f64| figure.is_nan() || figure > limit;
+        let over = |limit: &f64| count(&|trial: &Trial| exceeds(of(trial), *limit));
         limits.iter().map(over).collect::<Vec<_>>().join("; ")
     };
     let median = |of: &dyn Fn(&Trial) -> f64| {

@@ -189,7 +189,7 @@ impl Outline {
     }
 
     /// Distance of a place from the sides that are sewn, in cells.
-    fn from_seams(&self, place: Vec2) -> f32 {
+    fn distance_to_seams(&self, place: Vec2) -> f32 {
         let mut least = f32::INFINITY;
         let [upper, lower, outer] = self.open;
         for [column, row] in self.cells() {
@@ -220,7 +220,7 @@ impl Outline {
             .places
             .iter()
             .map(|place| {
-                let part = (self.from_seams(*place) / 3.0).min(1.0);
+                let part = (self.distance_to_seams(*place) / 3.0).min(1.0);
                 bulge * (1.0 - (1.0 - part).powi(2))
             })
             .collect();
