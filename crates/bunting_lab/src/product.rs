@@ -144,6 +144,16 @@ pub fn material(scene: &Scene) -> FabricMaterial {
     }
 }
 
+/// RMS speed of a lane, m/s; infinite if it is not a number.
+#[must_use]
+pub fn rms_speed(batch: &ClothBatch, lane: usize) -> f64 {
+    let mut velocities = Vec::new();
+    batch.copy_velocities(lane, &mut velocities);
+    let sum: f64 = velocities.iter().map(|v: &Vec3| f64::from(v.length_squared())).sum();
+    let speed = (sum / velocities.len() as f64).sqrt();
+    if speed.is_finite() { speed } else { f64::INFINITY }
+}
+
 /// Cloths of one scene in all lanes of a batch; the first is the one that is measured.
 #[derive(Clone, Debug)]
 pub struct Cloth {

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::progress;
 use crate::{
-    fuzz::{self, Trial},
+    fuzz::{self, Figures, Trial},
     output::{
         Outcome,
         table::{Table, figure},
@@ -55,13 +55,18 @@ fn trials(seeds: Range<u64>) -> Vec<Trial> {
     trials
 }
 
+/// The trials of meshes that are cloths, with their figures.
+fn measured(trials: &[Trial]) -> impl Iterator<Item = (&Trial, &Figures)> {
+    trials.iter().filter_map(|trial| Some((trial, trial.outcome.as_ref().ok()?)))
+}
+
 /// Counts and medians of each family of meshes and what solves it.
 fn summary(trials: &[Trial]) -> Table {
-    let mut groups: BTreeMap<(String, &str), Vec<&Trial>> = BTreeMap::new();
-    for trial in trials.iter().filter(|trial| trial.refused.is_none()) {
+    let mut groups: BTreeMap<(String, &str), Vec<&Figures>> = BTreeMap::new();
+    for (trial, figures) in measured(trials) {
         let family = format!("{:?}", trial.family);
-        groups.entry((family, &trial.solver)).or_default().push(trial);
-        groups.entry(("all".into(), "")).or_default().push(trial);
+        groups.entry((family, &figures.solver)).or_default().push(figures);
+        groups.entry(("all".into(), "")).or_default().push(figures);
     }
     Table {
         name: "fuzz".into(),
@@ -83,24 +88,22 @@ fn summary(trials: &[Trial]) -> Table {
     }
 }
 
-fn group(family: String, solver: &str, trials: &[&Trial]) -> Vec<String> {
-    let count =
-        |is: &dyn Fn(&Trial) -> bool| trials.iter().filter(|trial| is(trial)).count().to_string();
-    let counts = |limits: &[f64], of: &dyn Fn(&Trial) -> f64| {
+fn group(family: String, solver: &str, cloths: &[&Figures]) -> Vec<String> {
+    let counts = |limits: &[f64], of: &dyn Fn(&Figures) -> f64| {
         // What is not a number exceeds all.
         let exceeds = |figure: f64, limit: f64| figure.is_nan() || figure > limit;
-        let over = |limit: &f64| count(&|trial: &Trial| exceeds(of(trial), *limit));
-        limits.iter().map(over).collect::<Vec<_>>().join("; ")
+        let over = |limit: &f64| cloths.iter().filter(|it| exceeds(of(it), *limit)).count();
+        limits.iter().map(|limit| over(limit).to_string()).collect::<Vec<_>>().join("; ")
     };
-    let median = |of: &dyn Fn(&Trial) -> f64| {
-        let mut figures: Vec<f64> = trials.iter().map(|trial| of(trial)).collect();
+    let median = |of: &dyn Fn(&Figures) -> f64| {
+        let mut figures: Vec<f64> = cloths.iter().map(|it| of(it)).collect();
         figures.sort_by(f64::total_cmp);
         figure(stats::percentile(&figures, 0.5))
     };
     vec![
         family,
         solver.into(),
-        trials.len().to_string(),
+        cloths.len().to_string(),
         counts(&SPEEDS, &|it| it.speed * 1e3),
         counts(&STRAINS, &|it| it.stretch[1]),
         counts(&[BLOWN], &|it| it.stretch[0]),
@@ -114,12 +117,12 @@ fn group(family: String, solver: &str, trials: &[&Trial]) -> Vec<String> {
 
 /// The cloths that move fastest, and those with the most strained edges.
 fn worst(trials: &[Trial]) -> Table {
-    let figures: [fn(&Trial) -> f64; 3] = [|it| it.speed, |it| it.stretch[1], |it| it.stretch[0]];
+    let figures: [fn(&Figures) -> f64; 3] = [|it| it.speed, |it| it.stretch[1], |it| it.stretch[0]];
     let mut rows = Vec::new();
     for of in figures {
-        let mut sorted: Vec<&Trial> = trials.iter().filter(|it| it.refused.is_none()).collect();
-        sorted.sort_by(|a, b| of(b).total_cmp(&of(a)));
-        rows.extend(sorted.into_iter().take(LISTED).map(row));
+        let mut sorted: Vec<(&Trial, &Figures)> = measured(trials).collect();
+        sorted.sort_by(|(_, a), (_, b)| of(b).total_cmp(&of(a)));
+        rows.extend(sorted.into_iter().take(LISTED).map(|(trial, figures)| row(trial, figures)));
     }
     Table {
         name: "fuzz_worst".into(),
@@ -141,24 +144,24 @@ fn worst(trials: &[Trial]) -> Table {
     }
 }
 
-fn row(trial: &Trial) -> Vec<String> {
-    let [substeps, passes] = trial.effort;
+fn row(trial: &Trial, figures: &Figures) -> Vec<String> {
+    let [substeps, passes] = figures.effort;
     vec![
         trial.seed.to_string(),
         format!("{:?}", trial.family),
-        trial.solver.clone(),
-        trial.particles.to_string(),
+        figures.solver.clone(),
+        figures.particles.to_string(),
         format!("{substeps} × {passes}"),
-        figure(trial.speed * 1e3),
-        figure(trial.stretch[1] * 100.0),
-        figure(trial.stretch[0] * 100.0),
-        figure(trial.tick * 1e9),
+        figure(figures.speed * 1e3),
+        figure(figures.stretch[1] * 100.0),
+        figure(figures.stretch[0] * 100.0),
+        figure(figures.tick * 1e9),
     ]
 }
 
 /// Meshes that are no cloth, by the reason.
 fn refused(trials: &[Trial]) -> Table {
-    let refused = trials.iter().filter_map(|trial| Some((trial, trial.refused.as_ref()?)));
+    let refused = trials.iter().filter_map(|trial| Some((trial, trial.outcome.as_ref().err()?)));
     Table {
         name: "fuzz_refused".into(),
         title: "Meshes that are no cloth".into(),

@@ -3,7 +3,8 @@
 use bunting_solver::FabricBuilder;
 use glam::{DVec2, IVec2, Vec2, Vec3};
 
-use crate::meshes::{CANDIDATES, Random, delaunay};
+use super::pieces::largest_piece;
+use crate::meshes::{CANDIDATES, Random, delaunay, farthest};
 
 /// The cells of a lattice that are cloth, and which sides are open.
 struct Outline {
@@ -69,31 +70,18 @@ impl Outline {
         Self { columns, rows, is_cloth, open }.largest_piece()
     }
 
-    /// The cells of the largest piece: others would fall, or hang by a vertex.
-    fn largest_piece(mut self) -> Self {
-        let mut largest = Vec::new();
-        while let Some(first) = self.is_cloth.iter().position(|is_cloth| *is_cloth) {
-            let mut piece = vec![first];
-            self.is_cloth[first] = false;
-            let mut done = 0;
-            while let Some(&cell) = piece.get(done) {
-                let [column, row] = [cell as i32 % self.columns, cell as i32 / self.columns];
-                for [right, down] in [[1, 0], [-1, 0], [0, 1], [0, -1]] {
-                    let [column, row] = [column + right, row + down];
-                    if self.is_cloth([column, row]) {
-                        let next = (row * self.columns + column) as usize;
-                        self.is_cloth[next] = false;
-                        piece.push(next);
-                    }
-                }
-                done += 1;
-            }
-            if piece.len() > largest.len() {
-                largest = piece;
-            }
-        }
-        largest.into_iter().for_each(|cell| self.is_cloth[cell] = true);
-        self
+    /// The cells of the largest piece.
+    fn largest_piece(self) -> Self {
+        let beside = |cell: usize| {
+            let [column, row] = [cell as i32 % self.columns, cell as i32 / self.columns];
+            let around = [[1, 0], [-1, 0], [0, 1], [0, -1]];
+            let around = around.map(|[right, down]| [column + right, row + down]);
+            let joined =
+                around.into_iter().filter(|next| self.is_cloth[cell] && self.is_cloth(*next));
+            joined.map(|[column, row]| (row * self.columns + column) as usize).collect()
+        };
+        let is_cloth = largest_piece(self.is_cloth.len(), beside);
+        Self { is_cloth, ..self }
     }
 
     fn halved(&self) -> Self {
@@ -160,19 +148,13 @@ impl Outline {
         let mut places: Vec<DVec2> = border.iter().map(in_plane).collect();
         let size = DVec2::new(f64::from(self.columns), f64::from(self.rows));
         for _ in inner {
-            let mut candidate = || random.place() * size;
             let is_inside = |at: &DVec2| {
                 let corners = [[-0.5, -0.5], [0.5, -0.5], [-0.5, 0.5], [0.5, 0.5]].map(DVec2::from);
                 let cell = |by: DVec2| (*at + by).floor().as_ivec2().to_array();
                 corners.into_iter().all(|by| self.is_cloth(cell(by)))
             };
-            let candidates: Vec<DVec2> =
-                (0..2 * CANDIDATES).map(|_| candidate()).filter(is_inside).collect();
-            let nearest = |at: &DVec2| {
-                places.iter().map(|of| of.distance_squared(*at)).fold(f64::INFINITY, f64::min)
-            };
-            let farthest = candidates.iter().max_by(|a, b| nearest(a).total_cmp(&nearest(b)));
-            places.extend(farthest.copied());
+            let candidates = (0..2 * CANDIDATES).map(|_| random.place() * size).filter(is_inside);
+            places.extend(farthest(candidates, &places));
         }
         // Shifted a little, so that no four of them lie on one circle.
         let shifted: Vec<DVec2> = places.iter().map(|at| *at + 1e-5 * random.place()).collect();

@@ -5,8 +5,8 @@ use std::{collections::BTreeMap, f32::consts::TAU};
 use bunting_solver::FabricBuilder;
 use glam::{DVec2, Vec2, Vec3};
 
-use super::garments;
-use crate::meshes::{Random, Sheet, Triangulation, around};
+use super::{garments, pieces::largest_piece};
+use crate::meshes::{Random, Sheet, Triangulation, around, moebius, sphere, torus};
 
 /// What a mesh is like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -40,7 +40,10 @@ impl Family {
 /// A mesh of a family with some of its vertices pinned.
 pub fn mesh(family: Family, random: &mut Random) -> FabricBuilder {
     let mesh = match family {
-        Family::Flat => textured(flat(random), random),
+        Family::Flat => {
+            let sheet = flat(random);
+            placed(&sheet, random, |at| at)
+        }
         Family::Curved => curved(random),
         Family::Tube => tube(random),
         Family::QuadGarment => garments::of_quads(random),
@@ -78,44 +81,35 @@ fn flat(random: &mut Random) -> Sheet {
     let kept = corners.filter(|of| {
         in_shape(of.iter().map(|&at| sheet.positions[at as usize]).sum::<Vec3>() / 3.0)
     });
-    let indices = largest_piece(kept.flatten().copied().collect());
+    let indices = of_largest_piece(&kept.flatten().copied().collect::<Vec<u32>>());
     let leans = if skew > 0.7 { skew - 0.5 } else { 0.0 };
     let positions = sheet.positions.iter().map(|at| *at + Vec3::X * leans * at.y);
     Sheet { positions: positions.collect(), indices }
 }
 
-/// The triangles of the largest piece: others would fall, or hang by a vertex.
-fn largest_piece(indices: Vec<u32>) -> Vec<u32> {
+/// The triangles of the largest piece that hangs together along edges.
+fn of_largest_piece(indices: &[u32]) -> Vec<u32> {
     let (triangles, _) = indices.as_chunks::<3>();
+    let sides = |at: usize| {
+        let [a, b, c] = triangles[at];
+        [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)])
+    };
     let mut beside: BTreeMap<[u32; 2], Vec<usize>> = BTreeMap::new();
-    let sides = |&[a, b, c]: &[u32; 3]| [[a, b], [b, c], [c, a]].map(|[a, b]| [a.min(b), a.max(b)]);
-    for (triangle, corners) in triangles.iter().enumerate() {
-        sides(corners).into_iter().for_each(|side| beside.entry(side).or_default().push(triangle));
+    for at in 0..triangles.len() {
+        sides(at).into_iter().for_each(|side| beside.entry(side).or_default().push(at));
     }
-    let mut piece_of = vec![usize::MAX; triangles.len()];
-    let mut sizes = Vec::new();
-    for first in 0..triangles.len() {
-        let mut next = vec![first];
-        let mut size = 0;
-        while let Some(triangle) = next.pop() {
-            if piece_of[triangle] == usize::MAX {
-                piece_of[triangle] = sizes.len();
-                size += 1;
-                next.extend(sides(&triangles[triangle]).iter().flat_map(|side| &beside[side]));
-            }
-        }
-        sizes.push(size);
-    }
-    let largest = (0..sizes.len()).max_by_key(|piece| sizes[*piece]);
-    let of_largest = triangles.iter().zip(&piece_of).filter(|(_, piece)| Some(**piece) == largest);
-    of_largest.flat_map(|(corners, _)| *corners).collect()
+    let is_kept = largest_piece(triangles.len(), |at| {
+        sides(at).iter().flat_map(|side| &beside[side]).copied().collect()
+    });
+    let kept = triangles.iter().zip(is_kept).filter(|(_, is_kept)| *is_kept);
+    kept.flat_map(|(corners, _)| *corners).collect()
 }
 
-/// A builder of the used vertices of a sheet.
-fn used(sheet: &Sheet, place: impl Fn(Vec3) -> Vec3) -> (Vec<Vec3>, Vec<Vec2>, Vec<u32>) {
+/// The vertices of a sheet that its triangles use, at their places in space, with a texture turned by an angle at random, or without.
+fn placed(sheet: &Sheet, random: &mut Random, place: impl Fn(Vec3) -> Vec3) -> FabricBuilder {
     let mut number = vec![u32::MAX; sheet.positions.len()];
     let (mut positions, mut uv) = (Vec::new(), Vec::new());
-    let mut numbered = |at: &u32| {
+    let numbered = |at: &u32| {
         let vertex = *at as usize;
         if number[vertex] == u32::MAX {
             number[vertex] = positions.len() as u32;
@@ -124,23 +118,13 @@ fn used(sheet: &Sheet, place: impl Fn(Vec3) -> Vec3) -> (Vec<Vec3>, Vec<Vec2>, V
         }
         number[vertex]
     };
-    let indices = sheet.indices.iter().map(&mut numbered).collect();
-    (positions, uv, indices)
-}
-
-/// A sheet, with a texture turned by an angle at random, or without.
-fn textured(sheet: Sheet, random: &mut Random) -> FabricBuilder {
-    placed(&sheet, random, |at| at)
-}
-
-fn placed(sheet: &Sheet, random: &mut Random, place: impl Fn(Vec3) -> Vec3) -> FabricBuilder {
-    let (positions, uv, indices) = used(sheet, place);
+    let indices = sheet.indices.iter().map(numbered).collect();
     let builder = FabricBuilder::new(positions, indices);
     if random.next() < 0.5 {
         return builder;
     }
     let turn = Vec2::from_angle(TAU * random.next() as f32);
-    builder.uv(uv.into_iter().map(|at| turn.rotate(at)).collect())
+    builder.uv(uv.into_iter().map(|at: Vec2| turn.rotate(at)).collect())
 }
 
 fn curved(random: &mut Random) -> FabricBuilder {
@@ -167,7 +151,7 @@ fn tube(random: &mut Random) -> FabricBuilder {
         .indices
         .chunks_exact(3)
         .filter(|of| of.iter().all(|&at| sheet.positions[at as usize].distance(middle) > notch));
-    let indices = largest_piece(triangles.flatten().copied().collect());
+    let indices = of_largest_piece(&triangles.flatten().copied().collect::<Vec<u32>>());
     let sheet = Sheet { indices, ..sheet };
     let place = |at: Vec3| {
         let radius = (1.0 - flare * at.y / height) / TAU;
@@ -183,21 +167,9 @@ fn round(random: &mut Random) -> FabricBuilder {
     let first = random.within(0.1, 0.5) as f32;
     let last = random.within(1.5, 3.0) as f32;
     match random.below(3) {
-        0 => around(columns, rings, false, |ring, azimuth| {
-            let polar = first + (last - first) * ring;
-            Vec3::new(polar.sin() * azimuth.cos(), polar.cos(), polar.sin() * azimuth.sin()) * 0.3
-        }),
-        1 => around(columns, rings, false, |ring, azimuth| {
-            let (sin, cos) = (TAU * ring).sin_cos();
-            let away = 0.3 + 0.3 * first * cos;
-            Vec3::new(away * azimuth.cos(), 0.3 * first * sin, away * azimuth.sin())
-        })
-        .weld_distance(1e-5),
-        _ => around(2 * columns, rings.min(9), true, |across, azimuth| {
-            let aside = 0.4 * first * (across - 0.5);
-            let away = 0.3 + aside * (0.5 * azimuth).cos();
-            Vec3::new(away * azimuth.cos(), aside * (0.5 * azimuth).sin(), away * azimuth.sin())
-        }),
+        0 => around(columns, rings, false, sphere([first, last])),
+        1 => torus(columns, rings, 0.3 * first),
+        _ => around(2 * columns, rings.min(9), true, moebius(0.4 * first)),
     }
 }
 

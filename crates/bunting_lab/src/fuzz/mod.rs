@@ -2,7 +2,8 @@
 
 mod garments;
 mod meshes;
+mod pieces;
 mod trial;
 
 pub use meshes::Family;
-pub use trial::{Trial, of_seed};
+pub use trial::{Figures, Trial, of_seed};

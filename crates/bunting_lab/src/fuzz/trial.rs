@@ -4,6 +4,7 @@ use std::{sync::Arc, time::Instant};
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, FrameMotion, LaneCount, StepLimits,
+    StepSettings,
 };
 use glam::Vec3;
 use serde::Serialize;
@@ -12,7 +13,7 @@ use super::meshes::{Family, mesh};
 use crate::{
     meshes::Random,
     need::Need,
-    product::TICK,
+    product::{TICK, rms_speed},
     scenes::GRAVITY,
     stats::{Strain, worse},
 };
@@ -26,15 +27,20 @@ const DAMPING: f32 = 4.0;
 /// Ticks that are timed, and how many at once.
 const TIMED: [usize; 2] = [6, 10];
 
-/// What became of a cloth.
+/// A mesh at random, and what became of a cloth of it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Trial {
     /// Number from which all of it follows.
     pub seed: u64,
     /// What the mesh is like.
     pub family: Family,
-    /// Why the mesh is no cloth; all figures are then NaN.
-    pub refused: Option<String>,
+    /// What was measured, or why the mesh is no cloth.
+    pub outcome: Result<Figures, String>,
+}
+
+/// What was measured of a cloth.
+#[derive(Clone, Debug, Serialize)]
+pub struct Figures {
     /// What solves it.
     pub solver: String,
     /// Number of particles.
@@ -58,59 +64,47 @@ pub fn of_seed(seed: u64) -> Trial {
     let mut random = Random::of_seed(seed);
     let family = Family::ALL[random.below(Family::ALL.len())];
     let builder = mesh(family, &mut random);
-    let mut trial = Trial {
-        seed,
-        family,
-        refused: None,
-        solver: String::new(),
-        particles: 0,
-        effort: [0; 2],
-        build: f64::NAN,
-        tick: f64::NAN,
-        blown: Strain::default(),
-        stretch: [f64::NAN; 2],
-        speed: f64::NAN,
-    };
     let start = Instant::now();
-    match builder.build() {
-        Ok(fabric) => {
-            trial.build = start.elapsed().as_secs_f64();
-            trial.run(Arc::new(fabric), &mut random);
-        }
-        Err(error) => trial.refused = Some(error.to_string()),
-    }
-    trial
+    let fabric = builder.build();
+    let build = start.elapsed().as_secs_f64();
+    let measured = fabric.map(|fabric| figures(Arc::new(fabric), build, &mut random));
+    Trial { seed, family, outcome: measured.map_err(|error| error.to_string()) }
 }
 
-impl Trial {
-    fn run(&mut self, fabric: Arc<Fabric>, random: &mut Random) {
-        self.solver = format!("{:?}", fabric.stretch_solver());
-        self.particles = fabric.particle_count();
-        let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY as f32);
-        self.effort = [settings.substeps, settings.passes];
-        let stretch = 10_f64.powf(random.within(2.5, 5.0)) as f32;
-        let material = FabricMaterial {
-            warp_stiffness: stretch,
-            weft_stiffness: stretch,
-            shear_stiffness: stretch * random.within(0.005, 0.4) as f32,
-            area_density: 10_f64.powf(random.within(-1.3, -0.3)) as f32,
-            ..FabricMaterial::FLAG_POLYESTER
-        };
-        let mut vector =
-            |size: f32| Vec3::from([0; 3].map(|_| random.within(-1.0, 1.0) as f32)) * size;
-        let (wind, jerk) = (vector(20.0), vector(0.5));
-        let mut cloth = Cloth::new(fabric, material);
-        let still = Drive::default();
-        cloth.advance(BLOWN, Drive { wind, ..still });
-        self.tick = cloth.time_of_tick(Drive { wind, ..still }) / self.particles as f64;
-        self.blown = Strain::of(cloth.strains());
-        let blown = cloth.greatest_stretch();
-        cloth.material(FabricMaterial { damping: DAMPING, ..material });
-        let motion = FrameMotion { translation: jerk, ..FrameMotion::NONE };
-        cloth.advance(TICK, Drive { motion, ..still });
-        cloth.advance(SETTLING, still);
-        self.stretch = [blown, cloth.greatest_stretch()];
-        self.speed = cloth.speed();
+/// Blows at a cloth, pulls it, and lets it rest.
+fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random) -> Figures {
+    let solver = format!("{:?}", fabric.stretch_solver());
+    let particles = fabric.particle_count();
+    let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY as f32);
+    let stiffness = 10_f64.powf(random.within(2.5, 5.0)) as f32;
+    let material = FabricMaterial {
+        warp_stiffness: stiffness,
+        weft_stiffness: stiffness,
+        shear_stiffness: stiffness * random.within(0.005, 0.4) as f32,
+        area_density: 10_f64.powf(random.within(-1.3, -0.3)) as f32,
+        ..FabricMaterial::FLAG_POLYESTER
+    };
+    let mut vector = |size: f32| Vec3::from([0; 3].map(|_| random.within(-1.0, 1.0) as f32)) * size;
+    let (wind, jerk) = (vector(20.0), vector(0.5));
+    let mut cloth = Cloth::new(fabric, material);
+    let still = Drive::default();
+    cloth.advance(BLOWN, Drive { wind, ..still });
+    let tick = cloth.time_of_tick(settings) / particles as f64;
+    let blown = Strain::of(cloth.strains());
+    let stretch_in_wind = cloth.greatest_stretch();
+    cloth.set_material(FabricMaterial { damping: DAMPING, ..material });
+    let motion = FrameMotion { translation: jerk, ..FrameMotion::NONE };
+    cloth.advance(TICK, Drive { motion, ..still });
+    cloth.advance(SETTLING, still);
+    Figures {
+        solver,
+        particles,
+        effort: [settings.substeps, settings.passes],
+        build,
+        tick,
+        blown,
+        stretch: [stretch_in_wind, cloth.greatest_stretch()],
+        speed: rms_speed(&cloth.batch, 0),
     }
 }
 
@@ -131,7 +125,7 @@ impl Cloth {
         Self { batch, material, need: Need::within(StepLimits::default()), positions }
     }
 
-    fn material(&mut self, material: FabricMaterial) {
+    fn set_material(&mut self, material: FabricMaterial) {
         self.batch.set_material(0, material).expect("a good material");
         self.material = material;
     }
@@ -147,10 +141,8 @@ impl Cloth {
         }
     }
 
-    /// The least time of a tick under its weight alone, s.
-    fn time_of_tick(&mut self, drive: Drive) -> f64 {
-        self.batch.drive(0, drive).expect("a good drive");
-        let settings = StepLimits::default().of_fabric(self.batch.fabric(), TICK, GRAVITY as f32);
+    /// The least time of a tick under what acts on it now, s.
+    fn time_of_tick(&mut self, settings: StepSettings) -> f64 {
         let [blocks, ticks] = TIMED;
         let times = (0..blocks).map(|_| {
             let start = Instant::now();
@@ -171,14 +163,5 @@ impl Cloth {
 
     fn greatest_stretch(&self) -> f64 {
         self.strains().fold(0.0, worse)
-    }
-
-    /// RMS speed, m/s; infinite if it is not a number.
-    fn speed(&self) -> f64 {
-        let mut velocities = Vec::new();
-        self.batch.copy_velocities(0, &mut velocities);
-        let squares = velocities.iter().map(|v: &Vec3| f64::from(v.length_squared()));
-        let mean = squares.sum::<f64>() / velocities.len() as f64;
-        if mean.is_finite() { mean.sqrt() } else { f64::INFINITY }
     }
 }

@@ -14,6 +14,7 @@ use glam::{Quat, Vec3, Vec3Swizzles};
 use parry3d::shape::SharedShape;
 
 use super::hash::StateHash;
+use crate::meshes::ball_with_poles;
 use crate::product::TICK;
 
 /// Number of ticks between two states that are hashed.
@@ -208,28 +209,7 @@ fn closed_mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
 
 /// A ball without any opening: it is solved along the lines of its quads.
 fn ball_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
-    const RINGS: u32 = 12;
-    const AROUND: u32 = 24;
-    let place = |ring: u32, at: u32| {
-        let (out, up) = libm::sincosf(core::f32::consts::PI * ring as f32 / RINGS as f32);
-        let (sin, cos) = libm::sincosf(core::f32::consts::TAU * at as f32 / AROUND as f32);
-        Vec3::new(out * cos, up, -out * sin) * 0.4
-    };
-    let rings = (1..RINGS).flat_map(|ring| (0..AROUND).map(move |at| place(ring, at)));
-    let positions = rings.chain([place(0, 0), place(RINGS, 0)]).collect();
-    let [top, bottom] = [0, 1].map(|pole| (RINGS - 1) * AROUND + pole);
-    let vertex = |ring: u32, at: u32| (ring - 1) * AROUND + at % AROUND;
-    let mut indices = Vec::new();
-    for at in 0..AROUND {
-        indices.extend([top, vertex(1, at), vertex(1, at + 1)]);
-        for ring in 1..RINGS - 1 {
-            let [a, b] = [vertex(ring, at), vertex(ring, at + 1)];
-            let [c, d] = [vertex(ring + 1, at), vertex(ring + 1, at + 1)];
-            indices.extend([a, c, b, b, c, d]);
-        }
-        indices.extend([bottom, vertex(RINGS - 1, at + 1), vertex(RINGS - 1, at)]);
-    }
-    in_wind(FabricBuilder::new(positions, indices).pin_where(|at, _| at.y > 0.39), lanes, ticks)
+    in_wind(ball_with_poles(24, 12, 0.4).pin_where(|at, _| at.y > 0.39), lanes, ticks)
 }
 
 fn in_wind(mesh: FabricBuilder, lanes: LaneCount, ticks: u32) -> u64 {

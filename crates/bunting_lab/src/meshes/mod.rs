@@ -9,7 +9,7 @@ use std::{f32::consts::TAU, sync::Arc};
 use bunting_solver::{Fabric, FabricBuilder};
 use glam::{DVec2, Vec2, Vec3};
 
-pub(crate) use rings::around;
+pub(crate) use rings::{around, ball_with_poles, moebius, sphere, torus};
 
 /// How the triangles of a rectangle lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -100,7 +100,8 @@ impl Sheet {
                 let border = grid.filter(|&(column, row)| is_kept(column, row)).map(place);
                 let mut points: Vec<DVec2> = border.collect();
                 while points.len() < columns * rows {
-                    points.push(farthest_candidate(&points, cells, &mut random));
+                    let candidate = |_| 0.5 + random.place() * (cells - 1.0);
+                    points.extend(farthest((0..CANDIDATES).map(candidate), &points));
                 }
                 let triangles = delaunay::triangulate(&points);
                 (points, triangles)
@@ -279,15 +280,12 @@ impl Sheet {
     }
 }
 
-/// Of several places at random half a cell or more inside the border the one that is farthest from all points.
-fn farthest_candidate(points: &[DVec2], cells: DVec2, random: &mut Random) -> DVec2 {
+/// The candidate that is farthest from all points; none if there is none.
+pub(crate) fn farthest(candidates: impl Iterator<Item = DVec2>, points: &[DVec2]) -> Option<DVec2> {
     let nearest = |at: DVec2| {
         points.iter().map(|point| point.distance_squared(at)).fold(f64::INFINITY, f64::min)
     };
-    let candidates: Vec<DVec2> =
-        (0..CANDIDATES).map(|_| 0.5 + random.place() * (cells - 1.0)).collect();
-    let farthest = candidates.into_iter().max_by(|a, b| nearest(*a).total_cmp(&nearest(*b)));
-    farthest.expect("there are candidates")
+    candidates.max_by(|a, b| nearest(*a).total_cmp(&nearest(*b)))
 }
 
 /// Two triangles for each cell, counter-clockwise if the second axis points up.

@@ -16,6 +16,11 @@ use crate::fabric::LinkFamily;
 use crate::simd::lane::Pack;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Whether the cloth is a curved or a cut grid, or a net.
+    pub(super) fn is_solved_both_ways(&self) -> bool {
+        self.fabric.is_cut() || self.fabric.rest_bends().is_some()
+    }
+
     /// Solves diagonals, and warp and weft backwards, in each pass after the first solution of warp and weft.
     pub(super) fn solve_passes_both_ways(&mut self, passes: u32) {
         let colours = 0..self.colour_count();

@@ -21,13 +21,13 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves warp, weft and diagonals, then warp and weft again in each pass: the chains of a grid whose diagonals
-    /// carry shear alone. The diagonals' targets follow from the first solution of warp and weft.
+    /// Solves warp, weft and diagonals, then warp and weft again in each pass, or all of them both ways: the chains of a grid
+    /// whose diagonals carry shear alone. The diagonals' targets follow from the first solution of warp and weft.
     ///
     /// Diagonals must not come last, since they move particles far compared with the strain of warp and weft.
     pub fn solve_chains(&mut self, passes: u32) {
         self.solve_warp_and_weft(Pass::First);
-        if self.fabric.is_cut() || self.fabric.rest_bends().is_some() {
+        if self.is_solved_both_ways() {
             self.find_diagonal_targets();
             self.solve_passes_both_ways(passes);
             return;
@@ -52,6 +52,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.solve_colours(colours, Pass::Diagonals, |family| family == LinkFamily::Diagonal);
     }
 
+    /// Number of colours of chains.
     pub(super) fn colour_count(&self) -> usize {
         self.layout.chains(&self.fabric).colours.len()
     }

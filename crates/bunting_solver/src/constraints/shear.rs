@@ -7,10 +7,9 @@
 //! cell are at rest when they are equally long, as in a rectangle of any sides: the target's square is half
 //! the sum of their squares.
 //!
-//! The target is computed once a tick, since a cloth's own strain changes slowly, but in each substep where passes keep the tension of
-//! diagonals (`both_ways.rs`). It is bounded by the strain
-//! that the loads may cause: a flag that snaps like a whip is stretched beyond this bound, and the diagonals
-//! then help to hold it.
+//! The target is computed once a tick, since a cloth's own strain changes slowly, but in each substep where passes keep the
+//! tension of diagonals (`both_ways.rs`). It is bounded by the strain that the loads may cause: a flag that snaps like a whip is
+//! stretched beyond this bound, and the diagonals then help to hold it.
 //!
 //! A cell that is folded along one diagonal is not sheared, though its other diagonal is short, and the length alone does
 //! not tell which of the two it is. The push of a short diagonal is therefore bounded: its target is at most

@@ -67,6 +67,7 @@ impl Fabric {
                 .map(|grid| Background::of(grid, tethered))
                 .or_else(|| Some(Background::of_net(Net::of(&mesh, surface)?, surface, tethered))),
         };
+        // The particles are the nodes of a net.
         if let Some(Background { fabric: net, .. }) =
             background.as_ref().filter(|it| it.fabric.is_net())
         {

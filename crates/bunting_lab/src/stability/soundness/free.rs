@@ -6,15 +6,11 @@ use bunting_solver::{
     ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, LaneCount,
     StepSettings,
 };
-use glam::Vec3;
 
 use super::{AT_REST, advance, fastest};
-use crate::meshes::around;
+use crate::meshes::{around, moebius, sphere};
 use crate::product::DEFAULT;
 use crate::stability::case::HardCase;
-
-/// Radius of the meshes, m.
-const RADIUS: f32 = 0.3;
 
 /// Width of the Möbius strip, m.
 const WIDTH: f32 = 0.2;
@@ -22,7 +18,7 @@ const WIDTH: f32 = 0.2;
 /// Bowl, ball and Möbius strip, and the strip held at a vertex, at the default number of substeps and at eight.
 pub(super) fn cases(quick: bool) -> Vec<HardCase> {
     let seconds = if quick { 10.0 } else { 30.0 };
-    let held = built("Möbius strip held at a vertex", around(48, 6, true, moebius).pin([0]));
+    let held = built("Möbius strip held at a vertex", around(48, 6, true, moebius(WIDTH)).pin([0]));
     let meshes = free_meshes(quick).into_iter().chain([held]);
     let settings = [DEFAULT, StepSettings { substeps: 8, ..DEFAULT }];
     let cases = meshes.flat_map(|mesh| settings.map(|settings| (mesh.clone(), settings)));
@@ -35,29 +31,12 @@ pub(super) fn free_meshes(quick: bool) -> [(&'static str, Arc<Fabric>); 3] {
     [
         built("bowl", around(16, 6, false, sphere([0.2, 1.6]))),
         built("ball", around(2 * rings, rings, false, sphere([0.15, 2.99]))),
-        built("Möbius strip", around(48, 6, true, moebius)),
+        built("Möbius strip", around(48, 6, true, moebius(WIDTH))),
     ]
 }
 
 fn built(name: &'static str, mesh: FabricBuilder) -> (&'static str, Arc<Fabric>) {
     (name, Arc::new(mesh.build().expect("a good mesh")))
-}
-
-/// The part of a sphere between two angles (rad) from its axis, of which a ring is given from 0 to 1, and an azimuth, rad.
-fn sphere([first, last]: [f32; 2]) -> impl Fn(f32, f32) -> Vec3 {
-    move |ring, azimuth| {
-        let polar = first + (last - first) * ring;
-        let outwards =
-            Vec3::new(polar.sin() * azimuth.cos(), polar.cos(), polar.sin() * azimuth.sin());
-        RADIUS * outwards
-    }
-}
-
-/// A strip that has made half a turn when it has gone around.
-fn moebius(across: f32, azimuth: f32) -> Vec3 {
-    let aside = WIDTH * (across - 0.5);
-    let away = RADIUS + aside * (0.5 * azimuth).cos();
-    Vec3::new(away * azimuth.cos(), aside * (0.5 * azimuth).sin(), away * azimuth.sin())
 }
 
 /// Case of a mesh at rest in eight lanes of polyester without damping: its RMS speed, with stretch

@@ -10,10 +10,9 @@ mod rates;
 mod strips;
 
 use bunting_solver::{ClothBatch, FabricMaterial, StepSettings};
-use glam::Vec3;
 
 use super::case::HardCase;
-use crate::product::TICK;
+use crate::product::{TICK, rms_speed};
 
 /// Acceleration of gravity, m/s².
 const GRAVITY: f32 = 9.81;
@@ -53,16 +52,7 @@ fn advance(batch: &mut ClothBatch, seconds: f32, settings: StepSettings) {
     (0..(seconds / TICK).round() as usize).for_each(|_| batch.step(TICK, settings));
 }
 
-/// RMS speed of a lane, m/s; infinite if it is not a number.
-fn speed(batch: &ClothBatch, lane: usize) -> f64 {
-    let mut velocities = Vec::new();
-    batch.copy_velocities(lane, &mut velocities);
-    let sum: f64 = velocities.iter().map(|v: &Vec3| f64::from(v.length_squared())).sum();
-    let speed = (sum / velocities.len() as f64).sqrt();
-    if speed.is_finite() { speed } else { f64::INFINITY }
-}
-
 /// The greatest RMS speed of the lanes, m/s.
 fn fastest(batch: &ClothBatch) -> f64 {
-    batch.occupied().map(|lane| speed(batch, lane)).fold(0.0, f64::max)
+    batch.occupied().map(|lane| rms_speed(batch, lane)).fold(0.0, f64::max)
 }

@@ -8,8 +8,8 @@ use bunting_solver::{
 };
 use glam::Vec3;
 
-use super::{GRAVITY, speed, standard};
-use crate::product::DEFAULT;
+use super::{GRAVITY, standard};
+use crate::product::{DEFAULT, rms_speed};
 use crate::stability::case::HardCase;
 
 /// Greatest fraction of its initial energy that a swing may lose in 20 s of random ticks; equal ticks lose
@@ -128,7 +128,7 @@ fn ticks_in_wind() -> HardCase {
         let mut squares = 0.0;
         for _ in ticks(15.0) {
             batch.step(tick, settings);
-            squares += (0..8).map(|lane| speed(&batch, lane).powi(2)).sum::<f64>();
+            squares += (0..8).map(|lane| rms_speed(&batch, lane).powi(2)).sum::<f64>();
         }
         (squares / (8.0 * ticks(15.0).len() as f64)).sqrt()
     };

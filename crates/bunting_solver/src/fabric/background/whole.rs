@@ -11,7 +11,7 @@ use crate::fabric::laid_yarns::Faces;
 const LEAST_FILLED: f32 = 0.25;
 
 /// How much farther than the cells around a node the ways between the triangles in these may run, in cells. Smaller: ragged borders
-/// count as slits, as of a third of 80 flat meshes at random. Larger: short slits are closed.
+/// count as slits: with 1, those of a fifth of 80 flat meshes at random. Larger: short slits are closed.
 const FARTHER: i64 = 2;
 
 /// Whether what of a mesh lies in the cells around each node hangs together in them and in the next ones.
