@@ -9,7 +9,6 @@ use super::fabric::Fabric;
 use super::hinges::Hinges;
 use super::laid_yarns::LaidYarns;
 use super::links::Links;
-use super::mesh::Surface;
 use super::patches;
 use super::quads::Net;
 use super::rest_bends::RestBends;
@@ -29,6 +28,8 @@ pub(crate) struct Background {
     pub warp_cos2: f32,
     /// Number of nodes around which there is cloth.
     pub node_count: usize,
+    /// Whether each node is the particle of its number.
+    pub nodes_are_particles: bool,
 }
 
 impl Background {
@@ -37,21 +38,28 @@ impl Background {
         let warp_cos2 = mesh.warp_cos2;
         let (fabric, transfer) = Fabric::of_background(mesh, tethered);
         let node_count = fabric.mesh.areas.iter().filter(|area| **area > 0.0).count();
-        Self { fabric: Arc::new(fabric), transfer, warp_cos2, node_count }
+        Self {
+            fabric: Arc::new(fabric),
+            transfer,
+            warp_cos2,
+            node_count,
+            nodes_are_particles: false,
+        }
     }
 
     /// The net of a mesh of quads.
-    pub(super) fn of_net(net: Net, surface: &Surface, tethered: bool) -> Self {
-        let (fabric, transfer) = Fabric::of_net(net, surface, tethered);
+    pub(super) fn of_net(net: Net, tethered: bool) -> Self {
+        let nodes_are_particles = net.nodes_are_particles;
+        let (fabric, transfer) = Fabric::of_net(net, tethered);
         let node_count = fabric.particle_count();
-        Self { fabric: Arc::new(fabric), transfer, warp_cos2: 1.0, node_count }
+        Self { fabric: Arc::new(fabric), transfer, warp_cos2: 1.0, node_count, nodes_are_particles }
     }
 }
 
 impl Fabric {
     /// The constraints of a net, whose nodes have no hinges.
-    fn of_net(net: Net, surface: &Surface, tethered: bool) -> (Self, GridTransfer) {
-        let Net { mesh, links, yarns, corners, bending, rest_bends, transfer } = net;
+    fn of_net(net: Net, tethered: bool) -> (Self, GridTransfer) {
+        let Net { mesh, edges, links, yarns, corners, bending, rest_bends, transfer, .. } = net;
         let mut chains = Chains::of(&yarns.list, &yarns.colours, &links.list, None, false);
         chains.find_cells(corners.into_iter());
         chains.measure_diagonals(&mesh.positions);
@@ -60,13 +68,13 @@ impl Fabric {
             twist: Twist::default(),
             rest_bends: Some(rest_bends),
             hinges: Hinges::of(&mesh, &[]),
-            tethers: Tethers::of(&mesh, &surface.edges, false, tethered),
+            tethers: Tethers::of(&mesh, &edges, false, tethered),
             // Its lines end inside the cloth, too, and give their load to others by shear.
             covered: vec![1.0; mesh.positions.len()],
             tautness: 0.0,
             shortest: 0.0,
             probes: Vec::new(),
-            patches: patches::patches(&mesh.triangles, &surface.triangle_areas),
+            patches: patches::patches(&mesh.triangles, &mesh.triangle_areas()),
             patch_grid_columns: None,
             background: None,
             laid_yarns: LaidYarns::default(),

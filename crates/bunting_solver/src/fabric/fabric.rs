@@ -65,12 +65,10 @@ impl Fabric {
             Some(_) => None,
             None => BackgroundMesh::of(&mesh, surface)
                 .map(|grid| Background::of(grid, tethered))
-                .or_else(|| Some(Background::of_net(Net::of(&mesh, surface)?, surface, tethered))),
+                .or_else(|| Some(Background::of_net(Net::of(&mesh, surface)?, tethered))),
         };
-        // The particles are the nodes of a net.
-        if let Some(Background { fabric: net, .. }) =
-            background.as_ref().filter(|it| it.fabric.is_net())
-        {
+        let net = background.as_ref().filter(|it| it.nodes_are_particles);
+        if let Some(Background { fabric: net, .. }) = net {
             mesh.set_areas(net.mesh.areas.clone());
         }
         let mut patches = patches::patches(&mesh.triangles, &surface.triangle_areas);

@@ -87,6 +87,15 @@ impl RestMesh {
         Ok((mesh, Surface { triangle_areas, corner_uv, edges }))
     }
 
+    /// Areas of the triangles, m².
+    pub fn triangle_areas(&self) -> Vec<f32> {
+        let area = |corners: &[u32; 3]| {
+            let [a, b, c] = self.positions_of(*corners);
+            0.5 * (b - a).cross(c - a).length()
+        };
+        self.triangles.iter().map(area).collect()
+    }
+
     /// Takes over the area of each particle, m².
     pub fn set_areas(&mut self, areas: Vec<f32>) {
         for (inverse_area, area) in self.inverse_areas.iter_mut().zip(&areas) {

@@ -36,6 +36,7 @@ mod mesh;
 mod normals;
 mod patches;
 mod quads;
+mod remesh;
 mod rest_bends;
 mod rest_paths;
 mod shared_topology;

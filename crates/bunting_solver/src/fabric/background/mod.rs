@@ -51,6 +51,7 @@ use super::grid::Grid;
 use super::mesh::{RestMesh, Surface};
 
 pub(crate) use self::interpolation::{Interpolation, RowGroup, Term};
+pub(super) use self::smooth::{QUADRATIC, QUARTIC, fit, sum_of_magnitudes};
 
 /// Fewest particles of a mesh with a background grid, or with lines of quads. Smaller meshes have no paths that are long.
 pub(super) const FEWEST_PARTICLES: usize = 30;

@@ -30,8 +30,8 @@ const GREATEST_SUM_OF_PINS: f32 = 1.5;
 const OFF_LINE: f64 = 0.05;
 
 /// Numbers of the coefficients of a quartic, of a quadratic and of a plane.
-const QUARTIC: usize = 15;
-pub(super) const QUADRATIC: usize = 6;
+pub(in crate::fabric) const QUARTIC: usize = 15;
+pub(in crate::fabric) const QUADRATIC: usize = 6;
 pub(super) const PLANE: usize = 3;
 
 /// Rows of nodes by fits to the places around them, to pinned ones alone of nodes that stand for pins; the given rows where there
@@ -111,7 +111,7 @@ impl<'a> PlacesInCells<'a> {
 
 /// Weights of the values at places, given relative to the node with a weight as third coordinate, in the value at the
 /// node of the polynomial that is fitted to them; none if they do not determine it.
-pub(super) fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
+pub(in crate::fabric) fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
     fit_powers(near, powers::<TERMS>)
 }
 
@@ -183,7 +183,7 @@ fn fit_along(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
 }
 
 /// Sum of the magnitudes of a row's weights.
-pub(super) fn sum_of_magnitudes(terms: &[Term]) -> f32 {
+pub(in crate::fabric) fn sum_of_magnitudes(terms: &[Term]) -> f32 {
     terms.iter().map(|term| term.weight.abs()).sum()
 }
 

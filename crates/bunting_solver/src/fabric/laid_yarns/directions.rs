@@ -23,7 +23,11 @@ pub(in crate::fabric) struct Directions {
 
 impl Directions {
     pub fn of(faces: &Faces, corner_uv: &[[Vec2; 3]]) -> Self {
-        let warps = warps(faces, corner_uv);
+        Self::of_warps(faces, warps(faces, corner_uv))
+    }
+
+    /// Given the warp of each triangle.
+    pub fn of_warps(faces: &Faces, warps: Vec<Vec3>) -> Self {
         let wefts = faces.normals.iter().zip(&warps).map(|(normal, &warp)| normal.cross(warp));
         Self { wefts: wefts.collect(), warps }
     }

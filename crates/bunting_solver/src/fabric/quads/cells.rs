@@ -9,9 +9,6 @@ use crate::fabric::topology::Edge;
 /// Greatest departure of an angle of a quad from a right one, rad. Larger: the lines of a net of random triangles zigzag.
 const MOST_DEPARTURE: f32 = 0.7;
 
-/// Least part of the triangles that must be halves of quads. Smaller: where cells are triangles, lines end.
-const LEAST_PART: f32 = 0.9;
-
 /// Greatest ratio of the lengths of two sides of cells. Larger: short links need so many substeps that laid yarns take less time.
 const MOST_RATIO: f32 = 8.0;
 
@@ -19,9 +16,9 @@ const MOST_RATIO: f32 = 8.0;
 /// (`Fabric::sums_corrections`).
 const MOST_RATIO_OF_FREE: f32 = 4.0;
 
-/// The cells of a mesh most of whose triangles are halves of quads, the best quads first; the other triangles are cells, too.
-/// None if other triangles are more than a few, if two triangles face opposite ways, as on a Möbius strip, or if sides are too unlike.
-pub(super) fn cells(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
+/// The cells of a mesh of which the given part of triangles are halves of quads, the best quads first; the other triangles are cells, too.
+/// None if fewer are, if two triangles face opposite ways, as on a Möbius strip, or if sides are too unlike.
+pub(super) fn cells(mesh: &RestMesh, edges: &[Edge], least_part: f32) -> Option<Vec<Cell>> {
     if edges.iter().any(|edge| edge.other_side.is_some() && quad(mesh, edge).is_none()) {
         return None;
     }
@@ -40,7 +37,7 @@ pub(super) fn cells(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
             cells.push(cell);
         }
     }
-    if ((2 * cells.len()) as f32) < LEAST_PART * mesh.triangles.len() as f32 {
+    if ((2 * cells.len()) as f32) < least_part * mesh.triangles.len() as f32 {
         return None;
     }
     let left = (0..).zip(&mesh.triangles).zip(&is_free).filter(|(_, is_free)| **is_free);

@@ -1,8 +1,9 @@
-//! The net of a mesh of quads that has no background grid: clothes of several pieces, with sleeves and legs, slits, boxes.
+//! The net of a mesh that has no background grid: clothes of several pieces, with sleeves and legs, slits, boxes, balls.
 //!
-//! Such a mesh has lines already: the sides of its quads, which go on from quad to quad, along the whole cloth in most cases, around it
+//! A mesh of quads has lines already: the sides of its quads, which go on from quad to quad, along the whole cloth in most cases, around it
 //! in others. They are solved as the rows and columns of a grid are, whatever their number at a node and wherever they end.
-//! The net is a background grid whose nodes are the particles.
+//! The net is a background grid whose nodes are the particles. If the lines zigzag, nodes lie beside the particles, and a mesh of triangles
+//! gets quads on a lattice (`fabric/remesh/`).
 //!
 //! `cells` finds the quads among the triangles, `lines` follows their sides, `links` and `bending` measure how much cloth each side
 //! stands for.
@@ -16,23 +17,35 @@ mod tests;
 
 use glam::Vec3;
 
+use self::lines::Line;
 use super::background::{FEWEST_PARTICLES, GridTransfer, Interpolation, Term};
 use super::bending::Bending;
-use super::laid_yarns::{Directions, Faces};
+use super::laid_yarns::Directions;
 use super::links::Links;
 use super::mesh::{RestMesh, Surface};
 use super::normals::vertex_normals;
+use super::remesh::{Nodes, Source};
 use super::rest_bends::RestBends;
+use super::topology::Edge;
 use super::yarns::Yarns;
 
-/// Greatest mean zigzag of its lines, rad. Larger: lines straighten under load at two passes. At 2 × 2 sheets whose lines have
-/// 0.04 and 0.09 stretch by 30 and 210 % too far where their material stretches by 10⁻⁴, by 4 and 29 % where that is 10⁻³.
-const MOST_ZIGZAG: f32 = 0.07;
+/// Greatest mean zigzag of lines through particles, rad. Larger: lines straighten under load at two passes. At 2 × 2 sheets whose lines
+/// have 0.04 and 0.09 stretch by 30 and 210 % too far where their material stretches by 10⁻⁴, by 4 and 29 % where that is 10⁻³.
+const MOST_ZIGZAG: f32 = 0.03;
+
+/// Least part of the triangles of a mesh that must be halves of quads. Smaller: where cells are triangles, lines end.
+const LEAST_PART: f32 = 0.9;
+
+/// The same between the nodes of a lattice, whose other lines are straight.
+const LEAST_PART_OF_LATTICE: f32 = 0.8;
 
 /// A net before it is a fabric.
 pub(super) struct Net {
     /// The nodes as particles.
     pub mesh: RestMesh,
+    pub edges: Vec<Edge>,
+    /// Whether each node is the particle of its number.
+    pub nodes_are_particles: bool,
     pub links: Links,
     pub yarns: Yarns,
     /// The corners of each quad: the first and the last one are opposite.
@@ -73,37 +86,99 @@ impl Cell {
     }
 }
 
+/// Cells of a mesh, and the lines along their sides.
+struct Wires {
+    cells: Vec<Cell>,
+    lines: Vec<Line>,
+    /// Mean zigzag of the lines, rad.
+    zigzag: f32,
+    /// Part of the triangles that are halves of quads.
+    part_of_quads: f32,
+}
+
+impl Wires {
+    /// Those of a mesh, if the given part of its triangles are halves of quads.
+    fn of(mesh: &RestMesh, edges: &[Edge], least_part: f32) -> Option<Self> {
+        Some(Self::along(cells::cells(mesh, edges, least_part)?, mesh))
+    }
+
+    fn along(cells: Vec<Cell>, mesh: &RestMesh) -> Self {
+        let lines = lines::lines(&cells, &mesh.positions);
+        let corners = mesh.triangles.iter().map(|it| (mesh.positions_of(*it), *it));
+        let normals = vertex_normals(mesh.positions.len(), corners);
+        let zigzag = lines::zigzag(&lines, &mesh.positions, &normals);
+        let quads = cells.iter().filter(|cell| cell.triangles.len() == 2).count();
+        let part_of_quads = (2 * quads) as f32 / mesh.triangles.len() as f32;
+        Self { cells, lines, zigzag, part_of_quads }
+    }
+
+    fn are_straight(&self) -> bool {
+        self.zigzag <= MOST_ZIGZAG
+    }
+}
+
 impl Net {
-    /// The net of a mesh that consists of quads; none of others, of one whose lines zigzag, or of few particles.
+    /// The net of a mesh: of its quads, with nodes beside the particles if lines through these zigzag, or of quads on a lattice. None of few
+    /// particles, of a Möbius strip, and of a mesh on whose lattice few cells are quads.
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
         }
-        let cells = cells::cells(mesh, &surface.edges)?;
-        let lines = lines::lines(&cells, &mesh.positions);
-        let corners = mesh.triangles.iter().map(|it| (mesh.positions_of(*it), *it));
-        let normals = vertex_normals(mesh.positions.len(), corners);
-        if lines::zigzag(&lines, &mesh.positions, &normals) > MOST_ZIGZAG {
-            return None;
+        let source = Source::new(mesh, surface);
+        let own = Wires::of(mesh, source.edges, LEAST_PART);
+        if let Some(own) = own.as_ref().filter(|own| own.are_straight()) {
+            let transfer = identity(mesh);
+            let net = Self::new(mesh, source.edges, &source.directions, own, transfer);
+            return Some(Self { nodes_are_particles: true, ..net });
         }
-        let faces = Faces::new(&mesh.positions, &mesh.triangles, &surface.edges);
-        let directions = Directions::of(&faces, &surface.corner_uv);
-        let transfer = identity(mesh);
+        let faired = own.map(|own| {
+            let threes: Vec<[u32; 3]> = own.lines.iter().flat_map(Line::threes).collect();
+            let nodes = Nodes::faired(&source, &threes);
+            let wires = Wires::along(own.cells, &nodes.mesh);
+            (nodes, wires)
+        });
+        let on_lattice = || {
+            let nodes = Nodes::on_lattice(&source)?;
+            let wires = Wires::of(&nodes.mesh, &nodes.edges, LEAST_PART_OF_LATTICE)?;
+            Some((nodes, wires))
+        };
+        let is_even = |wires: &Wires| wires.are_straight() && wires.part_of_quads == 1.0;
+        let (nodes, wires) = match (faired, on_lattice) {
+            (Some((nodes, wires)), _) if is_even(&wires) => (nodes, wires),
+            (faired, on_lattice) => faired
+                .into_iter()
+                .chain(on_lattice())
+                .max_by(|(_, one), (_, other)| one.part_of_quads.total_cmp(&other.part_of_quads))?,
+        };
+        let cells = wires.cells.iter().map(|cell| &cell.nodes[..]);
+        let transfer = nodes.transfer(&source, cells)?;
+        Some(Self::new(&nodes.mesh, &nodes.edges, &nodes.directions, &wires, transfer))
+    }
+
+    fn new(
+        mesh: &RestMesh,
+        edges: &[Edge],
+        directions: &Directions,
+        Wires { cells, lines, .. }: &Wires,
+        transfer: GridTransfer,
+    ) -> Self {
         let mut mesh = mesh.clone();
-        mesh.set_areas(areas(&cells, &mesh.positions));
-        let (links, widths) = links::links(&mesh, &cells, &directions);
-        let yarns = links::yarns(&mesh, &lines, &links);
-        let (bending, rest_bends) = bending::bending(&mesh, &cells, &lines, &directions, &widths);
+        mesh.set_areas(areas(cells, &mesh.positions));
+        let (links, widths) = links::links(&mesh, cells, directions);
+        let yarns = links::yarns(&mesh, lines, &links);
+        let (bending, rest_bends) = bending::bending(&mesh, cells, lines, directions, &widths);
         let quads = cells.iter().filter_map(|cell| <[u32; 4]>::try_from(&cell.nodes[..]).ok());
-        Some(Self {
+        Self {
             corners: quads.map(|[a, b, c, d]| [a, b, d, c]).collect(),
+            edges: edges.to_vec(),
+            nodes_are_particles: false,
             transfer,
             mesh,
             links,
             yarns,
             bending,
             rest_bends,
-        })
+        }
     }
 }
 

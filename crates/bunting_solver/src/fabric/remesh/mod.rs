@@ -1,0 +1,232 @@
+//! Nodes in place of the vertices of a mesh that no grid can carry, so that lines through the nodes run straight along warp and weft: of clothes
+//! of triangles, balls, sheets with slits. What solves these is the net of their quads (`fabric/quads/`).
+//!
+//! A mesh of uneven quads keeps its quads, and `fair` moves its nodes beside the vertices. On other meshes `frames` finds the
+//! directions of warp and weft at each vertex, `phases` a lattice along these, `places` nodes on the lattice and the border, and
+//! `triangulation` joins the nodes. `node_rows` and `embedding` find the weights of particles in nodes, and of nodes in particles.
+
+mod border;
+mod boxes;
+mod embedding;
+mod fair;
+mod frames;
+mod node_rows;
+mod phase_energy;
+mod phases;
+mod places;
+mod source;
+mod triangulation;
+
+use glam::{DVec3, Vec2, Vec3};
+
+use self::boxes::Boxes;
+use self::embedding::Cells;
+use self::phases::Lattice;
+use self::places::{Choice, Place};
+use self::triangulation::Triangulation;
+use super::background::{GridTransfer, Interpolation, Term};
+use super::laid_yarns::{Directions, Faces, Towards};
+use super::mesh::RestMesh;
+use super::topology::{self, Edge};
+
+pub(super) use self::source::Source;
+
+/// Least weight of free particles in a node that is free.
+const LEAST_FREE: f64 = 0.01;
+
+/// How far a node of a mesh of quads is moved at least to be no vertex, in cells.
+const LEAST_MOVE: f64 = 1e-3;
+
+/// Nodes on a mesh, and triangles between them.
+pub(super) struct Nodes {
+    /// The nodes as particles, without areas.
+    pub mesh: RestMesh,
+    pub edges: Vec<Edge>,
+    /// The directions in each triangle.
+    pub directions: Directions,
+    /// Of each node the particles that it is interpolated from.
+    rows: Interpolation,
+    /// Of each particle the node that it is, and a node near it.
+    node_of: Vec<Option<u32>>,
+    node_near: Vec<u32>,
+    /// Size of a cell, m.
+    size: f64,
+}
+
+impl Nodes {
+    /// One beside each vertex of a mesh of quads, whose threes follow one another on lines. They have the triangles of the mesh.
+    pub fn faired(source: &Source, threes: &[[u32; 3]]) -> Self {
+        let Source { mesh, positions, normals, .. } = source;
+        let count = positions.len();
+        let size = (source.area / count as f64).sqrt();
+        let moved = fair::faired(source, threes);
+        let is_moved = |at: &usize| moved[*at].distance(positions[*at]) > LEAST_MOVE * size;
+        let node_of: Vec<Option<u32>> =
+            (0..count).map(|at| (!is_moved(&at)).then_some(at as u32)).collect();
+        let place = |at: usize| {
+            let normal = normals[at];
+            Place { triangle: 0, weights: [0.0; 3], at: moved[at], normal, vertex: node_of[at] }
+        };
+        let places: Vec<Place> = (0..count).map(place).collect();
+        // A node that no polynomial places stays at its vertex.
+        let of_vertex = |node: usize| vec![Term { from: node as u32, weight: 1.0 }];
+        let rows = node_rows::rows(&places, source, size, |_| false, of_vertex);
+        let mesh = RestMesh { positions: source.interpolated(&rows), ..(*mesh).clone() };
+        let faces = Faces::new(&mesh.positions, &mesh.triangles, source.edges);
+        let warps = (0..faces.count() as u32)
+            .map(|triangle| source.directions.of_triangle(triangle, Towards::Warp));
+        Self {
+            directions: Directions::of_warps(&faces, warps.collect()),
+            mesh,
+            edges: source.edges.to_vec(),
+            rows,
+            node_of,
+            node_near: (0..count as u32).collect(),
+            size,
+        }
+    }
+
+    /// As many as the mesh has vertices, on a lattice along warp and weft and on the border; none if triangles between them overlap.
+    pub fn on_lattice(source: &Source) -> Option<Self> {
+        let Source { faces, positions, normals, .. } = source;
+        let size = source.cell_size();
+        let frames = frames::frames(faces, &source.directions, normals);
+        let lattice = Lattice::of(positions, source.edges, &frames, size);
+        let chosen = Choice { source, lattice: &lattice, size }.places();
+        let mut triangulation = Triangulation::of(faces, positions, normals);
+        let joined = triangulation.join(&chosen);
+
+        // Nodes in the order of the triangles.
+        let mut number: Vec<Option<u32>> = vec![None; joined.len()];
+        let mut places: Vec<Place> = Vec::new();
+        let mut node_of = vec![None; positions.len()];
+        let mut node_at = |vertex: u32| {
+            *number[vertex as usize].get_or_insert_with(|| {
+                let node = places.len() as u32;
+                let place = joined[vertex as usize].unwrap_or_else(|| source.at_vertex(vertex));
+                if let Some(vertex) = place.vertex {
+                    node_of[vertex as usize] = Some(node);
+                }
+                places.push(place);
+                node
+            })
+        };
+        let triangles: Vec<[u32; 3]> =
+            triangulation.triangles().map(|corners| corners.map(&mut node_at)).collect();
+        let node_near = (0..positions.len() as u32)
+            .map(|vertex| number[triangulation.left_of(vertex) as usize].unwrap_or_default());
+        let node_near = node_near.collect();
+
+        let is_pinned = |node: usize| source.free_part(&places[node]) < LEAST_FREE;
+        let of_triangle = |node: usize| source.terms(&places[node]);
+        let rows = node_rows::rows(&places, source, size, is_pinned, of_triangle);
+        let edges = topology::edges(&triangles).ok()?;
+        let count = places.len();
+        let mesh = RestMesh {
+            positions: source.interpolated(&rows),
+            uv: vec![Vec2::ZERO; count],
+            triangles,
+            particle_of_vertex: (0..count as u32).collect(),
+            areas: vec![0.0; count],
+            inverse_areas: (0..count).map(|at| if is_pinned(at) { 0.0 } else { 1.0 }).collect(),
+        };
+        let node_faces = Faces::new(&mesh.positions, &mesh.triangles, &edges);
+        let warps = nearest_warps(source, &node_faces, size);
+        Some(Self {
+            directions: Directions::of_warps(&node_faces, warps),
+            mesh,
+            edges,
+            rows,
+            node_of,
+            node_near,
+            size,
+        })
+    }
+
+    /// How particles follow the nodes, and take these along, given the cells of nodes; none without cells.
+    pub fn transfer<'a>(
+        &self,
+        source: &Source,
+        cells: impl Iterator<Item = &'a [u32]>,
+    ) -> Option<GridTransfer> {
+        let cells = Cells::new(cells, &self.mesh.positions, self.size);
+        let mut particles = Interpolation::default();
+        let mut heights = Vec::new();
+        for (particle, &at) in (0_u32..).zip(&source.positions) {
+            if source.mesh.is_pinned(particle) {
+                particles.push([]);
+            } else if let Some(from) = self.node_of[particle as usize] {
+                particles.push([Term { from, weight: 1.0 }]);
+            } else {
+                let normal = source.normals[particle as usize];
+                let near = self.node_near[particle as usize];
+                let within = cells.of(particle, at, normal, near)?;
+                particles.push(within.terms);
+                heights.extend(within.height);
+            }
+        }
+        let is_free = |node: usize| !self.mesh.is_pinned(node as u32);
+        let mut transfer = GridTransfer {
+            held: self.rows.rows_where(|node| !is_free(node)).grouped(),
+            nodes: self.rows.clone().grouped(),
+            particles,
+            means: Interpolation::default(),
+            moved_areas: Vec::new(),
+            heights,
+            joined: Vec::new(),
+        };
+        transfer.moved_areas = transfer.node_masses(&source.mesh.free_areas());
+        let means = transfer.particles.adjoint(&source.mesh.areas, &transfer.moved_areas, is_free);
+        transfer.means = means.grouped();
+        transfer.particles = core::mem::take(&mut transfer.particles).grouped();
+        Some(transfer)
+    }
+}
+
+/// The warp in each triangle between nodes: that of the triangle of the mesh that is nearest and faces the same way.
+fn nearest_warps(source: &Source, of: &Faces, size: f64) -> Vec<Vec3> {
+    let faces = &source.faces;
+    let mut boxes = Boxes::new(size);
+    for triangle in 0..faces.count() as u32 {
+        let centre = faces.centre(triangle).as_dvec3();
+        boxes.add([centre - size, centre + size], triangle);
+    }
+    let warp = |triangle: u32| {
+        let (centre, normal) = (of.centre(triangle), of.normals[triangle as usize]);
+        let away = |other: &u32| {
+            let is_alike = faces.normals[*other as usize].dot(normal) > 0.0;
+            let away = faces.centre(*other).as_dvec3().distance(centre.as_dvec3());
+            if is_alike { away } else { away + size }
+        };
+        let near = boxes.at(centre.as_dvec3()).iter();
+        let nearest = near.min_by(|one, other| away(one).total_cmp(&away(other)));
+        let [a, b, _] = of.corners(triangle);
+        let warp = nearest.map(|at| source.directions.of_triangle(*at, Towards::Warp));
+        warp.unwrap_or(b - a).reject_from(normal).normalize_or(Vec3::X)
+    };
+    (0..of.count() as u32).map(warp).collect()
+}
+
+/// Barycentric coordinates of a point in the plane of a triangle.
+fn barycentric(at: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
+    let normal = (b - a).cross(c - a);
+    let part =
+        |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(normal) / normal.length_squared();
+    [part(b, c), part(c, a), part(a, b)]
+}
+
+/// The point of a triangle nearest to another.
+fn nearest(at: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
+    let weights = barycentric(at, [a, b, c]);
+    if weights.iter().all(|weight| *weight >= 0.0) {
+        return a * weights[0] + b * weights[1] + c * weights[2];
+    }
+    let on_side = |from: DVec3, to: DVec3| {
+        let part = (at - from).dot(to - from) / (to - from).length_squared();
+        from.lerp(to, part.clamp(0.0, 1.0))
+    };
+    let nearer = |one: DVec3, other: DVec3| {
+        if other.distance_squared(at) < one.distance_squared(at) { other } else { one }
+    };
+    nearer(nearer(on_side(a, b), on_side(b, c)), on_side(c, a))
+}

@@ -1,0 +1,197 @@
+//! The places of nodes on a mesh: at pins, along its border, at whole phases of the lattice within, and at vertices where these leave gaps.
+
+use std::collections::BTreeMap;
+
+use glam::{DVec2, DVec3, IVec3};
+
+use super::nearest;
+use super::phases::Lattice;
+use super::source::Source;
+use crate::fabric::laid_yarns::Faces;
+
+/// Least distance between two nodes along the surface, in cells. Larger: gaps. Smaller: short links, which need more substeps.
+pub(super) const LEAST_DISTANCE: f64 = 0.6;
+
+/// The same from a place on the border, on which distances are measured along it, too.
+const LEAST_AT_BORDER: f64 = 0.1;
+
+/// The same between pins. Larger: nodes beside a pin that is none do not follow it.
+const LEAST_BETWEEN_PINS: f64 = 0.4;
+
+/// Least distance of a vertex in a gap from nodes, in cells.
+const GAP: f64 = 0.9;
+
+/// How far a place may lie outside of a triangle in which it counts, as a part of it.
+const OUTSIDE: f64 = 1e-3;
+
+/// A place on a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub triangle: u32,
+    /// Barycentric coordinates.
+    pub weights: [f64; 3],
+    pub at: DVec3,
+    pub normal: DVec3,
+    /// The vertex that it is.
+    pub vertex: Option<u32>,
+}
+
+/// What places are chosen from.
+pub(super) struct Choice<'a> {
+    pub source: &'a Source<'a>,
+    pub lattice: &'a Lattice,
+    /// Size of a cell, m.
+    pub size: f64,
+}
+
+impl Choice<'_> {
+    /// The places of nodes, no two of them too near one another.
+    pub fn places(&self) -> Vec<Place> {
+        let faces = &self.source.faces;
+        let mut chosen = Chosen::new(faces, self.size);
+        let at_vertices = self.at_vertices();
+        let is_given = self.given();
+        for (place, _) in at_vertices.iter().zip(&is_given).filter(|(_, is_given)| **is_given) {
+            chosen.add(*place, LEAST_BETWEEN_PINS);
+        }
+        for place in self.on_border(&is_given) {
+            chosen.add(place, LEAST_AT_BORDER);
+        }
+        for triangle in 0..faces.count() as u32 {
+            for place in self.within(triangle) {
+                chosen.add(place, LEAST_DISTANCE);
+            }
+        }
+        for place in at_vertices {
+            chosen.add(place, GAP);
+        }
+        chosen.places
+    }
+
+    /// Whether each vertex is a node: pins, but for those between pins at the border, on whose edges nodes are pinned, too, and
+    /// those among pins.
+    fn given(&self) -> Vec<bool> {
+        let Source { mesh, faces, positions, .. } = self.source;
+        let mut free_near = vec![0; positions.len()];
+        let mut pins_beside = vec![0; positions.len()];
+        for triangle in 0..faces.count() as u32 {
+            let corners = faces.particles(triangle);
+            for side in 0..3 {
+                let [one, other] = [corners[side], corners[(side + 1) % 3]];
+                let is_border = faces.across(triangle, side).is_none();
+                for [here, there] in [[one, other], [other, one]] {
+                    match mesh.is_pinned(there) {
+                        true => pins_beside[here as usize] += u32::from(is_border),
+                        false => free_near[here as usize] += 1,
+                    }
+                }
+            }
+        }
+        let is_given = |vertex: usize| {
+            let is_between = pins_beside[vertex] == 2 || free_near[vertex] == 0;
+            mesh.is_pinned(vertex as u32) && !is_between
+        };
+        (0..positions.len()).map(is_given).collect()
+    }
+
+    /// A place at each vertex.
+    fn at_vertices(&self) -> Vec<Place> {
+        let Source { faces, positions, .. } = self.source;
+        let mut places = vec![None; positions.len()];
+        for triangle in 0..faces.count() as u32 {
+            for (corner, vertex) in faces.particles(triangle).into_iter().enumerate() {
+                let weights = [0, 1, 2].map(|at| if at == corner { 1.0 } else { 0.0 });
+                places[vertex as usize].get_or_insert_with(|| self.place(triangle, weights));
+            }
+        }
+        places.into_iter().flatten().collect()
+    }
+
+    /// The place with some barycentric coordinates.
+    pub fn place(&self, triangle: u32, weights: [f64; 3]) -> Place {
+        let Source { faces, positions, normals, .. } = self.source;
+        let corners = faces.particles(triangle);
+        let sum = |of: &[DVec3]| -> DVec3 {
+            corners.iter().zip(weights).map(|(&at, weight)| of[at as usize] * weight).sum()
+        };
+        let vertex = (0..3).find(|&at| weights[at] == 1.0).map(|at| corners[at]);
+        let normal = sum(normals).normalize_or_zero();
+        Place { triangle, weights, at: sum(positions), normal, vertex }
+    }
+
+    /// Places with whole phases in a triangle.
+    fn within(&self, triangle: u32) -> Vec<Place> {
+        let corners = self.source.faces.particles(triangle);
+        let Some([a, b, c]) = self.lattice.of_triangle(corners) else { return Vec::new() };
+        let (along, across) = (b - a, c - a);
+        let area = along.perp_dot(across);
+        if area <= 0.0 {
+            return Vec::new();
+        }
+        let (least, most) = (a.min(b).min(c).ceil(), a.max(b).max(c).floor());
+        let mut places = Vec::new();
+        for x in least.x as i64..=most.x as i64 {
+            for y in least.y as i64..=most.y as i64 {
+                let at = DVec2::new(x as f64, y as f64) - a;
+                let (v, w) = (at.perp_dot(across) / area, along.perp_dot(at) / area);
+                let weights = [1.0 - v - w, v, w];
+                if weights.iter().all(|weight| *weight > -OUTSIDE) {
+                    let weights = weights.map(|weight| weight.max(0.0));
+                    let sum: f64 = weights.iter().sum();
+                    places.push(self.place(triangle, weights.map(|weight| weight / sum)));
+                }
+            }
+        }
+        places
+    }
+}
+
+/// Places that are chosen.
+struct Chosen<'a> {
+    faces: &'a Faces<'a>,
+    size: f64,
+    places: Vec<Place>,
+    /// Indices of places by the box of a cell's size that they lie in.
+    in_boxes: BTreeMap<[i32; 3], Vec<u32>>,
+}
+
+impl<'a> Chosen<'a> {
+    fn new(faces: &'a Faces<'a>, size: f64) -> Self {
+        Self { faces, size, places: Vec::new(), in_boxes: BTreeMap::new() }
+    }
+
+    /// Adds a place unless one is nearer than a distance along the surface, in cells.
+    fn add(&mut self, place: Place, least: f64) {
+        let reach = least * self.size;
+        let middle = (place.at / self.size).floor().as_ivec3();
+        let boxes = (0..27).map(|at| middle + IVec3::new(at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1));
+        let near = boxes.filter_map(|at| self.in_boxes.get(&at.to_array())).flatten();
+        let near = near.map(|&at| &self.places[at as usize]);
+        let near = near.filter(|other| other.at.distance(place.at) < reach);
+        let near: Vec<u32> = near.map(|other| other.triangle).collect();
+        if near.is_empty() || !self.reaches(&place, reach, &near) {
+            self.in_boxes.entry(middle.to_array()).or_default().push(self.places.len() as u32);
+            self.places.push(place);
+        }
+    }
+
+    /// Whether one of some triangles is reached from a place through triangles within a distance, m.
+    fn reaches(&self, place: &Place, distance: f64, triangles: &[u32]) -> bool {
+        let mut reached = vec![place.triangle];
+        let mut next = 0;
+        while let Some(&triangle) = reached.get(next) {
+            if triangles.contains(&triangle) {
+                return true;
+            }
+            next += 1;
+            for other in self.faces.neighbours(triangle) {
+                let corners = self.faces.corners(other).map(|corner| corner.as_dvec3());
+                let is_near = || nearest(place.at, corners).distance(place.at) < distance;
+                if !reached.contains(&other) && is_near() {
+                    reached.push(other);
+                }
+            }
+        }
+        false
+    }
+}
