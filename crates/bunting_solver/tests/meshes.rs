@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion, Grid,
-    LaneCount, StepLimits, StepSettings,
+    LaneCount, StepLimits, StepSettings, StretchSolver,
 };
 use glam::{Quat, Vec2, Vec3};
 use irregular::irregular;
@@ -243,7 +243,7 @@ fn each_piece_of_a_texture_stretches_by_its_own_warp() {
     }
 }
 
-/// A sheet with a slit of a millimetre from the middle of its lower edge up to its centre. It has laid yarns.
+/// A sheet with a slit of a millimetre from the middle of its lower edge up to its centre. Its nodes lie beside its particles.
 fn with_a_slit(flat: &Fabric, is_pinned: fn(Vec3) -> bool) -> Fabric {
     let count = flat.particle_count() as u32;
     let n = libm::sqrtf(count as f32) as u32;
@@ -264,6 +264,19 @@ fn with_a_slit(flat: &Fabric, is_pinned: fn(Vec3) -> bool) -> Fabric {
     }
     let builder = FabricBuilder::new(positions, indices.into_flattened());
     builder.pin_where(|at, _| is_pinned(at)).build().expect("a good fabric")
+}
+
+/// With laid yarns it sank 12 % too far, and along the lines of its uneven quads 200 %.
+#[test]
+fn a_sheet_with_a_slit_has_its_materials_strain() {
+    let expected = ISOTROPIC.area_density * GRAVITY / (2.0 * ISOTROPIC.weft_stiffness);
+    for n in [17, 33] {
+        let fabric = Arc::new(with_a_slit(&irregular(n, 0.0), |at| at.y == 0.0));
+        assert_eq!(fabric.stretch_solver(), StretchSolver::QuadLines);
+        let [sunk, speed] = hung(&fabric, ISOTROPIC);
+        let error = sunk / expected - 1.0;
+        assert!(speed < 1e-3 && error.abs() < 0.04, "{n} × {n}: {error}, {speed} m/s");
+    }
 }
 
 /// A mesh of quads with three openings is held by its own lines. With laid yarns a tick took 2.5 times as long.
@@ -308,14 +321,15 @@ fn a_slit_is_not_sewn_up() {
     assert!(ends.len() == 2 && ends[0].distance(ends[1]) > 0.02, "{ends:?}");
 }
 
-/// The families of yarns agree slowly. Without a first pass that goes farther the error was +32 %, with it +19 %.
+/// The families of yarns agree slowly. Without a first pass that goes farther the error of a larger mesh was +32 %, with it +19 %.
 #[test]
 fn the_yarns_of_a_stiff_mesh_come_nearer_to_one_another_in_a_pass_that_goes_farther() {
     let expected = ISOTROPIC.area_density * GRAVITY / (2.0 * ISOTROPIC.weft_stiffness);
-    let fabric = Arc::new(with_a_slit(&irregular(17, 0.0), |at| at.y == 0.0));
+    let fabric = Arc::new(with_a_slit(&irregular(5, 0.0), |at| at.y == 0.0));
+    assert_eq!(fabric.stretch_solver(), StretchSolver::LaidYarns);
     let [sunk, speed] = hung(&fabric, ISOTROPIC);
     let error = sunk / expected - 1.0;
-    assert!(speed < 1e-3 && error.abs() < 0.25, "{error}, {speed} m/s");
+    assert!(speed < 1e-3 && error.abs() < 0.4, "{error}, {speed} m/s");
 }
 
 /// The first and the last row of nodes are one. Where they are not joined the seam opens: 38 % and 67 %.
@@ -581,6 +595,8 @@ fn a_mesh_has_the_same_bits_at_every_width() {
         cap(&flat),
         of_two_pieces(&flat, |at| at.y == 0.0),
         with_a_slit(&flat, |at| at.y == 0.0),
+        // Uneven meshes without pins have laid yarns.
+        unpinned(&with_a_slit(&flat, |at| at.y == 0.0)),
         trousers(),
         bent(&with_a_hole(&flat), CLOSED),
         ribbon(),
@@ -612,8 +628,10 @@ fn a_mesh_that_moves_to_another_batch_keeps_its_bits() {
     let (plane, bent) = (irregular(13, 0.0), bent(&flat, 0.3));
     let disk = disk(&flat);
     let curved = [cap(&flat), bent, bent_holed, closed_holed, untextured, funnel];
-    for fabric in
-        [plane, holed, disk, pieces, slit, trousers()].into_iter().chain(curved).map(Arc::new)
+    for fabric in [plane, holed, disk, pieces, unpinned(&slit), slit, trousers()]
+        .into_iter()
+        .chain(curved)
+        .map(Arc::new)
     {
         let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
         let wind = Vec3::new(6.0, 0.0, 4.0);

@@ -33,6 +33,9 @@ use super::yarns::Yarns;
 /// have 0.04 and 0.09 stretch by 30 and 210 % too far where their material stretches by 10⁻⁴, by 4 and 29 % where that is 10⁻³.
 const MOST_ZIGZAG: f32 = 0.03;
 
+/// The same of a mesh without pins, whose nodes are particles always: what moves between nodes and particles would change its momentum.
+const MOST_ZIGZAG_OF_FREE: f32 = 0.07;
+
 /// Least part of the triangles of a mesh that must be halves of quads. Smaller: where cells are triangles, lines end.
 const LEAST_PART: f32 = 0.9;
 
@@ -112,24 +115,30 @@ impl Wires {
         Self { cells, lines, zigzag, part_of_quads }
     }
 
-    fn are_straight(&self) -> bool {
-        self.zigzag <= MOST_ZIGZAG
+    /// Whether all cells are quads, and their lines straight.
+    fn are_even(&self) -> bool {
+        self.zigzag <= MOST_ZIGZAG && self.part_of_quads == 1.0
     }
 }
 
 impl Net {
     /// The net of a mesh: of its quads, with nodes beside the particles if lines through these zigzag, or of quads on a lattice. None of few
-    /// particles, of a Möbius strip, and of a mesh on whose lattice few cells are quads.
+    /// particles, of a Möbius strip, of a mesh on whose lattice few cells are quads, and of uneven meshes without pins.
     pub fn of(mesh: &RestMesh, surface: &Surface) -> Option<Self> {
         if mesh.positions.len() < FEWEST_PARTICLES {
             return None;
         }
         let source = Source::new(mesh, surface);
         let own = Wires::of(mesh, source.edges, LEAST_PART);
-        if let Some(own) = own.as_ref().filter(|own| own.are_straight()) {
+        let is_free = !mesh.inverse_areas.contains(&0.0);
+        let most_zigzag = if is_free { MOST_ZIGZAG_OF_FREE } else { MOST_ZIGZAG };
+        if let Some(own) = own.as_ref().filter(|own| own.zigzag <= most_zigzag) {
             let transfer = identity(mesh);
             let net = Self::new(mesh, source.edges, &source.directions, own, transfer);
             return Some(Self { nodes_are_particles: true, ..net });
+        }
+        if is_free {
+            return None;
         }
         let faired = own.map(|own| {
             let threes: Vec<[u32; 3]> = own.lines.iter().flat_map(Line::threes).collect();
@@ -142,13 +151,13 @@ impl Net {
             let wires = Wires::of(&nodes.mesh, &nodes.edges, LEAST_PART_OF_LATTICE)?;
             Some((nodes, wires))
         };
-        let is_even = |wires: &Wires| wires.are_straight() && wires.part_of_quads == 1.0;
-        let (nodes, wires) = match (faired, on_lattice) {
-            (Some((nodes, wires)), _) if is_even(&wires) => (nodes, wires),
-            (faired, on_lattice) => faired
-                .into_iter()
-                .chain(on_lattice())
-                .max_by(|(_, one), (_, other)| one.part_of_quads.total_cmp(&other.part_of_quads))?,
+        let part_of_quads = |(_, wires): &(Nodes, Wires)| wires.part_of_quads;
+        let (nodes, wires) = match faired {
+            Some(faired) if faired.1.are_even() => faired,
+            faired => {
+                let found = faired.into_iter().chain(on_lattice());
+                found.max_by(|one, other| part_of_quads(one).total_cmp(&part_of_quads(other)))?
+            }
         };
         let cells = wires.cells.iter().map(|cell| &cell.nodes[..]);
         let transfer = nodes.transfer(&source, cells)?;

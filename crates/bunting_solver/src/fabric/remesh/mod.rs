@@ -15,6 +15,8 @@ mod phase_energy;
 mod phases;
 mod places;
 mod source;
+#[cfg(test)]
+mod tests;
 mod triangulation;
 
 use glam::{DVec3, Vec2, Vec3};

@@ -1,0 +1,172 @@
+use glam::{Mat3, Vec3};
+
+use crate::fabric::topology;
+use crate::fabric::{Background, Fabric, FabricBuilder, Height};
+
+/// Columns and rows of quads of a sheet, and the row in which a slit from below ends.
+const COLUMNS: u32 = 24;
+const ROWS: u32 = 20;
+const TIP: u32 = 9;
+
+/// A sheet of a metre with a slit from below, whose inner vertices are moved by up to a part of a cell and whose quads are halved either
+/// way at random.
+fn slit_sheet(moved: f32) -> FabricBuilder {
+    let mut state = 1_u32;
+    let mut random = move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / 8_388_608.0 - 1.0
+    };
+    let cell = 1.0 / COLUMNS as f32;
+    let middle = COLUMNS / 2;
+    let mut positions = Vec::new();
+    for row in 0..=ROWS {
+        for column in 0..=COLUMNS {
+            let is_inner = (1..ROWS).contains(&row) && (1..COLUMNS).contains(&column);
+            let shift = if is_inner && column != middle { moved } else { 0.0 };
+            let at = [column as f32 + shift * random(), -(row as f32 + shift * random()), 0.0];
+            positions.push(Vec3::from(at) * cell);
+        }
+    }
+    let mut numbers = vec![None; positions.len()];
+    let mut beside = |column: u32, at: u32| {
+        let at_slit = at % (COLUMNS + 1) == middle && at / (COLUMNS + 1) > TIP;
+        if !at_slit || column < middle {
+            return at;
+        }
+        // The other side of the slit, half of a millimetre away.
+        let next = positions.len() as u32;
+        *numbers[at as usize].get_or_insert_with(|| {
+            positions.push(positions[at as usize] + Vec3::X * 5e-4);
+            next
+        })
+    };
+    let mut indices = Vec::new();
+    for row in 0..ROWS {
+        for column in 0..COLUMNS {
+            let first = row * (COLUMNS + 1) + column;
+            let corners = [first, first + COLUMNS + 1, first + COLUMNS + 2, first + 1];
+            let [a, b, c, d] = corners.map(|at| beside(column, at));
+            let falls = random() < 0.0;
+            indices.extend(if falls { [a, b, c, a, c, d] } else { [b, c, d, b, d, a] });
+        }
+    }
+    FabricBuilder::new(positions, indices).pin_where(|at, _| at.y == 0.0)
+}
+
+/// A ball of a decimetre of triangles around the corners of an icosahedron, each halved three times.
+fn ball() -> FabricBuilder {
+    let long = 0.5 * (1.0 + 5.0_f32.sqrt());
+    let corner = |one: f32, other: f32| {
+        [Vec3::new(0.0, one, other), Vec3::new(one, other, 0.0), Vec3::new(other, 0.0, one)]
+    };
+    let signs = [(1.0, long), (1.0, -long), (-1.0, long), (-1.0, -long)];
+    let corners: Vec<Vec3> =
+        signs.into_iter().flat_map(|(one, other)| corner(one, other)).collect();
+    let mut faces = Vec::new();
+    for (at, &a) in corners.iter().enumerate() {
+        for (next, &b) in corners.iter().enumerate().skip(at + 1) {
+            for &c in &corners[next + 1..] {
+                let are_near = [(a, b), (b, c), (c, a)].iter().all(|(a, b)| a.distance(*b) < 2.1);
+                if are_near {
+                    let is_outside = (b - a).cross(c - a).dot(a) > 0.0;
+                    faces.push(if is_outside { [a, b, c] } else { [a, c, b] });
+                }
+            }
+        }
+    }
+    for _ in 0..3 {
+        let halved = faces.into_iter().flat_map(|[a, b, c]| {
+            let [ab, bc, ca] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
+            [[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]
+        });
+        faces = halved.collect();
+    }
+    let positions: Vec<Vec3> = faces.iter().flatten().map(|at| at.normalize() * 0.1).collect();
+    let indices = (0..positions.len() as u32).collect();
+    FabricBuilder::new(positions, indices).weld_distance(1e-4).pin_where(|at, _| at.y > 0.095)
+}
+
+fn built(builder: FabricBuilder) -> Fabric {
+    builder.build().expect("a good fabric")
+}
+
+fn net(fabric: &Fabric) -> &Background {
+    let background = fabric.background().expect("a net");
+    assert!(background.fabric.is_net());
+    background
+}
+
+/// Vertices less edges plus triangles.
+fn euler(triangles: &[[u32; 3]], count: usize) -> i64 {
+    let edges = topology::edges(triangles).expect("a manifold").len();
+    (count + triangles.len()) as i64 - edges as i64
+}
+
+/// Where the net puts a particle while its nodes are at rest.
+fn followed(fabric: &Fabric, particle: usize) -> Vec3 {
+    let Background { fabric: net, transfer, .. } = net(fabric);
+    let row = transfer.particles.row(particle).iter();
+    let below: Vec3 = row.map(|term| net.rest_positions()[term.from as usize] * term.weight).sum();
+    let height = transfer.heights.iter().find(|height| height.particle as usize == particle);
+    let above = height.map(|Height { nodes, along, height, .. }| {
+        let [a, b, c, d] = nodes.map(|node| net.rest_positions()[node as usize]);
+        let (one, other) = (b - a, d - c);
+        let frame = Mat3::from_cols(one, other, one.cross(other).normalize());
+        frame * Vec3::new(along[0], along[1], *height)
+    });
+    below + above.unwrap_or_default()
+}
+
+#[test]
+fn particles_follow_nodes_at_rest_to_their_own_places() {
+    for fabric in [built(slit_sheet(0.15)), built(slit_sheet(0.45)), built(ball())] {
+        for (particle, rest) in fabric.rest_positions().iter().enumerate() {
+            let away = followed(&fabric, particle).distance(*rest);
+            assert!(fabric.is_pinned(particle) || away < 1e-6, "{particle}: {away} m");
+        }
+    }
+}
+
+#[test]
+fn nodes_have_the_topology_of_the_mesh() {
+    for fabric in [built(slit_sheet(0.45)), built(ball())] {
+        let net = &net(&fabric).fabric;
+        assert_eq!(
+            euler(net.triangles(), net.particle_count()),
+            euler(fabric.triangles(), fabric.particle_count()),
+        );
+    }
+}
+
+/// A node on one side of a slit moves with no particle of the other side.
+#[test]
+fn a_lattice_ends_at_a_slit() {
+    let fabric = built(slit_sheet(0.45));
+    let Background { fabric: net, transfer, .. } = net(&fabric);
+    let slit = 0.5 + 2.5e-4;
+    let below_tip = |at: Vec3| at.y < -(TIP as f32 + 3.0) / COLUMNS as f32;
+    for (particle, rest) in fabric.rest_positions().iter().enumerate() {
+        for term in transfer.particles.row(particle) {
+            let node = net.rest_positions()[term.from as usize];
+            let is_beyond = (node.x < slit) != (rest.x < slit);
+            assert!(!(below_tip(*rest) && is_beyond), "{rest} follows {node}");
+        }
+    }
+}
+
+/// Lines of uneven quads are straight, with nodes beside the vertices or on a lattice.
+#[test]
+fn links_along_lines_are_alike() {
+    for moved in [0.15, 0.45] {
+        let fabric = built(slit_sheet(moved));
+        let net = &net(&fabric).fabric;
+        let lines = net.yarns().iter().filter(|yarn| yarn.links.len() > 1);
+        let turns = lines.flat_map(|line| line.particles.windows(3)).map(|three| {
+            let [a, b, c] = [0, 1, 2].map(|at| net.rest_positions()[three[at] as usize]);
+            (b - a).angle_between(c - b)
+        });
+        let turns: Vec<f32> = turns.collect();
+        let mean = turns.iter().sum::<f32>() / turns.len() as f32;
+        assert!(mean < 0.01, "moved by {moved}: {mean} rad");
+    }
+}
