@@ -321,7 +321,7 @@ fn a_slit_is_not_sewn_up() {
     assert!(ends.len() == 2 && ends[0].distance(ends[1]) > 0.02, "{ends:?}");
 }
 
-/// The families of yarns agree slowly. Without a first pass that goes farther the error of a larger mesh was +32 %, with it +19 %.
+/// The families of yarns agree slowly. Without a first pass that goes farther the error is +40 %, with it +32 %.
 #[test]
 fn the_yarns_of_a_stiff_mesh_come_nearer_to_one_another_in_a_pass_that_goes_farther() {
     let expected = ISOTROPIC.area_density * GRAVITY / (2.0 * ISOTROPIC.weft_stiffness);
@@ -329,7 +329,7 @@ fn the_yarns_of_a_stiff_mesh_come_nearer_to_one_another_in_a_pass_that_goes_fart
     assert_eq!(fabric.stretch_solver(), StretchSolver::LaidYarns);
     let [sunk, speed] = hung(&fabric, ISOTROPIC);
     let error = sunk / expected - 1.0;
-    assert!(speed < 1e-3 && error.abs() < 0.4, "{error}, {speed} m/s");
+    assert!(speed < 1e-3 && error.abs() < 0.36, "{error}, {speed} m/s");
 }
 
 /// The first and the last row of nodes are one. Where they are not joined the seam opens: 38 % and 67 %.
