@@ -45,6 +45,11 @@ pub(super) fn cells(mesh: &RestMesh, edges: &[Edge], least_part: f32) -> Option<
         nodes: corners.to_vec(),
         triangles: vec![triangle],
     }));
+    are_alike(&cells, mesh).then_some(cells)
+}
+
+/// Whether the sides of cells are alike enough in length.
+pub(super) fn are_alike(cells: &[Cell], mesh: &RestMesh) -> bool {
     let lengths = cells.iter().flat_map(Cell::sides).map(|ends| {
         let [one, other] = mesh.positions_of(ends);
         one.distance(other)
@@ -54,7 +59,7 @@ pub(super) fn cells(mesh: &RestMesh, edges: &[Edge], least_part: f32) -> Option<
     });
     let has_pins = mesh.inverse_areas.contains(&0.0);
     let most_ratio = if has_pins { MOST_RATIO } else { MOST_RATIO_OF_FREE };
-    (most < most_ratio * least).then_some(cells)
+    most < most_ratio * least
 }
 
 /// The quad that an edge between two triangles halves, if both face the same way.

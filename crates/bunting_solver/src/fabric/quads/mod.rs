@@ -140,11 +140,11 @@ impl Net {
         if is_free {
             return None;
         }
-        let faired = own.map(|own| {
+        let faired = own.and_then(|own| {
             let threes: Vec<[u32; 3]> = own.lines.iter().flat_map(Line::threes).collect();
             let nodes = Nodes::faired(&source, &threes);
             let wires = Wires::along(own.cells, &nodes.mesh);
-            (nodes, wires)
+            cells::are_alike(&wires.cells, &nodes.mesh).then_some((nodes, wires))
         });
         let on_lattice = || {
             let nodes = Nodes::on_lattice(&source)?;
