@@ -57,7 +57,7 @@ pub struct MeshRow {
     pub rms_error_m: f64,
 }
 
-/// The grid and three meshes of as many particles; that with a slit has laid yarns.
+/// The grid and three meshes of as many particles; that with a slit has nodes beside its vertices.
 fn specimens(scene: &Scene) -> [(&'static str, Arc<Fabric>); 4] {
     let at_top = |at: Vec3| at.y == 0.0;
     let sheet = |triangulation| Sheet::new(triangulation, [SIZE; 2], DVec2::ONE, 1);

@@ -125,9 +125,8 @@ fn is_whole(edges: &[Edge], steps: &BTreeMap<[u32; 2], Step>, count: usize) -> V
     for edge in edges.iter().filter(|edge| edge.other_side.is_none()) {
         let step = steps[&edge.ends];
         for (at, step) in edge.ends.into_iter().zip([step, step.back()]) {
-            for axis in 0..2 {
-                let across = step.vector[axis].abs();
-                is_whole[at as usize][axis] |= across < ALONG * step.vector.length();
+            for (axis, is_whole) in is_whole[at as usize].iter_mut().enumerate() {
+                *is_whole |= step.vector[axis].abs() < ALONG * step.vector.length();
             }
         }
     }

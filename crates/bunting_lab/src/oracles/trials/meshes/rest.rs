@@ -113,7 +113,7 @@ fn cylinder(triangulation: Triangulation) -> [Case; 2] {
 
 /// δ/L of meshes whose textures do not say how they lie in the plane, hung from their tops, of a cloth that stretches by a
 /// thousandth, and their speeds at rest: an arc without texture, two pieces whose warps are at right angles, and a sheet with a slit,
-/// which has laid yarns.
+/// whose nodes lie beside its vertices.
 fn without_chart(triangulation: Triangulation) -> [Case; 6] {
     let material = SOFT;
     let sheet = Sheet::new(triangulation, [33, 33], DVec2::ONE, 1);
