@@ -13,7 +13,6 @@ use super::laid_yarns::LaidYarns;
 use super::links::{Link, LinkClass, Links, Probe};
 use super::material::FabricMaterial;
 use super::mesh::{RestMesh, Surface};
-use super::normals::vertex_normals;
 use super::patches::{self, Patch};
 use super::quads::Net;
 use super::rest_bends::RestBends;
@@ -188,9 +187,7 @@ impl Fabric {
     /// area-weighted mean of the normals of each particle's triangles. Zero if these have no area.
     #[must_use]
     pub fn normals(&self, positions: &[Vec3]) -> Vec<Vec3> {
-        let triangles = self.mesh.triangles.iter();
-        let corners = |corners: &[u32; 3]| corners.map(|corner| positions[corner as usize]);
-        vertex_normals(positions.len(), triangles.map(|triangle| (corners(triangle), *triangle)))
+        self.mesh.normals_at(positions)
     }
 
     /// Distance constraints: warp first, then weft, then diagonals. Links between two pinned particles are left out.

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::error::FabricError;
+use super::normals::vertex_normals;
 use super::topology::{self, Edge};
 use super::weld::Weld;
 
@@ -89,11 +90,14 @@ impl RestMesh {
 
     /// Areas of the triangles, m².
     pub fn triangle_areas(&self) -> Vec<f32> {
-        let area = |corners: &[u32; 3]| {
-            let [a, b, c] = self.positions_of(*corners);
-            0.5 * (b - a).cross(c - a).length()
-        };
-        self.triangles.iter().map(area).collect()
+        self.triangles.iter().map(|corners| any_area(self.positions_of(*corners))).collect()
+    }
+
+    /// Unit normals of the particles at given positions, m; zero if their triangles have no area.
+    pub fn normals_at(&self, positions: &[Vec3]) -> Vec<Vec3> {
+        let corners = |corners: &[u32; 3]| corners.map(|corner| positions[corner as usize]);
+        let triangles = self.triangles.iter();
+        vertex_normals(positions.len(), triangles.map(|triangle| (corners(triangle), *triangle)))
     }
 
     /// Takes over the area of each particle, m².
@@ -110,6 +114,11 @@ impl RestMesh {
     pub fn free_areas(&self) -> Vec<f32> {
         let areas = self.areas.iter().zip(&self.inverse_areas);
         areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect()
+    }
+
+    /// Whether any particle is pinned.
+    pub fn has_pins(&self) -> bool {
+        self.inverse_areas.contains(&0.0)
     }
 
     /// Whether a particle is pinned.
@@ -136,8 +145,13 @@ fn triangle_areas(rest: &[Vec3], triangles: &[[u32; 3]]) -> Result<Vec<f32>, Fab
 pub(super) fn area([a, b, c]: [Vec3; 3]) -> Option<f32> {
     let longest =
         (b - a).length_squared().max((c - b).length_squared()).max((a - c).length_squared());
-    let area = 0.5 * (b - a).cross(c - a).length();
+    let area = any_area([a, b, c]);
     (area > LEAST_ASPECT * longest).then_some(area)
+}
+
+/// The same of any triangle.
+fn any_area([a, b, c]: [Vec3; 3]) -> f32 {
+    0.5 * (b - a).cross(c - a).length()
 }
 
 /// Area of each particle, m²: a third of the area of each of its triangles.

@@ -17,7 +17,8 @@ pub enum StretchSolver {
     /// The sides of quads that run through a mesh of any shape: of its own, or of quads that are laid onto its triangles. At 1.5 to 3
     /// times the time of a grid.
     QuadLines,
-    /// Lines laid across the triangles of any other mesh, and of uneven ones without pins: too soft where stiff, at 6 to 13 times the time of a grid.
+    /// Lines laid across the triangles of any other mesh, and of uneven ones without pins: too soft where stiff, at 6 to 13 times
+    /// the time of a grid.
     LaidYarns,
 }
 

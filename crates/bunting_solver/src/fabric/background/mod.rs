@@ -51,7 +51,7 @@ use super::grid::Grid;
 use super::mesh::{RestMesh, Surface};
 
 pub(crate) use self::interpolation::{Interpolation, RowGroup, Term};
-pub(super) use self::smooth::{QUADRATIC, QUARTIC, fit, sum_of_magnitudes};
+pub(super) use self::smooth::{GREATEST_SUM, RADIUS, fit_smooth};
 
 /// Fewest particles of a mesh with a background grid, or with lines of quads. Smaller meshes have no paths that are long.
 pub(super) const FEWEST_PARTICLES: usize = 30;
@@ -98,6 +98,22 @@ pub(crate) struct Height {
     pub along: [f32; 2],
     /// Coordinate along the unit vector product of the tangents, m.
     pub height: f32,
+}
+
+impl Height {
+    /// How far a particle lies away (m) from the surface between nodes, given four of these and their positions; none if two opposite
+    /// ones lie at one place.
+    pub(super) fn of(
+        particle: u32,
+        nodes: [u32; 4],
+        [a, b, c, d]: [Vec3; 4],
+        away: Vec3,
+    ) -> Option<Self> {
+        let frame = Mat3::from_cols(b - a, d - c, (b - a).cross(d - c).normalize_or_zero());
+        let Vec3 { x, y, z } = frame.inverse() * away;
+        let is_finite = x.is_finite() && y.is_finite() && z.is_finite();
+        is_finite.then_some(Self { particle, nodes, along: [x, y], height: z })
+    }
 }
 
 /// A background grid before its constraints are found.
@@ -260,13 +276,8 @@ fn heights(
         let row = rows[particle as usize];
         let below: Vec3 =
             row.iter().map(|term| nodes.positions[term.from as usize] * term.weight).sum();
-        let [a, b, c, d] = nodes.positions_of(corners);
-        let frame = Mat3::from_cols(b - a, d - c, (b - a).cross(d - c).normalize_or_zero());
         let away = mesh.positions[particle as usize] - below;
-        let Vec3 { x, y, z } = frame.inverse() * away;
-        if x.is_finite() && y.is_finite() && z.is_finite() {
-            heights.push(Height { particle, nodes: corners, along: [x, y], height: z });
-        }
+        heights.extend(Height::of(particle, corners, nodes.positions_of(corners), away));
     }
     heights
 }

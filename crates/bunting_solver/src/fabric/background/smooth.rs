@@ -13,13 +13,13 @@ use crate::fabric::grid::Grid;
 
 /// Radius around a node within which places count, in cells, or as much larger as vertices are farther apart. Smaller: too few for
 /// a quartic. Larger: rows around a cylinder of sixteen cells zigzag, and the folds of a few cells are smoothed.
-const RADIUS: f64 = 2.8;
+pub(in crate::fabric) const RADIUS: f64 = 2.8;
 
 /// Least pivot of a fit's normal equations, relative to their largest element. Smaller: fits to places on few lines.
 const LEAST_PIVOT: f64 = 1e-6;
 
 /// Greatest sum of the magnitudes of a row's weights. Larger: a node moves by more than the particles around it.
-const GREATEST_SUM: f32 = 3.0;
+pub(in crate::fabric) const GREATEST_SUM: f32 = 3.0;
 
 /// The same of a node that stands for pins. Larger: beyond the last pin of a rim a node is extrapolated, and edges there are strained.
 /// Smaller: nodes between pins lie on the chords between these.
@@ -30,8 +30,8 @@ const GREATEST_SUM_OF_PINS: f32 = 1.5;
 const OFF_LINE: f64 = 0.05;
 
 /// Numbers of the coefficients of a quartic, of a quadratic and of a plane.
-pub(in crate::fabric) const QUARTIC: usize = 15;
-pub(in crate::fabric) const QUADRATIC: usize = 6;
+const QUARTIC: usize = 15;
+pub(super) const QUADRATIC: usize = 6;
 pub(super) const PLANE: usize = 3;
 
 /// Rows of nodes by fits to the places around them, to pinned ones alone of nodes that stand for pins; the given rows where there
@@ -58,10 +58,8 @@ pub(super) fn smoothed(
         }
         let greatest = if stands_for_pins { GREATEST_SUM_OF_PINS } else { GREATEST_SUM };
         let smooth = |terms: &Vec<Term>| sum_of_magnitudes(terms) < greatest;
-        let quartic = || fit::<QUARTIC>(&near).filter(smooth);
-        let quadratic = || fit::<QUADRATIC>(&near).filter(smooth);
         let along = || fit_along(&near).filter(|terms| stands_for_pins && smooth(terms));
-        match quartic().or_else(quadratic).or_else(along) {
+        match fit_smooth(&near, greatest).or_else(along) {
             Some(terms) => smoothed.push(terms),
             None => smoothed.push(row.iter().copied()),
         }
@@ -109,9 +107,16 @@ impl<'a> PlacesInCells<'a> {
     }
 }
 
+/// [`fit`] of a quartic, or of a quadratic, whose weights have a sum of magnitudes below the greatest; none if neither has.
+pub(in crate::fabric) fn fit_smooth(near: &[(u32, DVec3)], greatest: f32) -> Option<Vec<Term>> {
+    let smooth = |terms: &Vec<Term>| sum_of_magnitudes(terms) < greatest;
+    let quadratic = || fit::<QUADRATIC>(near).filter(smooth);
+    fit::<QUARTIC>(near).filter(smooth).or_else(quadratic)
+}
+
 /// Weights of the values at places, given relative to the node with a weight as third coordinate, in the value at the
 /// node of the polynomial that is fitted to them; none if they do not determine it.
-pub(in crate::fabric) fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
+pub(super) fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
     fit_powers(near, powers::<TERMS>)
 }
 
@@ -183,7 +188,7 @@ fn fit_along(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
 }
 
 /// Sum of the magnitudes of a row's weights.
-pub(in crate::fabric) fn sum_of_magnitudes(terms: &[Term]) -> f32 {
+pub(super) fn sum_of_magnitudes(terms: &[Term]) -> f32 {
     terms.iter().map(|term| term.weight.abs()).sum()
 }
 

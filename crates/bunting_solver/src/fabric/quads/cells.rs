@@ -57,8 +57,7 @@ pub(super) fn are_alike(cells: &[Cell], mesh: &RestMesh) -> bool {
     let (least, most) = lengths.fold((f32::INFINITY, 0.0_f32), |(least, most), length| {
         (least.min(length), most.max(length))
     });
-    let has_pins = mesh.inverse_areas.contains(&0.0);
-    let most_ratio = if has_pins { MOST_RATIO } else { MOST_RATIO_OF_FREE };
+    let most_ratio = if mesh.has_pins() { MOST_RATIO } else { MOST_RATIO_OF_FREE };
     most < most_ratio * least
 }
 

@@ -23,7 +23,6 @@ use super::bending::Bending;
 use super::laid_yarns::Directions;
 use super::links::Links;
 use super::mesh::{RestMesh, Surface};
-use super::normals::vertex_normals;
 use super::remesh::{Nodes, Source};
 use super::rest_bends::RestBends;
 use super::topology::Edge;
@@ -89,8 +88,8 @@ impl Cell {
     }
 }
 
-/// Cells of a mesh, and the lines along their sides.
-struct Wires {
+/// A mesh of quads and few triangles, and the lines along their sides.
+struct QuadMesh {
     cells: Vec<Cell>,
     lines: Vec<Line>,
     /// Mean zigzag of the lines, rad.
@@ -99,24 +98,23 @@ struct Wires {
     part_of_quads: f32,
 }
 
-impl Wires {
-    /// Those of a mesh, if the given part of its triangles are halves of quads.
+impl QuadMesh {
+    /// That of a mesh of triangles, if the given part of its triangles are halves of quads.
     fn of(mesh: &RestMesh, edges: &[Edge], least_part: f32) -> Option<Self> {
         Some(Self::along(cells::cells(mesh, edges, least_part)?, mesh))
     }
 
     fn along(cells: Vec<Cell>, mesh: &RestMesh) -> Self {
         let lines = lines::lines(&cells, &mesh.positions);
-        let corners = mesh.triangles.iter().map(|it| (mesh.positions_of(*it), *it));
-        let normals = vertex_normals(mesh.positions.len(), corners);
+        let normals = mesh.normals_at(&mesh.positions);
         let zigzag = lines::zigzag(&lines, &mesh.positions, &normals);
         let quads = cells.iter().filter(|cell| cell.triangles.len() == 2).count();
         let part_of_quads = (2 * quads) as f32 / mesh.triangles.len() as f32;
         Self { cells, lines, zigzag, part_of_quads }
     }
 
-    /// Whether all cells are quads, and their lines straight.
-    fn are_even(&self) -> bool {
+    /// Whether all cells are quads, and the lines along their sides straight.
+    fn is_even(&self) -> bool {
         self.zigzag <= MOST_ZIGZAG && self.part_of_quads == 1.0
     }
 }
@@ -129,46 +127,45 @@ impl Net {
             return None;
         }
         let source = Source::new(mesh, surface);
-        let own = Wires::of(mesh, source.edges, LEAST_PART);
-        let is_free = !mesh.inverse_areas.contains(&0.0);
-        let most_zigzag = if is_free { MOST_ZIGZAG_OF_FREE } else { MOST_ZIGZAG };
+        let own = QuadMesh::of(mesh, source.edges, LEAST_PART);
+        let most_zigzag = if mesh.has_pins() { MOST_ZIGZAG } else { MOST_ZIGZAG_OF_FREE };
         if let Some(own) = own.as_ref().filter(|own| own.zigzag <= most_zigzag) {
             let transfer = identity(mesh);
             let net = Self::new(mesh, source.edges, &source.directions, own, transfer);
             return Some(Self { nodes_are_particles: true, ..net });
         }
-        if is_free {
+        if !mesh.has_pins() {
             return None;
         }
         let faired = own.and_then(|own| {
             let threes: Vec<[u32; 3]> = own.lines.iter().flat_map(Line::threes).collect();
             let nodes = Nodes::faired(&source, &threes);
-            let wires = Wires::along(own.cells, &nodes.mesh);
-            cells::are_alike(&wires.cells, &nodes.mesh).then_some((nodes, wires))
+            let quads = QuadMesh::along(own.cells, &nodes.mesh);
+            cells::are_alike(&quads.cells, &nodes.mesh).then_some((nodes, quads))
         });
         let on_lattice = || {
             let nodes = Nodes::on_lattice(&source)?;
-            let wires = Wires::of(&nodes.mesh, &nodes.edges, LEAST_PART_OF_LATTICE)?;
-            Some((nodes, wires))
+            let quads = QuadMesh::of(&nodes.mesh, &nodes.edges, LEAST_PART_OF_LATTICE)?;
+            Some((nodes, quads))
         };
-        let part_of_quads = |(_, wires): &(Nodes, Wires)| wires.part_of_quads;
-        let (nodes, wires) = match faired {
-            Some(faired) if faired.1.are_even() => faired,
+        let part_of_quads = |(_, quads): &(Nodes, QuadMesh)| quads.part_of_quads;
+        let (nodes, quads) = match faired {
+            Some(faired) if faired.1.is_even() => faired,
             faired => {
                 let found = faired.into_iter().chain(on_lattice());
                 found.max_by(|one, other| part_of_quads(one).total_cmp(&part_of_quads(other)))?
             }
         };
-        let cells = wires.cells.iter().map(|cell| &cell.nodes[..]);
+        let cells = quads.cells.iter().map(|cell| &cell.nodes[..]);
         let transfer = nodes.transfer(&source, cells)?;
-        Some(Self::new(&nodes.mesh, &nodes.edges, &nodes.directions, &wires, transfer))
+        Some(Self::new(&nodes.mesh, &nodes.edges, &nodes.directions, &quads, transfer))
     }
 
     fn new(
         mesh: &RestMesh,
         edges: &[Edge],
         directions: &Directions,
-        Wires { cells, lines, .. }: &Wires,
+        QuadMesh { cells, lines, .. }: &QuadMesh,
         transfer: GridTransfer,
     ) -> Self {
         let mut mesh = mesh.clone();

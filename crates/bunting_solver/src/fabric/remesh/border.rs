@@ -61,10 +61,10 @@ impl Choice<'_> {
         for mut ring in self.rings() {
             let given = ring.sides.iter().filter(|side| is_given[self.start_of(side) as usize]);
             ring.chosen = given.map(|side| side.start).collect();
-            let corners: Vec<Side> = self.corners(&ring).collect();
-            let at_corners = corners.into_iter().map(|side| (side, 0.0));
-            let crossed = ring.sides.clone().into_iter().flat_map(|side| self.crossings(side));
-            for (side, part) in at_corners.chain(crossed) {
+            let at_corners = self.corners(&ring).map(|side| (side, 0.0));
+            let crossed = ring.sides.iter().flat_map(|side| self.crossings(*side));
+            let wanted: Vec<(Side, f64)> = at_corners.chain(crossed).collect();
+            for (side, part) in wanted {
                 let at = side.start + part * side.length;
                 if ring.is_open(at, least) {
                     places.push(self.on_side(side, part));
@@ -101,7 +101,7 @@ impl Choice<'_> {
             }
         }
         let mut rings = Vec::new();
-        while let Some((&first, _)) = from.iter().find(|(_, sides)| !sides.is_empty()) {
+        while let Some((&first, _)) = from.first_key_value() {
             let mut ring = Ring { sides: Vec::new(), length: 0.0, chosen: Vec::new() };
             let mut at = first;
             while let Some((triangle, corner)) = from.get_mut(&at).and_then(Vec::pop) {
@@ -137,7 +137,7 @@ impl Choice<'_> {
         (0..count).filter(turns).map(|at| ring.sides[at])
     }
 
-    /// Parts of a side at which lines of the lattice cross it; none if it runs along no axis.
+    /// A side with the parts of it at which lines of the lattice cross it; none if it runs along no axis.
     fn crossings(&self, side: Side) -> Vec<(Side, f64)> {
         let corners = self.source.faces.particles(side.triangle);
         let (from, to) = (corners[side.corner], corners[(side.corner + 1) % 3]);

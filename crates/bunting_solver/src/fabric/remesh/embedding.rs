@@ -1,6 +1,6 @@
 //! The cell of nodes that a particle lies in, and its weights there.
 
-use glam::{DMat2, DVec2, DVec3, Mat3, Vec3};
+use glam::{DMat2, DVec2, DVec3, Vec3};
 
 use super::{barycentric, nearest};
 use crate::fabric::background::{Height, Term};
@@ -107,11 +107,7 @@ impl<'a, 'b> Cells<'a, 'b> {
         if away.length() < LEAST_HEIGHT * self.size as f32 {
             return None;
         }
-        let [a, b, c, d] = nodes.map(|at| self.positions[at as usize]);
-        let frame = Mat3::from_cols(b - a, d - c, (b - a).cross(d - c).normalize_or_zero());
-        let along = frame.inverse() * away;
-        let height = Height { particle, nodes, along: [along.x, along.y], height: along.z };
-        along.is_finite().then_some(height)
+        Height::of(particle, nodes, nodes.map(|at| self.positions[at as usize]), away)
     }
 }
 

@@ -13,7 +13,7 @@ const ROUNDS: usize = 50;
 const PART: f64 = 0.5;
 
 /// The places of nodes, m, that begin at the vertices and move within the surface towards the middles between those before and after
-/// them on lines, which are given as threes. Pins stay, and nodes of the border move along it.
+/// them, given each three consecutive nodes of lines. Pins stay, and nodes of the border move along it.
 pub(super) fn faired(source: &Source, threes: &[[u32; 3]]) -> Vec<DVec3> {
     let border = source.edges.iter().filter(|edge| edge.other_side.is_none());
     let border: BTreeSet<u32> = border.flat_map(|edge| edge.ends).collect();

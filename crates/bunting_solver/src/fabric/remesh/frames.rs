@@ -1,7 +1,5 @@
 //! The directions of warp and weft at each vertex, alike up to quarter turns in all of its triangles.
 
-use core::f64::consts::FRAC_PI_2;
-
 use glam::{DQuat, DVec2, DVec3};
 
 use crate::fabric::laid_yarns::{Directions, Faces, Towards};
@@ -10,7 +8,7 @@ use crate::fabric::laid_yarns::{Directions, Faces, Towards};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
     axes: [DVec3; 2],
-    pub normal: DVec3,
+    normal: DVec3,
 }
 
 impl Frame {
@@ -60,7 +58,7 @@ pub(super) fn frames(faces: &Faces, directions: &Directions, normals: &[DVec3]) 
     }
     let frame = |((&normal, &x), sum): ((&DVec3, &DVec3), &DVec2)| {
         let angle = 0.25 * libm::atan2(sum.y, sum.x);
-        let (sin, cos) = (libm::sin(angle), libm::sin(angle + FRAC_PI_2));
+        let (sin, cos) = libm::sincos(angle);
         let axis = x * cos + normal.cross(x) * sin;
         Frame { axes: [axis, normal.cross(axis)], normal }
     };

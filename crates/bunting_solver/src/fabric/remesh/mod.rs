@@ -56,19 +56,17 @@ pub(super) struct Nodes {
 }
 
 impl Nodes {
-    /// One beside each vertex of a mesh of quads, whose threes follow one another on lines. They have the triangles of the mesh.
+    /// One beside each vertex of a mesh of quads, given each three consecutive vertices of lines. They have the triangles of the mesh.
     pub fn faired(source: &Source, threes: &[[u32; 3]]) -> Self {
-        let Source { mesh, positions, normals, .. } = source;
+        let Source { mesh, positions, .. } = source;
         let count = positions.len();
         let size = (source.area / count as f64).sqrt();
         let moved = fair::faired(source, threes);
         let is_moved = |at: &usize| moved[*at].distance(positions[*at]) > LEAST_MOVE * size;
         let node_of: Vec<Option<u32>> =
             (0..count).map(|at| (!is_moved(&at)).then_some(at as u32)).collect();
-        let place = |at: usize| {
-            let normal = normals[at];
-            Place { triangle: 0, weights: [0.0; 3], at: moved[at], normal, vertex: node_of[at] }
-        };
+        let place =
+            |at: usize| Place { at: moved[at], vertex: node_of[at], ..source.at_vertex(at as u32) };
         let places: Vec<Place> = (0..count).map(place).collect();
         // A node that no polynomial places stays at its vertex.
         let of_vertex = |node: usize| vec![Term { from: node as u32, weight: 1.0 }];
@@ -88,7 +86,8 @@ impl Nodes {
         }
     }
 
-    /// As many as the mesh has vertices, on a lattice along warp and weft and on the border; none if triangles between them overlap.
+    /// As many as the mesh has vertices, on a lattice along warp and weft and on the border; none if an edge between them
+    /// has three triangles.
     pub fn on_lattice(source: &Source) -> Option<Self> {
         let Source { faces, positions, normals, .. } = source;
         let size = source.cell_size();
@@ -207,6 +206,12 @@ fn nearest_warps(source: &Source, of: &Faces, size: f64) -> Vec<Vec3> {
         warp.unwrap_or(b - a).reject_from(normal).normalize_or(Vec3::X)
     };
     (0..of.count() as u32).map(warp).collect()
+}
+
+/// The cotangent of the angle at the last corner of a triangle.
+fn cotangent([one, other, corner]: [DVec3; 3]) -> f64 {
+    let (one, other) = (one - corner, other - corner);
+    one.dot(other) / one.cross(other).length().max(f64::MIN_POSITIVE)
 }
 
 /// Barycentric coordinates of a point in the plane of a triangle.

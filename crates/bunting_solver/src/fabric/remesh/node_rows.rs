@@ -8,16 +8,10 @@ use glam::DVec3;
 use super::boxes::Boxes;
 use super::places::Place;
 use super::source::Source;
-use crate::fabric::background::{Interpolation, QUADRATIC, QUARTIC, Term, fit, sum_of_magnitudes};
-
-/// Radius around a node within which particles count, in cells.
-const RADIUS: f64 = 2.8;
+use crate::fabric::background::{GREATEST_SUM, Interpolation, RADIUS, Term, fit_smooth};
 
 /// Least cosine of the angle between the normals of a node and a particle that counts.
 const ALIKE: f64 = 0.5;
-
-/// Greatest sum of the magnitudes of a row's weights. Larger: a node moves by more than the particles around it.
-const GREATEST_SUM: f32 = 3.0;
 
 /// The row of each node: one particle, if it lies on one; a polynomial's value; or that of `or_else`, of pinned nodes always.
 pub(super) fn rows(
@@ -36,9 +30,7 @@ pub(super) fn rows(
     for (node, place) in places.iter().enumerate() {
         let fitted = || {
             let near = particles_near(place, source, boxes.at(place.at), radius);
-            let smooth = |terms: &Vec<Term>| sum_of_magnitudes(terms) < GREATEST_SUM;
-            let quadratic = || fit::<QUADRATIC>(&near).filter(smooth);
-            fit::<QUARTIC>(&near).filter(smooth).or_else(quadratic)
+            fit_smooth(&near, GREATEST_SUM)
         };
         let row = match place.vertex {
             Some(from) => Some(vec![Term { from, weight: 1.0 }]),

@@ -18,8 +18,8 @@ const STEPS: usize = 400;
 /// The phases of a vertex as complex numbers.
 pub(super) type Phases = [DVec2; 2];
 
-/// An edge of the energy.
-pub(super) struct Spring {
+/// What an edge adds to the energy.
+pub(super) struct EdgeTerm {
     pub ends: [u32; 2],
     /// The quarter turns after which the axes of the second end are those of the first.
     pub quarters: u8,
@@ -30,7 +30,7 @@ pub(super) struct Spring {
 
 /// The energy of the phases of a mesh.
 pub(super) struct PhaseEnergy {
-    pub springs: Vec<Spring>,
+    pub terms: Vec<EdgeTerm>,
     /// Which phases of each vertex are whole.
     pub is_whole: Vec<[bool; 2]>,
 }
@@ -74,7 +74,7 @@ impl PhaseEnergy {
             [0, 1].map(|axis| (INERTIA + whole(is_whole[axis])) * at[axis])
         };
         let mut products: Vec<Phases> = phases.iter().zip(&self.is_whole).map(own).collect();
-        for Spring { ends, quarters, turn, weight } in &self.springs {
+        for EdgeTerm { ends, quarters, turn, weight } in &self.terms {
             let [one, other] = ends.map(|at| at as usize);
             let there = turned(phases[other], *quarters);
             let off =

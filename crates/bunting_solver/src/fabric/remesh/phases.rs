@@ -9,9 +9,10 @@ use std::collections::BTreeMap;
 
 use glam::{DVec2, DVec3};
 
+use super::cotangent;
 use super::frames::{Frame, turned};
-use super::phase_energy::{PhaseEnergy, Phases, Spring};
-use crate::fabric::topology::{Edge, ascending};
+use super::phase_energy::{EdgeTerm, PhaseEnergy, Phases};
+use crate::fabric::topology::{Edge, Side, ascending};
 
 /// How often phases are found from those before. Fewer: more lines end.
 const ROUNDS: usize = 8;
@@ -54,13 +55,13 @@ impl Lattice {
             (edge.ends, Step { quarters, vector })
         };
         let steps: BTreeMap<[u32; 2], Step> = edges.iter().map(step).collect();
-        let spring = |edge: &Edge| {
+        let term = |edge: &Edge| {
             let Step { quarters, vector } = steps[&edge.ends];
             let turn = [vector.x, vector.y].map(|turns| unit(TAU * turns));
-            Spring { ends: edge.ends, quarters, turn, weight: weight(edge, positions) }
+            EdgeTerm { ends: edge.ends, quarters, turn, weight: weight(edge, positions) }
         };
         let energy = PhaseEnergy {
-            springs: edges.iter().map(spring).collect(),
+            terms: edges.iter().map(term).collect(),
             is_whole: is_whole(edges, &steps, frames.len()),
         };
         let mut phases = guess(frames.len(), &steps);
@@ -108,13 +109,10 @@ fn unit(angle: f64) -> DVec2 {
 
 /// Weight of an edge: the sum of the cotangents of the angles opposite to it, within bounds.
 fn weight(edge: &Edge, positions: &[DVec3]) -> f64 {
-    let cotangent = |opposite: u32| {
-        let [one, other] =
-            edge.ends.map(|at| positions[at as usize] - positions[opposite as usize]);
-        one.dot(other) / one.cross(other).length()
-    };
+    let [one, other] = edge.ends;
+    let corners = |side: Side| [one, other, side.opposite].map(|at| positions[at as usize]);
     let sides = core::iter::once(edge.side).chain(edge.other_side);
-    let sum: f64 = sides.map(|side| cotangent(side.opposite)).sum();
+    let sum: f64 = sides.map(|side| cotangent(corners(side))).sum();
     // Without bounds those of slivers rule.
     sum.clamp(0.1, 5.0)
 }

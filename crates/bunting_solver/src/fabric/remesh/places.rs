@@ -1,9 +1,8 @@
 //! The places of nodes on a mesh: at pins, along its border, at whole phases of the lattice within, and at vertices where these leave gaps.
 
-use std::collections::BTreeMap;
+use glam::{DVec2, DVec3};
 
-use glam::{DVec2, DVec3, IVec3};
-
+use super::boxes::Boxes;
 use super::nearest;
 use super::phases::Lattice;
 use super::source::Source;
@@ -151,26 +150,24 @@ struct Chosen<'a> {
     faces: &'a Faces<'a>,
     size: f64,
     places: Vec<Place>,
-    /// Indices of places by the box of a cell's size that they lie in.
-    in_boxes: BTreeMap<[i32; 3], Vec<u32>>,
+    /// Indices of places in boxes of a cell's size that lie within a cell of them.
+    boxes: Boxes,
 }
 
 impl<'a> Chosen<'a> {
     fn new(faces: &'a Faces<'a>, size: f64) -> Self {
-        Self { faces, size, places: Vec::new(), in_boxes: BTreeMap::new() }
+        Self { faces, size, places: Vec::new(), boxes: Boxes::new(size) }
     }
 
     /// Adds a place unless one is nearer than a distance along the surface, in cells.
     fn add(&mut self, place: Place, least: f64) {
         let reach = least * self.size;
-        let middle = (place.at / self.size).floor().as_ivec3();
-        let boxes = (0..27).map(|at| middle + IVec3::new(at % 3 - 1, at / 3 % 3 - 1, at / 9 - 1));
-        let near = boxes.filter_map(|at| self.in_boxes.get(&at.to_array())).flatten();
-        let near = near.map(|&at| &self.places[at as usize]);
+        let near = self.boxes.at(place.at).iter().map(|&at| &self.places[at as usize]);
         let near = near.filter(|other| other.at.distance(place.at) < reach);
         let near: Vec<u32> = near.map(|other| other.triangle).collect();
         if near.is_empty() || !self.reaches(&place, reach, &near) {
-            self.in_boxes.entry(middle.to_array()).or_default().push(self.places.len() as u32);
+            let around = [place.at - self.size, place.at + self.size];
+            self.boxes.add(around, self.places.len() as u32);
             self.places.push(place);
         }
     }

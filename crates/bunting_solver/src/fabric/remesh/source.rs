@@ -6,18 +6,17 @@ use super::places::Place;
 use crate::fabric::background::{Interpolation, Term};
 use crate::fabric::laid_yarns::{Directions, Faces};
 use crate::fabric::mesh::{RestMesh, Surface};
-use crate::fabric::normals::vertex_normals;
 use crate::fabric::topology::Edge;
 
 /// A mesh with what nodes on it are found from.
 pub(in crate::fabric) struct Source<'a> {
-    pub mesh: &'a RestMesh,
+    pub(super) mesh: &'a RestMesh,
     pub edges: &'a [Edge],
-    pub faces: Faces<'a>,
+    pub(super) faces: Faces<'a>,
     pub directions: Directions,
     pub(super) positions: Vec<DVec3>,
     /// Unit normals of the vertices.
-    pub normals: Vec<DVec3>,
+    pub(super) normals: Vec<DVec3>,
     /// m².
     pub(super) area: f64,
 }
@@ -25,8 +24,7 @@ pub(in crate::fabric) struct Source<'a> {
 impl<'a> Source<'a> {
     pub fn new(mesh: &'a RestMesh, surface: &'a Surface) -> Self {
         let faces = Faces::new(&mesh.positions, &mesh.triangles, &surface.edges);
-        let corners = mesh.triangles.iter().map(|it| (mesh.positions_of(*it), *it));
-        let normals = vertex_normals(mesh.positions.len(), corners);
+        let normals = mesh.normals_at(&mesh.positions);
         Self {
             mesh,
             edges: &surface.edges,
@@ -51,7 +49,7 @@ impl<'a> Source<'a> {
         (quarter + (quarter * quarter + count * self.area).sqrt()) / count
     }
 
-    /// The place of a vertex.
+    /// The place of a vertex, in no triangle of its own.
     pub(super) fn at_vertex(&self, vertex: u32) -> Place {
         let [at, normal] = [&self.positions, &self.normals].map(|of| of[vertex as usize]);
         Place { triangle: 0, weights: [0.0; 3], at, normal, vertex: Some(vertex) }

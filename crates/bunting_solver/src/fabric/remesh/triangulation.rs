@@ -1,21 +1,21 @@
-//! A triangulation that is changed step by step, until its vertices are nodes: their places become vertices, other vertices
-//! move to neighbours and are gone (Hoppe et al. 1993, *Mesh optimization*), and edges flip until circles around triangles are empty
+//! A triangulation that is changed step by step, until its vertices are nodes: their places become vertices, edges to
+//! other vertices collapse (Hoppe et al. 1993, *Mesh optimization*), and edges flip until circles around triangles are empty
 //! (Bobenko and Springborn 2007). The surface stays one manifold with the same borders.
 
 use glam::DVec3;
 
-use super::barycentric;
 use super::places::Place;
+use super::{barycentric, cotangent};
 use crate::fabric::laid_yarns::Faces;
 
 /// Least barycentric coordinate of a place inside a triangle; with less it lies on an edge or a vertex.
 const ON_EDGE: f64 = 0.05;
 
-/// Least cosine of the angle by which a triangle turns as a vertex moves or an edge flips.
+/// Least cosine of the angle by which a triangle turns as an edge collapses or flips.
 const LEAST_TURN: f64 = 0.3;
 
-/// Least qualities of triangles beside a vertex that moves to a neighbour, one after the other. Lower ones at first: slivers, which no
-/// flip removes. Without the last one vertices stay that are no nodes.
+/// Least qualities of triangles beside an edge that collapses, one after the other. Lower ones at first: slivers, which no flip
+/// removes. Without the last one vertices stay that are no nodes.
 const LEAST_QUALITIES: [f64; 3] = [0.4, 0.2, 0.05];
 
 /// Quality below which a triangle does not tell which way the surface faces.
@@ -24,7 +24,7 @@ const SLIVER: f64 = 0.1;
 /// Greatest sum of the cotangents of the angles opposite to an edge that flips. Nearer to zero: the diagonals of squares flip by rounding.
 const FLIPS: f64 = -1e-3;
 
-/// How often edges are flipped and vertices moved at most for each quality.
+/// How often edges flip and collapse at most for each quality.
 const ROUNDS: usize = 6;
 
 /// Triangles, of which the first are those of a mesh.
@@ -39,8 +39,8 @@ pub(super) struct Triangulation {
     origins: Vec<u32>,
     /// The triangles that began as parts of each triangle of the mesh.
     parts: Vec<Vec<u32>>,
-    /// The neighbours to which vertices have moved that are gone.
-    moved_to: Vec<Option<u32>>,
+    /// The other end of the edge by whose collapse each vertex is gone.
+    collapsed_to: Vec<Option<u32>>,
 }
 
 impl Triangulation {
@@ -52,7 +52,7 @@ impl Triangulation {
             around: vec![Vec::new(); positions.len()],
             origins: Vec::new(),
             parts: vec![Vec::new(); faces.count()],
-            moved_to: vec![None; positions.len()],
+            collapsed_to: vec![None; positions.len()],
         };
         for triangle in 0..faces.count() as u32 {
             it.add(faces.particles(triangle), triangle);
@@ -103,7 +103,7 @@ impl Triangulation {
             for _ in 0..ROUNDS {
                 let flips = self.flip_edges();
                 let others = (0..joined.len() as u32).filter(|&at| joined[at as usize].is_none());
-                let moves = others.filter(|&vertex| self.vanish(vertex, least)).count();
+                let moves = others.filter(|&vertex| self.collapse(vertex, least)).count();
                 if flips + moves == 0 {
                     break;
                 }
@@ -133,7 +133,7 @@ impl Triangulation {
         self.positions.push(place.at);
         self.normals.push(place.normal);
         self.around.push(Vec::new());
-        self.moved_to.push(None);
+        self.collapsed_to.push(None);
         match (0..3).find(|&at| weights[at] < ON_EDGE) {
             Some(opposite) => {
                 let [one, other] = [1, 2].map(|by| corners[(opposite + by) % 3]);
@@ -175,9 +175,8 @@ impl Triangulation {
         near
     }
 
-    /// Moves a vertex to the neighbour for which the triangles around keep most quality, and leaves out those between both; false if none of
-    /// them allows that.
-    fn vanish(&mut self, vertex: u32, least: f64) -> bool {
+    /// Collapses the edge from a vertex for which the triangles around it keep most quality; false if none may collapse.
+    fn collapse(&mut self, vertex: u32, least: f64) -> bool {
         let near = self.near(vertex);
         let is_border = near.iter().any(|&other| self.at_edge(vertex, other).len() == 1);
         let allows = |&&into: &&u32| {
@@ -189,7 +188,7 @@ impl Triangulation {
             near.iter().filter(allows).map(|&into| (self.quality_after(vertex, into), into));
         let best = with_quality.max_by(|one, other| one.0.total_cmp(&other.0));
         let Some((_, into)) = best.filter(|(quality, _)| *quality > least) else { return false };
-        self.moved_to[vertex as usize] = Some(into);
+        self.collapsed_to[vertex as usize] = Some(into);
         for triangle in self.around[vertex as usize].clone() {
             if !self.corners(triangle).contains(&into) {
                 self.add(self.replaced(triangle, vertex, into), self.origin(triangle));
@@ -199,7 +198,7 @@ impl Triangulation {
         true
     }
 
-    /// Least quality of the triangles around a vertex after it has moved to a neighbour; zero if one of them turns over.
+    /// Least quality of the triangles around a vertex after the edge to a neighbour has collapsed; zero if one of them turns over.
     fn quality_after(&self, vertex: u32, into: u32) -> f64 {
         let around = self.around[vertex as usize].iter();
         let kept = around.filter(|triangle| !self.corners(**triangle).contains(&into));
@@ -257,11 +256,7 @@ impl Triangulation {
     /// Flips the edge between two vertices, if that makes both circles around its triangles empty.
     fn flip(&mut self, one: u32, other: u32) -> bool {
         let [(first, left), (second, right)] = self.at_edge(one, other)[..] else { return false };
-        let cotangent = |opposite: u32| {
-            let away = [one, other]
-                .map(|at| self.positions[at as usize] - self.positions[opposite as usize]);
-            away[0].dot(away[1]) / away[0].cross(away[1]).length().max(f64::MIN_POSITIVE)
-        };
+        let cotangent = |opposite: u32| cotangent(self.points([one, other, opposite]));
         if cotangent(left) + cotangent(right) >= FLIPS || !self.at_edge(left, right).is_empty() {
             return false;
         }
@@ -279,7 +274,7 @@ impl Triangulation {
 
     /// The vertex that is left where one was.
     pub fn left_of(&self, mut vertex: u32) -> u32 {
-        while let Some(into) = self.moved_to[vertex as usize] {
+        while let Some(into) = self.collapsed_to[vertex as usize] {
             vertex = into;
         }
         vertex
