@@ -161,7 +161,6 @@ fn a_flag_is_loaded_with_its_pole() {
     assert!(!state(&second, flag).positions().is_empty());
 }
 
-#[cfg(feature = "serialize")]
 #[test]
 fn colliders_winds_and_viewers_make_the_round_trip() {
     use bevy_bunting::parry3d::shape::SharedShape;

@@ -1,7 +1,5 @@
 //! The lines of a net: sides of cells, each joined to those that go straight on from it.
 
-use std::collections::{BTreeMap, BTreeSet};
-
 use glam::Vec3;
 
 use super::Cell;
@@ -35,13 +33,23 @@ impl Line {
 
 /// The lines through all sides of the cells.
 pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Vec<Line> {
-    let sides: BTreeSet<[u32; 2]> = cells.iter().flat_map(Cell::sides).map(ascending).collect();
-    let goes_on = continuations(cells, &sides, positions);
-    let next = |from: u32, at: u32| goes_on.get(&(from, at)).copied();
-    let mut is_taken: BTreeSet<[u32; 2]> = BTreeSet::new();
+    let mut sides: Vec<[u32; 2]> = cells.iter().flat_map(Cell::sides).map(ascending).collect();
+    sides.sort_unstable();
+    sides.dedup();
+    let pairs = pairs_at_nodes(cells, &sides, positions);
+    let next = |from: u32, at: u32| {
+        let with = |[one, other]: &[u32; 2]| match from {
+            _ if from == *one => Some(*other),
+            _ if from == *other => Some(*one),
+            _ => None,
+        };
+        pairs[at as usize].iter().find_map(with)
+    };
+    let mut is_taken = vec![false; sides.len()];
+    let number = |ends: [u32; 2]| sides.binary_search(&ascending(ends)).unwrap_or_default();
     let mut lines = Vec::new();
-    for &[one, other] in &sides {
-        if is_taken.contains(&[one, other]) {
+    for (side, &[one, other]) in sides.iter().enumerate() {
+        if is_taken[side] {
             continue;
         }
         // Back to the beginning of the line, or once around.
@@ -52,10 +60,10 @@ pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Vec<Line> {
                 break;
             }
         }
-        is_taken.insert(ascending([at, after]));
+        is_taken[number([at, after])] = true;
         let mut nodes = vec![at, after];
         while let Some(to) = next(at, after) {
-            if !is_taken.insert(ascending([after, to])) {
+            if core::mem::replace(&mut is_taken[number([after, to])], true) {
                 break;
             }
             nodes.push(to);
@@ -86,40 +94,37 @@ pub(super) fn zigzag(lines: &[Line], positions: &[Vec3], normals: &[Vec3]) -> f3
     sum / f32::max(count, 1.0)
 }
 
-/// The node that follows two neighbours on their line.
-fn continuations(
-    cells: &[Cell],
-    sides: &BTreeSet<[u32; 2]>,
-    positions: &[Vec3],
-) -> BTreeMap<(u32, u32), u32> {
+/// The pairs of neighbours of each node through which a line goes on.
+fn pairs_at_nodes(cells: &[Cell], sides: &[[u32; 2]], positions: &[Vec3]) -> Vec<Vec<[u32; 2]>> {
     let mut neighbours: Vec<Vec<u32>> = vec![Vec::new(); positions.len()];
     for &[one, other] in sides {
         neighbours[one as usize].push(other);
         neighbours[other as usize].push(one);
     }
     // Two sides of one cell are no line.
-    let around = cells.iter().flat_map(Cell::threes);
-    let turns: BTreeSet<(u32, [u32; 2])> =
-        around.map(|[before, at, after]| (at, ascending([before, after]))).collect();
-    let mut goes_on = BTreeMap::new();
-    for (node, near) in (0..).zip(&neighbours) {
-        let direction = |to: u32| (positions[to as usize] - positions[node as usize]).normalize();
-        let mut pairs: Vec<(f32, u32, u32)> = Vec::new();
+    let mut turns: Vec<Vec<[u32; 2]>> = vec![Vec::new(); positions.len()];
+    for [before, at, after] in cells.iter().flat_map(Cell::threes) {
+        turns[at as usize].push(ascending([before, after]));
+    }
+    let straightest = |(node, near): (usize, &Vec<u32>)| {
+        let direction = |to: u32| (positions[to as usize] - positions[node]).normalize();
+        let mut pairs: Vec<(f32, [u32; 2])> = Vec::new();
         for (at, &one) in near.iter().enumerate() {
             for &other in &near[at + 1..] {
                 let straight = -direction(one).dot(direction(other));
-                if straight > STRAIGHT && !turns.contains(&(node, ascending([one, other]))) {
-                    pairs.push((straight, one, other));
+                if straight > STRAIGHT && !turns[node].contains(&ascending([one, other])) {
+                    pairs.push((straight, [one, other]));
                 }
             }
         }
         pairs.sort_by(|one, other| other.0.total_cmp(&one.0));
-        for (_, one, other) in pairs {
-            if !goes_on.contains_key(&(one, node)) && !goes_on.contains_key(&(other, node)) {
-                goes_on.insert((one, node), other);
-                goes_on.insert((other, node), one);
+        let mut taken: Vec<[u32; 2]> = Vec::new();
+        for (_, pair) in pairs {
+            if !taken.as_flattened().iter().any(|at| pair.contains(at)) {
+                taken.push(pair);
             }
         }
-    }
-    goes_on
+        taken
+    };
+    neighbours.iter().enumerate().map(straightest).collect()
 }

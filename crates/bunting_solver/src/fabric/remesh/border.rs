@@ -141,7 +141,8 @@ impl Choice<'_> {
     fn crossings(&self, side: Side) -> Vec<(Side, f64)> {
         let corners = self.source.faces.particles(side.triangle);
         let (from, to) = (corners[side.corner], corners[(side.corner + 1) % 3]);
-        let (first, (change, _)) = (self.lattice.turns(from), self.lattice.change(from, to));
+        let first = self.lattice.turns(from);
+        let Some((change, _)) = self.lattice.change(from, to) else { return Vec::new() };
         let axis = if change.x.abs() > change.y.abs() { 0 } else { 1 };
         if change[1 - axis].abs() > ALONG * change[axis].abs() {
             return Vec::new();

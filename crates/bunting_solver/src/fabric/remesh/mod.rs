@@ -11,17 +11,17 @@ mod embedding;
 mod fair;
 mod frames;
 mod node_rows;
-mod phase_energy;
 mod phases;
 mod places;
+mod relaxation;
 mod source;
+mod steps;
 #[cfg(test)]
 mod tests;
 mod triangulation;
 
 use glam::{DVec3, Vec2, Vec3};
 
-use self::boxes::Boxes;
 use self::embedding::Cells;
 use self::phases::Lattice;
 use self::places::{Choice, Place};
@@ -132,7 +132,7 @@ impl Nodes {
             inverse_areas: (0..count).map(|at| if is_pinned(at) { 0.0 } else { 1.0 }).collect(),
         };
         let node_faces = Faces::new(&mesh.positions, &mesh.triangles, &edges);
-        let warps = nearest_warps(source, &node_faces, size);
+        let warps = nearest_warps(source, &node_faces, triangulation.origins());
         Some(Self {
             directions: Directions::of_warps(&node_faces, warps),
             mesh,
@@ -184,28 +184,27 @@ impl Nodes {
     }
 }
 
-/// The warp in each triangle between nodes: that of the triangle of the mesh that is nearest and faces the same way.
-fn nearest_warps(source: &Source, of: &Faces, size: f64) -> Vec<Vec3> {
+/// The warp in each triangle between nodes, given a triangle of the mesh near it: that of the nearest one which faces the same way.
+fn nearest_warps(source: &Source, of: &Faces, near: impl Iterator<Item = u32>) -> Vec<Vec3> {
     let faces = &source.faces;
-    let mut boxes = Boxes::new(size);
-    for triangle in 0..faces.count() as u32 {
-        let centre = faces.centre(triangle).as_dvec3();
-        boxes.add([centre - size, centre + size], triangle);
-    }
-    let warp = |triangle: u32| {
+    let warp = |(triangle, near): (u32, u32)| {
         let (centre, normal) = (of.centre(triangle), of.normals[triangle as usize]);
-        let away = |other: &u32| {
-            let is_alike = faces.normals[*other as usize].dot(normal) > 0.0;
-            let away = faces.centre(*other).as_dvec3().distance(centre.as_dvec3());
-            if is_alike { away } else { away + size }
+        let away = |other: u32| {
+            let is_alike = faces.normals[other as usize].dot(normal) > 0.0;
+            (!is_alike, faces.centre(other).distance(centre))
         };
-        let near = boxes.at(centre.as_dvec3()).iter();
-        let nearest = near.min_by(|one, other| away(one).total_cmp(&away(other)));
+        let mut nearest = (away(near), near);
+        loop {
+            let mut others = faces.neighbours(nearest.1).map(|other| (away(other), other));
+            let Some(nearer) = others.find(|other| other.0 < nearest.0) else { break };
+            nearest = nearer;
+        }
         let [a, b, _] = of.corners(triangle);
-        let warp = nearest.map(|at| source.directions.of_triangle(*at, Towards::Warp));
-        warp.unwrap_or(b - a).reject_from(normal).normalize_or(Vec3::X)
+        let warp = source.directions.of_triangle(nearest.1, Towards::Warp);
+        let warp = warp.reject_from(normal).try_normalize();
+        warp.unwrap_or_else(|| (b - a).normalize_or(Vec3::X))
     };
-    (0..of.count() as u32).map(warp).collect()
+    (0..of.count() as u32).zip(near).map(warp).collect()
 }
 
 /// The cotangent of the angle at the last corner of a triangle.

@@ -24,12 +24,12 @@ pub(super) fn rows(
     let radius = RADIUS * size;
     let mut boxes = Boxes::new(radius);
     for (index, &at) in (0..).zip(&source.positions) {
-        boxes.add([at - radius, at + radius], index);
+        boxes.add(at, index);
     }
     let mut rows = Interpolation::default();
     for (node, place) in places.iter().enumerate() {
         let fitted = || {
-            let near = particles_near(place, source, boxes.at(place.at), radius);
+            let near = particles_near(place, source, boxes.near(place.at), radius);
             fit_smooth(&near, GREATEST_SUM)
         };
         let row = match place.vertex {

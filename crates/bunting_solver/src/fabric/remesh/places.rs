@@ -150,7 +150,7 @@ struct Chosen<'a> {
     faces: &'a Faces<'a>,
     size: f64,
     places: Vec<Place>,
-    /// Indices of places in boxes of a cell's size that lie within a cell of them.
+    /// Indices of places, with a reach of a cell.
     boxes: Boxes,
 }
 
@@ -162,12 +162,11 @@ impl<'a> Chosen<'a> {
     /// Adds a place unless one is nearer than a distance along the surface, in cells.
     fn add(&mut self, place: Place, least: f64) {
         let reach = least * self.size;
-        let near = self.boxes.at(place.at).iter().map(|&at| &self.places[at as usize]);
+        let near = self.boxes.near(place.at).iter().map(|&at| &self.places[at as usize]);
         let near = near.filter(|other| other.at.distance(place.at) < reach);
         let near: Vec<u32> = near.map(|other| other.triangle).collect();
         if near.is_empty() || !self.reaches(&place, reach, &near) {
-            let around = [place.at - self.size, place.at + self.size];
-            self.boxes.add(around, self.places.len() as u32);
+            self.boxes.add(place.at, self.places.len() as u32);
             self.places.push(place);
         }
     }

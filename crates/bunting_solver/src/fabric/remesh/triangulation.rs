@@ -35,6 +35,8 @@ pub(super) struct Triangulation {
     triangles: Vec<Option<[u32; 3]>>,
     /// The triangles at each vertex.
     around: Vec<Vec<u32>>,
+    /// Whether the triangles at each vertex have changed since its edges were flipped.
+    is_changed: Vec<bool>,
     /// The triangle of the mesh that each triangle began as a part of.
     origins: Vec<u32>,
     /// The triangles that began as parts of each triangle of the mesh.
@@ -50,6 +52,7 @@ impl Triangulation {
             normals: normals.to_vec(),
             triangles: Vec::new(),
             around: vec![Vec::new(); positions.len()],
+            is_changed: vec![true; positions.len()],
             origins: Vec::new(),
             parts: vec![Vec::new(); faces.count()],
             collapsed_to: vec![None; positions.len()],
@@ -65,7 +68,10 @@ impl Triangulation {
         self.triangles.push(Some(corners));
         self.origins.push(origin);
         self.parts[origin as usize].push(index);
-        corners.iter().for_each(|at| self.around[*at as usize].push(index));
+        for at in corners.map(|at| at as usize) {
+            self.around[at].push(index);
+            self.is_changed[at] = true;
+        }
     }
 
     fn remove(&mut self, triangle: u32) {
@@ -79,14 +85,18 @@ impl Triangulation {
     }
 
     /// The triangles at an edge, each with the corner opposite to it.
-    fn at_edge(&self, one: u32, other: u32) -> Vec<(u32, u32)> {
-        let around = &self.around[one as usize];
-        let with = around.iter().filter_map(|&triangle| {
+    fn at_edge(&self, one: u32, other: u32) -> impl Iterator<Item = (u32, u32)> {
+        self.around[one as usize].iter().filter_map(move |&triangle| {
             let corners = self.corners(triangle);
             let opposite = corners.iter().find(|at| ![one, other].contains(at))?;
             corners.contains(&other).then_some((triangle, *opposite))
-        });
-        with.collect()
+        })
+    }
+
+    /// The first three of these.
+    fn first_at_edge(&self, one: u32, other: u32) -> [Option<(u32, u32)>; 3] {
+        let mut at_edge = self.at_edge(one, other);
+        [at_edge.next(), at_edge.next(), at_edge.next()]
     }
 
     /// Makes vertices of places, and removes other vertices as far as that is possible. The place of each vertex.
@@ -133,11 +143,13 @@ impl Triangulation {
         self.positions.push(place.at);
         self.normals.push(place.normal);
         self.around.push(Vec::new());
+        self.is_changed.push(true);
         self.collapsed_to.push(None);
         match (0..3).find(|&at| weights[at] < ON_EDGE) {
             Some(opposite) => {
                 let [one, other] = [1, 2].map(|by| corners[(opposite + by) % 3]);
-                for (triangle, _) in self.at_edge(one, other) {
+                let at_edge: Vec<(u32, u32)> = self.at_edge(one, other).collect();
+                for (triangle, _) in at_edge {
                     for gone in [one, other] {
                         self.add(self.replaced(triangle, gone, vertex), self.origin(triangle));
                     }
@@ -178,16 +190,16 @@ impl Triangulation {
     /// Collapses the edge from a vertex for which the triangles around it keep most quality; false if none may collapse.
     fn collapse(&mut self, vertex: u32, least: f64) -> bool {
         let near = self.near(vertex);
-        let is_border = near.iter().any(|&other| self.at_edge(vertex, other).len() == 1);
-        let allows = |&&into: &&u32| {
-            let between = self.at_edge(vertex, into).len();
+        let is_border = near.len() > self.around[vertex as usize].len();
+        let allows = |&&(_, into): &&(f64, u32)| {
+            let between = self.at_edge(vertex, into).count();
             let shared = self.near(into).into_iter().filter(|at| near.contains(at)).count();
             shared == between && (!is_border || between == 1)
         };
-        let with_quality =
-            near.iter().filter(allows).map(|&into| (self.quality_after(vertex, into), into));
-        let best = with_quality.max_by(|one, other| one.0.total_cmp(&other.0));
-        let Some((_, into)) = best.filter(|(quality, _)| *quality > least) else { return false };
+        let with_quality = near.iter().map(|&into| (self.quality_after(vertex, into), into));
+        let mut sound: Vec<(f64, u32)> = with_quality.filter(|it| it.0 > least).collect();
+        sound.sort_by(|one, other| other.0.total_cmp(&one.0));
+        let Some(&(_, into)) = sound.iter().find(allows) else { return false };
         self.collapsed_to[vertex as usize] = Some(into);
         for triangle in self.around[vertex as usize].clone() {
             if !self.corners(triangle).contains(&into) {
@@ -243,9 +255,11 @@ impl Triangulation {
     /// Flips edges for which that makes circles around triangles empty; their number.
     fn flip_edges(&mut self) -> usize {
         let mut flips = 0;
-        for vertex in 0..self.positions.len() as u32 {
+        let none = vec![false; self.positions.len()];
+        let is_changed = core::mem::replace(&mut self.is_changed, none);
+        for vertex in (0..self.positions.len() as u32).filter(|at| is_changed[*at as usize]) {
             for other in self.near(vertex) {
-                if vertex < other {
+                if vertex < other || !is_changed[other as usize] {
                     flips += usize::from(self.flip(vertex, other));
                 }
             }
@@ -255,9 +269,13 @@ impl Triangulation {
 
     /// Flips the edge between two vertices, if that makes both circles around its triangles empty.
     fn flip(&mut self, one: u32, other: u32) -> bool {
-        let [(first, left), (second, right)] = self.at_edge(one, other)[..] else { return false };
+        let [Some((first, left)), Some((second, right)), None] = self.first_at_edge(one, other)
+        else {
+            return false;
+        };
         let cotangent = |opposite: u32| cotangent(self.points([one, other, opposite]));
-        if cotangent(left) + cotangent(right) >= FLIPS || !self.at_edge(left, right).is_empty() {
+        if cotangent(left) + cotangent(right) >= FLIPS || self.at_edge(left, right).next().is_some()
+        {
             return false;
         }
         let before = [first, second].map(|triangle| self.corners(triangle));
@@ -278,6 +296,12 @@ impl Triangulation {
             vertex = into;
         }
         vertex
+    }
+
+    /// Of each triangle that is left one of the mesh near it.
+    pub fn origins(&self) -> impl Iterator<Item = u32> {
+        let left = self.triangles.iter().zip(&self.origins);
+        left.filter(|(triangle, _)| triangle.is_some()).map(|(_, origin)| *origin)
     }
 
     /// The triangles that are left.
