@@ -49,9 +49,14 @@ impl Steps {
                 Step { to: one, quarters: back, vector: -turned(vector, back), weight },
             ));
         }
+        Self::sorted(from, positions.len())
+    }
+
+    /// Steps with the vertices that they start from.
+    pub fn sorted(mut from: Vec<(u32, Step)>, vertex_count: usize) -> Self {
         from.sort_by_key(|(vertex, step)| (*vertex, step.to));
         let first = |vertex: usize| from.partition_point(|(from, _)| (*from as usize) < vertex);
-        let firsts = (0..=positions.len()).map(first).collect();
+        let firsts = (0..=vertex_count).map(first).collect();
         Self { firsts, all: from.into_iter().map(|(_, step)| step).collect() }
     }
 
