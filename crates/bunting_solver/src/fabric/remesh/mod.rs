@@ -2,7 +2,7 @@
 //! of triangles, balls, sheets with slits. What solves these is the net of their quads (`fabric/quads/`).
 //!
 //! A mesh of uneven quads keeps its quads, and `fair` moves its nodes beside the vertices. On other meshes `frames` finds the
-//! directions of warp and weft at each vertex, `phases` a lattice along these, `places` nodes on the lattice and the border, and
+//! directions of warp and weft at each vertex, `steps` the edges along these, `phases` and `relaxation` a lattice, `places` nodes on the lattice and the border, and
 //! `triangulation` joins the nodes. `node_rows` and `embedding` find the weights of particles in nodes, and of nodes in particles.
 
 mod border;

@@ -39,7 +39,8 @@ impl Lattice {
         self.turns[vertex as usize]
     }
 
-    /// By how much the phases change from one end of an edge to the other, turns, and the quarter turns to its axes.
+    /// By how much the phases change from one end of an edge to the other, turns, and the quarter turns to its axes; none if no edge
+    /// joins them.
     pub fn change(&self, from: u32, to: u32) -> Option<(DVec2, u8)> {
         let Step { quarters, vector, .. } = self.steps.between(from, to)?;
         let off = turned(self.turns(to), quarters) - self.turns(from) - vector;
