@@ -1,12 +1,13 @@
 //! Item 9: all components of a cloth reflect fully, and survive a round trip through a scene file.
 
 use bevy_bunting::bunting_solver::{FabricMaterial, LaneCount};
+use bevy_bunting::parry3d::shape::SharedShape;
 use bevy_bunting::prelude::*;
 use bevy_ecs::entity::{EntityHashMap, SceneEntityMapper};
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
 use bevy_ecs::relationship::RelationshipHookMode;
-use bevy_math::Vec2;
+use bevy_math::{Vec2, Vec3};
 use bevy_reflect::serde::{
     ReflectDeserializer, ReflectDeserializerProcessor, ReflectSerializer,
     ReflectSerializerProcessor,
@@ -163,9 +164,6 @@ fn a_flag_is_loaded_with_its_pole() {
 
 #[test]
 fn colliders_winds_and_viewers_make_the_round_trip() {
-    use bevy_bunting::parry3d::shape::SharedShape;
-    use bevy_math::Vec3;
-
     let mut first = app();
     let shapes = [
         SharedShape::ball(0.5),

@@ -38,12 +38,8 @@ pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Vec<Line> {
     sides.dedup();
     let pairs = pairs_at_nodes(cells, &sides, positions);
     let next = |from: u32, at: u32| {
-        let with = |[one, other]: &[u32; 2]| match from {
-            _ if from == *one => Some(*other),
-            _ if from == *other => Some(*one),
-            _ => None,
-        };
-        pairs[at as usize].iter().find_map(with)
+        let pair = pairs[at as usize].iter().find(|pair| pair.contains(&from))?;
+        pair.iter().copied().find(|other| *other != from)
     };
     let mut is_taken = vec![false; sides.len()];
     let number = |ends: [u32; 2]| sides.binary_search(&ascending(ends)).unwrap_or_default();

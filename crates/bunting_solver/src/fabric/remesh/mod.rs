@@ -2,8 +2,9 @@
 //! of triangles, balls, sheets with slits. What solves these is the net of their quads (`fabric/quads/`).
 //!
 //! A mesh of uneven quads keeps its quads, and `fair` moves its nodes beside the vertices. On other meshes `frames` finds the
-//! directions of warp and weft at each vertex, `steps` the edges along these, `phases` and `relaxation` a lattice, `places` nodes on the lattice and the border, and
-//! `triangulation` joins the nodes. `node_rows` and `embedding` find the weights of particles in nodes, and of nodes in particles.
+//! directions of warp and weft at each vertex, `steps` the edges along these, `phases` and `relaxation` a lattice, `places` nodes on the
+//! lattice and the border, and `triangulation` joins the nodes. `node_rows` and `embedding` find the weights of particles in nodes, and of
+//! nodes in particles.
 
 mod border;
 mod boxes;
@@ -184,7 +185,8 @@ impl Nodes {
     }
 }
 
-/// The warp in each triangle between nodes, given a triangle of the mesh near it: that of the nearest one which faces the same way.
+/// The warp in each triangle between nodes, given a triangle of the mesh near it: that of the nearest triangle of the mesh which
+/// faces the same way, to which a walk from neighbour to neighbour leads.
 fn nearest_warps(source: &Source, of: &Faces, near: impl Iterator<Item = u32>) -> Vec<Vec3> {
     let faces = &source.faces;
     let warp = |(triangle, near): (u32, u32)| {

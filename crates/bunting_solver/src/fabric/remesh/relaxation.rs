@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use glam::DVec2;
 
-use super::steps::Steps;
+use super::steps::{Step, Steps};
 
 /// Weight of a whole phase.
 const WHOLE: f64 = 20.0;
@@ -18,32 +18,29 @@ const OVER_RELAXATION: f64 = 1.8;
 /// The phases of a vertex as complex numbers.
 pub(super) type Phases = [DVec2; 2];
 
-/// What a neighbour asks of the phases of a vertex.
-struct Pull {
+/// The term of an edge in the mean of one of its ends.
+struct EdgeTerm {
+    /// The other end.
     from: u32,
-    /// The quarter turns after which the axes of the neighbour are those of the vertex.
+    /// The quarter turns after which the axes of the other end are those of this one.
     quarters: u8,
     /// w e^{−iω} of both phases.
     back: Phases,
 }
 
-/// Relaxes the phases of each vertex in turn towards the mean of what its neighbours ask for (successive over-relaxation, Young 1954).
+/// Relaxes the phases of each vertex in turn towards the weighted mean of those that follow from its neighbours' (successive over-relaxation,
+/// Young 1954).
 pub(super) fn relax(phases: &mut [Phases], steps: &Steps, is_whole: &[[bool; 2]]) {
-    let mut pulls: Vec<Pull> = Vec::new();
-    let mut ends = Vec::new();
-    for vertex in 0..phases.len() as u32 {
-        pulls.extend(steps.from(vertex).iter().map(|step| Pull {
-            from: step.to,
-            quarters: step.quarters,
-            back: step.vector.to_array().map(|turns| step.weight * unit(-TAU * turns)),
-        }));
-        ends.push(pulls.len());
-    }
+    let term = |step: &Step| EdgeTerm {
+        from: step.to,
+        quarters: step.quarters,
+        back: step.vector.to_array().map(|turns| step.weight * unit(-TAU * turns)),
+    };
+    let terms: Vec<EdgeTerm> = steps.all().iter().map(term).collect();
     for _ in 0..SWEEPS {
-        let mut first = 0;
-        for (vertex, (&end, is_whole)) in ends.iter().zip(is_whole).enumerate() {
+        for (vertex, is_whole) in is_whole.iter().enumerate() {
             let mut sums = is_whole.map(|is_whole| if is_whole { WHOLE } else { 0.0 } * DVec2::X);
-            for Pull { from, quarters, back } in &pulls[first..end] {
+            for EdgeTerm { from, quarters, back } in &terms[steps.numbers_from(vertex as u32)] {
                 let there = turned(phases[*from as usize], *quarters);
                 sums = [0, 1].map(|axis| sums[axis] + back[axis].rotate(there[axis]));
             }
@@ -51,7 +48,6 @@ pub(super) fn relax(phases: &mut [Phases], steps: &Steps, is_whole: &[[bool; 2]]
                 let (before, wanted) = (phases[vertex][axis], sums[axis].normalize_or(DVec2::X));
                 before.lerp(wanted, OVER_RELAXATION).normalize_or(wanted)
             });
-            first = end;
         }
     }
 }
@@ -81,21 +77,23 @@ mod tests {
 
     use glam::DVec2;
 
-    use super::super::steps::{Step, Steps};
-    use super::{Phases, relax, unit};
+    use super::{Phases, Step, Steps, relax, unit};
 
     /// Turns: 0.8⁴⁰ of the greatest error is left, and more of what spreads.
     const NEAR: f64 = 1e-3;
+
+    fn step(to: u32, quarters: u8, vector: DVec2) -> Step {
+        Step { to, quarters, vector, weight: 1.0 }
+    }
 
     #[test]
     fn what_does_not_fit_around_a_ring_spreads_evenly() {
         const COUNT: u32 = 20;
         const TOO_LONG: f64 = 0.3;
         let along = DVec2::new((10.0 + TOO_LONG) / f64::from(COUNT), 0.0);
-        let step = |to: u32, vector: DVec2| Step { to, quarters: 0, vector, weight: 1.0 };
         let steps = (0..COUNT).flat_map(|from| {
             let [on, back] = [1, COUNT - 1].map(|by| (from + by) % COUNT);
-            [(from, step(on, along)), (from, step(back, -along))]
+            [(from, step(on, 0, along)), (from, step(back, 0, -along))]
         });
         let steps = Steps::sorted(steps.collect(), COUNT as usize);
         // All that does not fit is between the last vertex and the first.
@@ -111,8 +109,6 @@ mod tests {
     #[test]
     fn quarter_turns_swap_the_phases() {
         // A quarter turn takes the axes of the second vertex to those of the first.
-        let step =
-            |to: u32, quarters: u8, vector: DVec2| Step { to, quarters, vector, weight: 1.0 };
         let (there, back) = (DVec2::new(0.3, 0.4), DVec2::new(0.4, -0.3));
         let steps = Steps::sorted(vec![(0, step(1, 1, there)), (1, step(0, 3, back))], 2);
         let mut phases = [[DVec2::X; 2]; 2];

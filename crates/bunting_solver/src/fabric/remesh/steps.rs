@@ -1,5 +1,7 @@
 //! The edges at each vertex, as steps along the axes of its frame.
 
+use core::ops::Range;
+
 use glam::{DVec2, DVec3};
 
 use super::cotangent;
@@ -60,10 +62,20 @@ impl Steps {
         Self { firsts, all: from.into_iter().map(|(_, step)| step).collect() }
     }
 
+    /// The steps from all vertices, one vertex after the other.
+    pub fn all(&self) -> &[Step] {
+        &self.all
+    }
+
+    /// The numbers of the steps from a vertex among all of them.
+    pub fn numbers_from(&self, vertex: u32) -> Range<usize> {
+        let vertex = vertex as usize;
+        self.firsts[vertex]..self.firsts[vertex + 1]
+    }
+
     /// The steps from a vertex.
     pub fn from(&self, vertex: u32) -> &[Step] {
-        let vertex = vertex as usize;
-        &self.all[self.firsts[vertex]..self.firsts[vertex + 1]]
+        &self.all[self.numbers_from(vertex)]
     }
 
     /// The step from one end of an edge to the other.

@@ -93,7 +93,7 @@ impl Triangulation {
         })
     }
 
-    /// The first three of these.
+    /// The first three triangles at an edge, each with the corner opposite to it.
     fn first_at_edge(&self, one: u32, other: u32) -> [Option<(u32, u32)>; 3] {
         let mut at_edge = self.at_edge(one, other);
         [at_edge.next(), at_edge.next(), at_edge.next()]
