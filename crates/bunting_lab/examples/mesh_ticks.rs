@@ -1,10 +1,10 @@
-//! Time of a tick of an irregular mesh, flat, bent, round, with a hole, closed to a cylinder or to a funnel without texture,
-//! beside that of the grid of as many particles, in turn: a lone cloth, and eight; and the time in which its fabric is
-//! built.
+//! Time of a tick of an irregular mesh, flat, bent, round, with a hole or a slit, closed to a cylinder or to a funnel without
+//! texture, beside that of the grid of as many particles, in turn: a lone cloth, and eight; and the time in which its fabric
+//! is built.
 //!
 //! ```sh
 //! cargo run --release -p bunting_lab --example mesh_ticks -- \
-//!     COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel|disk|holed one|eight
+//!     COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel|disk|holed|slit one|eight
 //! ```
 
 use std::{f32::consts::TAU, sync::Arc, time::Instant};
@@ -76,7 +76,7 @@ impl Timed {
 fn main() -> Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [columns, ticks, kinds, lanes] = &arguments[..] else {
-        bail!("COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel|disk|holed one|eight")
+        bail!("COLUMNS TICKS grid|mesh|scan|both|bent|rolled|funnel|disk|holed|slit one|eight")
     };
     let n: usize = columns.parse().context("COLUMNS")?;
     let lanes = if lanes == "one" { LaneCount::One } else { LaneCount::Eight };
@@ -98,6 +98,11 @@ fn main() -> Result<()> {
         let sheet = Sheet::new(Triangulation::Delaunay, [n, n], DVec2::ONE, 1);
         let mesh = sheet.with_hole(0.15);
         timed.push(Timed::new("holed", mesh.pin_where(|at, _| at.x == 0.0), lanes)?);
+    }
+    if kinds == "slit" {
+        let sheet = Sheet::new(Triangulation::Quads, [n, n], DVec2::ONE, 1).with_slit();
+        let mesh = FabricBuilder::new(sheet.positions, sheet.indices);
+        timed.push(Timed::new("slit", mesh.pin_where(|at, _| at.y == 0.0), lanes)?);
     }
     if kinds == "disk" {
         let sheet = Sheet::new(Triangulation::Delaunay, [n, n], DVec2::ONE, 1);

@@ -7,7 +7,7 @@
 //! A yarn that ends at the border gives its load to its neighbours by shear. Diagonals that are solved once carry that load over one
 //! row in a substep: a stiff disk that hangs from a chord sinks by 37 % too far, a pennant by 87 %. Therefore they are solved in
 //! each pass. Their tension is kept from pass to pass, as that of warp and weft is, in their targets, which are computed in each substep
-//! (`shear.rs`).
+//! (`shear.rs`), and the last pass of a cut grid goes twice as far (`extrapolation.rs`).
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Layout;
@@ -27,6 +27,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let is_diagonal = |family| family == LinkFamily::Diagonal;
         let is_straight = |family| family != LinkFamily::Diagonal;
         for pass in 0..passes {
+            let is_extrapolated = pass > 0 && pass + 1 == passes && self.fabric.is_cut_grid();
+            if is_extrapolated {
+                self.begin_last_pass();
+            }
             if pass > 0 {
                 // The pass before ended with the first colour.
                 self.solve_colours(colours.clone().skip(1), Pass::Again, is_straight);
@@ -37,6 +41,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 self.solve_colours(colours.clone().rev(), Pass::Again, is_diagonal);
             }
             self.solve_colours(colours.clone().rev(), Pass::Again, is_straight);
+            if is_extrapolated {
+                self.extrapolate_last_pass();
+            }
         }
     }
 }

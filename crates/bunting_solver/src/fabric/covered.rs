@@ -25,6 +25,11 @@ impl Fabric {
         self.is_cut() && self.grid().is_none()
     }
 
+    /// Whether this is a background grid that the border of its mesh cuts.
+    pub(crate) fn is_cut_grid(&self) -> bool {
+        self.cut_grid().is_some()
+    }
+
     /// The grid, where the border of the mesh cuts it.
     fn cut_grid(&self) -> Option<&Grid> {
         self.grid().filter(|_| self.is_cut())
@@ -44,6 +49,6 @@ impl Fabric {
     /// Length of the cloth whose weight the topmost links carry, m: the [`reach`](Self::reach), and more of a cut grid, in which
     /// tension is concentrated.
     pub(super) fn carried_length(&self) -> f32 {
-        self.reach() * if self.cut_grid().is_some() { CONCENTRATION } else { 1.0 }
+        self.reach() * if self.is_cut_grid() { CONCENTRATION } else { 1.0 }
     }
 }
