@@ -7,7 +7,7 @@
 //! A yarn that ends at the border gives its load to its neighbours by shear. Diagonals that are solved once carry that load over one
 //! row in a substep: a stiff disk that hangs from a chord sinks by 37 % too far, a pennant by 87 %. Therefore they are solved in
 //! each pass. Their tension is kept from pass to pass, as that of warp and weft is, in their targets, which are computed in each substep
-//! (`shear.rs`), and the last pass of a cut grid goes twice as far (`extrapolation.rs`).
+//! (`shear.rs`), and the last pass over a cut grid is extrapolated (`extrapolation.rs`).
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Layout;

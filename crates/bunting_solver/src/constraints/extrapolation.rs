@@ -1,10 +1,10 @@
-//! The last pass over a cut grid goes twice as far as it has found: an extrapolation of positions and tensions.
+//! Extrapolation of the last pass over a cut grid: positions and tensions go twice as far as the pass has moved them.
 //!
 //! A pass takes a part s of each error off, with s real and from zero to one where passes are self-adjoint (`both_ways.rs`). Two
 //! passes leave (1 − s)². From x₁ and x₂, the positions after each, x₂ + (x₂ − x₁) leaves (1 − s)(1 − 2 s), which is between −1/8 and 1:
 //! slow errors, as of load that a border hands on by shear, lose 3 s in place of 2 s, and no error grows. This is a step of Chebyshev's
-//! semi-iteration (Golub & Varga 1961) that needs no bounds of s. With 2.3 times as far a sheet with a hole trembles at 9 mm/s
-//! after a jerk.
+//! semi-iteration (Golub & Varga 1961) that needs no bounds of s. If the pass goes 2.3 times as far, a sheet with a hole trembles at
+//! 9 mm/s after a jerk.
 //!
 //! Both positions satisfy the chains that are solved last, and so does what is extrapolated from them, to first order. A pass alone is
 //! not quite self-adjoint, as only two of them solve the diagonals both ways. Nets feel that: a torus of quads trembles at
@@ -15,31 +15,31 @@ use crate::batch::layout::{Layout, Positions};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
-/// Positions and targets of links before the last pass of a substep.
+/// The state before the last pass of a substep; empty where that is not extrapolated.
 #[derive(Clone, Debug)]
 pub(crate) struct BeforeLastPass<P: Pack> {
-    /// m
+    /// Positions, m.
     positions: Vec<Pack3<P>>,
-    /// m
+    /// Targets of links, m.
     targets: Vec<P>,
 }
 
 impl<P: Pack> BeforeLastPass<P> {
-    /// No positions.
+    /// An empty state.
     pub fn none() -> Self {
         Self { positions: Vec::new(), targets: Vec::new() }
     }
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Notes where positions and targets are.
+    /// Stores positions and targets before the last pass.
     pub(super) fn begin_last_pass(&mut self) {
         let BeforeLastPass { positions, targets } = &mut self.before_last_pass;
         positions.clone_from(self.positions.packs_mut());
         targets.clone_from(&self.link_target);
     }
 
-    /// Moves positions and targets on, as far as the last pass has moved them.
+    /// Moves positions and targets once more as far as the last pass has moved them.
     pub(super) fn extrapolate_last_pass(&mut self) {
         P::run(Extrapolate {
             before: &self.before_last_pass,
