@@ -14,7 +14,7 @@ use crate::batch::side_by_side::SideBySide;
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::single_mesh::HeightPacks;
 use crate::batch::single_net::SingleNet;
-use crate::constraints::extrapolation::BeforeLastPass;
+use crate::constraints::extrapolation::BeforePass;
 use crate::constraints::join;
 use crate::constraints::laid_yarns::{BandRow, YarnLink};
 use crate::constraints::lone_mesh::LoneMesh;
@@ -70,8 +70,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     /// Length that each link has under the tension found so far in the substep, l − α̃ λ, m, in the order in
     /// which the scheme solves links.
     pub link_target: Vec<P>,
-    /// Positions and targets before the last pass, where that is extrapolated.
-    pub before_last_pass: BeforeLastPass<P>,
+    /// Positions and targets before a pass that is extrapolated.
+    pub before_pass: BeforePass<P>,
     /// Corrections that are not yet added to the positions, m, and what the positions' rounding has left out; empty
     /// unless the fabric [sums corrections](Fabric::sums_corrections).
     pub correction: Vec<Pack3<P>>,
@@ -198,7 +198,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             velocity: zero,
             relaxation: vec![P::splat(1.0); layout.pack_count()],
             link_target: vec![P::splat(0.0); chains.target_count()],
-            before_last_pass: BeforeLastPass::none(),
+            before_pass: BeforePass::none(),
             rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
             by_closing: vec![P::splat(0.0); CHAINS_PER_PAIR * chains.longest_closed()],
             yarn_links,

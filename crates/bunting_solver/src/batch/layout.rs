@@ -189,6 +189,9 @@ pub(crate) trait Positions<P: Pack>: Clone + Debug + Send + Sync + 'static {
         self.packs_mut()
     }
 
+    /// Shows the coordinates of all positions, m, array by array, where constraints or packs hold them.
+    fn visit_coordinates(&mut self, visit: impl FnMut(&mut [f32]));
+
     /// The particles in an order, for the constraints. `inverse_masses` are given for each pack, 1/m².
     fn particles<'a>(
         &'a mut self,

@@ -7,11 +7,13 @@
 //! A yarn that ends at the border gives its load to its neighbours by shear. Diagonals that are solved once carry that load over one
 //! row in a substep: a stiff disk that hangs from a chord sinks by 37 % too far, a pennant by 87 %. Therefore they are solved in
 //! each pass. Their tension is kept from pass to pass, as that of warp and weft is, in their targets, which are computed in each substep
-//! (`shear.rs`), and the last pass over a cut grid is extrapolated (`extrapolation.rs`).
+//! (`shear.rs`). Cut grids, whose yarns end at a border, have one pass more than asked for, and the last two are extrapolated
+//! (`extrapolation.rs`).
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Layout;
 use crate::constraints::chain::Pass;
+use crate::constraints::extrapolation::extrapolation_of;
 use crate::fabric::LinkFamily;
 use crate::simd::lane::Pack;
 
@@ -26,10 +28,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let colours = 0..self.colour_count();
         let is_diagonal = |family| family == LinkFamily::Diagonal;
         let is_straight = |family| family != LinkFamily::Diagonal;
+        let is_cut_grid = self.fabric.is_cut_grid();
+        let passes = passes + u32::from(is_cut_grid);
         for pass in 0..passes {
-            let is_extrapolated = pass > 0 && pass + 1 == passes && self.fabric.is_cut_grid();
-            if is_extrapolated {
-                self.begin_last_pass();
+            let extrapolation = extrapolation_of(pass, passes).filter(|_| is_cut_grid);
+            if extrapolation.is_some() {
+                self.begin_extrapolation();
             }
             if pass > 0 {
                 // The pass before ended with the first colour.
@@ -41,8 +45,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 self.solve_colours(colours.clone().rev(), Pass::Again, is_diagonal);
             }
             self.solve_colours(colours.clone().rev(), Pass::Again, is_straight);
-            if is_extrapolated {
-                self.extrapolate_last_pass();
+            if let Some(factor) = extrapolation {
+                self.extrapolate(factor);
             }
         }
     }

@@ -95,9 +95,7 @@ impl Fabric {
         let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
         // A load runs along the straight lines of a background grid, not along the edges of the mesh, which zigzag.
         let (reach, shortest) = match (&grid, &background) {
-            (_, Some(Background { fabric, .. })) => {
-                (fabric.carried_length(), fabric.links.shortest())
-            }
+            (_, Some(Background { fabric, .. })) => (fabric.reach(), fabric.links.shortest()),
             (Some(_), None) => (tethers.reach, links.shortest()),
             (None, None) => (tethers.reach, laid_yarns.least_spacing),
         };

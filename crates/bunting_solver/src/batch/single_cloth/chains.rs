@@ -144,10 +144,11 @@ impl<P: Pack> ChainPacks<P> {
         for range in fabric.yarn_colours().ranges() {
             let yarns = &fabric.yarns()[range.clone()];
             let family = fabric.links()[yarns[0].links[0] as usize].family;
-            for (direction, links) in by_direction(fabric, grid, yarns)? {
-                colours.push((family, packer.pack(direction, &links)));
-                orders.push(direction.order());
-            }
+            let directions = by_direction(fabric, grid, yarns)?;
+            // Both diagonals have one order.
+            orders.push(directions.keys().next()?.order());
+            let packs = directions.iter().flat_map(|(to, links)| packer.pack(*to, links));
+            colours.push((family, packs.collect()));
         }
         let mut chains = Chains::of_colours(colours.into_iter());
         chains.cells = cells(&chains, shape);

@@ -3,6 +3,7 @@
 use super::grid_shape::{GridShape, MARGIN};
 use super::vector_grid::VectorGrid;
 use crate::batch::layout::{Order, Particles, Positions};
+use crate::batch::side_by_side::visit_packs;
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
@@ -95,6 +96,16 @@ impl<P: Pack> Positions<P> for PositionGrids<P> {
     fn overwritten(&mut self) -> &mut [Pack3<P>] {
         self.order = None;
         &mut self.packs
+    }
+
+    #[inline(always)]
+    fn visit_coordinates(&mut self, mut visit: impl FnMut(&mut [f32])) {
+        let arrays = match self.order {
+            None => return visit_packs(&mut self.packs, visit),
+            Some(Order::RowMajor) => &mut self.row_major,
+            Some(Order::ColumnMajor) => &mut self.column_major,
+        };
+        arrays.position.coordinates_mut().into_iter().for_each(&mut visit);
     }
 
     fn particles<'a>(
