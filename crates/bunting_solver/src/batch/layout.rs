@@ -189,8 +189,11 @@ pub(crate) trait Positions<P: Pack>: Clone + Debug + Send + Sync + 'static {
         self.packs_mut()
     }
 
-    /// Shows the coordinates of all positions, m, array by array, where constraints or packs hold them.
-    fn visit_coordinates(&mut self, visit: impl FnMut(&mut [f32]));
+    /// Calls `visit` with the coordinates of all positions, m, array by array, in the order in which they are stored now.
+    #[inline(always)]
+    fn visit_coordinates(&mut self, visit: impl FnMut(&mut [f32])) {
+        visit_packs(self.packs_mut(), visit);
+    }
 
     /// The particles in an order, for the constraints. `inverse_masses` are given for each pack, 1/m².
     fn particles<'a>(
@@ -208,6 +211,12 @@ pub(crate) trait Positions<P: Pack>: Clone + Debug + Send + Sync + 'static {
 
     /// Discards the constraints' arrays, before a new state is written.
     fn clear(&mut self);
+}
+
+/// Calls `visit` with the coordinates of packs, array by array.
+#[inline(always)]
+pub(super) fn visit_packs<P: Pack>(packs: &mut [Pack3<P>], mut visit: impl FnMut(&mut [f32])) {
+    packs.as_flattened_mut().iter_mut().for_each(|axis| visit(axis.lanes_mut()));
 }
 
 /// The particles that constraints move: in each pack one of each cloth, or several of one cloth.

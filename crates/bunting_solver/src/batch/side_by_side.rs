@@ -198,12 +198,6 @@ pub(super) fn partial_sums(particles: usize, columns: usize) -> Vec<u8> {
     (0..particles).map(|at| (at % columns % PARTIAL_SUMS) as u8).collect()
 }
 
-/// Shows the coordinates of packs, array by array.
-#[inline(always)]
-pub(crate) fn visit_packs<P: Pack>(packs: &mut [Pack3<P>], mut visit: impl FnMut(&mut [f32])) {
-    packs.as_flattened_mut().iter_mut().for_each(|axis| visit(axis.lanes_mut()));
-}
-
 /// Positions in packs alone, m: constraints move them where they are. Numbers of the fabric are of the type `C`.
 #[derive(Clone, Debug)]
 pub(crate) struct Packs<P: Pack, C = f32>(Vec<Pack3<P>>, PhantomData<C>);
@@ -226,11 +220,6 @@ impl<P: Pack, C: Constant<P>> Positions<P> for Packs<P, C> {
 
     fn packs_mut(&mut self) -> &mut Vec<Pack3<P>> {
         &mut self.0
-    }
-
-    #[inline(always)]
-    fn visit_coordinates(&mut self, visit: impl FnMut(&mut [f32])) {
-        visit_packs(&mut self.0, visit);
     }
 
     fn particles<'a>(

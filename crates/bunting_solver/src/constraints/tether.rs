@@ -19,7 +19,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn solve_tethers(&mut self) {
         let tethers = self.layout.tethers(&self.fabric);
         for (tethers, stretch) in tethers.into_iter().zip(&self.parameters.tether_stretch) {
-            // Particles would be brought into row-major order.
+            // Even for no tether, `particles` would copy the positions into row-major order.
             if tethers.is_empty() {
                 continue;
             }

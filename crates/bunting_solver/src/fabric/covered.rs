@@ -26,12 +26,12 @@ impl Fabric {
 
     /// Area of the first particle, m², as if all of its cells were cloth.
     pub(crate) fn first_whole_area(&self) -> f32 {
-        match self.grid().filter(|_| self.is_cut()) {
-            Some(grid) => {
+        match self.grid() {
+            Some(grid) if self.is_cut() => {
                 let [dx, dy] = grid.spacing();
                 0.25 * dx * dy
             }
-            None => self.particle_areas()[0],
+            _ => self.particle_areas()[0],
         }
     }
 }

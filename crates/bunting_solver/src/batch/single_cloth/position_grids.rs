@@ -2,8 +2,7 @@
 
 use super::grid_shape::{GridShape, MARGIN};
 use super::vector_grid::VectorGrid;
-use crate::batch::layout::{Order, Particles, Positions};
-use crate::batch::side_by_side::visit_packs;
+use crate::batch::layout::{Order, Particles, Positions, visit_packs};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
@@ -98,6 +97,7 @@ impl<P: Pack> Positions<P> for PositionGrids<P> {
         &mut self.packs
     }
 
+    /// Without a copy from the arrays to the packs and back.
     #[inline(always)]
     fn visit_coordinates(&mut self, mut visit: impl FnMut(&mut [f32])) {
         let arrays = match self.order {

@@ -50,11 +50,6 @@ impl Positions<Pack8> for MeshPositions {
         self.packs.packs_mut()
     }
 
-    #[inline(always)]
-    fn visit_coordinates(&mut self, visit: impl FnMut(&mut [f32])) {
-        self.packs.visit_coordinates(visit);
-    }
-
     fn particles<'a>(
         &'a mut self,
         order: Order,

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::node_packs::NodePack;
 use crate::batch::layout::{Order, Particles, Positions};
-use crate::batch::side_by_side::visit_packs;
 use crate::batch::single_mesh::{read_vectors, write_vectors};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::registers::{Pack4, Pack8};
@@ -57,15 +56,6 @@ impl Positions<Pack8> for NetPositions {
     fn overwritten(&mut self) -> &mut [Pack3<Pack8>] {
         self.are_vectors_valid = false;
         &mut self.packs
-    }
-
-    #[inline(always)]
-    fn visit_coordinates(&mut self, mut visit: impl FnMut(&mut [f32])) {
-        if self.are_vectors_valid {
-            self.vectors.iter_mut().for_each(|vector| visit(vector.lanes_mut()));
-        } else {
-            visit_packs(&mut self.packs, visit);
-        }
     }
 
     fn particles<'a>(
