@@ -13,9 +13,9 @@ use bevy_transform::prelude::*;
 use bunting_tests::{app, run, spawn_flag, state};
 use parry3d::shape::TriMesh;
 
-/// Time that a distant shape may add to a tick, s. In an optimised build a query of each triangle of the
-/// smallest bowl takes 370 ms, and a query of each particle 1 ms.
-const FAR_COST: Duration = Duration::from_micros(50);
+/// Time that a distant shape may add to the shortest tick, on a machine that has other work too. In an optimised build a query
+/// of each triangle of the smallest bowl takes 370 ms, and a query of each particle 1 ms.
+const FAR_COST: Duration = Duration::from_micros(300);
 
 /// Height of a bowl at a distance from its middle, m: it rises by the square of the distance, one metre at 20
 /// m.
@@ -59,7 +59,7 @@ fn shortest_tick(shape: Option<SharedShape>) -> Duration {
         app.world_mut().spawn((ClothCollider::new(shape), Transform::default()));
     }
     run(&mut app, 5);
-    let ticks = (0..20).map(|_| {
+    let ticks = (0..100).map(|_| {
         app.update();
         app.world().resource::<ClothTimings>().total()
     });

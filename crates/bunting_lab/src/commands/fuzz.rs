@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::progress;
 use crate::{
-    fuzz::{self, Figures, Trial},
+    fuzz::{self, Figures, Sag, Trial},
     output::{
         Outcome,
         table::{Table, figure},
@@ -21,6 +21,8 @@ const SPEEDS: [f64; 3] = [1.0, 5.0, 20.0];
 const STRAINS: [f64; 2] = [0.3, 1.0];
 /// Strain of an edge in wind above which cloths are counted.
 const BLOWN: f64 = 1.0;
+/// Errors of the sag above which cloths are counted, mm.
+const SAGS: [f64; 2] = [5.0, 50.0];
 /// Cloths that are listed for each figure.
 const LISTED: usize = 12;
 
@@ -33,21 +35,27 @@ pub struct Selection {
     /// How many.
     #[arg(long, default_value_t = 300)]
     count: u64,
+    /// Also let each hang without wind, and compare how far it sinks with a high effort, which takes six times as long.
+    #[arg(long)]
+    sag: bool,
 }
 
 /// Tries them.
 #[must_use]
-pub fn run(Selection { first, count }: &Selection) -> Outcome {
-    let trials = trials(*first..first + count);
-    let tables = vec![summary(&trials), worst(&trials), refused(&trials)];
+pub fn run(Selection { first, count, sag }: &Selection) -> Outcome {
+    let trials = trials(*first..first + count, *sag);
+    let mut tables = vec![summary(&trials), worst(&trials), refused(&trials)];
+    if *sag {
+        tables.extend([sags(&trials), worst_sags(&trials)]);
+    }
     Outcome { json: json!({ "trials": trials }), tables, plots: Vec::new() }
 }
 
-fn trials(seeds: Range<u64>) -> Vec<Trial> {
+fn trials(seeds: Range<u64>, sags: bool) -> Vec<Trial> {
     let seeds: Vec<u64> = seeds.collect();
     let bar = progress(seeds.len());
     let trials = parallel::map(&seeds, |seed| {
-        let trial = fuzz::of_seed(*seed);
+        let trial = fuzz::of_seed(*seed, sags);
         bar.inc(1);
         trial
     });
@@ -89,17 +97,9 @@ fn summary(trials: &[Trial]) -> Table {
 }
 
 fn group(family: String, solver: &str, cloths: &[&Figures]) -> Vec<String> {
-    let counts = |limits: &[f64], of: &dyn Fn(&Figures) -> f64| {
-        // What is not a number exceeds all.
-        let exceeds = |figure: f64, limit: f64| figure.is_nan() || figure > limit;
-        let over = |limit: &f64| cloths.iter().filter(|it| exceeds(of(it), *limit)).count();
-        limits.iter().map(|limit| over(limit).to_string()).collect::<Vec<_>>().join("; ")
-    };
-    let median = |of: &dyn Fn(&Figures) -> f64| {
-        let mut figures: Vec<f64> = cloths.iter().map(|it| of(it)).collect();
-        figures.sort_by(f64::total_cmp);
-        figure(stats::percentile(&figures, 0.5))
-    };
+    let figures = |of: &dyn Fn(&Figures) -> f64| cloths.iter().map(|it| of(it)).collect::<Vec<_>>();
+    let counts = |limits: &[f64], of: &dyn Fn(&Figures) -> f64| counts(limits, &figures(of));
+    let median = |of: &dyn Fn(&Figures) -> f64| figure(percentile(figures(of), 0.5));
     vec![
         family,
         solver.into(),
@@ -113,6 +113,78 @@ fn group(family: String, solver: &str, cloths: &[&Figures]) -> Vec<String> {
         median(&|it| it.tick * 1e9 / f64::from(it.effort[0])),
         median(&|it| it.build * 1e3),
     ]
+}
+
+/// How many of these figures are above each limit, or no numbers.
+fn counts(limits: &[f64], figures: &[f64]) -> String {
+    let exceeds = |figure: f64, limit: f64| figure.is_nan() || figure > limit;
+    let over = |limit: &f64| figures.iter().filter(|figure| exceeds(**figure, *limit)).count();
+    limits.iter().map(|limit| over(limit).to_string()).collect::<Vec<_>>().join("; ")
+}
+
+fn percentile(mut figures: Vec<f64>, part: f64) -> f64 {
+    figures.sort_by(f64::total_cmp);
+    stats::percentile(&figures, part)
+}
+
+/// How far cloths sink, beside a high effort, by what solves them.
+fn sags(trials: &[Trial]) -> Table {
+    let mut groups: BTreeMap<&str, Vec<Sag>> = BTreeMap::new();
+    for (_, figures) in measured(trials) {
+        groups.entry(&figures.solver).or_default().extend(figures.sag);
+    }
+    let row = |(solver, sags): (&str, Vec<Sag>)| {
+        let errors: Vec<f64> = sags.iter().map(|sag| sag.error() * 1e3).collect();
+        let converged = sags.iter().map(|sag| sag.converged * 1e3).collect();
+        let at = |part| figure(percentile(errors.clone(), part));
+        vec![
+            solver.into(),
+            sags.len().to_string(),
+            figure(percentile(converged, 0.5)),
+            at(0.5),
+            at(0.8),
+            counts(&SAGS, &errors),
+        ]
+    };
+    Table {
+        name: "fuzz_sag".into(),
+        title: "How far they sink under their weight, beside a high effort".into(),
+        headers: vec!["solved by", "cloths", "sag, mm", "error, mm", "80 %", "> 5; 50 mm"],
+        rows: groups.into_iter().map(row).collect(),
+    }
+}
+
+/// The cloths that sink most wrongly.
+fn worst_sags(trials: &[Trial]) -> Table {
+    let mut sorted: Vec<(&Trial, &Figures, Sag)> =
+        measured(trials).filter_map(|(trial, of)| Some((trial, of, of.sag?))).collect();
+    sorted.sort_by(|(_, _, a), (_, _, b)| b.error().total_cmp(&a.error()));
+    let row = |(trial, figures, sag): (&Trial, &Figures, Sag)| {
+        let [substeps, passes] = figures.effort;
+        vec![
+            trial.seed.to_string(),
+            format!("{:?}", trial.family),
+            figures.solver.clone(),
+            figures.particles.to_string(),
+            format!("{substeps} × {passes}"),
+            figure(sag.own * 1e3),
+            figure(sag.converged * 1e3),
+        ]
+    };
+    Table {
+        name: "fuzz_worst_sag".into(),
+        title: "Those that sink most wrongly".into(),
+        headers: vec![
+            "seed",
+            "mesh",
+            "solved by",
+            "particles",
+            "effort",
+            "sag, mm",
+            "at a high effort",
+        ],
+        rows: sorted.into_iter().take(LISTED).map(row).collect(),
+    }
 }
 
 /// The cloths that move fastest, and those with the most strained edges.

@@ -3,7 +3,9 @@
 mod garments;
 mod meshes;
 mod pieces;
+mod sag;
 mod trial;
 
 pub use meshes::Family;
+pub use sag::Sag;
 pub use trial::{Figures, Trial, of_seed};

@@ -9,7 +9,10 @@ use bunting_solver::{
 use glam::Vec3;
 use serde::Serialize;
 
-use super::meshes::{Family, mesh};
+use super::{
+    meshes::{Family, mesh},
+    sag::Sag,
+};
 use crate::{
     meshes::Random,
     need::Need,
@@ -57,22 +60,24 @@ pub struct Figures {
     pub stretch: [f64; 2],
     /// RMS speed at the end, m/s.
     pub speed: f64,
+    /// How far it sinks without wind, if that was asked for.
+    pub sag: Option<Sag>,
 }
 
-/// The trial of a seed.
-pub fn of_seed(seed: u64) -> Trial {
+/// The trial of a seed; it `sags`, too, where that is asked for.
+pub fn of_seed(seed: u64, sags: bool) -> Trial {
     let mut random = Random::of_seed(seed);
     let family = Family::ALL[random.below(Family::ALL.len())];
     let builder = mesh(family, &mut random);
     let start = Instant::now();
     let fabric = builder.build();
     let build = start.elapsed().as_secs_f64();
-    let measured = fabric.map(|fabric| figures(Arc::new(fabric), build, &mut random));
+    let measured = fabric.map(|fabric| figures(Arc::new(fabric), build, &mut random, sags));
     Trial { seed, family, outcome: measured.map_err(|error| error.to_string()) }
 }
 
 /// Blows at a cloth, pulls it, and lets it rest.
-fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random) -> Figures {
+fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random, sags: bool) -> Figures {
     let solver = format!("{:?}", fabric.stretch_solver());
     let particles = fabric.particle_count();
     let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY as f32);
@@ -86,6 +91,8 @@ fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random) -> Figures {
     };
     let mut vector = |size: f32| Vec3::from([0; 3].map(|_| random.within(-1.0, 1.0) as f32)) * size;
     let (wind, jerk) = (vector(20.0), vector(0.5));
+    let sag =
+        sags.then(|| Sag::of(&fabric, FabricMaterial { damping: DAMPING, ..material }, settings));
     let mut cloth = Cloth::new(fabric, material);
     let still = Drive::default();
     cloth.advance(BLOWN, Drive { wind, ..still });
@@ -105,6 +112,7 @@ fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random) -> Figures {
         blown,
         stretch: [stretch_in_wind, cloth.greatest_stretch()],
         speed: rms_speed(&cloth.batch, 0),
+        sag,
     }
 }
 
