@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::background::{BackgroundMesh, GridTransfer};
+use super::background::{BackgroundMesh, GridTransfer, lies_in_plane};
 use super::bending::Bending;
 use super::chains::Chains;
 use super::fabric::Fabric;
@@ -30,6 +30,8 @@ pub(crate) struct Background {
     pub node_count: usize,
     /// Whether each node is the particle of its number.
     pub nodes_are_particles: bool,
+    /// Whether it is a net that lies in no plane.
+    pub is_curved_net: bool,
 }
 
 impl Background {
@@ -44,15 +46,23 @@ impl Background {
             warp_cos2,
             node_count,
             nodes_are_particles: false,
+            is_curved_net: false,
         }
     }
 
     /// The net of a mesh of quads.
     pub(super) fn of_net(net: Net, tethered: bool) -> Self {
         let nodes_are_particles = net.nodes_are_particles;
+        let is_curved_net = !lies_in_plane(&net.mesh);
         let (fabric, transfer) = Fabric::of_net(net, tethered);
-        let node_count = fabric.particle_count();
-        Self { fabric: Arc::new(fabric), transfer, warp_cos2: 1.0, node_count, nodes_are_particles }
+        Self {
+            node_count: fabric.particle_count(),
+            fabric: Arc::new(fabric),
+            transfer,
+            warp_cos2: 1.0,
+            nodes_are_particles,
+            is_curved_net,
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use core::ops::RangeInclusive;
 
-use crate::fabric::{Fabric, StretchSolver};
+use crate::fabric::Fabric;
 use crate::step::{Scheme, StepSettings};
 
 /// Greatest h² T/(m l) of the topmost link of a hanging cloth. Larger: links vibrate faster than substeps
@@ -14,10 +14,10 @@ const FASTEST_VIBRATION: f32 = 0.75;
 /// than two of 1/120 s. Larger: substeps are longer than they should be.
 const TOO_LONG: f32 = 1e-3;
 
-/// Substeps of a net, over those of a grid whose links are as long. A net hands its load from line to line by shear, which a pass
-/// solves in part. Smaller: clothes of thin cloth that hang from a few points sink 20 mm too far in the median, with 1.5 they
-/// sink 8 mm too far. Larger: a net takes more than twice the time of a grid.
-const SUBSTEPS_OF_NET: f32 = 1.5;
+/// Substeps of a net that lies in no plane, over those of a grid whose links are as long. Clothes hand their load from line to
+/// line by shear, which a pass solves in part. Smaller: those of thin cloth that hang from a few points sink 17 mm too far in the
+/// median, with 1.5 they sink 8 mm too far. Larger: they take more than four times as long as a grid.
+const SUBSTEPS_OF_CURVED_NET: f32 = 1.5;
 
 /// Limits within which the number of substeps is chosen, from the fabric, the tick and the acceleration that the cloth
 /// bears: gravity, or that of its [`EffortClass`](crate::EffortClass).
@@ -58,12 +58,10 @@ impl StepLimits {
     pub fn of_fabric(&self, fabric: &Fabric, tick: f32, acceleration: f32) -> StepSettings {
         let by_load = tick * fabric.tautness() * (acceleration / FASTEST_VIBRATION).sqrt();
         let by_rate = tick * self.rate as f32 - TOO_LONG;
-        let of_solver = match fabric.stretch_solver() {
-            StretchSolver::QuadLines => SUBSTEPS_OF_NET,
-            _ => 1.0,
-        };
+        let is_curved_net = fabric.background().is_some_and(|it| it.is_curved_net);
+        let factor = if is_curved_net { SUBSTEPS_OF_CURVED_NET } else { 1.0 };
         // NaN becomes zero.
-        let wanted = (of_solver * by_load.max(by_rate)).ceil() as u32;
+        let wanted = (factor * by_load.max(by_rate)).ceil() as u32;
         let (fewest, most) = (*self.substeps.start(), *self.substeps.end());
         StepSettings {
             scheme: self.scheme,

@@ -258,16 +258,30 @@ pub(super) fn node_positions(grid: &Grid) -> Vec<Vec2> {
 
 /// The unit normal of the plane that a mesh lies in; none if it lies in none, or a triangle shows its back.
 fn plane_normal(mesh: &RestMesh) -> Option<Vec3> {
-    let scaled = |&triangle: &[u32; 3]| {
-        let [a, b, c] = mesh.positions_of(triangle);
-        (b - a).cross(c - a)
-    };
-    let normal = mesh.triangles.iter().map(scaled).sum::<Vec3>().try_normalize()?;
+    let is_front =
+        |normal: &Vec3| mesh.triangles.iter().all(|of| twice_area(mesh, of).dot(*normal) > 0.0);
+    mean_normal(mesh).filter(|normal| is_flat(mesh, *normal)).filter(is_front)
+}
+
+/// Whether a mesh lies in a plane.
+pub(in crate::fabric) fn lies_in_plane(mesh: &RestMesh) -> bool {
+    mean_normal(mesh).is_some_and(|normal| is_flat(mesh, normal))
+}
+
+fn mean_normal(mesh: &RestMesh) -> Option<Vec3> {
+    mesh.triangles.iter().map(|of| twice_area(mesh, of)).sum::<Vec3>().try_normalize()
+}
+
+/// The normal of a triangle, as long as twice its area, m².
+fn twice_area(mesh: &RestMesh, triangle: &[u32; 3]) -> Vec3 {
+    let [a, b, c] = mesh.positions_of(*triangle);
+    (b - a).cross(c - a)
+}
+
+fn is_flat(mesh: &RestMesh, normal: Vec3) -> bool {
     let first = mesh.positions[0];
     let extent = mesh.positions.iter().map(|at| at.distance(first)).fold(0.0, f32::max);
-    let is_flat = mesh.positions.iter().all(|&at| (at - first).dot(normal).abs() < FLAT * extent);
-    let is_front = mesh.triangles.iter().all(|triangle| scaled(triangle).dot(normal) > 0.0);
-    (is_flat && is_front).then_some(normal)
+    mesh.positions.iter().all(|&at| (at - first).dot(normal).abs() < FLAT * extent)
 }
 
 /// Length of a mesh's border, m.

@@ -50,6 +50,7 @@ use super::cell_sizes::CellSizes;
 use super::grid::Grid;
 use super::mesh::{RestMesh, Surface};
 
+pub(super) use self::chart::lies_in_plane;
 pub(crate) use self::interpolation::{Interpolation, RowGroup, Term};
 pub(super) use self::smooth::{GREATEST_SUM, RADIUS, fit_smooth};
 
