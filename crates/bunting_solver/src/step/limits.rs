@@ -42,7 +42,8 @@ pub struct StepLimits {
     /// Least and greatest number of substeps in a tick.
     pub substeps: RangeInclusive<u32>,
     /// Least number of substeps in a second: longer ticks are divided into more. Faster motion than the
-    /// substeps resolve is damped.
+    /// substeps resolve is damped. Clothes, and other curved meshes that are solved along
+    /// [lines of quads](crate::StretchSolver::QuadLines), take half as many again.
     pub rate: u32,
     /// Passes in a substep, see [`StepSettings::passes`].
     pub passes: u32,
