@@ -25,6 +25,8 @@ const BLOWN: f64 = 1.0;
 const SAGS: [f64; 2] = [5.0, 50.0];
 /// Cloths that are listed for each figure.
 const LISTED: usize = 12;
+/// Headers of what tells a trial from others.
+const IDENTITY: [&str; 5] = ["seed", "mesh", "solved by", "particles", "effort"];
 
 /// Which cloths.
 #[derive(Clone, Debug, Args)]
@@ -35,7 +37,7 @@ pub struct Selection {
     /// How many.
     #[arg(long, default_value_t = 300)]
     count: u64,
-    /// Also let each hang without wind, and compare how far it sinks with a high effort, which takes six times as long.
+    /// Also let each hang without wind, and compare how far it sinks with a high effort, which takes ten times as long.
     #[arg(long)]
     sag: bool,
 }
@@ -115,8 +117,9 @@ fn group(family: String, solver: &str, cloths: &[&Figures]) -> Vec<String> {
     ]
 }
 
-/// How many of these figures are above each limit, or no numbers.
+/// How many of these figures are above each limit.
 fn counts(limits: &[f64], figures: &[f64]) -> String {
+    // What is not a number exceeds all.
     let exceeds = |figure: f64, limit: f64| figure.is_nan() || figure > limit;
     let over = |limit: &f64| figures.iter().filter(|figure| exceeds(**figure, *limit)).count();
     limits.iter().map(|limit| over(limit).to_string()).collect::<Vec<_>>().join("; ")
@@ -160,29 +163,13 @@ fn worst_sags(trials: &[Trial]) -> Table {
         measured(trials).filter_map(|(trial, of)| Some((trial, of, of.sag?))).collect();
     sorted.sort_by(|(_, _, a), (_, _, b)| b.error().total_cmp(&a.error()));
     let row = |(trial, figures, sag): (&Trial, &Figures, Sag)| {
-        let [substeps, passes] = figures.effort;
-        vec![
-            trial.seed.to_string(),
-            format!("{:?}", trial.family),
-            figures.solver.clone(),
-            figures.particles.to_string(),
-            format!("{substeps} × {passes}"),
-            figure(sag.own * 1e3),
-            figure(sag.converged * 1e3),
-        ]
+        let sags = [sag.own, sag.converged].map(|sag| figure(sag * 1e3));
+        identity(trial, figures).into_iter().chain(sags).collect()
     };
     Table {
         name: "fuzz_worst_sag".into(),
         title: "Those that sink most wrongly".into(),
-        headers: vec![
-            "seed",
-            "mesh",
-            "solved by",
-            "particles",
-            "effort",
-            "sag, mm",
-            "at a high effort",
-        ],
+        headers: IDENTITY.into_iter().chain(["sag, mm", "at a high effort"]).collect(),
         rows: sorted.into_iter().take(LISTED).map(row).collect(),
     }
 }
@@ -201,33 +188,33 @@ fn worst(trials: &[Trial]) -> Table {
         title:
             "The fastest at the end, and those with the most strained edges at the end, and in wind"
                 .into(),
-        headers: vec![
-            "seed",
-            "mesh",
-            "solved by",
-            "particles",
-            "effort",
-            "mm/s",
-            "edge at rest, %",
-            "in wind, %",
-            "ns a particle",
-        ],
+        headers: IDENTITY
+            .into_iter()
+            .chain(["mm/s", "edge at rest, %", "in wind, %", "ns a particle"])
+            .collect(),
         rows,
     }
 }
 
 fn row(trial: &Trial, figures: &Figures) -> Vec<String> {
+    let measured = [
+        figures.speed * 1e3,
+        figures.stretch[1] * 100.0,
+        figures.stretch[0] * 100.0,
+        figures.tick * 1e9,
+    ];
+    identity(trial, figures).into_iter().chain(measured.map(figure)).collect()
+}
+
+/// What tells a trial from others, in the order of [`IDENTITY`].
+fn identity(trial: &Trial, figures: &Figures) -> [String; 5] {
     let [substeps, passes] = figures.effort;
-    vec![
+    [
         trial.seed.to_string(),
         format!("{:?}", trial.family),
         figures.solver.clone(),
         figures.particles.to_string(),
         format!("{substeps} × {passes}"),
-        figure(figures.speed * 1e3),
-        figure(figures.stretch[1] * 100.0),
-        figure(figures.stretch[0] * 100.0),
-        figure(figures.tick * 1e9),
     ]
 }
 

@@ -6,9 +6,20 @@ use glam::{Vec2, Vec3};
 use crate::irregular::irregular;
 use crate::trousers::trousers;
 
-/// A sheet that becomes narrower downwards by a part of its width.
-pub fn narrowed(flat: &Fabric, by: f32) -> FabricBuilder {
-    let narrow = |at: &Vec3| Vec3::new(0.4 * (at.x - 0.5) * (1.0 + by * at.y), at.y, 0.0);
+/// The ends of the sides of all triangles.
+pub fn sides(fabric: &Fabric) -> impl Iterator<Item = [u32; 2]> {
+    fabric.triangles().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]])
+}
+
+/// Strain between two vertices, given the positions of all, m.
+pub fn strain(fabric: &Fabric, positions: &[Vec3], ends: [u32; 2]) -> f32 {
+    let length = |of: &[Vec3]| of[ends[0] as usize].distance(of[ends[1] as usize]);
+    length(positions) / length(fabric.rest_positions()) - 1.0
+}
+
+/// A sheet of a width, m, that becomes narrower downwards by a part of it.
+pub fn narrowed(flat: &Fabric, width: f32, by: f32) -> FabricBuilder {
+    let narrow = |at: &Vec3| Vec3::new((at.x - 0.5) * width * (1.0 + by * at.y), at.y, 0.0);
     let positions = flat.rest_positions().iter().map(narrow).collect();
     FabricBuilder::new(positions, flat.triangles().as_flattened().to_vec())
 }
