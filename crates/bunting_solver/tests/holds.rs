@@ -174,7 +174,8 @@ fn held_cloths_have_the_same_bits_in_every_batch() {
     };
     let alone = run(LaneCount::One, 0);
     assert_eq!(run(LaneCount::Eight, 5), alone);
-    assert_eq!(run(LaneCount::Sixteen, 9), alone);
+    // Without AVX-512 a batch has eight lanes.
+    assert_eq!(run(LaneCount::Sixteen, 7), alone);
 }
 
 #[test]

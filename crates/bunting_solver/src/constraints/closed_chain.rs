@@ -4,6 +4,9 @@
 //! corners. The other unknowns are eliminated with the closing one as a parameter: each is y + z × closing, where y solves
 //! the open chain and z is the answer to a unit of the closing unknown. A chain that is solved open, and its ends
 //! joined afterwards, opens at the seam instead of shrinking: all of its excess length gathers there.
+//!
+//! Across the lanes chains of different lengths end in the same row, and the shorter ones begin later, after rows without a link from
+//! their first particle to itself. In such *leading* rows the lanes that have not begun keep what they hold.
 
 use crate::batch::layout::Particles;
 use crate::constraints::chain::{Pass, SolveChains, first_of};
@@ -95,8 +98,10 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
         let least = L::splat(token, f32::MIN_POSITIVE);
         let zero = [L::splat(token, 0.0); N];
         let (mut from, mut inverse) = (seam.middle, zero);
+        // The closing link is the one before the first.
+        let one = [L::splat(token, 1.0); N];
         let mut row =
-            LastRow { along: seam.closing, mass: seam.mass, unknown: zero, by_closing: zero };
+            LastRow { along: seam.closing, mass: seam.mass, unknown: zero, by_closing: one };
         for link in 0..last {
             for at in 0..N {
                 let ChainLink { class, rest_length } = pair.links[link][at];
@@ -119,19 +124,26 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 };
                 inverse[at] = one / diagonal.minus_product(coupling, multiplier);
                 row.unknown[at] = right.plus_product(coupling, row.unknown[at]) * inverse[at];
-                // The closing link is the one before the first, and the one behind the last but one.
-                let of_closing = if link == 0 { coupling } else { coupling * row.by_closing[at] };
+                let of_closing = coupling * row.by_closing[at];
+                // It is the one behind the last but one, too.
                 let of_closing = match link + 1 == last {
                     true => of_closing.plus_product(next_mass, along.dot(seam.closing[at])),
                     false => of_closing,
                 };
-                row.by_closing[at] = of_closing * inverse[at];
+                let by = of_closing * inverse[at];
                 along.store(&mut stored.along);
                 multiplier.store(&mut stored.multiplier);
                 row.unknown[at].store(&mut stored.unknown);
                 (compliance * length).store(&mut stored.target_change);
-                row.by_closing[at].store(&mut by_closing[link][at]);
-                (from[at], row.mass[at], row.along[at]) = (next, next_mass, along);
+                by.store(&mut by_closing[link][at]);
+                (from[at], row.mass[at]) = (next, next_mass);
+                (row.along[at], row.by_closing[at]) = if link < pair.leading {
+                    let begun = has_begun::<L, S, P>(token, particles, &pair.links[link][at]);
+                    let along = along.or_where_not(begun, row.along[at]);
+                    (along, by.or_where_not(begun, row.by_closing[at]))
+                } else {
+                    (along, by)
+                };
             }
         }
         row
@@ -158,12 +170,20 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             for at in 0..N {
                 let row = &mut rows[link][at];
                 let own = L::load(token, &row.unknown);
-                unknown[at] = own.plus_product(multiplier[at], unknown[at]);
+                let found = own.plus_product(multiplier[at], unknown[at]);
                 let own_by = L::load(token, &by_closing[link][at]);
-                by[at] = own_by.plus_product(multiplier[at], by[at]);
+                let found_by = own_by.plus_product(multiplier[at], by[at]);
                 multiplier[at] = L::load(token, &row.multiplier);
-                unknown[at].store(&mut row.unknown);
-                by[at].store(&mut by_closing[link][at]);
+                found.store(&mut row.unknown);
+                found_by.store(&mut by_closing[link][at]);
+                (unknown[at], by[at]) = if link < pair.leading {
+                    let link = &pair.links[link][at];
+                    let begun = has_begun::<L, S, P>(token, &self.particles, link);
+                    let unknown = found.or_where_not(begun, unknown[at]);
+                    (unknown, found_by.or_where_not(begun, by[at]))
+                } else {
+                    (found, found_by)
+                };
             }
         }
         [unknown, by]
@@ -192,7 +212,14 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             let squared = closing.dot(closing);
             let length = squared.sqrt();
             let to_last = last_row.mass[at] * last_row.along[at].dot(closing);
-            let to_first = seam.mass[at] * closing.dot(V3::load(token, &rows[0][at].along));
+            let mut first = V3::load(token, &rows[pair.leading][at].along);
+            for link in (0..pair.leading).rev() {
+                let along = V3::load(token, &rows[link][at].along);
+                let link = &pair.links[link][at];
+                first =
+                    along.or_where_not(has_begun::<L, S, P>(token, &self.particles, link), first);
+            }
+            let to_first = seam.mass[at] * closing.dot(first);
             let right = (-squared)
                 .plus_product(target, length)
                 .plus_product(to_last, last_row.unknown[at])
@@ -243,15 +270,22 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 target.minus_product(change, unknown).store(&mut targets[link][at]);
                 let tension = V3::load(token, &row.along) * unknown;
                 if link == last {
-                    closing_tension[at] = tension;
-                } else {
-                    let particle = pair.particles[link + 1][at];
-                    let inverse_mass = particles.inverse_mass(token, particle);
-                    let position = particles.position(token, particle);
-                    let pull = tension - next_tension[at];
-                    particles.correct(token, particle, position, (pull, inverse_mass));
+                    (closing_tension[at], next_tension[at]) = (tension, tension);
+                    continue;
                 }
-                next_tension[at] = tension;
+                let mut pull = tension - next_tension[at];
+                next_tension[at] = if link < pair.leading {
+                    // The seam moves the first particle.
+                    let begun = has_begun::<L, S, P>(token, particles, &pair.links[link][at]);
+                    pull = pull.or_where_not(begun, V3::splat(token, 0.0));
+                    tension.or_where_not(begun, next_tension[at])
+                } else {
+                    tension
+                };
+                let particle = pair.particles[link + 1][at];
+                let inverse_mass = particles.inverse_mass(token, particle);
+                let position = particles.position(token, particle);
+                particles.correct(token, particle, position, (pull, inverse_mass));
             }
         }
         for at in 0..N {
@@ -265,4 +299,14 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             }
         }
     }
+}
+
+/// The lanes of a leading row whose chain has begun.
+#[inline(always)]
+fn has_begun<L: Lane<Pack = P>, S: Particles<P>, P: Pack>(
+    token: L::Token,
+    particles: &S,
+    link: &ChainLink<S::Constant>,
+) -> L::Mask {
+    L::splat(token, 0.0).lt(particles.one_if_linked(token, link.class))
 }

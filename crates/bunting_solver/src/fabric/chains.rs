@@ -35,16 +35,8 @@ pub(crate) struct Chain<C = f32> {
     pub sweep_order: Vec<(usize, u32)>,
     /// Whether its ends are at one place.
     pub is_closed: bool,
-}
-
-impl<C> Chain<C> {
-    /// A chain all of whose links are swept.
-    pub fn new(particles: Vec<u32>, links: Vec<ChainLink<C>>, is_closed: bool) -> Self {
-        let count = links.len();
-        let order = (0..count).step_by(2).chain((1..count).step_by(2));
-        let sweep_order = order.map(|at| (at, links[at].class)).collect();
-        Self { particles, links, sweep_order, is_closed }
-    }
+    /// Number of rows that lead up to the first link of a closed chain, in the lane where this is the latest.
+    pub leading: usize,
 }
 
 /// A link of a chain.
@@ -70,6 +62,8 @@ pub(crate) struct ChainPair<C = f32> {
     pub targets: Range<usize>,
     /// Whether the ends of each chain are at one place.
     pub is_closed: bool,
+    /// Number of rows before the last one in which a closed chain begins.
+    pub leading: usize,
 }
 
 /// The chains of one colour.
@@ -131,8 +125,16 @@ impl Chains {
         let is_column = |yarn: &Yarn| grid.is_some_and(|grid| grid.is_whole_column(yarn));
         let chain = |yarn: &Yarn| {
             let of_chain = yarn.links.iter().map(|link| ChainLink::of(&links[*link as usize]));
-            let is_closed = is_joined && is_column(yarn) || yarn.is_ring();
-            Chain::new(yarn.particles.clone(), of_chain.collect(), is_closed)
+            let of_chain: Vec<ChainLink> = of_chain.collect();
+            let rows = |first: usize| (first..of_chain.len()).step_by(2);
+            let sweep_order = rows(0).chain(rows(1)).map(|at| (at, of_chain[at].class)).collect();
+            Chain {
+                particles: yarn.particles.clone(),
+                links: of_chain,
+                sweep_order,
+                is_closed: is_joined && is_column(yarn) || yarn.is_ring(),
+                leading: 0,
+            }
         };
         let mut chains = Self::of_colours(colours.ranges().iter().map(|range| {
             let yarns = &yarns[range.clone()];
@@ -284,6 +286,7 @@ impl Chains {
                 links: links.collect(),
                 targets: pair.targets.clone(),
                 is_closed: pair.is_closed,
+                leading: pair.leading,
             }
         };
         let sweep_link = |link: &SweepLink| SweepLink { class: link.target, ..*link };
@@ -326,6 +329,7 @@ impl<C: Copy> ChainPair<C> {
             links: links.collect(),
             targets: first_target..first_target + rows * chains.len(),
             is_closed: chains.iter().all(|chain| chain.is_closed),
+            leading: chains.iter().map(|chain| chain.leading).max().unwrap_or(0),
         }
     }
 }

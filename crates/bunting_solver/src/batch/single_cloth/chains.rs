@@ -264,6 +264,7 @@ impl Packer {
             links: chain_links,
             sweep_order: sweep.concat(),
             is_closed: self.is_joined && direction == Direction { columns: 0, rows: 1 },
+            leading: 0,
         })
     }
 

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::node_packs::NodePacks;
+use super::pack_lanes::{PackLane, PackLink, lanes_of_open, packs_of_rings};
 use super::{LaneIndices, NO_INDEX};
 use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Yarn, ascending};
 use crate::simd::constant::Constant;
@@ -43,30 +44,44 @@ struct Packer<'a> {
 }
 
 impl Packer<'_> {
-    /// Packs lines that share no node, the longest first. Closed ones of a pack are equally long.
+    /// Packs lines that share no node: rings, then others.
     fn pack(&mut self, yarns: &[Yarn]) -> Vec<Chain<Pack8>> {
-        let mut ordered: Vec<&Yarn> = yarns.iter().collect();
-        ordered.sort_by_key(|yarn| (!yarn.is_ring(), core::cmp::Reverse(yarn.links.len())));
-        let alike = |one: &&Yarn, other: &&Yarn| {
-            one.is_ring() == other.is_ring()
-                && (!one.is_ring() || one.links.len() == other.links.len())
-        };
-        let runs = ordered.chunk_by(alike).flat_map(|run| run.chunks(Pack8::WIDTH));
-        runs.map(|pack| self.chain(pack)).collect()
+        let (rings, open): (Vec<&Yarn>, Vec<&Yarn>) = yarns.iter().partition(|yarn| yarn.is_ring());
+        let rings = packs_of_rings(&rings);
+        let rings = rings.iter().map(|lanes| (&lanes[..], true));
+        let open = lanes_of_open(&open);
+        let open = open.chunks(Pack8::WIDTH).map(|lanes| (lanes, false));
+        rings.chain(open).map(|(lanes, is_closed)| self.chain(lanes, is_closed)).collect()
     }
 
-    fn chain(&mut self, yarns: &[&Yarn]) -> Chain<Pack8> {
-        let lines: Vec<&[u32]> = yarns.iter().map(|yarn| &yarn.particles[..]).collect();
-        let particles = self.nodes.along(&lines);
-        let links = (0..particles.len() - 1).map(|at| self.link(yarns, at)).collect();
-        Chain::new(particles, links, yarns[0].is_ring())
+    fn chain(&mut self, lanes: &[PackLane], is_closed: bool) -> Chain<Pack8> {
+        let nodes: Vec<&[u32]> = lanes.iter().map(|lane| &lane.nodes[..]).collect();
+        let particles = self.nodes.along(&nodes);
+        let rows = 0..particles.len() - 1;
+        let links = rows.clone().map(|row| self.link(lanes, row, |_| true)).collect();
+        let mut sweep_order = Vec::new();
+        for is_odd in [false, true] {
+            let is_swept = |link: &PackLink| link.is_odd == is_odd;
+            let has_any =
+                |row: &usize| lanes.iter().any(|lane| lane.link(*row).is_some_and(is_swept));
+            for row in rows.clone().filter(has_any) {
+                sweep_order.push((row, self.link(lanes, row, is_swept).class));
+            }
+        }
+        let leading = lanes.iter().map(PackLane::leading).max().unwrap_or(0);
+        Chain { particles, links, sweep_order, is_closed, leading }
     }
 
-    /// The links at a place of each line.
-    fn link(&mut self, yarns: &[&Yarn], at: usize) -> ChainLink<Pack8> {
+    /// Those links in a row of each lane that count.
+    fn link(
+        &mut self,
+        lanes: &[PackLane],
+        row: usize,
+        counts: impl Fn(&PackLink) -> bool,
+    ) -> ChainLink<Pack8> {
         let link = |lane: usize| {
-            let number = yarns.get(lane)?.links.get(at)?;
-            self.fabric.links().get(*number as usize)
+            let link = lanes.get(lane)?.link(row).filter(|link| counts(link))?;
+            self.fabric.links().get(link.number as usize)
         };
         let rest_length =
             <Pack8 as Constant<Pack8>>::of(|lane| link(lane).map_or(0.0, |link| link.rest_length));

@@ -8,6 +8,7 @@
 mod bend_lines;
 mod chains;
 mod node_packs;
+mod pack_lanes;
 mod positions;
 
 use core::ops::Range;
