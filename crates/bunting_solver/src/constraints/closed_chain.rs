@@ -273,11 +273,10 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                     (closing_tension[at], next_tension[at]) = (tension, tension);
                     continue;
                 }
-                let mut pull = tension - next_tension[at];
+                // That of a first particle is overwritten below.
+                let pull = tension - next_tension[at];
                 next_tension[at] = if link < pair.leading {
-                    // The seam moves the first particle.
                     let begun = has_begun::<L, S, P>(token, particles, &pair.links[link][at]);
-                    pull = pull.or_where_not(begun, V3::splat(token, 0.0));
                     tension.or_where_not(begun, next_tension[at])
                 } else {
                     tension
