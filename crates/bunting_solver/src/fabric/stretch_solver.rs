@@ -15,8 +15,8 @@ pub enum StretchSolver {
     /// 5 times the time of a grid; stiff cloth is up to a fifth too soft.
     CutGrid,
     /// The sides of quads that run through a mesh of any shape: of its own, or of quads that are laid onto its triangles. At 2 to
-    /// 5 times the time of a grid; clothes take half as many substeps again. Those that hang from a few points sink about a
-    /// centimetre too far, stiff ones several.
+    /// 5 times the time of a grid, tubes with slanting seams up to 8; clothes take half as many substeps again. Those that hang
+    /// from a few points sink about a centimetre too far, stiff ones several.
     QuadLines,
     /// Lines laid across the triangles of any other mesh, and of uneven ones without pins: too soft where stiff, at 6 to 13 times
     /// the time of a grid.
