@@ -6,7 +6,7 @@
 //! joined afterwards, opens at the seam instead of shrinking: all of its excess length gathers there.
 //!
 //! Across the lanes chains of different lengths end in the same row, and the shorter ones begin later, after rows without a link from
-//! their first particle to itself. In such *leading* rows the lanes that have not begun keep what they hold.
+//! their first particle to itself. In such *leading* rows the lanes that have not begun keep the state of the elimination.
 
 use crate::batch::layout::Particles;
 use crate::constraints::chain::{Pass, SolveChains, first_of};
@@ -125,7 +125,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 inverse[at] = one / diagonal.minus_product(coupling, multiplier);
                 row.unknown[at] = right.plus_product(coupling, row.unknown[at]) * inverse[at];
                 let of_closing = coupling * row.by_closing[at];
-                // It is the one behind the last but one, too.
+                // The closing link is the one behind the last but one, too.
                 let of_closing = match link + 1 == last {
                     true => of_closing.plus_product(next_mass, along.dot(seam.closing[at])),
                     false => of_closing,
@@ -177,8 +177,8 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                 found.store(&mut row.unknown);
                 found_by.store(&mut by_closing[link][at]);
                 (unknown[at], by[at]) = if link < pair.leading {
-                    let link = &pair.links[link][at];
-                    let begun = has_begun::<L, S, P>(token, &self.particles, link);
+                    let of_row = &pair.links[link][at];
+                    let begun = has_begun::<L, S, P>(token, &self.particles, of_row);
                     let unknown = found.or_where_not(begun, unknown[at]);
                     (unknown, found_by.or_where_not(begun, by[at]))
                 } else {
@@ -214,10 +214,9 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
             let to_last = last_row.mass[at] * last_row.along[at].dot(closing);
             let mut first = V3::load(token, &rows[pair.leading][at].along);
             for link in (0..pair.leading).rev() {
-                let along = V3::load(token, &rows[link][at].along);
-                let link = &pair.links[link][at];
-                first =
-                    along.or_where_not(has_begun::<L, S, P>(token, &self.particles, link), first);
+                let of_row = &pair.links[link][at];
+                let begun = has_begun::<L, S, P>(token, &self.particles, of_row);
+                first = V3::load(token, &rows[link][at].along).or_where_not(begun, first);
             }
             let to_first = seam.mass[at] * closing.dot(first);
             let right = (-squared)
@@ -273,7 +272,7 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
                     (closing_tension[at], next_tension[at]) = (tension, tension);
                     continue;
                 }
-                // That of a first particle is overwritten below.
+                // A pull at a first particle is lost: its position is overwritten below.
                 let pull = tension - next_tension[at];
                 next_tension[at] = if link < pair.leading {
                     let begun = has_begun::<L, S, P>(token, particles, &pair.links[link][at]);

@@ -35,8 +35,23 @@ pub(crate) struct Chain<C = f32> {
     pub sweep_order: Vec<(usize, u32)>,
     /// Whether its ends are at one place.
     pub is_closed: bool,
-    /// Number of rows that lead up to the first link of a closed chain, in the lane where this is the latest.
+    /// Number of rows in which some lanes of a closed chain have not begun: even in all lanes, or odd in all.
     pub leading: usize,
+}
+
+impl<C> Chain<C> {
+    /// A chain all of whose links are swept.
+    pub fn new(
+        particles: Vec<u32>,
+        links: Vec<ChainLink<C>>,
+        is_closed: bool,
+        leading: usize,
+    ) -> Self {
+        let rows = |first: usize| (first..links.len()).step_by(2);
+        let order = rows(leading % 2).chain(rows(1 - leading % 2));
+        let sweep_order = order.map(|at| (at, links[at].class)).collect();
+        Self { particles, links, sweep_order, is_closed, leading }
+    }
 }
 
 /// A link of a chain.
@@ -62,7 +77,7 @@ pub(crate) struct ChainPair<C = f32> {
     pub targets: Range<usize>,
     /// Whether the ends of each chain are at one place.
     pub is_closed: bool,
-    /// Number of rows before the last one in which a closed chain begins.
+    /// Number of rows in which some lanes of the closed chains have not begun.
     pub leading: usize,
 }
 
@@ -125,16 +140,8 @@ impl Chains {
         let is_column = |yarn: &Yarn| grid.is_some_and(|grid| grid.is_whole_column(yarn));
         let chain = |yarn: &Yarn| {
             let of_chain = yarn.links.iter().map(|link| ChainLink::of(&links[*link as usize]));
-            let of_chain: Vec<ChainLink> = of_chain.collect();
-            let rows = |first: usize| (first..of_chain.len()).step_by(2);
-            let sweep_order = rows(0).chain(rows(1)).map(|at| (at, of_chain[at].class)).collect();
-            Chain {
-                particles: yarn.particles.clone(),
-                links: of_chain,
-                sweep_order,
-                is_closed: is_joined && is_column(yarn) || yarn.is_ring(),
-                leading: 0,
-            }
+            let is_closed = is_joined && is_column(yarn) || yarn.is_ring();
+            Chain::new(yarn.particles.clone(), of_chain.collect(), is_closed, 0)
         };
         let mut chains = Self::of_colours(colours.ranges().iter().map(|range| {
             let yarns = &yarns[range.clone()];

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::node_packs::NodePacks;
-use super::pack_lanes::{PackLane, PackLink, lanes_of_open, packs_of_rings};
+use super::pack_lanes::{PackLane, lanes_of_open, packs_of_rings};
 use super::{LaneIndices, NO_INDEX};
 use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Yarn, ascending};
 use crate::simd::constant::Constant;
@@ -57,31 +57,16 @@ impl Packer<'_> {
     fn chain(&mut self, lanes: &[PackLane], is_closed: bool) -> Chain<Pack8> {
         let nodes: Vec<&[u32]> = lanes.iter().map(|lane| &lane.nodes[..]).collect();
         let particles = self.nodes.along(&nodes);
-        let rows = 0..particles.len() - 1;
-        let links = rows.clone().map(|row| self.link(lanes, row, |_| true)).collect();
-        let mut sweep_order = Vec::new();
-        for is_odd in [false, true] {
-            let is_swept = |link: &PackLink| link.is_odd == is_odd;
-            let has_any =
-                |row: &usize| lanes.iter().any(|lane| lane.link(*row).is_some_and(is_swept));
-            for row in rows.clone().filter(has_any) {
-                sweep_order.push((row, self.link(lanes, row, is_swept).class));
-            }
-        }
+        let links = (0..particles.len() - 1).map(|row| self.link(lanes, row)).collect();
         let leading = lanes.iter().map(PackLane::leading).max().unwrap_or(0);
-        Chain { particles, links, sweep_order, is_closed, leading }
+        Chain::new(particles, links, is_closed, leading)
     }
 
-    /// Those links in a row of each lane that count.
-    fn link(
-        &mut self,
-        lanes: &[PackLane],
-        row: usize,
-        counts: impl Fn(&PackLink) -> bool,
-    ) -> ChainLink<Pack8> {
+    /// The links in a row of each lane.
+    fn link(&mut self, lanes: &[PackLane], row: usize) -> ChainLink<Pack8> {
         let link = |lane: usize| {
-            let link = lanes.get(lane)?.link(row).filter(|link| counts(link))?;
-            self.fabric.links().get(link.number as usize)
+            let number = lanes.get(lane)?.link(row)?;
+            self.fabric.links().get(number as usize)
         };
         let rest_length =
             <Pack8 as Constant<Pack8>>::of(|lane| link(lane).map_or(0.0, |link| link.rest_length));

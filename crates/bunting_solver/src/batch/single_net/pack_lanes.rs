@@ -11,22 +11,13 @@ use crate::fabric::{CHAINS_PER_PAIR, Yarn};
 use crate::simd::lane::Pack;
 use crate::simd::registers::Pack8;
 
-/// A link of a line.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct PackLink {
-    /// Its number in the fabric.
-    pub number: u32,
-    /// Whether its place in its line is odd: a sweep solves those last.
-    pub is_odd: bool,
-}
-
 /// Lines one after another in a lane.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct PackLane {
     /// One more than rows of links.
     pub nodes: Vec<u32>,
-    /// The link in each row; none before and between lines.
-    links: Vec<Option<PackLink>>,
+    /// The number of the fabric's link in each row; none before and between lines.
+    links: Vec<Option<u32>>,
 }
 
 impl PackLane {
@@ -42,9 +33,7 @@ impl PackLane {
     }
 
     fn push(&mut self, yarn: &Yarn) {
-        let parities = [false, true].into_iter().cycle();
-        let link = |(&number, is_odd)| Some(PackLink { number, is_odd });
-        self.links.extend(yarn.links.iter().zip(parities).map(link));
+        self.links.extend(yarn.links.iter().copied().map(Some));
         self.nodes.extend(&yarn.particles);
     }
 
@@ -56,15 +45,15 @@ impl PackLane {
         self.push(yarn);
     }
 
-    /// Number of rows between the last line and another one. Lines begin in even rows, so that a sweep meets the links of a row
-    /// together.
+    /// Number of rows between the last line and another one, which begins in an even row: a sweep solves every second link of a line,
+    /// then the others, and so every second row of a pack.
     fn gap(&self) -> usize {
         2 - self.links.len() % 2
     }
 
-    /// The link in a row.
-    pub fn link(&self, row: usize) -> Option<&PackLink> {
-        self.links.get(row)?.as_ref()
+    /// The number of the fabric's link in a row.
+    pub fn link(&self, row: usize) -> Option<u32> {
+        *self.links.get(row)?
     }
 
     /// Number of rows before the first link.
@@ -76,7 +65,7 @@ impl PackLane {
 /// Packs of rings that end in the last row of their pack. Packs that are solved side by side follow one another with as many rows.
 pub(super) fn packs_of_rings(rings: &[&Yarn]) -> Vec<Vec<PackLane>> {
     let mut rings = rings.to_vec();
-    // With lengths of both parities in a pack each row would be swept twice.
+    // All rings of a pack begin in even rows, or all in odd ones, as a sweep solves every second row.
     let parity = |yarn: &&Yarn| yarn.links.len() % 2;
     rings.sort_by_key(|yarn| (parity(yarn), Reverse(yarn.links.len())));
     let alike = rings.chunk_by(|one, other| parity(one) == parity(other));
@@ -134,8 +123,7 @@ mod tests {
         let ends = |lane: &PackLane| {
             assert_eq!(lane.nodes.len(), lane.links.len() + 1);
             let rows = lane.nodes.windows(2).zip(&lane.links);
-            let linked =
-                rows.filter_map(|(ends, link)| Some((link.as_ref()?.number, ends.to_vec())));
+            let linked = rows.filter_map(|(ends, link)| Some(((*link)?, ends.to_vec())));
             linked.collect::<Vec<_>>()
         };
         let mut found: Vec<_> = lanes.iter().flat_map(ends).collect();
@@ -160,6 +148,9 @@ mod tests {
             let [before_first @ .., first] = &lane.nodes[..=lane.leading()] else { panic!() };
             assert!(before_first.iter().all(|node| node == first));
         }
+        for pack in &packs {
+            assert!(pack.iter().all(|lane| lane.leading() % 2 == pack[0].leading() % 2));
+        }
         check_links(&packs.into_iter().flatten().collect::<Vec<_>>(), &rings);
         // A pack of eight, and one that is much shorter.
         let rings = lines(&[20, 20, 20, 20, 20, 20, 20, 20, 8], true);
@@ -175,7 +166,8 @@ mod tests {
         let rows: Vec<usize> = lanes.iter().map(|lane| lane.links.len()).collect();
         assert_eq!(rows, [30, 30, 13 + 1 + 12 + 2 + 2, 3 + 1 + 1]);
         for (row, link) in lanes.iter().flat_map(|lane| lane.links.iter().enumerate()) {
-            assert!(link.is_none_or(|link| link.is_odd == (row % 2 == 1)));
+            // The hundreds of a number are those of its line.
+            assert!(link.is_none_or(|number| number % 100 % 2 == row as u32 % 2));
         }
         assert!(lanes.iter().all(|lane| lane.leading() == 0));
         check_links(&lanes, &lines);
