@@ -93,31 +93,25 @@ fn a_method_that_takes_too_long_is_left_out_and_named() {
     }
 }
 
-#[test]
-fn cases_are_plotted_and_tabulated() {
-    let folder = std::env::temp_dir().join(format!("bunting-lab-cases-{}", std::process::id()));
+/// The cases that a command prints as JSON, plots and tabulates.
+fn cases(command: &str) -> Vec<serde_json::Value> {
+    let folder = std::env::temp_dir().join(format!("bunting-lab-{command}-{}", std::process::id()));
     let out = folder.to_str().expect("a plain path");
-    for command in ["oracles", "stability"] {
-        let output = lab(&[command, "--quick", "--out", out]);
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let plot = std::fs::read_to_string(folder.join(format!("{command}.svg"))).expect("a plot");
-        assert!(plot.contains("passes") && plot.contains("<circle"), "{command}");
-        assert!(folder.join(format!("{command}.csv")).exists());
-    }
-    std::fs::remove_dir_all(folder).expect("the folder is ours");
-}
-
-/// The cases that a command prints as JSON.
-fn cases(arguments: &[&str]) -> Vec<serde_json::Value> {
-    let output = lab(arguments);
+    let output = lab(&[command, "--quick", "--json", "--out", out]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let plot = std::fs::read_to_string(folder.join(format!("{command}.svg"))).expect("a plot");
+    assert!(plot.contains("passes") && plot.contains("<circle"), "{command}");
+    let table = std::fs::read_to_string(folder.join(format!("{command}.csv"))).expect("a table");
+    std::fs::remove_dir_all(folder).expect("the folder is ours");
     let json: serde_json::Value = serde_json::from_slice(&output.stdout).expect("one JSON object");
-    json["cases"].as_array().expect("cases").clone()
+    let cases = json["cases"].as_array().expect("cases").clone();
+    assert_eq!(table.lines().count(), cases.len() + 1, "{command}");
+    cases
 }
 
 #[test]
 fn oracles_print_their_cases() {
-    let cases = cases(&["oracles", "--json"]);
+    let cases = cases("oracles");
     assert!(cases.len() >= 40);
     for case in cases {
         assert!(case["name"].is_string() && case["pass"].is_boolean(), "{case}");
@@ -131,7 +125,7 @@ fn oracles_print_their_cases() {
 
 #[test]
 fn stability_prints_its_cases() {
-    let cases = cases(&["stability", "--quick", "--json"]);
+    let cases = cases("stability");
     assert!(cases.len() >= 60, "{}", cases.len());
     for case in cases {
         assert!(case["name"].is_string() && case["n"].is_u64(), "{case}");
