@@ -16,13 +16,16 @@ use bevy_transform::prelude::*;
 use bunting_tests::{FLAG, app, bits, run, spawn_flag};
 
 /// Components that are no parameters: shapes, what holds cloth, how it starts, results, other entities, and states.
-const NOT_TUNED: [&str; 21] = [
+const NOT_TUNED: [&str; 25] = [
     "AnchorReactions",
     "Attachment",
     "ClothCollider",
     "ClothDeformer",
+    "ClothDrag",
+    "ClothDragSettings",
     "ClothFeatures",
     "ClothFromMesh",
+    "ClothGizmos",
     "ClothGrab",
     "ClothMesh",
     "ClothPaused",
@@ -35,6 +38,7 @@ const NOT_TUNED: [&str; 21] = [
     "GustTravel",
     "LodReport",
     "LodViewer",
+    "PinBrush",
     "TickWind",
     "WakeTrail",
     "WindBlast",

@@ -16,8 +16,8 @@ use bevy_camera::visibility::{
 };
 use bevy_ecs::prelude::*;
 use bevy_gltf::{
-    GltfExtras, GltfMaterialExtras, GltfMaterialName, GltfMeshExtras, GltfMeshName, GltfPlugin,
-    GltfSceneExtras, GltfSceneName,
+    GltfExtras, GltfLoaderSettings, GltfMaterialExtras, GltfMaterialName, GltfMeshExtras,
+    GltfMeshName, GltfPlugin, GltfSceneExtras, GltfSceneName,
 };
 use bevy_math::Vec3;
 use bevy_mesh::skinning::SkinnedMesh;
@@ -82,9 +82,15 @@ fn assets() -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets")
 }
 
+/// Animations are assets of a plugin that these apps do without, and Bevy loads them where a package of the build asks for them.
+fn without_animations(settings: &mut GltfLoaderSettings) {
+    settings.load_animations = false;
+}
+
 /// Spawns the scene of a file, and updates until something with a name is there.
 fn spawn(app: &mut App, file: &str, name: &str) -> Entity {
-    let scene = app.world().resource::<AssetServer>().load(format!("{file}#Scene0"));
+    let loads = app.world().resource::<AssetServer>().load_builder();
+    let scene = loads.with_settings(without_animations).load(format!("{file}#Scene0"));
     app.world_mut().spawn((WorldAssetRoot(scene), Transform::default(), Visibility::default()));
     let start = std::time::Instant::now();
     loop {
