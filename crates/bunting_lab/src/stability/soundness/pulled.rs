@@ -23,6 +23,8 @@ const JERK: Vec3 = Vec3::new(0.12, 0.1, -0.12);
 const DAMPING: f32 = 4.0;
 /// Time from then on until the speed is measured, s.
 const SETTLING: f32 = 20.0;
+/// Time without damping after that, s: motion that grows by a quarter each second is seen by then.
+const UNDAMPED: f32 = 30.0;
 /// Stretch stiffnesses of the lanes, N/m, and their area densities, kg/m².
 const MATERIALS: [(f32, f32); 8] = [
     (500.0, 0.05),
@@ -40,7 +42,7 @@ const MANY_SUBSTEPS: u32 = 8;
 
 /// Cases of a saddle, a wave, a sheet with a hole and trousers that hang from an edge, of a tube, a ring and a sheet of
 /// long cells that hang from two vertices, and of a dome, a sheet and a disk that hang from one; of trousers, a torus, a ball and a
-/// bowl with many substeps, too.
+/// bowl with many substeps, too. Of those that hang from a point without damping at the end.
 pub(super) fn cases() -> Vec<HardCase> {
     let meshes = [
         ("saddle", bent(33, 11, |u, v| Vec3::new(u, v, 0.6 * (u * u - v * v)))),
@@ -85,14 +87,21 @@ pub(super) fn cases() -> Vec<HardCase> {
         ),
         ("sheet with a hole", holed(26, 21)),
         ("pair of trousers", garment()),
-        ("sheet", hung(FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)), &[0])),
+        ("sheet", sheet()),
         ("sheet of long cells", hung(FabricBuilder::grid(Grid::new(31, 16, 0.44, 0.5)), &[0, 30])),
     ];
     let round = [("torus", torus_held_above()), ("ball with poles", ball()), ("bowl", bowl())];
     let with_many = [("pair of trousers", garment())].into_iter().chain(round.clone());
     let with_many = with_many.map(|(name, fabric)| at_rest(name, fabric, Some(MANY_SUBSTEPS)));
     let by_need = meshes.into_iter().chain(round).map(|(name, fabric)| at_rest(name, fabric, None));
-    by_need.chain(with_many).collect()
+    let from_a_point = [("sheet", sheet()), ("ball with poles", ball()), ("bowl", bowl())];
+    let undamped = from_a_point.into_iter().map(|(name, fabric)| undamped(name, fabric));
+    by_need.chain(with_many).chain(undamped).collect()
+}
+
+/// A square sheet that hangs from a corner.
+fn sheet() -> Arc<Fabric> {
+    hung(FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)), &[0])
 }
 
 /// Trousers that hang from their waist.
@@ -167,34 +176,64 @@ fn hung(mesh: FabricBuilder, from: &[u32]) -> Arc<Fabric> {
     Arc::new(mesh.pin(from.iter().copied()).build().expect("a good mesh"))
 }
 
-/// Case of the greatest RMS speed of a mesh in eight lanes of polyester, with the substeps that its weight needs, or others.
+/// Case of the greatest RMS speed of a mesh, with the substeps that its weight needs, or others.
 fn at_rest(name: &str, fabric: Arc<Fabric>, substeps: Option<u32>) -> HardCase {
     let by_need = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
     let settings = StepSettings { substeps: substeps.unwrap_or(by_need.substeps), ..by_need };
+    let batch = settled(fabric, settings);
+    let with = substeps.map_or(String::new(), |count| format!(", {count} substeps"));
+    let name = format!("{name} that was pulled{with}: at rest");
+    HardCase::new(name, 0, "RMS speed, m/s", fastest(&batch), AT_REST)
+}
+
+/// Case of the greatest RMS speed of a mesh that rests and is damped no longer.
+fn undamped(name: &str, fabric: Arc<Fabric>) -> HardCase {
+    let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
+    let mut batch = settled(fabric, settings);
+    set_damping(&mut batch, 0.0);
+    advance(&mut batch, UNDAMPED, settings);
+    let name = format!("{name} that was pulled, without damping: at rest");
+    HardCase::new(name, 0, "RMS speed, m/s", fastest(&batch), AT_REST)
+}
+
+/// A mesh in eight lanes of polyester that has been blown about and pulled, and has had time to come to rest.
+fn settled(fabric: Arc<Fabric>, settings: StepSettings) -> ClothBatch {
     let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::Eight);
     let still = Drive::default();
-    let materials = MATERIALS.map(|(stiffness, area_density)| FabricMaterial {
+    for material in materials() {
+        let lane = batch.insert(&ClothSnapshot::at_rest(&fabric), material).expect("a good cloth");
+        batch.drive(lane, Drive { wind: WIND, ..still }).expect("a good drive");
+    }
+    advance(&mut batch, BLOWN, settings);
+    set_damping(&mut batch, DAMPING);
+    let motion = FrameMotion { translation: JERK, ..FrameMotion::NONE };
+    drive(&mut batch, Drive { motion, ..still });
+    batch.step(TICK, settings);
+    drive(&mut batch, still);
+    advance(&mut batch, SETTLING, settings);
+    batch
+}
+
+/// The materials of the lanes.
+fn materials() -> [FabricMaterial; MATERIALS.len()] {
+    MATERIALS.map(|(stiffness, area_density)| FabricMaterial {
         area_density,
         warp_stiffness: stiffness,
         weft_stiffness: stiffness,
         shear_stiffness: 0.05 * stiffness,
         ..FabricMaterial::FLAG_POLYESTER
-    });
-    for material in materials {
-        let lane = batch.insert(&ClothSnapshot::at_rest(&fabric), material).expect("a good cloth");
-        batch.drive(lane, Drive { wind: WIND, ..still }).expect("a good drive");
+    })
+}
+
+/// Sets the damping of all lanes, 1/s.
+fn set_damping(batch: &mut ClothBatch, damping: f32) {
+    for (lane, material) in materials().into_iter().enumerate() {
+        let material = FabricMaterial { damping, ..material };
+        batch.set_material(lane, material).expect("a good material");
     }
-    advance(&mut batch, BLOWN, settings);
-    let motion = FrameMotion { translation: JERK, ..FrameMotion::NONE };
-    for (lane, material) in materials.into_iter().enumerate() {
-        let damped = FabricMaterial { damping: DAMPING, ..material };
-        batch.set_material(lane, damped).expect("a good material");
-        batch.drive(lane, Drive { motion, ..still }).expect("a good drive");
-    }
-    batch.step(TICK, settings);
-    (0..MATERIALS.len()).for_each(|lane| batch.drive(lane, still).expect("a good drive"));
-    advance(&mut batch, SETTLING, settings);
-    let with = substeps.map_or(String::new(), |count| format!(", {count} substeps"));
-    let name = format!("{name} that was pulled{with}: at rest");
-    HardCase::new(name, 0, "RMS speed, m/s", fastest(&batch), AT_REST)
+}
+
+/// Drives all lanes alike.
+fn drive(batch: &mut ClothBatch, drive: Drive) {
+    (0..MATERIALS.len()).for_each(|lane| batch.drive(lane, drive).expect("a good drive"));
 }
