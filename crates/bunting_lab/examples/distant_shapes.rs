@@ -9,11 +9,10 @@ use bevy_app::App;
 use bevy_bunting::parry3d::math::Pose;
 use bevy_bunting::parry3d::shape::{HeightField, SharedShape, TriMesh};
 use bevy_bunting::parry3d::utils::Array2;
-use bevy_bunting::{
-    Attachment, ClothCollider, ClothEdge, ClothMesh, ClothTimings, StepSettings, WindField,
-};
+use bevy_bunting::{Attachment, ClothCollider, ClothEdge, ClothMesh, ClothTimings, WindField};
 use bevy_transform::components::Transform;
 use bunting_lab::{game, timing::Timing};
+use bunting_solver::StepSettings;
 use glam::{Quat, Vec3};
 
 /// Updates before anything is measured.
