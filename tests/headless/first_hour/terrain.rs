@@ -6,7 +6,7 @@ use bevy_bunting::parry3d::utils::Array2;
 use bevy_bunting::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_transform::prelude::*;
-use bunting_tests::{app, run, spawn_flag, state};
+use bunting_tests::{app, run, state};
 
 /// Height of a bowl at a distance from its middle, m: it rises by the square of the distance, one metre at 20
 /// m.
