@@ -70,7 +70,7 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     /// Length that each link has under the tension found so far in the substep, l − α̃ λ, m, in the order in
     /// which the scheme solves links.
     pub link_target: Vec<P>,
-    /// Positions and targets before a pass that is extrapolated.
+    /// Positions and targets before a pass that is extrapolated, or targets before bending after stretch.
     pub before_pass: BeforePass<P>,
     /// Corrections that are not yet added to the positions, m, and what the positions' rounding has left out; empty
     /// unless the fabric [sums corrections](Fabric::sums_corrections).

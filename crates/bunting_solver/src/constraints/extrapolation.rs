@@ -24,13 +24,14 @@ pub(super) fn extrapolation_of(pass: u32, passes: u32) -> Option<f32> {
     FACTORS.get(passes_left as usize).copied().filter(|_| pass > 0)
 }
 
-/// The state before a pass that is extrapolated; empty before the first such pass.
+/// The state before a pass that is extrapolated, and targets before bending that comes after stretch; empty before the first such
+/// pass.
 #[derive(Clone, Debug)]
 pub(crate) struct BeforePass<P: Pack> {
     /// Coordinates of positions, m, in the order in which constraints hold them.
     coordinates: Vec<f32>,
     /// Targets of links, m.
-    targets: Vec<P>,
+    pub(super) targets: Vec<P>,
 }
 
 impl<P: Pack> BeforePass<P> {

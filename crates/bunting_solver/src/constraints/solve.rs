@@ -119,17 +119,25 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.solve_contacts();
     }
 
-    /// Solves chains and tethers of a grid, of which a background grid has none. For every second pass a sweep over
-    /// warp and weft corrects the overshoot of the chains' frozen directions, and chains that still have overlong links
-    /// are solved again.
+    /// Solves chains and tethers of a grid, and bending if that comes after them in this substep. For every second pass a
+    /// sweep over warp and weft corrects the overshoot of the chains' frozen directions, and chains that still have
+    /// overlong links are solved again.
     pub fn solve_stretch_of_grid(&mut self) {
         let passes = self.clock.settings.passes;
+        let begins_with_tethers = self.begins_with_tethers();
+        if begins_with_tethers {
+            self.solve_tethers();
+        }
         if self.is_narrow() {
             self.solve_strips(passes);
         } else {
             self.solve_chains(passes);
         }
-        self.solve_tethers();
+        if begins_with_tethers {
+            self.solve_bending_after_stretch();
+        } else {
+            self.solve_tethers();
+        }
         for _ in 0..passes / 2 {
             self.sweep_links();
         }
@@ -145,6 +153,7 @@ mod tests {
     use crate::constraints::bench::{cloth_at, positions};
     use crate::constraints::chain::Pass;
     use crate::fabric::{Fabric, FabricBuilder, FabricMaterial, LinkFamily};
+    use crate::simd::lane::Pack;
     use crate::simd::registers::Pack1;
 
     /// A ball of 30 cm, of twenty triangles.
@@ -247,6 +256,30 @@ mod tests {
             }
         });
         assert!(both_ways < 1e-4 && one_way > 3e-4, "{both_ways}, one way {one_way}");
+    }
+
+    #[test]
+    fn a_net_is_bent_before_and_after_stretch_in_turn() {
+        let mesh = torus();
+        let net = &mesh.background().expect("a net").fabric;
+        let material = FabricMaterial { bend_stiffness: 1.0, ..FabricMaterial::FLAG_POLYESTER };
+        let wavy = |at: &Vec3| *at * (1.0 + 0.1 * libm::sinf(40.0 * at.x));
+        let start: Vec<Vec3> = net.rest_positions().iter().map(wavy).collect();
+        for begun in 1..=4 {
+            let mut batch = cloth_at(net, material, &start);
+            assert!(batch.parameters.any_bends_stiffly());
+            batch.clock.begun = begun;
+            batch.solve_bending_before_stretch();
+            let comes_after = positions(&batch) == start;
+            assert_eq!(comes_after, begun % 2 == 1, "substep {begun}");
+            batch.solve_warp_and_weft(Pass::First);
+            let targets_of = |batch: &LaneBatch<Pack1>| -> Vec<f32> {
+                batch.link_target.iter().map(|at| at.lanes()[0]).collect()
+            };
+            let (stretched, targets) = (positions(&batch), targets_of(&batch));
+            batch.solve_bending_after_stretch();
+            assert!(positions(&batch) != stretched && targets_of(&batch) == targets);
+        }
     }
 
     #[test]

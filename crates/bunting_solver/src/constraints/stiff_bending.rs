@@ -23,9 +23,22 @@ use crate::step::parameters::Parameters;
 const TRIALS: u32 = 3;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves bending and twist of a grid; for stiff cloth at positions that contain the displacement by
-    /// stretch.
+    /// Solves bending and twist of a grid, unless they come after stretch in this substep.
     pub fn solve_bending_before_stretch(&mut self) {
+        if !self.begins_with_tethers() {
+            self.bend_with_trials();
+        }
+    }
+
+    /// Solves bending and twist of a grid after stretch, whose tensions stay as they are.
+    pub(super) fn solve_bending_after_stretch(&mut self) {
+        self.before_pass.targets.clone_from(&self.link_target);
+        self.bend_with_trials();
+        core::mem::swap(&mut self.link_target, &mut self.before_pass.targets);
+    }
+
+    /// Solves bending and twist; for stiff cloth at positions that contain the displacement by stretch.
+    fn bend_with_trials(&mut self) {
         self.turn_rest_bends();
         if !self.parameters.any_bends_stiffly() {
             self.bend();

@@ -10,15 +10,21 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves each link of warp and weft once.
+    /// Solves each link of warp and weft once. In substeps that begin with tethers colours or their links go backwards
+    /// (`both_ways.rs`).
     pub fn sweep_links(&mut self) {
+        let reverses_colours = self.begins_with_tethers() && self.fabric.is_cut();
+        let reverses_links = self.begins_with_tethers() && !self.fabric.is_net();
         let chains = self.layout.chains(&self.fabric);
-        for (index, colour) in chains.colours.iter().enumerate() {
+        let count = chains.colours.len();
+        for index in (0..count).map(|at| if reverses_colours { count - 1 - at } else { at }) {
+            let colour = &chains.colours[index];
             if !colour.sweep_links.is_empty() {
                 let order = self.layout.order_of_chains(index);
                 let (masses, linked) = (&self.masses.inverse, self.layout.linked());
                 P::run(Sweep {
                     links: &chains.sweep_links[colour.sweep_links.clone()],
+                    reverses_links,
                     compliance: &self.layout.factors().link_compliance,
                     target: &mut self.link_target,
                     particles: self.positions.particles(order, masses, linked),
@@ -29,7 +35,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 }
 
 struct Sweep<'a, P: Pack, S: Particles<P>> {
+    /// The links of one colour.
     links: &'a [SweepLink],
+    reverses_links: bool,
     compliance: &'a [P],
     target: &'a mut [P],
     particles: S,
@@ -39,7 +47,9 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Sweep<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         let least = L::splat(token, f32::MIN_POSITIVE);
-        for link in self.links {
+        let count = self.links.len();
+        for at in 0..count {
+            let link = &self.links[if self.reverses_links { count - 1 - at } else { at }];
             let stored = &mut self.target[link.target as usize];
             let [a, b] = link.particles;
             let mass_a: L = self.particles.inverse_mass(token, a);
