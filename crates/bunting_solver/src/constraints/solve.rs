@@ -16,7 +16,9 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// yarn is a projection, self-adjoint in the metric of the masses, with eigenvalues from 0 to 1. A sequence of
     /// solves that reads the same backwards is self-adjoint, too, and a product of two such sequences still has real
     /// eigenvalues from 0 to 1, like an implicit step of a stiffer cloth. A product of three different projections has
-    /// complex eigenvalues: circulatory forces, which make a mesh at rest vibrate and spin.
+    /// complex eigenvalues: circulatory forces, which make a mesh at rest vibrate and spin. Hinges, yarns and tethers are
+    /// three. Every second substep therefore solves yarns before hinges: its circulatory forces have the opposite sign, as
+    /// the eigenvalues of a product are those of its factors in cyclic order, and tethers end both.
     pub fn solve_constraints(&mut self) {
         self.solve_all_bending();
         self.solve_all_but_bending();
@@ -31,7 +33,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
             self.solve_bending_before_stretch();
         } else if self.background.is_some() {
             self.solve_bending_on_background();
-        } else {
+        } else if !self.bends_mesh_after_stretch() {
             self.solve_dihedral_both_ways();
         }
     }
@@ -50,6 +52,9 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
                     self.solve_chains_both_ways(self.clock.settings.passes);
                 } else {
                     self.solve_stretch_of_mesh(self.clock.settings.passes);
+                    if self.bends_mesh_after_stretch() {
+                        self.solve_dihedral_both_ways();
+                    }
                 }
                 self.solve_tethers();
                 self.sum_reactions();
@@ -57,6 +62,12 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
                 self.solve_contacts();
             }
         }
+    }
+
+    /// Whether the hinges of a mesh with laid yarns are solved after the yarns in this substep: in each tick's second, fourth and
+    /// so on.
+    fn bends_mesh_after_stretch(&self) -> bool {
+        self.clock.begun.is_multiple_of(2)
     }
 
     /// Solves the laid yarns of a mesh. A sweep over its links, forwards before them and backwards after, holds
@@ -155,6 +166,7 @@ mod tests {
     use crate::fabric::{Fabric, FabricBuilder, FabricMaterial, LinkFamily};
     use crate::simd::lane::Pack;
     use crate::simd::registers::Pack1;
+    use crate::step::Scheme;
 
     /// A ball of 30 cm, of twenty triangles.
     fn icosahedron() -> Fabric {
@@ -279,6 +291,40 @@ mod tests {
             let (stretched, targets) = (positions(&batch), targets_of(&batch));
             batch.solve_bending_after_stretch();
             assert!(positions(&batch) != stretched && targets_of(&batch) == targets);
+        }
+    }
+
+    #[test]
+    fn a_mesh_is_bent_before_and_after_its_yarns_in_turn() {
+        let ball = icosahedron();
+        let material = FabricMaterial { bend_stiffness: 1.0, ..FabricMaterial::FLAG_POLYESTER };
+        let start: Vec<Vec3> =
+            ball.rest_positions().iter().map(|at| *at * Vec3::new(1.3, 1.0, 0.8)).collect();
+        let solved = |solve: &dyn Fn(&mut LaneBatch<Pack1>)| {
+            let mut batch = cloth_at(&ball, material, &start);
+            batch.clock.settings.scheme = Scheme::Yarns;
+            solve(&mut batch);
+            positions(&batch)
+        };
+        let bend = LaneBatch::<Pack1>::solve_dihedral_both_ways;
+        let stretch = |batch: &mut LaneBatch<Pack1>| batch.solve_stretch_of_mesh(1);
+        let bent_before = solved(&|batch| {
+            bend(batch);
+            stretch(batch);
+        });
+        let bent_after = solved(&|batch| {
+            stretch(batch);
+            bend(batch);
+        });
+        assert_ne!(bent_before, bent_after);
+        for (begun, expected) in
+            [&bent_before, &bent_after, &bent_before, &bent_after].into_iter().enumerate()
+        {
+            let substep = solved(&|batch| {
+                batch.clock.begun = begun as u32 + 1;
+                batch.solve_constraints();
+            });
+            assert_eq!(&substep, expected, "substep {}", begun + 1);
         }
     }
 

@@ -9,7 +9,7 @@ use bunting_solver::{
 use glam::{DVec2, Vec3};
 
 use super::{AT_REST, GRAVITY, advance, fastest};
-use crate::meshes::{Sheet, Triangulation, around, ball_with_poles, sphere, torus};
+use crate::meshes::{Sheet, Triangulation, around, ball_with_poles, moebius, sphere, torus};
 use crate::product::TICK;
 use crate::stability::case::HardCase;
 
@@ -42,7 +42,7 @@ const MANY_SUBSTEPS: u32 = 8;
 
 /// Cases of a saddle, a wave, a sheet with a hole and trousers that hang from an edge, of a tube, a ring and a sheet of
 /// long cells that hang from two vertices, and of a dome, a sheet and a disk that hang from one; of trousers, a torus, a ball and a
-/// bowl with many substeps, too; of the sheet, the ball and the bowl without damping at the end, too.
+/// bowl with many substeps, too; of the sheet, the ball, the bowl and a Möbius strip without damping at the end, too.
 pub(super) fn cases() -> Vec<HardCase> {
     let meshes = [
         ("saddle", bent(33, 11, |u, v| Vec3::new(u, v, 0.6 * (u * u - v * v)))),
@@ -94,7 +94,13 @@ pub(super) fn cases() -> Vec<HardCase> {
     let with_many = [("pair of trousers", garment())].into_iter().chain(round.clone());
     let with_many = with_many.map(|(name, fabric)| at_rest(name, fabric, Some(MANY_SUBSTEPS)));
     let by_need = meshes.into_iter().chain(round).map(|(name, fabric)| at_rest(name, fabric, None));
-    let from_a_point = [("sheet", sheet()), ("ball with poles", ball()), ("bowl", bowl())];
+    let strip = hung(around(24, 8, true, moebius(0.1)), &[0]);
+    let from_a_point = [
+        ("sheet", sheet()),
+        ("ball with poles", ball()),
+        ("bowl", bowl()),
+        ("Möbius strip", strip),
+    ];
     let without_damping = from_a_point.into_iter().map(|(name, fabric)| undamped(name, fabric));
     by_need.chain(with_many).chain(without_damping).collect()
 }
