@@ -10,13 +10,14 @@
 //! (`shear.rs`). Cut grids, whose yarns end at a border, have one pass more than asked for, and the last two are extrapolated
 //! (`extrapolation.rs`).
 //!
-//! Bending, passes, tethers and sweep are four self-adjoint groups, and the product of three and more has complex eigenvalues again:
-//! nets that hung from one vertex swung ever wider. Therefore every second substep solves them in the reverse order, so that the
-//! forces without a potential of one substep are those of the next with the opposite sign. The order of the first substep of a
-//! tick is tethers, passes, bending, sweep; that of the second is bending, passes, tethers, sweep. But for the place of the sweep,
+//! Bending, passes, tethers and sweep are four groups, and the product of three and more has complex eigenvalues again, even if each
+//! is self-adjoint: nets that hung from one vertex swung ever wider. Therefore every second substep solves the groups in the reverse
+//! order, so that its circulatory forces are those of the substep before with the opposite sign. The order of the first substep of
+//! a tick is tethers, passes, bending, sweep; that of the second is bending, passes, tethers, sweep. But for the place of the sweep,
 //! which ends both, one is the reverse of the other, and the eigenvalues of a product are those of its factors in cyclic order.
-//! The first sweeps backwards, too: on cut grids colours and the links of each, on other curved grids links alone, on nets colours
-//! alone. Each is what trembles least: where nets go all backwards, four of eighty tremble at 8 to 27 mm/s, and none as it is.
+//! Where tethers come first, the sweep goes backwards, too: on cut grids over the colours and over the links of each, on other curved
+//! grids over the links alone, on nets over the colours alone. This was chosen by measurement: where a net's sweep goes all
+//! backwards, four nets of eighty tremble at 8 to 27 mm/s, and none as it is.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Layout;
@@ -31,7 +32,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.fabric.is_cut() || self.fabric.rest_bends().is_some()
     }
 
-    /// Whether tethers, passes, bending and sweep are solved in this order in this substep: in each tick's first, third and so on.
+    /// Whether this substep solves tethers, passes, bending and sweep in this order, as each tick's first, third and so on do.
     pub(super) fn begins_with_tethers(&self) -> bool {
         self.is_solved_both_ways() && !self.is_narrow() && !self.clock.begun.is_multiple_of(2)
     }

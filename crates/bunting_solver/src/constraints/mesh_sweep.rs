@@ -9,6 +9,7 @@ use crate::batch::layout::{Layout, Particles, Positions};
 use crate::batch::side_by_side::SideBySide;
 use crate::constants::LEAST_LENGTH;
 use crate::constraints::corrections::CorrectedParticles;
+use crate::constraints::direction::sweep_order;
 use crate::fabric::Link;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
@@ -45,9 +46,8 @@ impl<P: Pack> Kernel<P> for SweepMesh<'_, P> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         let zero = L::splat(token, 0.0);
-        let count = self.links.len();
-        for at in 0..count {
-            let link = &self.links[if self.is_backwards { count - 1 - at } else { at }];
+        for index in sweep_order(self.links.len(), self.is_backwards) {
+            let link = &self.links[index];
             let [a, b] = link.particles;
             let mass_a: L = self.particles.inverse_mass(token, a);
             let mass_b: L = self.particles.inverse_mass(token, b);

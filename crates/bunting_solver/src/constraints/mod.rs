@@ -15,6 +15,7 @@ mod both_ways;
 mod chain;
 mod closed_chain;
 mod corrections;
+mod direction;
 pub(crate) mod extrapolation;
 pub(crate) mod factors;
 mod gauss_seidel;

@@ -17,8 +17,8 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
     /// solves that reads the same backwards is self-adjoint, too, and a product of two such sequences still has real
     /// eigenvalues from 0 to 1, like an implicit step of a stiffer cloth. A product of three different projections has
     /// complex eigenvalues: circulatory forces, which make a mesh at rest vibrate and spin. Hinges, yarns and tethers are
-    /// three. Every second substep therefore solves yarns before hinges: its circulatory forces have the opposite sign, as
-    /// the eigenvalues of a product are those of its factors in cyclic order, and tethers end both.
+    /// three. Every second substep therefore solves yarns before hinges, so that its circulatory forces have the opposite
+    /// sign (`both_ways.rs`); tethers end both orders.
     pub fn solve_constraints(&mut self) {
         self.solve_all_bending();
         self.solve_all_but_bending();
@@ -64,8 +64,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         }
     }
 
-    /// Whether the hinges of a mesh with laid yarns are solved after the yarns in this substep: in each tick's second, fourth and
-    /// so on.
+    /// Whether this substep solves the hinges of a mesh with laid yarns after its yarns, as each tick's second, fourth and so on do.
     fn bends_mesh_after_stretch(&self) -> bool {
         self.clock.begun.is_multiple_of(2)
     }

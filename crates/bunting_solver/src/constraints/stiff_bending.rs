@@ -30,11 +30,16 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
-    /// Solves bending and twist of a grid after stretch, whose tensions stay as they are.
+    /// Solves bending and twist of a grid after stretch, whose tensions stay as they are: those of the trials are dropped.
     pub(super) fn solve_bending_after_stretch(&mut self) {
-        self.before_pass.targets.clone_from(&self.link_target);
+        let has_trials = self.parameters.any_bends_stiffly();
+        if has_trials {
+            self.before_pass.targets.clone_from(&self.link_target);
+        }
         self.bend_with_trials();
-        core::mem::swap(&mut self.link_target, &mut self.before_pass.targets);
+        if has_trials {
+            core::mem::swap(&mut self.link_target, &mut self.before_pass.targets);
+        }
     }
 
     /// Solves bending and twist; for stiff cloth at positions that contain the displacement by stretch.

@@ -5,6 +5,7 @@
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
+use crate::constraints::direction::sweep_order;
 use crate::fabric::SweepLink;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
@@ -16,8 +17,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let reverses_colours = self.begins_with_tethers() && self.fabric.is_cut();
         let reverses_links = self.begins_with_tethers() && !self.fabric.is_net();
         let chains = self.layout.chains(&self.fabric);
-        let count = chains.colours.len();
-        for index in (0..count).map(|at| if reverses_colours { count - 1 - at } else { at }) {
+        for index in sweep_order(chains.colours.len(), reverses_colours) {
             let colour = &chains.colours[index];
             if !colour.sweep_links.is_empty() {
                 let order = self.layout.order_of_chains(index);
@@ -47,9 +47,8 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Sweep<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         let least = L::splat(token, f32::MIN_POSITIVE);
-        let count = self.links.len();
-        for at in 0..count {
-            let link = &self.links[if self.reverses_links { count - 1 - at } else { at }];
+        for index in sweep_order(self.links.len(), self.reverses_links) {
+            let link = &self.links[index];
             let stored = &mut self.target[link.target as usize];
             let [a, b] = link.particles;
             let mass_a: L = self.particles.inverse_mass(token, a);

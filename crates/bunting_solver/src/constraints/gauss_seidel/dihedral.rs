@@ -8,6 +8,7 @@ use super::fold::{Fold, fold};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Order, Particles, Positions};
 use crate::constraints::corrections::CorrectedParticles;
+use crate::constraints::direction::sweep_order;
 use crate::fabric::Fabric;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
@@ -69,8 +70,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Dihedral<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         let hinges = self.fabric.hinges();
-        for turn in 0..hinges.len() {
-            let index = if self.backwards { hinges.len() - 1 - turn } else { turn };
+        for index in sweep_order(hinges.len(), self.backwards) {
             let (hinge, multiplier) = (&hinges[index], &mut self.multiplier[index]);
             let mut at = [V3::<L>::splat(token, 0.0); 4];
             let mut masses = [L::splat(token, 0.0); 4];

@@ -3,6 +3,7 @@
 use fearless_simd::{Simd, f32x8};
 
 use super::in_order::packs_in_order;
+use crate::constraints::direction::sweep_order;
 use crate::constraints::mesh_sweep::link_pull;
 use crate::constraints::vector_particles::VectorParticles;
 use crate::fabric::Fabric;
@@ -55,10 +56,8 @@ pub(super) struct SweepLinks<'a> {
 impl SweepLinks<'_> {
     #[inline(always)]
     pub fn run<S: Simd>(mut self, token: S) {
-        let count = self.packs.len();
-        for at in 0..count {
-            let pack = &self.packs[if self.is_backwards { count - 1 - at } else { at }];
-            self.solve(token, pack);
+        for index in sweep_order(self.packs.len(), self.is_backwards) {
+            self.solve(token, &self.packs[index]);
         }
     }
 
