@@ -14,6 +14,9 @@ const TICK: f32 = 1.0 / 60.0;
 const SIZE: usize = 13;
 /// Ticks after which cloths are compared.
 const TICKS: usize = 4;
+/// The same of a sheet with a hole that begins sharply folded. Its later ticks are no measure of frames: at the corner of the hole the layers
+/// then take one of two ways past each other, so that a start 10⁻⁶ m elsewhere ends 16 mm elsewhere.
+const TICKS_FOLDED: usize = 1;
 
 type Pose = (Vec3, Quat);
 
@@ -86,8 +89,12 @@ fn fabric(kind: Kind, pinned: bool) -> Arc<Fabric> {
     Arc::new(builder.pin_where(|at, _| pinned && at.y == 0.0).build().expect("a good fabric"))
 }
 
-/// Positions in the world after all ticks, with a frame that moves along the path or rests in the world.
+/// Positions in the world after some ticks, with a frame that moves along the path or rests in the world.
 fn ride(kind: Kind, lanes: LaneCount, acting: Acting, path: Path, frame_moves: bool) -> Vec<Vec3> {
+    let ticks = match (kind, acting) {
+        (Kind::Holed, Acting::Layers) => TICKS_FOLDED,
+        _ => TICKS,
+    };
     let fabric = fabric(kind, !matches!(acting, Acting::Springs | Acting::Hook));
     let rest = fabric.rest_positions();
     let mut start = ClothSnapshot::at_rest(&fabric);
@@ -115,7 +122,7 @@ fn ride(kind: Kind, lanes: LaneCount, acting: Acting, path: Path, frame_moves: b
         let settings = Some(SelfCollision { thickness: 6e-3 });
         batch.set_self_collision(0, settings).expect("good");
     }
-    for tick in 0..TICKS {
+    for tick in 0..ticks {
         let poses = [tick, tick + 1].map(|tick| path.pose(tick));
         let frames = if frame_moves { poses } else { [path.pose(0); 2] };
         let motion = FrameMotion::between(frames[0], frames[1]);
@@ -132,7 +139,9 @@ fn ride(kind: Kind, lanes: LaneCount, acting: Acting, path: Path, frame_moves: b
         if is_local {
             batch.set_local_wind(0, vec![wind; rest.len()]).expect("good winds");
         }
-        if !frame_moves {
+        // In a frame that moves with the pins, they stay where they are, and need not be named. A mesh whose pins are not named follows the nodes of
+        // its grid if nothing else acts on it.
+        if !frame_moves || acting != Acting::Nothing {
             let moved = |pin: usize| MovingPin {
                 particle: pin as u32,
                 from: of_vehicle(0, rest[pin]),
@@ -184,17 +193,16 @@ fn ride(kind: Kind, lanes: LaneCount, acting: Acting, path: Path, frame_moves: b
         }
         batch.step(TICK, settings);
     }
-    let (origin, turn) = if frame_moves { path.pose(TICKS) } else { path.pose(0) };
+    let (origin, turn) = if frame_moves { path.pose(ticks) } else { path.pose(0) };
     batch.snapshot(0).positions.iter().map(|&at| origin + turn * at).collect()
 }
 
 #[test]
 fn cloth_moves_as_in_a_frame_at_rest() {
-    /// m. Meshes that follow a grid do so in a frame that moves, and not with pins that move.
-    const APART: f32 = 1.3e-3;
-    /// The same of a sheet with a hole that begins sharply folded and sheared at the fold, m. It is no bound on frames alone: in these four
-    /// ticks vertices that start 10⁻⁵ m elsewhere end 1 mm elsewhere, as they do in no other of these scenes.
-    const APART_FOLDED: f32 = 3e-3;
+    /// m
+    const APART: f32 = 5e-4;
+    /// The same of cloths one of which follows the nodes of its grid, m.
+    const APART_FOLLOWING: f32 = 1.3e-3;
     let paths =
         [(Vec3::new(20.0, 3.0, 5.0), 0.0), (Vec3::ZERO, 2.0), (Vec3::new(2.0, 0.0, 1.0), -1.0)];
     for (velocity, rate) in paths {
@@ -209,8 +217,7 @@ fn cloth_moves_as_in_a_frame_at_rest() {
                 let apart = |(one, other): (&Vec3, &Vec3)| one.distance(*other);
                 let farthest = moves.iter().zip(&rests).map(apart).fold(0.0, f32::max);
                 let what = format!("{velocity} m/s, {rate} rad/s, {kind:?}, {acting:?}, {lanes:?}");
-                let is_folded = matches!((kind, acting), (Kind::Holed, Acting::Layers));
-                let bound = if is_folded { APART_FOLDED } else { APART };
+                let bound = if acting == Acting::Nothing { APART_FOLLOWING } else { APART };
                 assert!(farthest < bound, "{farthest} m: {what}");
             }
         }
