@@ -41,8 +41,9 @@ const MATERIALS: [(f32, f32); 8] = [
 const MANY_SUBSTEPS: u32 = 8;
 
 /// Cases of a saddle, a wave, a sheet with a hole and trousers that hang from an edge, of a tube, a ring and a sheet of
-/// long cells that hang from two vertices, and of a dome, a sheet and a disk that hang from one; of trousers, a torus, a ball and a
-/// bowl with many substeps, too; of the sheet, the ball, the bowl and a Möbius strip without damping at the end, too.
+/// long cells that hang from two vertices, of a dome, a sheet, a disk, a bowl and a Möbius strip that hang from one, of a ball, and of a
+/// torus that hangs from its upper ring; of trousers, the torus, the ball and the bowl with many substeps, too; of the sheet, the ball, the
+/// bowl and the Möbius strip without damping at the end, too.
 pub(super) fn cases() -> Vec<HardCase> {
     let meshes = [
         ("saddle", bent(33, 11, |u, v| Vec3::new(u, v, 0.6 * (u * u - v * v)))),
@@ -87,22 +88,29 @@ pub(super) fn cases() -> Vec<HardCase> {
         ),
         ("sheet with a hole", holed(26, 21)),
         ("pair of trousers", garment()),
-        ("sheet", sheet()),
         ("sheet of long cells", hung(FabricBuilder::grid(Grid::new(31, 16, 0.44, 0.5)), &[0, 30])),
+        ("torus", torus_held_above()),
     ];
-    let round = [("torus", torus_held_above()), ("ball with poles", ball()), ("bowl", bowl())];
-    let with_many = [("pair of trousers", garment())].into_iter().chain(round.clone());
-    let with_many = with_many.map(|(name, fabric)| at_rest(name, fabric, Some(MANY_SUBSTEPS)));
-    let by_need = meshes.into_iter().chain(round).map(|(name, fabric)| at_rest(name, fabric, None));
-    let strip = hung(around(24, 8, true, moebius(0.1)), &[0]);
+    let by_need = meshes.into_iter().map(|(name, fabric)| Settled::new(name, fabric, None));
+    let with_many = [
+        ("pair of trousers", garment()),
+        ("torus", torus_held_above()),
+        ("ball with poles", ball()),
+        ("bowl", bowl()),
+    ];
+    let with_many = with_many.into_iter();
+    let with_many = with_many.map(|(name, mesh)| Settled::new(name, mesh, Some(MANY_SUBSTEPS)));
     let from_a_point = [
         ("sheet", sheet()),
         ("ball with poles", ball()),
         ("bowl", bowl()),
-        ("Möbius strip", strip),
+        ("Möbius strip", hung(around(24, 8, true, moebius(0.1)), &[0])),
     ];
-    let without_damping = from_a_point.into_iter().map(|(name, fabric)| undamped(name, fabric));
-    by_need.chain(with_many).chain(without_damping).collect()
+    let without_damping = from_a_point.into_iter().flat_map(|(name, fabric)| {
+        let settled = Settled::new(name, fabric, None);
+        [settled.at_rest(), settled.undamped()]
+    });
+    by_need.chain(with_many).map(|settled| settled.at_rest()).chain(without_damping).collect()
 }
 
 /// A square sheet that hangs from a corner.
@@ -182,42 +190,49 @@ fn hung(mesh: FabricBuilder, from: &[u32]) -> Arc<Fabric> {
     Arc::new(mesh.pin(from.iter().copied()).build().expect("a good mesh"))
 }
 
-/// Case of the greatest RMS speed of a mesh, with the substeps that its weight needs, or others.
-fn at_rest(name: &str, fabric: Arc<Fabric>, substeps: Option<u32>) -> HardCase {
-    let by_need = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
-    let settings = StepSettings { substeps: substeps.unwrap_or(by_need.substeps), ..by_need };
-    let batch = settled(fabric, settings);
-    let with = substeps.map_or(String::new(), |count| format!(", {count} substeps"));
-    let name = format!("{name} that was pulled{with}: at rest");
-    HardCase::new(name, 0, "RMS speed, m/s", fastest(&batch), AT_REST)
-}
-
-/// Case of the greatest RMS speed of a mesh that rests and is damped no longer.
-fn undamped(name: &str, fabric: Arc<Fabric>) -> HardCase {
-    let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
-    let mut batch = settled(fabric, settings);
-    set_damping(&mut batch, 0.0);
-    advance(&mut batch, UNDAMPED, settings);
-    let name = format!("{name} that was pulled, without damping: at rest");
-    HardCase::new(name, 0, "RMS speed, m/s", fastest(&batch), AT_REST)
-}
-
 /// A mesh in eight lanes of polyester that has been blown about and pulled, and has had time to come to rest.
-fn settled(fabric: Arc<Fabric>, settings: StepSettings) -> ClothBatch {
-    let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::Eight);
-    let still = Drive::default();
-    for material in materials() {
-        let lane = batch.insert(&ClothSnapshot::at_rest(&fabric), material).expect("a good cloth");
-        batch.drive(lane, Drive { wind: WIND, ..still }).expect("a good drive");
+struct Settled {
+    name: String,
+    batch: ClothBatch,
+    settings: StepSettings,
+}
+
+impl Settled {
+    /// With the substeps that its weight needs, or others.
+    fn new(name: &str, fabric: Arc<Fabric>, substeps: Option<u32>) -> Self {
+        let by_need = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
+        let settings = StepSettings { substeps: substeps.unwrap_or(by_need.substeps), ..by_need };
+        let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::Eight);
+        let still = Drive::default();
+        for material in materials() {
+            let lane =
+                batch.insert(&ClothSnapshot::at_rest(&fabric), material).expect("a good cloth");
+            batch.drive(lane, Drive { wind: WIND, ..still }).expect("a good drive");
+        }
+        advance(&mut batch, BLOWN, settings);
+        set_damping(&mut batch, DAMPING);
+        let motion = FrameMotion { translation: JERK, ..FrameMotion::NONE };
+        drive(&mut batch, Drive { motion, ..still });
+        batch.step(TICK, settings);
+        drive(&mut batch, still);
+        advance(&mut batch, SETTLING, settings);
+        let with = substeps.map_or(String::new(), |count| format!(", {count} substeps"));
+        Self { name: format!("{name} that was pulled{with}"), batch, settings }
     }
-    advance(&mut batch, BLOWN, settings);
-    set_damping(&mut batch, DAMPING);
-    let motion = FrameMotion { translation: JERK, ..FrameMotion::NONE };
-    drive(&mut batch, Drive { motion, ..still });
-    batch.step(TICK, settings);
-    drive(&mut batch, still);
-    advance(&mut batch, SETTLING, settings);
-    batch
+
+    /// Case of the greatest RMS speed of the lanes.
+    fn at_rest(&self) -> HardCase {
+        let name = format!("{}: at rest", self.name);
+        HardCase::new(name, 0, "RMS speed, m/s", fastest(&self.batch), AT_REST)
+    }
+
+    /// The same after it has been damped no longer.
+    fn undamped(mut self) -> HardCase {
+        set_damping(&mut self.batch, 0.0);
+        advance(&mut self.batch, UNDAMPED, self.settings);
+        self.name += ", without damping";
+        self.at_rest()
+    }
 }
 
 /// The materials of the lanes.
