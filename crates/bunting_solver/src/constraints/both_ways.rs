@@ -22,6 +22,7 @@
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Layout;
 use crate::constraints::chain::Pass;
+use crate::constraints::direction::sweep_order;
 use crate::constraints::extrapolation::extrapolation_of;
 use crate::fabric::LinkFamily;
 use crate::simd::lane::Pack;
@@ -53,11 +54,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 // The pass before ended with the first colour.
                 self.solve_colours(colours.clone().skip(1), Pass::Again, is_straight);
             }
-            if pass.is_multiple_of(2) {
-                self.solve_colours(colours.clone(), Pass::Again, is_diagonal);
-            } else {
-                self.solve_colours(colours.clone().rev(), Pass::Again, is_diagonal);
-            }
+            let diagonals = sweep_order(colours.len(), !pass.is_multiple_of(2));
+            self.solve_colours(diagonals, Pass::Again, is_diagonal);
             self.solve_colours(colours.clone().rev(), Pass::Again, is_straight);
             if let Some(factor) = extrapolation {
                 self.extrapolate(factor);

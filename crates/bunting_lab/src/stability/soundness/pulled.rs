@@ -41,7 +41,7 @@ const MATERIALS: [(f32, f32); 8] = [
 const MANY_SUBSTEPS: u32 = 8;
 
 /// Cases of a saddle, a wave, a sheet with a hole and trousers that hang from an edge, of a tube, a ring and a sheet of
-/// long cells that hang from two vertices, of a dome, a sheet, a disk, a bowl and a Möbius strip that hang from one, of a ball, and of a
+/// long cells that hang from two vertices, of a dome, a sheet, a disk, a ball, a bowl and a Möbius strip that hang from one, and of a
 /// torus that hangs from its upper ring; of trousers, the torus, the ball and the bowl with many substeps, too; of the sheet, the ball, the
 /// bowl and the Möbius strip without damping at the end, too.
 pub(super) fn cases() -> Vec<HardCase> {
@@ -91,26 +91,24 @@ pub(super) fn cases() -> Vec<HardCase> {
         ("sheet of long cells", hung(FabricBuilder::grid(Grid::new(31, 16, 0.44, 0.5)), &[0, 30])),
         ("torus", torus_held_above()),
     ];
-    let by_need = meshes.into_iter().map(|(name, fabric)| Settled::new(name, fabric, None));
+    let settled = |substeps| move |(name, fabric)| Settled::new(name, fabric, substeps);
+    let by_need = meshes.into_iter().map(settled(None));
     let with_many = [
         ("pair of trousers", garment()),
         ("torus", torus_held_above()),
         ("ball with poles", ball()),
         ("bowl", bowl()),
     ];
-    let with_many = with_many.into_iter();
-    let with_many = with_many.map(|(name, mesh)| Settled::new(name, mesh, Some(MANY_SUBSTEPS)));
+    let with_many = with_many.into_iter().map(settled(Some(MANY_SUBSTEPS)));
     let from_a_point = [
         ("sheet", sheet()),
         ("ball with poles", ball()),
         ("bowl", bowl()),
         ("Möbius strip", hung(around(24, 8, true, moebius(0.1)), &[0])),
     ];
-    let without_damping = from_a_point.into_iter().flat_map(|(name, fabric)| {
-        let settled = Settled::new(name, fabric, None);
-        [settled.at_rest(), settled.undamped()]
-    });
-    by_need.chain(with_many).map(|settled| settled.at_rest()).chain(without_damping).collect()
+    let from_a_point = from_a_point.into_iter().map(settled(None));
+    let with_both_cases = from_a_point.flat_map(|mesh| [mesh.at_rest(), mesh.undamped()]);
+    by_need.chain(with_many).map(|mesh| mesh.at_rest()).chain(with_both_cases).collect()
 }
 
 /// A square sheet that hangs from a corner.
@@ -226,7 +224,7 @@ impl Settled {
         HardCase::new(name, 0, "RMS speed, m/s", fastest(&self.batch), AT_REST)
     }
 
-    /// The same after it has been damped no longer.
+    /// The same after a time without damping.
     fn undamped(mut self) -> HardCase {
         set_damping(&mut self.batch, 0.0);
         advance(&mut self.batch, UNDAMPED, self.settings);
