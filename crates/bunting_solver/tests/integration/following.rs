@@ -1,20 +1,15 @@
 //! Meshes whose particles follow the nodes of their background grid, and what acts on particles in between.
 
-#[path = "common/irregular.rs"]
-mod irregular;
-#[path = "common/trousers.rs"]
-mod trousers;
-
 use std::sync::Arc;
 
+use crate::common::irregular;
+use crate::common::trousers;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, Grid,
     LaneCount, MovingPin, StepSettings,
 };
 use glam::{Quat, Vec3};
-use irregular::irregular;
 use parry3d::shape::SharedShape;
-use trousers::trousers;
 
 const TICK: f32 = 1.0 / 60.0;
 const SETTINGS: StepSettings = StepSettings::yarns(2);

@@ -8,10 +8,10 @@ use bunting_solver::{
 };
 use glam::Vec3;
 
-use crate::irregular::irregular;
-use crate::shapes::*;
-use crate::trousers::trousers;
-use crate::{CLOTH, GRAVITY, ISOTROPIC, TICK, after};
+use super::shapes::*;
+use super::{CLOTH, GRAVITY, ISOTROPIC, TICK, after};
+use crate::common::irregular;
+use crate::common::trousers;
 
 /// A cloth that has hung from its top for four seconds: how far its lower edge has sunk, m, and its speed, m/s RMS.
 fn hung(fabric: &Arc<Fabric>, material: FabricMaterial) -> [f32; 2] {

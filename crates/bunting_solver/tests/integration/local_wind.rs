@@ -1,8 +1,5 @@
 //! Tests of wind that differs from particle to particle.
 
-#[path = "common/irregular.rs"]
-mod irregular;
-
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -11,7 +8,7 @@ use bunting_solver::{
 };
 use glam::Vec3;
 
-use irregular::irregular;
+use crate::common::irregular;
 
 const TICK: f32 = 1.0 / 60.0;
 

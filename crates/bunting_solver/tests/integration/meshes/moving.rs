@@ -9,9 +9,9 @@ use bunting_solver::{
 };
 use glam::{Quat, Vec3};
 
-use crate::irregular::irregular;
-use crate::shapes::*;
-use crate::{GRAVITY, ISOTROPIC, TICK};
+use super::shapes::*;
+use super::{GRAVITY, ISOTROPIC, TICK};
+use crate::common::irregular;
 
 /// Both halves hang on their own: in a wind from the front the lower ends of the slit part.
 #[test]

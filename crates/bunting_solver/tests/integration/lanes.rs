@@ -1,8 +1,6 @@
 //! Tests that the bits of a lane depend only on the lane's own history: not on the other lanes, the batch's
 //! width or the instruction set.
 
-mod common;
-
 use std::f32::consts::TAU;
 use std::sync::Arc;
 
@@ -14,7 +12,7 @@ use bunting_solver::{
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
 
-use common::{drive, material};
+use crate::common::{drive, material};
 
 const TICK: f32 = 1.0 / 60.0;
 

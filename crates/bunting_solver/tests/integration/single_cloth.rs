@@ -1,17 +1,14 @@
 //! Tests that a batch of one cloth, whose own yarns fill the lanes, computes the same bits as a batch of
 //! several cloths.
 
-#[path = "common/irregular.rs"]
-mod irregular;
-
 use std::sync::Arc;
 
+use crate::common::irregular;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion,
     Grid, LaneCount, StepSettings, with_every_instruction_set,
 };
 use glam::{Quat, Vec3};
-use irregular::irregular;
 use parry3d::shape::SharedShape;
 
 const TICK: f32 = 1.0 / 60.0;

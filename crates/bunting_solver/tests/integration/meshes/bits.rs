@@ -7,10 +7,10 @@ use bunting_solver::{
 };
 use glam::Vec3;
 
-use crate::irregular::irregular;
-use crate::shapes::*;
-use crate::trousers::trousers;
-use crate::{GRAVITY, TICK};
+use super::shapes::*;
+use super::{GRAVITY, TICK};
+use crate::common::irregular;
+use crate::common::trousers;
 
 /// Positions of the last of some cloths, each in its own wind, m/s, after half a second.
 fn flown(

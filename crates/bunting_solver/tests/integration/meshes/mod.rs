@@ -1,10 +1,5 @@
 //! Irregular meshes: the material's own strain, motion, and the same bits at every width.
 
-#[path = "../common/irregular.rs"]
-mod irregular;
-#[path = "../common/trousers.rs"]
-mod trousers;
-
 mod bits;
 mod hanging;
 mod moving;

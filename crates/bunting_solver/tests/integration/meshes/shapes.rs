@@ -3,8 +3,8 @@
 use bunting_solver::{Fabric, FabricBuilder, Grid};
 use glam::{Vec2, Vec3};
 
-use crate::irregular::irregular;
-use crate::trousers::trousers;
+use crate::common::irregular;
+use crate::common::trousers;
 
 /// The ends of the sides of all triangles.
 pub fn sides(fabric: &Fabric) -> impl Iterator<Item = [u32; 2]> {

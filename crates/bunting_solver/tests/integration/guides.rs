@@ -1,7 +1,5 @@
 //! Guides: greatest distances from animated places, and backstops.
 
-mod common;
-
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -10,7 +8,7 @@ use bunting_solver::{
 };
 use glam::{Quat, Vec3};
 
-use common::{drive, material};
+use crate::common::{drive, material};
 
 const TICK: f32 = 1.0 / 60.0;
 const GRAVITY: f32 = 9.81;

@@ -1,16 +1,13 @@
 //! Meshes that are curved at rest, and bend on their background grid.
 
-#[path = "common/irregular.rs"]
-mod irregular;
-
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, TAU};
 use std::sync::Arc;
 
+use crate::common::irregular;
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, LaneCount, StepLimits,
 };
 use glam::{Vec2, Vec3};
-use irregular::irregular;
 
 const TICK: f32 = 1.0 / 60.0;
 /// Magnitude of gravity, m/s².

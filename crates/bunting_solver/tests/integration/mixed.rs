@@ -1,7 +1,5 @@
 //! Cloths of different fabrics in one batch have the bits that each has among cloths of its own fabric.
 
-mod common;
-
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -11,7 +9,7 @@ use bunting_solver::{
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
 
-use common::{drive, material};
+use crate::common::{drive, material};
 
 const TICK: f32 = 1.0 / 60.0;
 const SETTINGS: [StepSettings; 2] =

@@ -1,0 +1,7 @@
+//! Tests of the bench through its library and its binary, in one program but for the one that counts memory.
+
+mod baselines;
+mod command_line;
+mod costs;
+mod reference;
+mod trials;

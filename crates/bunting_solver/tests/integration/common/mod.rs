@@ -1,0 +1,9 @@
+//! Meshes, materials and drives that several tests use.
+
+mod drives;
+mod irregular;
+mod trousers;
+
+pub use drives::{drive, material};
+pub use irregular::irregular;
+pub use trousers::trousers;
