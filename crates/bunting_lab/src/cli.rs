@@ -6,8 +6,8 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    budget, contacts, effort, forces, fuzz, gate, lod, memory, oracles, pareto, report, schedule,
-    stability,
+    budget, contacts, effort, families, forces, fuzz, gate, lod, memory, oracles, pareto, report,
+    schedule, stability,
 };
 use crate::output::Outcome;
 
@@ -32,7 +32,7 @@ pub struct Arguments {
 #[derive(Debug, Subcommand)]
 enum Command {
     /// Closed forms compared with measurements.
-    Oracles,
+    Oracles(families::Selection),
     /// Error over time of every method.
     Pareto(pareto::Selection),
     /// Cloths in a budget of time.
@@ -50,7 +50,7 @@ enum Command {
     /// Bytes of a chain of levels and of batches.
     Memory,
     /// The hard cases.
-    Stability,
+    Stability(families::Selection),
     /// Cost of the schedule over plain calls.
     Schedule,
     /// Other engines on the same scenes.
@@ -79,8 +79,8 @@ impl Arguments {
             Command::Forces => forces::run(self.quick),
             Command::Fuzz(selection) => fuzz::run(&selection),
             Command::Memory => memory::run(),
-            Command::Oracles => oracles::run(),
-            Command::Stability => stability::run(self.quick),
+            Command::Oracles(selection) => oracles::run(&selection)?,
+            Command::Stability(selection) => stability::run(&selection, self.quick)?,
             Command::Gate(options) => {
                 return gate::run(options, |outcome| {
                     outcome.present(self.json, self.out.as_deref())

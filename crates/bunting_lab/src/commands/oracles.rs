@@ -1,10 +1,14 @@
 //! Closed forms compared with the solver.
 
+use anyhow::Result;
 use serde_json::json;
 
-use super::families::{self, Family};
+use super::families::{self, Family, Selection};
 use crate::{
-    oracles::{Case, trials},
+    oracles::{
+        Case,
+        trials::{self, Trial},
+    },
     output::{
         Outcome,
         plot::{Axes, Mark, Plot, Series},
@@ -14,25 +18,32 @@ use crate::{
     product::Product,
 };
 
-/// Runs every trial.
-#[must_use]
-pub fn run() -> Outcome {
-    let families = families();
+/// Runs the trials of the selected families.
+///
+/// # Errors
+///
+/// A selected family does not exist.
+pub fn run(selection: &Selection) -> Result<Outcome> {
+    let families = measure(&selection.of(&trials::ALL)?);
     let times = families::times("oracles", &families);
     let families_json = families::json(&families);
     let cases: Vec<Case> = families.into_iter().flat_map(|family| family.cases).collect();
     let plots = [plot(&cases), cantilevers(&cases)].into_iter().flatten().collect();
-    Outcome {
+    Ok(Outcome {
         json: json!({ "cases": cases, "families": families_json }),
         tables: vec![table(&cases), times],
         plots,
-    }
+    })
 }
 
 /// Every trial with its cases.
 #[must_use]
 pub fn families() -> Vec<Family<Case>> {
-    families::run(&trials::ALL, |trial| {
+    measure(&trials::ALL)
+}
+
+fn measure(trials: &[(&'static str, Trial)]) -> Vec<Family<Case>> {
+    families::run(trials, |trial| {
         trial(&|scene, settings| Box::new(Product::lone(settings).start(scene)))
     })
 }

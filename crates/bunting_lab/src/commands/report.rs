@@ -11,7 +11,7 @@ use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::{Map, Value};
 
-use super::{budget, lod, memory, oracles, pareto, schedule, stability};
+use super::{budget, families::Selection, lod, memory, oracles, pareto, schedule, stability};
 use crate::{
     output::{Outcome, table::Table},
     report::{machine::Machine, markdown, page, section::Section},
@@ -88,10 +88,10 @@ fn measure(quick: bool) -> Vec<Section> {
         }),
         section("pareto", &pareto_options, quick, "error over time of every method", pareto),
         section("stability", "", quick, "the hard cases, each with its worst figure", || {
-            Ok(stability::run(quick))
+            stability::run(&Selection::default(), quick)
         }),
         section("oracles", "", false, "closed forms against what the cloth does", || {
-            Ok(oracles::run())
+            oracles::run(&Selection::default())
         }),
         section("lod", "", quick, "how alike levels are, and what changing them does", || {
             Ok(lod::run(quick))

@@ -1,8 +1,9 @@
 //! The hard cases.
 
+use anyhow::Result;
 use serde_json::json;
 
-use super::families::{self, Family};
+use super::families::{self, Family, Selection};
 use crate::{
     output::{
         Outcome,
@@ -13,25 +14,32 @@ use crate::{
     stability::{self, HardCase, Status},
 };
 
-/// Runs every family of hard cases.
-#[must_use]
-pub fn run(quick: bool) -> Outcome {
-    let families = families(quick);
+/// Runs the selected families of hard cases.
+///
+/// # Errors
+///
+/// A selected family does not exist.
+pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
+    let families = measure(&selection.of(&stability::ALL)?, quick);
     let times = families::times("stability", &families);
     let families_json = families::json(&families);
     let cases: Vec<HardCase> = families.into_iter().flat_map(|family| family.cases).collect();
     let plots = plot(&cases).into_iter().collect();
-    Outcome {
+    Ok(Outcome {
         json: json!({ "cases": cases, "families": families_json }),
         tables: vec![table(&cases), times],
         plots,
-    }
+    })
 }
 
 /// Every family with its cases.
 #[must_use]
 pub fn families(quick: bool) -> Vec<Family<HardCase>> {
-    families::run(&stability::ALL, |family| family(quick))
+    measure(&stability::ALL, quick)
+}
+
+fn measure(selected: &[(&'static str, stability::Family)], quick: bool) -> Vec<Family<HardCase>> {
+    families::run(selected, |family| family(quick))
 }
 
 fn plot(cases: &[HardCase]) -> Option<Plot> {
