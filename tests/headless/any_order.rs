@@ -265,7 +265,7 @@ impl Playground {
         match self.random.below(5) {
             0 if self.others.len() < MOST && self.is_rough => {
                 let shape = match self.random.below(3) {
-                    0 => ClothCollider::ball(0.5),
+                    0 => ClothCollider { features: true, ..ClothCollider::ball(0.5) },
                     1 => ClothCollider::cuboid(Vec3::new(0.5, 0.2, 0.3)),
                     _ => ClothCollider { margin: 0.01, ..ClothCollider::capsule(0.4, 0.2) },
                 };

@@ -76,7 +76,7 @@ fn swing(forearm: Option<ClothCollider>) -> [f32; 2] {
 
 #[test]
 fn a_forearm_pushes_the_cape_as_its_elbow_bends() {
-    let forearm = ClothCollider { features: false, ..ClothCollider::capsule(HALF, RADIUS) };
+    let forearm = ClothCollider::capsule(HALF, RADIUS);
     let [depth, pushed] = swing(Some(forearm));
     let [through, hanging] = swing(None);
     assert!(depth < DEPTH, "{depth} m deep");

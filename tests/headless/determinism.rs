@@ -13,7 +13,8 @@ use bunting_tests::{Bits, FLAG, app, bits, run, spawn_flag};
 fn spawn_scene(app: &mut App) -> Vec<Entity> {
     let world = app.world_mut();
     world.spawn(WindField::steady(Vec3::new(4.0, 0.0, 1.0)).with_gusts(3.0, 0.7, 5));
-    world.spawn((ClothCollider::ball(0.3), Transform::from_xyz(1.0, -0.6, 0.2)));
+    let ball = ClothCollider { features: true, ..ClothCollider::ball(0.3) };
+    world.spawn((ball, Transform::from_xyz(1.0, -0.6, 0.2)));
     world.spawn((LodViewer::default(), Transform::from_xyz(0.0, 0.0, 12.0)));
     let mut cloths: Vec<Entity> = (0..11)
         .map(|index| {

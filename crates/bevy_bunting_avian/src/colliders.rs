@@ -76,8 +76,10 @@ pub(crate) fn copy_colliders(
         commands.entity(entity).insert(FromAvian(shape.clone()));
         match collider_of(entity, shape) {
             Ok(new) => {
-                let margin = cloth_collider.map_or(0.0, |known| known.margin);
-                commands.entity(entity).insert(ClothCollider { margin, friction, ..new });
+                let known = cloth_collider
+                    .map_or((new.margin, new.features), |known| (known.margin, known.features));
+                let (margin, features) = known;
+                commands.entity(entity).insert(ClothCollider { margin, friction, features, ..new });
             }
             Err(error) => {
                 commands.entity(entity).remove::<ClothCollider>();

@@ -35,7 +35,8 @@
 //!   [`ClothLayers`](bevy_bunting::ClothLayers).
 //! - **Friction**: the dynamic coefficient of the collider's `Friction`, or its body's, or the `DefaultFriction`. A
 //!   contact uses the geometric mean of it and the cloth's, whatever avian's rule of combination.
-//! - **Margin**: none; write [`ClothCollider::margin`](bevy_bunting::ClothCollider::margin), which is left alone.
+//! - **Margin and features**: none; write [`ClothCollider::margin`](bevy_bunting::ClothCollider::margin) and
+//!   [`ClothCollider::features`](bevy_bunting::ClothCollider::features), which are left alone.
 //! - Sensors and disabled colliders touch no cloth. A collider that is removed is forgotten. A `ClothCollider` that an
 //!   entity has already is left as it is.
 //!

@@ -29,7 +29,7 @@ fn undisplayed(app: &mut App, turn: f32) -> Entity {
     let place = Transform::from_translation(Vec3::Y * 0.25 - middle).with_rotation(flat);
     let sheet = (ClothMesh::grid(33, 33, 1.0, 1.0), place);
     // Only particles touch, so that triangles cut the box and are lifted.
-    let collider = ClothCollider { margin: MARGIN, features: false, ..ClothCollider::cuboid(BOX) };
+    let collider = ClothCollider { margin: MARGIN, ..ClothCollider::cuboid(BOX) };
     app.world_mut().spawn((collider, Transform::default()));
     app.world_mut().spawn(sheet).id()
 }

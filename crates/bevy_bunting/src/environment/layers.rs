@@ -52,8 +52,8 @@ impl Default for ClothLayers {
 }
 
 /// The levels of detail at which a cloth feels features of shapes between its particles, such as the corner of a box or
-/// a peg thinner than its mesh. At coarser levels, and so at a distance, only its particles touch, which costs less.
-/// Without this component, a cloth has the default.
+/// a peg thinner than its mesh, where [`ClothCollider::features`](crate::ClothCollider::features) asks for it. At coarser
+/// levels, and so at a distance, only its particles touch, which costs less. Without this component, a cloth has the default.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;

@@ -158,7 +158,7 @@ fn a_sensor_that_collides_again_is_felt_again() {
 }
 
 #[test]
-fn scale_and_changes_of_shape_are_followed_and_a_margin_is_kept() {
+fn scale_and_changes_of_shape_are_followed_and_margin_and_features_are_kept() {
     let mut app = app();
     let half = |app: &App, it| {
         cloth_collider(app, it).expect("a collider").shape.as_cuboid().expect("a box").half_extents
@@ -172,14 +172,16 @@ fn scale_and_changes_of_shape_are_followed_and_a_margin_is_kept() {
     run(&mut app, 3);
     assert_eq!(half(&app, body), Vec3::new(1.0, 1.0, 0.75));
     assert_eq!(half(&app, part), Vec3::new(3.0, 1.5, 0.75));
-    app.world_mut().get_mut::<ClothCollider>(body).expect("a collider").margin = 0.01;
+    let mut own = app.world_mut().get_mut::<ClothCollider>(body).expect("a collider");
+    (own.margin, own.features) = (0.01, true);
     app.world_mut().get_mut::<Transform>(body).expect("a transform").scale = Vec3::ONE;
     run(&mut app, 2);
     assert_eq!(half(&app, body), Vec3::new(0.5, 1.0, 1.5));
     app.world_mut().entity_mut(body).insert(Collider::cuboid(0.2, 0.2, 0.2));
     run(&mut app, 2);
     assert_eq!(half(&app, body), Vec3::splat(0.1));
-    assert_eq!(cloth_collider(&app, body).expect("a collider").margin, 0.01);
+    let known = cloth_collider(&app, body).expect("a collider");
+    assert!(known.margin == 0.01 && known.features);
 }
 
 #[test]

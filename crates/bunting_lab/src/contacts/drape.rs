@@ -94,7 +94,8 @@ fn row(feature: &Feature, speed: f32, seconds: f32) -> Row {
         let risen = speed * (TICK * tick as f32).min(RISING);
         aim.extend(risen - feature.top - GAP)
     };
-    let collider = Collider::fixed(feature.shape.clone(), Vec3::ZERO, feature.turn);
+    let fixed = Collider::fixed(feature.shape.clone(), Vec3::ZERO, feature.turn);
+    let collider = Collider { features: true, ..fixed };
     let mut deepest = 0.0;
     let seconds = if speed > 0.0 { RISING } else { seconds };
     for tick in 0..(seconds / TICK) as usize {

@@ -80,7 +80,9 @@ impl Shot {
     /// tick, µs.
     fn fire(&self, fabric: &Arc<Fabric>, aim: Vec2, phase: f32, steps: u32) -> (f64, f64) {
         let mut cloth = Trial::new(fabric, cotton(0.4), Vec3::ZERO).with(substeps(steps));
-        let collider = Collider::fixed(self.shape.clone(), Vec3::ZERO, Quat::IDENTITY);
+        let fixed = Collider::fixed(self.shape.clone(), Vec3::ZERO, Quat::IDENTITY);
+        // The shapes are smaller than the cells of coarse sheets.
+        let collider = Collider { features: true, ..fixed };
         let at = |tick: usize| aim.extend(self.speed * TICK * (tick as f32 - phase));
         let in_way = points(fabric, |rest| rest.truncate().distance(aim) < self.radius);
         let mut farthest = 0.0;

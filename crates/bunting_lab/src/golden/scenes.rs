@@ -230,6 +230,7 @@ fn gauss_seidel(lanes: LaneCount, ticks: u32) -> u64 {
     let settings = StepSettings { passes: 2, ..StepSettings::gauss_seidel(5) };
     let mut pair = Pair::new(&fabric, lanes, FabricMaterial::DENIM, settings);
     let ball = Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.5, -0.6, 0.1), Quat::IDENTITY);
+    let ball = Collider { features: true, ..ball };
     pair.batch.set_colliders(pair.lane, [ball]).expect("good shapes");
     pair.run(ticks, |tick| Drive { wind: 0.5 * gusts(tick), ..Drive::default() })
 }
@@ -253,6 +254,7 @@ fn free_sheet(lanes: LaneCount, ticks: u32) -> u64 {
         Vec3::new(0.5, -1.2, 0.05),
         Quat::IDENTITY,
     );
+    let [floor, post] = [floor, post].map(|it| Collider { features: true, ..it });
     let gravity = Drive::default().gravity;
     for it in [&mut pair, &mut other] {
         it.batch.set_colliders(it.lane, [floor.clone(), post.clone()]).expect("good shapes");

@@ -38,7 +38,7 @@ pub struct Collider {
     /// coefficient.
     pub friction: f32,
     /// Whether edges, corners and small shapes are felt between the cloth's particles, by its triangles. Without, only
-    /// particles touch, which costs less.
+    /// particles touch, which costs less, and sheets come to rest on edges.
     pub features: bool,
     /// A number by which the host finds what the cloth does to this collider in
     /// [`ClothBatch::reactions`](crate::ClothBatch::reactions); none: it is not summed.
@@ -61,7 +61,7 @@ impl core::fmt::Debug for Collider {
 }
 
 impl Collider {
-    /// A collider that rests in the cloth's frame.
+    /// A collider that rests in the cloth's frame, without a margin and features.
     #[must_use]
     pub fn fixed(shape: SharedShape, position: Vec3, rotation: Quat) -> Self {
         let pose = (position, rotation);
@@ -71,7 +71,7 @@ impl Collider {
             to: pose,
             margin: 0.0,
             friction: 1.0,
-            features: true,
+            features: false,
             reports_as: None,
         }
     }

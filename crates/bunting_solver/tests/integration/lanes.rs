@@ -29,7 +29,10 @@ fn flag() -> Arc<Fabric> {
 }
 
 fn colliders(seed: usize) -> Vec<Collider> {
-    let ball = Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.7, -0.4, 0.3), Quat::IDENTITY);
+    let ball = Collider {
+        features: true,
+        ..Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.7, -0.4, 0.3), Quat::IDENTITY)
+    };
     if seed % 4 == 2 { vec![ball] } else { Vec::new() }
 }
 

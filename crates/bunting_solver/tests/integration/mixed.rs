@@ -41,7 +41,10 @@ fn fabric(seed: usize, pins: Pins) -> Arc<Fabric> {
 /// Sets what acts on a cloth in a tick.
 fn set(batch: &mut ClothBatch, lane: usize, seed: usize, at: usize) {
     batch.drive(lane, drive(seed, at)).expect("a good drive");
-    let ball = Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.5, -0.4, 0.3), Quat::IDENTITY);
+    let ball = Collider {
+        features: true,
+        ..Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.5, -0.4, 0.3), Quat::IDENTITY)
+    };
     let balls = (seed % 4 == 2).then_some(ball);
     batch.set_colliders(lane, balls).expect("good shapes");
 }

@@ -31,7 +31,7 @@ fn speed_on_box() -> f32 {
     batch.drive(0, Drive { gravity, ..Drive::NONE }).expect("a good drive");
     let shape = SharedShape::cuboid(HALF, HALF, HALF);
     let middle = Vec3::new(0.5, -0.5, -HALF - 0.05);
-    let collider = Collider::fixed(shape, middle, Quat::IDENTITY);
+    let collider = Collider { features: true, ..Collider::fixed(shape, middle, Quat::IDENTITY) };
     batch.set_colliders(0, [collider]).expect("a good collider");
     (0..240).for_each(|_| batch.step(TICK, StepSettings::default()));
     let velocities = batch.snapshot(0).velocities;

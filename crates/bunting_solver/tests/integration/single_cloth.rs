@@ -40,7 +40,10 @@ fn fly(
 ) -> Vec<u32> {
     let mut batch = ClothBatch::new(fabric.clone(), lanes);
     let lane = batch.insert(&ClothSnapshot::at_rest(fabric), material).expect("a free lane");
-    let ball = Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.5, -0.5, 0.3), Quat::IDENTITY);
+    let ball = Collider {
+        features: true,
+        ..Collider::fixed(SharedShape::ball(0.2), Vec3::new(0.5, -0.5, 0.3), Quat::IDENTITY)
+    };
     batch.set_colliders(lane, [ball]).expect("good shapes");
     let mut normals = Vec::new();
     for tick in 0..200 {

@@ -31,12 +31,7 @@ impl Part {
 
     fn collider(&self) -> ClothCollider {
         let half_length = 0.5 * self.ends[0].distance(self.ends[1]);
-        // The mesh of the cape is finer than the limbs are thick, so that contacts of particles are enough.
-        ClothCollider {
-            margin: MARGIN,
-            features: false,
-            ..ClothCollider::capsule(half_length, self.radius)
-        }
+        ClothCollider { margin: MARGIN, ..ClothCollider::capsule(half_length, self.radius) }
     }
 }
 

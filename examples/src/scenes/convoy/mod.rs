@@ -41,7 +41,8 @@ impl Example for Convoy {
     fn build(&self, app: &mut App, schedule: impl ScheduleLabel) {
         app.add_plugins((PhysicsPlugins::default(), ClothAvianPlugin::default()))
             .add_systems(FixedUpdate, (suspension::carry, suspension::steer).chain())
-            .add_systems(schedule, follow);
+            .add_systems(schedule, follow)
+            .add_observer(vehicle::feel_edges);
         let mut commands = app.world_mut().commands();
         commands.spawn((LodViewer::default(), Transform::default()));
         commands.spawn(WindField::steady(Vec3::new(0.0, 0.0, -2.0)).with_gusts(1.0, 0.5, 7));

@@ -99,6 +99,13 @@ fn part(middle: Vec3, size: Vec3) -> impl Bundle {
     (Part, collider, Transform::from_translation(middle))
 }
 
+/// The tarpaulin is laid over the edges of these boxes.
+pub fn feel_edges(added: On<Add, ClothCollider>, mut parts: Query<&mut ClothCollider, With<Part>>) {
+    if let Ok(mut part) = parts.get_mut(added.entity) {
+        part.features = true;
+    }
+}
+
 /// A flag on a pole, which flies backwards.
 fn spawn_flag(commands: &mut Commands, vehicle: Entity, colour: [u8; 3]) {
     let middle = FOOT + 0.5 * Pole::LENGTH * Vec3::Y;

@@ -49,10 +49,14 @@ pub struct Sheet;
 /// Spawns the table, the ground and the sheet.
 pub fn spawn(commands: &mut Commands) {
     // A smaller box with a margin is a box with round edges.
-    let top = ClothCollider { margin: ROUNDING + MARGIN, ..ClothCollider::cuboid(TOP - ROUNDING) };
+    let top = ClothCollider {
+        margin: ROUNDING + MARGIN,
+        features: true,
+        ..ClothCollider::cuboid(TOP - ROUNDING)
+    };
     commands.spawn((TableTop, top, Transform::from_translation(CENTRE)));
     for (half, place) in legs() {
-        let leg = ClothCollider { margin: MARGIN, ..ClothCollider::cuboid(half) };
+        let leg = ClothCollider { margin: MARGIN, features: true, ..ClothCollider::cuboid(half) };
         commands.spawn((leg, Transform::from_translation(place)));
     }
     commands.spawn((ClothCollider::ground(), Transform::default()));

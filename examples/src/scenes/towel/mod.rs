@@ -60,7 +60,9 @@ impl OrbitExample for Towels {
         let mut commands = app.world_mut().commands();
         commands.spawn((ClothCollider::ground(), Transform::default()));
         let along_rail = Quat::from_rotation_z(FRAC_PI_2);
-        let rail = ClothCollider::capsule(RAIL_SIZE[0], RAIL_SIZE[1]);
+        // The rail is thinner than the towel's mesh is wide.
+        let rail =
+            ClothCollider { features: true, ..ClothCollider::capsule(RAIL_SIZE[0], RAIL_SIZE[1]) };
         commands.spawn((rail, Transform::from_translation(RAIL).with_rotation(along_rail)));
         // One lies level above the rail, a little askew and off its middle; one stands on its edge.
         let turn = Quat::from_rotation_y(0.06) * Quat::from_rotation_x(-FRAC_PI_2);
