@@ -3,14 +3,14 @@
 use std::time::Duration;
 
 use bevy_app::prelude::*;
-use bevy_bunting::bunting_solver::EffortCause;
+use bevy_bunting::bunting_solver::{EffortCause, LaneCount};
 use bevy_bunting::prelude::*;
-use bevy_bunting::{ClothEffort, CostTable, LodCosts, LodReport};
+use bevy_bunting::{ClothBatches, ClothEffort, CostTable, LodCosts, LodReport};
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bevy_time::{Fixed, Time};
 use bevy_transform::prelude::*;
-use bunting_tests::{TICK, app, assert_finite, bits, run, state, stretches};
+use bunting_tests::{Bits, TICK, app, assert_finite, bits, run, state, stretches};
 
 /// Ticks after which a cloth that has become calm has got fewer substeps.
 const A_WHILE: usize = 40;
@@ -72,6 +72,60 @@ fn only_the_cloth_that_needs_more_pays() {
         bits(&app, calm)
     };
     assert_eq!(fly(true), fly(false));
+}
+
+/// Five heavy flags and three of silk in one order or the other after a second, the heavy ones first: each with its bits, the
+/// substeps that it needs and those that it takes, and the number of batches.
+fn heavy_and_silk(
+    settings: impl Fn(&mut ClothSettings),
+    turned: bool,
+) -> (Vec<(Bits, u32, u32)>, usize) {
+    let [light, heavy] = light_and_heavy();
+    let mut app = app();
+    settings(&mut app.world_mut().resource_mut::<ClothSettings>());
+    app.world_mut().spawn(WindField::steady(Vec3::new(10.0, 0.0, 1.0)));
+    let mut order: Vec<usize> = (0..8).collect();
+    if turned {
+        order.reverse();
+    }
+    let mut flag = |index: usize| {
+        let material = if index < 5 { heavy } else { light };
+        (index, spawn(&mut app, material, Vec3::Y * 3.0 * index as f32))
+    };
+    let mut flags: Vec<(usize, Entity)> = order.into_iter().map(&mut flag).collect();
+    flags.sort_unstable();
+    run(&mut app, 60);
+    let of = |&(_, flag): &(usize, Entity)| {
+        let needed = effort(&app, flag).needed().substeps;
+        (bits(&app, flag), needed, substeps(&app, flag))
+    };
+    (flags.iter().map(of).collect(), app.world().resource::<ClothBatches>().batch_count())
+}
+
+#[test]
+fn flags_that_need_different_substeps_share_a_batch() {
+    let (shared, batches) = heavy_and_silk(|_| {}, false);
+    let most = shared.iter().map(|it| it.1).max().expect("eight flags");
+    assert!(shared[..5].iter().all(|it| it.1 == 2) && most > 2, "silk needs more");
+    assert!(shared.iter().all(|it| it.2 == most));
+    assert_eq!(batches, 1);
+    // Neither the order in which they were spawned nor the width of the batches changes a bit.
+    assert_eq!(heavy_and_silk(|_| {}, true), (shared.clone(), 1));
+    let narrow = heavy_and_silk(|settings| settings.lanes = Some(LaneCount::One), false);
+    assert_eq!(narrow, (shared, 8));
+}
+
+#[test]
+fn cloths_that_share_no_batch_take_what_they_need() {
+    let (apart, batches) = heavy_and_silk(|settings| settings.share_batches = false, false);
+    assert!(apart.iter().all(|it| it.1 == it.2));
+    assert!(batches > 1);
+    let [_, heavy] = light_and_heavy();
+    let mut app = app();
+    app.world_mut().spawn(WindField::steady(Vec3::new(10.0, 0.0, 1.0)));
+    let alone = spawn(&mut app, heavy, Vec3::ZERO);
+    run(&mut app, 60);
+    assert_eq!(bits(&app, alone), apart[0].0);
 }
 
 #[test]

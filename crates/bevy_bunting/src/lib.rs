@@ -96,9 +96,10 @@
 //!
 //! # Determinism
 //!
-//! The same world in the same ticks gives the same bits. The bits of a cloth depend neither on other
-//! cloths nor on the number of threads. Only [`LodSet::automatic`] shares a budget among all cloths, and
-//! by default measures their costs; with [`LodCosts::Fixed`] its choice, too, is the same on every machine.
+//! The same world in the same ticks gives the same bits, whatever the number of threads. The bits of a cloth depend on those
+//! of other cloths only where it touches them. What other cloths need has a part in its substeps, unless
+//! [`ClothSettings::share_batches`] is off, and in its level with [`LodSet::automatic`], which shares a budget among all
+//! cloths and by default measures their costs; with [`LodCosts::Fixed`] its choice, too, is the same on every machine.
 
 mod anchors;
 mod background;

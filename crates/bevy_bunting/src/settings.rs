@@ -32,6 +32,11 @@ pub struct ClothSettings {
     /// Number of lanes in each batch. By default it follows from the number of cloths and the instruction
     /// set. It does not change the bits of the result.
     pub lanes: Option<LaneCount>,
+    /// Whether cloths may take more substeps than they need where that lets them share a batch with cloths that need more,
+    /// and all together cost less. By default they may: then the bits of a cloth depend on which others of its grid or
+    /// fabric there are, and what those need. Otherwise they depend on no other cloth, and flags in gusts cost up to
+    /// half as much again.
+    pub share_batches: bool,
 }
 
 impl ClothSettings {
@@ -53,6 +58,7 @@ impl Default for ClothSettings {
             air_density: Drive::default().air_density,
             steps: vec![finest, coarse],
             lanes: None,
+            share_batches: true,
         }
     }
 }

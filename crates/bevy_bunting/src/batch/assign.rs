@@ -8,11 +8,12 @@ use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_time::Time;
 
 use crate::batch::batches::ClothBatches;
+use crate::batch::choose_substeps::{SteppedCloth, choose_substeps};
 use crate::batch::lane_handle::LaneHandle;
 use crate::batch::occupancy::PendingCloth;
+use crate::batch::shared_substeps::Member;
 use crate::cloth::activity::{ClothActivity, ClothPaused};
 use crate::cloth::instance::{ClothInstance, StateStorage};
-use crate::lod::effort::ClothEffort;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
 
@@ -46,44 +47,53 @@ fn mark_resumed(resumed: On<Remove, ClothPaused>, mut cloths: Query<&mut ClothIn
     }
 }
 
-/// Moves snapshots of simulated cloths into lanes, and states of paused and sleeping cloths out of lanes.
-/// A cloth whose class of effort has changed moves to a batch of other substeps. When the settings or the length of a
+/// Chooses the substeps of cloths, moves snapshots of simulated cloths into lanes, and states of paused and sleeping cloths
+/// out of lanes. A cloth whose substeps have changed moves to another batch. When the settings or the length of a
 /// tick change, all cloths are assigned again, as their numbers of substeps may differ.
 pub(crate) fn assign_lanes(
-    mut cloths: Query<(Entity, &mut ClothInstance, &mut ClothEffort, Has<ClothPaused>)>,
+    mut cloths: Query<SteppedCloth>,
     settings: Res<ClothSettings>,
     time: Res<Time>,
     mut last_tick: Local<f32>,
+    mut members: Local<Vec<Member>>,
     mut batches: ResMut<ClothBatches>,
 ) {
     let tick = time.delta_secs();
     let reassign_all = settings.is_changed() || tick != *last_tick;
     *last_tick = tick;
-    let gravity = settings.gravity.length();
-    for (entity, mut instance, mut effort, paused) in &mut cloths {
-        if !instance.is_changed() && !reassign_all {
-            continue;
-        }
-        let is_still = paused || instance.activity != ClothActivity::Ticking;
-        let Some(fabric) = instance.fabric().cloned() else { continue };
-        let limits = settings.limits(instance.level);
-        let steps = limits.of_fabric(&fabric, tick, effort.class().acceleration(gravity));
-        let moves = |lane: LaneHandle| is_still || reassign_all || batches.settings(lane) != steps;
-        if instance.lane().is_some_and(moves) {
-            instance.leave_lane(&mut batches);
-        }
-        if is_still || instance.snapshot().is_none() {
-            continue;
-        }
-        if let StateStorage::Snapshot(snapshot) = core::mem::take(&mut instance.storage) {
-            let pending = PendingCloth {
-                entity,
-                fabric: 0,
-                snapshot: *snapshot,
-                material: instance.material,
-            };
-            effort.settings = steps;
-            batches.add(&fabric, steps, pending);
+    if choose_substeps(&mut cloths, &settings, tick, reassign_all, &batches, &mut members) {
+        for (entity, mut instance, effort, paused, _) in &mut cloths {
+            let steps = effort.settings;
+            let differs = |lane: LaneHandle| batches.settings(lane) != steps;
+            let is_changed = instance.is_changed() || reassign_all;
+            if !is_changed && !instance.lane().is_some_and(differs) {
+                continue;
+            }
+            let is_still = paused || instance.activity != ClothActivity::Ticking;
+            let Some(fabric) = instance.fabric().cloned() else { continue };
+            let moves = |lane: LaneHandle| is_still || reassign_all || differs(lane);
+            let leaves = instance.lane().is_some_and(moves);
+            let enters = !is_still && (leaves || instance.snapshot().is_some());
+            // Substeps that follow from other cloths are no change of this one.
+            if is_changed && (leaves || enters) {
+                instance.set_changed();
+            }
+            let instance = instance.bypass_change_detection();
+            if leaves {
+                instance.leave_lane(&mut batches);
+            }
+            if !enters {
+                continue;
+            }
+            if let StateStorage::Snapshot(snapshot) = core::mem::take(&mut instance.storage) {
+                let pending = PendingCloth {
+                    entity,
+                    fabric: 0,
+                    snapshot: *snapshot,
+                    material: instance.material,
+                };
+                batches.add(&fabric, steps, pending);
+            }
         }
     }
     batches.assign_lanes(settings.lanes, |entity, lane| {

@@ -25,7 +25,7 @@ use crate::batch::touching::{TouchingCloth, TouchingCloths};
 /// The batches that hold the state of all simulated cloths.
 #[derive(Resource, Debug, Default)]
 pub struct ClothBatches {
-    groups: Vec<Group>,
+    pub(super) groups: Vec<Group>,
     /// Cloths that may touch one another in this tick.
     touching: Vec<TouchingCloths>,
     /// Time that the last [`assign_lanes`](Self::assign_lanes) took.
@@ -56,7 +56,8 @@ impl ClothBatches {
     ) {
         let found = self.groups.iter().position(|group| group.is_of(fabric, settings));
         let index = found.unwrap_or_else(|| {
-            let group = Group::new(fabric, settings);
+            let kind = self.kind_of(fabric, settings).unwrap_or_else(|| self.unused_kind());
+            let group = Group::new(fabric, settings, kind);
             match self.groups.iter().position(Group::is_empty) {
                 Some(unused) => {
                     self.groups[unused] = group;
@@ -69,6 +70,11 @@ impl ClothBatches {
             }
         });
         self.groups[index].add(fabric, cloth);
+    }
+
+    /// Whether a cloth has entered or left since lanes were assigned.
+    pub(crate) fn has_changed(&self) -> bool {
+        self.groups.iter().any(|group| group.changed)
     }
 
     /// Settings of the cloth in a lane.

@@ -22,6 +22,8 @@ const FEW_FREE: usize = 3;
 #[derive(Debug)]
 pub(crate) struct Group {
     pub settings: StepSettings,
+    /// Number of what its cloths are but for their substeps: groups of one kind differ in these only.
+    pub kind: usize,
     /// Fabrics of one topology, that of the first. A new fabric replaces one without cloths.
     pub fabrics: Vec<FabricCount>,
     pub batches: Vec<OccupiedBatch>,
@@ -37,9 +39,10 @@ pub(crate) struct Group {
 
 impl Group {
     /// A group without cloths.
-    pub fn new(fabric: &Arc<Fabric>, settings: StepSettings) -> Self {
+    pub fn new(fabric: &Arc<Fabric>, settings: StepSettings, kind: usize) -> Self {
         Self {
             settings,
+            kind,
             fabrics: vec![FabricCount { fabric: Arc::clone(fabric), cloths: 0 }],
             batches: Vec::new(),
             spare: Vec::new(),
@@ -51,8 +54,14 @@ impl Group {
 
     /// Whether cloths with this fabric and these settings belong to the group.
     pub fn is_of(&self, fabric: &Arc<Fabric>, settings: StepSettings) -> bool {
+        self.settings == settings && self.is_of_kind(fabric, settings)
+    }
+
+    /// Whether cloths with this fabric and these settings, but for their substeps, belong to groups of this kind.
+    pub fn is_of_kind(&self, fabric: &Arc<Fabric>, settings: StepSettings) -> bool {
         let first = &self.fabrics[0].fabric;
-        self.settings == settings
+        let as_many = StepSettings { substeps: self.settings.substeps, ..settings };
+        self.settings == as_many
             && (Arc::ptr_eq(first, fabric)
                 || (settings.scheme == Scheme::Yarns && first.has_topology_of(fabric)))
     }

@@ -3,12 +3,15 @@
 pub mod assign;
 pub mod batch_kind;
 pub mod batches;
+mod choose_substeps;
 pub(crate) mod cost_kind;
 pub mod group;
+mod kinds;
 pub mod lane_handle;
 pub mod occupancy;
 pub(crate) mod parallel;
 pub mod particles;
 pub mod publish;
+pub(crate) mod shared_substeps;
 pub mod solve;
 pub(crate) mod touching;

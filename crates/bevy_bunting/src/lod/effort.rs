@@ -11,7 +11,8 @@ use crate::motion::pose::PoseHistory;
 ///
 /// A cloth takes more substeps than its weight needs while strong wind, an acceleration of its frame, its own motion or
 /// colliders that it is pulled against need them, within [`ClothSettings::steps`](crate::ClothSettings::steps). It gets
-/// more at once, and fewer after half a second.
+/// more at once, and fewer after half a second. It may take more than it needs, to share a batch with cloths that need
+/// more, see [`ClothSettings::share_batches`](crate::ClothSettings::share_batches).
 #[derive(Component, Clone, Debug, Default)]
 pub struct ClothEffort {
     effort: Effort,
@@ -22,6 +23,9 @@ pub struct ClothEffort {
     acceleration: f32,
     /// What the cloth feels of its frame's acceleration.
     inertia: ClothInertia,
+    /// Those that it needs by itself.
+    pub(crate) needed: StepSettings,
+    /// Those that it takes.
     pub(crate) settings: StepSettings,
 }
 
@@ -32,7 +36,13 @@ impl ClothEffort {
         self.settings
     }
 
-    /// The reason for the number of substeps.
+    /// Substeps and passes that the cloth needs by itself; it takes at least as many.
+    #[must_use]
+    pub fn needed(&self) -> StepSettings {
+        self.needed
+    }
+
+    /// The reason for the number of substeps that the cloth needs.
     #[must_use]
     pub fn cause(&self) -> EffortCause {
         self.effort.cause()
