@@ -10,6 +10,7 @@ mod cloth_collision;
 mod contacts;
 mod despawn;
 mod determinism;
+mod documents;
 mod effort;
 mod environment;
 mod errors;

@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 
 use crate::commands::{
     budget, contacts, effort, families, forces, fuzz, gate, lod, memory, oracles, pareto, report,
-    schedule, stability,
+    schedule, sharing, stability,
 };
 use crate::output::Outcome;
 
@@ -53,6 +53,8 @@ enum Command {
     Stability(families::Selection),
     /// Cost of the schedule over plain calls.
     Schedule,
+    /// Flags that need different substeps, in batches that they share.
+    Sharing,
     /// Other engines on the same scenes.
     Peers,
     /// Hashes, closed forms and quick hard cases against the committed lists; exits with 1 where they differ.
@@ -73,6 +75,7 @@ impl Arguments {
             Command::Lod => lod::run(self.quick),
             Command::Peers => peers(self.quick)?,
             Command::Schedule => schedule::run(self.quick),
+            Command::Sharing => sharing::run(self.quick),
             Command::Budget => budget::run(self.quick),
             Command::Effort => effort::run(self.quick),
             Command::Contacts => contacts::run(self.quick),

@@ -34,6 +34,13 @@ impl Timing {
         self.samples.push(duration);
     }
 
+    /// Mean of all durations, of which longer ones count as `most`, µs.
+    #[must_use]
+    pub fn clipped_mean(&self, most: f64) -> f64 {
+        let clipped: Vec<f64> = self.samples.iter().map(|time| time.min(most)).collect();
+        crate::stats::mean(&clipped)
+    }
+
     /// Sum of all durations, µs.
     #[must_use]
     pub fn total(&self) -> f64 {

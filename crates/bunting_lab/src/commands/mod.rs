@@ -17,6 +17,7 @@ pub mod pareto;
 pub mod peers;
 pub mod report;
 pub mod schedule;
+pub mod sharing;
 pub mod stability;
 
 use indicatif::{ProgressBar, ProgressStyle};

@@ -11,7 +11,9 @@ use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::{Map, Value};
 
-use super::{budget, families::Selection, lod, memory, oracles, pareto, schedule, stability};
+use super::{
+    budget, families::Selection, lod, memory, oracles, pareto, schedule, sharing, stability,
+};
 use crate::{
     output::{Outcome, table::Table},
     report::{machine::Machine, markdown, page, section::Section},
@@ -102,6 +104,13 @@ fn measure(quick: bool) -> Vec<Section> {
         section("schedule", "", quick, "the plugin's cost over plain calls of the solver", || {
             Ok(schedule::run(quick))
         }),
+        section(
+            "sharing",
+            "",
+            quick,
+            "flags that need different substeps, in shared batches",
+            || Ok(sharing::run(quick)),
+        ),
     ];
     sections.extend(peers(quick));
     sections

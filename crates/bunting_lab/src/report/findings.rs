@@ -16,6 +16,9 @@ const ENERGY: f64 = 0.01;
 const STRAIN: f64 = 1.5;
 /// Fraction by which the schedule may exceed plain calls.
 const SCHEDULE: f64 = 0.1;
+/// Time of flags by need, over that of all with the greatest number of substeps that any needs, and over that of all with the
+/// mean number.
+const SHARED: [f64; 2] = [1.0, 1.15];
 /// Number of failing cases that are named.
 const NAMED: usize = 3;
 
@@ -46,6 +49,7 @@ pub fn of(command: &str, json: &Value) -> Vec<Finding> {
         "budget" => budget(json),
         "lod" => lod(json),
         "schedule" => schedule(json),
+        "sharing" => sharing(json),
         "peers" => peers(json),
         _ => Vec::new(),
     }
@@ -229,6 +233,22 @@ fn schedule(json: &Value) -> Vec<Finding> {
     let sentence =
         format!("the plugin takes {} × the time of plain calls, eight flags of 33²", figure(worst));
     vec![Finding::new(worst <= 1.0 + SCHEDULE, sentence)]
+}
+
+fn sharing(json: &Value) -> Vec<Finding> {
+    let worst = |other: &str| {
+        let ratios = rows(json, "rows").iter().map(|row| number(row, "us") / number(row, other));
+        ratios.fold(0.0, worse)
+    };
+    let found = ["us_greatest", "us_mean"].map(worst);
+    ["greatest", "mean"].into_iter().zip(found).zip(SHARED).map(|((name, ratio), limit)| {
+        let sentence = format!(
+            "flags by need take up to {} × the time of flags that all have the {name} number of substeps",
+            figure(ratio)
+        );
+        Finding::new(ratio <= limit, sentence)
+    })
+    .collect()
 }
 
 /// Time of the fastest of this project's settings for a single cloth, compared with the least stretched of

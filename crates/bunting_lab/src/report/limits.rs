@@ -1,20 +1,29 @@
-//! Limitations of the project, listed beside its figures.
+//! Limitations of the project, listed beside its figures: those that its README names.
 
-/// Limitations that a reader of the figures should know.
-pub const LIMITS: [&str; 13] = [
-    "Collision of cloths with one another.",
-    "Two-way coupling: cloth does not push back on what it touches or hangs from.",
-    "Features of shapes: particles are tested, not the triangles between them, so sharp edges and corners \
-     of a shape can poke through between particles.",
-    "Continuous contact with shapes that deform.",
-    "Several targets: a cloth is attached to one entity.",
-    "Compliant or sliding attachments; pins are exact and fixed on the cloth.",
-    "Skinning: cloth that follows the bones of a character.",
-    "Tearing.",
-    "Plasticity: a fold leaves no crease.",
-    "Curved rest shapes with their own bending on grids; they are flat.",
-    "Local wind: a field is the same everywhere but for its gusts, and nothing shelters a cloth from it.",
-    "Air that cloth moves: the wind knows nothing of the cloth.",
-    "Exact stretch on irregular meshes that are curved at rest: their chains are short and need more substeps than a \
-     grid's.",
-];
+/// The README.
+const README: &str = include_str!("../../../../README.md");
+
+/// Heading of the list in the README, and the beginning of the next heading.
+const HEADINGS: [&str; 2] = ["\n## Missing features\n", "\n## "];
+
+/// Limitations that a reader of the figures should know, each in one line.
+#[must_use]
+pub fn limits() -> Vec<String> {
+    let [own, next] = HEADINGS;
+    let list = README.split_once(own).map_or("", |(_, after)| after);
+    let list = list.split_once(next).map_or(list, |(list, _)| list);
+    let items = list.split("\n- ").skip(1);
+    items.map(|item| item.split_whitespace().collect::<Vec<_>>().join(" ")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_limits_are_those_of_the_readme() {
+        let limits = limits();
+        assert!(limits.iter().any(|limit| limit.contains("GPU")), "{limits:?}");
+        assert!(limits.iter().all(|limit| !limit.is_empty() && !limit.contains('#')));
+    }
+}

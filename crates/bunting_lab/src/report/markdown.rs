@@ -4,7 +4,7 @@ use std::{fmt::Write, fs, path::Path};
 
 use anyhow::{Context, Result};
 
-use super::{limits::LIMITS, machine::Machine, section::Section};
+use super::{limits::limits, machine::Machine, section::Section};
 use crate::output::table::Table;
 
 /// Name of the document, and of the folder of its plots, without their endings.
@@ -47,7 +47,7 @@ pub fn render(sections: &[Section], machine: &Machine, quick: bool) -> String {
         push_section(&mut text, section);
     }
     text.push_str("## What the project cannot do yet\n\n");
-    for limit in LIMITS {
+    for limit in limits() {
         writeln!(text, "- {limit}").expect("a string takes all");
     }
     text
@@ -154,7 +154,7 @@ mod tests {
             "![Dots](measurements/dots.svg)",
             "| \\|a\\| &lt; b |",
             "A quick run",
-            LIMITS[0],
+            &limits()[0],
         ] {
             assert!(text.contains(part), "{part} in {text}");
         }
