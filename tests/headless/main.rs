@@ -21,6 +21,7 @@ mod holds;
 mod inertia;
 mod levels;
 mod lifecycle;
+mod memory;
 mod order;
 mod reactions;
 mod rest;

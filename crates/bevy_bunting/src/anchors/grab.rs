@@ -9,6 +9,7 @@ use bevy_math::Vec3;
 use bevy_reflect::Reflect;
 use bevy_transform::components::Transform;
 
+use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
 use crate::motion::anchor_hold::infinite_force;
 use crate::motion::pose::PoseHistory;
@@ -126,7 +127,7 @@ fn map_cloth<M: EntityMapper>(grab: &mut ClothGrab, mapper: &mut M) {
 #[derive(Component, Debug, Default)]
 pub struct Grabbed {
     /// The levels and the level of the particles.
-    of: Option<(Arc<ClothLevels>, usize)>,
+    of: Option<KnownLevel>,
     /// Positions at rest of the particles that were grabbed, and their places in the frame of the entity, m.
     grabbed: Vec<(Vec3, Vec3)>,
     /// The particles that are held at the present level, and their places in the frame of the entity, m.
@@ -155,7 +156,7 @@ impl Grabbed {
 
     /// Whether the particles are those of a level.
     pub(crate) fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
-        self.of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, levels) && *at == level)
+        self.of.as_ref().is_some_and(|of| of.is(levels, level))
     }
 
     /// Grabs: chooses the particles at the present level, given the places of all particles in the frame of the entity, m.
@@ -183,7 +184,7 @@ impl Grabbed {
         let rest = fabric.rest_positions();
         let at_rest = |&(at, place): &(u32, Vec3)| (rest[at as usize], place);
         self.grabbed = self.held.iter().map(at_rest).collect();
-        self.of = Some((Arc::clone(levels), level));
+        self.of = Some(KnownLevel::new(levels, level));
     }
 
     /// Chooses the particles at another level that were grabbed, and holds them at their places; if it has none of them, the
@@ -210,6 +211,6 @@ impl Grabbed {
             let particle = self.grabbed.first().and_then(|&(at_rest, _)| nearest(at_rest));
             self.held.extend(particle.map(|at| (at as u32, places[at])));
         }
-        self.of = Some((Arc::clone(levels), level));
+        self.of = Some(KnownLevel::new(levels, level));
     }
 }

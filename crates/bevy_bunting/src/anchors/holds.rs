@@ -5,13 +5,14 @@ use std::sync::Arc;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 
+use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
 
 /// A cloth that is held by springs or rails, of anchors or of grabs.
 #[derive(Component, Debug, Default)]
 pub(crate) struct ClothHolds {
     /// The levels and the level of the particles.
-    of: Option<(Arc<ClothLevels>, usize)>,
+    of: Option<KnownLevel>,
     /// The anchor, the particle and its place at rest (m) of each hold of an anchor.
     pub anchored: Vec<(usize, u32, Vec3)>,
     /// Number of particles of each anchor.
@@ -34,7 +35,7 @@ pub(crate) enum Owner {
 impl ClothHolds {
     /// Whether the holds are those of a level.
     pub fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
-        self.of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, levels) && *at == level)
+        self.of.as_ref().is_some_and(|of| of.is(levels, level))
     }
 
     /// Finds the particles of a level, given the vertices that each anchor holds by springs or on a rail, and the rails.
@@ -46,7 +47,7 @@ impl ClothHolds {
         groups: &[Vec<u32>],
         rails: Vec<Option<Arc<[Vec3]>>>,
     ) {
-        self.of = Some((Arc::clone(levels), level));
+        self.of = Some(KnownLevel::new(levels, level));
         self.rails = rails;
         self.anchored.clear();
         self.counts.clear();

@@ -8,6 +8,7 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bunting_solver::PinGroups;
 
+use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
 
 /// What a cloth does to that which holds it: insert this component beside its [`Attachment`](crate::Attachment), and read
@@ -56,14 +57,14 @@ pub struct AnchorReaction {
 #[derive(Component, Debug, Default)]
 pub(crate) struct PinReporting {
     /// The levels and the level that the groups are those of.
-    of: Option<(Arc<ClothLevels>, usize)>,
+    of: Option<KnownLevel>,
     pub groups: Option<Arc<PinGroups>>,
 }
 
 impl PinReporting {
     /// Whether the groups are those of a level.
     pub fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
-        self.of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, levels) && *at == level)
+        self.of.as_ref().is_some_and(|of| of.is(levels, level))
     }
 
     /// Finds the groups of a level, given the vertices that are held on each target.
@@ -74,6 +75,6 @@ impl PinReporting {
         };
         let groups: Vec<Vec<u32>> = held.iter().map(particles).collect();
         self.groups = Some(Arc::new(PinGroups::new(levels.fabric(level), &groups)));
-        self.of = Some((Arc::clone(levels), level));
+        self.of = Some(KnownLevel::new(levels, level));
     }
 }

@@ -41,6 +41,24 @@ impl ClothBatches {
         self.groups.iter().map(|group| group.batches.len()).sum()
     }
 
+    /// Number of batches without cloths that are kept for others, for about ten seconds.
+    #[must_use]
+    pub fn spare_count(&self) -> usize {
+        self.groups.iter().map(Group::spare_count).sum()
+    }
+
+    /// Drops spare batches that have not been needed for long.
+    pub(crate) fn drop_old_spares(&mut self) {
+        self.groups.iter_mut().for_each(Group::drop_old_spares);
+    }
+
+    /// Drops the fabrics that no living cloth has, and all that is made of them.
+    pub(crate) fn drop_unused(&mut self, is_living: impl Fn(&Arc<Fabric>) -> bool) {
+        self.groups.iter_mut().for_each(|group| group.drop_unused(&is_living));
+        // Lanes are addressed by the indices of their groups, so that only the last groups can be removed.
+        while self.groups.pop_if(|group| group.is_empty() && group.fabrics.is_empty()).is_some() {}
+    }
+
     /// Number of substeps in a tick of the batches with the most substeps.
     pub(crate) fn substeps(&self) -> u32 {
         let groups = self.groups.iter().filter(|group| !group.batches.is_empty());

@@ -9,10 +9,7 @@ use crate::background::Background;
 use crate::batch::batch_kind::{BatchKind, FabricCount, wanted_batches};
 use crate::batch::cost_kind::CostKind;
 use crate::batch::occupancy::{OccupiedBatch, PendingCloth};
-
-/// Number of empty batches of each width that are kept as spares, since making a batch takes longer than a
-/// tick. It equals the greatest number of cloths in batches of one lane.
-const MOST_SPARE: usize = 3;
+use crate::batch::spare::SpareBatches;
 
 /// Number of free lanes of mixed batches below which another thread builds the next such batch. Fewer: a tick in
 /// which several cloths arrive waits for it. More: groups have a batch too many more often.
@@ -27,8 +24,8 @@ pub(crate) struct Group {
     /// Fabrics of one topology, that of the first. A new fabric replaces one without cloths.
     pub fabrics: Vec<FabricCount>,
     pub batches: Vec<OccupiedBatch>,
-    /// Empty batches, at most [`MOST_SPARE`] of each kind.
-    spare: Vec<OccupiedBatch>,
+    /// Batches that cloths have left.
+    spare: SpareBatches,
     /// The next mixed batch, which another thread builds. The bits of a cloth do not depend on its batch.
     next_mixed: Option<Background<OccupiedBatch>>,
     /// Cloths that wait for a lane.
@@ -45,7 +42,7 @@ impl Group {
             kind,
             fabrics: vec![FabricCount { fabric: Arc::clone(fabric), cloths: 0 }],
             batches: Vec::new(),
-            spare: Vec::new(),
+            spare: SpareBatches::default(),
             next_mixed: None,
             pending: Vec::new(),
             changed: true,
@@ -59,7 +56,7 @@ impl Group {
 
     /// Whether cloths with this fabric and these settings, but for their substeps, belong to groups of this kind.
     pub fn is_of_kind(&self, fabric: &Arc<Fabric>, settings: StepSettings) -> bool {
-        let first = &self.fabrics[0].fabric;
+        let Some(FabricCount { fabric: first, .. }) = self.fabrics.first() else { return false };
         let as_many = StepSettings { substeps: self.settings.substeps, ..settings };
         self.settings == as_many
             && (Arc::ptr_eq(first, fabric)
@@ -104,7 +101,7 @@ impl Group {
 
     /// Forgets which batches have cloths that may touch others.
     pub fn forget_touching(&mut self) {
-        self.batches.iter_mut().chain(&mut self.spare).for_each(|batch| batch.touches = false);
+        self.batches.iter_mut().for_each(|batch| batch.touches = false);
     }
 
     /// What the cost of one of the batches depends on.
@@ -163,9 +160,8 @@ impl Group {
 
     /// A batch without cloths: a spare one, the one that was built ahead, or a new one.
     fn new_batch(&mut self, kind: BatchKind) -> OccupiedBatch {
-        let spare = self.spare.iter().position(|spare| spare.is_of(kind, &self.fabrics));
-        if let Some(index) = spare {
-            return self.spare.swap_remove(index);
+        if let Some(spare) = self.spare.take(kind, &self.fabrics) {
+            return spare;
         }
         let ahead = if kind.fabric.is_none() { self.next_mixed.take() } else { None };
         ahead.map_or_else(|| OccupiedBatch::new(kind, &self.fabrics), Background::take)
@@ -179,13 +175,60 @@ impl Group {
         let free: usize = mixed().map(|it| it.occupants.len() - it.occupied_count()).sum();
         let is_shared = |it: &OccupiedBatch| it.batch.is_mixed() || it.width == LaneCount::One;
         let has_rest = self.batches.iter().any(is_shared);
-        let has_spare = self.spare.iter().any(|spare| spare.batch.is_mixed());
-        if in_use < 2 || !has_rest || free >= FEW_FREE || has_spare || self.next_mixed.is_some() {
+        let has_next = self.spare.has_mixed() || self.next_mixed.is_some();
+        if in_use < 2 || !has_rest || free >= FEW_FREE || has_next {
             return;
         }
         let fabric = FabricCount { fabric: Arc::clone(&self.fabrics[0].fabric), cloths: 0 };
         self.next_mixed =
             Some(Background::begin(move || OccupiedBatch::new(BatchKind::MIXED, &[fabric])));
+    }
+
+    /// Number of batches that cloths have left, and that are kept for others.
+    pub fn spare_count(&self) -> usize {
+        self.spare.count() + usize::from(self.next_mixed.is_some())
+    }
+
+    /// Drops spare batches that have not been needed for long.
+    pub fn drop_old_spares(&mut self) {
+        self.spare.age();
+    }
+
+    /// Drops the fabrics that no living cloth has, and all that is made of them.
+    pub fn drop_unused(&mut self, is_living: impl Fn(&Arc<Fabric>) -> bool) {
+        for index in (0..self.fabrics.len()).rev() {
+            let FabricCount { fabric, cloths } = &self.fabrics[index];
+            if *cloths == 0 && !is_living(fabric) {
+                self.remove_fabric(index);
+            }
+        }
+        // It may be of a fabric that is gone; a spare one is as good.
+        if self.next_mixed.as_ref().is_some_and(Background::is_done)
+            && let Some(next) = self.next_mixed.take()
+        {
+            self.spare.keep(next.take());
+        }
+        let in_use = self.fabrics.iter().find(|it| it.cloths > 0).or(self.fabrics.first());
+        let Some(FabricCount { fabric, .. }) = in_use else {
+            (self.spare, self.next_mixed) = (SpareBatches::default(), None);
+            return;
+        };
+        self.spare.drop_unused(fabric, is_living);
+        for batch in self.batches.iter_mut().filter(|batch| batch.batch.is_mixed()) {
+            batch.batch.replace_unused_fabrics(fabric);
+        }
+    }
+
+    /// Removes a fabric without cloths. The last fabric gets its index.
+    fn remove_fabric(&mut self, index: usize) {
+        self.fabrics.swap_remove(index);
+        let moved = self.fabrics.len();
+        let occupants = self.batches.iter_mut().flat_map(|batch| batch.occupants.iter_mut());
+        let of_occupants = occupants.flatten().map(|occupant| &mut occupant.fabric);
+        let of_pending = self.pending.iter_mut().map(|cloth| &mut cloth.fabric);
+        for fabric in of_occupants.chain(of_pending).filter(|fabric| **fabric == moved) {
+            *fabric = index;
+        }
     }
 
     /// Indices of the batches, the fullest first.
@@ -214,10 +257,7 @@ impl Group {
         for index in batches.into_iter().rev() {
             let mut dissolved = self.batches.swap_remove(index);
             dissolved.dissolve(&mut self.pending);
-            let same_kind = self.spare.iter().filter(|spare| spare.is_like(&dissolved));
-            if same_kind.count() < MOST_SPARE {
-                self.spare.push(dissolved);
-            }
+            self.spare.keep(dissolved);
             let moved = self.batches.get(index).into_iter().flat_map(OccupiedBatch::occupied);
             for (lane, occupant) in moved {
                 assigned(occupant.entity, index, lane);

@@ -14,4 +14,5 @@ pub mod particles;
 pub mod publish;
 pub(crate) mod shared_substeps;
 pub mod solve;
+mod spare;
 pub(crate) mod touching;

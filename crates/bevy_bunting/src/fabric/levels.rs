@@ -70,6 +70,11 @@ impl ClothLevels {
         &self.level(level).fabric
     }
 
+    /// The fabrics of all levels.
+    pub fn fabrics(&self) -> impl Iterator<Item = &Arc<Fabric>> {
+        self.levels.iter().map(|level| &level.fabric)
+    }
+
     /// Number of levels that the [`LodSet`](crate::LodSet) asks for.
     pub fn count(&self) -> usize {
         self.asked

@@ -95,6 +95,18 @@ impl FabricLibrary {
         self.cutting.get(key).is_some_and(|cutting| !is_ready(cutting))
     }
 
+    /// Forgets levels that no cloth has any more. Returns whether there were any.
+    pub fn forget_unused(&mut self) -> bool {
+        let before = self.cut.len();
+        self.cut.retain(|_, levels| levels.strong_count() > 0);
+        self.cut.len() < before
+    }
+
+    /// The levels that cloths have.
+    pub fn living(&self) -> impl Iterator<Item = Arc<ClothLevels>> + '_ {
+        self.cut.values().filter_map(Weak::upgrade)
+    }
+
     /// Number of ticks until all levels that are being built are ready.
     pub fn ticks_to_cut(&self) -> u64 {
         let left = |cutting: &Cutting| cutting.due.saturating_sub(self.tick);
@@ -138,7 +150,6 @@ impl FabricLibrary {
             return Ok(Found::Awaited(AwaitedLevels { key, due }));
         };
         let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
-        self.cut.retain(|_, levels| levels.strong_count() > 0);
         self.cut.insert(key, Arc::downgrade(&levels));
         Ok(Found::Levels(levels))
     }

@@ -2,11 +2,13 @@
 
 pub mod awaited;
 pub mod cut;
+pub(crate) mod known_level;
 #[cfg(feature = "render")]
 pub mod level_topology;
 pub mod levels;
 pub mod library;
 pub mod prepare;
+mod release;
 pub mod rigid;
 pub mod scale;
 pub mod simulated;

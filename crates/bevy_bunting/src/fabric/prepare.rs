@@ -21,6 +21,7 @@ use crate::cloth::mesh::ClothMesh;
 use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::library::{FabricLibrary, Found};
+use crate::fabric::release::{is_due, release_unused};
 use crate::fabric::scale::{ScaleBaked, bake, scale_of};
 use crate::lod::budget::{ClothBudget, LodCosts};
 use crate::lod::lod_set::{LodChoice, LodSet};
@@ -46,7 +47,12 @@ impl Plugin for PreparePlugin {
             .add_observer(mark_released)
             .add_systems(
                 ClothTick,
-                (handle_lost_targets, cut_cloths.run_if(any_may_be_stale), change_materials)
+                (
+                    release_unused.run_if(is_due),
+                    handle_lost_targets,
+                    cut_cloths.run_if(any_may_be_stale),
+                    change_materials,
+                )
                     .chain()
                     .in_set(ClothSystems::Prepare),
             );

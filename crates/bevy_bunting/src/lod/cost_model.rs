@@ -22,6 +22,11 @@ const KEPT: f32 = 0.95;
 /// of the machine.
 const GREATEST_RATIO: f32 = 1.5;
 
+/// Number of measurements of other batches after which the factor of batches that there are no longer is forgotten: some
+/// minutes. Fewer: levels that come back are expected to cost what batches do on average. More: ever new meshes leave a
+/// longer list of factors.
+const MOST_MISSED: u32 = 2048;
+
 /// Measured over tabulated cost of batches of one kind.
 #[derive(Clone, Copy, Debug)]
 struct BatchFactor {
@@ -30,6 +35,8 @@ struct BatchFactor {
     factor: Option<Factor>,
     /// Costs of all such batches in the tick that is learnt from, µs: tabulated and measured.
     sums: [f32; 2],
+    /// Number of measurements since there were such batches.
+    missed: u32,
 }
 
 /// Measured over tabulated cost.
@@ -95,22 +102,25 @@ impl CostModel {
             let known = self.factors.iter().position(|it| it.kind == kind);
             let index = known.unwrap_or(self.factors.len());
             if known.is_none() {
-                self.factors.push(BatchFactor { kind, factor: None, sums: [0.0; 2] });
+                self.factors.push(BatchFactor { kind, factor: None, sums: [0.0; 2], missed: 0 });
             }
             let [tabulated, measured] = &mut self.factors[index].sums;
             *tabulated += by_table;
             *measured += time;
         }
         let mut all = [0.0; 2];
-        for BatchFactor { factor, sums, .. } in &mut self.factors {
+        for BatchFactor { factor, sums, missed, .. } in &mut self.factors {
             let [tabulated, measured] = core::mem::take(sums);
+            *missed += 1;
             if tabulated > 0.0 {
+                *missed = 0;
                 let ratio = measured / tabulated;
                 let start = Factor { measured: 0, ..self.general_factor };
                 factor.get_or_insert(start).approach(ratio);
                 all = [all[0] + tabulated, all[1] + measured];
             }
         }
+        self.factors.retain(|it| it.missed < MOST_MISSED);
         if all[0] > 0.0 {
             self.general_factor.approach(all[1] / all[0]);
         }
@@ -256,6 +266,16 @@ mod tests {
         }
         let costs = model.costs(&TABLE, 1000, SETTINGS, LaneCount::Sixteen, 1, None);
         assert!((costs.sixteen.expect("wide") / 600.0 - 1.0).abs() < 0.01, "{costs:?}");
+    }
+
+    #[test]
+    fn kinds_of_batches_that_are_gone_are_forgotten() {
+        let mut model = CostModel::of_table();
+        for particles in 0..3 * MOST_MISSED {
+            let kind = CostKind { particles: 100 + particles as usize, ..sixteen(1.0).kind };
+            model.learn_batches(&TABLE, [BatchTiming { kind, time: 1.0 }].into_iter());
+        }
+        assert!(model.factors.len() <= MOST_MISSED as usize);
     }
 
     #[test]

@@ -79,6 +79,26 @@ impl LevelTables {
         index
     }
 
+    /// Forgets the tables of levels that no cloth has any more. Others keep their indices, which cloths know.
+    pub fn forget_unused(&mut self) {
+        let is_unused = |known: &(Weak<ClothLevels>, EffortClass)| known.0.strong_count() == 0;
+        for index in 0..self.levels.len() {
+            if is_unused(&self.levels[index]) {
+                self.levels[index].0 = Weak::new();
+                self.work[index] = Vec::new();
+                self.particles[index] = Vec::new();
+                self.tables[index] = LevelTable::default();
+            }
+        }
+        let in_use = self.levels.iter().rposition(|known| !is_unused(known));
+        let count = in_use.map_or(0, |last| last + 1);
+        self.levels.truncate(count);
+        self.work.truncate(count);
+        self.particles.truncate(count);
+        self.radii.truncate(count);
+        self.tables.truncate(count);
+    }
+
     /// Greatest distance of any particle of a table's cloths from the middle one, m.
     pub fn radius(&self, table: usize) -> f32 {
         self.radii[table]

@@ -42,6 +42,11 @@ impl LodRecord {
         Self { levels, radius, phase, changed: now, seen: now, ..Self::default() }
     }
 
+    /// The cloth has no levels any more.
+    pub fn forget_levels(&mut self) {
+        self.levels = 0;
+    }
+
     /// Whether the record belongs to a cloth with these levels.
     pub fn is_of(&self, levels: &Arc<ClothLevels>) -> bool {
         self.levels == Arc::as_ptr(levels).addr()

@@ -164,6 +164,11 @@ impl Conditions<'_, '_> {
 }
 
 impl LevelSelector {
+    /// Forgets the tables of levels that no cloth has any more.
+    pub fn forget_unused(&mut self) {
+        self.tables.forget_unused();
+    }
+
     /// Learns from the last tick's measurements, decides whether this tick is measured, and returns the table
     /// of costs.
     fn learn(&mut self, conditions: &Conditions, batches: &mut ClothBatches) -> CostTable {
@@ -232,7 +237,11 @@ impl LevelSelector {
         commands: &mut Commands,
     ) {
         cloth.record.candidate = None;
-        let Some(levels) = &cloth.instance.levels else { return };
+        let Some(levels) = &cloth.instance.levels else {
+            // Other levels may lie at the same address later.
+            cloth.record.forget_levels();
+            return;
+        };
         let table = self.tables.index_of(levels, cloth.effort.class());
         if !cloth.record.is_of(levels) {
             let radius = self.tables.radius(table);

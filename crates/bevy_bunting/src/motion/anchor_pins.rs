@@ -6,6 +6,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Vec3};
 use bunting_solver::{Fabric, MovingPin};
 
+use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
 use crate::motion::anchor_poses::AnchorPoses;
 
@@ -17,7 +18,7 @@ const IN_PLACE: f32 = 1e-3;
 #[derive(Component, Debug, Default)]
 pub(crate) struct AnchorPins {
     /// The levels and the level that the pins are those of.
-    of: Option<(Arc<ClothLevels>, usize)>,
+    of: Option<KnownLevel>,
     pins: Vec<AnchoredPin>,
 }
 
@@ -35,7 +36,7 @@ struct AnchoredPin {
 impl AnchorPins {
     /// Whether the pins are those of a level.
     pub fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
-        self.of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, levels) && *at == level)
+        self.of.as_ref().is_some_and(|of| of.is(levels, level))
     }
 
     /// Finds the pins of a level, given the vertices that each anchor holds and the positions of all particles, m.
@@ -46,7 +47,7 @@ impl AnchorPins {
         groups: &[Vec<u32>],
         positions: &[Vec3],
     ) {
-        self.of = Some((Arc::clone(levels), level));
+        self.of = Some(KnownLevel::new(levels, level));
         self.pins.clear();
         for (anchor, group) in groups.iter().enumerate() {
             let particles = group.iter().filter_map(|&vertex| levels.particle(level, vertex));

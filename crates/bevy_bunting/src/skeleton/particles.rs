@@ -7,6 +7,7 @@ use bevy_math::{Affine3A, Mat3A, Vec3, Vec3A};
 use bunting_solver::{Backstop, Guide, MovingPin};
 
 use crate::cloth::mesh::ClothMesh;
+use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
 use crate::skeleton::limits::SkinLimits;
 use crate::skeleton::skin::ClothSkin;
@@ -15,7 +16,7 @@ use crate::skeleton::skin::ClothSkin;
 #[derive(Component, Debug, Default)]
 pub(crate) struct SkinnedParticles {
     /// The levels and the level that the particles are those of.
-    of: Option<(Arc<ClothLevels>, usize)>,
+    of: Option<KnownLevel>,
     particles: Vec<SkinnedParticle>,
     /// The pinned particles.
     pins: Vec<u32>,
@@ -77,7 +78,7 @@ impl SkinnedParticle {
 impl SkinnedParticles {
     /// Whether the particles are those of a level.
     pub fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
-        self.of.as_ref().is_some_and(|(of, at)| Arc::ptr_eq(of, levels) && *at == level)
+        self.of.as_ref().is_some_and(|of| of.is(levels, level))
     }
 
     /// Finds the particles anew in the next tick.
@@ -119,7 +120,7 @@ impl SkinnedParticles {
                 simulated: shown * limit(|limits| &limits.simulated, 1.0),
             });
         }
-        self.of = Some((Arc::clone(levels), level));
+        self.of = Some(KnownLevel::new(levels, level));
         let pins = (0..self.particles.len()).filter(|&particle| fabric.is_pinned(particle));
         self.pins = pins.map(|particle| particle as u32).collect();
         let is_limited = |particle: &SkinnedParticle| {
@@ -205,7 +206,7 @@ impl SkinnedParticles {
 
     /// Blends simulated positions (m) and normals of a level's particles with their places at the end of the tick.
     pub fn blend(&self, level: usize, positions: &mut [Vec3], normals: &mut [Vec3]) {
-        if self.of.as_ref().is_none_or(|(_, of)| *of != level) {
+        if self.of.as_ref().is_none_or(|of| !of.has_number(level)) {
             return;
         }
         let shown = positions.iter_mut().zip(normals);
@@ -221,7 +222,7 @@ impl SkinnedParticles {
     /// Moves positions (m) that are shown at a fraction of the tick along with the skin to a pose.
     pub fn show(&self, level: usize, fraction: f32, pose: &[Affine3A], shown: &mut [Vec3]) {
         let [from, to] = &self.places;
-        if self.of.as_ref().is_none_or(|(_, of)| *of != level) || to.len() != shown.len() {
+        if self.of.as_ref().is_none_or(|of| !of.has_number(level)) || to.len() != shown.len() {
             return;
         }
         for (index, (position, particle)) in shown.iter_mut().zip(&self.particles).enumerate() {

@@ -25,6 +25,7 @@ pub(crate) mod snapshot;
 mod surfaces;
 mod surroundings;
 mod tether_pack;
+mod unused_fabrics;
 
 pub use cloth_batch::ClothBatch;
 pub use error::BatchError;

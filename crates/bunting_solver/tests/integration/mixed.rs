@@ -127,6 +127,37 @@ fn a_cloth_may_enter_and_leave_in_mid_flight() {
 }
 
 #[test]
+fn fabrics_of_cloths_that_have_left_are_not_kept() {
+    let (settings, pins) = (SETTINGS[0], Pins::Corners);
+    let fabrics: Vec<_> = (0..5).map(|seed| fabric(seed, pins)).collect();
+    let mut batch = at_rest(&fabrics);
+    for at in 0..20 {
+        (0..5).for_each(|lane| set(&mut batch, lane, lane, at));
+        batch.step(TICK, settings);
+    }
+    batch.exchange(&[0, 1, 2, 4], &[]).expect("these lanes");
+    batch.replace_unused_fabrics(&fabrics[3]);
+    let kept: Vec<_> = fabrics.iter().map(Arc::downgrade).collect();
+    drop(fabrics);
+    let kept: Vec<bool> = kept.iter().map(|fabric| fabric.strong_count() > 0).collect();
+    assert_eq!(kept, [false, false, false, true, false]);
+    for at in 20..40 {
+        set(&mut batch, 3, 3, at);
+        batch.step(TICK, settings);
+    }
+    assert_eq!(batch.snapshot(3), alone(3, pins, settings, 40));
+    // A cloth of another size may enter again.
+    let (other, rest) = (fabric(1, pins), ClothSnapshot::at_rest(&fabric(1, pins)));
+    let entering = Entering { lane: 0, fabric: &other, snapshot: &rest, material: material(1) };
+    batch.exchange(&[], &[entering]).expect("one topology");
+    for at in 0..20 {
+        set(&mut batch, 0, 1, at);
+        batch.step(TICK, settings);
+    }
+    assert_eq!(batch.snapshot(0), alone(1, pins, settings, 20));
+}
+
+#[test]
 fn other_topologies_are_refused() {
     let [flag, hung] = [Pins::Edge, Pins::Corners].map(|pins| fabric(0, pins));
     let mut batch = ClothBatch::mixed(&flag).expect("a grid");
