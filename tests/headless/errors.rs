@@ -1,6 +1,7 @@
 //! Tests that an error names the entity with bad input, and that other cloths are unaffected.
 
 use bevy_app::prelude::*;
+use bevy_bunting::LodReport;
 use bevy_bunting::prelude::*;
 use bevy_math::{Quat, Vec3};
 use bevy_transform::prelude::*;
@@ -82,29 +83,39 @@ fn bad_levels_and_attachments_are_reported() {
     let missing = app.world_mut().spawn(Transform::default()).id();
     app.world_mut().despawn(missing);
     let world = app.world_mut();
-    let not_nested = world.spawn((ClothMesh::grid(12, 12, 1.0, 1.0), LodSet::new([5.0]))).id();
     let unordered = world.spawn((FLAG, LodSet::new([5.0, 4.0]))).id();
     let pinned = world.spawn((FLAG, LodSet::new([5.0]).pinned_to(2))).id();
     let nothing = world
         .spawn((FLAG, Attachment::in_place(AttachedVertices::list_where(&FLAG, |_| false))))
         .id();
     let no_target = world.spawn((FLAG, Attachment::new(missing, ClothEdge::Left))).id();
-    let odd = Attachment::in_place(AttachedVertices::List(vec![1]));
-    let lost_pins = world.spawn((FLAG, LodSet::new([5.0]), odd)).id();
     run(&mut app, 4);
+    for cloth in [unordered, pinned, nothing, no_target] {
+        assert_eq!(state(&app, cloth).activity(), ClothActivity::Failed);
+    }
     let errors = errors(&app);
-    assert_eq!(errors.len(), 6, "{errors:?}");
+    assert_eq!(errors.len(), 4, "{errors:?}");
     let has = |test: &dyn Fn(&ClothError) -> bool| assert!(errors.iter().any(test), "{errors:?}");
-    has(&|error| matches!(error, ClothError::NotNested { entity, .. } if *entity == not_nested));
     has(&|error| matches!(error, ClothError::Levels { entity } if *entity == unordered));
     has(&|error| matches!(error, ClothError::PinnedLevel { entity, .. } if *entity == pinned));
-    has(
-        &|error| matches!(error, ClothError::NoVertices { entity, level: 0 } if *entity == nothing),
-    );
+    has(&|error| matches!(error, ClothError::NoVertices { entity } if *entity == nothing));
     has(&|error| matches!(error, ClothError::MissingTarget { entity, .. } if *entity == no_target));
-    has(
-        &|error| matches!(error, ClothError::NoVertices { entity, level: 1 } if *entity == lost_pins),
-    );
+}
+
+#[test]
+fn fewer_levels_than_asked_for_are_a_hint_and_no_failure() {
+    let mut app = app();
+    let odd = Attachment::in_place(AttachedVertices::List(vec![1]));
+    let lods = || LodSet::new([5.0]);
+    for _ in 0..20 {
+        app.world_mut().spawn((ClothMesh::grid(12, 12, 1.0, 1.0), lods()));
+        app.world_mut().spawn((FLAG, lods(), odd.clone()));
+    }
+    let whole = app.world_mut().spawn((FLAG, lods())).id();
+    run(&mut app, 10);
+    assert_eq!(errors(&app), []);
+    assert_eq!(app.world().resource::<LodReport>().fewer_levels, 40);
+    assert_finite(&app, whole);
 }
 
 #[test]

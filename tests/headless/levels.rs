@@ -1,6 +1,7 @@
 //! Tests of levels of detail with a moving viewer.
 
 use bevy_app::prelude::*;
+use bevy_bunting::LodReport;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_math::{Vec2, Vec3};
@@ -156,11 +157,8 @@ fn a_curtain_with_a_hole_has_levels() {
     assert!(counts[1] < counts[0] * 2 / 3, "{counts:?}");
     // Coarser levels keep the whole border, so the fifth level cannot be built and repeats the fourth.
     assert_eq!(counts[3], counts[4], "{counts:?}");
-    let errors = &app.world().resource::<Seen<ClothFailed>>().0;
-    assert!(
-        matches!(errors[..], [ClothFailed { entity, error: ClothError::TooFewLevels { asked: 5, .. } }] if entity == cloth),
-        "{errors:?}"
-    );
+    assert!(app.world().resource::<Seen<ClothFailed>>().0.is_empty(), "it is simulated");
+    assert_eq!(app.world().resource::<LodReport>().fewer_levels, 1);
     app.world_mut().get_mut::<LodSet>(cloth).expect("levels").pinned = Some(0);
     run(&mut app, 60);
     assert!(stretches(&app, cloth).count() > 0);

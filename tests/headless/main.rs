@@ -19,6 +19,7 @@ mod forces;
 mod governor;
 mod holds;
 mod inertia;
+mod last_valid;
 mod levels;
 mod lifecycle;
 mod memory;

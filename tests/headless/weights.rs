@@ -219,7 +219,7 @@ fn an_attachment_of_rigid_vertices_needs_some() {
     run(&mut app, 3);
     let errors = errors(&app);
     assert!(
-        matches!(errors[..], [ClothError::NoVertices { entity, level: 0 }] if entity == nothing),
+        matches!(errors[..], [ClothError::NoVertices { entity }] if entity == nothing),
         "{errors:?}"
     );
     assert_finite(&app, held);

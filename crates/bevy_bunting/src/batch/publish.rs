@@ -33,7 +33,7 @@ pub(crate) struct Diverged(Vec<Entity>);
 /// current one, so that its display stands still.
 fn stop_states(mut cloths: Query<(&ClothInstance, &mut ClothState), Changed<ClothInstance>>) {
     for (instance, mut state) in &mut cloths {
-        state.activity = instance.activity;
+        state.activity = instance.published_activity();
         if instance.lane().is_none() && state.moved {
             let state = &mut *state;
             state.moved = false;

@@ -1,4 +1,4 @@
-//! Whether a cloth is simulated, paused or asleep.
+//! Whether a cloth is simulated, paused, asleep, waiting or failed.
 
 use bevy_ecs::prelude::*;
 use bevy_reflect::Reflect;
@@ -21,7 +21,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub struct ClothPaused;
 
-/// Whether a cloth is simulated or asleep. A sleeping cloth keeps its shape, moves rigidly with its
+/// Whether a cloth is simulated or asleep, or what it waits for. A sleeping cloth keeps its shape, moves rigidly with its
 /// frame, and costs no simulation time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[type_path = "bevy_bunting"]
@@ -40,4 +40,13 @@ pub enum ClothActivity {
     /// The cloth has come to rest. It is simulated again when its frame, its material, the wind, gravity or a
     /// collider near it changes, or when a finer level is wanted.
     AtRest,
+    /// The mesh of the cloth's `ClothFromMesh`, or the bind poses of its skin, are not loaded yet; with the feature `render`.
+    AwaitsAsset,
+    /// Another thread is building the fabrics of a cloth that has none yet.
+    AwaitsFabric,
+    /// Another thread is simulating the cloth in advance, see [`ClothPreroll`](crate::ClothPreroll).
+    AwaitsPreroll,
+    /// The cloth cannot be simulated: a [`ClothFailed`](crate::ClothFailed) event has told why. A cloth whose components
+    /// become invalid while it is simulated has not failed: it keeps its last valid state.
+    Failed,
 }

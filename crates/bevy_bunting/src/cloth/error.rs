@@ -11,7 +11,9 @@ use crate::skeleton::skin::SkinError;
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ClothError {
-    /// No fabric can be built from the mesh. The cloth is not simulated until its `ClothMesh` changes.
+    /// No fabric can be built from the mesh, or its attachment names vertices that it does not have. The cloth keeps its last
+    /// valid fabrics; a cloth that never had any is not simulated until its `ClothMesh`, its `Attachment` or its `LodSet`
+    /// changes.
     #[error("the mesh of cloth {entity} cannot be simulated: {source}")]
     Mesh {
         /// The cloth.
@@ -19,7 +21,8 @@ pub enum ClothError {
         /// Defect of the mesh, with the vertex, edge or triangle that has it.
         source: FabricError,
     },
-    /// The weights of the mesh cannot be used. The cloth is not simulated until its `ClothMesh` changes.
+    /// The weights of the mesh cannot be used. The cloth keeps its last valid fabrics; a cloth that never had any is not
+    /// simulated until its `ClothMesh` changes.
     #[error("the weights of cloth {entity} cannot be used: {source}")]
     Weights {
         /// The cloth.
@@ -38,7 +41,8 @@ pub enum ClothError {
     },
     /// The [`LodSet`](crate::LodSet) is invalid: its distances (m) must be finite, positive and ascending, an
     /// automatic choice needs at least one level, the hysteresis must lie within 0 to 1, and the bias must be
-    /// positive. The cloth is not simulated until its `LodSet` changes.
+    /// positive. The cloth keeps its last valid `LodSet`; a cloth that never had one is not simulated until its
+    /// `LodSet` changes.
     #[error(
         "the LodSet of cloth {entity} must have finite, positive, ascending distances or, if automatic, at least one level; a hysteresis from 0 to 1; and a positive bias"
     )]
@@ -46,37 +50,8 @@ pub enum ClothError {
         /// The cloth.
         entity: Entity,
     },
-    /// The mesh has fewer levels than its `LodSet` asks for: the border and the attached vertices stay at
-    /// every level, which limits how far the number of triangles can fall. The cloth is simulated with the
-    /// levels that it has.
-    #[error(
-        "cloth {entity} has {built} levels, not {asked}: its mesh has hardly any triangle left to remove; give its LodSet fewer levels"
-    )]
-    TooFewLevels {
-        /// The cloth.
-        entity: Entity,
-        /// Levels that the cloth has.
-        built: usize,
-        /// Levels that its `LodSet` asks for.
-        asked: usize,
-    },
-    /// The grid cannot be halved as often as its `LodSet` asks: columns − 1 and rows − 1 must be
-    /// multiples of 2 for each further level. The cloth is simulated with the levels that it has.
-    #[error(
-        "a grid of {columns} × {rows} particles cannot be halved {halvings} times as the LodSet of cloth {entity} asks: make columns − 1 and rows − 1 multiples of 2^{halvings}, or give fewer levels"
-    )]
-    NotNested {
-        /// The cloth.
-        entity: Entity,
-        /// Particles in a row.
-        columns: u32,
-        /// Particles in a column.
-        rows: u32,
-        /// Number of levels beyond the finest.
-        halvings: usize,
-    },
-    /// The level that the `LodSet` is pinned to does not exist. The cloth is not simulated until its
-    /// `LodSet` changes.
+    /// The level that the `LodSet` is pinned to does not exist. The cloth keeps its last valid `LodSet`; a cloth that never
+    /// had one is not simulated until its `LodSet` changes.
     #[error(
         "cloth {entity} is pinned to level {level}, but has {levels}: pin a lower level, or give more levels"
     )]
@@ -88,19 +63,18 @@ pub enum ClothError {
         /// Number of levels.
         levels: usize,
     },
-    /// The attachment holds no vertex. If the finest level holds none, the cloth is not simulated; if a
-    /// coarser level holds none, the cloth is simulated with the finer levels only.
+    /// The attachment holds no vertex. The cloth keeps its last valid attachment; a cloth that never had one is not simulated
+    /// until its `Attachment`, its `ClothMesh` or its `LodSet` changes.
     #[error(
-        "the attachment of cloth {entity} holds no vertex at level {level}: choose vertices that the level has; an edge or a corner of a mesh without uv has none"
+        "the attachment of cloth {entity} holds no vertex: choose vertices that the mesh has; an edge or a corner of a mesh without uv has none"
     )]
     NoVertices {
         /// The cloth.
         entity: Entity,
-        /// The finest level without held vertices.
-        level: usize,
     },
-    /// The target of the attachment does not exist or has no `Transform`. The cloth is not simulated until
-    /// its `Attachment` changes.
+    /// The target of the attachment does not exist or has no `Transform`. The cloth goes on hanging where it was, with the
+    /// vertices that it was held by, until the target has a `Transform` or its `Attachment` changes; a cloth that never had
+    /// a target is not simulated until then.
     #[error(
         "cloth {entity} is attached to {target}, which does not exist or has no Transform: spawn it first"
     )]
@@ -110,8 +84,8 @@ pub enum ClothError {
         /// The target of its attachment.
         target: Entity,
     },
-    /// A scale on the way to the cloth is zero or not finite. The cloth is not simulated until its `ClothMesh` or its
-    /// `Attachment` changes.
+    /// A scale on the way to the cloth is zero or not finite. The cloth keeps its last valid fabrics; a cloth that never had
+    /// any is not simulated until its `ClothMesh`, its `Attachment` or its `LodSet` changes.
     #[error(
         "cloth {entity} cannot have its scale: give its Transform, those above it and the offset of its Attachment scales that are finite and not zero"
     )]
@@ -186,8 +160,9 @@ pub enum ClothError {
         /// The cloth.
         entity: Entity,
     },
-    /// The [`ClothSkin`](crate::ClothSkin) or the [`SkinLimits`](crate::SkinLimits) cannot be used. The cloth is simulated
-    /// without them until they or its `ClothMesh` change.
+    /// The [`ClothSkin`](crate::ClothSkin) or the [`SkinLimits`](crate::SkinLimits) cannot be used. The cloth keeps the last
+    /// valid ones; a cloth that never had any, or whose mesh has another number of vertices by now, is simulated without
+    /// them until they or its `ClothMesh` change.
     #[error("the skin of cloth {entity} cannot be used: {source}")]
     Skin {
         /// The cloth.

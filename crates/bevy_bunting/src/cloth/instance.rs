@@ -11,10 +11,12 @@ use bunting_solver::{ClothSnapshot, Fabric, FabricMaterial};
 use crate::batch::batches::ClothBatches;
 use crate::batch::lane_handle::LaneHandle;
 use crate::cloth::activity::ClothActivity;
+use crate::cloth::error::ClothError;
 use crate::cloth::imperfection::{ClothSeed, almost_at_rest};
 use crate::cloth::state::ClothState;
 use crate::fabric::awaited::AwaitedLevels;
 use crate::fabric::levels::ClothLevels;
+use crate::lod::lod_set::LodSet;
 use crate::motion::inertia::ClothInertia;
 use crate::motion::take_up::TakingUp;
 
@@ -37,11 +39,26 @@ impl From<ClothSnapshot> for StateStorage {
     }
 }
 
+/// A mesh or an attachment that cannot be used. The cloth keeps its former fabrics, if it has any.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Refusal {
+    /// The defect, which was reported.
+    pub error: ClothError,
+    /// Target of the present attachment, see [`ClothInstance::target`].
+    pub target: Option<Entity>,
+    /// Whether the attachment is another than that of the fabrics.
+    pub has_new_attachment: bool,
+}
+
 /// The simulated side of a [`ClothMesh`](crate::ClothMesh).
 #[derive(Component, Clone, Debug, Default)]
 #[component(on_insert = copy_state)]
 pub(crate) struct ClothInstance {
     pub levels: Option<Arc<ClothLevels>>,
+    /// The last valid [`LodSet`], for which the levels were built.
+    pub lods: LodSet,
+    /// Why the present `LodSet` is not used; none if it is.
+    pub bad_lods: Option<ClothError>,
     pub level: usize,
     /// Position at rest of the middle particle of the finest level in the cloth's frame, m. Each tick reads it here,
     /// since fabrics of many different cloths are not in the cache.
@@ -69,8 +86,8 @@ pub(crate) struct ClothInstance {
     pub target_lost: bool,
     /// Whether the loss of the target paused the cloth.
     pub frozen: bool,
-    /// Target without a transform, which was reported; the cloth looks for the transform in each tick.
-    pub missing_target: Option<Entity>,
+    /// Why the present mesh or attachment was refused; none if they are those of the levels.
+    pub refusal: Option<Box<Refusal>>,
     /// Motion of attached vertices that have not reached their places yet.
     pub taking_up: Option<TakingUp>,
     /// Whether the state lies on the pose of the skeleton, if there is one, and not at rest.
@@ -113,6 +130,27 @@ impl ClothInstance {
     /// The fabric of the cloth at its level.
     pub fn fabric(&self) -> Option<&Arc<Fabric>> {
         self.levels.as_ref().map(|levels| levels.fabric(self.level))
+    }
+
+    /// Whether the cloth has fabrics of a former attachment, since the present one was refused.
+    pub fn keeps_attachment(&self) -> bool {
+        self.levels.is_some() && self.refusal.as_deref().is_some_and(|it| it.has_new_attachment)
+    }
+
+    /// Whether the cloth waits for a target that has no transform. It looks for it in each tick.
+    pub fn awaits_target(&self) -> bool {
+        let is_missing = |it: &Refusal| matches!(it.error, ClothError::MissingTarget { .. });
+        self.refusal.as_deref().is_some_and(is_missing)
+    }
+
+    /// What the cloth does, as users are told.
+    pub fn published_activity(&self) -> ClothActivity {
+        match (&self.levels, &self.storage) {
+            (None, _) if self.cutting.is_some() => ClothActivity::AwaitsFabric,
+            (None, _) if self.refusal.is_some() => ClothActivity::Failed,
+            (Some(_), StateStorage::None) => ClothActivity::AwaitsPreroll,
+            _ => self.activity,
+        }
     }
 
     /// Wakes a cloth that sleeps at rest, after a change of anything that acts on it.

@@ -95,7 +95,7 @@ impl ClothState {
         self.level
     }
 
-    /// Whether the cloth is simulated or asleep.
+    /// Whether the cloth is simulated or asleep, or what it waits for.
     #[must_use]
     pub fn activity(&self) -> ClothActivity {
         self.activity

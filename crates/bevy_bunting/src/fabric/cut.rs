@@ -24,7 +24,8 @@ pub(super) fn cut_levels(
     let has_pins = fabric.has_pins();
     let finest = Level::new(Arc::new(fabric), vertices, &builder, &rigid);
     let (levels, transfers) = (vec![finest], Vec::new());
-    let mut cut = ClothLevels { levels, transfers, rigid, asked, shortage: None };
+    let (shortage, is_shortage_told) = (None, false.into());
+    let mut cut = ClothLevels { levels, transfers, rigid, asked, shortage, is_shortage_told };
     while cut.levels.len() < asked {
         let finer = cut.level(usize::MAX);
         let Some((coarser, fabric, transfer)) = coarsen(&builder, &finer.fabric) else {

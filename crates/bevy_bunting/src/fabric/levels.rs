@@ -1,12 +1,12 @@
 //! The levels of detail of a cloth: one fabric for each, the finest first.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bunting_solver::{Fabric, FabricBuilder, Grid, LevelTransfer};
 
-use crate::cloth::error::ClothError;
 #[cfg(feature = "render")]
 use crate::fabric::level_topology::LevelTopology;
 use crate::fabric::rigid::{Blend, RigidPart};
@@ -22,6 +22,8 @@ pub(crate) struct ClothLevels {
     pub(super) asked: usize,
     /// Reason why there are fewer levels than asked for; none if there are not.
     pub(super) shortage: Option<Shortage>,
+    /// Whether this reason was told.
+    pub(super) is_shortage_told: AtomicBool,
 }
 
 /// One level of detail.
@@ -53,6 +55,26 @@ impl Level {
             vertices,
         }
     }
+}
+
+/// Why a mesh has fewer levels than asked for, and what to do. The cloth is simulated with the levels that it has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum FewerLevels {
+    /// The border and the attached vertices stay at every level, which limits how far the number of triangles can fall.
+    #[error(
+        "cloth {entity}, and all others of its mesh, have {built} levels, not {asked}: the mesh has hardly any triangle left to remove; give their LodSets fewer levels"
+    )]
+    Triangles { entity: Entity, built: usize, asked: usize },
+    /// For each further level, columns − 1 and rows − 1 must be multiples of 2 once more.
+    #[error(
+        "a grid of {columns} × {rows} particles cannot be halved {halvings} times as the LodSet of cloth {entity}, and all others of its mesh, asks: make columns − 1 and rows − 1 multiples of 2^{halvings}, or give fewer levels"
+    )]
+    Grid { entity: Entity, columns: u32, rows: u32, halvings: usize },
+    /// A coarser level would hold none of the attached vertices.
+    #[error(
+        "cloth {entity}, and all others of its mesh, have {built} levels, not {asked}: the next one would have none of the vertices that the attachment holds; choose vertices that it has, or give fewer levels"
+    )]
+    Pins { entity: Entity, built: usize, asked: usize },
 }
 
 /// Reason why a level cannot be built.
@@ -120,18 +142,23 @@ impl ClothLevels {
         &self.levels[level.min(self.levels.len() - 1)]
     }
 
-    /// Error of a cloth with fewer levels than asked for; `grid` is its mesh if that is a grid.
-    pub fn shortage(&self, entity: Entity, grid: Option<Grid>) -> Option<ClothError> {
+    /// Whether there are fewer levels than asked for.
+    pub fn has_fewer(&self) -> bool {
+        self.shortage.is_some()
+    }
+
+    /// Why there are fewer levels than asked for, the first time; `grid` is the mesh of the cloth if that is a grid. None if
+    /// there are as many, or if it was told before, of another cloth with these levels.
+    pub fn tell_fewer(&self, entity: Entity, grid: Option<Grid>) -> Option<FewerLevels> {
+        let shortage = self.shortage?;
         let (built, asked) = (self.levels.len(), self.asked);
-        Some(match (self.shortage?, grid) {
-            (Shortage::Pins, _) => ClothError::NoVertices { entity, level: built },
-            (Shortage::Particles, Some(grid)) => ClothError::NotNested {
-                entity,
-                columns: grid.columns,
-                rows: grid.rows,
-                halvings: asked - 1,
-            },
-            (Shortage::Particles, None) => ClothError::TooFewLevels { entity, built, asked },
+        let is_told = self.is_shortage_told.swap(true, Ordering::Relaxed);
+        (!is_told).then_some(match (shortage, grid) {
+            (Shortage::Pins, _) => FewerLevels::Pins { entity, built, asked },
+            (Shortage::Particles, Some(Grid { columns, rows, .. })) => {
+                FewerLevels::Grid { entity, columns, rows, halvings: asked - 1 }
+            }
+            (Shortage::Particles, None) => FewerLevels::Triangles { entity, built, asked },
         })
     }
 }

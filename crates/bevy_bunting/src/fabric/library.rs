@@ -113,12 +113,12 @@ impl FabricLibrary {
         self.cutting.values().map(left).max().unwrap_or(0)
     }
 
-    /// Returns the levels of a cloth, built now or before. While another thread builds them it returns what the cloth
+    /// Returns the levels of a cloth with a valid [`LodSet`], built now or before. While another thread builds them it returns what the cloth
     /// waits for: ask again in a later tick.
     ///
     /// # Errors
     ///
-    /// The mesh, its weights, the attachment's vertices or the [`LodSet`] are invalid.
+    /// The mesh, its weights or the attachment's vertices are invalid.
     pub fn levels(
         &mut self,
         entity: Entity,
@@ -126,7 +126,6 @@ impl FabricLibrary {
         attachment: Option<&Attachment>,
         lods: &LodSet,
     ) -> Result<Found, ClothError> {
-        lods.validate(entity)?;
         let groups = |attachment: &Attachment| {
             let mut groups = attachment.groups(&mesh.uvs());
             let is_held = groups.iter().any(|group| !group.is_empty());
@@ -138,7 +137,7 @@ impl FabricLibrary {
             .map_err(|source| ClothError::Weights { entity, source })?;
         let holds = |(_, is_held): &(Vec<u32>, bool)| *is_held || mesh.weights().contains(&0.0);
         if !attached.as_ref().is_none_or(holds) {
-            return Err(ClothError::NoVertices { entity, level: 0 });
+            return Err(ClothError::NoVertices { entity });
         }
         let attached = attached.map(|(pinned, _)| pinned).unwrap_or_default();
         let key = content_key(mesh, &attached, lods.levels());
@@ -218,6 +217,7 @@ mod tests {
     use bunting_solver::{ClothSnapshot, FabricMaterial};
 
     use super::*;
+    use crate::fabric::levels::FewerLevels;
     use crate::motion::attached_vertices::ClothEdge;
 
     fn at_once(found: Found) -> Arc<ClothLevels> {
@@ -291,10 +291,15 @@ mod tests {
     fn levels_that_cannot_be_cut_are_reported_and_repeat_the_coarsest() {
         let lods = LodSet::new([1.0, 2.0, 3.0]);
         let levels = levels(&mut FabricLibrary::default(), ClothEdge::Left, lods).expect("a flag");
-        assert!(matches!(
-            levels.shortage(Entity::PLACEHOLDER, FLAG.as_grid()),
-            Some(ClothError::NotNested { columns: 9, rows: 5, halvings: 3, .. })
-        ));
+        let told = || levels.tell_fewer(Entity::PLACEHOLDER, FLAG.as_grid());
+        let grid = Some(FewerLevels::Grid {
+            entity: Entity::PLACEHOLDER,
+            columns: 9,
+            rows: 5,
+            halvings: 3,
+        });
+        assert_eq!([told(), told()], [grid, None], "once for all cloths of the mesh");
+        assert!(levels.has_fewer());
         assert_eq!(levels.count(), 4);
         assert!(Arc::ptr_eq(levels.fabric(2), levels.fabric(3)));
         let state = ClothSnapshot::at_rest(levels.fabric(3));
@@ -323,10 +328,7 @@ mod tests {
         assert!(fabric.particle_count() < 45);
         let pinned = (0..fabric.particle_count()).filter(|&particle| fabric.is_pinned(particle));
         assert_eq!(pinned.count(), 5);
-        let shortage = levels.shortage(Entity::PLACEHOLDER, mesh.as_grid());
-        assert!(
-            matches!(shortage, Some(ClothError::TooFewLevels { asked: 4, .. })),
-            "{shortage:?}"
-        );
+        let told = levels.tell_fewer(Entity::PLACEHOLDER, mesh.as_grid());
+        assert!(matches!(told, Some(FewerLevels::Triangles { asked: 4, .. })), "{told:?}");
     }
 }

@@ -15,9 +15,10 @@ use crate::cloth::activity::ClothPaused;
 use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::cloth::imperfection::ClothSeed;
-use crate::cloth::instance::{ClothInstance, StateStorage};
+use crate::cloth::instance::{ClothInstance, Refusal, StateStorage};
 use crate::cloth::material::ClothMaterial;
 use crate::cloth::mesh::ClothMesh;
+use crate::cloth::place::place;
 use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::library::{FabricLibrary, Found};
@@ -105,8 +106,8 @@ struct CutCloth {
     history: &'static mut PoseHistory,
 }
 
-/// Builds the fabrics of cloths whose mesh, levels or attachment changed. An invalid cloth is reported and
-/// not simulated until it changes again.
+/// Builds the fabrics of cloths whose mesh, levels or attachment changed. Those that are invalid are reported: the cloth
+/// keeps its last valid fabrics or, if it never had any, is not simulated, until they change again.
 fn cut_cloths(
     mut cloths: Query<CutCloth>,
     targets: Query<(), With<Transform>>,
@@ -121,7 +122,8 @@ fn cut_cloths(
     for mut cloth in &mut cloths {
         let target = cloth.target();
         let awaited = cloth.instance.cutting.as_ref();
-        let is_cutting = awaited.is_some_and(|awaited| library.is_cutting(awaited, &cloth.lods));
+        let is_cutting =
+            awaited.is_some_and(|awaited| library.is_cutting(awaited, cloth.valid_lods()));
         if is_cutting && !cloth.is_edited() {
             library.awaited = true;
             continue;
@@ -129,7 +131,7 @@ fn cut_cloths(
         if !cloth.is_stale(target) {
             continue;
         }
-        match cloth.find_levels(target, &targets, &transforms, &mut library) {
+        match cloth.find_levels(target, &targets, &transforms, &mut library, &mut commands) {
             Ok(Found::Awaited(awaited)) => {
                 cloth.instance.cutting = Some(awaited);
                 library.awaited = true;
@@ -138,19 +140,9 @@ fn cut_cloths(
                 let frame = frame_of(cloth.entity, cloth.attachment.as_deref(), &transforms);
                 cloth.set_levels(levels, target, frame, &mut batches, &mut commands);
             }
-            Err(ClothError::MissingTarget { target, .. })
-                if cloth.instance.missing_target == Some(target) =>
-            {
-                library.awaited = true;
-            }
             Err(error) => {
-                cloth.instance.clear(&mut batches);
-                if let ClothError::MissingTarget { target, .. } = error {
-                    cloth.instance.missing_target = Some(target);
-                    library.awaited = true;
-                }
-                *cloth.state = ClothState::default();
-                ClothFailed::report(&mut commands, cloth.entity, error);
+                library.awaited |= matches!(error, ClothError::MissingTarget { .. });
+                cloth.refuse(error, target, &mut batches, &mut commands);
             }
         }
     }
@@ -172,11 +164,74 @@ impl CutClothItem<'_, '_> {
 
     /// Whether the fabrics must be looked up or built again.
     fn is_stale(&self, target: Option<Entity>) -> bool {
-        self.instance.cutting.is_some()
-            || self.instance.missing_target.is_some()
+        let instance = &*self.instance;
+        let is_known = match &instance.refusal {
+            Some(refusal) => refusal.target == target,
+            None => instance.target == target,
+        };
+        instance.cutting.is_some()
+            || instance.awaits_target()
             || self.is_edited()
-            || (self.instance.target != target && self.instance.levels.is_some())
-            || (self.material.is_changed() && self.instance.levels.is_none())
+            || (!is_known && instance.levels.is_some())
+            || (self.material.is_changed() && instance.levels.is_none())
+    }
+
+    /// Reports a mesh or an attachment that cannot be used, once, and keeps the fabrics of the former ones.
+    fn refuse(
+        &mut self,
+        error: ClothError,
+        target: Option<Entity>,
+        batches: &mut ClothBatches,
+        commands: &mut Commands,
+    ) {
+        let is_edited = self.attachment.as_ref().is_some_and(|attachment| attachment.is_changed());
+        let known = self.instance.refusal.as_deref();
+        let is_reported = known.is_some_and(|known| known.error == error);
+        let refusal = Refusal {
+            error,
+            target,
+            has_new_attachment: is_edited
+                || target != self.instance.target
+                || known.is_some_and(|known| known.has_new_attachment),
+        };
+        if known == Some(&refusal) && self.instance.cutting.is_none() {
+            return;
+        }
+        if self.instance.levels.is_none() {
+            self.instance.clear(batches);
+            *self.state = ClothState::default();
+        }
+        self.instance.cutting = None;
+        self.instance.refusal = Some(Box::new(refusal));
+        if !is_reported {
+            ClothFailed::report(commands, self.entity, error);
+        }
+    }
+
+    /// Checks the present [`LodSet`]. One that is invalid is reported, once, and a cloth that has levels keeps its last valid
+    /// one.
+    ///
+    /// # Errors
+    ///
+    /// It is invalid, and there was no valid one before.
+    fn check_lods(&mut self, commands: &mut Commands) -> Result<(), ClothError> {
+        let bad = self.lods.validate(self.entity).err();
+        if self.instance.bad_lods == bad {
+            return Ok(());
+        }
+        if let Some(error) = bad {
+            if self.instance.levels.is_none() {
+                return Err(error);
+            }
+            ClothFailed::report(commands, self.entity, error);
+        }
+        self.instance.bad_lods = bad;
+        Ok(())
+    }
+
+    /// The present [`LodSet`] or, if it is invalid, the last valid one.
+    fn valid_lods(&self) -> &LodSet {
+        if self.instance.bad_lods.is_some() { &self.instance.lods } else { &self.lods }
     }
 
     /// Looks up or builds the levels of the cloth.
@@ -186,6 +241,7 @@ impl CutClothItem<'_, '_> {
         targets: &Query<(), With<Transform>>,
         transforms: &TransformHelper,
         library: &mut FabricLibrary,
+        commands: &mut Commands,
     ) -> Result<Found, ClothError> {
         let entity = self.entity;
         let is_missing = |target: &Entity| !self.instance.target_lost && !targets.contains(*target);
@@ -194,6 +250,7 @@ impl CutClothItem<'_, '_> {
         if let Some(target) = needed.find(is_missing) {
             return Err(ClothError::MissingTarget { entity, target });
         }
+        self.check_lods(commands)?;
         if self.instance.levels.is_none() {
             let valid = self.material.0.validate();
             valid.map_err(|source| ClothError::Material { entity, source })?;
@@ -207,7 +264,7 @@ impl CutClothItem<'_, '_> {
             };
         }
         let mesh = bake(&self.mesh, self.instance.scale);
-        library.levels(entity, &mesh, attachment, &self.lods)
+        library.levels(entity, &mesh, attachment, self.valid_lods())
     }
 
     /// Simulates the cloth with new levels from now on.
@@ -220,9 +277,12 @@ impl CutClothItem<'_, '_> {
         commands: &mut Commands,
     ) {
         let change = self.set_target(target, frame, commands);
+        if *self.valid_lods() != self.instance.lods {
+            self.instance.lods = self.valid_lods().clone();
+        }
         let instance = &mut *self.instance;
         instance.cutting = None;
-        instance.missing_target = None;
+        instance.refusal = None;
         if instance.levels.as_ref().is_some_and(|old| Arc::ptr_eq(old, &levels)) {
             return;
         }
@@ -235,8 +295,11 @@ impl CutClothItem<'_, '_> {
                 instance.level = levels.count() - 1;
             }
         }
-        if let Some(shortage) = levels.shortage(self.entity, self.mesh.as_grid()) {
-            ClothFailed::report(commands, self.entity, shortage);
+        let entity = self.entity;
+        if let Some(fewer) = levels.tell_fewer(entity, self.mesh.as_grid()) {
+            commands.queue(move |world: &mut World| {
+                log::warn!("{}{fewer}", place(world, entity));
+            });
         }
         let former = instance.fabric().cloned();
         let was_free = former.as_ref().is_some_and(|fabric| !fabric.has_pins());

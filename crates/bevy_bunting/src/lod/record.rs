@@ -33,18 +33,21 @@ pub(crate) struct LodRecord {
     pub changed: u32,
     /// Last tick in which the cloth was on or near a screen.
     pub seen: u32,
+    /// Whether the cloth has fewer levels than it asks for.
+    pub has_fewer_levels: bool,
 }
 
 impl LodRecord {
     /// The record of a cloth with new levels.
     pub fn new(levels: &Arc<ClothLevels>, radius: f32, phase: u32, now: u32) -> Self {
+        let has_fewer_levels = levels.has_fewer();
         let levels = Arc::as_ptr(levels).addr();
-        Self { levels, radius, phase, changed: now, seen: now, ..Self::default() }
+        Self { has_fewer_levels, levels, radius, phase, changed: now, seen: now, ..Self::default() }
     }
 
     /// The cloth has no levels any more.
     pub fn forget_levels(&mut self) {
-        self.levels = 0;
+        (self.levels, self.has_fewer_levels) = (0, false);
     }
 
     /// Whether the record belongs to a cloth with these levels.

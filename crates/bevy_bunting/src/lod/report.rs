@@ -32,6 +32,10 @@ pub struct LodReport {
     pub hidden: usize,
     /// Number of cloths that sleep because they have come to rest.
     pub at_rest: usize,
+    /// Number of cloths, simulated or asleep, that have fewer levels than their [`LodSet`](crate::LodSet)s ask for: grids
+    /// that cannot be halved so often, meshes with hardly any triangle left to remove, and meshes that would lose all
+    /// attached vertices. The log names each such mesh once.
+    pub fewer_levels: usize,
 }
 
 impl LodReport {
@@ -54,6 +58,11 @@ impl LodReport {
             ClothActivity::OutOfRange => self.out_of_range += 1,
             ClothActivity::Hidden => self.hidden += 1,
             ClothActivity::AtRest => self.at_rest += 1,
+            // Neither is asleep.
+            ClothActivity::AwaitsAsset
+            | ClothActivity::AwaitsFabric
+            | ClothActivity::AwaitsPreroll
+            | ClothActivity::Failed => {}
         }
     }
 }

@@ -253,12 +253,12 @@ impl LevelSelector {
         let centre = cloth.update_middle();
         let views = &examination.views;
         let mut sighting = None;
-        let to = if matches!(cloth.lods.choice, LodChoice::Automatic { .. }) {
+        let to = if matches!(cloth.instance.lods.choice, LodChoice::Automatic { .. }) {
             sighting = Some(Sighting::of(views, centre, cloth.record.radius));
-            cloth.lods.pinned.unwrap_or(cloth.instance.level)
+            cloth.instance.lods.pinned.unwrap_or(cloth.instance.level)
         } else {
             let nearest = views.iter().map(|view| view.distance(centre)).reduce(f32::min);
-            cloth.lods.level_at(nearest.unwrap_or(0.0), cloth.instance.level)
+            cloth.instance.lods.level_at(nearest.unwrap_or(0.0), cloth.instance.level)
         };
         let on_screen = sighting.is_none_or(|it| it.sight == Sight::OnScreen);
         // A cloth keeps its level while newly attached vertices move to their places, since another level
@@ -269,11 +269,12 @@ impl LevelSelector {
         let mut candidate = Candidate {
             table: table as u32,
             level: to as u32,
-            pixels_per_metre: sighting.map_or(0.0, |it| it.pixels_per_metre * cloth.lods.bias),
+            pixels_per_metre: sighting
+                .map_or(0.0, |it| it.pixels_per_metre * cloth.instance.lods.bias),
             importance: sighting.map_or(0.0, |it| importance(&it, cloth.record.radius)),
             ready: false,
             fresh: cloth.instance.unmoved,
-            fixed: sighting.is_none() || cloth.lods.pinned.is_some() || is_taking_up,
+            fixed: sighting.is_none() || cloth.instance.lods.pinned.is_some() || is_taking_up,
             on_screen,
         };
         if let Some(sighting) = sighting.filter(|_| !cloth.paused && !is_taking_up) {
@@ -299,7 +300,7 @@ impl LevelSelector {
         let errors = &self.tables.tables[candidate.table as usize].errors;
         let wants_finer = !candidate.fixed
             && candidate.wanted_level(errors, &examination.limits) < candidate.level;
-        let coarsest = cloth.lods.pinned.unwrap_or(errors.len() - 1);
+        let coarsest = cloth.instance.lods.pinned.unwrap_or(errors.len() - 1);
         let wakes = cloth.update_activity(sight, wants_finer, self.tick);
         if wakes || cloth.instance.activity == ClothActivity::OffScreen {
             self.change(cloth, coarsest, candidate.on_screen, batches, commands);
@@ -340,6 +341,7 @@ impl LevelSelector {
         report: &mut LodReport,
         counts: &mut ClothCounts,
     ) {
+        report.fewer_levels += usize::from(cloth.record.has_fewer_levels);
         if let Some(candidate) = cloth.record.candidate {
             let ready = self.tick.wrapping_sub(cloth.record.changed) > dwell;
             // A cloth that has been simulated since counts as changed when it is at rest again.

@@ -27,6 +27,8 @@ pub(crate) fn lead_pins(
     mut batches: ResMut<ClothBatches>,
 ) {
     for (mut instance, frame, mut anchors) in &mut cloths {
+        // Vertices that a former attachment held on its anchors stay where they are in the frame.
+        anchors.take_if(|_| instance.keeps_attachment());
         if instance.taking_up.is_none() && anchors.is_none() {
             continue;
         }

@@ -13,32 +13,48 @@ use crate::skeleton::joints::JointPoses;
 use crate::skeleton::limits::SkinLimits;
 use crate::skeleton::particles::SkinnedParticles;
 use crate::skeleton::skin::ClothSkin;
+use crate::skeleton::vertex_skins::VertexSkins;
 
 type CheckedSkin = (
     Entity,
     Ref<'static, ClothSkin>,
     Option<&'static SkinLimits>,
     &'static ClothMesh,
+    &'static ClothInstance,
     Option<&'static mut SkinnedParticles>,
 );
 type AnyChanged = Or<(Changed<ClothSkin>, Changed<SkinLimits>, Changed<ClothMesh>)>;
 
-/// Gives cloths with valid skins [`JointPoses`] and [`SkinnedParticles`], and reports bad skins.
+/// Gives cloths with valid skins [`JointPoses`] and [`SkinnedParticles`], and reports bad skins. The last valid one is kept
+/// as long as it fits the mesh.
 pub(super) fn check_skins(mut cloths: Query<CheckedSkin, AnyChanged>, mut commands: Commands) {
-    for (entity, skin, limits, mesh, particles) in &mut cloths {
-        let limits = || limits.map_or(Ok(()), |limits| limits.of(mesh).map(|_| ()));
-        match skin.validate(mesh.vertex_count()).and_then(|()| limits()) {
-            Ok(()) => match particles {
-                Some(mut particles) if !skin.is_changed() => particles.forget(),
-                _ => {
-                    let poses = JointPoses::new(&skin);
-                    commands.entity(entity).insert((poses, SkinnedParticles::default()));
+    for (entity, skin, limits, mesh, instance, particles) in &mut cloths {
+        let error = match VertexSkins::of(mesh, &skin, limits) {
+            // Fabrics of the former mesh are kept, if there are any.
+            Ok(None) => continue,
+            Ok(Some(skins)) => {
+                match particles {
+                    Some(mut particles)
+                        if particles.skins().skin == *skin && !skin.is_changed() =>
+                    {
+                        particles.set_skins(skins);
+                    }
+                    _ => {
+                        let mut particles = SkinnedParticles::default();
+                        particles.set_skins(skins);
+                        commands.entity(entity).insert((JointPoses::new(&skin), particles));
+                    }
                 }
-            },
-            Err(source) => {
-                commands.entity(entity).remove::<(JointPoses, SkinnedParticles)>();
-                ClothFailed::report(&mut commands, entity, ClothError::Skin { entity, source });
+                continue;
             }
+            Err(source) => ClothError::Skin { entity, source },
+        };
+        ClothFailed::report(&mut commands, entity, error);
+        let has_vertices = |known: &SkinnedParticles| {
+            known.skins().vertex_count() == mesh.vertex_count() || instance.refusal.is_some()
+        };
+        if !particles.is_some_and(|known| has_vertices(&known)) {
+            commands.entity(entity).remove::<(JointPoses, SkinnedParticles)>();
         }
     }
 }
@@ -74,7 +90,7 @@ pub(super) fn free(
     mut cloths: Query<(&mut SkinnedParticles, &mut ClothInstance)>,
 ) {
     if let Ok((mut particles, mut instance)) = cloths.get_mut(removed.entity) {
-        particles.forget();
+        particles.free();
         instance.wake();
     }
 }

@@ -5,13 +5,10 @@ use bevy_time::Time;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
-use crate::cloth::mesh::ClothMesh;
 use crate::cloth::state::ClothState;
 use crate::motion::take_up::TakingUp;
 use crate::skeleton::joints::JointPoses;
-use crate::skeleton::limits::SkinLimits;
 use crate::skeleton::particles::SkinnedParticles;
-use crate::skeleton::skin::ClothSkin;
 
 /// Distance of a pin from its place at which it begins to move there over a while, m. Smaller: a change of level,
 /// after which pins are interpolated, counts. Larger: pins visibly jump.
@@ -20,9 +17,6 @@ const IN_PLACE: f32 = 1e-3;
 type LedCloth = (
     &'static mut ClothInstance,
     &'static mut ClothState,
-    &'static ClothMesh,
-    &'static ClothSkin,
-    Option<&'static SkinLimits>,
     &'static JointPoses,
     &'static mut SkinnedParticles,
 );
@@ -32,7 +26,7 @@ pub(super) fn lead_skins(
     time: Res<Time>,
     mut batches: ResMut<ClothBatches>,
 ) {
-    for (mut instance, mut shown, mesh, skin, limits, joints, mut particles) in &mut cloths {
+    for (mut instance, mut shown, joints, mut particles) in &mut cloths {
         // Written in every tick: it must not mark the cloth as changed.
         let instance = instance.bypass_change_detection();
         let (Some(lane), Some(levels)) = (instance.lane(), instance.levels.clone()) else {
@@ -42,7 +36,7 @@ pub(super) fn lead_skins(
         let level = instance.level;
         let is_found = particles.fits(&levels, level);
         if !is_found {
-            particles.find(&levels, level, mesh, skin, limits);
+            particles.find(&levels, level);
         }
         let [start, end] = joints.matrices();
         let goes_on = instance.is_posed && particles.matrices() == Some(&start);

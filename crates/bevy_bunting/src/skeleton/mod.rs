@@ -9,3 +9,4 @@ pub mod particles;
 pub mod plugin;
 pub mod show;
 pub mod skin;
+mod vertex_skins;

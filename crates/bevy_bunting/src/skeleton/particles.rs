@@ -6,15 +6,15 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Affine3A, Mat3A, Vec3, Vec3A};
 use bunting_solver::{Backstop, Guide, MovingPin};
 
-use crate::cloth::mesh::ClothMesh;
 use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
-use crate::skeleton::limits::SkinLimits;
-use crate::skeleton::skin::ClothSkin;
+use crate::skeleton::vertex_skins::VertexSkins;
 
 /// The particles of a skinned cloth at its present level, and their places.
 #[derive(Component, Debug, Default)]
 pub(crate) struct SkinnedParticles {
+    /// The last valid skin and limits.
+    skins: VertexSkins,
     /// The levels and the level that the particles are those of.
     of: Option<KnownLevel>,
     particles: Vec<SkinnedParticle>,
@@ -29,18 +29,19 @@ pub(crate) struct SkinnedParticles {
 
 /// A particle and the joints that move it.
 #[derive(Clone, Copy, Debug)]
-struct SkinnedParticle {
+pub(super) struct SkinnedParticle {
     /// Position at rest, m.
-    rest: Vec3,
+    pub rest: Vec3,
     /// Unit normal at rest.
-    normal: Vec3,
-    joints: [u16; 4],
+    pub normal: Vec3,
+    pub joints: [u16; 4],
     /// Weights of the joints, whose sum is 1.
-    weights: [f32; 4],
-    max_distance: f32,
-    backstop: Backstop,
+    pub weights: [f32; 4],
+    /// m.
+    pub max_distance: f32,
+    pub backstop: Backstop,
     /// Weight of the simulated position where the particle is shown.
-    simulated: f32,
+    pub simulated: f32,
 }
 
 /// The animated place of a particle.
@@ -55,6 +56,9 @@ pub(crate) struct Place {
 impl SkinnedParticle {
     /// The matrix from the space of the mesh to the cloth's frame.
     fn matrix(&self, matrices: &[Affine3A]) -> Affine3A {
+        if self.weights == [0.0; 4] {
+            return Affine3A::IDENTITY;
+        }
         let mut sum = Affine3A { matrix3: Mat3A::ZERO, translation: Vec3A::ZERO };
         for (&joint, &weight) in self.joints.iter().zip(&self.weights) {
             if weight > 0.0 {
@@ -86,40 +90,32 @@ impl SkinnedParticles {
         self.of = None;
     }
 
-    /// Finds the particles of a level of a mesh, given a valid skin and valid limits.
-    pub fn find(
-        &mut self,
-        levels: &Arc<ClothLevels>,
-        level: usize,
-        mesh: &ClothMesh,
-        skin: &ClothSkin,
-        limits: Option<&SkinLimits>,
-    ) {
-        self.particles.clear();
-        let Some(normals) = mesh.builder().rest_normals().ok() else { return };
-        let limits = limits.cloned().unwrap_or_default().of(mesh).ok();
+    /// The last valid skin and limits.
+    pub fn skins(&self) -> &VertexSkins {
+        &self.skins
+    }
+
+    /// Takes over another valid skin and its limits. The particles are found anew in the next tick.
+    pub fn set_skins(&mut self, skins: VertexSkins) {
+        self.skins = skins;
+        self.forget();
+    }
+
+    /// Takes the limits of all particles.
+    pub fn free(&mut self) {
+        self.skins.limits = None;
+        self.forget();
+    }
+
+    /// Finds the particles of a level.
+    pub fn find(&mut self, levels: &Arc<ClothLevels>, level: usize) {
         let fabric = levels.fabric(level);
-        for (vertex, &rest) in levels.vertices(level).iter().zip(fabric.rest_positions()) {
-            let vertex = *vertex as usize;
-            let weights = skin.joint_weights[vertex];
-            let sum: f32 = weights.iter().sum();
-            let limit = |of: fn(&_) -> &Vec<f32>, none: f32| {
-                limits.as_ref().map_or(none, |limits| of(limits)[vertex])
-            };
-            let shown = mesh.weights().get(vertex).copied().unwrap_or(1.0);
-            self.particles.push(SkinnedParticle {
-                rest,
-                normal: normals[vertex],
-                joints: skin.joint_indices[vertex],
-                weights: weights.map(|weight| weight / sum),
-                max_distance: limit(|limits| &limits.max_distance, f32::INFINITY),
-                backstop: Backstop {
-                    distance: limit(|limits| &limits.backstop_distance, 0.0),
-                    radius: limit(|limits| &limits.backstop_radius, 0.0),
-                },
-                simulated: shown * limit(|limits| &limits.simulated, 1.0),
-            });
-        }
+        let at_rest = levels.vertices(level).into_iter().zip(fabric.rest_positions());
+        self.particles.clear();
+        self.particles.extend(at_rest.map(|(vertex, &rest)| {
+            let vertex = vertex as usize;
+            SkinnedParticle { rest, ..self.skins.particle(vertex) }
+        }));
         self.of = Some(KnownLevel::new(levels, level));
         let pins = (0..self.particles.len()).filter(|&particle| fabric.is_pinned(particle));
         self.pins = pins.map(|particle| particle as u32).collect();

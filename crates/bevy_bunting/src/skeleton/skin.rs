@@ -27,8 +27,8 @@ const SNAP_SPEED: f32 = 15.0;
 ///
 /// # Errors
 ///
-/// A skin that does not fit the mesh is reported as [`ClothError::Skin`](crate::ClothError::Skin): the cloth is simulated
-/// without it. A joint that is despawned is reported as [`ClothError::MissingJoint`](crate::ClothError::MissingJoint), and
+/// A skin that does not fit the mesh is reported as [`ClothError::Skin`](crate::ClothError::Skin): the cloth keeps its last
+/// valid skin or, if it never had one, is simulated without. A joint that is despawned is reported as [`ClothError::MissingJoint`](crate::ClothError::MissingJoint), and
 /// stays where it was in the cloth's frame.
 ///
 /// ```

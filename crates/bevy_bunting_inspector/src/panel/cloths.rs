@@ -53,6 +53,10 @@ fn line(
         ClothActivity::Ticking => {
             format!("{substeps} × {passes} substeps by {:?}", effort.cause())
         }
+        ClothActivity::AwaitsAsset => "awaits its mesh".to_owned(),
+        ClothActivity::AwaitsFabric => "awaits its fabric".to_owned(),
+        ClothActivity::AwaitsPreroll => "is simulated in advance".to_owned(),
+        ClothActivity::Failed => "failed, see the log".to_owned(),
         asleep => format!("asleep: {asleep:?}"),
     };
     (format!("{name} · level {level} · {doing}"), cloth)
