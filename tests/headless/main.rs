@@ -23,6 +23,7 @@ mod last_valid;
 mod levels;
 mod lifecycle;
 mod memory;
+mod off_screen;
 mod order;
 mod reactions;
 mod rest;

@@ -4,7 +4,7 @@ use bevy_app::prelude::*;
 use bevy_bunting::ClothBatches;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
-use bevy_math::{Quat, Vec3};
+use bevy_math::{Mat4, Quat, Vec3};
 use bevy_transform::prelude::*;
 use bunting_tests::{app, bits, run, state};
 
@@ -108,6 +108,42 @@ fn a_teleport_wakes_a_sheet() {
         scene.app.world_mut().trigger(TeleportCloth { entity, mode });
         scene.entity(pole).insert(Transform::from_rotation(Quat::from_rotation_z(1.0)));
         assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking, "{mode:?}");
+    }
+}
+
+/// Moves of an anchor's target or of a joint, m: motions, and a teleport, which leads from rest to rest.
+const MOVES: [f32; 3] = [0.02, 0.1, 0.6];
+
+#[test]
+fn an_anchor_that_moves_or_is_teleported_wakes_a_sheet() {
+    for way in MOVES {
+        let mut scene = sleeping_sheet();
+        let (pole, sheet) = (scene.pole, scene.sheet);
+        let mast = scene.app.world_mut().spawn(Transform::from_xyz(0.0, 3.0, 0.0)).id();
+        let held = Attachment::new(pole, ClothEdge::Top)
+            .with_anchor(Anchor::new(mast, ClothCorner::BottomLeft));
+        scene.entity(sheet).insert(held);
+        run(&mut scene.app, SETTLING);
+        assert_eq!(scene.activity(), ClothActivity::AtRest);
+        scene.entity(mast).insert(Transform::from_xyz(way, 3.0, 0.0));
+        assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking, "{way} m");
+    }
+}
+
+#[test]
+fn a_joint_that_moves_or_snaps_wakes_a_sheet() {
+    for way in MOVES {
+        let mut scene = sleeping_sheet();
+        let (pole, sheet) = (scene.pole, scene.sheet);
+        let joint = scene.app.world_mut().spawn((Transform::default(), ChildOf(pole))).id();
+        let rigid = ([0; 4], [1.0, 0.0, 0.0, 0.0]);
+        let skin = ClothSkin::new([(joint, Mat4::IDENTITY)])
+            .with_vertices(core::iter::repeat_n(rigid, 9 * 9));
+        scene.entity(sheet).insert(skin);
+        run(&mut scene.app, SETTLING);
+        assert_eq!(scene.activity(), ClothActivity::AtRest);
+        scene.entity(joint).insert(Transform::from_xyz(way, 0.0, 0.0));
+        assert_eq!(scene.activity_after_ticks(), ClothActivity::Ticking, "{way} m");
     }
 }
 

@@ -119,7 +119,7 @@ pub(super) fn forget_collider(removed: On<Remove, ClothCollider>, mut tree: ResM
 
 /// Updates the boxes of colliders that are new, changed or in motion, or moved in the last tick.
 pub(super) fn update_tree(
-    colliders: Query<(Entity, Ref<ClothCollider>, Ref<PoseHistory>)>,
+    colliders: Query<(Entity, Ref<ClothCollider>, &PoseHistory)>,
     mut tree: ResMut<ColliderTree>,
 ) {
     if colliders.is_empty() {
@@ -128,17 +128,17 @@ pub(super) fn update_tree(
     let tree = &mut *tree;
     let moved = core::mem::take(&mut tree.moving);
     for (entity, collider, history) in &colliders {
-        if PoseHistory::may_have_moved(&history) || collider.is_changed() {
-            tree.set(entity, &collider, &history);
+        if !history.rests() || collider.is_changed() {
+            tree.set(entity, &collider, history);
             tree.moving.push(entity);
         }
     }
     let mut is_changed = !tree.moving.is_empty();
     for entity in moved {
         if let Ok((entity, collider, history)) = colliders.get(entity)
-            && !PoseHistory::may_have_moved(&history)
+            && history.rests()
         {
-            tree.set(entity, &collider, &history);
+            tree.set(entity, &collider, history);
             is_changed = true;
         }
     }

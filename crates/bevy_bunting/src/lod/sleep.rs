@@ -156,7 +156,7 @@ type HasNewLayers = Or<(
 )>;
 
 fn note_changes(
-    colliders: Query<(Ref<ClothCollider>, Ref<PoseHistory>)>,
+    colliders: Query<(Ref<ClothCollider>, &PoseHistory)>,
     mut removed: RemovedComponents<ClothCollider>,
     mut freed: RemovedComponents<ClothCollision>,
     layers: Query<(), HasNewLayers>,
@@ -173,7 +173,7 @@ fn note_changes(
     changes.wind.clone_from(&wind);
     for (collider, history) in &colliders {
         changes.everywhere |= collider.is_changed();
-        if PoseHistory::may_have_moved(&history) {
+        if !history.rests() {
             let ball = collider.shape.compute_local_bounding_sphere();
             let centre = history.end() * ball.center;
             changes.disturbed.push((centre, ball.radius + collider.margin));

@@ -28,7 +28,7 @@ type Histories<'w, 's> =
 #[derive(SystemParam)]
 pub(crate) struct Observer<'w, 's> {
     moved: MovedEntities<'w, 's>,
-    /// Histories that are new, were reset, or expect a teleport; and all histories.
+    /// Histories that are new, were reset, moved or expect a teleport; and all histories.
     histories: ParamSet<'w, 's, (ChangedHistories<'static, 'static>, Histories<'static, 'static>)>,
     /// Entities that were not at rest when the system last ran.
     restless: Local<'s, Vec<Entity>>,
@@ -45,17 +45,14 @@ impl Observer<'_, '_> {
         let mut histories = self.histories.p1();
         for &entity in moved {
             let Ok((mut history, attachment)) = histories.get_mut(entity) else { continue };
-            let (rested, pose) = (history.rests(), history.end());
+            let (rested, ends) = (history.rests(), history.ends());
             observe(entity, history.bypass_change_detection(), attachment);
             if !history.rests() {
                 self.restless.push(entity);
-                // The end of a rest is marked as a change, since the other observing systems must learn of
-                // it. They detect all further motions by themselves.
-                if rested {
-                    history.set_changed();
-                }
-            } else if rested && history.end() != pose {
-                // A teleport leads from rest to rest.
+            }
+            // Whoever compares ticks of change sees every motion and every teleport. The end of a rest is a change too,
+            // since the other observing systems must learn of it.
+            if history.ends() != ends || (rested && !history.rests()) {
                 history.set_changed();
             }
         }

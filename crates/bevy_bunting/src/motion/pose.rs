@@ -65,6 +65,8 @@ pub(crate) struct PoseHistory {
     launching: Option<Vec3>,
     /// That change of velocity, in this tick.
     launched: Option<Vec3>,
+    /// Whether a teleport has changed the pose since the last tick.
+    teleported: bool,
     /// Set while all samples have one pose: the entity is then not observed until it moves.
     rest: Option<Rest>,
 }
@@ -148,15 +150,15 @@ impl PoseHistory {
         self.extrapolated.unwrap_or_default()
     }
 
-    /// Whether the entity rests, so that it need not be observed until it moves.
-    pub fn rests(&self) -> bool {
-        self.rest.is_some()
+    /// The poses at the end of the tick, with and without a delay: whatever moves or is teleported changes one of them.
+    pub fn ends(&self) -> [Option<Isometry3d>; 2] {
+        [self.span, self.extrapolated].map(|span| span.map(|(_, end)| end))
     }
 
-    /// Whether the entity may have moved since the system last ran that asks. An entity that was teleported may rest
-    /// again already.
-    pub fn may_have_moved(history: &Ref<Self>) -> bool {
-        !history.rests() || history.is_changed()
+    /// Whether the entity rests: it has neither moved nor been teleported since the tick before the last one, and need
+    /// not be observed until it moves.
+    pub fn rests(&self) -> bool {
+        self.rest.is_some()
     }
 
     /// Makes the next change of the pose a teleport.
@@ -244,7 +246,9 @@ impl PoseHistory {
         self.extrapolated = Some((self.extrapolated.map_or(end, |(_, end)| end), end));
         self.ticks.drop_before(sampled);
         self.frames.drop_before(sampled);
-        let rests = self.span == Some((pose, pose))
+        let teleported = core::mem::take(&mut self.teleported);
+        let rests = !teleported
+            && self.span == Some((pose, pose))
             && self.extrapolated == self.span
             && [&self.ticks, &self.frames].iter().all(|track| track.rests_at(pose));
         if rests && !self.frames.is_empty() {
@@ -300,6 +304,7 @@ impl PoseHistory {
             Some(Departure::Launch(velocity)) => self.launching = Some(velocity),
             Some(Departure::Teleport(by)) => {
                 self.launching = None;
+                self.teleported = true;
                 for (_, end) in [&mut self.span, &mut self.extrapolated].into_iter().flatten() {
                     *end = by * *end;
                     end.rotation = Quat::normalize(end.rotation);
