@@ -28,8 +28,7 @@ impl Scene {
         let figure = world.spawn(Transform::default()).id();
         let held = Attachment::new(figure, ClothEdge::Left);
         let flag = world.spawn((FLAG, LodSet::automatic(2), held)).id();
-        let viewer =
-            world.spawn((LodViewer::default(), Transform::from_translation(BEFORE))).id();
+        let viewer = world.spawn((LodViewer::default(), Transform::from_translation(BEFORE))).id();
         world.spawn(WindField::steady(Vec3::new(6.0, 0.0, 2.0)));
         run(&mut app, 60);
         let mut scene = Self { app, figure, flag, viewer };

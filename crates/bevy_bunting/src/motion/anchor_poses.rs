@@ -7,7 +7,8 @@ use bevy_transform::helper::TransformHelper;
 
 use crate::motion::attachment::{Anchor, Attachment};
 use crate::motion::frame::{frame_on, is_finite};
-use crate::motion::pose::{ObservationTimes, PoseHistory};
+use crate::motion::observation_times::ObservationTimes;
+use crate::motion::pose::PoseHistory;
 
 /// The poses of a cloth's anchors, in their order.
 #[derive(Component, Debug, Default)]
@@ -80,6 +81,21 @@ pub(super) fn observe_anchors_in_frames<const EARLY: bool>(
         poses.observe(&attachment.anchors, &transforms, |history, pose| {
             if let Some(pose) = pose {
                 history.observe_frame(&times, now, pose, attachment.teleport_speed, EARLY);
+            }
+        });
+    }
+}
+
+/// Observes all anchors after the ticks of a frame of the app.
+pub(super) fn observe_anchors_at_end_of_ticks(
+    mut cloths: Query<(&Attachment, &mut AnchorPoses)>,
+    transforms: TransformHelper,
+    times: Res<ObservationTimes>,
+) {
+    for (attachment, mut poses) in &mut cloths {
+        poses.observe(&attachment.anchors, &transforms, |history, pose| {
+            if let Some(pose) = pose {
+                history.observe_end_of_ticks(&times, pose);
             }
         });
     }

@@ -11,6 +11,7 @@ pub mod frame;
 pub mod inertia;
 pub mod lead;
 pub mod lost_target;
+pub mod observation_times;
 pub mod observe;
 pub mod place;
 pub mod plugin;

@@ -11,7 +11,8 @@ use crate::cloth::instance::ClothInstance;
 use crate::motion::attachment::{Attachment, TELEPORT_SPEED};
 use crate::motion::follow::MovedEntities;
 use crate::motion::frame::{frame_of, is_finite};
-use crate::motion::pose::{ObservationTimes, PoseHistory};
+use crate::motion::observation_times::ObservationTimes;
+use crate::motion::pose::PoseHistory;
 
 /// Change of velocity above which a change of pose is a teleport if the attachment itself was changed in this
 /// tick, m/s: setting another offset is no motion. Smaller: an offset that is moved continuously does not
@@ -67,9 +68,6 @@ pub(crate) fn observe_frames<const EARLY: bool>(
     mut times: ResMut<ObservationTimes>,
 ) {
     let now = time.elapsed_secs_f64();
-    if EARLY {
-        times.note_frame(time.delta_secs_f64());
-    }
     observer.for_each(|entity, history, attachment| {
         let pose = frame_of(entity, attachment.as_deref(), &transforms);
         if let Some(pose) = pose.filter(is_finite) {
@@ -77,8 +75,22 @@ pub(crate) fn observe_frames<const EARLY: bool>(
         }
     });
     if !EARLY {
-        times.frame = now;
+        times.end_frame(now);
     }
+}
+
+/// Observes all frames after the ticks of a frame of the app, before anything outside the fixed loop moves them.
+pub(super) fn observe_end_of_ticks(
+    mut observer: Observer,
+    transforms: TransformHelper,
+    times: Res<ObservationTimes>,
+) {
+    observer.for_each(|entity, history, attachment| {
+        let pose = frame_of(entity, attachment.as_deref(), &transforms);
+        if let Some(pose) = pose.filter(is_finite) {
+            history.observe_end_of_ticks(&times, pose);
+        }
+    });
 }
 
 /// Observes all frames in a tick, from which their motion in it follows. Reports frames that are not finite.

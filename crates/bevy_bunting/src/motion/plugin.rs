@@ -8,16 +8,18 @@ use bevy_transform::systems::{propagate_parent_transforms, sync_simple_transform
 
 use crate::environment::drive::drive_cloths;
 use crate::fabric::prepare::change_materials;
-use crate::motion::anchor_poses::{observe_anchors_in_frames, observe_anchors_in_ticks};
+use crate::motion::anchor_poses::{
+    observe_anchors_at_end_of_ticks, observe_anchors_in_frames, observe_anchors_in_ticks,
+};
 use crate::motion::attached_vertices::{AttachedVertices, ClothCorner, ClothEdge};
 use crate::motion::attachment::{Anchor, Attachment, TargetLost};
 use crate::motion::follow::{follow_targets, stop_following};
 use crate::motion::follow_anchors::follow_anchors;
 use crate::motion::inertia::ClothInertia;
 use crate::motion::lead::lead_pins;
-use crate::motion::observe::{observe_frames, observe_ticks};
+use crate::motion::observation_times::{ObservationTimes, begin_frame};
+use crate::motion::observe::{observe_end_of_ticks, observe_frames, observe_ticks};
 use crate::motion::place::place_cloths;
-use crate::motion::pose::ObservationTimes;
 use crate::motion::report_inertia::report_inertia;
 use crate::motion::scale::remove_scales;
 use crate::schedule::{ClothSystems, ClothTick};
@@ -39,9 +41,17 @@ impl Plugin for AttachmentPlugin {
             .add_observer(stop_following)
             .add_systems(
                 RunFixedMainLoop,
-                (observe_anchors_in_frames::<true>, observe_frames::<true>)
-                    .chain()
-                    .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop),
+                (
+                    (begin_frame, observe_anchors_in_frames::<true>, observe_frames::<true>)
+                        .chain()
+                        .after(RunFixedMainLoopSystems::BeforeFixedMainLoop)
+                        .before(RunFixedMainLoopSystems::FixedMainLoop),
+                    (observe_anchors_at_end_of_ticks, observe_end_of_ticks)
+                        .chain()
+                        .after(RunFixedMainLoopSystems::FixedMainLoop)
+                        .before(RunFixedMainLoopSystems::AfterFixedMainLoop)
+                        .run_if(|times: Res<ObservationTimes>| times.has_ticked()),
+                ),
             )
             .add_systems(
                 ClothTick,

@@ -5,19 +5,12 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
 use bunting_solver::FrameMotion;
 
-use crate::motion::track::{Departure, Track};
+use crate::motion::observation_times::ObservationTimes;
+use crate::motion::track::{Departure, FIRST_SPEED, Teleport, Track};
 
 /// Greatest rate of change of the delay, s/s; it makes the motion faster or slower by this fraction. Smaller:
 /// the delay lags behind the frame rate. Larger: changes of the frame rate shake the cloth.
 const DELAY_RATE: f64 = 0.02;
-
-/// Time constants with which the mean and the longest length of frames are averaged, s. Smaller: uneven
-/// frames change the delay, and so shake the cloth.
-const MEAN_TIME: f64 = 0.5;
-const LONGEST_TIME: f64 = 2.0;
-
-/// Ratio of a frame's length to the mean above which the frame is a hitch, which does not change the delay.
-const HITCH: f64 = 1.5;
 
 /// Time of rest after which it is known that an entity rested, in units of the longest frame: entities that are moved in
 /// frames are not moved in every tick.
@@ -31,17 +24,17 @@ const QUIET_TICKS: u32 = 4;
 /// The schedule in which an entity is moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum MovedIn {
-    /// A fixed schedule, once a tick.
+    /// A schedule of the fixed loop, once a tick.
     #[default]
     Ticks,
-    /// `Update` or later: once a frame.
+    /// Any other schedule, once a frame.
     Frames,
 }
 
 /// A short history of poses, resampled at the time of each tick.
 ///
 /// An entity that is moved in a fixed schedule has one pose in each tick, and that pose is used. An entity
-/// that is moved in `Update` changes its pose never or several times between two ticks: its poses at the
+/// that is moved in any other schedule changes its pose never or several times between two ticks: its poses at the
 /// times of frames are resampled with a delay of one frame, so that a steady motion stays steady. The delay
 /// is the length of the longest frames: a delay that followed the length of each frame would shake an entity
 /// that moves evenly.
@@ -56,6 +49,8 @@ pub(crate) struct PoseHistory {
     delay: f64,
     /// The last observed pose.
     last: Option<Isometry3d>,
+    /// The last pose while no time passes; none before something changes then.
+    standing: Option<Isometry3d>,
     /// Poses at the start and the end of the tick.
     span: Option<(Isometry3d, Isometry3d)>,
     /// Poses at the start and the end of the tick without a delay, extrapolated from the last frame.
@@ -71,22 +66,6 @@ pub(crate) struct PoseHistory {
     rest: Option<Rest>,
 }
 
-/// Times of the last observation of any entity that was not at rest. An entity at rest would have been
-/// observed at the same times.
-#[derive(Resource, Clone, Copy, Debug, Default)]
-pub(crate) struct ObservationTimes {
-    /// Time of the last frame, s.
-    pub frame: f64,
-    /// Mean length of frames, s.
-    pub mean_frame: f64,
-    /// Length of the longest frames other than hitches, s.
-    pub longest_frame: f64,
-    /// End of the last tick, s.
-    pub tick: f64,
-    /// Number of ticks so far.
-    pub ticks: u32,
-}
-
 /// An entity at rest.
 #[derive(Clone, Copy, Debug)]
 struct Rest {
@@ -95,27 +74,6 @@ struct Rest {
     tick: f64,
     /// Number of that tick.
     ticks: u32,
-}
-
-impl ObservationTimes {
-    /// The times of a tick that ends at a time (s).
-    pub fn in_tick(&self, end: f64) -> Self {
-        Self { tick: end, ticks: self.ticks.wrapping_add(1), ..*self }
-    }
-
-    /// Notes the length of a frame, s.
-    pub fn note_frame(&mut self, length: f64) {
-        if length <= 0.0 {
-            return;
-        }
-        if self.mean_frame == 0.0 {
-            (self.mean_frame, self.longest_frame) = (length, length);
-        }
-        self.mean_frame += (length - self.mean_frame) * (length / MEAN_TIME).min(1.0);
-        let excess = self.longest_frame - self.mean_frame;
-        let decayed = self.longest_frame - excess * (length / LONGEST_TIME).min(1.0);
-        self.longest_frame = decayed.max(length.min(HITCH * self.mean_frame));
-    }
 }
 
 /// Translation (m) and rotation of a pose.
@@ -168,9 +126,15 @@ impl PoseHistory {
         self.frames.teleports_next = true;
     }
 
+    /// Keeps the history from resting in the next tick, after a teleport of something that is not in the pose.
+    pub fn note_teleport(&mut self, last: &ObservationTimes) {
+        self.end_rest(last);
+        self.teleported = true;
+    }
+
     /// Records the pose in a frame at a time (s); a change of velocity of more than `limit` m/s is a
-    /// teleport. A pose observed `early`, before the frame's ticks, is ignored unless it has changed since
-    /// the last frame.
+    /// teleport, and any change is one while no time passes. A pose observed `early`, before the frame's ticks, is
+    /// ignored unless it has changed since the last frame.
     pub fn observe_frame(
         &mut self,
         last: &ObservationTimes,
@@ -183,6 +147,16 @@ impl PoseHistory {
             return;
         }
         self.end_rest(last);
+        if last.stands && self.last.is_some() {
+            self.observe_standing(last, pose, early);
+            return;
+        }
+        self.standing = None;
+        // What has changed before the first frame after a pause may have done so in the pause: it is as unknown as the
+        // first change of a new entity.
+        if early && last.resumes && self.frames.jumps(time, pose, limit.min(FIRST_SPEED)) {
+            self.carry(self.last, pose);
+        }
         let changed = self.last.is_some_and(|last| last != pose);
         if early && !changed {
             return;
@@ -200,6 +174,40 @@ impl PoseHistory {
         self.last = Some(pose);
     }
 
+    /// Records the pose after the ticks of a frame, before anything outside the fixed loop moves the entity. If it has
+    /// changed since the last tick, the entity is moved in ticks, after the cloths'.
+    pub fn observe_end_of_ticks(&mut self, last: &ObservationTimes, pose: Isometry3d) {
+        if last.has_ticked() && self.last.is_some_and(|last| last != pose) {
+            self.end_rest(last);
+            self.last = Some(pose);
+            self.moved_in = MovedIn::Ticks;
+            self.ticks_to_quiet = QUIET_TICKS;
+        }
+    }
+
+    /// Records the pose in a frame in which no time passes: any change is a teleport. A change before the ticks of the first
+    /// such frame is none, but happened in the frame before, after the observation of that.
+    fn observe_standing(&mut self, last: &ObservationTimes, pose: Isometry3d, early: bool) {
+        if !early {
+            self.carry(self.standing.or(self.last), pose);
+        }
+        if !early || last.begins_to_stand {
+            self.standing = Some(pose);
+        }
+    }
+
+    /// Moves all poses along with a teleport while no time passes.
+    fn carry(&mut self, from: Option<Isometry3d>, to: Isometry3d) {
+        let Some(from) = from.filter(|from| *from != to) else { return };
+        let teleport = Teleport { from, to };
+        for track in [&mut self.ticks, &mut self.frames] {
+            track.teleports_next = false;
+            track.carry(&teleport);
+        }
+        self.depart(Some(Departure::Teleport(teleport)));
+        self.last = self.last.map(|last| teleport.carry(last));
+    }
+
     /// Records the pose in a tick of `tick` seconds whose times are `now`; a change of velocity of more than
     /// `limit` m/s is a teleport.
     pub fn observe_tick(
@@ -214,6 +222,7 @@ impl PoseHistory {
             return;
         }
         self.end_rest(last);
+        self.standing = None;
         self.launched = None;
         let time = now.tick;
         if self.frames.is_empty() {
@@ -237,6 +246,7 @@ impl PoseHistory {
             MovedIn::Frames => &self.frames,
         };
         let sampled = time - self.delay;
+        let is_new = !self.is_observed();
         let end = track.pose_at(sampled).unwrap_or(pose);
         self.span = Some((self.end_or(end), end));
         if self.start() != end {
@@ -246,8 +256,9 @@ impl PoseHistory {
         self.extrapolated = Some((self.extrapolated.map_or(end, |(_, end)| end), end));
         self.ticks.drop_before(sampled);
         self.frames.drop_before(sampled);
-        let teleported = core::mem::take(&mut self.teleported);
-        let rests = !teleported
+        // What is new or was teleported rests one tick later, so that sleeping cloth that depends on it wakes.
+        let rested = !core::mem::take(&mut self.teleported) && !is_new;
+        let rests = rested
             && self.span == Some((pose, pose))
             && self.extrapolated == self.span
             && [&self.ticks, &self.frames].iter().all(|track| track.rests_at(pose));
@@ -302,12 +313,11 @@ impl PoseHistory {
         match departure {
             None => {}
             Some(Departure::Launch(velocity)) => self.launching = Some(velocity),
-            Some(Departure::Teleport(by)) => {
+            Some(Departure::Teleport(teleport)) => {
                 self.launching = None;
                 self.teleported = true;
                 for (_, end) in [&mut self.span, &mut self.extrapolated].into_iter().flatten() {
-                    *end = by * *end;
-                    end.rotation = Quat::normalize(end.rotation);
+                    *end = teleport.carry(*end);
                 }
             }
         }
@@ -322,3 +332,7 @@ impl PoseHistory {
 #[cfg(test)]
 #[path = "pose_tests.rs"]
 mod tests;
+
+#[cfg(test)]
+#[path = "schedule_tests.rs"]
+mod schedule_tests;

@@ -2,7 +2,8 @@
 
 use bevy_math::{Isometry3d, Quat, Vec3};
 
-use super::{ObservationTimes, PoseHistory};
+use super::PoseHistory;
+use crate::motion::observation_times::ObservationTimes;
 
 /// Length of a tick, s: Bevy's default.
 const TICK: f64 = 1.0 / 64.0;
@@ -59,9 +60,10 @@ impl Clocks {
             let (start, end) = (self.history.start(), self.history.end());
             motions.push((end.translation - start.translation).length());
         }
+        self.history.observe_end_of_ticks(&self.last, self.pose);
         self.pose = update(self.now).unwrap_or(self.pose);
         self.history.observe_frame(&self.last, self.now, self.pose, LIMIT, false);
-        self.last.frame = self.now;
+        self.last.end_frame(self.now);
         motions
     }
 }

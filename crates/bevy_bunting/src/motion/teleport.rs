@@ -9,7 +9,8 @@ use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::state::ClothState;
 use crate::motion::anchor_poses::AnchorPoses;
-use crate::motion::pose::{ObservationTimes, PoseHistory};
+use crate::motion::observation_times::ObservationTimes;
+use crate::motion::pose::PoseHistory;
 use crate::skeleton::joints::JointPoses;
 
 /// Makes the next change of a cloth's frame, and of each of its anchors and joints, a teleport: the cloth moves with its frame rigidly, without being

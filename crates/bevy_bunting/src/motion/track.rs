@@ -18,12 +18,12 @@ const TELEPORT_ANGLE: f32 = core::f32::consts::FRAC_PI_2;
 
 /// Least time that a change between two observations is assumed to take, s. Smaller: an entity that the user
 /// moves at the rate of ticks, observed in shorter frames, is teleported with each step.
-const LEAST_INTERVAL: f64 = 1.0 / 64.0;
+pub(super) const LEAST_INTERVAL: f64 = 1.0 / 64.0;
 
 /// Speed above which the first change of a new entity's pose is a teleport, m/s: the entity may be put in its place, or
 /// have been moving before. Smaller: an entity that starts to move in its second frame swings its cloth late. Larger:
 /// cloth that is spawned on a moving vehicle is torn along.
-const FIRST_SPEED: f32 = 3.0;
+pub(super) const FIRST_SPEED: f32 = 3.0;
 
 /// Greatest speed, m/s, of a motion that is recognised by two like changes of pose, the first of which is a teleport by its
 /// change of velocity: that of a light aircraft. Larger: an entity that is put elsewhere twice, by the same way, throws its cloth.
@@ -45,43 +45,84 @@ pub(super) struct Track {
     pub teleports_next: bool,
     /// Whether it is known how the entity moves: its pose has changed, or has rested.
     pub is_known: bool,
-    /// Mean velocity over the last change, m/s, if that was a teleport that had not been requested.
-    jump: Option<Vec3>,
+    /// The last change, if that was a teleport that had not been requested.
+    jump: Option<Jump>,
+}
+
+/// A change of pose that may be the first of a fast motion.
+#[derive(Clone, Copy, Debug)]
+struct Jump {
+    /// Time of the pose after it, s.
+    time: f64,
+    /// Mean velocity over the change, m/s.
+    velocity: Vec3,
 }
 
 /// What a change of pose is besides a motion that goes on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Departure {
-    /// A teleport, by this transformation.
-    Teleport(Isometry3d),
+    /// A teleport.
+    Teleport(Teleport),
     /// A motion that began with the teleport before: its velocity less that before the teleport, m/s.
     Launch(Vec3),
+}
+
+/// A teleport, from a pose to another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Teleport {
+    pub from: Isometry3d,
+    pub to: Isometry3d,
+}
+
+impl Teleport {
+    /// A pose of the same entity, moved along.
+    pub fn carry(&self, pose: Isometry3d) -> Isometry3d {
+        if pose == self.from {
+            // Without rounding, so that an entity at rest has no motion.
+            return self.to;
+        }
+        let carried = (self.to * self.from.inverse()) * pose;
+        Isometry3d { rotation: carried.rotation.normalize(), ..carried }
+    }
 }
 
 impl Track {
     /// Adds a pose. If it departs from the extrapolated motion by a change of velocity of more than `limit`
     /// m/s, the change is a teleport: all earlier samples are moved along, as if the entity had come from
     /// there. A second such change with the velocity of the first is no teleport but a motion: the entity has been fast
-    /// since the first.
+    /// since the first. A pose at the time of the last one replaces it: both changes then belong to one.
     pub fn push(&mut self, time: f64, pose: Isometry3d, limit: f32) -> Option<Departure> {
+        if self.samples.back() == Some(&(time, pose)) {
+            return None;
+        }
         let mut replaced = None;
         while self.samples.back().is_some_and(|&(newest, _)| newest >= time) {
-            replaced = self.samples.pop_back();
+            replaced = self.samples.pop_back().map(|(_, pose)| pose);
         }
-        if let (true, Some((_, earlier))) = (self.samples.is_empty(), replaced) {
+        if let (true, Some(earlier)) = (self.samples.is_empty(), replaced) {
             // The replaced pose is the only knowledge of the earlier motion.
             self.samples.push_back((time - LEAST_INTERVAL, earlier));
         }
-        let departure = self.departure(time, pose, limit);
+        let departure = self.departure(time, pose, limit, replaced);
         self.is_known |= self.samples.back().is_some_and(|&(_, last)| last != pose);
-        self.jump = None;
-        if let Some(Departure::Teleport(by)) = departure {
-            if !self.teleports_next {
-                self.jump = self.velocity_to(time, pose);
+        let jump = self.jump.take();
+        match departure {
+            Some(Departure::Teleport(teleport)) => {
+                if !self.teleports_next {
+                    let velocity = self.velocity_to(time, pose);
+                    self.jump = velocity.map(|velocity| Jump { time, velocity });
+                }
+                self.teleports_next = false;
+                self.carry(&teleport);
             }
-            self.teleports_next = false;
-            for (_, earlier) in &mut self.samples {
-                *earlier = by * *earlier;
+            Some(Departure::Launch(_)) => {}
+            None => {
+                self.jump = jump.filter(|jump| jump.time == time).zip(replaced).and_then(
+                    |(jump, replaced)| {
+                        let more = self.velocity_between(replaced, pose, time)?;
+                        Some(Jump { velocity: jump.velocity + more, ..jump })
+                    },
+                );
             }
         }
         self.samples.push_back((time, pose));
@@ -91,16 +132,36 @@ impl Track {
         departure
     }
 
-    /// Mean velocity from the last pose to a new one, m/s.
-    fn velocity_to(&self, time: f64, pose: Isometry3d) -> Option<Vec3> {
-        let &(before, last) = self.samples.back()?;
-        let way = Vec3::from(pose.translation - last.translation);
-        Some(way / (time - before).max(SHORTEST) as f32)
+    /// Moves all samples along with a teleport.
+    pub fn carry(&mut self, teleport: &Teleport) {
+        self.samples.iter_mut().for_each(|(_, earlier)| *earlier = teleport.carry(*earlier));
     }
 
-    /// The departure of a pose from the extrapolated motion: a teleport if the pose is far from both the extrapolated
-    /// and the last pose, or if a teleport was requested.
-    fn departure(&self, time: f64, pose: Isometry3d, limit: f32) -> Option<Departure> {
+    /// Mean velocity from the last pose to a new one, m/s.
+    fn velocity_to(&self, time: f64, pose: Isometry3d) -> Option<Vec3> {
+        self.velocity_between(self.samples.back()?.1, pose, time)
+    }
+
+    /// Mean velocity of a change of pose since the last sample, m/s.
+    fn velocity_between(&self, from: Isometry3d, to: Isometry3d, time: f64) -> Option<Vec3> {
+        let way = Vec3::from(to.translation - from.translation);
+        Some(way / (time - self.samples.back()?.0).max(SHORTEST) as f32)
+    }
+
+    /// Whether a pose departs from the extrapolated motion like a teleport.
+    pub fn jumps(&self, time: f64, pose: Isometry3d, limit: f32) -> bool {
+        matches!(self.departure(time, pose, limit, None), Some(Departure::Teleport(_)))
+    }
+
+    /// The departure of a pose from the extrapolated motion: a teleport if the pose is far from the extrapolated, the
+    /// last and a `replaced` pose, or if a teleport was requested.
+    fn departure(
+        &self,
+        time: f64,
+        pose: Isometry3d,
+        limit: f32,
+        replaced: Option<Isometry3d>,
+    ) -> Option<Departure> {
         let &(before, last) = self.samples.back()?;
         let expected = self.pose_at(time)?;
         let limit = if self.is_known { limit } else { limit.min(FIRST_SPEED) };
@@ -111,17 +172,19 @@ impl Track {
             from.translation.distance(pose.translation) > distance || turns(from)
         };
         if self.teleports_next && pose != last {
-            return Some(Departure::Teleport(pose * expected.inverse()));
+            return Some(Departure::Teleport(Teleport { from: expected, to: pose }));
         }
         let velocity = self.velocity_to(time, pose)?;
-        let goes_on = |jump: Vec3| jump.distance(velocity) < limit && velocity.length() < FASTEST;
+        let goes_on = |jump: Jump| {
+            jump.time < time
+                && jump.velocity.distance(velocity) < limit
+                && velocity.length() < FASTEST
+        };
         if !turns(last) && self.jump.is_some_and(goes_on) {
             return Some(Departure::Launch(velocity - self.velocity_to(time, expected)?));
         }
-        if !(is_far(last) && is_far(expected)) {
-            return None;
-        }
-        Some(Departure::Teleport(pose * expected.inverse()))
+        let is_teleport = is_far(last) && is_far(expected) && replaced.is_none_or(is_far);
+        is_teleport.then_some(Departure::Teleport(Teleport { from: expected, to: pose }))
     }
 
     /// The pose at a time (s): interpolated between two samples, or extrapolated from the last two.

@@ -10,7 +10,8 @@ use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::motion::attachment::Attachment;
 use crate::motion::frame::{frame_of, is_finite};
-use crate::motion::pose::{ObservationTimes, PoseHistory};
+use crate::motion::observation_times::ObservationTimes;
+use crate::motion::pose::PoseHistory;
 use crate::skeleton::skin::ClothSkin;
 
 /// The poses of a skin's joints, in their order.
@@ -67,7 +68,8 @@ impl JointPoses {
 
     /// Whether any joint may move in this tick.
     pub fn may_move(&self) -> bool {
-        self.0.iter().any(|pose| pose.is_used && !pose.history.rests())
+        let moves = |pose: &JointPose| !pose.history.rests() || pose.shapes[0] != pose.shapes[1];
+        self.0.iter().any(|pose| pose.is_used && moves(pose))
     }
 
     /// Makes the next change of each pose a snap.
@@ -148,8 +150,12 @@ pub(super) fn observe_joints_in_frames<const EARLY: bool>(
         let frame = frame_of(entity, attachment, &transforms).filter(is_finite);
         let Some(frame) = frame else { continue };
         joints.observe(frame, &transforms, |pose, observed| {
-            if let Some((at, _)) = observed {
+            if let Some((at, shape)) = observed {
                 pose.history.observe_frame(&times, now, at, skin.snap_speed, EARLY);
+                if times.stands && !EARLY && pose.shapes[1] != shape {
+                    pose.shapes = [shape; 2];
+                    pose.history.note_teleport(&times);
+                }
             }
         });
     }

@@ -1,7 +1,7 @@
 //! The plugin that leads cloths by skeletons.
 
 use bevy_app::prelude::*;
-use bevy_app::{AnimationSystems, RunFixedMainLoop, RunFixedMainLoopSystems};
+use bevy_app::{AnimationSystems, RunFixedMainLoop};
 use bevy_ecs::prelude::*;
 use bevy_transform::TransformSystems;
 
@@ -9,6 +9,7 @@ use crate::anchors::hold::hold_cloths;
 use crate::batch::publish::{publish_states, reset_diverged};
 use crate::fabric::prepare::change_materials;
 use crate::motion::lead::lead_pins;
+use crate::motion::observation_times::begin_frame;
 use crate::motion::observe::{observe_frames, observe_ticks};
 #[cfg(feature = "render")]
 use crate::render::plugin::ClothRenderSystems;
@@ -35,9 +36,7 @@ impl Plugin for SkeletonPlugin {
             .add_observer(free)
             .add_systems(
                 RunFixedMainLoop,
-                observe_joints_in_frames::<true>
-                    .in_set(RunFixedMainLoopSystems::BeforeFixedMainLoop)
-                    .before(observe_frames::<true>),
+                observe_joints_in_frames::<true>.after(begin_frame).before(observe_frames::<true>),
             )
             .add_systems(
                 ClothTick,
