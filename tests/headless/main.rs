@@ -23,6 +23,7 @@ mod last_valid;
 mod levels;
 mod lifecycle;
 mod memory;
+mod lost_targets;
 mod off_screen;
 mod order;
 mod pauses;

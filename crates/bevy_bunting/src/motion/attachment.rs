@@ -27,8 +27,8 @@ pub(crate) const TELEPORT_SPEED: f32 = 25.0;
 /// frame, and newly held vertices move to their places within one and a half seconds. A cloth more than 2 m away
 /// is first put in place, as by a teleport.
 ///
-/// The target may move in `Update`, in `FixedUpdate`, by physics or by animation. The target's scale scales
-/// the offset's translation and is otherwise ignored.
+/// The target may move in any schedule, by physics or by animation. What moves while no time passes, as while
+/// `Time<Virtual>` is paused, is teleported. The target's scale scales the offset's translation and is otherwise ignored.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;
@@ -256,6 +256,21 @@ impl Attachment {
         self.anchors.iter().map(rail).collect()
     }
 
+    /// Lets go the vertices on lost targets. Those of anchors that stand stay held; without the attachment's own target the
+    /// cloth's frame is its own transform. Returns whether the attachment still does anything.
+    pub(crate) fn release(&mut self, lost: &[Entity]) -> bool {
+        let is_lost = |target: Entity| lost.contains(&target);
+        if is_lost(self.target) {
+            self.target = Entity::PLACEHOLDER;
+            self.vertices = AttachedVertices::List(Vec::new());
+            self.offset = Transform::IDENTITY;
+        }
+        self.anchors.retain(|anchor| !is_lost(anchor.target));
+        !self.anchors.is_empty()
+            || self.target != Entity::PLACEHOLDER
+            || self.vertices != AttachedVertices::List(Vec::new())
+    }
+
     /// The target of the attachment of `cloth`, unless it is the cloth itself.
     pub(crate) fn target_other_than(&self, cloth: Entity) -> Option<Entity> {
         (self.target != Entity::PLACEHOLDER && self.target != cloth).then_some(self.target)
@@ -282,6 +297,8 @@ pub enum TargetLost {
     /// the cloth hangs from the last pose of its target.
     #[default]
     Freeze,
-    /// The cloth falls: its [`Attachment`] is removed; or if the target is that of an [`Anchor`], the anchor is.
+    /// The vertices on that target are let go, and all others stay held: an [`Anchor`] of a lost target is removed; an
+    /// [`Attachment`] that has lost its own target holds no vertices on the cloth's own transform, and is removed when no
+    /// anchor is left.
     Release,
 }

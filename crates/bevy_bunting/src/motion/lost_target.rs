@@ -1,6 +1,7 @@
 //! Attachments whose targets were despawned.
 
 use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
 use bevy_transform::components::Transform;
 
 use crate::cloth::activity::ClothPaused;
@@ -8,23 +9,33 @@ use crate::cloth::events::ClothTargetLost;
 use crate::cloth::instance::ClothInstance;
 use crate::motion::attachment::{Attachment, TargetLost};
 
-/// Freezes or releases cloths whose target was despawned, or the vertices of a despawned anchor.
+type AttachedCloth = (
+    Entity,
+    &'static mut Attachment,
+    &'static mut ClothInstance,
+    &'static mut Transform,
+    Has<ClothPaused>,
+);
+
+/// Freezes cloths of which a target was despawned, or releases the vertices on it.
 pub(crate) fn handle_lost_targets(
-    mut cloths: Query<(Entity, &mut Attachment, &mut ClothInstance, Has<ClothPaused>)>,
+    mut cloths: Query<AttachedCloth>,
     targets: Query<(), With<Transform>>,
     mut commands: Commands,
 ) {
-    for (entity, mut attachment, mut instance, is_paused) in &mut cloths {
-        if instance.target_lost {
+    for (entity, mut attachment, mut instance, mut transform, is_paused) in &mut cloths {
+        if instance.target_lost || instance.levels.is_none() {
             continue;
         }
         let target = attachment.target_other_than(entity);
         let own = target.filter(|&target| instance.target == Some(target));
-        let mut followed = own.into_iter().chain(attachment.anchors.iter().map(|it| it.target));
-        let is_cut = instance.levels.is_some();
-        let Some(lost) = followed.find(|&target| is_cut && !targets.contains(target)) else {
+        let followed = own.into_iter().chain(attachment.anchors.iter().map(|it| it.target));
+        let mut lost: Vec<Entity> = followed.filter(|&it| !targets.contains(it)).collect();
+        if lost.is_empty() {
             continue;
-        };
+        }
+        lost.sort_unstable();
+        lost.dedup();
         let outcome = attachment.on_lost;
         match outcome {
             TargetLost::Freeze => {
@@ -32,12 +43,20 @@ pub(crate) fn handle_lost_targets(
                 instance.frozen = !is_paused;
                 commands.entity(entity).insert(ClothPaused);
             }
-            TargetLost::Release if own == Some(lost) => {
-                instance.target_lost = true;
-                commands.entity(entity).remove::<Attachment>();
+            TargetLost::Release => {
+                let loses_own = own.is_some_and(|own| lost.contains(&own));
+                if loses_own && attachment.offset.scale != Vec3::ONE {
+                    // The scale of the offset is that of the cloth, which keeps its size.
+                    transform.scale *= attachment.offset.scale;
+                }
+                if !attachment.release(&lost) {
+                    instance.target_lost = true;
+                    commands.entity(entity).remove::<Attachment>();
+                }
             }
-            TargetLost::Release => attachment.anchors.retain(|anchor| anchor.target != lost),
         }
-        commands.trigger(ClothTargetLost { entity, target: lost, outcome });
+        for target in lost {
+            commands.trigger(ClothTargetLost { entity, target, outcome });
+        }
     }
 }
