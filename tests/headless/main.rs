@@ -30,6 +30,7 @@ mod pauses;
 mod reactions;
 mod rest;
 mod schedules;
+mod skeleton_changes;
 mod skeletons;
 mod substep;
 mod thread_probe;

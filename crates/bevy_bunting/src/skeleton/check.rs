@@ -20,7 +20,7 @@ type CheckedSkin = (
     Ref<'static, ClothSkin>,
     Option<&'static SkinLimits>,
     &'static ClothMesh,
-    &'static ClothInstance,
+    &'static mut ClothInstance,
     Option<&'static mut SkinnedParticles>,
 );
 type AnyChanged = Or<(Changed<ClothSkin>, Changed<SkinLimits>, Changed<ClothMesh>)>;
@@ -28,7 +28,8 @@ type AnyChanged = Or<(Changed<ClothSkin>, Changed<SkinLimits>, Changed<ClothMesh
 /// Gives cloths with valid skins [`JointPoses`] and [`SkinnedParticles`], and reports bad skins. The last valid one is kept
 /// as long as it fits the mesh.
 pub(super) fn check_skins(mut cloths: Query<CheckedSkin, AnyChanged>, mut commands: Commands) {
-    for (entity, skin, limits, mesh, instance, particles) in &mut cloths {
+    for (entity, skin, limits, mesh, mut instance, particles) in &mut cloths {
+        instance.wake();
         let error = match VertexSkins::of(mesh, &skin, limits) {
             // Fabrics of the former mesh are kept, if there are any.
             Ok(None) => continue,
