@@ -60,7 +60,8 @@ fn flown(add: fn(&mut App), rate: f64, name: &str) -> Vec<Bits> {
     });
     run(&mut app, (3.0 * rate) as usize);
     let flown = flags.map(|flag| {
-        let tip = state(&app, flag).positions()[16];
+        let [corner, .., tip] = state(&app, flag).positions()[..17] else { panic!("a row") };
+        assert_eq!(corner, Vec3::ZERO, "it is on its pole: {name} at {rate} Hz");
         assert!(tip.x > 1.2, "it streams: {tip}, {name} at {rate} Hz");
         bits(&app, flag)
     });
