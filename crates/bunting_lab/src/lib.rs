@@ -12,6 +12,7 @@ pub mod comparison;
 pub mod contacts;
 pub mod contender;
 pub mod effort;
+pub mod figure;
 pub mod fleet;
 pub mod flight;
 pub mod forces;

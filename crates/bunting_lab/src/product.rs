@@ -7,7 +7,7 @@ use std::{fmt, sync::Arc};
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, Grid,
-    LaneCount, Scheme, StepLimits, StepSettings,
+    LaneCount, LinkFamily, Scheme, StepLimits, StepSettings,
 };
 use glam::{DVec3, Vec3};
 
@@ -152,6 +152,15 @@ pub fn rms_speed(batch: &ClothBatch, lane: usize) -> f64 {
     let sum: f64 = velocities.iter().map(|v: &Vec3| f64::from(v.length_squared())).sum();
     let speed = (sum / velocities.len() as f64).sqrt();
     if speed.is_finite() { speed } else { f64::INFINITY }
+}
+
+/// Strain of each link along warp and weft of a cloth with these positions, m.
+pub fn yarn_strains(fabric: &Fabric, positions: &[Vec3]) -> impl Iterator<Item = f64> {
+    let yarns = fabric.links().iter().filter(|link| link.family != LinkFamily::Diagonal);
+    yarns.map(|link| {
+        let [from, to] = link.particles.map(|at| positions[at as usize]);
+        f64::from(from.distance(to) / link.rest_length) - 1.0
+    })
 }
 
 /// Cloths of one scene in all lanes of a batch; the first is the one that is measured.

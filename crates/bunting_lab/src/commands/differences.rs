@@ -2,16 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::golden::{self, GoldenHash};
-
-/// A case with its verdict.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct GateCase {
-    /// Command, name and size: no two cases have the same.
-    pub identity: String,
-    /// Whether it fails.
-    pub fails: bool,
-}
+use super::{
+    figures,
+    gate_cases::{GateCase, Verdict},
+};
+use crate::{
+    figure::Figure,
+    golden::{self, GoldenHash},
+};
 
 /// Differences from the committed lists: the case or hash, and how it differs.
 #[derive(Debug, Default)]
@@ -32,15 +30,23 @@ impl Differences {
             self.add(*identity, format!("is the identity of {count} cases"));
         }
         let known: BTreeSet<&str> = known_failures.lines().collect();
-        let failing: BTreeSet<&str> =
-            cases.iter().filter(|case| case.fails).map(|case| case.identity.as_str()).collect();
+        let of = |verdict: Verdict| {
+            cases.iter().filter(move |case| case.verdict == verdict).map(|it| it.identity.as_str())
+        };
+        let failing: BTreeSet<&str> = of(Verdict::Fails).collect();
+        let unclear: BTreeSet<&str> = of(Verdict::Unclear).collect();
         for case in failing.difference(&known) {
             self.add(*case, "fails, and is not on the list of known failures");
         }
-        for case in known.difference(&failing) {
+        for case in known.difference(&failing).filter(|case| !unclear.contains(**case)) {
             let how = if counts.contains_key(case) { "passes" } else { "does not exist" };
             self.add(*case, format!("is on the list of known failures, and {how}"));
         }
+    }
+
+    /// Compares figures with those of the committed file.
+    pub fn compare_figures(&mut self, expected: &str, measured: &[Figure]) {
+        self.0.extend(figures::differences(expected, measured));
     }
 
     /// Compares hashes with the expected ones.
@@ -65,8 +71,11 @@ mod tests {
     use super::*;
 
     fn cases(verdicts: &[(&str, bool)]) -> Vec<GateCase> {
-        let case =
-            |&(identity, fails): &(&str, bool)| GateCase { identity: identity.into(), fails };
+        let case = |&(identity, fails): &(&str, bool)| GateCase {
+            identity: identity.into(),
+            verdict: if fails { Verdict::Fails } else { Verdict::Passes },
+            figure: None,
+        };
         verdicts.iter().map(case).collect()
     }
 
@@ -91,6 +100,16 @@ mod tests {
     }
 
     #[test]
+    fn unclear_cases_may_be_known_to_fail_or_not() {
+        let unclear = GateCase { identity: "a".into(), verdict: Verdict::Unclear, figure: None };
+        for known in ["", "a\n"] {
+            let mut differences = Differences::default();
+            differences.compare_cases(known, std::slice::from_ref(&unclear));
+            assert!(differences.0.is_empty(), "{differences:?}");
+        }
+    }
+
+    #[test]
     fn two_cases_of_one_identity_are_a_difference() {
         for fails in [[false, false], [true, true], [true, false]] {
             let found = differences("a\n", &[("a", true), ("b", false), ("a", fails[0])]);
@@ -102,7 +121,9 @@ mod tests {
 
     #[test]
     fn other_hashes_missing_scenes_and_deviations_are_differences() {
-        let hash = |deviations| [GoldenHash { scene: "a", hashes: [1, 2], deviations }];
+        let hash = |deviations| {
+            [GoldenHash { scene: "a", hashes: [1, 2], deviations, figures: Vec::new() }]
+        };
         let count = |expected: &str, deviations: Vec<String>| {
             let mut differences = Differences::default();
             differences.compare_hashes(expected, &hash(deviations));

@@ -3,12 +3,15 @@
 pub mod ablation;
 pub mod budget;
 pub mod contacts;
-pub mod differences;
+mod differences;
 pub mod effort;
 pub mod families;
+mod figures;
 pub mod forces;
 pub mod fuzz;
 pub mod gate;
+mod gate_cases;
+mod gate_jobs;
 pub mod lod;
 pub mod memory;
 pub mod oracles;

@@ -6,16 +6,22 @@
 pub mod beside;
 mod capstan;
 mod cloths;
+mod cost;
+mod curtain;
 mod drape;
 mod fast;
+mod in_app;
 mod inside;
 mod intersections;
 mod itself;
+mod lying;
+mod pierced;
 mod rest;
 mod rig;
 mod row;
 mod shapes;
 mod slope;
+mod tablecloth;
 mod torn;
 mod turntable;
 
@@ -25,13 +31,18 @@ pub use row::Row;
 pub type Family = fn(quick: bool) -> Vec<Row>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 10] = [
+pub const ALL: [(&str, Family); 15] = [
     ("slope", slope::rows),
     ("capstan", capstan::rows),
     ("turntable", turntable::rows),
     ("rest", rest::rows),
     ("fast", fast::rows),
     ("inside", inside::rows),
+    ("lying", lying::rows),
+    ("cost", cost::rows),
+    ("pierced", pierced::rows),
+    ("curtain", curtain::rows),
+    ("tablecloth", tablecloth::rows),
     ("torn", torn::rows),
     ("drape", drape::rows),
     ("itself", itself::rows),

@@ -63,11 +63,11 @@ pub(super) const fn substeps(count: u32) -> StepSettings {
 pub(super) struct Trial {
     pub batch: ClothBatch,
     pub material: FabricMaterial,
-    drive: Drive,
+    pub drive: Drive,
     /// The settings of all ticks; none: substeps follow from need.
     settings: Option<StepSettings>,
     need: Need,
-    colliders: Vec<Collider>,
+    pub colliders: Vec<Collider>,
     ticks: u32,
     time: Duration,
 }
@@ -138,6 +138,12 @@ impl Trial {
     pub fn keep_layers_apart(&mut self, distance: Option<f32>) {
         let settings = distance.map(|thickness| SelfCollision { thickness });
         self.batch.set_self_collision(0, settings).expect("a good thickness");
+    }
+
+    /// The settings that the next tick will have.
+    pub fn next_settings(&self) -> StepSettings {
+        let by_need = || self.need.clone().settings(self.batch.fabric(), &self.drive, TICK);
+        self.settings.unwrap_or_else(by_need)
     }
 
     /// Advances by a tick.

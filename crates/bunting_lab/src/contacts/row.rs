@@ -17,6 +17,8 @@ pub struct Row {
     pub pass: bool,
     /// Mean time of a tick, with all its contacts, µs.
     pub us: f64,
+    /// Whether the figure is of times, which no two runs agree on.
+    pub is_of_times: bool,
 }
 
 impl Row {
@@ -35,6 +37,13 @@ impl Row {
             limit,
             pass: figure <= limit,
             us,
+            is_of_times: false,
         }
+    }
+
+    /// The row of a figure that is a time, or a ratio of times.
+    #[must_use]
+    pub(crate) fn of_times(self) -> Self {
+        Self { is_of_times: true, ..self }
     }
 }

@@ -221,8 +221,22 @@ impl Outline {
                 indices.extend(corners.map(|at| first + at as u32));
             }
         }
+        let used = used_vertices(positions.len(), &mut indices);
+        let positions = used.iter().map(|&vertex| positions[vertex]).collect();
+        let uv = used.iter().map(|&vertex| uv[vertex]).collect();
         let mesh = FabricBuilder::new(positions, indices);
         let mesh = if random.next() < 0.5 { mesh.uv(uv) } else { mesh };
         mesh.weld_distance(1e-4 * size)
     }
+}
+
+/// The vertices of triangles, in their order; the triangles' corners become places in this list.
+fn used_vertices(vertices: usize, corners: &mut [u32]) -> Vec<usize> {
+    let mut is_used = vec![false; vertices];
+    corners.iter().for_each(|&corner| is_used[corner as usize] = true);
+    let used: Vec<usize> = (0..vertices).filter(|&vertex| is_used[vertex]).collect();
+    for corner in corners {
+        *corner = used.partition_point(|&vertex| vertex < *corner as usize) as u32;
+    }
+    used
 }

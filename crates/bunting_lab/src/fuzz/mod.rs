@@ -5,7 +5,9 @@ mod meshes;
 mod pieces;
 mod sag;
 mod trial;
+mod verdicts;
 
 pub use meshes::Family;
 pub use sag::Sag;
 pub use trial::{Figures, Trial, of_seed};
+pub use verdicts::{SEEDS, verdicts};

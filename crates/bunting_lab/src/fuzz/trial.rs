@@ -76,6 +76,17 @@ pub fn of_seed(seed: u64, sags: bool) -> Trial {
     Trial { seed, family, outcome: measured.map_err(|error| error.to_string()) }
 }
 
+/// Time of building the mesh of a seed, s.
+pub fn time_to_build(seed: u64) -> f64 {
+    let mut random = Random::of_seed(seed);
+    let family = Family::ALL[random.below(Family::ALL.len())];
+    let builder = mesh(family, &mut random);
+    let start = Instant::now();
+    // Whether it is a cloth is another question.
+    let _ = builder.build();
+    start.elapsed().as_secs_f64()
+}
+
 /// Blows at a cloth, pulls it, and lets it rest.
 fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random, sags: bool) -> Figures {
     let solver = format!("{:?}", fabric.stretch_solver());

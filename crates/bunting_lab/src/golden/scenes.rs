@@ -13,15 +13,25 @@ use bunting_solver::{
 use glam::{Quat, Vec3, Vec3Swizzles};
 use parry3d::shape::SharedShape;
 
-use super::hash::StateHash;
+use super::{figures::figures, hash::StateHash};
+use crate::figure::Figure;
 use crate::meshes::{around, ball_with_poles, moebius};
 use crate::product::TICK;
 
 /// Number of ticks between two states that are hashed.
 const INTERVAL: u32 = 60;
 
-/// Runs a scene for some ticks in a batch of this width and hashes its states.
-pub type Run = fn(LaneCount, u32) -> u64;
+/// Runs a scene for some ticks in a batch of this width.
+pub type Run = fn(LaneCount, u32) -> SceneEnd;
+
+/// What is left of a run.
+#[derive(Clone, Debug)]
+pub struct SceneEnd {
+    /// Hash of the states.
+    pub hash: u64,
+    /// Figures of the hashed cloth at the end.
+    pub figures: Vec<Figure>,
+}
 
 /// A scene.
 #[derive(Clone, Copy, Debug)]
@@ -95,14 +105,20 @@ impl Pair {
     }
 
     /// Runs the scene for `ticks` ticks, driven by `drive`.
-    fn run(mut self, ticks: u32, drive: impl Fn(u32) -> Drive) -> u64 {
+    fn run(mut self, ticks: u32, drive: impl Fn(u32) -> Drive) -> SceneEnd {
         for tick in 0..ticks {
             self.tick(drive(tick));
             if (tick + 1).is_multiple_of(INTERVAL) {
                 self.hash();
             }
         }
-        self.hash.value()
+        self.end()
+    }
+
+    fn end(&self) -> SceneEnd {
+        let state = self.batch.snapshot(self.lane);
+        let figures = figures(self.batch.fabric(), &state.positions, &state.velocities);
+        SceneEnd { hash: self.hash.value(), figures }
     }
 }
 
@@ -116,7 +132,7 @@ fn yarns(substeps: u32, passes: u32) -> StepSettings {
     StepSettings { passes, ..StepSettings::yarns(substeps) }
 }
 
-fn flag_on_a_vehicle(lanes: LaneCount, ticks: u32) -> u64 {
+fn flag_on_a_vehicle(lanes: LaneCount, ticks: u32) -> SceneEnd {
     let grid = FabricBuilder::grid(Grid::new(33, 23, 1.5, 1.0));
     let fabric = Arc::new(grid.pin_where(|_, uv| uv.x == 0.0).build().expect("a flag"));
     Pair::new(&fabric, lanes, FabricMaterial::FLAG_POLYESTER, StepSettings::default()).run(
@@ -132,7 +148,7 @@ fn flag_on_a_vehicle(lanes: LaneCount, ticks: u32) -> u64 {
     )
 }
 
-fn stiff_sheet(lanes: LaneCount, ticks: u32) -> u64 {
+fn stiff_sheet(lanes: LaneCount, ticks: u32) -> SceneEnd {
     let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0)).pin([0, 16]);
     let fabric = Arc::new(grid.build().expect("a sheet"));
     let stiff = FabricMaterial { bend_stiffness: 0.05, ..FabricMaterial::COTTON };
@@ -166,12 +182,12 @@ fn holed_mesh() -> FabricBuilder {
     .pin_where(|at, _| at.x == 0.0)
 }
 
-fn mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
+fn mesh_in_wind(lanes: LaneCount, ticks: u32) -> SceneEnd {
     in_wind(holed_mesh(), lanes, ticks)
 }
 
 /// The same mesh on an arc.
-fn bent_mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
+fn bent_mesh_in_wind(lanes: LaneCount, ticks: u32) -> SceneEnd {
     let flat = holed_mesh();
     let around = |at: &Vec3| {
         let (sin, cos) = libm::sincosf(at.x / 0.5);
@@ -183,7 +199,7 @@ fn bent_mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
 }
 
 /// The same mesh of two pieces with warps at right angles.
-fn two_pieces_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
+fn two_pieces_in_wind(lanes: LaneCount, ticks: u32) -> SceneEnd {
     let whole = holed_mesh();
     let corners: Vec<Vec3> =
         whole.indices().iter().map(|&corner| whole.positions()[corner as usize]).collect();
@@ -196,7 +212,7 @@ fn two_pieces_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
 }
 
 /// The same mesh rolled up until its sides meet.
-fn closed_mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
+fn closed_mesh_in_wind(lanes: LaneCount, ticks: u32) -> SceneEnd {
     let flat = holed_mesh();
     let radius = 1.2 / core::f32::consts::TAU;
     let around = |at: &Vec3| {
@@ -209,22 +225,22 @@ fn closed_mesh_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
 }
 
 /// A ball without any opening: it is solved along the lines of its quads.
-fn ball_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
+fn ball_in_wind(lanes: LaneCount, ticks: u32) -> SceneEnd {
     in_wind(ball_with_poles(24, 12, 0.4).pin_where(|at, _| at.y > 0.39), lanes, ticks)
 }
 
 /// A strip that no grid and no net fits: it is solved along yarns that are laid across it.
-fn moebius_strip_in_wind(lanes: LaneCount, ticks: u32) -> u64 {
+fn moebius_strip_in_wind(lanes: LaneCount, ticks: u32) -> SceneEnd {
     in_wind(around(24, 8, true, moebius(0.1)).pin([0]), lanes, ticks)
 }
 
-fn in_wind(mesh: FabricBuilder, lanes: LaneCount, ticks: u32) -> u64 {
+fn in_wind(mesh: FabricBuilder, lanes: LaneCount, ticks: u32) -> SceneEnd {
     let fabric = Arc::new(mesh.build().expect("a mesh"));
     Pair::new(&fabric, lanes, FabricMaterial::COTTON, yarns(3, 2))
         .run(ticks, |tick| Drive { wind: gusts(tick), ..Drive::default() })
 }
 
-fn gauss_seidel(lanes: LaneCount, ticks: u32) -> u64 {
+fn gauss_seidel(lanes: LaneCount, ticks: u32) -> SceneEnd {
     let grid = FabricBuilder::grid(Grid::new(17, 13, 1.0, 1.0));
     let fabric = Arc::new(grid.pin_where(|_, uv| uv.y == 0.0).build().expect("a curtain"));
     let settings = StepSettings { passes: 2, ..StepSettings::gauss_seidel(5) };
@@ -235,7 +251,7 @@ fn gauss_seidel(lanes: LaneCount, ticks: u32) -> u64 {
     pair.run(ticks, |tick| Drive { wind: 0.5 * gusts(tick), ..Drive::default() })
 }
 
-fn free_sheet(lanes: LaneCount, ticks: u32) -> u64 {
+fn free_sheet(lanes: LaneCount, ticks: u32) -> SceneEnd {
     let grid = FabricBuilder::grid(Grid::new(17, 17, 1.0, 1.0));
     let coarse =
         Arc::new(grid.coarser().expect("a coarser grid").builder.build().expect("a sheet"));
@@ -275,15 +291,14 @@ fn free_sheet(lanes: LaneCount, ticks: u32) -> u64 {
             }
         }
     }
-    let mut hash = pair.hash;
-    hash.add(&other.batch.snapshot(other.lane).positions);
-    hash.value()
+    pair.hash.add(&other.batch.snapshot(other.lane).positions);
+    pair.end()
 }
 
 /// The scene of the example `flags`.
 const FLAGS: &str = include_str!("../../../../assets/scenes/flags.ron");
 
-fn plugin(lanes: LaneCount, ticks: u32) -> u64 {
+fn plugin(lanes: LaneCount, ticks: u32) -> SceneEnd {
     let scene = bunting_scenes::parse(FLAGS, "flags.ron".as_ref()).expect("a good scene");
     let tick = Duration::from_secs_f32(TICK);
     let mut app = App::new();
@@ -309,5 +324,14 @@ fn plugin(lanes: LaneCount, ticks: u32) -> u64 {
             }
         }
     }
-    hash.value()
+    // The figures are those of the first flag.
+    let world = app.world_mut();
+    let mut states = world.query::<(bevy_ecs::entity::Entity, &ClothState)>();
+    let first = states.iter(world).min_by_key(|(entity, _)| *entity);
+    let (_, state) = first.expect("eight flags");
+    let pairs = state.positions().iter().zip(state.previous_positions());
+    let velocities: Vec<Vec3> = pairs.map(|(now, before)| (*now - *before) / TICK).collect();
+    let fabric = state.fabric().expect("a flag that is built");
+    let figures = figures(fabric, state.positions(), &velocities);
+    SceneEnd { hash: hash.value(), figures }
 }
