@@ -75,6 +75,7 @@ fn a_wind_at_one_half_moves_that_half() {
         let blown = after(30, fabric, lanes, Vec3::ZERO, right);
         let corner = |particle: usize| blown[particle].z.abs();
         let (left, right) = (corner(16 * 17), corner(17 * 17 - 1));
+        eprintln!("PROBE wind {left} {right} {is_grid}");
         assert!(right > 0.05 && left < 0.4 * right, "{left} and {right} m, grid {is_grid}");
     }
 }

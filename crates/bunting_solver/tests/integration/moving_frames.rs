@@ -219,6 +219,7 @@ fn cloth_moves_as_in_a_frame_at_rest() {
                 let what = format!("{velocity} m/s, {rate} rad/s, {kind:?}, {acting:?}, {lanes:?}");
                 let follows = matches!((kind, acting), (Kind::Mesh | Kind::Holed, Acting::Nothing));
                 let bound = if follows { APART_FOLLOWING } else { APART };
+                eprintln!("PROBE frames {farthest} {what}");
                 assert!(farthest < bound, "{farthest} m: {what}");
             }
         }

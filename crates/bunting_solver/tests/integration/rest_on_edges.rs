@@ -46,5 +46,6 @@ const AT_REST: f32 = 0.03;
 #[test]
 fn a_sheet_on_a_box_comes_to_rest() {
     let speed = speed_on_box();
+    eprintln!("PROBE edges {speed}");
     assert!(speed < AT_REST, "{speed} m/s");
 }
