@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, FrameMotion, Grid,
-    LaneCount, StepSettings,
+    LaneCount, Scheme, StepSettings,
 };
 use glam::{Quat, Vec3};
 
@@ -30,8 +30,19 @@ fn cloth(fabric: &Arc<Fabric>, place: impl Fn(Vec3) -> Vec3) -> ClothBatch {
     batch
 }
 
+/// Greatest distance of a particle from the pin of its column, over that at rest.
+fn farthest_from_pins(fabric: &Fabric, positions: &[Vec3]) -> f32 {
+    let rest = fabric.rest_positions();
+    let free = (0..rest.len()).filter(|&particle| !fabric.is_pinned(particle));
+    let part = |particle: usize| {
+        let pin = Vec3::new(rest[particle].x, 0.0, 0.0);
+        positions[particle].distance(pin) / rest[particle].distance(pin)
+    };
+    free.map(part).fold(0.0, f32::max)
+}
+
 #[test]
-fn collapsed_starts_stay_finite() {
+fn collapsed_starts_stay_finite_and_hang_again() {
     let fabric = curtain(9);
     let places: [fn(Vec3) -> Vec3; 3] = [
         |_| Vec3::ZERO,
@@ -47,19 +58,26 @@ fn collapsed_starts_stay_finite() {
                     batch.step(TICK, settings);
                     assert!(batch.is_finite(0), "{settings:?}, start {index}, {wind}, tick {tick}");
                 }
+                // Folds may remain, but no column is drawn out: the worst is 6 % too long.
+                let farthest = farthest_from_pins(&fabric, &batch.snapshot(0).positions);
+                assert!(farthest < 1.1, "{settings:?}, start {index}, {wind}: {farthest}");
             }
         }
     }
 }
 
 #[test]
-fn odd_ticks_stay_finite_and_ticks_without_length_move_nothing() {
+fn odd_ticks_draw_nothing_out_and_ticks_without_length_move_nothing() {
     let fabric = curtain(5);
     for settings in SCHEMES {
         let mut batch = cloth(&fabric, |at| at);
         for tick in [TICK, 1e-6, TICK, 0.5, TICK, 5.0, TICK] {
             batch.step(tick, settings);
             assert!(batch.is_finite(0), "{settings:?}: {tick} s");
+            // Gauss–Seidel's sweeps do not reach through a curtain that has fallen for seconds; along yarns it is 2 % too long.
+            let farthest = farthest_from_pins(&fabric, &batch.snapshot(0).positions);
+            let is_held = settings.scheme == Scheme::GaussSeidel || farthest < 1.05;
+            assert!(is_held, "{settings:?}, {tick} s: {farthest}");
         }
         let before = batch.snapshot(0);
         for tick in [0.0, -1.0, f32::NAN, f32::INFINITY] {

@@ -75,8 +75,8 @@ fn a_wind_at_one_half_moves_that_half() {
         let blown = after(30, fabric, lanes, Vec3::ZERO, right);
         let corner = |particle: usize| blown[particle].z.abs();
         let (left, right) = (corner(16 * 17), corner(17 * 17 - 1));
-        eprintln!("PROBE wind {left} {right} {is_grid}");
-        assert!(right > 0.05 && left < 0.4 * right, "{left} and {right} m, grid {is_grid}");
+        // The left corner moves by 5 % of the right one's way, of a mesh by 7 %, as the cloth hangs together. In one wind both move alike.
+        assert!(right > 0.05 && left < 0.1 * right, "{left} and {right} m, grid {is_grid}");
     }
 }
 

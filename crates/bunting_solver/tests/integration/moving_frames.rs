@@ -199,9 +199,9 @@ fn ride(kind: Kind, lanes: LaneCount, acting: Acting, path: Path, frame_moves: b
 
 #[test]
 fn cloth_moves_as_in_a_frame_at_rest() {
-    /// m
+    /// m. The greatest is 0.33 mm. In frames whose motion is not felt the least is 28 mm, of the folded sheet after its tick 34 mm.
     const APART: f32 = 5e-4;
-    /// The same of two cloths of which one follows the nodes of its grid, m.
+    /// The same of two cloths of which one follows the nodes of its grid, m. The greatest is 1.12 mm.
     const APART_FOLLOWING: f32 = 1.3e-3;
     let paths =
         [(Vec3::new(20.0, 3.0, 5.0), 0.0), (Vec3::ZERO, 2.0), (Vec3::new(2.0, 0.0, 1.0), -1.0)];
@@ -219,7 +219,6 @@ fn cloth_moves_as_in_a_frame_at_rest() {
                 let what = format!("{velocity} m/s, {rate} rad/s, {kind:?}, {acting:?}, {lanes:?}");
                 let follows = matches!((kind, acting), (Kind::Mesh | Kind::Holed, Acting::Nothing));
                 let bound = if follows { APART_FOLLOWING } else { APART };
-                eprintln!("PROBE frames {farthest} {what}");
                 assert!(farthest < bound, "{farthest} m: {what}");
             }
         }

@@ -161,7 +161,7 @@ fn a_sheet_with_a_slit_has_its_materials_strain() {
     }
 }
 
-/// The families of yarns agree slowly. Without a first pass that goes farther the error is +40 %, with it +32 %.
+/// The families of yarns agree slowly. Without a first pass that goes farther the error is +40 %, with it +33 %.
 #[test]
 fn the_yarns_of_a_stiff_mesh_come_nearer_to_one_another_in_a_pass_that_goes_farther() {
     let expected = ISOTROPIC.area_density * GRAVITY / (2.0 * ISOTROPIC.weft_stiffness);
@@ -169,8 +169,7 @@ fn the_yarns_of_a_stiff_mesh_come_nearer_to_one_another_in_a_pass_that_goes_fart
     assert_eq!(fabric.stretch_solver(), StretchSolver::LaidYarns);
     let [sunk, speed] = hung(&fabric, ISOTROPIC);
     let error = sunk / expected - 1.0;
-    eprintln!("PROBE yarns {error} {speed}");
-    assert!(speed < 1e-3 && error.abs() < 0.36, "{error}, {speed} m/s");
+    assert!(speed < 1e-3 && error.abs() < 0.35, "{error}, {speed} m/s");
 }
 
 #[test]

@@ -63,8 +63,7 @@ fn a_closed_mesh_does_not_open_at_its_seam() {
 fn a_flag_without_a_background_grid_keeps_its_edges_in_wind() {
     let flag = with_a_slit(&irregular(17, 0.0), |at| at.x == 0.0);
     let [large, greatest] = strains_in_wind(flag, 121..480);
-    eprintln!("PROBE flag {large} {greatest}");
-    assert!(large < 0.2 && greatest < 0.35, "99.9 %: {large}, greatest: {greatest}");
+    assert!(large < 0.08 && greatest < 0.2, "99.9 %: {large}, greatest: {greatest}");
 }
 
 /// Displacement of each particle from rest after 20 ticks without air.
@@ -82,13 +81,14 @@ fn moved_by(gravity: Vec3, fabric: Fabric) -> Vec<Vec3> {
     rest.positions.iter().zip(&batch.snapshot(0).positions).map(|(a, b)| *b - *a).collect()
 }
 
-/// Without loads nothing moves: each mesh has its shape at rest. Cells beside holes of curved ones pulled by 0.8 mm.
+/// Without loads nothing moves: each mesh has its shape at rest. Cells beside holes of curved ones pulled by 0.8 mm. The cap, which
+/// curves both ways, moves by 0.053 mm, the others by less than 0.02 mm.
 #[test]
 fn a_mesh_without_loads_keeps_its_shape() {
     for (name, fabric) in of_all_kinds() {
         let moved = moved_by(Vec3::ZERO, fabric).into_iter().map(Vec3::length).fold(0.0, f32::max);
-        eprintln!("PROBE shape {name} {moved}");
-        assert!(moved < 1e-4, "{name}: {moved} m");
+        let most = if name == "cap" { 1e-4 } else { 3e-5 };
+        assert!(moved < most, "{name}: {moved} m");
     }
 }
 
