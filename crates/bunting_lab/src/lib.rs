@@ -38,4 +38,5 @@ pub mod simulation;
 pub mod specimen;
 pub mod stability;
 pub mod stats;
+pub mod surface;
 pub mod timing;

@@ -1,5 +1,6 @@
 //! Triangle meshes that are no grids, for trials of what artists model.
 
+pub(crate) mod clothes;
 pub(crate) mod delaunay;
 mod graded;
 mod rings;

@@ -5,12 +5,16 @@
 
 mod case;
 mod crumple;
+mod flags;
 mod levels;
+mod lone;
 mod motion;
 mod rig;
 mod sleep;
 mod soundness;
+mod stiff;
 mod storms;
+mod surfaces;
 mod sweeps;
 mod touch;
 mod weather;
@@ -21,7 +25,7 @@ pub use case::{HardCase, Status};
 pub type Family = fn(quick: bool) -> Vec<HardCase>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 9] = [
+pub const ALL: [(&str, Family); 15] = [
     ("sweeps of size, passes and rate", sweeps::cases),
     ("motion of pins and frames", motion::cases),
     ("wind and weight", weather::cases),
@@ -31,4 +35,10 @@ pub const ALL: [(&str, Family); 9] = [
     ("colliders", touch::cases),
     ("sleep", sleep::cases),
     ("soundness", soundness::cases),
+    ("surfaces of meshes that hang", surfaces::hung),
+    ("surfaces of meshes in wind", surfaces::blown),
+    ("stiff cloth at rest", stiff::at_rest),
+    ("taut cloth", stiff::taut),
+    ("flights of flags", flags::flights),
+    ("levels of flags", flags::levels),
 ];

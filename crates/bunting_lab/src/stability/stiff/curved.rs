@@ -1,0 +1,79 @@
+//! Tubes, napkins and sheets in frames, of ordinary stiffness.
+
+use std::sync::Arc;
+
+use bunting_solver::{Drive, Fabric, FabricBuilder, FabricMaterial};
+use glam::{DVec2, Vec3};
+
+use super::rests;
+use crate::{
+    flight::almost_at_rest,
+    meshes::{Sheet, Triangulation, around, clothes::disk},
+    stability::{case::HardCase, lone::Lone},
+};
+
+/// Radius and length of the tube, m, and its vertices around and along it.
+const TUBE: ([f32; 2], u32) = ([0.1, 0.63], 32);
+/// Bending stiffnesses of the tube, N·m: a heavy cotton, and a felt.
+const BENDING: [f32; 2] = [1e-4, 1e-3];
+/// Radius of the napkin and of its pedestal, m, and its vertices.
+const NAPKIN: ([f32; 2], usize) = ([0.075, 0.02], 393);
+/// Length of a frame's sides over those of the sheet in it.
+const FRAME: f32 = 1.01;
+/// Vertices along each side of that sheet.
+const SHEET: usize = 24;
+/// Damping, 1/s, and the time after which all of them rest, s.
+const DAMPING: f32 = 1.0;
+const SETTLED: f64 = 10.0;
+
+pub(super) fn cases() -> impl Iterator<Item = HardCase> {
+    let tubes = BENDING.map(|bending| {
+        let material = FabricMaterial { bend_stiffness: bending, ..FabricMaterial::FLAG_POLYESTER };
+        hung(format!("tube of {bending} N·m"), &tube(), material)
+    });
+    let of_napkin = [("cotton", FabricMaterial::COTTON), ("silk", FabricMaterial::SILK)];
+    let napkins = of_napkin.map(|(name, material)| {
+        hung(format!("napkin of {name} on a pedestal"), &napkin(), material)
+    });
+    tubes.into_iter().chain(napkins).chain([framed()])
+}
+
+/// Case of a cloth that hangs from its pins.
+fn hung(name: String, fabric: &Arc<Fabric>, material: FabricMaterial) -> HardCase {
+    let material = FabricMaterial { damping: DAMPING, ..material };
+    let mut cloth = Lone::new(fabric, &almost_at_rest(fabric), material, Drive::default());
+    rests(name, 0, cloth.late_speed(SETTLED))
+}
+
+/// A tube that hangs from its upper rim.
+fn tube() -> Arc<Fabric> {
+    let ([radius, length], count) = TUBE;
+    let mesh = around(count, count, false, |down, azimuth| {
+        let (sin, cos) = libm::sincosf(azimuth);
+        Vec3::new(radius * cos, -length * down, radius * sin)
+    });
+    Arc::new(mesh.pin_where(|at, _| at.y > -1e-6).build().expect("a good mesh"))
+}
+
+/// A round napkin, level, whose middle lies on a pedestal.
+fn napkin() -> Arc<Fabric> {
+    let ([radius, pedestal], count) = NAPKIN;
+    let disk = disk(radius, count);
+    let level = |at: &Vec3| Vec3::new(at.x, 0.0, -at.y);
+    let positions = disk.positions.iter().map(level).collect();
+    let mesh = FabricBuilder::new(positions, disk.indices).uv(disk.uv);
+    Arc::new(mesh.pin_where(|at, _| at.length() < pedestal).build().expect("a good mesh"))
+}
+
+/// An irregular sheet in a frame that is a little too large.
+fn framed() -> HardCase {
+    let sheet = Sheet::new(Triangulation::Delaunay, [SHEET; 2], DVec2::ONE, 1);
+    let is_border =
+        |at: Vec3| [at.x, -at.y].into_iter().any(|place| !(1e-6..1.0 - 1e-6).contains(&place));
+    let fabric = sheet.fabric(0.0, is_border);
+    let mut start = almost_at_rest(&fabric);
+    start.positions.iter_mut().for_each(|at| *at *= FRAME);
+    let material = FabricMaterial { damping: DAMPING, ..FabricMaterial::FLAG_POLYESTER };
+    let mut cloth = Lone::new(&fabric, &start, material, Drive::default());
+    rests("irregular sheet in a frame 1 % too large", 0, cloth.late_speed(SETTLED))
+}
