@@ -11,6 +11,19 @@ use crate::{
     golden::{self, GoldenHash},
 };
 
+/// Factor by which the figure of a known failure may exceed that of the list. Less: motion that an error drives is chaotic,
+/// and differs by a few per cent from edition to edition.
+const WORSE: f64 = 1.2;
+
+/// Identities of the list of known failures with their figures; none for those that are not compared.
+pub fn known_failures(list: &str) -> BTreeMap<&str, Option<f64>> {
+    let entry = |line| match str::split_once(line, '\t') {
+        Some((identity, figure)) => (identity, figure.parse().ok()),
+        None => (line, None),
+    };
+    list.lines().map(entry).collect()
+}
+
 /// Differences from the committed lists: the case or hash, and how it differs.
 #[derive(Debug, Default)]
 pub struct Differences(pub Vec<[String; 2]>);
@@ -20,8 +33,8 @@ impl Differences {
         self.0.push([what.into(), how.into()]);
     }
 
-    /// Compares cases with the list of known failures, one identity a line.
-    pub fn compare_cases(&mut self, known_failures: &str, cases: &[GateCase]) {
+    /// Compares cases with the list of known failures, an identity and a figure a line.
+    pub fn compare_cases(&mut self, list: &str, cases: &[GateCase]) {
         let mut counts = BTreeMap::new();
         for case in cases {
             *counts.entry(case.identity.as_str()).or_insert(0) += 1;
@@ -29,7 +42,8 @@ impl Differences {
         for (identity, count) in counts.iter().filter(|(_, count)| **count > 1) {
             self.add(*identity, format!("is the identity of {count} cases"));
         }
-        let known: BTreeSet<&str> = known_failures.lines().collect();
+        let figures = known_failures(list);
+        let known: BTreeSet<&str> = figures.keys().copied().collect();
         let of = |verdict: Verdict| {
             cases.iter().filter(move |case| case.verdict == verdict).map(|it| it.identity.as_str())
         };
@@ -41,6 +55,16 @@ impl Differences {
         for case in known.difference(&failing).filter(|case| !unclear.contains(**case)) {
             let how = if counts.contains_key(case) { "passes" } else { "does not exist" };
             self.add(*case, format!("is on the list of known failures, and {how}"));
+        }
+        let failing = cases.iter().filter(|case| case.verdict == Verdict::Fails);
+        for case in failing {
+            let known = figures.get(case.identity.as_str()).copied().flatten();
+            let (Some(known), Some(error)) = (known, case.error) else { continue };
+            // What is no number any more is worse than any.
+            if error.is_nan() || error > WORSE * known {
+                let how = format!("has {error:.3e}, worse than the {known:.3e} of the list");
+                self.add(&case.identity, how);
+            }
         }
     }
 
@@ -74,6 +98,7 @@ mod tests {
         let case = |&(identity, fails): &(&str, bool)| GateCase {
             identity: identity.into(),
             verdict: if fails { Verdict::Fails } else { Verdict::Passes },
+            error: None,
             figure: None,
         };
         verdicts.iter().map(case).collect()
@@ -101,12 +126,44 @@ mod tests {
 
     #[test]
     fn unclear_cases_may_be_known_to_fail_or_not() {
-        let unclear = GateCase { identity: "a".into(), verdict: Verdict::Unclear, figure: None };
+        let unclear =
+            GateCase { identity: "a".into(), verdict: Verdict::Unclear, error: None, figure: None };
         for known in ["", "a\n"] {
             let mut differences = Differences::default();
             differences.compare_cases(known, std::slice::from_ref(&unclear));
             assert!(differences.0.is_empty(), "{differences:?}");
         }
+    }
+
+    #[test]
+    fn a_known_failure_that_becomes_worse_is_a_difference() {
+        let failing = |error| {
+            [GateCase { identity: "a".into(), verdict: Verdict::Fails, error, figure: None }]
+        };
+        let count = |list: &str, error| {
+            let mut differences = Differences::default();
+            differences.compare_cases(list, &failing(error));
+            differences.0.len()
+        };
+        assert_eq!(count("a\t2.0\n", Some(2.3)), 0);
+        assert_eq!(count("a\t2.0\n", Some(2.5)), 1);
+        assert_eq!(count("a\t2.0\n", Some(f64::NAN)), 1);
+        // What is not compared.
+        assert_eq!(count("a\t–\n", Some(9.0)), 0);
+        assert_eq!(count("a\n", Some(9.0)), 0);
+    }
+
+    #[test]
+    fn a_line_of_the_list_is_read_as_it_is_written() {
+        let case = GateCase {
+            identity: "a, n = 1".into(),
+            verdict: Verdict::Fails,
+            error: Some(0.0123456),
+            figure: None,
+        };
+        assert_eq!(known_failures(&case.line())["a, n = 1"], Some(1.235e-2));
+        let unknown = GateCase { error: None, ..case };
+        assert_eq!(known_failures(&unknown.line())["a, n = 1"], None);
     }
 
     #[test]

@@ -7,7 +7,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::{
-    differences::Differences,
+    differences::{Differences, known_failures},
     figures,
     gate_cases::{GateCase, Verdict},
     gate_jobs::{self, Measured},
@@ -29,7 +29,7 @@ pub struct Options {
     hashes: bool,
 }
 
-/// The committed list of cases that are known to fail, one identity a line.
+/// The committed list of cases that are known to fail, a line with the identity of each and its figure.
 const KNOWN_FAILURES: &str = include_str!("../../expected/known_failures.txt");
 /// Folder of the committed lists.
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/expected");
@@ -102,17 +102,16 @@ fn write(
     write_list("figures.tsv", &figures::list(figures::EXPECTED, figures)?)
 }
 
-/// The cases that fail, and those of the list that are unclear, one a line.
+/// The lines of the cases that fail, and of those of the list that are unclear.
 fn failing(known: &str, cases: &[GateCase]) -> String {
-    let known: BTreeSet<&str> = known.lines().collect();
+    let known = known_failures(known);
     let fails = |case: &&GateCase| match case.verdict {
         Verdict::Passes => false,
         Verdict::Fails => true,
-        Verdict::Unclear => known.contains(case.identity.as_str()),
+        Verdict::Unclear => known.contains_key(case.identity.as_str()),
     };
-    let failing: BTreeSet<&str> =
-        cases.iter().filter(fails).map(|case| case.identity.as_str()).collect();
-    failing.iter().map(|case| format!("{case}\n")).collect()
+    let failing: BTreeSet<String> = cases.iter().filter(fails).map(GateCase::line).collect();
+    failing.iter().map(|line| format!("{line}\n")).collect()
 }
 
 fn write_list(file: &str, list: &str) -> Result<()> {

@@ -29,15 +29,27 @@ pub struct GateCase {
     pub identity: String,
     /// What became of it.
     pub verdict: Verdict,
-    /// What was measured; none of times, which change from run to run.
+    /// What must not exceed a limit, less being better; none of times, which change from run to run.
+    pub error: Option<f64>,
+    /// What was measured, as the file of figures watches it; none of times.
     pub figure: Option<Figure>,
 }
 
 impl GateCase {
+    /// A case whose figure is what must not exceed the limit.
     fn new(identity: String, passes: bool, value: f64, limit: f64) -> Self {
         let verdict = if passes { Verdict::Passes } else { Verdict::Fails };
         let figure = Some(Figure::of_case(identity.clone(), value, limit));
-        Self { identity, verdict, figure }
+        Self { identity, verdict, error: Some(value), figure }
+    }
+
+    /// The line of the case in the list of known failures: its identity and its error, a dash where that is not compared.
+    #[must_use]
+    pub fn line(&self) -> String {
+        match self.error {
+            Some(error) if error.is_finite() => format!("{}\t{error:.3e}", self.identity),
+            _ => format!("{}\t–", self.identity),
+        }
     }
 
     /// A closed form.
@@ -45,7 +57,8 @@ impl GateCase {
     pub fn of_oracle(case: &oracles::Case) -> Self {
         let identity = format!("oracles: {}", case.name);
         let allowed = case.tolerance * case.expected;
-        Self::new(identity, case.pass, case.measured, allowed)
+        let error = Some(case.relative_error);
+        Self { error, ..Self::new(identity, case.pass, case.measured, allowed) }
     }
 
     /// A hard case; none where it was not run.
@@ -69,7 +82,7 @@ impl GateCase {
         let unclear = row.limit / UNCLEAR..=row.limit * UNCLEAR;
         let is_unclear = unclear.contains(&value);
         let verdict = if is_unclear { Verdict::Unclear } else { case.verdict };
-        Self { verdict, figure: None, ..case }
+        Self { verdict, error: None, figure: None, ..case }
     }
 }
 

@@ -21,7 +21,7 @@ const SIZES: [usize; 3] = [33, 17, 9];
 const CONVERGED: f64 = 2.55;
 /// Factor by which the greatest strain may exceed it.
 const STRAIN: f64 = 1.5;
-/// Substeps of a flag that is nearly converged. With 64 its speed differs by less than flights do.
+/// Substeps of a flag that is nearly converged.
 const MANY: StepSettings = StepSettings { passes: 2, ..StepSettings::yarns(32) };
 /// Mean winds, m/s.
 const WINDS: [f32; 3] = [6.0, 12.0, 25.0];
