@@ -68,7 +68,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     fn is_drawn_out(&self, cloth: usize, contact: &Contact, push: &Push) -> bool {
         let Some(tether) = self.tether_of(cloth, push.particle) else { return false };
         let pin = self.position_of(cloth, tether.pin);
-        let reach = self.parameters.tether_stretch[0].lanes()[cloth] * tether.length;
+        let [_, of_nearest] = &self.parameters.tether_stretch;
+        let reach = of_nearest.lanes()[Y::lanes(cloth).start] * tether.length;
         let distance = contact.end(push).distance(pin);
         distance > DRAWN_OUT * reach || distance > reach && contact.contains(pin)
     }

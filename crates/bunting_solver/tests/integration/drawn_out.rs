@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, Grid,
-    LaneCount, StepSettings,
+    LaneCount, LinkFamily, StepSettings,
 };
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
@@ -17,16 +17,16 @@ const SPEED: f32 = 10.0;
 
 /// A sheet of a square metre that is held at its left side, or at both.
 fn sheet(both: bool) -> (Arc<Fabric>, ClothBatch) {
+    sheet_of(both, FabricMaterial::COTTON)
+}
+
+fn sheet_of(both: bool, material: FabricMaterial) -> (Arc<Fabric>, ClothBatch) {
     let grid = FabricBuilder::grid(Grid::new(SIZE as u32, SIZE as u32, 1.0, 1.0));
     let held = grid.pin_where(|_, uv| uv.x == 0.0 || both && uv.x == 1.0);
     let fabric = Arc::new(held.build().expect("a good fabric"));
     let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
-    let material = FabricMaterial {
-        damping: 4.0,
-        thickness: 2e-3,
-        surface_friction: 0.5,
-        ..FabricMaterial::COTTON
-    };
+    let material =
+        FabricMaterial { damping: 4.0, thickness: 2e-3, surface_friction: 0.5, ..material };
     let lane = batch.insert(&ClothSnapshot::at_rest(&fabric), material).expect("a free lane");
     // The sheet lies in the xy plane.
     let fall = Drive { gravity: Vec3::new(0.0, 0.0, -9.81), ..Drive::default() };
@@ -96,4 +96,23 @@ fn cloth_with_its_pins_within_a_pole_comes_to_rest_unstretched() {
     (0..300).for_each(|_| batch.step(TICK, StepSettings::default()));
     assert!(longest(&fabric, &batch) < 1.1, "{}", longest(&fabric, &batch));
     assert!(fastest(&batch) < 0.02, "{} m/s", fastest(&batch));
+}
+
+/// Its diagonals are as long as they are drawn, and say nothing about how far its particles may be from their pins.
+#[test]
+fn limp_cloth_with_its_pins_within_a_pole_comes_to_rest_unstretched() {
+    let limp = FabricMaterial { shear_stiffness: 0.0, ..FabricMaterial::COTTON };
+    let (fabric, mut batch) = sheet_of(false, limp);
+    let pole = SharedShape::capsule_y(2.0, 0.15);
+    let pole = Collider::fixed(pole, Vec3::new(0.0, -0.5, 0.0), Quat::IDENTITY);
+    batch.set_colliders(0, [pole]).expect("a good shape");
+    (0..300).for_each(|_| batch.step(TICK, StepSettings::default()));
+    let positions = batch.snapshot(0).positions;
+    let straight = fabric.links().iter().filter(|link| link.family != LinkFamily::Diagonal);
+    let longest = straight.map(|link| {
+        let [from, to] = link.particles.map(|end| positions[end as usize]);
+        from.distance(to) / link.rest_length
+    });
+    let longest = longest.fold(0.0, f32::max);
+    assert!(longest < 1.1, "{longest}");
 }
