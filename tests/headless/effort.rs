@@ -7,7 +7,7 @@ use bevy_bunting::bunting_solver::{EffortCause, LaneCount};
 use bevy_bunting::prelude::*;
 use bevy_bunting::{ClothBatches, ClothEffort, CostTable, LodCosts, LodReport};
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
+use bevy_math::{Quat, Vec3};
 use bevy_time::{Fixed, Time};
 use bevy_transform::prelude::*;
 use bunting_tests::{Bits, TICK, app, assert_finite, bits, run, state, stretches};
@@ -211,6 +211,57 @@ fn cloth_that_is_pulled_against_a_shape_is_solved_finer() {
     run(&mut app, 5 * A_WHILE);
     assert_eq!(effort(&app, cloth).cause(), EffortCause::Weight);
     assert_eq!(substeps(&app, cloth), 2);
+}
+
+/// A capsule of 5 cm walks at 0.7 m/s through a sheet that hangs from its upper edge. It touches some twenty of 1,089
+/// particles, and its upper end draws them along.
+#[test]
+fn small_shapes_that_draw_cloth_along_are_solved_finer() {
+    const RADIUS: f32 = 0.05;
+    const HALF: f32 = 0.8;
+    const SPEED: f32 = 0.7;
+    let mut app = app();
+    let held = Attachment::in_place(ClothEdge::Top);
+    let place = Transform::from_xyz(-0.6, 2.0, 0.0);
+    let sheet = (ClothMesh::grid(33, 33, 1.2, 2.0), ClothMaterial::COTTON, held, place);
+    let cloth = app.world_mut().spawn(sheet).id();
+    let at = |z: f32| Transform::from_xyz(0.0, HALF + RADIUS, z);
+    let capsule = app.world_mut().spawn((ClothCollider::capsule(HALF, RADIUS), at(-0.1))).id();
+    run(&mut app, A_WHILE);
+    assert_eq!(substeps(&app, cloth), 2);
+    let mut longest = 0.0_f32;
+    for tick in 0..160 {
+        let z = -0.1 + SPEED * TICK * tick as f32;
+        *app.world_mut().get_mut::<Transform>(capsule).expect("a capsule") = at(z);
+        run(&mut app, 1);
+        longest = stretches(&app, cloth).fold(longest, f32::max);
+        // The cloth does not pass through.
+        let middle = Vec3::new(0.6, HALF + RADIUS - 2.0, z);
+        let depth = |at: &Vec3| {
+            let axis = middle.with_y(at.y.clamp(middle.y - HALF, middle.y + HALF));
+            RADIUS - axis.distance(*at)
+        };
+        let deepest = state(&app, cloth).positions().iter().map(depth).fold(0.0, f32::max);
+        assert!(deepest < 0.01, "{deepest} m at {z} m");
+    }
+    assert_eq!(effort(&app, cloth).cause(), EffortCause::Contacts);
+    // With the mean over all particles 3 to 4.
+    assert!(longest < 1.3, "{longest}");
+}
+
+/// A sheet that lies on a ball takes no more substeps than it would without.
+#[test]
+fn cloth_that_rests_on_a_large_shape_is_not_solved_finer() {
+    let mut app = app();
+    let lies = Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2);
+    let place = Transform::from_xyz(-0.5, 0.31, -0.5).with_rotation(lies);
+    let cloth = (ClothMesh::grid(33, 33, 1.0, 1.0), ClothMaterial::COTTON, place);
+    let cloth = app.world_mut().spawn(cloth).id();
+    app.world_mut().spawn((ClothCollider::ball(0.3), Transform::default()));
+    run(&mut app, 8 * A_WHILE);
+    assert_eq!(substeps(&app, cloth), 2, "{:?}", effort(&app, cloth).loads());
+    let longest = stretches(&app, cloth).fold(0.0, f32::max);
+    assert!(longest < 1.1, "{longest}");
 }
 
 /// Velocity of the pole, m/s.

@@ -27,7 +27,10 @@ pub(crate) const LEAST_LINK_COMPLIANCE: f32 = 1e-6;
 /// are denormal numbers, which are slow.
 pub(crate) const GREATEST_COMPLIANCE: f32 = 1e14;
 
-/// The length L of cloth without pins where substeps are chosen, in links: κ = ¾ β²/ε of contacts (`step/effort.rs`), with
-/// the integrator's β = ⅔ and ε = 0.1 the greatest strain of links by contacts. Smaller: strips that are pulled hard over a
-/// shape slip too early. Larger: cloth that lies on a shape takes more substeps without need.
-pub(crate) const FREE_LENGTH: f32 = 0.75 * 4.0 / 9.0 / 0.1;
+/// Effective length β of a substep in units of its length, of the mean of BDF2 and BDF3 in equal substeps (`step/bdf.rs`).
+pub(crate) const BETA: f32 = 0.6;
+
+/// The length L of cloth without pins where substeps are chosen, in links: ¾ β²/ε, so that links of cloth that lies on a floor are
+/// strained by at most ε = 0.1 by contacts (`step/effort.rs`). Smaller: strips that are pulled hard over a shape slip too
+/// early. Larger: cloth that falls freely takes more substeps without need.
+pub(crate) const FREE_LENGTH: f32 = 0.75 * BETA * BETA / 0.1;

@@ -8,22 +8,50 @@ use crate::batch::layout::Layout;
 use crate::simd::lane::Pack;
 use crate::step::effort::Loads;
 
-/// The sum, over a cloth's contacts in a tick, of the squares of the accelerations by steady pushes, m²/s⁴.
+/// Sums over a cloth's contacts in a tick of the accelerations by steady pushes.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Pressing(f32);
+pub(crate) struct Pressing {
+    /// Sum of the squares, m²/s⁴.
+    squares: f64,
+    /// Sum of the cubes, m³/s⁶.
+    cubes: f64,
+}
 
 impl Pressing {
     /// Adds the acceleration of a particle by the steady part of a push, m/s².
     pub fn add(&mut self, acceleration: Vec3) {
-        self.0 += acceleration.length_squared();
+        let size = f64::from(acceleration.length());
+        self.squares += size * size;
+        self.cubes += size * size * size;
+    }
+
+    /// The mean of the accelerations, each weighted by its square, m/s²: what presses where the cloth is pressed most. Neither
+    /// the particles that nothing touches count nor those along which a shape brushes.
+    fn mean(&self) -> f32 {
+        if self.squares > 0.0 { (self.cubes / self.squares) as f32 } else { 0.0 }
     }
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Load of the colliders that pressed a cloth in this tick, m/s².
     pub fn contact_load(&self, cloth: usize, state: &LaneState) -> f32 {
-        let counted = self.fabric.particle_count() as f32 * self.clock.begun as f32;
-        let pressing = (state.pressing.0 / counted.max(1.0)).sqrt();
-        Loads::of_contacts(&self.fabric_of(cloth).fabric, pressing)
+        Loads::of_contacts(&self.fabric_of(cloth).fabric, state.pressing.mean())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twenty particles that are pressed hard, among none or a thousand that are hardly.
+    #[test]
+    fn what_presses_hard_counts_however_little_it_is() {
+        for others in [0, 1000] {
+            let mut pressing = Pressing::default();
+            (0..20).for_each(|_| pressing.add(500.0 * Vec3::Y));
+            (0..others).for_each(|_| pressing.add(Vec3::X));
+            assert!((pressing.mean() / 500.0 - 1.0).abs() < 1e-3, "{}", pressing.mean());
+        }
+        assert_eq!(Pressing::default().mean(), 0.0);
     }
 }

@@ -1,6 +1,6 @@
 //! The backward differentiation formula of a substep, and the history from which it is selected.
 
-use crate::constants::GRAVITY;
+use crate::constants::{BETA, GRAVITY};
 use crate::simd::lane::Pack;
 use crate::stability::pole::PoleTurn;
 use crate::stability::spin::Disturbance;
@@ -28,7 +28,7 @@ impl Formula {
     /// With a larger fraction of BDF3, undamped oscillations would grow (BDF2OPT, Vatsa, Carpenter and
     /// Lockard 2010, has 0.48 of BDF3 where this has 0.5).
     pub const BDF2_OPT: Self =
-        Self { extrapolation: [0.5, -0.1], beta: 0.6, inverse_extrapolation: 2.5 };
+        Self { extrapolation: [0.5, -0.1], beta: BETA, inverse_extrapolation: 2.5 };
 
     /// BDF2 for a substep of h seconds after one of h₁ (Curtiss and Hirschfelder 1952):
     /// (1 + a) Δ = (h/h₁) a Δ₁ + h ẋ with a = h/(h + h₁).

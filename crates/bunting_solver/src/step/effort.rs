@@ -11,19 +11,19 @@
 //! - *Motion*: ¾ ω² l, with ω the rate at which links turn (root mean square). Directions of links are frozen in a
 //!   pass, and what a turn leaves unsolved is carried along the L/l links of a chain: N = T ω √(L/l).
 //! - *Contacts*: what chains pull into a collider in a substep h, contacts push out again, and links there are strained
-//!   by (β h)² p/l, with p the acceleration by which contacts press steadily (root mean square over all particles). The
-//!   acceleration κ p l/L, with κ = ¾ β²/ε, keeps that strain below ε.
+//!   by (β h)² p/l, with p the acceleration by which contacts press steadily where they press most (the mean over contacts,
+//!   weighted by squares). The acceleration κ p l/L, with κ = ¾ β²/ε, keeps that strain below ε.
 //! - *Flung cloth* moves fast on a wide path, v ω > 22 m/s² and v/ω > 0.2 L, and cracks like a whip where it turns back.
 //!   It takes 300 substeps a second, as an acceleration ¾ (300/s)² l²/L; fewer where that is more than 640 m/s², as of
 //!   links longer than 10 cm in cloth of a metre.
 //!
-//! Cloth without pins has no length L, and counts as κ links long: then κ p l/L is p.
+//! Cloth without pins has no length L, and counts as a few links long (`FREE_LENGTH` in `constants.rs`).
 //!
 //! [`StepLimits::of_fabric`]: crate::StepLimits::of_fabric
 
 use glam::Vec3;
 
-use crate::constants::FREE_LENGTH;
+use crate::constants::{BETA, FREE_LENGTH};
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::step::Drive;
 use crate::step::frame::FrameMotion;
@@ -42,6 +42,13 @@ const PART_OF_AIR_AND_FRAME: f32 = 1.0 / 3.0;
 
 /// Acceleration of a link that turns, over ω² l.
 const OF_TURN: f32 = 0.75;
+
+/// Greatest strain ε of links by contacts, where a shape presses most. Smaller: a sheet of 33 × 33 that rests on a ball or a
+/// box takes half as many substeps again without need. Larger: sheets are drawn out by small shapes that they are pulled over.
+const GREATEST_CONTACT_STRAIN: f32 = 0.2;
+
+/// The factor κ = ¾ β²/ε of contacts.
+const OF_CONTACTS: f32 = 0.75 * BETA * BETA / GREATEST_CONTACT_STRAIN;
 
 /// Speed times turn rate of links (root mean squares) above which cloth may be flung, m/s². Smaller: sheets that swing
 /// without a whip take more substeps. Larger: whips gain energy before they have more.
@@ -146,7 +153,8 @@ impl Loads {
     /// The load κ p l/L of colliders that press the cloth with an acceleration p, m/s².
     #[must_use]
     pub(crate) fn of_contacts(fabric: &Fabric, pressing: f32) -> f32 {
-        pressing * (FREE_LENGTH * fabric.shortest_link() / fabric.reach()).min(1.0)
+        let link = fabric.shortest_link();
+        OF_CONTACTS * pressing * link / fabric.reach().max(FREE_LENGTH * link)
     }
 
     /// The same from sums over the probes of a fabric: of the squared angles by which they turn in the tick, rad², and of
