@@ -56,6 +56,8 @@ struct SolveGuides<'a, P: Pack> {
 struct Sphere<L> {
     /// Centres at the start and at the end of the substep, m.
     centres: [V3<L>; 2],
+    /// Unit vector along which a particle leaves the centre.
+    outwards: V3<L>,
     radius: L,
     /// 1 for the inside, −1 for the outside.
     side: L,
@@ -69,14 +71,17 @@ impl<P: Pack> Kernel<P> for SolveGuides<'_, P> {
         let parts = [L::splat(token, from), L::splat(token, to)];
         let one = L::splat(token, 1.0);
         for (at, guide) in self.guides.iter().enumerate() {
+            let outwards = V3::load(token, &guide.normal);
             let around = Sphere {
                 centres: along(token, &guide.places, parts),
+                outwards,
                 radius: L::load(token, &guide.max_distance),
                 side: one,
             };
             self.hold(token, &frame, at, &around);
             let behind = Sphere {
                 centres: along(token, &guide.behind, parts),
+                outwards,
                 radius: L::load(token, &guide.radius),
                 side: -one,
             };
@@ -115,8 +120,10 @@ impl<P: Pack> SolveGuides<'_, P> {
         if !crossed.any() {
             return;
         }
-        let distance = squared.sqrt().max(L::splat(token, LEAST_LENGTH));
-        let outwards = away * (L::splat(token, 1.0) / distance);
+        let distance = squared.sqrt();
+        let least = L::splat(token, LEAST_LENGTH);
+        let outwards = away * (L::splat(token, 1.0) / distance.max(least));
+        let outwards = sphere.outwards.or_where_not(distance.lt(least), outwards);
         let after = sphere.centres[1].plus_scaled(outwards, sphere.radius);
         after.or_where_not(crossed, before).store(&mut self.position[at]);
 

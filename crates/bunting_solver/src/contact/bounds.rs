@@ -8,6 +8,7 @@ use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::simd::lane::Pack;
 use crate::simd::vec3::Pack3;
+use crate::step::guides::ClothGuides;
 
 /// Least and greatest coordinates in each lane, m, and the square of the greatest speed, m²/s².
 struct Extent<P: Pack> {
@@ -47,9 +48,24 @@ pub(super) fn moved_by_forces(state: &LaneState, tick: f32) -> f32 {
     state.drive.gravity.length() * tick * tick + wind * tick
 }
 
+/// Greatest distance over which moving pins, holds and guides drag a particle within a tick, m, given the positions of the
+/// particles at its start. Cloth that hangs on them moves no farther than they do.
+pub(super) fn dragged_by_anchors(state: &LaneState, position: impl Fn(u32) -> Vec3) -> f32 {
+    let pins = state.moving_pins.now.iter().chain(&state.moving_pins.next);
+    let by_pins = pins.map(|pin| pin.from.distance(pin.to));
+    let holds = state.holds.iter().flat_map(|holds| &holds.list);
+    let by_holds = holds.map(|hold| {
+        let at = position(hold.particle);
+        hold.by.place(1.0, at).distance(at)
+    });
+    let by_guides = state.guides.iter().map(ClothGuides::greatest_way);
+    by_pins.chain(by_holds).chain(by_guides).fold(0.0, f32::max)
+}
+
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// For each lane with a cloth, the box around all positions that its particles reach in a tick of `tick`
-    /// seconds without contacts, relative to the frame at the start of the tick, with the cloth's thickness, m.
+    /// seconds without contacts, relative to the frame at the start of the tick, with the cloth's thickness, m. Pins,
+    /// holds and guides drag particles.
     pub fn swept_bounds(&self, tick: f32) -> Vec<Option<Aabb>> {
         let extent = Extent::of(self.positions.packs(), &self.velocity);
         let bounds_of = |(cloth, state): (usize, &Option<LaneState>)| {
@@ -65,7 +81,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 squared_speed = squared_speed.max(extent.squared_speed.lanes()[lane]);
             }
             let by_speed = squared_speed.sqrt() * tick;
-            let reach = state.material.thickness + by_speed + moved_by_forces(state, tick);
+            let dragged = dragged_by_anchors(state, |particle| self.position_of(cloth, particle));
+            let by_forces = moved_by_forces(state, tick);
+            let reach = state.material.thickness + by_speed.max(dragged) + by_forces;
             Some(Aabb::new(all.mins - reach, all.maxs + reach))
         };
         self.lanes.iter().enumerate().map(bounds_of).collect()

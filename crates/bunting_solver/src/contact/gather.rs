@@ -5,7 +5,7 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
-use crate::contact::bounds::moved_by_forces;
+use crate::contact::bounds::{dragged_by_anchors, moved_by_forces};
 use crate::contact::candidates::Candidates;
 use crate::contact::collider::Collider;
 use crate::contact::near::swept_box;
@@ -26,7 +26,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let Some(state) = state else { continue };
             let by_forces = moved_by_forces(state, tick);
             state.pressing = Pressing::default();
-            let LaneState { material, drive, colliders, contacts, reactions, .. } = state;
+            let LaneState { colliders, contacts, reactions, .. } = state;
             contacts.resize_with(colliders.len(), Candidates::default);
             let reports = colliders.iter().any(|collider| collider.reports_as.is_some());
             reactions.resize_with(if reports { colliders.len() } else { 0 }, Default::default);
@@ -35,12 +35,18 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 continue;
             }
             // Particles reach what lies within their way in the moving frame, in any direction, since other particles
-            // turn them, and within the greatest way that gravity and wind can add in the tick.
-            let common = material.thickness + by_forces;
+            // turn them, and within the greatest way that gravity and wind can add in the tick. What drags the cloth moves a
+            // particle that rests, too.
             self.layout.read(positions, cloth, &mut at);
             self.layout.read(&self.velocity, cloth, &mut velocities);
-            boxes.set(&at, &velocities, &Sweep { motion: drive.motion, tick, common });
-            for (collider, candidates) in colliders.iter().zip(contacts) {
+            let sweep = Sweep {
+                motion: state.drive.motion,
+                tick,
+                common: state.material.thickness + by_forces,
+                dragged: dragged_by_anchors(state, |particle| at[particle as usize]),
+            };
+            boxes.set(&at, &velocities, &sweep);
+            for (collider, candidates) in state.colliders.iter().zip(&mut state.contacts) {
                 gather_candidates(&self.fabric, collider, &boxes, candidates);
             }
         }

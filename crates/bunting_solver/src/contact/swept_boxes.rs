@@ -26,6 +26,8 @@ pub(super) struct Sweep {
     pub tick: f32,
     /// Distance that each particle may reach besides its way, m.
     pub common: f32,
+    /// Least length of the way of each particle, m: what drags the cloth moves those that rest, too.
+    pub dragged: f32,
 }
 
 /// Least and greatest coordinates of eight boxes, axis by axis, m. A box that is missing meets no other.
@@ -63,7 +65,7 @@ impl Block {
         }
         for (axis, at) in at.iter().enumerate() {
             for place in 0..positions.len().min(WIDTH) {
-                let reach = sweep.common + squared[place].sqrt();
+                let reach = sweep.common + squared[place].sqrt().max(sweep.dragged);
                 self.least[axis][place] = at[place] - reach;
                 self.greatest[axis][place] = at[place] + reach;
             }
@@ -160,7 +162,7 @@ mod tests {
 
     /// Boxes of particles at rest in a frame at rest, each as large as its thickness.
     fn resting(positions: &[Vec3]) -> SweptBoxes {
-        let sweep = Sweep { motion: FrameMotion::NONE, tick: 0.1, common: 0.25 };
+        let sweep = Sweep { motion: FrameMotion::NONE, tick: 0.1, common: 0.25, dragged: 0.0 };
         let mut boxes = SweptBoxes::default();
         boxes.set(positions, &vec![Vec3::ZERO; positions.len()], &sweep);
         boxes
@@ -196,7 +198,7 @@ mod tests {
         boxes.set(
             &positions,
             &[Vec3::ZERO, goes_along / tick],
-            &Sweep { motion, tick, common: 0.1 },
+            &Sweep { motion, tick, common: 0.1, dragged: 0.0 },
         );
         // The first one is at (0, −1) in the new frame.
         let reaches = [0, 1].map(|particle| boxes.get(particle).maxs.z);

@@ -103,6 +103,8 @@ pub(crate) struct GuidePack<P: Pack> {
     pub places: [Pack3<P>; 2],
     /// Centres of the backstops at the start and at the end of the tick, m.
     pub behind: [Pack3<P>; 2],
+    /// Unit normals at the end of the tick: the way out of the centre of a backstop.
+    pub normal: Pack3<P>,
     /// Greatest distances from the places, m; infinite where there is no limit.
     pub max_distance: P,
     /// Radii of the backstops, m; zero where there is none.
@@ -114,6 +116,7 @@ impl<P: Pack> GuidePack<P> {
         Self {
             places: [splat3(Vec3::ZERO); 2],
             behind: [splat3(Vec3::ZERO); 2],
+            normal: splat3(Vec3::ZERO),
             max_distance: P::splat(f32::INFINITY),
             radius: P::splat(0.0),
         }
@@ -123,6 +126,24 @@ impl<P: Pack> GuidePack<P> {
     fn set(&mut self, lane: usize, max_distance: f32, radius: f32) {
         self.max_distance.lanes_mut()[lane] = max_distance;
         self.radius.lanes_mut()[lane] = radius;
+    }
+}
+
+impl ClothGuides {
+    /// Has them written at the next tick into a batch that does not hold them yet.
+    pub fn write_again(&mut self) {
+        if self.phase == Phase::Resting {
+            self.phase = Phase::Moving;
+        }
+    }
+
+    /// Greatest way of the place of a particle that has a limit, in a tick that has not ended, m.
+    pub fn greatest_way(&self) -> f32 {
+        if self.phase == Phase::Resting {
+            return 0.0;
+        }
+        let limited = self.guides.iter().filter(|guide| guide.max_distance < f32::INFINITY);
+        limited.map(|guide| guide.places[0].distance(guide.places[1])).fold(0.0, f32::max)
     }
 }
 
@@ -176,6 +197,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                             set_lane3(&mut pack.places[end], lane, guide.places[source]);
                             set_lane3(&mut pack.behind[end], lane, behind[source]);
                         }
+                        set_lane3(&mut pack.normal, lane, guide.normals[1]);
                         // A pinned particle is where it is held.
                         if !fabric.is_pinned(particle) {
                             pack.set(lane, guide.max_distance, guide.backstop.radius);

@@ -312,3 +312,32 @@ fn bad_guides_are_refused() {
         assert_eq!(batch.set_guides(0, guides), Err(BatchError::Guide { particle: 5 }));
     }
 }
+
+/// The centre of the backstop lies at the particle, so that no direction leads out of it but that of the animated normal.
+#[test]
+fn a_particle_at_the_centre_of_a_backstop_leaves_it_along_the_normal() {
+    const RADIUS: f32 = 0.1;
+    let fabric = grid(false);
+    let rest = fabric.rest_positions();
+    let normal = Vec3::new(0.6, 0.0, 0.8);
+    let backstop = Backstop { distance: 0.02, radius: RADIUS };
+    let out = normal * (backstop.distance + RADIUS);
+    for &lanes in LaneCount::available() {
+        let mut batch = ClothBatch::new(Arc::clone(&fabric), lanes);
+        batch.insert(&ClothSnapshot::at_rest(&fabric), undamped()).expect("a good cloth");
+        let drive = Drive { gravity: Vec3::ZERO, air_density: 0.0, ..Drive::default() };
+        batch.drive(0, drive).expect("a good drive");
+        let guides = rest.iter().map(|&at| Guide {
+            places: [at + out; 2],
+            normals: [normal; 2],
+            backstop,
+            ..guide(at)
+        });
+        batch.set_guides(0, guides.collect()).expect("good guides");
+        batch.step(TICK, StepSettings::default());
+        for (after, at) in batch.snapshot(0).positions.iter().zip(rest) {
+            let moved = *after - *at;
+            assert!(moved.distance(RADIUS * normal) < 1e-3, "{moved}");
+        }
+    }
+}
