@@ -5,7 +5,7 @@ use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::partitioning::Bvh;
 use parry3d::shape::{HeightField, Shape};
 
-use crate::contact::collider::Collider;
+use crate::contact::collider::{Collider, SAMPLES};
 
 /// Box around all parts of a collider that come near `cloth` in the tick, in the cloth's frame; none if no
 /// part does. `cloth` is the box around all positions that the particles can reach in the tick.
@@ -15,14 +15,21 @@ pub(crate) fn swept_box(collider: &Collider, cloth: impl FnOnce() -> Option<Aabb
         return Some(collider.swept_box());
     }
     let poses = collider.sampled_poses();
-    let swept = |local: Aabb| {
-        let boxes = poses.iter().map(|pose| local.transform_by(pose));
-        boxes.reduce(|one, other| one.merged(&other))
+    let all_around = |boxes: [Aabb; SAMPLES.len()], beyond: f32| {
+        let sampled = boxes.iter().fold(boxes[0], |all, other| all.merged(other));
+        Aabb::new(sampled.mins - beyond, sampled.maxs + beyond)
     };
     let cloth = cloth()?;
-    let seen = poses.iter().map(|pose| cloth.transform_by(&pose.inverse()));
-    let seen = seen.reduce(|one, other| one.merged(&other))?;
-    near_parts(shape, &seen).and_then(swept)
+    let seen = poses.map(|pose| cloth.transform_by(&pose.inverse()));
+    // In the collider's frame the cloth turns about the collider's origin, which moves along a straight line in the cloth's.
+    let origins = [collider.from.0, collider.to.0];
+    let way = origins[0].distance(origins[1]);
+    let beyond = origins
+        .map(|at| collider.beyond_samples(&Aabb::new(cloth.mins - at, cloth.maxs - at), way));
+    let seen = all_around(seen, beyond[0].max(beyond[1]));
+    let near = near_parts(shape, &seen)?;
+    let beyond = collider.beyond_samples(&near, 0.0);
+    Some(all_around(poses.map(|pose| near.transform_by(&pose)), beyond))
 }
 
 /// Whether a shape consists of parts with a spatial index.
@@ -111,6 +118,25 @@ mod tests {
             let parts = box_near(&shape, near).expect("the cloth is at the shape");
             let width = parts.extents().x.max(parts.extents().z);
             assert!(width < 30.0, "shape {index}: {width} m");
+        }
+    }
+
+    /// A compound of two rods turns by almost half a turn, and a cloth lies where its end is between two samples.
+    #[test]
+    fn parts_that_turn_into_a_cloth_between_samples_are_queried() {
+        let ends = [-1.0, 1.0].map(|side| {
+            (Pose::translation(2.0 * side, 0.0, 0.0), SharedShape::cuboid(0.01, 0.01, 0.01))
+        });
+        let pose = |angle: f32| (Vec3::ZERO, Quat::from_rotation_z(angle));
+        let still =
+            Collider::fixed(SharedShape::compound(ends.to_vec()), Vec3::ZERO, Quat::IDENTITY);
+        let turn = 0.99 * core::f32::consts::PI;
+        let collider = Collider { from: pose(0.0), to: pose(turn), ..still };
+        for part in 0..=40 {
+            let at = Quat::from_rotation_z(turn * part as f32 / 40.0) * Vec3::new(2.0, 0.0, 0.0);
+            let cloth = Aabb::from_half_extents(at, Vec3::splat(0.02));
+            let near = swept_box(&collider, || Some(cloth)).expect("an end passes the cloth");
+            assert!(near.intersects(&cloth), "{part}: {near:?}");
         }
     }
 }
