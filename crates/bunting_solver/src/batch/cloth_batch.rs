@@ -68,19 +68,6 @@ pub(super) enum Lanes {
     Mixed(Box<LaneBatch<Pack8, Mixed<Pack8>>>),
 }
 
-impl Lanes {
-    /// A batch of one cloth, across all lanes of a vector if it can lie there.
-    fn of_one_cloth(fabric: Arc<Fabric>) -> Self {
-        if let Some(batch) = LaneBatch::single_cloth(&fabric) {
-            Self::Single(Box::new(batch))
-        } else if let Some(batch) = LaneBatch::single_mesh(&fabric) {
-            Self::SingleMesh(Box::new(batch))
-        } else {
-            Self::One(Box::new(LaneBatch::side_by_side(fabric)))
-        }
-    }
-}
-
 /// Evaluates an expression with the batch of any width and layout.
 macro_rules! with_batch {
     ($lanes:expr, $batch:ident => $body:expr) => {
@@ -297,16 +284,7 @@ impl ClothBatch {
     ///
     /// When the batch is [`mixed`](Self::mixed) and the scheme is not [`Scheme::Yarns`].
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
-        if settings.scheme != Scheme::Yarns {
-            let one_lane = match &self.0 {
-                Lanes::Single(single) => Some(single.to_one_lane()),
-                Lanes::SingleMesh(single) => Some(single.to_one_lane()),
-                _ => None,
-            };
-            if let Some(batch) = one_lane {
-                self.0 = Lanes::One(Box::new(batch));
-            }
-        }
+        self.lay_out_for(settings.scheme);
         assert!(!self.is_mixed() || settings.scheme == Scheme::Yarns, "a mixed batch has yarns");
         with_batch!(&mut self.0, batch => batch.begin_tick(tick, settings));
     }

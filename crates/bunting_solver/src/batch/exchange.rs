@@ -14,7 +14,7 @@ use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
 use crate::constraints::background::nodes_of;
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::simd::lane::Pack;
-use crate::simd::registers::{Pack1, Pack8};
+use crate::simd::registers::Pack8;
 use crate::simd::vec3::set_lane3;
 use crate::stability::pin_strain::PinStrain;
 use crate::step::bdf::IntegratorHistory;
@@ -147,23 +147,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 cloth.added_mass = None;
             }
         }
-    }
-}
-
-impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// The batch of one lane for the only cloth of this one, for a scheme without chains.
-    pub fn to_one_lane(&self) -> LaneBatch<Pack1> {
-        let mut batch = LaneBatch::side_by_side(Arc::clone(&self.fabric));
-        if let Some(cloth) = &self.lanes[0] {
-            let (snapshot, material) = (&self.snapshot(0), cloth.material);
-            let fabric = &self.fabric;
-            batch.exchange(&[], &[Entering { lane: 0, fabric, snapshot, material }]);
-            batch.lanes[0] = Some(LaneState { inputs: None, added_mass: None, ..cloth.clone() });
-        }
-        for (pack, normal) in batch.scratch.iter_mut().zip(self.of_cloth(&self.scratch, 0)) {
-            set_lane3(pack, 0, normal);
-        }
-        batch
     }
 }
 

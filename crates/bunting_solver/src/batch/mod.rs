@@ -10,6 +10,7 @@ pub(crate) mod lane_count;
 pub(crate) mod lane_fabric;
 pub(crate) mod lane_state;
 pub(crate) mod layout;
+mod layout_of_scheme;
 mod masses;
 pub(crate) mod mixed;
 mod motion_loads;
