@@ -10,6 +10,7 @@ use super::hinges::Hinges;
 use super::laid_yarns::LaidYarns;
 use super::links::Links;
 use super::patches;
+use super::pin_paths::PinPaths;
 use super::quads::Net;
 use super::rest_bends::RestBends;
 use super::tethers::Tethers;
@@ -35,19 +36,19 @@ pub(crate) struct Background {
 }
 
 impl Background {
-    /// The grid of a mesh.
-    pub(super) fn of(mesh: BackgroundMesh, tethered: bool) -> Self {
+    /// The grid of a mesh; none if three of its triangles share an edge.
+    pub(super) fn of(mesh: BackgroundMesh, tethered: bool) -> Option<Self> {
         let warp_cos2 = mesh.warp_cos2;
-        let (fabric, transfer) = Fabric::of_background(mesh, tethered);
+        let (fabric, transfer) = Fabric::of_background(mesh, tethered)?;
         let node_count = fabric.mesh.areas.iter().filter(|area| **area > 0.0).count();
-        Self {
+        Some(Self {
             fabric: Arc::new(fabric),
             transfer,
             warp_cos2,
             node_count,
             nodes_are_particles: false,
             is_curved_net: false,
-        }
+        })
     }
 
     /// The net of a mesh of quads.
@@ -79,6 +80,7 @@ impl Fabric {
             rest_bends: Some(rest_bends),
             hinges: Hinges::of(&mesh, &[]),
             tethers: Tethers::of(&mesh, &edges, false, tethered),
+            pin_paths: PinPaths::default(),
             // Its lines end inside the cloth, too, and give their load to others by shear.
             covered: vec![1.0; mesh.positions.len()],
             tautness: 0.0,
@@ -99,10 +101,11 @@ impl Fabric {
         (fabric, transfer)
     }
 
-    /// The constraints of a background grid, whose nodes have no hinges.
-    fn of_background(background: BackgroundMesh, tethered: bool) -> (Self, GridTransfer) {
+    /// The constraints of a background grid, whose nodes have no hinges; none if three of its triangles share an edge.
+    fn of_background(background: BackgroundMesh, tethered: bool) -> Option<(Self, GridTransfer)> {
         let BackgroundMesh { grid, mut mesh, coverage, transfer, is_flat, .. } = background;
         let BackgroundMesh { is_cut, sizes, warps, are_alike, .. } = background;
+        let edges = topology::edges(&mesh.triangles).ok()?;
         let is_closed = !transfer.joined.is_empty();
         let links = match &warps {
             Some(warps) => Links::of_cells_with_warps(&mesh, &grid, &coverage, warps, is_closed),
@@ -116,7 +119,6 @@ impl Fabric {
         if !are_alike {
             chains.measure_diagonals(&mesh.positions);
         }
-        let edges = topology::edges(&mesh.triangles).unwrap_or_default();
         mesh.triangles = grid.triangles(false);
         let inverse_areas = &mesh.inverse_areas;
         let fabric = Self {
@@ -125,6 +127,7 @@ impl Fabric {
             rest_bends: (!is_flat).then(|| RestBends::of(&grid, &mesh, is_closed)),
             hinges: Hinges::of(&mesh, &[]),
             tethers: Tethers::of(&mesh, &edges, is_flat && !is_cut, tethered),
+            pin_paths: PinPaths::default(),
             covered: sizes
                 .filter(|_| is_cut)
                 .map_or(Vec::new(), |sizes| sizes.parts_of_particles(&grid)),
@@ -143,6 +146,32 @@ impl Fabric {
             yarns,
             chains,
         };
-        (fabric, transfer)
+        Some((fabric, transfer))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::fabric::Grid;
+    use crate::fabric::mesh::RestMesh;
+    use crate::fabric::weld::weld;
+
+    #[test]
+    fn nodes_with_three_triangles_at_an_edge_are_no_fabric() {
+        let grid = Grid::new(8, 8, 1.0, 1.0);
+        let positions = grid.positions();
+        let uv = vec![Vec2::ZERO; positions.len()];
+        let indices = grid.triangles(false).into_flattened();
+        let mesh = RestMesh::new(&positions, &uv, &indices, [], weld(&positions, 0.0));
+        let (mesh, surface) = mesh.expect("a good mesh");
+        let background = || BackgroundMesh::of(&mesh, &surface).expect("a flat mesh has a grid");
+        assert!(Background::of(background(), true).is_some());
+        let mut bad = background();
+        let [a, b, _] = bad.mesh.triangles[0];
+        bad.mesh.triangles.push([a, b, 63]);
+        assert!(Background::of(bad, true).is_none());
     }
 }

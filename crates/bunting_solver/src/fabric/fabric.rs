@@ -14,9 +14,9 @@ use super::links::{Link, LinkClass, Links, Probe};
 use super::material::FabricMaterial;
 use super::mesh::{RestMesh, Surface};
 use super::patches::{self, Patch};
+use super::pin_paths::PinPaths;
 use super::quads::Net;
 use super::rest_bends::RestBends;
-use super::rest_paths::RestPaths;
 use super::strip::{self, StripRow};
 use super::tethers::{Pin, Tether, Tethers};
 use super::twist::{Ribbon, RibbonProfile, Twist};
@@ -44,6 +44,7 @@ pub struct Fabric {
     pub(super) twist: Twist,
     pub(super) rest_bends: Option<RestBends>,
     pub(super) tethers: Tethers,
+    pub(super) pin_paths: PinPaths,
     pub(super) covered: Vec<f32>,
     pub(super) tautness: f32,
     pub(super) shortest: f32,
@@ -63,7 +64,7 @@ impl Fabric {
         let background = match &grid {
             Some(_) => None,
             None => BackgroundMesh::of(&mesh, surface)
-                .map(|grid| Background::of(grid, tethered))
+                .and_then(|grid| Background::of(grid, tethered))
                 .or_else(|| Some(Background::of_net(Net::of(&mesh, surface)?, tethered))),
         };
         let net = background.as_ref().filter(|it| it.nodes_are_particles);
@@ -117,6 +118,7 @@ impl Fabric {
             twist,
             rest_bends: None,
             tethers,
+            pin_paths: PinPaths::default(),
             covered: Vec::new(),
             topology: None,
             background,
@@ -309,8 +311,8 @@ impl Fabric {
         &self.twist.profiles
     }
 
-    /// The grid that solves stretch, shear and bending in place of the mesh's own links; none of grids, and of meshes
-    /// that are small, have slits, or cannot be laid into the plane without overlapping themselves.
+    /// The background grid or the net that solves stretch, shear and bending in place of the mesh's own links; none of grids,
+    /// and of meshes that are solved by laid yarns.
     pub(crate) fn background(&self) -> Option<&Background> {
         self.background.as_ref()
     }
@@ -367,11 +369,5 @@ impl Fabric {
     /// Some links of warp and weft, spread over the cloth.
     pub(crate) fn probes(&self) -> &[Probe] {
         &self.probes
-    }
-
-    /// Distance of each particle from a pin at rest, along the cloth, m; infinite if they are not connected.
-    pub(crate) fn distances_from(&self, pin: Pin) -> Vec<f32> {
-        let edges = self.mesh.triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-        RestPaths::new(&self.mesh.positions, edges, self.grid.is_some()).distances(pin)
     }
 }

@@ -36,6 +36,7 @@ mod material;
 mod mesh;
 mod normals;
 mod patches;
+mod pin_paths;
 mod quads;
 mod remesh;
 mod rest_bends;
@@ -56,6 +57,7 @@ pub(crate) use chains::{CHAINS_PER_PAIR, Cell, Chain, ChainLink, ChainPair, Chai
 pub(crate) use hinges::{Hinge, angle as hinge_angle};
 pub(crate) use laid_yarns::{BAND, Coupling, LaidLink, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
 pub(crate) use patches::Patch;
+pub(crate) use pin_paths::DistancesFromPin;
 pub(crate) use rest_bends::RestBends;
 pub(crate) use strip::{StripLink, StripRow};
 pub(crate) use tethers::Tether;

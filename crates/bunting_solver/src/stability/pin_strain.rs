@@ -7,7 +7,7 @@
 
 use glam::Vec3;
 
-use crate::fabric::Fabric;
+use crate::fabric::{DistancesFromPin, Fabric};
 
 /// Strain below which the bound is ignored. Smaller: pins that were only rotated or moved together are too
 /// far apart by rounding. Larger: a cloth of 33 × 33 particles a square metre oscillates at high frequency
@@ -29,7 +29,7 @@ struct Pair {
     pins: [usize; 2],
     /// Distance of the pins, m.
     distance: f32,
-    /// Ratio of this distance to the distance along the cloth at rest.
+    /// Ratio of this distance to the distance at rest, along the cloth or straight.
     stretch: f32,
 }
 
@@ -45,31 +45,51 @@ impl PinStrain {
         };
         let [at, at_rest] = [positions, rest].map(of_pins);
         // Straight distances at rest are no longer than distances along the cloth, and decide most cases.
-        if too_far(&at, |one, other| at_rest[one].distance(at_rest[other])).is_empty() {
+        let straight = too_far(&at, |one, other| at_rest[one].distance(at_rest[other]));
+        if straight.is_empty() {
             return Self::default();
         }
-        let along: Vec<Vec<f32>> =
-            fabric.pins().iter().map(|pin| fabric.distances_from(*pin)).collect();
-        let mut pairs =
-            too_far(&at, |one, other| along[one][fabric.pins()[other].particle as usize]);
+        let mut is_apart = vec![false; at.len()];
+        straight.iter().flat_map(|pair| pair.pins).for_each(|pin| is_apart[pin] = true);
+        let along = fabric.distances_from_pins(|pin| is_apart[pin]);
+        let along_cloth = |pair: Pair| {
+            let to = fabric.pins()[pair.pins[1]].particle as usize;
+            let stretch = pair.distance / along[pair.pins[0]]?.of_particles[to];
+            (stretch > 1.0 + LEAST_STRAIN).then_some(Pair { stretch, ..pair })
+        };
+        let mut pairs: Vec<Pair> = straight.into_iter().filter_map(along_cloth).collect();
         pairs.sort_by(|one, other| other.stretch.total_cmp(&one.stretch));
         let Some(worst) = pairs.first() else { return Self::default() };
-        let stretch_about = |particle: usize| {
-            let mut greatest = 1.0_f32;
-            for pair in &pairs {
-                // A path through the particle is no shorter than the shortest path, so it is stretched no
-                // more. Pairs are sorted by their stretch.
-                if pair.stretch <= greatest {
-                    break;
-                }
-                let [one, other] = pair.pins.map(|pin| along[pin][particle]);
-                greatest = greatest.max(pair.distance / (one + other));
+        let mut of_particles = vec![1.0; rest.len()];
+        for pair in &pairs {
+            if let [Some(one), Some(other)] = pair.pins.map(|pin| along[pin]) {
+                pair.stretch_about(one, other, &mut of_particles);
             }
-            greatest
-        };
-        Self {
-            greatest: worst.stretch - 1.0,
-            of_particles: (0..rest.len()).map(|particle| stretch_about(particle) - 1.0).collect(),
+        }
+        of_particles.iter_mut().for_each(|stretch| *stretch -= 1.0);
+        Self { greatest: worst.stretch - 1.0, of_particles }
+    }
+}
+
+impl Pair {
+    /// Raises the least stretch about each particle to that of the path between the pins that leads through it, given the
+    /// distances from both. Pairs of more stretch come first.
+    fn stretch_about(
+        &self,
+        one: &DistancesFromPin,
+        other: &DistancesFromPin,
+        of_particles: &mut [f32],
+    ) {
+        for particle in one.by_distance.iter().map(|&particle| particle as usize) {
+            let from_one = one.of_particles[particle];
+            if from_one >= self.distance {
+                break;
+            }
+            let greatest = &mut of_particles[particle];
+            // A path through the particle is no shorter than the shortest path, so it is stretched no more.
+            if self.stretch > *greatest {
+                *greatest = greatest.max(self.distance / (from_one + other.of_particles[particle]));
+            }
         }
     }
 }
@@ -110,7 +130,7 @@ fn too_far(at: &[Vec3], length: impl Fn(usize, usize) -> f32) -> Vec<Pair> {
 mod tests {
     use glam::{Quat, Vec3};
 
-    use super::PinStrain;
+    use super::{LEAST_STRAIN, PinStrain};
     use crate::fabric::{Fabric, FabricBuilder, Grid};
 
     fn sheet(pins: impl IntoIterator<Item = u32>) -> Fabric {
@@ -167,5 +187,88 @@ mod tests {
         assert!(
             [greatest, strains[2], strains[3]].iter().all(|strain| (strain - 0.2).abs() < 1e-5)
         );
+    }
+
+    /// The strain by the distances of all particles from all pins, as it is defined.
+    fn by_all_paths(fabric: &Fabric, positions: &[Vec3]) -> PinStrain {
+        let along = fabric.distances_from_pins(|_| true);
+        let along = |pin: usize, particle: u32| {
+            along[pin].expect("all are wanted").of_particles[particle as usize]
+        };
+        let pins: Vec<u32> = fabric.pins().iter().map(|pin| pin.particle).collect();
+        let at = |pin: usize| positions[pins[pin] as usize];
+        let pairs = (0..pins.len()).flat_map(|other| (0..other).map(move |one| [one, other]));
+        let stretch =
+            |&[one, other]: &[usize; 2]| at(one).distance(at(other)) / along(one, pins[other]);
+        let mut pairs: Vec<[usize; 2]> =
+            pairs.filter(|pair| stretch(pair) > 1.0 + LEAST_STRAIN).collect();
+        pairs.sort_by(|one, other| stretch(other).total_cmp(&stretch(one)));
+        let Some(worst) = pairs.first() else { return PinStrain::default() };
+        let about = |particle: u32| {
+            let longer = |greatest: f32, pair: &[usize; 2]| {
+                let [one, other] = *pair;
+                let way = along(one, particle) + along(other, particle);
+                let is_longer = stretch(pair) > greatest;
+                if is_longer { greatest.max(at(one).distance(at(other)) / way) } else { greatest }
+            };
+            pairs.iter().fold(1.0, longer) - 1.0
+        };
+        PinStrain {
+            greatest: stretch(worst) - 1.0,
+            of_particles: (0..fabric.particle_count() as u32).map(about).collect(),
+        }
+    }
+
+    /// A skirt whose waist is a ring of pins.
+    fn skirt(around: u32, rows: u32) -> Fabric {
+        let at = |row: u32, place: u32| {
+            let (sin, cos) = libm::sincosf(core::f32::consts::TAU * place as f32 / around as f32);
+            let radius = 0.12 + 0.01 * row as f32;
+            Vec3::new(radius * cos, -0.02 * row as f32, radius * sin)
+        };
+        let rings = (0..rows).flat_map(|row| (0..around).map(move |place| (row, place)));
+        let positions = rings.clone().map(|(row, place)| at(row, place)).collect();
+        let index = |row: u32, place: u32| row * around + place % around;
+        let quads = rings.filter(|(row, _)| *row + 1 < rows).flat_map(|(row, place)| {
+            let [a, b] = [0, 1].map(|by| index(row, place + by));
+            let [c, d] = [0, 1].map(|by| index(row + 1, place + by));
+            [a, b, c, c, b, d]
+        });
+        let skirt = FabricBuilder::new(positions, quads.collect()).pin(0..around);
+        skirt.build().expect("a good fabric")
+    }
+
+    #[test]
+    fn near_paths_from_pins_that_are_apart_tell_the_strain_of_all_paths() {
+        let skirt = skirt(24, 12);
+        let sheet = sheet([0, 4, 12, 20, 23]);
+        for fabric in [&skirt, &sheet] {
+            for (count, spread) in [0.999, 1.0, 1.0005, 1.02, 1.3, 4.0].into_iter().enumerate() {
+                let shear = Vec3::new(0.02, 0.0, 0.1) * count as f32;
+                let move_to = |at: &Vec3| *at * spread + shear * at.x;
+                let positions: Vec<Vec3> = fabric.rest_positions().iter().map(move_to).collect();
+                let found = PinStrain::of(fabric, &positions);
+                assert!(found == by_all_paths(fabric, &positions), "{spread}");
+                assert_eq!(found.greatest > 0.0, count > 0, "{spread}: {}", found.greatest);
+            }
+        }
+    }
+
+    #[test]
+    fn paths_are_found_once_and_only_from_pins_that_are_apart() {
+        let skirt = skirt(24, 12);
+        // Two neighbours of the ring.
+        let is_moved = |particle: usize| particle == 3;
+        let moved = |(particle, at): (usize, &Vec3)| {
+            *at + if is_moved(particle) { Vec3::new(0.0, 0.0, 0.02) } else { Vec3::ZERO }
+        };
+        let positions: Vec<Vec3> = skirt.rest_positions().iter().enumerate().map(moved).collect();
+        let known =
+            || skirt.known_distances().map(|of| of.of_particles.as_ptr()).collect::<Vec<_>>();
+        assert!(known().is_empty());
+        let first = PinStrain::of(&skirt, &positions);
+        let found = known();
+        assert!(first.greatest > 0.0 && !found.is_empty() && found.len() < 24, "{}", found.len());
+        assert!(PinStrain::of(&skirt, &positions) == first && known() == found);
     }
 }

@@ -31,8 +31,8 @@ impl Line {
     }
 }
 
-/// The lines through all sides of the cells.
-pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Vec<Line> {
+/// The lines through all sides of the cells; none if a line leads along what is no side.
+pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Option<Vec<Line>> {
     let mut sides: Vec<[u32; 2]> = cells.iter().flat_map(Cell::sides).map(ascending).collect();
     sides.sort_unstable();
     sides.dedup();
@@ -42,7 +42,7 @@ pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Vec<Line> {
         pair.iter().copied().find(|other| *other != from)
     };
     let mut is_taken = vec![false; sides.len()];
-    let number = |ends: [u32; 2]| sides.binary_search(&ascending(ends)).unwrap_or_default();
+    let number = |ends: [u32; 2]| sides.binary_search(&ascending(ends)).ok();
     let mut lines = Vec::new();
     for (side, &[one, other]) in sides.iter().enumerate() {
         if is_taken[side] {
@@ -56,10 +56,10 @@ pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Vec<Line> {
                 break;
             }
         }
-        is_taken[number([at, after])] = true;
+        is_taken[number([at, after])?] = true;
         let mut nodes = vec![at, after];
         while let Some(to) = next(at, after) {
-            if core::mem::replace(&mut is_taken[number([after, to])], true) {
+            if core::mem::replace(&mut is_taken[number([after, to])?], true) {
                 break;
             }
             nodes.push(to);
@@ -67,7 +67,7 @@ pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Vec<Line> {
         }
         lines.push(Line { nodes });
     }
-    lines
+    Some(lines)
 }
 
 /// Mean magnitude of half of the difference of the turns at neighbouring nodes of a line, rad. A line that is curved evenly within the surface has

@@ -101,16 +101,16 @@ struct QuadMesh {
 impl QuadMesh {
     /// That of a mesh of triangles, if the given part of its triangles are halves of quads.
     fn of(mesh: &RestMesh, edges: &[Edge], least_part: f32) -> Option<Self> {
-        Some(Self::along(cells::cells(mesh, edges, least_part)?, mesh))
+        Self::along(cells::cells(mesh, edges, least_part)?, mesh)
     }
 
-    fn along(cells: Vec<Cell>, mesh: &RestMesh) -> Self {
-        let lines = lines::lines(&cells, &mesh.positions);
+    fn along(cells: Vec<Cell>, mesh: &RestMesh) -> Option<Self> {
+        let lines = lines::lines(&cells, &mesh.positions)?;
         let normals = mesh.normals_at(&mesh.positions);
         let zigzag = lines::zigzag(&lines, &mesh.positions, &normals);
         let quads = cells.iter().filter(|cell| cell.triangles.len() == 2).count();
         let part_of_quads = (2 * quads) as f32 / mesh.triangles.len() as f32;
-        Self { cells, lines, zigzag, part_of_quads }
+        Some(Self { cells, lines, zigzag, part_of_quads })
     }
 
     /// Whether all cells are quads, and the lines along their sides straight.
@@ -140,7 +140,7 @@ impl Net {
         let faired = own.and_then(|own| {
             let threes: Vec<[u32; 3]> = own.lines.iter().flat_map(Line::threes).collect();
             let nodes = Nodes::faired(&source, &threes);
-            let quads = QuadMesh::along(own.cells, &nodes.mesh);
+            let quads = QuadMesh::along(own.cells, &nodes.mesh)?;
             cells::are_alike(&quads.cells, &nodes.mesh).then_some((nodes, quads))
         });
         let on_lattice = || {

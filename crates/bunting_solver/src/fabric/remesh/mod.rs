@@ -51,7 +51,7 @@ pub(super) struct Nodes {
     rows: Interpolation,
     /// Of each particle the node that it is, and a node near it.
     node_of: Vec<Option<u32>>,
-    node_near: Vec<u32>,
+    node_near: Vec<Option<u32>>,
     /// Size of a cell, m.
     size: f64,
 }
@@ -82,7 +82,7 @@ impl Nodes {
             edges: source.edges.to_vec(),
             rows,
             node_of,
-            node_near: (0..count as u32).collect(),
+            node_near: (0..count as u32).map(Some).collect(),
             size,
         }
     }
@@ -116,7 +116,7 @@ impl Nodes {
         let triangles: Vec<[u32; 3]> =
             triangulation.triangles().map(|corners| corners.map(&mut node_at)).collect();
         let node_near = (0..positions.len() as u32)
-            .map(|vertex| number[triangulation.left_of(vertex) as usize].unwrap_or_default());
+            .map(|vertex| number[triangulation.left_of(vertex) as usize]);
         let node_near = node_near.collect();
 
         let is_pinned = |node: usize| source.free_part(&places[node]) < LEAST_FREE;
@@ -145,7 +145,7 @@ impl Nodes {
         })
     }
 
-    /// How particles follow the nodes, and take these along, given the cells of nodes; none without cells.
+    /// How particles follow the nodes, and take these along, given the cells of nodes; none where a particle has no cell near it.
     pub fn transfer<'a>(
         &self,
         source: &Source,
@@ -161,7 +161,7 @@ impl Nodes {
                 particles.push([Term { from, weight: 1.0 }]);
             } else {
                 let normal = source.normals[particle as usize];
-                let near = self.node_near[particle as usize];
+                let near = self.node_near[particle as usize]?;
                 let within = cells.of(particle, at, normal, near)?;
                 particles.push(within.terms);
                 heights.extend(within.height);
@@ -215,12 +215,29 @@ fn cotangent([one, other, corner]: [DVec3; 3]) -> f64 {
     one.dot(other) / one.cross(other).length().max(f64::MIN_POSITIVE)
 }
 
-/// Barycentric coordinates of a point in the plane of a triangle.
-fn barycentric(at: DVec3, [a, b, c]: [DVec3; 3]) -> [f64; 3] {
+/// Barycentric coordinates of a point in the plane of a triangle; on a triangle without area those of the nearest point of
+/// the line of its longest side.
+fn barycentric(at: DVec3, corners: [DVec3; 3]) -> [f64; 3] {
+    let [a, b, c] = corners;
     let normal = (b - a).cross(c - a);
-    let part =
-        |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(normal) / normal.length_squared();
-    [part(b, c), part(c, a), part(a, b)]
+    let squared = normal.length_squared();
+    if squared > 0.0 {
+        let part = |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(normal) / squared;
+        return [part(b, c), part(c, a), part(a, b)];
+    }
+    let length = |side: usize| corners[side].distance_squared(corners[(side + 1) % 3]);
+    let longest =
+        (1..3).fold(0, |longest, side| if length(side) > length(longest) { side } else { longest });
+    let end = (longest + 1) % 3;
+    let mut weights = [0.0; 3];
+    weights[end] = part_along(at, corners[longest], corners[end]);
+    weights[longest] = 1.0 - weights[end];
+    weights
+}
+
+/// The part of the way between two points at which the line through both is nearest to a third; zero where both are one.
+fn part_along(at: DVec3, from: DVec3, to: DVec3) -> f64 {
+    (at - from).dot(to - from) / (to - from).length_squared().max(f64::MIN_POSITIVE)
 }
 
 /// The point of a triangle nearest to another.
@@ -229,10 +246,7 @@ fn nearest(at: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
     if weights.iter().all(|weight| *weight >= 0.0) {
         return a * weights[0] + b * weights[1] + c * weights[2];
     }
-    let on_side = |from: DVec3, to: DVec3| {
-        let part = (at - from).dot(to - from) / (to - from).length_squared();
-        from.lerp(to, part.clamp(0.0, 1.0))
-    };
+    let on_side = |from: DVec3, to: DVec3| from.lerp(to, part_along(at, from, to).clamp(0.0, 1.0));
     let nearer = |one: DVec3, other: DVec3| {
         if other.distance_squared(at) < one.distance_squared(at) { other } else { one }
     };

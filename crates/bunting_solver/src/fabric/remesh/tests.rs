@@ -1,5 +1,6 @@
-use glam::{Mat3, Vec3};
+use glam::{DVec3, Mat3, Vec3};
 
+use super::{barycentric, nearest};
 use crate::fabric::topology;
 use crate::fabric::{Background, Fabric, FabricBuilder, Height};
 
@@ -169,4 +170,24 @@ fn links_along_lines_are_alike() {
         let mean = turns.iter().sum::<f32>() / turns.len() as f32;
         assert!(mean < 0.01, "moved by {moved}: {mean} rad");
     }
+}
+
+/// Two or three corners in one place, and three on a line.
+#[test]
+fn triangles_without_area_have_nearest_points() {
+    let [a, b] = [DVec3::ZERO, 2.0 * DVec3::X];
+    let at = DVec3::new(0.5, 1.0, 0.0);
+    let triangles = [[a, a, b], [a, b, a], [b, a, a], [a, DVec3::X, b], [b, a, DVec3::X]];
+    for triangle in triangles {
+        let found = nearest(at, triangle);
+        assert!(found.distance(DVec3::new(0.5, 0.0, 0.0)) < 1e-12, "{triangle:?}: {found}");
+        let weights = barycentric(found, triangle);
+        let sum: DVec3 =
+            triangle.iter().zip(weights).map(|(corner, weight)| *corner * weight).sum();
+        assert!(sum.distance(found) < 1e-12, "{triangle:?}: {weights:?}");
+        // Beyond the ends.
+        assert_eq!(nearest(DVec3::new(3.0, 1.0, 0.0), triangle), b);
+    }
+    assert_eq!(nearest(at, [b; 3]), b);
+    assert_eq!(barycentric(at, [b; 3]).iter().sum::<f64>(), 1.0);
 }

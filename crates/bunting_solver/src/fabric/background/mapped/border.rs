@@ -164,7 +164,7 @@ pub(super) fn cut_open(mesh: &RestMesh, [first, second]: &[Vec<u32>; 2]) -> Opti
         let place = particles.len() as u32;
         particles.push(at);
         turns.push(1.0);
-        for triangle in on_the_left(mesh, &around[at as usize], at, before, after) {
+        for triangle in on_the_left(mesh, &around[at as usize], at, before, after)? {
             for corner in &mut triangles[triangle as usize] {
                 if *corner == at {
                     *corner = place;
@@ -175,40 +175,63 @@ pub(super) fn cut_open(mesh: &RestMesh, [first, second]: &[Vec<u32>; 2]) -> Opti
     Some(Cut { particles, triangles, turns })
 }
 
-/// The triangles around a particle on the left of a way through it.
+/// The triangles around a particle on the left of a way through it; none if one of those around it has no corner there.
 fn on_the_left(
     mesh: &RestMesh,
     around: &[u32],
     at: u32,
     before: Option<u32>,
     after: Option<u32>,
-) -> Vec<u32> {
-    // The corners after and before the particle, counter-clockwise.
-    let others = |triangle: u32| {
+) -> Option<Vec<u32>> {
+    // Each triangle with the corners after and before the particle, counter-clockwise.
+    let others = |&triangle: &u32| {
         let corners = mesh.triangles[triangle as usize];
-        let own = corners.iter().position(|&corner| corner == at).unwrap_or_default();
-        [corners[(own + 1) % 3], corners[(own + 2) % 3]]
+        let own = corners.iter().position(|&corner| corner == at)?;
+        Some((triangle, [1, 2].map(|by| corners[(own + by) % 3])))
     };
+    let around: Vec<(u32, [u32; 2])> = around.iter().map(others).collect::<Option<_>>()?;
     let mut left = Vec::new();
     // From the edge to the next particle counter-clockwise up to the edge to the one before, or to the border.
     if let Some(after) = after {
         let mut edge = after;
         while Some(edge) != before
-            && let Some(&triangle) = around.iter().find(|&&of| others(of)[0] == edge)
+            && let Some(&(triangle, [_, next])) = around.iter().find(|(_, [to, _])| *to == edge)
             && !left.contains(&triangle)
         {
             left.push(triangle);
-            edge = others(triangle)[1];
+            edge = next;
         }
     } else if let Some(before) = before {
         // From the edge to the particle before clockwise up to the border.
         let mut edge = before;
-        while let Some(&triangle) = around.iter().find(|&&of| others(of)[1] == edge)
+        while let Some(&(triangle, [next, _])) = around.iter().find(|(_, [_, from])| *from == edge)
             && !left.contains(&triangle)
         {
             left.push(triangle);
-            edge = others(triangle)[0];
+            edge = next;
         }
     }
-    left
+    Some(left)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Vec2, Vec3};
+
+    use super::*;
+
+    #[test]
+    fn triangles_that_do_not_meet_a_particle_are_no_side_of_a_way() {
+        let mesh = RestMesh {
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y],
+            uv: vec![Vec2::ZERO; 5],
+            triangles: vec![[0, 1, 2], [0, 2, 3], [0, 3, 4], [1, 2, 3]],
+            particle_of_vertex: (0..5).collect(),
+            areas: vec![1.0; 5],
+            inverse_areas: vec![1.0; 5],
+        };
+        let left = |around: &[u32]| on_the_left(&mesh, around, 0, Some(4), Some(2));
+        assert_eq!(left(&[0, 1, 2]), Some(vec![1, 2]));
+        assert_eq!(left(&[0, 1, 3]), None);
+    }
 }
