@@ -1,5 +1,5 @@
 //! The background grids of the cloths of a batch: side by side, as the cloths are, or that of a single mesh across the
-//! lanes of a vector. Both have the same bits.
+//! lanes of a vector, as a grid or as a net. All have the same bits.
 
 use glam::Vec3;
 

@@ -107,7 +107,7 @@ pub(crate) trait Layout<P: Pack>: Clone + Debug + Send + Sync + 'static {
     fn constants(&self, of_particles: &[f32]) -> Vec<Self::Constant>;
 
     /// Index of the partial sum to which each pack adds. It depends on the columns of the pack's particles
-    /// only, so that sums have the same bits in both layouts.
+    /// only, so that sums have the same bits in all layouts.
     fn partial_sums(&self) -> Vec<u8>;
 
     /// Writes a number of each particle of a cloth.

@@ -195,7 +195,6 @@ fn a_pinned_sheet_feels_all_of_the_wind() {
     }
 }
 
-/// Drag is implicit: a light sheet in a storm speeds up to the wind within a tick, and never beyond it.
 #[test]
 fn wind_pushes_a_turning_plate_as_it_lies_in_the_middle_of_a_substep() {
     const SPIN: f32 = 20.0;
@@ -221,6 +220,7 @@ fn wind_pushes_a_turning_plate_as_it_lies_in_the_middle_of_a_substep() {
     assert!((angle - 0.5 * SPIN * TICK).abs() < 0.01, "pushed at {angle} rad");
 }
 
+/// Drag is implicit: a light sheet in a storm speeds up to the wind within a tick, and never beyond it.
 #[test]
 fn strong_wind_never_overshoots() {
     const WIND: f32 = 40.0;

@@ -58,8 +58,7 @@ impl LoneMesh {
         self.run_hinges();
     }
 
-    /// Solves each link once, from the first to the last or backwards, given the strain up to which they do not resist,
-    /// and the compliances of their classes.
+    /// Solves each link once, from the first to the last or backwards, given the compliances of their classes.
     pub(super) fn sweep_links(
         &mut self,
         is_backwards: bool,
