@@ -15,6 +15,10 @@ use crate::step::carry::FrameRegisters;
 use crate::step::guides::GuidePack;
 use crate::step::parameters::Parameters;
 
+/// Distance from the centre of a sphere below which a particle leaves it along the animated normal, m. Smaller: rounding of
+/// coordinates decides where it goes. Larger: particles near the centre jump.
+const CENTRE: f32 = 1e-5;
+
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Projects every free particle to within the limits of its guide.
     pub fn solve_guides(&mut self) {
@@ -123,7 +127,8 @@ impl<P: Pack> SolveGuides<'_, P> {
         let distance = squared.sqrt();
         let least = L::splat(token, LEAST_LENGTH);
         let outwards = away * (L::splat(token, 1.0) / distance.max(least));
-        let outwards = sphere.outwards.or_where_not(distance.lt(least), outwards);
+        let is_at_centre = distance.lt(L::splat(token, CENTRE));
+        let outwards = sphere.outwards.or_where_not(is_at_centre, outwards);
         let after = sphere.centres[1].plus_scaled(outwards, sphere.radius);
         after.or_where_not(crossed, before).store(&mut self.position[at]);
 
