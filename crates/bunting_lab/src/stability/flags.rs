@@ -89,16 +89,16 @@ fn speeds() -> Vec<HardCase> {
 /// Cases of the greatest differences of coarser levels from the finest.
 fn agreement() -> [HardCase; 3] {
     let levels = SIZES.map(|n| Agreement::of(n, DEFAULT, false));
-    let figures: [(&str, fn(&Agreement) -> f64); 3] = [
-        ("droop", |level| level.droop_m),
-        ("swing period", |level| level.swing_period_s),
-        ("flutter frequency", |level| level.flutter_hz),
-    ];
-    figures.map(|(name, figure)| {
+    let case = |name: &str, figure: fn(&Agreement) -> f64| {
         let off = levels.iter().map(|level| (figure(level) / figure(&levels[0]) - 1.0).abs());
         let worst = 100.0 * off.fold(0.0, worse);
         HardCase::new(format!("levels: {name}"), SIZES[0], "% off the finest", worst, AGREE)
-    })
+    };
+    [
+        case("droop", |level| level.droop_m),
+        case("swing period", |level| level.swing_period_s),
+        case("flutter frequency", |level| level.flutter_hz),
+    ]
 }
 
 /// Both ways between neighbours among the levels.

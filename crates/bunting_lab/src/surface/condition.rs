@@ -51,8 +51,11 @@ impl Observed {
     /// The figures of all that was observed.
     #[must_use]
     pub fn condition(mut self) -> Condition {
-        let below = |part: f64| self.areas.iter().filter(|area| !(**area >= part)).count();
-        let share = |part: f64| 100.0 * below(part) as f64 / self.areas.len() as f64;
+        // What is no number is below.
+        let share = |part: f64| {
+            let above = self.areas.iter().filter(|area| **area >= part).count();
+            100.0 * (self.areas.len() - above) as f64 / self.areas.len() as f64
+        };
         self.strains.sort_by(f64::total_cmp);
         let sizes: Vec<f64> = self.strains.iter().map(|strain| strain.abs()).collect();
         Condition {
