@@ -2,9 +2,10 @@
 
 use bevy_app::App;
 use bevy_bunting::{
-    ClothBatches, ClothEffort, ClothSettings, ClothSystems, ClothTimings, LodSet, WindField,
+    ClothBatches, ClothEffort, ClothMaterial, ClothSettings, ClothSystems, ClothTimings, LodSet,
+    WindField,
 };
-use bunting_solver::StepSettings;
+use bunting_solver::{FabricMaterial, StepSettings};
 use glam::Vec3;
 use serde::Serialize;
 use serde_json::json;
@@ -23,11 +24,14 @@ use crate::{
 const N: u32 = 33;
 /// Numbers of flags.
 const FLAGS: [usize; 2] = [8, 16];
-/// Mean winds, m/s, with gusts of a quarter of it.
+/// Mean winds, m/s, with gusts of half of it, in which flags need different numbers of substeps.
 const WINDS: [f32; 2] = [6.0, 12.0];
-const GUSTS: f32 = 0.25;
+const GUSTS: f32 = 0.5;
 /// Frequency of gusts, 1/s.
 const GUST_RATE: f32 = 0.5;
+/// Light polyester.
+const MATERIAL: FabricMaterial =
+    FabricMaterial { area_density: 0.08, ..FabricMaterial::FLAG_POLYESTER };
 /// Distance between two flags, m: each has gusts of its own.
 const APART: f32 = 3.0;
 /// Ticks before anything is measured.
@@ -125,7 +129,9 @@ fn app(flags: usize, wind: f32, settings: ClothSettings) -> App {
     let velocity = wind * Vec3::new(1.0, 0.0, 0.2).normalize();
     app.world_mut().spawn(WindField::steady(velocity).with_gusts(GUSTS * wind, GUST_RATE, 1));
     for flag in 0..flags {
-        game::spawn_flag(&mut app, N, APART * Vec3::Z * flag as f32, LodSet::default());
+        let at = APART * Vec3::Z * flag as f32;
+        let flag = game::spawn_flag(&mut app, N, at, LodSet::default());
+        app.world_mut().entity_mut(flag).insert(ClothMaterial(MATERIAL));
     }
     (0..WARM_UP).for_each(|_| app.update());
     app
