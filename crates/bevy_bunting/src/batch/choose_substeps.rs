@@ -124,8 +124,13 @@ fn keep_differing(members: &mut Vec<Member>) {
     members.retain(|member| spans[member.kind][0] < spans[member.kind][1]);
 }
 
-/// Costs of a substep of batches of a fabric, on a machine whose batches have one or eight lanes. They are the same on every
-/// machine, so that the same cloths share batches.
+/// Cost of a batch of sixteen lanes over that of one of eight: the least that was measured. Smaller: machines with eight lanes
+/// share batches that cost them more than two that are full. Larger: machines with sixteen lanes do not share batches that would
+/// cost them less.
+const SIXTEEN_OVER_EIGHT: f32 = 1.5;
+
+/// Costs of a substep of batches of a fabric. They are the same on every machine, whatever its width, so that the same cloths
+/// share batches.
 fn costs_of_substep(fabric: &Fabric, settings: StepSettings) -> BatchCosts {
     let of = |lanes: LaneCount| {
         CostTable::default().batch(CostKind {
@@ -135,9 +140,11 @@ fn costs_of_substep(fabric: &Fabric, settings: StepSettings) -> BatchCosts {
             mixed: false,
         })
     };
+    let eight = of(LaneCount::Eight);
     BatchCosts {
         one: of(LaneCount::One),
-        eight: of(LaneCount::Eight),
+        eight,
+        sixteen: Some(SIXTEEN_OVER_EIGHT * eight),
         most_single: LaneCount::most_alone(fabric, settings.scheme) as u32,
         ..BatchCosts::default()
     }

@@ -2,14 +2,14 @@
 //!
 //! A batch takes as long with one cloth as with all of its lanes occupied. So cloths that need few substeps may cost less in
 //! free lanes beside cloths that need more. The choice is a pure function of what each cloth needs and takes, and of costs
-//! that are the same on every machine: batches of one and of eight lanes, whatever width the machine has.
+//! that are the same on every machine: of batches of one, eight and sixteen lanes, whatever width the machine has.
 
 use bevy_ecs::entity::Entity;
 
 use crate::lod::batch_costs::BatchCosts;
 
-/// Lanes of the batches that are counted with.
-const LANES: usize = 8;
+/// Lanes of the widest batches that are counted with.
+const LANES: usize = 16;
 
 /// Cost of what the cloths take now, over the least, up to which they stay. Smaller: cloths change batches, and with them their
 /// substeps, each time that another one needs more or less. Larger: costs more.
@@ -61,8 +61,9 @@ pub(crate) fn share(members: &mut [Member], costs: &BatchCosts) {
     let taking = |need: &Need| free().filter(|member| member.taken == need.substeps).count();
     let present: Vec<usize> = needs.iter().map(taking).collect();
     let least = least_counts(&needs, costs);
-    let all_alike = needs[0].substeps as f32 * costs.of(members.len() as u32);
-    let most = (STAYS * cost(&needs, &least, costs)).min(all_alike);
+    let mut alike = vec![0; needs.len()];
+    alike[0] = present.iter().sum();
+    let most = (STAYS * cost(&needs, &least, costs)).min(cost(&needs, &alike, costs));
     if cost(&needs, &present, costs) > most {
         take(members, &needs, &least);
     }
