@@ -80,7 +80,8 @@ fn a_zigzag_is_rough_and_a_fold_is_not() {
         |positions: &[Vec3]| positions.iter().map(|at| at.as_dvec3()).collect::<Vec<DVec3>>();
     // Columns up and down by a tenth of a cell: neighbouring cells lie at 2 atan(.2) to one another, their diagonals at
     // nothing; of three pairs one is across a column.
-    let zigzag = |at: Vec3| if (at.x / cell).round() as u32 % 2 == 0 { 0.0 } else { 0.2 * cell };
+    let zigzag =
+        |at: Vec3| if ((at.x / cell).round() as u32).is_multiple_of(2) { 0.0 } else { 0.2 * cell };
     let rough = surface.roughness(&in_double(&moved(&rest, |at| at + Vec3::Z * zigzag(at))));
     let expected = 2.0 * 0.2_f64.atan().to_degrees() / 3.0_f64.sqrt();
     assert!((0.7..1.05).contains(&(rough / expected)), "{rough}°, not {expected}°");
