@@ -42,9 +42,9 @@ enum Command {
     /// Substeps by need beside fixed ones, in winds from light to storm.
     Effort,
     /// Contacts compared with closed forms, and shapes that must not pass through cloth.
-    Contacts,
+    Contacts(families::Selection),
     /// Wind with a place and forces, compared with what their documentation states.
-    Forces,
+    Forces(families::Selection),
     /// Meshes, pins, materials, winds and jerks at random.
     Fuzz(fuzz::Selection),
     /// Bytes of a chain of levels and of batches.
@@ -78,8 +78,8 @@ impl Arguments {
             Command::Sharing => sharing::run(self.quick),
             Command::Budget => budget::run(self.quick),
             Command::Effort => effort::run(self.quick),
-            Command::Contacts => contacts::run(self.quick),
-            Command::Forces => forces::run(self.quick),
+            Command::Contacts(selection) => contacts::run(&selection, self.quick)?,
+            Command::Forces(selection) => forces::run(&selection, self.quick)?,
             Command::Fuzz(selection) => fuzz::run(&selection),
             Command::Memory => memory::run(),
             Command::Oracles(selection) => oracles::run(&selection)?,

@@ -1,8 +1,9 @@
 //! Contacts compared with closed forms.
 
+use anyhow::Result;
 use serde_json::json;
 
-use super::families::{self, Family};
+use super::families::{self, Selection};
 use crate::{
     contacts::{self, Row},
     output::{
@@ -11,10 +12,13 @@ use crate::{
     },
 };
 
-/// Runs every family of contacts.
-#[must_use]
-pub fn run(quick: bool) -> Outcome {
-    let families = families(quick);
+/// Runs the selected families of contacts.
+///
+/// # Errors
+///
+/// A selected family does not exist.
+pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
+    let families = families::run(&selection.of(&contacts::ALL)?, |family| family(quick));
     let times = families::times("contacts", &families);
     let rows: Vec<Row> = families.into_iter().flat_map(|family| family.cases).collect();
     let outcome = Outcome {
@@ -22,7 +26,7 @@ pub fn run(quick: bool) -> Outcome {
         tables: vec![table("contacts", &rows), times],
         plots: Vec::new(),
     };
-    with_peers(outcome, quick)
+    Ok(with_peers(outcome, quick))
 }
 
 /// Adds the drapes of this project and of rapier.
@@ -61,12 +65,6 @@ fn with_peers(mut outcome: Outcome, quick: bool) -> Outcome {
 #[cfg(not(feature = "peers"))]
 fn with_peers(outcome: Outcome, _quick: bool) -> Outcome {
     outcome
-}
-
-/// Every family with its rows.
-#[must_use]
-pub fn families(quick: bool) -> Vec<Family<Row>> {
-    families::run(&contacts::ALL, |family| family(quick))
 }
 
 /// Table of the rows of a command.

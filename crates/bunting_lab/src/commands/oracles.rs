@@ -3,12 +3,9 @@
 use anyhow::Result;
 use serde_json::json;
 
-use super::families::{self, Family, Selection};
+use super::families::{self, Selection};
 use crate::{
-    oracles::{
-        Case,
-        trials::{self, Trial},
-    },
+    oracles::{Case, trials},
     output::{
         Outcome,
         plot::{Axes, Mark, Plot, Series},
@@ -24,7 +21,9 @@ use crate::{
 ///
 /// A selected family does not exist.
 pub fn run(selection: &Selection) -> Result<Outcome> {
-    let families = measure(&selection.of(&trials::ALL)?);
+    let families = families::run(&selection.of(&trials::ALL)?, |trial| {
+        trial(&|scene, settings| Box::new(Product::lone(settings).start(scene)))
+    });
     let times = families::times("oracles", &families);
     let families_json = families::json(&families);
     let cases: Vec<Case> = families.into_iter().flat_map(|family| family.cases).collect();
@@ -33,18 +32,6 @@ pub fn run(selection: &Selection) -> Result<Outcome> {
         json: json!({ "cases": cases, "families": families_json }),
         tables: vec![table(&cases), times],
         plots,
-    })
-}
-
-/// Every trial with its cases.
-#[must_use]
-pub fn families() -> Vec<Family<Case>> {
-    measure(&trials::ALL)
-}
-
-fn measure(trials: &[(&'static str, Trial)]) -> Vec<Family<Case>> {
-    families::run(trials, |trial| {
-        trial(&|scene, settings| Box::new(Product::lone(settings).start(scene)))
     })
 }
 

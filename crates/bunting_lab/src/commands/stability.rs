@@ -3,7 +3,7 @@
 use anyhow::Result;
 use serde_json::json;
 
-use super::families::{self, Family, Selection};
+use super::families::{self, Selection};
 use crate::{
     output::{
         Outcome,
@@ -20,7 +20,7 @@ use crate::{
 ///
 /// A selected family does not exist.
 pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
-    let families = measure(&selection.of(&stability::ALL)?, quick);
+    let families = families::run(&selection.of(&stability::ALL)?, |family| family(quick));
     let times = families::times("stability", &families);
     let families_json = families::json(&families);
     let cases: Vec<HardCase> = families.into_iter().flat_map(|family| family.cases).collect();
@@ -30,16 +30,6 @@ pub fn run(selection: &Selection, quick: bool) -> Result<Outcome> {
         tables: vec![table(&cases), times],
         plots,
     })
-}
-
-/// Every family with its cases.
-#[must_use]
-pub fn families(quick: bool) -> Vec<Family<HardCase>> {
-    measure(&stability::ALL, quick)
-}
-
-fn measure(selected: &[(&'static str, stability::Family)], quick: bool) -> Vec<Family<HardCase>> {
-    families::run(selected, |family| family(quick))
 }
 
 fn plot(cases: &[HardCase]) -> Option<Plot> {
