@@ -20,6 +20,19 @@ impl FabricBuilder {
     }
 }
 
+impl FabricBuilder {
+    /// Checks whether a fabric can be built, which takes much less time than to build it.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`build`](Self::build).
+    pub fn check(&self) -> Result<(), FabricError> {
+        self.validate()?;
+        let pinned = self.pinned.iter().copied();
+        RestMesh::new(&self.positions, &self.uv, &self.indices, pinned, self.weld()).map(|_| ())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use glam::{Vec2, Vec3};
@@ -29,7 +42,10 @@ mod tests {
     const QUAD: [Vec3; 4] = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 1.0, 0.0)];
 
     fn error(positions: &[Vec3], indices: &[u32]) -> FabricError {
-        FabricBuilder::new(positions.to_vec(), indices.to_vec()).build().expect_err("a bad mesh")
+        let builder = FabricBuilder::new(positions.to_vec(), indices.to_vec());
+        let error = builder.clone().build().expect_err("a bad mesh");
+        assert_eq!(builder.check(), Err(error));
+        error
     }
 
     #[test]

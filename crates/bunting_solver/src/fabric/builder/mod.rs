@@ -2,6 +2,8 @@
 
 mod build;
 mod coarser;
+#[cfg(feature = "mesh_levels")]
+mod flattened;
 mod repair;
 mod rest_normals;
 #[cfg(feature = "mesh_levels")]

@@ -1,8 +1,11 @@
 //! Meshes with fewer triangles: the next coarser level of one that is not a grid, and one of a given size.
 
+use std::collections::BTreeSet;
+
 use meshopt::{SimplifyOptions, VertexDataAdapter, typed_to_bytes};
 
 use super::coarser::CoarserMesh;
+use super::flattened::remove_flattened;
 use super::slivers::flip_slivers;
 use super::source::FabricBuilder;
 
@@ -22,32 +25,55 @@ const FEWER: f32 = 0.75;
 /// Greatest number of attempts to reach a number of vertices.
 const ATTEMPTS: usize = 8;
 
+/// Factor on the number of triangles that are asked for when no fabric can be built of those that there are.
+const MORE: f32 = 1.1;
+
+/// Greatest number of attempts with more triangles, up to ten times as many.
+const ATTEMPTS_WITH_MORE: usize = 24;
+
 impl FabricBuilder {
-    /// A mesh of at most this number of vertices, if it can be reached. None if the mesh has no more than this number, is
-    /// invalid, or cannot be simplified.
+    /// A mesh of at most this number of vertices, if it can be reached, from which a fabric can be built: otherwise it has more
+    /// vertices. None if the mesh has no more than this number, is invalid, or cannot be simplified.
     pub(super) fn simplified_to(&self, vertices: usize) -> Option<CoarserMesh> {
         if self.positions.len() <= vertices {
             return None;
         }
         self.validate().ok()?;
         // Twice as many triangles as vertices, by Euler's formula.
-        let mut triangles = 2.0 * vertices as f32;
-        let mut least: Option<CoarserMesh> = None;
+        let wanted = 2.0 * vertices as f32;
+        let simplified = |triangles: f32| {
+            let corners = 3 * triangles as usize;
+            let kept = self.simplified_triangles(corners, SimplifyOptions::Regularize)?;
+            Some(self.with_triangles(&kept))
+        };
+        let used: BTreeSet<u32> = self.indices.iter().copied().collect();
+        let pins = self.pinned.intersection(&used).count();
+        let is_sound = |simple: &CoarserMesh| {
+            simple.builder.pinned.len() == pins && simple.builder.check().is_ok()
+        };
+        let (mut triangles, mut fewest, mut found) = (wanted, usize::MAX, None);
         for _ in 0..ATTEMPTS {
-            let kept =
-                self.simplified_triangles(3 * triangles as usize, SimplifyOptions::Regularize);
-            let Some(simple) = kept.map(|kept| self.with_triangles(&kept)) else { break };
+            let Some(simple) = simplified(triangles) else { break };
             let count = simple.vertices.len();
-            if least.as_ref().is_some_and(|least| least.vertices.len() <= count) {
+            if count >= fewest {
                 break;
             }
-            least = Some(simple);
+            fewest = count;
+            if is_sound(&simple) {
+                found = Some(simple);
+            }
             if count <= vertices {
                 break;
             }
             triangles *= FEWER;
         }
-        least
+        let mut triangles = wanted;
+        found.or_else(|| {
+            (0..ATTEMPTS_WITH_MORE).find_map(|_| {
+                triangles *= MORE;
+                simplified(triangles).filter(is_sound)
+            })
+        })
     }
 
     /// About a quarter of the triangles, with the whole border and all pins. None if hardly any can be removed.
@@ -109,7 +135,89 @@ impl FabricBuilder {
         }
         let corners = kept.chunks_exact(3);
         let mut triangles: Vec<[u32; 3]> = corners.map(|at| [at[0], at[1], at[2]]).collect();
-        flip_slivers(&self.positions, &mut triangles);
+        let particle_of_vertex = self.weld().particle_of_vertex;
+        remove_flattened(&particle_of_vertex, &self.pinned, &mut triangles);
+        flip_slivers(&self.positions, &particle_of_vertex, &mut triangles);
         Some(triangles.into_flattened())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::{BTreeMap, BTreeSet};
+
+    use glam::Vec3;
+
+    use super::*;
+
+    /// A quilt: two layers of a square metre, 2 mm or a little more apart, joined by a hem all around, with a fringe of tabs
+    /// at its lower edge. A simplification that only looks at distances flattens the tabs.
+    fn quilt(cells: i32, gap: f32, (tab, width, every): (i32, i32, i32)) -> FabricBuilder {
+        let is_tab = |x: i32, y: i32| y < cells + tab && (x - 2).rem_euclid(every) < width;
+        let is_in = |x: i32, y: i32| {
+            (0..cells).contains(&x)
+                && y >= 0
+                && (y < cells || ((2..cells - 2).contains(&x) && is_tab(x, y)))
+        };
+        let mut vertices: BTreeMap<[i32; 3], u32> = BTreeMap::new();
+        let mut positions = Vec::new();
+        let mut indices = Vec::new();
+        let mut quad = |corners: [[i32; 3]; 4]| {
+            let [a, b, c, d] = corners.map(|at @ [x, y, layer]| {
+                *vertices.entry(at).or_insert_with(|| {
+                    let (x, y) = (x as f32 / cells as f32, -y as f32 / cells as f32);
+                    let bulge = 0.3 * (x - 0.5) * (x - 0.5) + 0.1 * (y + 0.5) * (y + 0.5);
+                    positions.push(Vec3::new(x, y, gap * layer as f32 + bulge));
+                    positions.len() as u32 - 1
+                })
+            });
+            indices.extend([a, b, c, a, c, d]);
+        };
+        for y in 0..cells + tab {
+            for x in (0..cells).filter(|&x| is_in(x, y)) {
+                let [a, b, c, d] = [[x, y], [x + 1, y], [x + 1, y + 1], [x, y + 1]];
+                let on = |[x, y]: [i32; 2], layer: i32| [x, y, layer];
+                quad([on(a, 0), on(b, 0), on(c, 0), on(d, 0)]);
+                quad([on(a, 1), on(d, 1), on(c, 1), on(b, 1)]);
+                let sides =
+                    [(a, b, x, y - 1), (b, c, x + 1, y), (c, d, x, y + 1), (d, a, x - 1, y)];
+                for (from, to, x, y) in sides {
+                    if !is_in(x, y) {
+                        quad([on(from, 0), on(from, 1), on(to, 1), on(to, 0)]);
+                    }
+                }
+            }
+        }
+        FabricBuilder::new(positions, indices)
+    }
+
+    #[test]
+    fn what_is_simplified_can_be_built_whatever_lies_on_what() {
+        for (gap, tabs) in [(0.002, (6, 1, 3)), (0.01, (6, 2, 4))] {
+            let fine = quilt(24, gap, tabs).pin([0, 5]);
+            assert!(fine.check().is_ok(), "the quilt is sound");
+            for most in [100, 200, 300, 500, 800] {
+                let simple = fine.decimated(most).expect("it has more vertices");
+                let count = simple.vertices.len();
+                assert!(count <= most + most / 4, "{count} vertices of at most {most}");
+                let fabric = simple.builder.build();
+                let fabric = fabric.unwrap_or_else(|error| panic!("{most}: {error}"));
+                assert_eq!((0..count).filter(|&it| fabric.is_pinned(it)).count(), 2);
+                let area = fabric.area();
+                assert!((1.5..2.6).contains(&area), "two layers of a square metre have {area} m²");
+            }
+            assert!(fine.coarser().is_some_and(|coarser| coarser.builder.check().is_ok()));
+        }
+    }
+
+    #[test]
+    fn each_vertex_of_a_simplified_mesh_is_one_of_the_fine_mesh() {
+        let fine = quilt(12, 0.01, (3, 1, 3));
+        let simple = fine.decimated(80).expect("it has more vertices");
+        let different: BTreeSet<u32> = simple.vertices.iter().copied().collect();
+        assert_eq!(different.len(), simple.vertices.len());
+        for (at, &of) in simple.builder.positions().iter().zip(&simple.vertices) {
+            assert_eq!(*at, fine.positions[of as usize]);
+        }
     }
 }

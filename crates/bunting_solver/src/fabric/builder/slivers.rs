@@ -11,8 +11,14 @@ use glam::Vec3;
 /// needles remain. Larger: edges are flipped against the shape of the surface.
 const SLIVER: f32 = 0.03;
 
-/// Flips the longest edges of slivers as long as this improves the worse of the two triangles.
-pub(super) fn flip_slivers(positions: &[Vec3], triangles: &mut [[u32; 3]]) {
+/// Flips the longest edges of slivers as long as this improves the worse of the two triangles, and makes no edge that there
+/// is already.
+pub(super) fn flip_slivers(
+    positions: &[Vec3],
+    particle_of_vertex: &[u32],
+    triangles: &mut [[u32; 3]],
+) {
+    let particle = |vertex: u32| particle_of_vertex[vertex as usize];
     let shape = |triangle: [u32; 3]| {
         let [a, b, c] = triangle.map(|corner| positions[corner as usize]);
         let edges = [b - a, c - b, a - c].map(Vec3::length_squared);
@@ -33,7 +39,12 @@ pub(super) fn flip_slivers(positions: &[Vec3], triangles: &mut [[u32; 3]]) {
             let opposite = *triangles[other].iter().find(|&&at| at != from && at != to)?;
             let new = [[tip, from, opposite], [opposite, to, tip]];
             let worst = |pair: [[u32; 3]; 2]| pair.map(shape).into_iter().fold(f32::MAX, f32::min);
-            (worst(new) > worst([triangle, triangles[other]])).then_some((index, other, new))
+            let has = |corners: &[u32; 3], vertex: u32| {
+                corners.iter().any(|&at| particle(at) == particle(vertex))
+            };
+            let is_edge = || triangles.iter().any(|it| has(it, tip) && has(it, opposite));
+            let improves = worst(new) > worst([triangle, triangles[other]]);
+            (improves && !is_edge()).then_some((index, other, new))
         });
         let Some((index, other, new)) = flip else { break };
         [triangles[index], triangles[other]] = new;
@@ -59,11 +70,22 @@ mod tests {
         let positions = [at(0.0, 0.0), at(1.0, 0.0), at(2.0, 0.0), at(1.0, 1.5)];
         // Vertices 0, 1 and 2 lie on one line; the second triangle shares the edge from 0 to 2.
         let mut triangles = [[0, 1, 2], [0, 2, 3]];
-        flip_slivers(&positions, &mut triangles);
+        flip_slivers(&positions, &[0, 1, 2, 3], &mut triangles);
         let area = |[a, b, c]: [u32; 3]| {
             let [a, b, c] = [a, b, c].map(|corner| positions[corner as usize]);
             0.5 * (b - a).cross(c - a).z
         };
         assert!(triangles.into_iter().all(|triangle| area(triangle) > 0.7), "{triangles:?}");
+    }
+
+    #[test]
+    fn no_edge_is_made_twice() {
+        let at = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+        let positions = [at(0.0, 0.0), at(1.0, 0.0), at(2.0, 0.0), at(1.0, 1.5), at(1.5, 0.7)];
+        // A further layer has an edge from 1 to 3.
+        let given = [[0, 1, 2], [0, 2, 3], [1, 4, 3]];
+        let mut triangles = given;
+        flip_slivers(&positions, &[0, 1, 2, 3, 4], &mut triangles);
+        assert_eq!(triangles, given);
     }
 }
