@@ -8,7 +8,7 @@ pub mod level_topology;
 pub mod levels;
 pub mod library;
 pub mod prepare;
-mod release;
+pub(crate) mod release;
 pub mod rigid;
 pub mod scale;
 pub mod simulated;

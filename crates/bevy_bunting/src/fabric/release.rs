@@ -14,7 +14,7 @@ use crate::lod::select::LevelSelector;
 const RELEASED_EVERY: u32 = 64;
 
 /// Whether this tick releases what is unused.
-pub(super) fn is_due(mut ticks: Local<u32>) -> bool {
+pub(crate) fn is_due(mut ticks: Local<u32>) -> bool {
     *ticks = (*ticks + 1) % RELEASED_EVERY;
     *ticks == 0
 }

@@ -67,19 +67,39 @@ impl SimulatedPart {
     /// Converts an error of the part's fabric: the part's indices become the mesh's.
     pub fn renumber(&self, error: FabricError) -> FabricError {
         let vertex = |of_part: usize| self.vertices.get(of_part).map_or(of_part, |&v| v as usize);
-        match error {
-            FabricError::ZeroArea { triangle } => FabricError::ZeroArea {
-                triangle: self.triangles.get(triangle).copied().unwrap_or(triangle),
-            },
-            FabricError::LooseVertex { vertex: loose } => {
-                FabricError::LooseVertex { vertex: vertex(loose) }
-            }
-            FabricError::NonManifoldEdge { a, b } => {
-                let [a, b] = [a, b].map(|end| vertex(end as usize) as u32);
-                FabricError::NonManifoldEdge { a, b }
-            }
-            other => other,
+        let triangle = |of_part: usize| self.triangles.get(of_part).copied().unwrap_or(of_part);
+        renumbered(error, vertex, triangle)
+    }
+
+    /// Checks whether a fabric of the part can be built, without building it.
+    ///
+    /// # Errors
+    ///
+    /// Those of the fabric, with the mesh's indices.
+    #[cfg(feature = "render")]
+    pub fn check(&self) -> Result<(), FabricError> {
+        self.builder.check().map_err(|error| self.renumber(error))
+    }
+}
+
+/// An error of a fabric with other numbers of its vertices and triangles.
+pub(crate) fn renumbered(
+    error: FabricError,
+    vertex: impl Fn(usize) -> usize,
+    triangle: impl Fn(usize) -> usize,
+) -> FabricError {
+    match error {
+        FabricError::ZeroArea { triangle: flat } => {
+            FabricError::ZeroArea { triangle: triangle(flat) }
         }
+        FabricError::LooseVertex { vertex: loose } => {
+            FabricError::LooseVertex { vertex: vertex(loose) }
+        }
+        FabricError::NonManifoldEdge { a, b } => {
+            let [a, b] = [a, b].map(|end| vertex(end as usize) as u32);
+            FabricError::NonManifoldEdge { a, b }
+        }
+        other => other,
     }
 }
 

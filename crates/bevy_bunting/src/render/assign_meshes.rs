@@ -14,6 +14,7 @@ use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::display::surface::ClothSurface;
 use crate::fabric::levels::ClothLevels;
+use crate::render::cloth_from_mesh::SourceMesh;
 use crate::render::deformer::ClothDeformer;
 use crate::render::level_mesh;
 use crate::render::level_meshes::{LevelMeshes, MeshOrigin, check_mesh};
@@ -25,6 +26,7 @@ type ShownCloth = (
     &'static ClothInstance,
     Option<&'static Mesh3d>,
     Option<&'static LevelMeshes>,
+    Option<&'static SourceMesh>,
 );
 
 /// The first cloth that uses each given mesh; any further cloth gets a copy of the mesh.
@@ -38,10 +40,15 @@ pub fn assign_meshes(
     mut owners: Local<Owners>,
     mut commands: Commands,
 ) {
-    for (entity, shape, instance, shown, level_meshes) in &cloths {
+    for (entity, shape, instance, shown, level_meshes, source) in &cloths {
         let Some(levels) = &instance.levels else { continue };
         let own = level_meshes.filter(|own| shown.is_some_and(|it| own.contains(it.id())));
         if own.is_some_and(|own| own.cloth == entity && Arc::ptr_eq(&own.levels, levels)) {
+            continue;
+        }
+        let is_new = |source: &SourceMesh| shown.is_some_and(|shown| !source.shows(shown.id()));
+        if own.is_none() && source.is_some_and(is_new) {
+            // Another mesh of which a cloth is to be made.
             continue;
         }
         let given = match own {

@@ -36,7 +36,7 @@ fn beyond_particles(levels: &ClothLevels) -> f32 {
 /// lies. Cloths that are not visible are bounded, too, as they may come into view.
 pub fn bound_cloths(mut cloths: Query<BoundedCloth, (With<NoAutoAabb>, IsStale)>) {
     for (state, easing, level_meshes, carried, mut bounds) in &mut cloths {
-        let levels = level_meshes.map(|it| &*it.levels).or(carried.map(Carried::levels));
+        let levels = level_meshes.map(|it| &*it.levels).or(carried.and_then(Carried::levels));
         let smooth = carried.is_some() || level_meshes.is_some_and(|it| it.halvings > 0);
         let [from, to] = match easing {
             Some(easing) if easing.level().is_some() => {

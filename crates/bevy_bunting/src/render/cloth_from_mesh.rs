@@ -1,27 +1,32 @@
 //! Makes cloths of the meshes that entities already have.
 
-use bevy_asset::{AssetId, AssetServer, Assets, Handle, LoadState, RenderAssetUsages};
+use std::collections::HashSet;
+
+use bevy_asset::{AssetEvent, AssetId, AssetServer, Assets, Handle, LoadState};
 use bevy_camera::visibility::DynamicSkinnedMeshBounds;
 use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
 use bevy_math::Vec3;
 use bevy_mesh::skinning::SkinnedMesh;
-use bevy_mesh::{Indices, Mesh, Mesh3d};
+use bevy_mesh::{Mesh, Mesh3d};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::helper::TransformHelper;
 
+use crate::cloth::activity::ClothActivity;
 use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::cloth::mesh::ClothMesh;
+use crate::cloth::state::ClothState;
 use crate::fabric::scale::ScaleBaked;
 use crate::motion::attachment::Attachment;
+use crate::render::convert_mesh::Converted;
 use crate::render::deformer::{Carried, ClothDeformer};
 use crate::render::from_skin::{BindPoses, LoadedSkin, unbind};
-use crate::render::level_mesh::with_vertices;
 use crate::render::level_meshes::LevelMeshes;
+use crate::render::mesh_content::{changed_meshes, content_of};
 use crate::render::painted_vertices::{PaintedVertices, painted_attachment};
 use crate::render::painted_weights::{PaintedDistance, PaintedWeights};
-use crate::skeleton::by_vertex::ByVertex;
 use crate::skeleton::limits::SkinLimits;
 
 /// Makes the entity's own `Mesh3d` a cloth, as soon as it is loaded: inserts a [`ClothMesh`] and shows a copy of the
@@ -32,13 +37,14 @@ use crate::skeleton::limits::SkinLimits;
 /// [`ClothSkin`](crate::ClothSkin), and the copy has no joints.
 ///
 /// Scales of the entity and its parents, or of the skeleton, are baked into the copy, since a cloth's frame has no scale; a
-/// scale of zero is ignored. A change of this component or of the `Mesh3d` makes the cloth anew.
+/// scale of zero is ignored. A change of this component, of the `Mesh3d`, or of the mesh asset itself makes the cloth anew.
 ///
 /// # Errors
 ///
 /// A [`ClothFailed`] event tells what cannot be used: a mesh that failed to load, one that is kept in the
-/// render world only, values that are not painted, painted vertices that no anchor holds, or a defect of the mesh. The
-/// entity is shown as before.
+/// render world only, values that are not painted, painted vertices that no anchor holds, or a defect of the mesh, whose
+/// vertices it names by their numbers in the given mesh. The entity is shown as before, and a cloth that was made before is
+/// simulated further on.
 ///
 /// ```no_run
 /// use bevy_asset::AssetServer;
@@ -58,6 +64,7 @@ use crate::skeleton::limits::SkinLimits;
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[require(ClothState)]
 pub struct ClothFromMesh {
     /// Whether the mesh is [repaired](ClothMesh::repaired) before. Vertices are then numbered anew, which matters
     /// for [`AttachedVertices::List`](crate::AttachedVertices::List).
@@ -71,7 +78,8 @@ pub struct ClothFromMesh {
     /// Greatest number of simulated vertices. A mesh with more is simulated as one with fewer triangles, which carries the
     /// detailed one like a [`ClothDeformer`](crate::ClothDeformer); pinned and held vertices stay, as
     /// [`FabricBuilder::decimated`](bunting_solver::FabricBuilder::decimated) says. The [`ClothMesh`] has the vertices of the
-    /// simple mesh, by which [`AttachedVertices::List`](crate::AttachedVertices::List) names them.
+    /// simple mesh, by which [`AttachedVertices::List`](crate::AttachedVertices::List) names them. It has more vertices where
+    /// no fabric can be built with fewer.
     pub max_vertices: Option<u32>,
     /// Greatest distances of the particles of a skinned mesh from their animated places, painted by the artist; written into
     /// the entity's [`SkinLimits`](crate::SkinLimits).
@@ -97,8 +105,10 @@ impl ClothFromMesh {
 #[derive(Component, Clone, Debug)]
 pub struct SourceMesh {
     source: Handle<Mesh>,
+    /// What the source contained when it was last read, see [`content_of`]; none if it is not loaded.
+    content: Option<u64>,
     /// The mesh that was shown when the cloth was made: the copy or, if no cloth was made, the source.
-    shown: AssetId<Mesh>,
+    shown: Handle<Mesh>,
     /// The skin of the source.
     skin: Option<SkinnedMesh>,
 }
@@ -108,61 +118,131 @@ impl SourceMesh {
     pub(crate) fn source(&self) -> &Handle<Mesh> {
         &self.source
     }
+
+    /// Whether this is the mesh that was shown when the cloth was made.
+    pub(super) fn shows(&self, mesh: AssetId<Mesh>) -> bool {
+        self.shown.id() == mesh
+    }
 }
 
 /// Marks a cloth whose mesh is not loaded yet.
 #[derive(Component, Clone, Copy, Debug)]
 pub struct AwaitsMesh;
 
-type Asked = (
-    Entity,
-    Ref<'static, ClothFromMesh>,
-    &'static Mesh3d,
-    Option<&'static SourceMesh>,
-    Option<&'static LevelMeshes>,
-    Option<&'static Carried>,
-    Option<&'static SkinnedMesh>,
-    Option<&'static SkinLimits>,
-    Option<&'static Attachment>,
-    Has<AwaitsMesh>,
-);
-type MayBeStale = Or<(Changed<ClothFromMesh>, Changed<Mesh3d>, With<AwaitsMesh>)>;
+/// An entity that asks for a cloth.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub struct Asked {
+    entity: Entity,
+    wanted: Ref<'static, ClothFromMesh>,
+    shown: Ref<'static, Mesh3d>,
+    known: Option<&'static SourceMesh>,
+    levels: Option<&'static LevelMeshes>,
+    carried: Option<&'static Carried>,
+    skinned: Option<&'static SkinnedMesh>,
+    limits: Option<&'static SkinLimits>,
+    attachment: Option<&'static Attachment>,
+    state: &'static mut ClothState,
+    awaits: Has<AwaitsMesh>,
+    is_cloth: Has<ClothMesh>,
+}
 
-/// Makes cloths of meshes that are new, changed or have been loaded since the last frame.
+impl AskedItem<'_, '_> {
+    /// Whether the plugin has made the mesh that is shown now, so that the user has given no other one.
+    fn shows_own(&self) -> bool {
+        let shown = self.shown.id();
+        self.known.is_some_and(|known| known.shows(shown))
+            || self.levels.is_some_and(|levels| levels.contains(shown))
+            || self.carried.is_some_and(|carried| carried.shows(shown))
+    }
+
+    /// The mesh that a cloth is to be made of, if there is one to be made.
+    fn source(
+        &self,
+        changed: &HashSet<AssetId<Mesh>>,
+        meshes: &Assets<Mesh>,
+    ) -> Option<Handle<Mesh>> {
+        let Some(known) = self.known.filter(|_| self.shows_own()) else {
+            return Some(self.shown.0.clone());
+        };
+        let source = known.source.id();
+        let has_changed = || {
+            let content = changed.contains(&source).then(|| meshes.get(source).map(content_of));
+            content.is_some_and(|content| content != known.content)
+        };
+        let is_stale = self.wanted.is_changed() || self.awaits || has_changed();
+        is_stale.then(|| known.source.clone())
+    }
+
+    /// The skin that leads the cloth, if the mesh is skinned.
+    fn skin(&self) -> Option<SkinnedMesh> {
+        let known = self.known.filter(|_| self.shows_own());
+        self.skinned.or_else(|| known.and_then(|known| known.skin.as_ref())).cloned()
+    }
+
+    /// The mesh that shows the cloth that was made last; none if none was made.
+    fn last_good(&self) -> Option<Handle<Mesh>> {
+        let of_levels = self.levels.and_then(|levels| levels.meshes.first());
+        let of_carried = self.carried.map(|carried| carried.shown());
+        let known = self.known.filter(|_| self.is_cloth)?;
+        Some(of_levels.or(of_carried).unwrap_or(&known.shown).clone())
+    }
+
+    /// Notes the mesh that no cloth could be made of, or not yet. A cloth that was made before is shown further on.
+    fn keep_last_good(&mut self, of: SourceMesh, commands: &mut Commands) {
+        let mut cloth = commands.entity(self.entity);
+        match self.last_good() {
+            Some(shown) => {
+                let own = self.known.map_or(&shown, |known| &known.shown).clone();
+                cloth.insert(SourceMesh { shown: own, ..of });
+                if self.shown.0 != shown {
+                    cloth.insert(Mesh3d(shown));
+                }
+            }
+            None => {
+                cloth.insert(of);
+            }
+        }
+    }
+}
+
+/// Makes cloths of meshes that are new or changed, or have been loaded since the last frame.
 pub fn make_cloths(
-    asked: Query<Asked, MayBeStale>,
-    server: Option<Res<AssetServer>>,
-    poses: BindPoses,
+    mut asked: Query<Asked>,
+    written: Query<&LevelMeshes>,
+    mut events: MessageReader<AssetEvent<Mesh>>,
+    (server, poses): (Option<Res<AssetServer>>, BindPoses),
     transforms: TransformHelper,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, wanted, shown, known, levels, carried, skinned, limits, attachment, awaits) in
-        &asked
-    {
-        let is_own = |known: &&SourceMesh| {
-            known.shown == shown.id()
-                || levels.is_some_and(|levels| levels.contains(shown.id()))
-                || carried.is_some_and(|carried| carried.shows(shown.id()))
-        };
-        let known = known.filter(is_own);
-        if known.is_some() && !wanted.is_changed() && !awaits {
-            continue;
-        }
-        let source = known.map_or(&shown.0, |known| &known.source).clone();
-        let skin = skinned.or_else(|| known.and_then(|known| known.skin.as_ref())).cloned();
-        let mut cloth = commands.entity(entity);
+    let changed = changed_meshes(&mut events, &written);
+    for mut cloth in &mut asked {
+        let Some(source) = cloth.source(&changed, &meshes) else { continue };
+        let (entity, skin) = (cloth.entity, cloth.skin());
         let loaded = skin.as_ref().map(|skin| LoadedSkin::of(skin, &poses));
         let mesh = meshes.get(&source).filter(|_| loaded.as_ref().is_none_or(Option::is_some));
+        let content = mesh.map(content_of);
+        let made_of = SourceMesh {
+            shown: source.clone(),
+            source: source.clone(),
+            content,
+            skin: skin.clone(),
+        };
         let Some(mesh) = mesh else {
-            cloth.insert(SourceMesh { source: source.clone(), shown: shown.id(), skin });
             let state = server.as_ref().map(|server| server.load_state(source.id()));
-            if matches!(state, Some(LoadState::Failed(_))) {
-                cloth.remove::<AwaitsMesh>();
+            let has_failed = matches!(state, Some(LoadState::Failed(_)));
+            if has_failed {
+                commands.entity(entity).remove::<AwaitsMesh>();
                 ClothFailed::report(&mut commands, entity, ClothError::MeshNotLoaded { entity });
-            } else if !awaits {
-                cloth.insert(AwaitsMesh);
+            } else if !cloth.awaits {
+                commands.entity(entity).insert(AwaitsMesh);
             }
+            if !cloth.is_cloth {
+                let waits = ClothActivity::AwaitsAsset;
+                cloth.state.activity = if has_failed { ClothActivity::Failed } else { waits };
+            }
+            cloth.keep_last_good(made_of, &mut commands);
             continue;
         };
         let loaded = loaded.flatten();
@@ -172,128 +252,61 @@ pub fn make_cloths(
             None => of_entity().unwrap_or(Vec3::ONE),
         };
         let scale = if is_scale(scale) { scale } else { Vec3::ONE };
+        let wanted = &cloth.wanted;
         let converted = wanted.convert(entity, mesh, scale).and_then(|converted| {
-            let limits = wanted.painted_limits(limits, entity, converted.of_shape())?;
-            let attachment =
-                painted_attachment(&wanted.held, attachment, entity, converted.of_shape())?;
+            let mesh = converted.of_shape();
+            let limits = wanted.painted_limits(cloth.limits, entity, mesh)?;
+            let attachment = painted_attachment(&wanted.held, cloth.attachment, entity, mesh)?;
             Ok((converted, limits, attachment))
         });
+        commands.entity(entity).remove::<AwaitsMesh>();
         match converted {
-            Ok((Converted { shape, mut shown, simple }, limits, attachment)) => {
-                if let Some(skin) = loaded {
-                    cloth.insert(skin.convert(simple.as_ref().unwrap_or(&shown), scale));
-                    cloth.remove::<(SkinnedMesh, DynamicSkinnedMeshBounds)>();
-                    unbind(&mut shown);
-                }
+            Ok((converted, limits, attachment)) => {
+                let mut made = commands.entity(entity);
                 if let Some(limits) = limits {
-                    cloth.insert(limits);
+                    made.insert(limits);
                 }
                 if let Some(attachment) = attachment {
-                    cloth.insert(attachment);
+                    made.insert(attachment);
                 }
-                if simple.is_some() {
-                    cloth.insert(ClothDeformer { cloth: entity }).remove::<LevelMeshes>();
-                } else if carried.is_some_and(|carried| carried.is_of(entity)) {
-                    cloth.remove::<(ClothDeformer, Carried)>();
-                }
-                let copy = meshes.add(shown);
-                let made_of = SourceMesh { source, shown: copy.id(), skin };
-                cloth.insert((shape, made_of, ScaleBaked, Mesh3d(copy)));
-                cloth.remove::<AwaitsMesh>();
+                show(&cloth, converted, (loaded, scale), made_of, &mut meshes, &mut made);
             }
             Err(error) => {
-                let made_of = SourceMesh { source, shown: shown.id(), skin };
-                cloth.insert(made_of).remove::<AwaitsMesh>();
+                if !cloth.is_cloth {
+                    cloth.state.activity = ClothActivity::Failed;
+                }
+                cloth.keep_last_good(made_of, &mut commands);
                 ClothFailed::report(&mut commands, entity, error);
             }
         }
     }
 }
 
+/// Makes an entity a cloth, and shows its mesh.
+fn show(
+    cloth: &AskedItem,
+    Converted { shape, mut shown, simple }: Converted,
+    (loaded, scale): (Option<LoadedSkin>, Vec3),
+    made_of: SourceMesh,
+    meshes: &mut Assets<Mesh>,
+    made: &mut EntityCommands,
+) {
+    if let Some(skin) = loaded {
+        made.insert(skin.convert(simple.as_ref().unwrap_or(&shown), scale));
+        made.remove::<(SkinnedMesh, DynamicSkinnedMeshBounds)>();
+        unbind(&mut shown);
+    }
+    if simple.is_some() {
+        made.insert(ClothDeformer { cloth: cloth.entity }).remove::<LevelMeshes>();
+    } else if cloth.carried.is_some_and(|carried| carried.is_of(cloth.entity)) {
+        made.remove::<(ClothDeformer, Carried)>();
+    }
+    let copy = meshes.add(shown);
+    let made_of = SourceMesh { shown: copy.clone(), ..made_of };
+    made.insert((shape, made_of, ScaleBaked, Mesh3d(copy)));
+}
+
 /// Whether a scale can be baked.
 fn is_scale(scale: Vec3) -> bool {
     scale.is_finite() && scale.cmpne(Vec3::ZERO).all()
-}
-
-/// The cloth that a mesh becomes.
-struct Converted {
-    shape: ClothMesh,
-    /// The mesh that shows it.
-    shown: Mesh,
-    /// The mesh with the vertices of the shape, if these are fewer than those that are shown.
-    simple: Option<Mesh>,
-}
-
-impl Converted {
-    /// The mesh with the vertices of the shape.
-    fn of_shape(&self) -> &Mesh {
-        self.simple.as_ref().unwrap_or(&self.shown)
-    }
-}
-
-impl ClothFromMesh {
-    /// The limits of a skinned mesh with those that are painted; none if none are.
-    fn painted_limits(
-        &self,
-        limits: Option<&SkinLimits>,
-        entity: Entity,
-        mesh: &Mesh,
-    ) -> Result<Option<SkinLimits>, ClothError> {
-        let mut limits = limits.cloned().unwrap_or_default();
-        let mut are_painted = false;
-        for (painted, limit) in [
-            (&self.max_distance, &mut limits.max_distance),
-            (&self.backstop_radius, &mut limits.backstop_radius),
-            (&self.backstop_distance, &mut limits.backstop_distance),
-        ] {
-            if let Some(painted) = painted {
-                *limit = ByVertex::Each(painted.read(entity, mesh)?);
-                are_painted = true;
-            }
-        }
-        Ok(are_painted.then_some(limits))
-    }
-
-    /// The cloth of a mesh with a scale.
-    fn convert(&self, entity: Entity, mesh: &Mesh, scale: Vec3) -> Result<Converted, ClothError> {
-        let is_kept = mesh.asset_usage.contains(RenderAssetUsages::MAIN_WORLD);
-        if !is_kept || mesh.try_attribute_option(Mesh::ATTRIBUTE_POSITION).is_err() {
-            return Err(ClothError::MeshUnreadable { entity });
-        }
-        let mut shown = mesh.clone();
-        if scale != Vec3::ONE {
-            shown.scale_by(scale);
-            if scale.element_product() < 0.0 {
-                // A mesh that is no list of triangles gives an empty cloth, which is reported later.
-                let _ = shown.invert_winding();
-            }
-        }
-        let mut shape = ClothMesh::from(&shown);
-        if let (ClothMesh::Triangles { uv, .. }, true) = (&mut shape, self.ignore_uv) {
-            uv.clear();
-        }
-        if let Some(painted) = &self.weights {
-            shape = shape.with_weights(painted.read(entity, &shown)?);
-        }
-        if self.repair {
-            let repaired = shape.repaired();
-            let (repaired, report) =
-                repaired.map_err(|source| ClothError::Mesh { entity, source })?;
-            shape = repaired;
-            shown = with_vertices(shown, report.vertices);
-            if let ClothMesh::Triangles { indices, .. } = &shape {
-                shown.insert_indices(Indices::U32(indices.clone()));
-            }
-        }
-        let mut held = Vec::new();
-        for painted in &self.held {
-            held.extend(painted.read(entity, &shown)?);
-        }
-        let simplified = self.max_vertices.and_then(|most| shape.simplified(most as usize, &held));
-        let simple = simplified.map(|(simplified, vertices)| {
-            shape = simplified;
-            with_vertices(shown.clone(), vertices)
-        });
-        Ok(Converted { shape, shown, simple })
-    }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy_asset::{AssetId, Assets, Handle, RenderAssetUsages};
+use bevy_asset::{AssetEvent, AssetId, Assets, Handle, RenderAssetUsages};
 use bevy_camera::primitives::Aabb;
 use bevy_camera::visibility::{InheritedVisibility, NoAutoAabb, Visibility};
 use bevy_ecs::prelude::*;
@@ -18,6 +18,9 @@ use crate::cloth::instance::ClothInstance;
 use crate::display::surface::ClothSurface;
 use crate::fabric::levels::ClothLevels;
 use crate::render::binding::{Binding, SurfaceVertices};
+use crate::render::cloth_from_mesh::SourceMesh;
+use crate::render::level_meshes::LevelMeshes;
+use crate::render::mesh_content::{changed_meshes, content_of};
 use crate::render::tangents::TangentSums;
 
 /// Number of halvings of the finest level's edges in the surface that carries meshes.
@@ -62,18 +65,26 @@ pub struct ClothDeformer {
 #[derive(Component, Debug)]
 pub struct Carried {
     cloth: Entity,
-    levels: Arc<ClothLevels>,
+    /// Levels of the cloth; none if it is gone.
+    levels: Option<Arc<ClothLevels>>,
     /// The given mesh, as it is at rest.
     given: Handle<Mesh>,
+    /// What the given mesh contained when it was bound, see [`content_of`].
+    content: u64,
     /// The mesh that is shown: a copy or, if the mesh cannot be carried, the given one.
-    shown: AssetId<Mesh>,
+    shown: Handle<Mesh>,
     state: CarriedState,
 }
 
 impl Carried {
-    /// Levels of the cloth.
-    pub fn levels(&self) -> &ClothLevels {
-        &self.levels
+    /// Levels of the cloth; none if it is gone.
+    pub fn levels(&self) -> Option<&ClothLevels> {
+        self.levels.as_deref()
+    }
+
+    /// The mesh that is shown.
+    pub fn shown(&self) -> &Handle<Mesh> {
+        &self.shown
     }
 
     /// Whether this cloth carries it.
@@ -81,9 +92,15 @@ impl Carried {
         self.cloth == cloth
     }
 
+    /// Whether the mesh is bound to these levels, or is being bound.
+    fn has_binding(&self, levels: &Arc<ClothLevels>) -> bool {
+        let is_of = self.levels.as_ref().is_some_and(|of| Arc::ptr_eq(of, levels));
+        is_of && !matches!(self.state, CarriedState::Refused)
+    }
+
     /// Whether this is the mesh that is shown.
     pub fn shows(&self, mesh: AssetId<Mesh>) -> bool {
-        self.shown == mesh
+        self.shown.id() == mesh
     }
 
     /// Takes up the binding that another thread has made. Returns whether it has.
@@ -121,38 +138,70 @@ struct Bound {
     written: Vec<Vec3>,
 }
 
-type Unbound = (Entity, &'static ClothDeformer, &'static Mesh3d, Option<&'static Carried>);
+type Unbound = (
+    Entity,
+    &'static ClothDeformer,
+    &'static Mesh3d,
+    Option<&'static mut Carried>,
+    Option<&'static SourceMesh>,
+);
 
-/// Begins to bind meshes that are new, changed or have another cloth.
+/// Begins to bind meshes that are new, changed or have another cloth. Those whose cloth is gone stay as they are, and forget
+/// it.
 pub fn bind_meshes(
-    deformers: Query<Unbound>,
+    mut deformers: Query<Unbound>,
     cloths: Query<&ClothInstance>,
+    written: Query<&LevelMeshes>,
+    mut events: MessageReader<AssetEvent<Mesh>>,
     mut meshes: ResMut<Assets<Mesh>>,
     mut commands: Commands,
 ) {
-    for (entity, deformer, shown, carried) in &deformers {
+    let changed = changed_meshes(&mut events, &written);
+    for (entity, deformer, shown, mut carried, source) in &mut deformers {
         let levels = cloths.get(deformer.cloth).ok().and_then(|cloth| cloth.levels.as_ref());
-        let Some(levels) = levels else { continue };
-        let is_known = carried.is_some_and(|carried| {
+        let Some(levels) = levels else {
+            if let Some(carried) = carried.as_mut().filter(|carried| carried.levels.is_some()) {
+                (carried.levels, carried.state) = (None, CarriedState::Refused);
+            }
+            continue;
+        };
+        let known = carried.as_deref().filter(|carried| carried.shows(shown.id()));
+        let is_same = known.is_some();
+        if known.is_none() && source.is_some_and(|source| !source.shows(shown.id())) {
+            // Another mesh of which a cloth is to be made.
+            continue;
+        }
+        let given = known.map_or(&shown.0, |carried| &carried.given).clone();
+        let is_known = known.is_some_and(|carried| {
+            let of_levels = carried.levels.as_ref();
             carried.cloth == deformer.cloth
-                && carried.shown == shown.id()
-                && Arc::ptr_eq(&carried.levels, levels)
+                && of_levels.is_some_and(|of| Arc::ptr_eq(of, levels))
+                && !(changed.contains(&given.id())
+                    && meshes.get(&given).is_some_and(|mesh| content_of(mesh) != carried.content))
         });
         if is_known {
             continue;
         }
-        let known = carried.filter(|carried| carried.shown == shown.id());
-        let given = known.map_or(&shown.0, |carried| &carried.given).clone();
         let Some(mesh) = meshes.get(&given) else { continue };
-        let bound = |shown: AssetId<Mesh>, state: CarriedState| Carried {
+        let content = content_of(mesh);
+        let bound = |shown: Handle<Mesh>, state: CarriedState| Carried {
             cloth: deformer.cloth,
-            levels: Arc::clone(levels),
+            levels: Some(Arc::clone(levels)),
             given: given.clone(),
+            content,
             shown,
             state,
         };
         let Some(rest) = at_rest(mesh) else {
-            commands.entity(entity).insert(bound(shown.id(), CarriedState::Refused));
+            if let Some(carried) = carried.as_mut().filter(|carried| carried.has_binding(levels)) {
+                // The last good mesh is carried further on.
+                if is_same {
+                    carried.content = content;
+                }
+                commands.entity(entity).insert(Mesh3d(carried.shown.clone()));
+            } else {
+                commands.entity(entity).insert(bound(shown.0.clone(), CarriedState::Refused));
+            }
             ClothFailed::report(&mut commands, entity, ClothError::MeshUnreadable { entity });
             continue;
         };
@@ -160,7 +209,7 @@ pub fn bind_meshes(
         let of = Arc::clone(levels);
         let work = Background::begin(move || bind(&of, &rest));
         let copy = meshes.add(copy);
-        let carried = bound(copy.id(), CarriedState::Awaited(work));
+        let carried = bound(copy.clone(), CarriedState::Awaited(work));
         let mut entity_commands = commands.entity(entity);
         entity_commands.insert((carried, Mesh3d(copy), NoAutoAabb)).insert_if_new(Aabb::default());
         if deformer.cloth == entity {
@@ -231,11 +280,13 @@ pub fn carry_meshes(
             carried.set_changed();
         }
         let carried = carried.bypass_change_detection();
-        let CarriedState::Bound(bound) = &mut carried.state else { continue };
+        let Carried { levels: Some(levels), state: CarriedState::Bound(bound), .. } = carried
+        else {
+            continue;
+        };
         let Ok(surface) = cloths.get(carried.cloth) else { continue };
-        let fits =
-            surface.positions.len() == carried.levels.fabric(surface.level()).particle_count();
-        if !fits || shown.id() != carried.shown {
+        let fits = surface.positions.len() == levels.fabric(surface.level()).particle_count();
+        if !fits || shown.0 != carried.shown {
             continue;
         }
         if let Ok([of_cloth, mut bounds]) = bounds.get_many_mut([carried.cloth, entity]) {
@@ -245,7 +296,7 @@ pub fn carry_meshes(
         if !visibility.get() {
             continue;
         }
-        let finest = carried.levels.interpolate(surface.positions.clone(), surface.level(), 0);
+        let finest = levels.interpolate(surface.positions.clone(), surface.level(), 0);
         if bound.written == finest {
             continue;
         }

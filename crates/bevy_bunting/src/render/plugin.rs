@@ -6,6 +6,7 @@ use bevy_camera::visibility::VisibilitySystems;
 use bevy_ecs::prelude::*;
 use bevy_mesh::Mesh;
 
+use crate::fabric::release::is_due;
 use crate::lod::select::select_levels;
 use crate::lod::sleep::wake_cloths;
 use crate::render::assign_meshes::assign_meshes;
@@ -17,7 +18,7 @@ use crate::render::hidden::hide_cloths;
 use crate::render::level_meshes::show_level;
 use crate::render::subdivide::subdivide_cloths;
 use crate::render::subdivision::ClothSubdivision;
-use crate::render::subdivisions::Subdivisions;
+use crate::render::subdivisions::{Subdivisions, forget_subdivisions};
 use crate::render::write::{write_newly_visible, write_visible};
 use crate::schedule::{ClothSystems, ClothTick};
 
@@ -104,6 +105,7 @@ impl Plugin for ClothRenderPlugin {
                 PostUpdate,
                 (
                     (
+                        forget_subdivisions.run_if(is_due),
                         assign_meshes,
                         bind_meshes,
                         subdivide_cloths,

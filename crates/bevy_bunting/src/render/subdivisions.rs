@@ -24,6 +24,11 @@ enum Known {
 }
 
 impl Subdivisions {
+    /// Forgets subdivisions of levels that no cloth has any more.
+    fn forget_unused(&mut self) {
+        self.known.retain(|_, (users, _)| users.strong_count() > 0);
+    }
+
     /// The subdivision of a level; none while another thread builds it. That of a grid is built at once.
     pub fn find(
         &mut self,
@@ -40,7 +45,6 @@ impl Subdivisions {
                 self.known.insert(key, (users, Known::Built(Arc::new(work.take()))));
             }
         } else {
-            self.known.retain(|_, (users, _)| users.strong_count() > 0);
             self.known.insert(key, (Arc::downgrade(levels), begin(levels, level, halvings)));
         }
         match &self.known.get(&key)?.1 {
@@ -48,6 +52,11 @@ impl Subdivisions {
             Known::Awaited(_) => None,
         }
     }
+}
+
+/// Forgets subdivisions of cloths that are gone.
+pub fn forget_subdivisions(mut subdivisions: ResMut<Subdivisions>) {
+    subdivisions.forget_unused();
 }
 
 fn begin(levels: &Arc<ClothLevels>, level: usize, halvings: u32) -> Known {

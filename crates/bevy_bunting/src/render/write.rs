@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy_asset::{AssetEvent, Assets};
+use bevy_asset::{AssetEvent, AssetId, Assets};
 use bevy_camera::visibility::ViewVisibility;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
@@ -36,7 +36,7 @@ pub fn write_visible(
     mut commands: Commands,
 ) {
     for (entity, state, surface, visibility, mut level_meshes, shown) in &mut cloths {
-        let levels = levels_to_write(state, surface, visibility, &level_meshes);
+        let levels = levels_to_write(state, surface, visibility, &level_meshes, shown.id());
         let Some(levels) = levels else { continue };
         let subdivided = level_meshes.subdivided_mesh(shown.id()).cloned();
         let to_write =
@@ -62,7 +62,7 @@ pub fn write_newly_visible(
     mut commands: Commands,
 ) {
     for (entity, state, surface, visibility, mut level_meshes, mut shown) in &mut cloths {
-        let levels = levels_to_write(state, surface, visibility, &level_meshes);
+        let levels = levels_to_write(state, surface, visibility, &level_meshes, shown.id());
         let Some(levels) = levels else { continue };
         let subdivided = level_meshes.subdivided_mesh(shown.id()).cloned();
         let to_write =
@@ -85,11 +85,13 @@ fn levels_to_write(
     surface: &ClothSurface,
     visibility: &ViewVisibility,
     level_meshes: &LevelMeshes,
+    shown: AssetId<Mesh>,
 ) -> Option<Arc<ClothLevels>> {
     state.fabric()?;
     let levels = &level_meshes.levels;
     let fits = surface.positions.len() == levels.fabric(surface.level()).particle_count();
-    let is_written = visibility.get() && fits && level_meshes.origin != MeshOrigin::Refused;
+    let is_own = level_meshes.origin != MeshOrigin::Refused && level_meshes.contains(shown);
+    let is_written = visibility.get() && fits && is_own;
     is_written.then(|| Arc::clone(levels))
 }
 

@@ -1,5 +1,6 @@
 //! Tests of rendering without a renderer: with assets, cameras and visibility only.
 
+mod changed;
 mod contact_gizmos;
 mod cost;
 mod deformer;

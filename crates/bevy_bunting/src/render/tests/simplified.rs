@@ -117,3 +117,80 @@ fn held_vertices_stay() {
     assert!(held.iter().all(|&vertex| positions[vertex as usize].x == 0.0));
     assert!(positions.len() <= 120);
 }
+
+/// A quilt with tabs: two layers, joined all around, that are 1 cm apart.
+fn quilt() -> Mesh {
+    let (cells, tabs) = (20, 6);
+    let is_in = |x: i32, y: i32| {
+        (0..cells).contains(&x) && y >= 0 && (y < cells || (y < cells + tabs && x % 3 == 1))
+    };
+    let index = |x: i32, y: i32, layer: i32| (2 * (y * (cells + 1) + x) + layer) as u32;
+    let at = |index: i32| {
+        let (layer, x, y) = (index % 2, index / 2 % (cells + 1), index / 2 / (cells + 1));
+        let side = 1.0 / cells as f32;
+        [x as f32 * side, -y as f32 * side, 0.01 * layer as f32]
+    };
+    let positions: Vec<[f32; 3]> = (0..2 * (cells + 1) * (cells + tabs + 1)).map(at).collect();
+    let mut indices = Vec::new();
+    let mut quad = |[a, b, c, d]: [u32; 4]| indices.extend([a, b, c, a, c, d]);
+    for (x, y) in (0..cells + tabs).flat_map(|y| (0..cells).map(move |x| (x, y))) {
+        if !is_in(x, y) {
+            continue;
+        }
+        let corners = [(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)];
+        let on = |layer: i32| corners.map(|(x, y)| index(x, y, layer));
+        quad(on(0));
+        let [a, b, c, d] = on(1);
+        quad([a, d, c, b]);
+        for (side, (dx, dy)) in [(0, -1), (1, 0), (0, 1), (-1, 0)].into_iter().enumerate() {
+            if !is_in(x + dx, y + dy) {
+                let [from, to] = [side, (side + 1) % 4];
+                quad([on(0)[from], on(1)[from], on(1)[to], on(0)[to]]);
+            }
+        }
+    }
+    Mesh::new(bevy_mesh::PrimitiveTopology::TriangleList, RenderAssetUsages::default())
+        .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)
+        .with_inserted_indices(bevy_mesh::Indices::U32(indices))
+}
+
+#[test]
+fn layers_and_tabs_can_be_simulated_with_any_number_of_vertices() {
+    let mut app = app(TICK);
+    // The grid has vertices between the tabs that no triangle has.
+    let from = |most: u32| ClothFromMesh {
+        repair: true,
+        max_vertices: Some(most),
+        ..ClothFromMesh::default()
+    };
+    let given = add(&mut app, quilt());
+    let cloths: Vec<Entity> = [100, 200, 300, 500]
+        .map(|most| app.world_mut().spawn((given.clone(), from(most))).id())
+        .to_vec();
+    run(&mut app, 30);
+    assert_eq!(failures(&app), []);
+    for (cloth, most) in cloths.into_iter().zip([100, 200, 300, 500]) {
+        let shape = app.world().get::<ClothMesh>(cloth).expect("a cloth");
+        assert!(shape.vertex_count() <= most + most / 4, "{} of {most}", shape.vertex_count());
+        assert!(app.world().get::<ClothState>(cloth).is_some_and(|it| !it.positions().is_empty()));
+    }
+}
+
+#[test]
+fn a_defect_of_the_given_mesh_is_named_by_its_own_vertices() {
+    let mut app = app(TICK);
+    let (_, mesh) = detailed(&mut app);
+    // A fin on the edge from 40 to 41, which has two triangles.
+    let Some(bevy_mesh::Indices::U32(indices)) = mesh.indices() else { panic!("indices") };
+    let fin = [&indices[..], &[40, 41, 1000]].concat();
+    let mesh = mesh.clone().with_inserted_indices(bevy_mesh::Indices::U32(fin));
+    let given = add(&mut app, mesh);
+    let pinned = ClothFromMesh { held: vec![], ..with_at_most(Some(1080)) };
+    let cloth = app.world_mut().spawn((given, pinned)).id();
+    run(&mut app, 5);
+    let [ClothError::Mesh { entity, source }] = failures(&app) else {
+        panic!("{:?}", failures(&app))
+    };
+    let bunting_solver::FabricError::NonManifoldEdge { a, b } = *source else { panic!("{source}") };
+    assert_eq!((*entity, [a.min(b), a.max(b)]), (cloth, [40, 41]));
+}
