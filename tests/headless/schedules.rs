@@ -103,7 +103,8 @@ fn a_fast_ball_pushes_a_sheet_whatever_moves_it() {
                 let pole = Transform::from_xyz(0.0, 3.0, 0.0);
                 let held = Attachment::in_place(ClothEdge::Top);
                 let sheet = world.spawn((ClothMesh::grid(9, 9, 1.0, 1.0), held, pole)).id();
-                world.spawn((Moved(course), ClothCollider::ball(0.3), Transform::default()));
+                let ball = ClothCollider { features: true, ..ClothCollider::ball(0.3) };
+                world.spawn((Moved(course), ball, Transform::default()));
                 let mut most = 0.0_f32;
                 for _ in 0..(2.0 * rate) as usize {
                     run(&mut app, 1);
