@@ -76,11 +76,11 @@ fn a_flag_flies_on_a_fast_vehicle_whatever_moves_it() {
             let found = flown.iter().find(|(it, _)| *it == name);
             &found.expect("a schedule").1
         };
-        // Poses of the same times make the same motion.
+        // Poses of the same times make the same motion. Systems of PostUpdate have no order among them: the plugin may see
+        // what is moved there a frame later.
         for (one, other) in [
             ("PreUpdate", "Update"),
             ("before the fixed loop", "Update"),
-            ("PostUpdate", "Update"),
             ("FixedFirst", "FixedUpdate"),
         ] {
             assert_eq!(of(one), of(other), "{one} and {other} at {rate} Hz");
