@@ -31,7 +31,11 @@ impl Part {
 
     fn collider(&self) -> ClothCollider {
         let half_length = 0.5 * self.ends[0].distance(self.ends[1]);
-        ClothCollider { margin: MARGIN, ..ClothCollider::capsule(half_length, self.radius) }
+        ClothCollider {
+            margin: MARGIN,
+            features: true,
+            ..ClothCollider::capsule(half_length, self.radius)
+        }
     }
 }
 
