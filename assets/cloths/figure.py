@@ -21,7 +21,7 @@ COUNT, WIDTH, LENGTH, COLLAR = 25, 0.86, 1.12, 7
 NECK, REACH, HALF_ANGLE, FLARE = (0.0, 1.475, 0.03), (0.19, 0.11), 0.75 * math.pi / 2, 0.12
 
 # Distance that the cape keeps from the body: between two particles, cloth cuts as deep into a forearm.
-MARGIN = 0.008
+MARGIN = 0.011
 
 # Joints by their names: the parent, and the place at rest in the figure's frame. Sides are mirrored.
 JOINTS = {"Hips": (None, (0.0, 0.95, 0.0)), "Chest": ("Hips", (0.0, 1.12, 0.0)), "Head": ("Chest", (0.0, 1.52, 0.0))}
