@@ -49,6 +49,8 @@ enum Command {
     Fuzz(fuzz::Selection),
     /// Bytes of a chain of levels and of batches.
     Memory,
+    /// Meshes resampled.
+    Resampled { filter: Option<String> },
     /// The hard cases.
     Stability(families::Selection),
     /// Cost of the schedule over plain calls.
@@ -81,6 +83,10 @@ impl Arguments {
             Command::Contacts(selection) => contacts::run(&selection, self.quick)?,
             Command::Forces(selection) => forces::run(&selection, self.quick)?,
             Command::Fuzz(selection) => fuzz::run(&selection),
+            Command::Resampled { filter } => {
+                crate::stability::resampled::print(filter.as_deref().unwrap_or(""));
+                return Ok(());
+            }
             Command::Memory => memory::run(),
             Command::Oracles(selection) => oracles::run(&selection)?,
             Command::Stability(selection) => stability::run(&selection, self.quick)?,

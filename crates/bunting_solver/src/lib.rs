@@ -87,8 +87,8 @@ pub use contact::lift::SurfaceLift;
 pub use contact::points::{ContactPoint, Touched};
 pub use contact::reaction::ContactReaction;
 pub use fabric::{
-    CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link, LinkFamily,
-    MeshRepair, StretchSolver,
+    Carried, CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link,
+    LinkFamily, MeshRepair, Resampled, StretchSolver,
 };
 pub use simd::level::{has_fused_products, instruction_set, with_every_instruction_set};
 pub use step::effort::{Effort, EffortCause, EffortClass, Loads};

@@ -9,6 +9,7 @@ mod flags;
 mod levels;
 mod lone;
 mod motion;
+pub mod resampled;
 mod rig;
 mod sleep;
 mod soundness;

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Fabric of the garments.
-const CLOTH: FabricMaterial = FabricMaterial {
+pub(super) const CLOTH: FabricMaterial = FabricMaterial {
     area_density: 0.2,
     warp_stiffness: 1e4,
     weft_stiffness: 1e4,
@@ -23,9 +23,9 @@ const CLOTH: FabricMaterial = FabricMaterial {
     ..FabricMaterial::FLAG_POLYESTER
 };
 /// Damping of garments that hang, 1/s.
-const DAMPING: f32 = 2.0;
+pub(super) const DAMPING: f32 = 2.0;
 /// Wind in which they fly, m/s.
-const WIND: Vec3 = Vec3::new(1.5, 0.5, 5.8);
+pub(super) const WIND: Vec3 = Vec3::new(1.5, 0.5, 5.8);
 /// Time after which what hangs is at rest, and what flies has left its state at rest, s.
 const SETTLING: [f64; 2] = [5.0, 2.0];
 /// Time in which a surface is observed, s, and ticks between two observations.

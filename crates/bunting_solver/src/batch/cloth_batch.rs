@@ -12,6 +12,7 @@ use crate::batch::mixed::Mixed;
 use crate::batch::particles_mut::ParticlesMut;
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::single_mesh::SingleMesh;
+use crate::batch::single_net::SingleNet;
 use crate::batch::snapshot::ClothSnapshot;
 use crate::batch::surfaces::LaneSurface;
 use crate::constants::GRAVITY;
@@ -62,6 +63,8 @@ pub(super) enum Lanes {
     Single(Box<LaneBatch<Pack8, SingleCloth<Pack8>>>),
     /// One mesh across all lanes of a vector.
     SingleMesh(Box<LaneBatch<Pack8, SingleMesh>>),
+    /// One net across all lanes of a vector.
+    SingleNet(Box<LaneBatch<Pack8, SingleNet>>),
     One(Box<LaneBatch<Pack1>>),
     Eight(Box<LaneBatch<Pack8>>),
     Sixteen(Box<LaneBatch<Pack16>>),
@@ -74,6 +77,7 @@ macro_rules! with_batch {
         match $lanes {
             Lanes::Single($batch) => $body,
             Lanes::SingleMesh($batch) => $body,
+            Lanes::SingleNet($batch) => $body,
             Lanes::One($batch) => $body,
             Lanes::Eight($batch) => $body,
             Lanes::Sixteen($batch) => $body,

@@ -22,6 +22,8 @@ impl Lanes {
             Self::Single(Box::new(batch))
         } else if let Some(batch) = LaneBatch::single_mesh(&fabric) {
             Self::SingleMesh(Box::new(batch))
+        } else if let Some(batch) = LaneBatch::single_net(&fabric) {
+            Self::SingleNet(Box::new(batch))
         } else {
             Self::One(Box::new(LaneBatch::side_by_side(fabric)))
         }
@@ -38,6 +40,9 @@ impl ClothBatch {
             (Lanes::SingleMesh(single), Scheme::GaussSeidel) => {
                 Lanes::One(Box::new(single.to_one_lane()))
             }
+            (Lanes::SingleNet(single), Scheme::GaussSeidel) => {
+                Lanes::One(Box::new(single.to_one_lane()))
+            }
             (Lanes::One(one), Scheme::Yarns)
                 if one.clock.settings.scheme == Scheme::GaussSeidel =>
             {
@@ -45,6 +50,7 @@ impl ClothBatch {
                 match &mut lanes {
                     Lanes::Single(single) => single.take_over(one),
                     Lanes::SingleMesh(single) => single.take_over(one),
+                    Lanes::SingleNet(single) => single.take_over(one),
                     _ => return,
                 }
                 lanes

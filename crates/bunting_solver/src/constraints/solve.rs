@@ -5,6 +5,7 @@ use crate::batch::layout::{Layout, Positions};
 use crate::batch::mixed::Mixed;
 use crate::batch::side_by_side::SideBySide;
 use crate::batch::single_cloth::SingleCloth;
+use crate::batch::single_net::SingleNet;
 use crate::simd::lane::Pack;
 use crate::step::Scheme;
 
@@ -29,7 +30,7 @@ impl<P: Pack> LaneBatch<P, SideBySide<P>> {
         if self.clock.stands_still() || self.clock.settings.scheme == Scheme::GaussSeidel {
             return;
         }
-        if self.fabric.grid().is_some() {
+        if self.fabric.bends_along_lines() {
             self.solve_bending_before_stretch();
         } else if self.background.is_some() {
             self.solve_bending_on_background();
@@ -95,6 +96,8 @@ pub(crate) trait GridLayout {}
 
 impl<P: Pack> GridLayout for SingleCloth<P> {}
 impl<P: Pack> GridLayout for Mixed<P> {}
+
+impl GridLayout for SingleNet {}
 
 impl<P: Pack, Y: Layout<P> + GridLayout> LaneBatch<P, Y> {
     /// Projects the predicted positions onto all constraints.

@@ -17,6 +17,7 @@ use super::tethers::Tethers;
 use super::topology;
 use super::twist::Twist;
 use super::yarns::Yarns;
+use crate::constants::FREE_LENGTH;
 
 /// The grid that solves stretch, shear and bending of a mesh.
 #[derive(Clone, Debug)]
@@ -68,6 +69,17 @@ impl Background {
 }
 
 impl Fabric {
+    /// A fabric whose particles are the nodes of a net.
+    pub(super) fn of_nodes(net: Net, tethered: bool) -> Self {
+        let (mut fabric, _) = Self::of_net(net, tethered);
+        let (reach, shortest) = (fabric.reach(), fabric.links.shortest());
+        fabric.tautness =
+            if reach > 0.0 { reach } else { FREE_LENGTH * shortest }.sqrt() / shortest;
+        fabric.shortest = shortest;
+        fabric.probes = fabric.links.probes();
+        fabric
+    }
+
     /// The constraints of a net, whose nodes have no hinges.
     fn of_net(net: Net, tethered: bool) -> (Self, GridTransfer) {
         let Net { mesh, edges, links, yarns, corners, bending, rest_bends, transfer, .. } = net;

@@ -19,6 +19,11 @@ impl Fabric {
         self.is_cut() && self.grid().is_none()
     }
 
+    /// Whether it resists bending along its lines, not at hinges.
+    pub(crate) fn bends_along_lines(&self) -> bool {
+        self.grid().is_some() || self.is_net()
+    }
+
     /// Whether this is a background grid that the border of its mesh cuts.
     pub(crate) fn is_cut_grid(&self) -> bool {
         self.is_cut() && self.grid().is_some()

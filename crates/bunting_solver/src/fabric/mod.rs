@@ -16,6 +16,7 @@ mod background;
 mod background_fabric;
 mod bending;
 mod builder;
+mod carried;
 mod cell_sizes;
 mod chains;
 mod clamp;
@@ -65,7 +66,8 @@ pub(crate) use topology::ascending;
 pub(crate) use twist::{Ribbon, RibbonProfile};
 pub(crate) use yarns::Yarn;
 
-pub use builder::{CoarserMesh, FabricBuilder, MeshRepair};
+pub use builder::{CoarserMesh, FabricBuilder, MeshRepair, Resampled};
+pub use carried::Carried;
 pub use error::FabricError;
 pub use fabric::Fabric;
 pub use grid::Grid;

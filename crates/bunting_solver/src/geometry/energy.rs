@@ -10,7 +10,7 @@ use crate::fabric::{BendLine, Fabric, FabricMaterial, Hinge, Ribbon, hinge_angle
 ///
 /// Distances are computed in single precision, like the positions; only their sums need double precision.
 pub(crate) fn elastic(fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> f64 {
-    let bending = if fabric.grid().is_some() {
+    let bending = if fabric.bends_along_lines() {
         let lines = fabric.bend_lines().iter();
         let along_lines: f64 = lines.map(|line| line_bending(fabric, line, positions)).sum();
         let twists = resists_twist(fabric, material);

@@ -228,7 +228,12 @@ fn add_resolved(
 }
 
 /// Overwrites the vectors of particles that have rows by those that nodes interpolate, and raises positions by their heights.
-fn follow(rows: &Interpolation, heights: &[Height], nodes: &[Vec3], particles: &mut [Vec3]) {
+pub(crate) fn follow(
+    rows: &Interpolation,
+    heights: &[Height],
+    nodes: &[Vec3],
+    particles: &mut [Vec3],
+) {
     for (vector, row) in particles.iter_mut().zip(rows.rows()) {
         if !row.is_empty() {
             *vector = interpolated(row, nodes);

@@ -7,7 +7,7 @@ pub(crate) mod carry;
 pub(crate) mod clock;
 mod damping;
 pub(crate) mod effort;
-mod follow;
+pub(crate) mod follow;
 pub(crate) mod frame;
 pub(crate) mod guides;
 mod integrate;

@@ -5,6 +5,7 @@ mod coarser;
 #[cfg(feature = "mesh_levels")]
 mod flattened;
 mod repair;
+mod resampled;
 mod rest_normals;
 #[cfg(feature = "mesh_levels")]
 mod simplified;
@@ -15,4 +16,5 @@ mod validate;
 
 pub use coarser::CoarserMesh;
 pub use repair::MeshRepair;
+pub use resampled::Resampled;
 pub use source::FabricBuilder;

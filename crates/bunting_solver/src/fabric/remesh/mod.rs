@@ -27,7 +27,7 @@ use self::embedding::Cells;
 use self::phases::Lattice;
 use self::places::{Choice, Place};
 use self::triangulation::Triangulation;
-use super::background::{GridTransfer, Interpolation, Term};
+use super::background::{GridTransfer, Height, Interpolation, Term};
 use super::laid_yarns::{Directions, Faces, Towards};
 use super::mesh::RestMesh;
 use super::topology::{self, Edge};
@@ -87,11 +87,10 @@ impl Nodes {
         }
     }
 
-    /// As many as the mesh has vertices, on a lattice along warp and weft and on the border; none if an edge between them
-    /// has three triangles.
-    pub fn on_lattice(source: &Source) -> Option<Self> {
+    /// On a lattice with cells of a size, m, along warp and weft, and on the border; none if an edge between them has three
+    /// triangles.
+    pub fn on_lattice(source: &Source, size: f64) -> Option<Self> {
         let Source { faces, positions, normals, .. } = source;
-        let size = source.cell_size();
         let frames = frames::frames(faces, &source.directions, normals);
         let lattice = Lattice::of(positions, source.edges, &frames, size);
         let chosen = Choice { source, lattice: &lattice, size }.places();
@@ -151,22 +150,8 @@ impl Nodes {
         source: &Source,
         cells: impl Iterator<Item = &'a [u32]>,
     ) -> Option<GridTransfer> {
-        let cells = Cells::new(cells, &self.mesh.positions, self.size);
-        let mut particles = Interpolation::default();
-        let mut heights = Vec::new();
-        for (particle, &at) in (0_u32..).zip(&source.positions) {
-            if source.mesh.is_pinned(particle) {
-                particles.push([]);
-            } else if let Some(from) = self.node_of[particle as usize] {
-                particles.push([Term { from, weight: 1.0 }]);
-            } else {
-                let normal = source.normals[particle as usize];
-                let near = self.node_near[particle as usize]?;
-                let within = cells.of(particle, at, normal, near)?;
-                particles.push(within.terms);
-                heights.extend(within.height);
-            }
-        }
+        let is_free = |particle: u32| !source.mesh.is_pinned(particle);
+        let (particles, heights) = self.carried(source, cells, is_free)?;
         let is_free = |node: usize| !self.mesh.is_pinned(node as u32);
         let mut transfer = GridTransfer {
             held: self.rows.rows_where(|node| !is_free(node)).grouped(),
@@ -182,6 +167,33 @@ impl Nodes {
         transfer.means = means.grouped();
         transfer.particles = core::mem::take(&mut transfer.particles).grouped();
         Some(transfer)
+    }
+
+    /// How those particles of the mesh that are `wanted` follow the nodes, given the cells of nodes; none where a particle has
+    /// no cell near it.
+    pub fn carried<'a>(
+        &self,
+        source: &Source,
+        cells: impl Iterator<Item = &'a [u32]>,
+        is_wanted: impl Fn(u32) -> bool,
+    ) -> Option<(Interpolation, Vec<Height>)> {
+        let cells = Cells::new(cells, &self.mesh.positions, self.size);
+        let mut particles = Interpolation::default();
+        let mut heights = Vec::new();
+        for (particle, &at) in (0_u32..).zip(&source.positions) {
+            if !is_wanted(particle) {
+                particles.push([]);
+            } else if let Some(from) = self.node_of[particle as usize] {
+                particles.push([Term { from, weight: 1.0 }]);
+            } else {
+                let normal = source.normals[particle as usize];
+                let near = self.node_near[particle as usize]?;
+                let within = cells.of(particle, at, normal, near)?;
+                particles.push(within.terms);
+                heights.extend(within.height);
+            }
+        }
+        Some((particles, heights))
     }
 }
 

@@ -38,7 +38,7 @@ impl<'a> Source<'a> {
 
     /// The size of the cells of a lattice with as many nodes as there are vertices, m. By Pick's theorem N = A/h² + L/2h with the length L of
     /// the border.
-    pub(super) fn cell_size(&self) -> f64 {
+    pub fn cell_size(&self) -> f64 {
         let border = self.edges.iter().filter(|edge| edge.other_side.is_none());
         let length = |edge: &Edge| {
             let [one, other] = edge.ends.map(|at| self.positions[at as usize]);
