@@ -28,6 +28,7 @@ mod off_screen;
 mod order;
 mod pauses;
 mod reactions;
+mod resolution;
 mod rest;
 mod schedules;
 mod skeleton_changes;

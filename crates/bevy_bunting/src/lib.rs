@@ -35,6 +35,7 @@
 //! | Component | On | What it does |
 //! | --- | --- | --- |
 //! | [`ClothMesh`] | a cloth | shape at rest; requires the components that a cloth needs |
+//! | [`ClothResolution`] | a cloth | size of the simulated cells, whatever the triangles of its mesh |
 //! | [`ClothMaterial`] | a cloth | area density, stiffnesses, damping, friction |
 //! | [`LodSet`] | a cloth | levels of detail |
 //! | [`Attachment`] | a cloth | holds vertices on another entity |
@@ -147,6 +148,7 @@ pub use cloth::imperfection::ClothSeed;
 pub use cloth::material::ClothMaterial;
 pub use cloth::mesh::ClothMesh;
 pub use cloth::preroll::{ClothPreroll, PrerollPlugin};
+pub use cloth::resolution::ClothResolution;
 pub use cloth::state::ClothState;
 pub use cloth::weights::WeightsError;
 #[cfg(feature = "serialize")]
@@ -239,11 +241,11 @@ pub mod prelude {
         ClothCollision, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
         ClothFeatures, ClothGrab, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged,
         ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
-        ClothReactions, ClothSeed, ClothSettings, ClothSkin, ClothState, ClothSurface,
-        ClothSystems, ClothTargetLost, ClothTick, ClothTouched, GrabbedVertices, LodSet, LodViewer,
-        SelfCollision, SkinError, SkinLimits, TargetLost, TeleportCloth, TeleportMode,
-        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindPerParticle, WindRegion,
-        WindShape, WindWake,
+        ClothReactions, ClothResolution, ClothSeed, ClothSettings, ClothSkin, ClothState,
+        ClothSurface, ClothSystems, ClothTargetLost, ClothTick, ClothTouched, GrabbedVertices,
+        LodSet, LodViewer, SelfCollision, SkinError, SkinLimits, TargetLost, TeleportCloth,
+        TeleportMode, WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindPerParticle,
+        WindRegion, WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{

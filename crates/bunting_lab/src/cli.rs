@@ -49,6 +49,13 @@ enum Command {
     Fuzz(fuzz::Selection),
     /// Bytes of a chain of levels and of batches.
     Memory,
+    /// Meshes of the OBJ and glTF files of a folder as cloths.
+    Files {
+        /// The folder.
+        folder: PathBuf,
+        /// Only files whose names contain this.
+        filter: Option<String>,
+    },
     /// Meshes resampled.
     Resampled { filter: Option<String> },
     /// The hard cases.
@@ -87,6 +94,7 @@ impl Arguments {
                 crate::stability::resampled::print(filter.as_deref().unwrap_or(""));
                 return Ok(());
             }
+            Command::Files { folder, filter } => crate::files::run(&folder, filter.as_deref())?,
             Command::Memory => memory::run(),
             Command::Oracles(selection) => oracles::run(&selection)?,
             Command::Stability(selection) => stability::run(&selection, self.quick)?,

@@ -69,7 +69,7 @@ impl ClothHolds {
 
 /// The particle of a level that is at rest nearest to a vertex of the finest one.
 fn nearest(levels: &ClothLevels, level: usize, vertex: u32) -> Option<usize> {
-    let at = levels.fabric(0).rest_positions()[levels.particle(0, vertex)?];
+    let at = levels.vertex_position(0, vertex, levels.fabric(0).rest_positions())?;
     let rest = levels.fabric(level).rest_positions();
     let distance = |particle: usize| rest[particle].distance_squared(at);
     (0..rest.len()).min_by(|&a, &b| distance(a).total_cmp(&distance(b)))

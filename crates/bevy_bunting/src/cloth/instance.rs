@@ -13,6 +13,7 @@ use crate::batch::lane_handle::LaneHandle;
 use crate::cloth::activity::ClothActivity;
 use crate::cloth::error::ClothError;
 use crate::cloth::imperfection::{ClothSeed, almost_at_rest};
+use crate::cloth::resolution::ClothResolution;
 use crate::cloth::state::ClothState;
 use crate::fabric::awaited::AwaitedLevels;
 use crate::fabric::levels::ClothLevels;
@@ -57,6 +58,8 @@ pub(crate) struct ClothInstance {
     pub levels: Option<Arc<ClothLevels>>,
     /// The last valid [`LodSet`], for which the levels were built.
     pub lods: LodSet,
+    /// The resolution that the levels were last asked for in.
+    pub resolution: ClothResolution,
     /// Why the present `LodSet` is not used; none if it is.
     pub bad_lods: Option<ClothError>,
     pub level: usize,

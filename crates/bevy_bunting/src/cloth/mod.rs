@@ -10,5 +10,6 @@ pub mod mesh;
 pub mod place;
 pub mod preroll;
 pub mod reflect;
+pub mod resolution;
 pub mod state;
 pub mod weights;

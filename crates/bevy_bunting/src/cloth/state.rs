@@ -109,11 +109,20 @@ impl ClothState {
     }
 
     /// The particle of a vertex of the [`ClothMesh`](crate::ClothMesh) at the cloth's level: an index into
-    /// [`positions`](Self::positions). None if the level leaves the vertex out, or if the vertex is rigid and
+    /// [`positions`](Self::positions). Where a [`ClothResolution`](crate::ClothResolution) gives the cloth particles of its
+    /// own, that which is nearest to the vertex at rest. None if the level leaves the vertex out, or if the vertex is rigid and
     /// so stays where the mesh has it.
     #[must_use]
     pub fn particle_of_vertex(&self, vertex: u32) -> Option<usize> {
         self.levels.as_ref()?.particle(self.level, vertex)
+    }
+
+    /// Position of a vertex of the [`ClothMesh`](crate::ClothMesh) after the last tick, m, in the cloth's frame: that of its
+    /// particle, or on the surface between particles where a [`ClothResolution`](crate::ClothResolution) gives the cloth
+    /// particles of its own. None if the level leaves the vertex out, or if the vertex is rigid.
+    #[must_use]
+    pub fn vertex_position(&self, vertex: u32) -> Option<Vec3> {
+        self.levels.as_ref()?.vertex_position(self.level, vertex, &self.positions)
     }
 
     /// Sets the surface from simulated positions (m) of a level's particles, without easing from the surface

@@ -2,11 +2,17 @@
 
 use std::sync::Arc;
 
-use bunting_solver::{CoarserMesh, Fabric, FabricBuilder, FabricError, LevelTransfer};
+use bunting_solver::{
+    CoarserMesh, Fabric, FabricBuilder, FabricError, LevelTransfer, Resampled, Resolution,
+};
 
 use crate::cloth::mesh::ClothMesh;
+use crate::cloth::resolution::ClothResolution;
 use crate::fabric::levels::{ClothLevels, Level, Shortage};
 use crate::fabric::simulated::SimulatedPart;
+
+/// Part of a finer level's particles that a coarser one has at most. More: it hardly takes less time.
+const MOST_OF_FINER: f32 = 0.6;
 
 /// Builds the levels that are asked for, or as many as the mesh allows, with attached vertices pinned.
 ///
@@ -17,15 +23,22 @@ pub(super) fn cut_levels(
     mesh: &ClothMesh,
     attached: &[u32],
     asked: usize,
+    resolution: ClothResolution,
 ) -> Result<ClothLevels, FabricError> {
     let part = SimulatedPart::of(mesh, attached)?;
+    match resolution.of_solver().filter(|_| mesh.as_grid().is_none()) {
+        Some(resolution) => resampled(part, resolution, asked),
+        None => of_vertices(part, asked),
+    }
+}
+
+/// Levels whose particles are vertices of the mesh.
+fn of_vertices(part: SimulatedPart, asked: usize) -> Result<ClothLevels, FabricError> {
     let fabric = part.builder.clone().build().map_err(|error| part.renumber(error))?;
     let SimulatedPart { mut builder, vertices, rigid, .. } = part;
     let has_pins = fabric.has_pins();
     let finest = Level::new(Arc::new(fabric), vertices, &builder, &rigid);
-    let (levels, transfers) = (vec![finest], Vec::new());
-    let (shortage, is_shortage_told) = (None, false.into());
-    let mut cut = ClothLevels { levels, transfers, rigid, asked, shortage, is_shortage_told };
+    let mut cut = ClothLevels::of_finest(finest, rigid, asked);
     while cut.levels.len() < asked {
         let finer = cut.level(usize::MAX);
         let Some((coarser, fabric, transfer)) = coarsen(&builder, &finer.fabric) else {
@@ -55,4 +68,44 @@ fn coarsen(
     let coarse_fabric = Arc::new(coarser.builder.clone().build().ok()?);
     let transfer = LevelTransfer::nested(fabric, &coarse_fabric, &coarser.vertices).ok()?;
     Some((coarser, coarse_fabric, transfer))
+}
+
+/// Levels with particles of their own, in cells twice as large each.
+fn resampled(
+    part: SimulatedPart,
+    resolution: Resolution,
+    asked: usize,
+) -> Result<ClothLevels, FabricError> {
+    let finest = part.builder.resampled(resolution).map_err(|error| part.renumber(error))?;
+    let SimulatedPart { builder, vertices, rigid, .. } = part;
+    let mut size = finest.cell_size;
+    let finest = Level::resampled(finest, &vertices, &builder, &rigid);
+    let mut cut = ClothLevels::of_finest(finest, rigid, asked);
+    while cut.levels.len() < asked {
+        size *= 2.0;
+        let finer = cut.level(usize::MAX);
+        let Some((level, transfer)) = coarser(&builder, size, &finer.fabric) else {
+            cut.shortage = Some(Shortage::Particles);
+            break;
+        };
+        if finer.fabric.has_pins() && !level.fabric.has_pins() {
+            cut.shortage = Some(Shortage::Pins);
+            break;
+        }
+        cut.levels.push(Level::resampled(level, &vertices, &builder, &cut.rigid));
+        cut.transfers.push(transfer);
+    }
+    Ok(cut)
+}
+
+/// The level with cells of a size, m, and the transfer to it from a finer one. None if it has hardly fewer particles.
+fn coarser(
+    builder: &FabricBuilder,
+    size: f32,
+    finer: &Arc<Fabric>,
+) -> Option<(Resampled, LevelTransfer)> {
+    let level = builder.resampled(Resolution::CellSize(size)).ok()?;
+    let most = MOST_OF_FINER * finer.particle_count() as f32;
+    let transfer = LevelTransfer::of_surface(finer, &level.fabric).ok()?;
+    (level.fabric.particle_count() as f32 <= most).then_some((level, transfer))
 }

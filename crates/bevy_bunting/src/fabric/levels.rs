@@ -1,11 +1,13 @@
 //! The levels of detail of a cloth: one fabric for each, the finest first.
 
+#[cfg(feature = "render")]
+use std::borrow::Cow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bunting_solver::{Fabric, FabricBuilder, Grid, LevelTransfer};
+use bunting_solver::{Carried, Fabric, FabricBuilder, Grid, LevelTransfer, Resampled};
 
 #[cfg(feature = "render")]
 use crate::fabric::level_topology::LevelTopology;
@@ -30,8 +32,15 @@ pub(crate) struct ClothLevels {
 #[derive(Debug)]
 pub(super) struct Level {
     pub fabric: Arc<Fabric>,
-    /// The simulated vertices as indices in the [`ClothMesh`](crate::ClothMesh), ascending.
+    /// The simulated vertices as indices in the [`ClothMesh`](crate::ClothMesh), ascending; of a level that carries the mesh all
+    /// vertices that are not rigid.
     pub vertices: Vec<u32>,
+    /// The particle of each of these vertices, or the nearest one.
+    particles: Vec<u32>,
+    /// Of each particle the vertex that is nearest to it, of those that it stands for the first one.
+    nearest_vertices: Vec<u32>,
+    /// How the mesh follows, if the particles are not its vertices.
+    carried: Option<Carried>,
     /// Particles with a weight below 1.
     blends: Vec<Blend>,
     #[cfg(feature = "render")]
@@ -47,14 +56,71 @@ impl Level {
         builder: &FabricBuilder,
         rigid: &RigidPart,
     ) -> Self {
+        let particles = fabric.particle_of_vertex().to_vec();
+        let mut nearest_vertices = vec![u32::MAX; fabric.particle_count()];
+        for (&vertex, &particle) in vertices.iter().zip(&particles) {
+            let first = &mut nearest_vertices[particle as usize];
+            *first = vertex.min(*first);
+        }
         Self {
             blends: Blend::all(rigid, &vertices, &fabric),
             #[cfg(feature = "render")]
             topology: LevelTopology::new(&vertices, builder.indices(), rigid),
             fabric,
             vertices,
+            particles,
+            nearest_vertices,
+            carried: None,
         }
     }
+
+    /// A level with particles of its own, given the builder of the mesh's simulated part and its vertices in the
+    /// [`ClothMesh`](crate::ClothMesh).
+    #[cfg_attr(not(feature = "render"), expect(unused_variables, reason = "for meshes only"))]
+    pub fn resampled(
+        Resampled { fabric, carried, particles, nearest_vertices, .. }: Resampled,
+        vertices: &[u32],
+        builder: &FabricBuilder,
+        rigid: &RigidPart,
+    ) -> Self {
+        let in_mesh = |&vertex: &u32| vertices[vertex as usize];
+        let nearest_vertices: Vec<u32> = nearest_vertices.iter().map(in_mesh).collect();
+        Self {
+            blends: Blend::of_nearest(rigid, &nearest_vertices, &fabric),
+            #[cfg(feature = "render")]
+            topology: LevelTopology::new(vertices, builder.indices(), rigid),
+            fabric,
+            vertices: vertices.to_vec(),
+            particles,
+            nearest_vertices,
+            carried: Some(carried),
+        }
+    }
+
+    /// What is drawn when the particles are at these positions, m.
+    #[cfg(feature = "render")]
+    fn drawn<'a>(&'a self, positions: &'a [Vec3]) -> DrawnPoints<'a> {
+        match &self.carried {
+            Some(carried) => DrawnPoints {
+                positions: carried.places(positions).into(),
+                point_of_vertex: carried.place_of_vertex(),
+            },
+            None => DrawnPoints {
+                positions: positions.into(),
+                point_of_vertex: self.fabric.particle_of_vertex(),
+            },
+        }
+    }
+}
+
+/// The points between which a level is drawn: its particles, or places of its mesh that follow these.
+#[cfg(feature = "render")]
+#[derive(Clone, Debug)]
+pub(crate) struct DrawnPoints<'a> {
+    /// m.
+    pub positions: Cow<'a, [Vec3]>,
+    /// The point of each vertex of the level.
+    pub point_of_vertex: &'a [u32],
 }
 
 /// Why a mesh has fewer levels than asked for, and what to do. The cloth is simulated with the levels that it has.
@@ -87,6 +153,18 @@ pub(super) enum Shortage {
 }
 
 impl ClothLevels {
+    /// The finest level, to which coarser ones are added.
+    pub(super) fn of_finest(finest: Level, rigid: RigidPart, asked: usize) -> Self {
+        Self {
+            levels: vec![finest],
+            transfers: Vec::new(),
+            rigid,
+            asked,
+            shortage: None,
+            is_shortage_told: false.into(),
+        }
+    }
+
     /// Fabric of a level. A level that could not be built has the fabric of the coarsest level.
     pub fn fabric(&self, level: usize) -> &Arc<Fabric> {
         &self.level(level).fabric
@@ -118,17 +196,35 @@ impl ClothLevels {
     pub fn particle(&self, level: usize, vertex: u32) -> Option<usize> {
         let level = self.level(level);
         let index = level.vertices.binary_search(&vertex).ok()?;
-        Some(level.fabric.particle_of_vertex()[index] as usize)
+        Some(level.particles[index] as usize)
     }
 
-    /// For each particle of a level, the first of its vertices in the [`ClothMesh`](crate::ClothMesh).
-    pub fn vertices(&self, level: usize) -> Vec<u32> {
-        let Level { fabric, vertices, .. } = self.level(level);
-        let mut first = vec![u32::MAX; fabric.particle_count()];
-        for (&vertex, &particle) in vertices.iter().zip(fabric.particle_of_vertex()) {
-            first[particle as usize] = first[particle as usize].min(vertex);
+    /// For each particle of a level, the first of its vertices in the [`ClothMesh`](crate::ClothMesh), or the nearest one.
+    pub fn vertices(&self, level: usize) -> &[u32] {
+        &self.level(level).nearest_vertices
+    }
+
+    /// What is drawn of a level when its particles are at these positions, m.
+    #[cfg(feature = "render")]
+    pub fn drawn<'a>(&'a self, level: usize, positions: &'a [Vec3]) -> DrawnPoints<'a> {
+        self.level(level).drawn(positions)
+    }
+
+    /// How the mesh follows a level; none if the level's particles are vertices of the mesh.
+    #[cfg(feature = "render")]
+    pub fn carried(&self, level: usize) -> Option<&Carried> {
+        self.level(level).carried.as_ref()
+    }
+
+    /// Where a vertex of the [`ClothMesh`](crate::ClothMesh) is when the particles of a level are at these positions, m. None
+    /// if the level leaves it out, or it is rigid.
+    pub fn vertex_position(&self, level: usize, vertex: u32, positions: &[Vec3]) -> Option<Vec3> {
+        let level = self.level(level);
+        let index = level.vertices.binary_search(&vertex).ok()?;
+        match &level.carried {
+            Some(carried) => Some(carried.position(index, positions)),
+            None => positions.get(level.particles[index] as usize).copied(),
         }
-        first
     }
 
     /// Blends simulated positions (m) and normals of a level's particles with those at rest.

@@ -9,6 +9,7 @@ use bunting_solver::FabricError;
 use crate::background::Background;
 use crate::cloth::error::ClothError;
 use crate::cloth::mesh::ClothMesh;
+use crate::cloth::resolution::ClothResolution;
 use crate::cloth::weights::check_weights;
 use crate::fabric::awaited::{AwaitedLevels, ContentKey};
 use crate::fabric::cut::cut_levels;
@@ -125,6 +126,7 @@ impl FabricLibrary {
         mesh: &ClothMesh,
         attachment: Option<&Attachment>,
         lods: &LodSet,
+        resolution: ClothResolution,
     ) -> Result<Found, ClothError> {
         let groups = |attachment: &Attachment| {
             let mut groups = attachment.groups(&mesh.uvs());
@@ -140,11 +142,11 @@ impl FabricLibrary {
             return Err(ClothError::NoVertices { entity });
         }
         let attached = attached.map(|(pinned, _)| pinned).unwrap_or_default();
-        let key = content_key(mesh, &attached, lods.levels());
+        let key = content_key(mesh, &attached, lods.levels(), resolution);
         if let Some(levels) = self.cut.get(&key).and_then(Weak::upgrade) {
             return Ok(Found::Levels(levels));
         }
-        let Some(cut) = self.cut_or_wait(&key, mesh, attached, lods) else {
+        let Some(cut) = self.cut_or_wait(&key, mesh, (attached, resolution), lods) else {
             let due = self.cutting[&key].due;
             return Ok(Found::Awaited(AwaitedLevels { key, due }));
         };
@@ -158,7 +160,7 @@ impl FabricLibrary {
         &mut self,
         key: &ContentKey,
         mesh: &ClothMesh,
-        attached: Vec<u32>,
+        (attached, resolution): (Vec<u32>, ClothResolution),
         lods: &LodSet,
     ) -> Option<Result<ClothLevels, FabricError>> {
         if self.is_cutting_key(key, lods) {
@@ -177,18 +179,24 @@ impl FabricLibrary {
             self.expected = expected;
         }
         if fits && !is_large {
-            return Some(cut_levels(mesh, &attached, asked));
+            return Some(cut_levels(mesh, &attached, asked, resolution));
         }
         let due = self.tick + expected.div_ceil(VERTICES_PER_TICK) as u64;
         let mesh = mesh.clone();
-        let levels = Background::begin(move || cut_levels(&mesh, &attached, asked));
+        let levels = Background::begin(move || cut_levels(&mesh, &attached, asked, resolution));
         self.cutting.insert(key.clone(), Cutting { due, levels });
         None
     }
 }
 
-fn content_key(mesh: &ClothMesh, attached: &[u32], levels: usize) -> ContentKey {
+fn content_key(
+    mesh: &ClothMesh,
+    attached: &[u32],
+    levels: usize,
+    resolution: ClothResolution,
+) -> ContentKey {
     let mut key = vec![levels as u32];
+    key.extend(resolution.key());
     match mesh {
         ClothMesh::Grid { columns, rows, width, height } => {
             key.extend([0, *columns, *rows, width.to_bits(), height.to_bits()]);
@@ -235,7 +243,9 @@ mod tests {
         lods: LodSet,
     ) -> Result<Arc<ClothLevels>, ClothError> {
         let attachment = Attachment::in_place(edge);
-        library.levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods).map(at_once)
+        library
+            .levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods, ClothResolution::Vertices)
+            .map(at_once)
     }
 
     #[test]
@@ -250,7 +260,13 @@ mod tests {
         let mut library = FabricLibrary { may_be_late: true, ..FabricLibrary::default() };
         let mut is_there = |width: f32| {
             let mesh = ClothMesh::grid(33, 33, width, 1.0);
-            let found = library.levels(Entity::PLACEHOLDER, &mesh, None, &LodSet::automatic(1));
+            let found = library.levels(
+                Entity::PLACEHOLDER,
+                &mesh,
+                None,
+                &LodSet::automatic(1),
+                ClothResolution::Vertices,
+            );
             library.awaited = true;
             library.begin_tick();
             matches!(found, Ok(Found::Levels(_)))
@@ -321,7 +337,7 @@ mod tests {
         let attachment = Attachment::in_place(ClothEdge::Left);
         let lods = LodSet::new([5.0, 10.0, 20.0]);
         let levels = FabricLibrary::default()
-            .levels(Entity::PLACEHOLDER, &mesh, Some(&attachment), &lods)
+            .levels(Entity::PLACEHOLDER, &mesh, Some(&attachment), &lods, ClothResolution::Vertices)
             .map(at_once)
             .expect("a cloth");
         let fabric = levels.fabric(1);

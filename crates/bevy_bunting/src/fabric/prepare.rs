@@ -19,6 +19,7 @@ use crate::cloth::instance::{ClothInstance, Refusal, StateStorage};
 use crate::cloth::material::ClothMaterial;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::place::place;
+use crate::cloth::resolution::ClothResolution;
 use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::library::{FabricLibrary, Found};
@@ -43,9 +44,11 @@ impl Plugin for PreparePlugin {
         app.register_type::<ClothMesh>()
             .register_type::<ClothMaterial>()
             .register_type::<ClothSeed>()
+            .register_type::<ClothResolution>()
             .init_resource::<FabricLibrary>()
             .add_observer(clear_removed)
-            .add_observer(mark_released)
+            .add_observer(mark_released::<Attachment>)
+            .add_observer(mark_released::<ClothResolution>)
             .add_systems(
                 ClothTick,
                 (
@@ -72,14 +75,19 @@ fn clear_removed(
     }
 }
 
-/// Rebuilds a cloth whose [`Attachment`] is removed. An observer does this, since removal messages are
+/// Rebuilds a cloth whose [`Attachment`] or [`ClothResolution`] is removed. An observer does this, since removal messages are
 /// dropped after two frames and the next tick may come later.
-fn mark_released(_: On<Remove, Attachment>, mut library: ResMut<FabricLibrary>) {
+fn mark_released<C: Component>(_: On<Remove, C>, mut library: ResMut<FabricLibrary>) {
     library.awaited = true;
 }
 
-type AnyChanged =
-    Or<(Changed<ClothMesh>, Changed<ClothMaterial>, Changed<LodSet>, Changed<Attachment>)>;
+type AnyChanged = Or<(
+    Changed<ClothMesh>,
+    Changed<ClothMaterial>,
+    Changed<ClothResolution>,
+    Changed<LodSet>,
+    Changed<Attachment>,
+)>;
 
 /// Whether the fabrics of any cloth may be out of date: in most ticks none are.
 fn any_may_be_stale(
@@ -97,6 +105,7 @@ struct CutCloth {
     mesh: Ref<'static, ClothMesh>,
     material: Ref<'static, ClothMaterial>,
     lods: Ref<'static, LodSet>,
+    resolution: Option<&'static ClothResolution>,
     attachment: Option<Ref<'static, Attachment>>,
     seed: Option<&'static ClothSeed>,
     has_baked: Has<ScaleBaked>,
@@ -155,9 +164,14 @@ impl CutClothItem<'_, '_> {
         Some(attachment.target_other_than(self.entity).unwrap_or(self.entity))
     }
 
+    fn resolution(&self) -> ClothResolution {
+        self.resolution.copied().unwrap_or_default()
+    }
+
     /// Whether the user has changed an input of the fabrics.
     fn is_edited(&self) -> bool {
         self.mesh.is_changed()
+            || self.resolution() != self.instance.resolution
             || self.lods.is_changed()
             || self.attachment.as_ref().is_some_and(|attachment| attachment.is_changed())
     }
@@ -264,7 +278,8 @@ impl CutClothItem<'_, '_> {
             };
         }
         let mesh = bake(&self.mesh, self.instance.scale);
-        library.levels(entity, &mesh, attachment, self.valid_lods())
+        self.instance.resolution = self.resolution();
+        library.levels(entity, &mesh, attachment, self.valid_lods(), self.resolution())
     }
 
     /// Simulates the cloth with new levels from now on.

@@ -1,5 +1,7 @@
 //! The rigid part of a mesh, and the blend between simulated and rigid vertices.
 
+use std::collections::HashMap;
+
 use bevy_math::Vec3;
 use bunting_solver::Fabric;
 
@@ -78,6 +80,24 @@ impl Blend {
         blends.sort_by_key(|blend| blend.particle);
         blends.dedup_by_key(|blend| blend.particle);
         blends
+    }
+
+    /// The blended particles of a level whose particles are not vertices, each with the weight of the vertex that is nearest to it.
+    pub fn of_nearest(rigid: &RigidPart, nearest_vertices: &[u32], fabric: &Fabric) -> Vec<Self> {
+        let weights: HashMap<u32, f32> =
+            rigid.blended.iter().map(|(rest, weight)| (rest.vertex, *weight)).collect();
+        if weights.is_empty() {
+            return Vec::new();
+        }
+        let positions = fabric.rest_positions();
+        let normals = fabric.normals(positions);
+        let blend = |(particle, vertex): (usize, &u32)| {
+            let weight = *weights.get(vertex)?;
+            let (position, normal) = (positions[particle], normals[particle]);
+            let rest = RestVertex { vertex: *vertex, position, normal };
+            Some(Self { particle, weight, rest })
+        };
+        nearest_vertices.iter().enumerate().filter_map(blend).collect()
     }
 
     /// Blends the particle's simulated position (m) and normal with those at rest.

@@ -99,6 +99,13 @@ pub(crate) fn renumbered(
             let [a, b] = [a, b].map(|end| vertex(end as usize) as u32);
             FabricError::NonManifoldEdge { a, b }
         }
+        FabricError::OneSided { a, b } => {
+            let [a, b] = [a, b].map(|end| vertex(end as usize) as u32);
+            FabricError::OneSided { a, b }
+        }
+        FabricError::Cells { vertex: at, size } => {
+            FabricError::Cells { vertex: vertex(at as usize) as u32, size }
+        }
         other => other,
     }
 }

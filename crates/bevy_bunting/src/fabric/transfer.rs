@@ -63,7 +63,7 @@ impl ClothLevels {
     pub fn transfer_directions(&self, vectors: &[Vec3], from: usize, to: usize) -> Vec<Vec3> {
         let mut vectors = vectors.to_vec();
         for transfer in self.between(from, to) {
-            vectors = transfer.pick(&vectors).collect();
+            vectors = transfer.pick(&vectors);
         }
         if to < from {
             vectors = self.interpolate(vectors, from, to);

@@ -235,7 +235,10 @@ fn at_rest(mesh: &Mesh) -> Option<SurfaceVertices> {
 /// Binds a mesh to the finest level at rest.
 fn bind(levels: &ClothLevels, mesh: &SurfaceVertices) -> Option<Bound> {
     let (fabric, rigid) = (levels.fabric(0), levels.rigid());
-    let indices = levels.topology(0).simulated_indices(rigid);
+    let indices = match levels.carried(0) {
+        Some(_) => fabric.triangles().as_flattened().to_vec(),
+        None => levels.topology(0).simulated_indices(rigid),
+    };
     let subdivision = Subdivision::new(fabric, &indices, HALVINGS);
     let mut surface = SurfaceVertices::default();
     let buffers = &mut SubdivisionBuffers::default();

@@ -34,10 +34,11 @@ pub fn coarser(finest: &Mesh, levels: &ClothLevels, level: usize) -> Mesh {
 /// Makes the mesh of a level at rest, with positions, normals and triangles. Normals of simulated vertices
 /// are written with the first surface.
 fn at_rest(levels: &ClothLevels, level: usize) -> Mesh {
-    let (fabric, topology) = (levels.fabric(level), levels.topology(level));
+    let topology = levels.topology(level);
+    let drawn = levels.drawn(level, levels.fabric(level).rest_positions());
     let mut positions = vec![[0.0; 3]; topology.vertex_count()];
-    for (&vertex, &particle) in topology.simulated.iter().zip(fabric.particle_of_vertex()) {
-        positions[vertex as usize] = fabric.rest_positions()[particle as usize].to_array();
+    for (&vertex, &point) in topology.simulated.iter().zip(drawn.point_of_vertex) {
+        positions[vertex as usize] = drawn.positions[point as usize].to_array();
     }
     let mut mesh = Mesh::new(PrimitiveTopology::TriangleList, RenderAssetUsages::default())
         .with_inserted_attribute(Mesh::ATTRIBUTE_POSITION, positions)

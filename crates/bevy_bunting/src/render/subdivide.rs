@@ -61,7 +61,8 @@ pub fn subdivide_cloths(
                 continue;
             };
             let mut mesh = subdivided_mesh::new(base, &subdivision);
-            subdivided_mesh::write(&mut mesh, &subdivision, &surface.positions, &mut buffers);
+            let drawn = levels.drawn(level, &surface.positions);
+            subdivided_mesh::write(&mut mesh, &subdivision, &drawn.positions, &mut buffers);
             let mesh = meshes.add(mesh);
             let made = SubdividedMesh { level, halvings, subdivision, mesh };
             level_meshes.subdivided.push(Arc::new(made));

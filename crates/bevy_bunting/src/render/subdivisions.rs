@@ -62,7 +62,13 @@ pub fn forget_subdivisions(mut subdivisions: ResMut<Subdivisions>) {
 fn begin(levels: &Arc<ClothLevels>, level: usize, halvings: u32) -> Known {
     let levels = Arc::clone(levels);
     let is_grid = levels.fabric(level).grid().is_some();
-    let build =
-        move || Subdivision::new(levels.fabric(level), &levels.topology(level).indices, halvings);
+    let build = move || match levels.carried(level) {
+        Some(carried) => {
+            let rest = carried.places(levels.fabric(level).rest_positions());
+            let indices = &levels.topology(level).indices;
+            Subdivision::of_mesh(&rest, carried.place_of_vertex(), indices, halvings)
+        }
+        None => Subdivision::new(levels.fabric(level), &levels.topology(level).indices, halvings),
+    };
     if is_grid { Known::Built(Arc::new(build())) } else { Known::Awaited(Background::begin(build)) }
 }

@@ -1,5 +1,6 @@
 //! Writes surfaces into meshes, in place.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
 use bevy_asset::{AssetEvent, AssetId, Assets};
@@ -139,14 +140,18 @@ impl ToWrite<'_> {
 
     fn write_particles(&self, mesh: &mut Mesh) -> Result<bool, ClothError> {
         let Self { entity, levels, surface, .. } = *self;
-        let (fabric, topology) = (levels.fabric(surface.level()), levels.topology(surface.level()));
+        let topology = levels.topology(surface.level());
         check_mesh(entity, mesh, topology.vertex_count())?;
-        let vertices = || topology.simulated.iter().zip(fabric.particle_of_vertex());
+        let drawn = levels.drawn(surface.level(), &surface.positions);
+        let vertices = || topology.simulated.iter().zip(drawn.point_of_vertex);
+        let normals = match levels.carried(surface.level()) {
+            Some(carried) => carried.normals(&drawn.positions).into(),
+            None => Cow::from(&surface.normals),
+        };
         let mut changed = false;
-        for (attribute, source) in [
-            (Mesh::ATTRIBUTE_POSITION, &surface.positions),
-            (Mesh::ATTRIBUTE_NORMAL, &surface.normals),
-        ] {
+        for (attribute, source) in
+            [(Mesh::ATTRIBUTE_POSITION, &drawn.positions), (Mesh::ATTRIBUTE_NORMAL, &normals)]
+        {
             if let Ok(VertexAttributeValues::Float32x3(values)) = mesh.try_attribute_mut(attribute)
             {
                 changed |= copy_to_vertices(source, vertices(), values);
@@ -162,9 +167,9 @@ impl ToWrite<'_> {
         buffers: &mut SubdivisionBuffers,
     ) -> Result<bool, ClothError> {
         check_mesh(self.entity, mesh, subdivision.attributes().rows().len())?;
-        let (fabric, positions) =
-            (self.levels.fabric(self.surface.level()), &self.surface.positions);
-        if subdivided_mesh::is_current(mesh, subdivision, fabric.particle_of_vertex(), positions) {
+        let drawn = self.levels.drawn(self.surface.level(), &self.surface.positions);
+        let positions = &drawn.positions;
+        if subdivided_mesh::is_current(mesh, subdivision, drawn.point_of_vertex, positions) {
             return Ok(false);
         }
         subdivided_mesh::write(mesh, subdivision, positions, buffers);

@@ -110,9 +110,9 @@ impl SkinnedParticles {
     /// Finds the particles of a level.
     pub fn find(&mut self, levels: &Arc<ClothLevels>, level: usize) {
         let fabric = levels.fabric(level);
-        let at_rest = levels.vertices(level).into_iter().zip(fabric.rest_positions());
+        let at_rest = levels.vertices(level).iter().zip(fabric.rest_positions());
         self.particles.clear();
-        self.particles.extend(at_rest.map(|(vertex, &rest)| {
+        self.particles.extend(at_rest.map(|(&vertex, &rest)| {
             let vertex = vertex as usize;
             SkinnedParticle { rest, ..self.skins.particle(vertex) }
         }));

@@ -54,9 +54,7 @@ impl Resolution {
             for flag in fleet.snapshots() {
                 for (depth, distances) in distances.iter_mut().enumerate() {
                     let down = transfers[..=depth].iter();
-                    let coarse = down.fold(flag.positions.clone(), |fine, next| {
-                        next.pick(&fine).collect::<Vec<_>>()
-                    });
+                    let coarse = down.fold(flag.positions.clone(), |fine, next| next.pick(&fine));
                     let up = transfers[..=depth].iter().rev();
                     let shown = up.fold(coarse, |coarse, next| next.spread(&coarse).collect());
                     let pairs = flag.positions.iter().zip(&shown);

@@ -3,7 +3,8 @@
 use std::{sync::Arc, time::Instant};
 
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, LaneCount, LinkFamily, StepLimits,
+    ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, LaneCount, LinkFamily, Resolution,
+    StepLimits,
 };
 use glam::Vec3;
 
@@ -29,9 +30,9 @@ pub fn print(filter: &str) {
         for way in ["today", "resampled"] {
             let begun = Instant::now();
             let (fabric, carried) = if way == "today" {
-                (garment.builder().build().expect("a fabric"), None)
+                (Arc::new(garment.builder().build().expect("a fabric")), None)
             } else {
-                match garment.builder().resampled(None) {
+                match garment.builder().resampled(Resolution::Particles(garment.particles())) {
                     Ok(it) => (it.fabric, Some(it.carried)),
                     Err(error) => {
                         println!("{} {way}: {error}", garment.name);
@@ -40,7 +41,6 @@ pub fn print(filter: &str) {
                 }
             };
             let built = begun.elapsed().as_secs_f64() * 1e3;
-            let fabric = Arc::new(fabric);
             for blown in [false, true] {
                 let material =
                     if blown { CLOTH } else { FabricMaterial { damping: DAMPING, ..CLOTH } };

@@ -71,7 +71,9 @@ impl Background {
 impl Fabric {
     /// A fabric whose particles are the nodes of a net.
     pub(super) fn of_nodes(net: Net, tethered: bool) -> Self {
+        let edges = net.edges.clone();
         let (mut fabric, _) = Self::of_net(net, tethered);
+        fabric.hinges = Hinges::of(&fabric.mesh, &edges);
         let (reach, shortest) = (fabric.reach(), fabric.links.shortest());
         fabric.tautness =
             if reach > 0.0 { reach } else { FREE_LENGTH * shortest }.sqrt() / shortest;

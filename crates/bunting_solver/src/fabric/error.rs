@@ -95,6 +95,28 @@ pub enum FabricError {
         /// The other end.
         b: u32,
     },
+    /// The size of cells is no positive number, or so small that there would be too many particles.
+    #[error(
+        "cells of {size} m would make {particles} particles: give a size that makes at least 1 and at most {most}"
+    )]
+    CellSize {
+        /// The size, m.
+        size: f32,
+        /// About how many particles there would be.
+        particles: f32,
+        /// Greatest number of particles.
+        most: u32,
+    },
+    /// The surface around a vertex can't be divided into cells.
+    #[error(
+        "the surface around vertex {vertex} cannot be divided into cells of {size} m: give smaller ones, or repair the mesh there"
+    )]
+    Cells {
+        /// The vertex.
+        vertex: u32,
+        /// Size of the cells, m.
+        size: f32,
+    },
     /// Vertices were pinned by a predicate on texture coordinates before there were any.
     #[error(
         "vertices were pinned by a predicate before the texture coordinates were set: set them first"

@@ -29,6 +29,7 @@ impl Fabric {
     pub fn stretch_solver(&self) -> StretchSolver {
         match self.background() {
             _ if self.grid().is_some() => StretchSolver::Grid,
+            None if self.is_net() => StretchSolver::QuadLines,
             None => StretchSolver::LaidYarns,
             Some(background) if background.fabric.is_net() => StretchSolver::QuadLines,
             Some(background) if background.fabric.is_cut() => StretchSolver::CutGrid,

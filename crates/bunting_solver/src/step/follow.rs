@@ -239,6 +239,11 @@ pub(crate) fn follow(
             *vector = interpolated(row, nodes);
         }
     }
+    raise(heights, nodes, particles);
+}
+
+/// Raises positions of particles by their heights above the surface between nodes.
+fn raise(heights: &[Height], nodes: &[Vec3], particles: &mut [Vec3]) {
     if heights.is_empty() {
         return;
     }
@@ -246,6 +251,13 @@ pub(crate) fn follow(
     let (nodes, mut to): (Vec<Pack3<Pack1>>, Vec<_>) = (in_packs(nodes), in_packs(particles));
     Pack1::run(AddHeights { heights, sign: 1.0, nodes: &nodes, to: &mut to });
     particles.iter_mut().zip(&to).for_each(|(particle, raised)| *particle = lane3(raised, 0));
+}
+
+/// The position of a particle that has a row, raised by its height, if it has one, which is that of particle 0.
+pub(crate) fn followed(row: &[Term], height: &[Height], nodes: &[Vec3]) -> Vec3 {
+    let mut particle = [interpolated(row, nodes)];
+    raise(height, nodes, &mut particle);
+    particle[0]
 }
 
 /// The vector that the terms of a row interpolate, with the bits of the kernels.

@@ -59,8 +59,7 @@ impl StepLimits {
     pub fn of_fabric(&self, fabric: &Fabric, tick: f32, acceleration: f32) -> StepSettings {
         let by_load = tick * fabric.tautness() * (acceleration / FASTEST_VIBRATION).sqrt();
         let by_rate = tick * self.rate as f32 - TOO_LONG;
-        let is_curved_net = fabric.background().is_some_and(|it| it.is_curved_net)
-            && std::env::var_os("NOCURVE").is_none();
+        let is_curved_net = fabric.background().is_some_and(|it| it.is_curved_net);
         let factor = if is_curved_net { SUBSTEPS_OF_CURVED_NET } else { 1.0 };
         // NaN becomes zero.
         let wanted = (factor * by_load.max(by_rate)).ceil() as u32;

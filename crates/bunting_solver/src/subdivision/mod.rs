@@ -78,10 +78,19 @@ impl Subdivision {
                 scheme: Scheme::Grid(scheme),
             };
         }
-        let particle_of = fabric.particle_of_vertex();
+        Self::of_mesh(fabric.rest_positions(), fabric.particle_of_vertex(), indices, steps)
+    }
+
+    /// Halves the edges of a mesh `steps` times, given the positions of its particles or places at rest, m, which of these each vertex
+    /// is, and three vertices a triangle.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such vertex, particle or place.
+    #[must_use]
+    pub fn of_mesh(rest: &[Vec3], particle_of: &[u32], indices: &[u32], steps: u32) -> Self {
         let corners = indices.as_chunks::<3>().0;
         let particle = |&vertex: &u32| particle_of[vertex as usize];
-        let rest = fabric.rest_positions();
         let mut points =
             Points::new(rest, corners.iter().map(|it| it.each_ref().map(particle)).collect());
         // Attributes are subdivided like positions, so that a texture keeps its place. At a seam they have a border.

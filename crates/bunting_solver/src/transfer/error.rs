@@ -17,6 +17,9 @@ pub enum TransferError {
         /// Number of vertices of the coarser fabric.
         expected: usize,
     },
+    /// A fabric has no triangles that can be searched.
+    #[error("the surface of a fabric cannot be searched: its triangles have no area")]
+    NoSurface,
     /// The finer grid does not have exactly one particle between any two neighbours of the coarser one.
     #[error(
         "{fine:?} particles do not halve to {coarse:?}: use 2ⁿ + 1 columns and rows, or any that halve"

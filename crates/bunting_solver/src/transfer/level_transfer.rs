@@ -49,8 +49,10 @@ pub struct LevelTransfer {
     flat: Interpolation,
     /// Offsets of fine particles from the interpolated surface at rest.
     pub(super) offsets: RestOffsets,
-    /// For each coarse particle, the fine particle at the same position.
+    /// For each coarse particle, the fine particle at the same position, or the nearest one.
     pub(super) shared: Vec<u32>,
+    /// Interpolation from fine to coarse particles, where they are not at the same positions.
+    picked: Option<(Interpolation, RestOffsets)>,
     /// For each coarse particle, the sum of the free fine particles' areas weighted by the transposed smooth
     /// stencil, m².
     gathered_areas: Vec<f32>,
@@ -110,6 +112,39 @@ impl LevelTransfer {
         Ok(Self::new(fine, coarse, shared, [rows.clone(), rows], offsets))
     }
 
+    /// The correspondence of two fabrics of one surface, whose particles need not be at the same positions: those of a mesh that was
+    /// [resampled](crate::FabricBuilder::resampled) at two resolutions. They correspond by their positions at rest.
+    ///
+    /// # Errors
+    ///
+    /// One of them has no triangles that can be searched.
+    pub fn of_surface(fine: &Arc<Fabric>, coarse: &Arc<Fabric>) -> Result<Self, TransferError> {
+        Self::of_one_surface(Settler::new(fine), Settler::new(coarse))
+    }
+
+    /// The correspondence of this transfer's coarser fabric and a coarser one of the same surface, as by
+    /// [`of_surface`](Self::of_surface).
+    ///
+    /// # Errors
+    ///
+    /// As for [`of_surface`](Self::of_surface).
+    pub fn then_of_surface(&self, coarser: &Arc<Fabric>) -> Result<Self, TransferError> {
+        Self::of_one_surface(Arc::clone(&self.coarse), Settler::new(coarser))
+    }
+
+    fn of_one_surface(fine: Arc<Settler>, coarse: Arc<Settler>) -> Result<Self, TransferError> {
+        let nearest =
+            |of: &Fabric, on: &Fabric| mesh::nearest(of, on, &[]).ok_or(TransferError::NoSurface);
+        let (rows, offsets) = nearest(fine.fabric(), coarse.fabric())?;
+        let picked = nearest(coarse.fabric(), fine.fabric())?;
+        let heaviest = |row: &[(u32, f32)]| {
+            row.iter().max_by(|one, other| one.1.total_cmp(&other.1)).map_or(0, |it| it.0)
+        };
+        let shared = picked.0.rows().map(heaviest).collect();
+        let transfer = Self::new(fine, coarse, shared, [rows.clone(), rows], offsets);
+        Ok(Self { picked: Some(picked), ..transfer })
+    }
+
     fn of_grids(fine: Arc<Settler>, coarse: Arc<Settler>) -> Result<Self, TransferError> {
         let (Some(&fine_grid), Some(&coarse_grid)) = (fine.fabric().grid(), coarse.fabric().grid())
         else {
@@ -140,7 +175,7 @@ impl LevelTransfer {
     ) -> Self {
         let gathered_areas =
             smooth.gather(free_areas(fine.fabric()), coarse.fabric().particle_count());
-        Self { fine, coarse, smooth, flat, offsets, shared, gathered_areas }
+        Self { fine, coarse, smooth, flat, offsets, shared, picked: None, gathered_areas }
     }
 
     /// Converts a coarser state to a finer one, for a cloth with a material and gravity along the axes of its
@@ -188,7 +223,7 @@ impl LevelTransfer {
         let (mut positions, mut velocities) =
             (Cow::from(&fine.positions), Cow::from(&fine.velocities));
         for transfer in chain {
-            positions = transfer.pick(&positions).collect::<Vec<_>>().into();
+            positions = transfer.pick_positions(&positions).into();
             velocities = transfer.gather_velocities(&velocities).into();
         }
         let (finest, coarsest) = (&chain[0], &chain[chain.len() - 1]);
@@ -197,7 +232,7 @@ impl LevelTransfer {
         before.conserve(&coarsest.coarse, positions, velocities, material, gravity)
     }
 
-    /// For each coarse particle, the fine particle at the same position.
+    /// For each coarse particle, the fine particle at the same position, or that which is nearest to it at rest.
     #[must_use]
     pub fn shared(&self) -> &[u32] {
         &self.shared
@@ -213,9 +248,22 @@ impl LevelTransfer {
         ClothSnapshot::new(positions, velocities)
     }
 
-    /// Values of the shared particles, one for each coarse particle, from values at all fine particles.
-    pub fn pick<'a>(&'a self, fine: &'a [Vec3]) -> impl Iterator<Item = Vec3> + 'a {
-        self.shared.iter().map(|&particle| fine[particle as usize])
+    /// Values at the coarse particles, from values at all fine particles: those of the shared particles, or interpolated.
+    #[must_use]
+    pub fn pick(&self, fine: &[Vec3]) -> Vec<Vec3> {
+        match &self.picked {
+            Some((rows, _)) => rows.interpolate(fine).collect(),
+            None => self.shared.iter().map(|&particle| fine[particle as usize]).collect(),
+        }
+    }
+
+    /// Positions of the coarse particles, m, from those of all fine particles, m.
+    fn pick_positions(&self, fine: &[Vec3]) -> Vec<Vec3> {
+        let mut coarse = self.pick(fine);
+        if let Some((_, offsets)) = &self.picked {
+            offsets.add(fine, &mut coarse);
+        }
+        coarse
     }
 
     /// Values at the fine particles, interpolated linearly over the displayed coarse triangles from values at
@@ -231,7 +279,7 @@ impl LevelTransfer {
     /// it and the interpolated ones. After prolongation this difference is zero, so that prolongation and
     /// restriction give back the velocities.
     pub(super) fn gather_velocities(&self, fine: &[Vec3]) -> Vec<Vec3> {
-        let mut coarse: Vec<Vec3> = self.pick(fine).collect();
+        let mut coarse = self.pick(fine);
         let interpolated = self.smooth.interpolate(&coarse);
         let beyond = interpolated.zip(fine).zip(free_areas(self.fine.fabric()));
         let beyond = beyond.map(|((smooth, &fine), area)| (fine - smooth) * area);

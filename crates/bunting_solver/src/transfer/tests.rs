@@ -163,7 +163,7 @@ fn little_strain_is_left() {
         up < 1.02 * stored(&coarse, &below) && up < 0.1 * elastic(&fine, &MATERIAL, &bare),
         "{up}"
     );
-    let bare: Vec<Vec3> = transfer.pick(&above.positions).collect();
+    let bare: Vec<Vec3> = transfer.pick(&above.positions);
     let down = stored(&coarse, &transfer.restrict(&above, &MATERIAL, GRAVITY));
     assert!(down < 0.1 * elastic(&coarse, &MATERIAL, &bare), "{down}");
 }

@@ -16,5 +16,5 @@ mod validate;
 
 pub use coarser::CoarserMesh;
 pub use repair::MeshRepair;
-pub use resampled::Resampled;
+pub use resampled::{Resampled, Resolution};
 pub use source::FabricBuilder;

@@ -142,6 +142,12 @@ impl FabricBuilder {
         self.merged.as_deref().unwrap_or_default()
     }
 
+    /// Number of particles that the vertices are merged into.
+    #[must_use]
+    pub fn particle_count(&self) -> usize {
+        self.weld().vertex_of_particle.len()
+    }
+
     /// Distance in metres at which vertices are merged.
     pub(super) fn effective_weld_distance(&self) -> f32 {
         self.weld_distance.unwrap_or_else(|| default_distance(&self.positions))

@@ -19,6 +19,14 @@ const MOST_RATIO_OF_FREE: f32 = 4.0;
 /// The cells of a mesh of which the given part of triangles are halves of quads, the best quads first; the other triangles are cells, too.
 /// None if fewer are, if two triangles face opposite ways, as on a Möbius strip, or if sides are too unlike.
 pub(super) fn cells(mesh: &RestMesh, edges: &[Edge], least_part: f32) -> Option<Vec<Cell>> {
+    let cells = paired(mesh, edges)?;
+    let quads = cells.iter().filter(|cell| cell.nodes.len() == 4).count();
+    let has_part = (2 * quads) as f32 >= least_part * mesh.triangles.len() as f32;
+    (has_part && are_alike(&cells, mesh)).then_some(cells)
+}
+
+/// The cells of a mesh: the best quads first, then the triangles that are left. None if two triangles face opposite ways.
+pub(super) fn paired(mesh: &RestMesh, edges: &[Edge]) -> Option<Vec<Cell>> {
     if edges.iter().any(|edge| edge.other_side.is_some() && quad(mesh, edge).is_none()) {
         return None;
     }
@@ -37,15 +45,12 @@ pub(super) fn cells(mesh: &RestMesh, edges: &[Edge], least_part: f32) -> Option<
             cells.push(cell);
         }
     }
-    if ((2 * cells.len()) as f32) < least_part * mesh.triangles.len() as f32 {
-        return None;
-    }
     let left = (0..).zip(&mesh.triangles).zip(&is_free).filter(|(_, is_free)| **is_free);
     cells.extend(left.map(|((triangle, corners), _)| Cell {
         nodes: corners.to_vec(),
         triangles: vec![triangle],
     }));
-    are_alike(&cells, mesh).then_some(cells)
+    Some(cells)
 }
 
 /// Whether the sides of cells are alike enough in length.

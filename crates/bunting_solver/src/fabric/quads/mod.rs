@@ -18,7 +18,7 @@ mod tests;
 use glam::Vec3;
 
 use self::lines::Line;
-use super::background::{FEWEST_PARTICLES, GridTransfer, Height, Interpolation, Term};
+use super::background::{FEWEST_PARTICLES, GridTransfer, Interpolation, Term};
 use super::bending::Bending;
 use super::laid_yarns::Directions;
 use super::links::Links;
@@ -144,7 +144,8 @@ impl Net {
             cells::are_alike(&quads.cells, &nodes.mesh).then_some((nodes, quads))
         });
         let on_lattice = || {
-            let nodes = Nodes::on_lattice(&source, source.cell_size())?;
+            let nodes =
+                Nodes::on_lattice(&source, source.cell_size(mesh.positions.len() as f64)).ok()?;
             let quads = QuadMesh::of(&nodes.mesh, &nodes.edges, LEAST_PART_OF_LATTICE)?;
             Some((nodes, quads))
         };
@@ -161,20 +162,14 @@ impl Net {
         Some(Self::new(&nodes.mesh, &nodes.edges, &nodes.directions, &quads, transfer))
     }
 
-    /// The net of nodes on a lattice, and how the particles of the mesh follow these.
-    pub fn resampled(
-        mesh: &RestMesh,
-        surface: &Surface,
-        size: Option<f64>,
-    ) -> Option<(Self, Interpolation, Vec<Height>)> {
-        let source = Source::new(mesh, surface);
-        let nodes = Nodes::on_lattice(&source, size.unwrap_or_else(|| source.cell_size()))?;
-        let quads = QuadMesh::of(&nodes.mesh, &nodes.edges, 0.0)?;
-        let cells = quads.cells.iter().map(|cell| &cell.nodes[..]);
-        let (rows, heights) = nodes.carried(&source, cells, |_| true)?;
-        let identity = identity(&nodes.mesh);
-        let net = Self::new(&nodes.mesh, &nodes.edges, &nodes.directions, &quads, identity);
-        Some((Self { nodes_are_particles: true, ..net }, rows, heights))
+    /// The net of nodes that are particles themselves, and the cells between them; none if two of their triangles face opposite
+    /// ways.
+    pub fn of_nodes(nodes: &Nodes) -> Option<(Self, Vec<Vec<u32>>)> {
+        let quads = QuadMesh::along(cells::paired(&nodes.mesh, &nodes.edges)?, &nodes.mesh)?;
+        let transfer = identity(&nodes.mesh);
+        let net = Self::new(&nodes.mesh, &nodes.edges, &nodes.directions, &quads, transfer);
+        let cells = quads.cells.into_iter().map(|cell| cell.nodes).collect();
+        Some((Self { nodes_are_particles: true, ..net }, cells))
     }
 
     fn new(

@@ -14,6 +14,7 @@ mod frames;
 mod node_rows;
 mod phases;
 mod places;
+mod refined;
 mod relaxation;
 mod source;
 mod steps;
@@ -21,7 +22,7 @@ mod steps;
 mod tests;
 mod triangulation;
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec3};
 
 use self::embedding::Cells;
 use self::phases::Lattice;
@@ -32,6 +33,7 @@ use super::laid_yarns::{Directions, Faces, Towards};
 use super::mesh::RestMesh;
 use super::topology::{self, Edge};
 
+pub(super) use self::refined::Refined;
 pub(super) use self::source::Source;
 
 /// Least weight of free particles in a node that is free.
@@ -50,8 +52,10 @@ pub(super) struct Nodes {
     /// Of each node the particles that it is interpolated from.
     rows: Interpolation,
     /// Of each particle the node that it is, and a node near it.
-    node_of: Vec<Option<u32>>,
+    pub node_of: Vec<Option<u32>>,
     node_near: Vec<Option<u32>>,
+    /// Of each node the particle that is nearest to it.
+    pub nearest_vertices: Vec<u32>,
     /// Size of a cell, m.
     size: f64,
 }
@@ -83,13 +87,17 @@ impl Nodes {
             rows,
             node_of,
             node_near: (0..count as u32).map(Some).collect(),
+            nearest_vertices: (0..count as u32).collect(),
             size,
         }
     }
 
-    /// On a lattice with cells of a size, m, along warp and weft, and on the border; none if an edge between them has three
-    /// triangles.
-    pub fn on_lattice(source: &Source, size: f64) -> Option<Self> {
+    /// On a lattice with cells of a size, m, along warp and weft, and on the border.
+    ///
+    /// # Errors
+    ///
+    /// A vertex near an edge that three triangles between nodes have.
+    pub fn on_lattice(source: &Source, size: f64) -> Result<Self, u32> {
         let Source { faces, positions, normals, .. } = source;
         let frames = frames::frames(faces, &source.directions, normals);
         let lattice = Lattice::of(positions, source.edges, &frames, size);
@@ -121,11 +129,14 @@ impl Nodes {
         let is_pinned = |node: usize| source.free_part(&places[node]) < LEAST_FREE;
         let of_triangle = |node: usize| source.terms(&places[node]);
         let rows = node_rows::rows(&places, source, size, is_pinned, of_triangle);
-        let edges = topology::edges(&triangles).ok()?;
+        let nearest_vertices: Vec<u32> =
+            places.iter().map(|it| source.nearest_vertex(it)).collect();
+        let edges =
+            topology::edges(&triangles).map_err(|[node, _]| nearest_vertices[node as usize])?;
         let count = places.len();
         let mesh = RestMesh {
             positions: source.interpolated(&rows),
-            uv: vec![Vec2::ZERO; count],
+            uv: places.iter().map(|place| source.uv(place)).collect(),
             triangles,
             particle_of_vertex: (0..count as u32).collect(),
             areas: vec![0.0; count],
@@ -133,13 +144,14 @@ impl Nodes {
         };
         let node_faces = Faces::new(&mesh.positions, &mesh.triangles, &edges);
         let warps = nearest_warps(source, &node_faces, triangulation.origins());
-        Some(Self {
+        Ok(Self {
             directions: Directions::of_warps(&node_faces, warps),
             mesh,
             edges,
             rows,
             node_of,
             node_near,
+            nearest_vertices,
             size,
         })
     }
@@ -150,8 +162,11 @@ impl Nodes {
         source: &Source,
         cells: impl Iterator<Item = &'a [u32]>,
     ) -> Option<GridTransfer> {
-        let is_free = |particle: u32| !source.mesh.is_pinned(particle);
-        let (particles, heights) = self.carried(source, cells, is_free)?;
+        let count = source.positions.len();
+        let (particles, mut heights) = self.carried(source, cells, count).ok()?;
+        let is_free = |particle: usize| !source.mesh.is_pinned(particle as u32);
+        let particles = particles.rows_where(is_free).grouped();
+        heights.retain(|height| is_free(height.particle as usize));
         let is_free = |node: usize| !self.mesh.is_pinned(node as u32);
         let mut transfer = GridTransfer {
             held: self.rows.rows_where(|node| !is_free(node)).grouped(),
@@ -165,35 +180,35 @@ impl Nodes {
         transfer.moved_areas = transfer.node_masses(&source.mesh.free_areas());
         let means = transfer.particles.adjoint(&source.mesh.areas, &transfer.moved_areas, is_free);
         transfer.means = means.grouped();
-        transfer.particles = core::mem::take(&mut transfer.particles).grouped();
         Some(transfer)
     }
 
-    /// How those particles of the mesh that are `wanted` follow the nodes, given the cells of nodes; none where a particle has
-    /// no cell near it.
+    /// How the first particles of the mesh follow the nodes, given the cells of nodes.
+    ///
+    /// # Errors
+    ///
+    /// A particle that has no cell near it.
     pub fn carried<'a>(
         &self,
         source: &Source,
         cells: impl Iterator<Item = &'a [u32]>,
-        is_wanted: impl Fn(u32) -> bool,
-    ) -> Option<(Interpolation, Vec<Height>)> {
+        count: usize,
+    ) -> Result<(Interpolation, Vec<Height>), u32> {
         let cells = Cells::new(cells, &self.mesh.positions, self.size);
         let mut particles = Interpolation::default();
         let mut heights = Vec::new();
-        for (particle, &at) in (0_u32..).zip(&source.positions) {
-            if !is_wanted(particle) {
-                particles.push([]);
-            } else if let Some(from) = self.node_of[particle as usize] {
+        for (particle, &at) in (0_u32..).zip(&source.positions[..count]) {
+            if let Some(from) = self.node_of[particle as usize] {
                 particles.push([Term { from, weight: 1.0 }]);
             } else {
                 let normal = source.normals[particle as usize];
-                let near = self.node_near[particle as usize]?;
-                let within = cells.of(particle, at, normal, near)?;
+                let near = self.node_near[particle as usize].ok_or(particle)?;
+                let within = cells.of(particle, at, normal, near).ok_or(particle)?;
                 particles.push(within.terms);
                 heights.extend(within.height);
             }
         }
-        Some((particles, heights))
+        Ok((particles.grouped(), heights))
     }
 }
 

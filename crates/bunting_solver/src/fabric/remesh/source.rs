@@ -1,18 +1,19 @@
 //! A triangle mesh on which nodes are placed.
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::places::Place;
 use crate::fabric::background::{Interpolation, Term};
 use crate::fabric::laid_yarns::{Directions, Faces};
 use crate::fabric::mesh::{RestMesh, Surface};
-use crate::fabric::topology::Edge;
+use crate::fabric::topology::{Edge, Side};
 
 /// A mesh with what nodes on it are found from.
 pub(in crate::fabric) struct Source<'a> {
     pub(super) mesh: &'a RestMesh,
     pub edges: &'a [Edge],
     pub(super) faces: Faces<'a>,
+    corner_uv: &'a [[Vec2; 3]],
     pub directions: Directions,
     pub(super) positions: Vec<DVec3>,
     /// Unit normals of the vertices.
@@ -28,6 +29,7 @@ impl<'a> Source<'a> {
         Self {
             mesh,
             edges: &surface.edges,
+            corner_uv: &surface.corner_uv,
             directions: Directions::of(&faces, &surface.corner_uv),
             faces,
             positions: mesh.positions.iter().map(|at| at.as_dvec3()).collect(),
@@ -36,23 +38,57 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The size of the cells of a lattice with as many nodes as there are vertices, m. By Pick's theorem N = A/h² + L/2h with the length L of
+    /// The size of the cells of a lattice with a number of nodes, m. By Pick's theorem N = A/h² + L/2h with the length L of
     /// the border.
-    pub fn cell_size(&self) -> f64 {
+    pub fn cell_size(&self, count: f64) -> f64 {
         let border = self.edges.iter().filter(|edge| edge.other_side.is_none());
         let length = |edge: &Edge| {
             let [one, other] = edge.ends.map(|at| self.positions[at as usize]);
             one.distance(other)
         };
         let quarter = 0.25 * border.map(length).sum::<f64>();
-        let count = self.positions.len() as f64;
         (quarter + (quarter * quarter + count * self.area).sqrt()) / count
+    }
+
+    /// About how many nodes a lattice with cells of a size, m, has.
+    pub fn node_count(&self, size: f64) -> f64 {
+        self.area / (size * size)
+    }
+
+    /// The ends of an edge whose two triangles face opposite ways, if there is one, as on a Möbius strip.
+    pub fn one_sided_edge(&self) -> Option<[u32; 2]> {
+        let runs_along = |side: Side, [from, to]: [u32; 2]| {
+            let corners = self.mesh.triangles[side.triangle as usize];
+            (0..3).any(|at| [corners[at], corners[(at + 1) % 3]] == [from, to])
+        };
+        let faces_both = |edge: &&Edge| {
+            let other = edge.other_side.is_some_and(|it| runs_along(it, edge.ends));
+            edge.other_side.is_some() && runs_along(edge.side, edge.ends) == other
+        };
+        self.edges.iter().find(faces_both).map(|edge| edge.ends)
+    }
+
+    /// The vertex that is nearest to a place, of those of its triangle.
+    pub(super) fn nearest_vertex(&self, place: &Place) -> u32 {
+        let heaviest = self.terms(place).into_iter();
+        heaviest.max_by(|one, other| one.weight.total_cmp(&other.weight)).map_or(0, |it| it.from)
     }
 
     /// The place of a vertex, in no triangle of its own.
     pub(super) fn at_vertex(&self, vertex: u32) -> Place {
         let [at, normal] = [&self.positions, &self.normals].map(|of| of[vertex as usize]);
         Place { triangle: 0, weights: [0.0; 3], at, normal, vertex: Some(vertex) }
+    }
+
+    /// Texture coordinates of a place.
+    pub(super) fn uv(&self, place: &Place) -> Vec2 {
+        match place.vertex {
+            Some(vertex) => self.mesh.uv[vertex as usize],
+            None => {
+                let corners = self.corner_uv[place.triangle as usize].into_iter();
+                corners.zip(place.weights).map(|(uv, weight)| uv * weight as f32).sum()
+            }
+        }
     }
 
     /// The particles around a place with their weights.
