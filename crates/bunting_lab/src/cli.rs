@@ -6,8 +6,8 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    budget, contacts, effort, families, forces, fuzz, gate, lod, memory, oracles, pareto, report,
-    schedule, sharing, stability,
+    budget, contacts, effort, families, files, forces, fuzz, gate, lod, memory, oracles, pareto,
+    report, schedule, sharing, stability,
 };
 use crate::output::Outcome;
 
@@ -56,8 +56,6 @@ enum Command {
         /// Only files whose names contain this.
         filter: Option<String>,
     },
-    /// Meshes resampled.
-    Resampled { filter: Option<String> },
     /// The hard cases.
     Stability(families::Selection),
     /// Cost of the schedule over plain calls.
@@ -90,11 +88,7 @@ impl Arguments {
             Command::Contacts(selection) => contacts::run(&selection, self.quick)?,
             Command::Forces(selection) => forces::run(&selection, self.quick)?,
             Command::Fuzz(selection) => fuzz::run(&selection),
-            Command::Resampled { filter } => {
-                crate::stability::resampled::print(filter.as_deref().unwrap_or(""));
-                return Ok(());
-            }
-            Command::Files { folder, filter } => crate::files::run(&folder, filter.as_deref())?,
+            Command::Files { folder, filter } => files::run(&folder, filter.as_deref())?,
             Command::Memory => memory::run(),
             Command::Oracles(selection) => oracles::run(&selection)?,
             Command::Stability(selection) => stability::run(&selection, self.quick)?,

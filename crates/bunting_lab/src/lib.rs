@@ -13,7 +13,6 @@ pub mod contacts;
 pub mod contender;
 pub mod effort;
 pub mod figure;
-mod files;
 pub mod fleet;
 pub mod flight;
 pub mod forces;

@@ -6,6 +6,7 @@ pub mod contacts;
 mod differences;
 pub mod effort;
 pub mod families;
+pub mod files;
 mod figures;
 pub mod forces;
 pub mod fuzz;

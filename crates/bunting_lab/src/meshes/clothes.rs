@@ -63,11 +63,6 @@ impl Garment {
         ]
     }
 
-    /// Number of places of its vertices.
-    pub fn particles(&self) -> u32 {
-        self.builder().particle_count() as u32
-    }
-
     /// The garment as a cloth that hangs from what holds it.
     pub fn builder(&self) -> FabricBuilder {
         let held = (0..).zip(&self.is_held).filter(|(_, is_held)| **is_held);

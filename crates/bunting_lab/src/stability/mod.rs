@@ -9,7 +9,7 @@ mod flags;
 mod levels;
 mod lone;
 mod motion;
-pub mod resampled;
+mod resampled;
 mod rig;
 mod sleep;
 mod soundness;
@@ -26,7 +26,7 @@ pub use case::{HardCase, Status};
 pub type Family = fn(quick: bool) -> Vec<HardCase>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 15] = [
+pub const ALL: [(&str, Family); 16] = [
     ("sweeps of size, passes and rate", sweeps::cases),
     ("motion of pins and frames", motion::cases),
     ("wind and weight", weather::cases),
@@ -38,6 +38,7 @@ pub const ALL: [(&str, Family); 15] = [
     ("soundness", soundness::cases),
     ("surfaces of meshes that hang", surfaces::hung),
     ("surfaces of meshes in wind", surfaces::blown),
+    ("meshes in cells of their own", resampled::cases),
     ("stiff cloth at rest", stiff::at_rest),
     ("taut cloth", stiff::taut),
     ("flights of flags", flags::flights),

@@ -14,7 +14,7 @@ use crate::{
 };
 
 /// Fabric of the garments.
-pub(super) const CLOTH: FabricMaterial = FabricMaterial {
+const CLOTH: FabricMaterial = FabricMaterial {
     area_density: 0.2,
     warp_stiffness: 1e4,
     weft_stiffness: 1e4,
@@ -23,14 +23,14 @@ pub(super) const CLOTH: FabricMaterial = FabricMaterial {
     ..FabricMaterial::FLAG_POLYESTER
 };
 /// Damping of garments that hang, 1/s.
-pub(super) const DAMPING: f32 = 2.0;
+const DAMPING: f32 = 2.0;
 /// Wind in which they fly, m/s.
-pub(super) const WIND: Vec3 = Vec3::new(1.5, 0.5, 5.8);
+const WIND: Vec3 = Vec3::new(1.5, 0.5, 5.8);
 /// Time after which what hangs is at rest, and what flies has left its state at rest, s.
 const SETTLING: [f64; 2] = [5.0, 2.0];
 /// Time in which a surface is observed, s, and ticks between two observations.
 const OBSERVED: [f64; 2] = [1.0, 3.0];
-const OBSERVED_EVERY: usize = 12;
+pub(super) const OBSERVED_EVERY: usize = 12;
 
 /// Greatest figures of garments that hang, of the simulated and of the drawn surface.
 ///
@@ -54,7 +54,7 @@ const BLOWN: [Condition; 2] = [
 
 /// What happens to a garment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum State {
+pub(super) enum State {
     /// It hangs until it rests.
     Hung,
     /// It flies in a wind.
@@ -77,10 +77,7 @@ fn cases(garment: &Garment, state: State) -> Vec<HardCase> {
     let mut simulated = Shown::new(garment, &fabric, 0);
     let mut drawn = Shown::new(garment, &fabric, 1);
     let mut cloth = state.begin(&fabric);
-    let [settling, observed] = match state {
-        State::Hung => [SETTLING[0], OBSERVED[0]],
-        State::Blown => [SETTLING[1], OBSERVED[1]],
-    };
+    let [settling, observed] = state.times();
     cloth.run(settling);
     for _ in 0..ticks(observed) / OBSERVED_EVERY {
         (0..OBSERVED_EVERY).for_each(|_| cloth.tick());
@@ -130,12 +127,20 @@ fn compared(name: &str, condition: &Condition, limits: &Condition) -> [HardCase;
 
 impl State {
     /// A garment at rest but for a tenth of a millimetre.
-    fn begin(self, fabric: &Arc<Fabric>) -> Lone {
+    pub fn begin(self, fabric: &Arc<Fabric>) -> Lone {
         let (material, drive) = match self {
             Self::Hung => (FabricMaterial { damping: DAMPING, ..CLOTH }, Drive::default()),
             Self::Blown => (CLOTH, Drive { wind: WIND, ..Drive::default() }),
         };
         Lone::new(fabric, &almost_at_rest(fabric), material, drive)
+    }
+
+    /// Time before it is observed, and in which it is, s.
+    pub fn times(self) -> [f64; 2] {
+        match self {
+            Self::Hung => [SETTLING[0], OBSERVED[0]],
+            Self::Blown => [SETTLING[1], OBSERVED[1]],
+        }
     }
 
     /// The greatest figures of the simulated and of the drawn surface.

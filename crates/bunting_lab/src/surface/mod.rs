@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use glam::{DMat2, DVec2, DVec3, Vec2, Vec3};
 
 use crate::simulation::in_double;
-pub use condition::{Condition, Observed};
+pub use condition::{COMPRESSED, Condition, Observed};
 use roughness::Neighbours;
 
 /// The triangles of a surface at rest, against which its positions are compared.

@@ -3,5 +3,6 @@
 mod baselines;
 mod command_line;
 mod costs;
+mod files;
 mod reference;
 mod trials;
