@@ -8,6 +8,7 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::ScheduleLabel;
 use bevy_math::Vec3;
 use bevy_time::Time;
+use bevy_transform::TransformSystems;
 use bevy_transform::prelude::*;
 use bunting_tests::{Bits, FLAG, app, app_at, bits, greatest_speed, run, state};
 
@@ -22,13 +23,12 @@ fn move_all(mut moved: Query<(&Moved, &mut Transform)>, time: Res<Time>) {
 }
 
 /// Adds a system to the schedule that moves entities.
-type Schedules = [(&'static str, fn(&mut App)); 8];
+type Schedules = [(&'static str, fn(&mut App)); 10];
 
 fn add(app: &mut App, schedule: impl ScheduleLabel) {
     app.add_systems(schedule, move_all);
 }
 
-/// Without PostUpdate, whose systems have no order among them: what is moved there may be seen now or a frame later.
 const SCHEDULES: Schedules = [
     ("First", |app| add(app, First)),
     ("PreUpdate", |app| add(app, PreUpdate)),
@@ -40,6 +40,12 @@ const SCHEDULES: Schedules = [
         app.add_systems(RunFixedMainLoop, move_all.in_set(before));
     }),
     ("Update", |app| add(app, Update)),
+    ("PostUpdate", |app| {
+        app.add_systems(PostUpdate, move_all.before(TransformSystems::Propagate));
+    }),
+    ("PostUpdate, after the propagation", |app| {
+        app.add_systems(PostUpdate, move_all.after(TransformSystems::Propagate));
+    }),
     ("Last", |app| add(app, Last)),
 ];
 
@@ -77,6 +83,8 @@ fn a_flag_flies_on_a_fast_vehicle_whatever_moves_it() {
         for (one, other) in [
             ("PreUpdate", "Update"),
             ("before the fixed loop", "Update"),
+            ("PostUpdate", "Update"),
+            ("PostUpdate, after the propagation", "Last"),
             ("FixedFirst", "FixedUpdate"),
         ] {
             assert_eq!(of(one), of(other), "{one} and {other} at {rate} Hz");

@@ -278,7 +278,8 @@ pub struct ClothPlugins {
 }
 
 impl ClothPlugins {
-    /// Plugins whose [`ClothTick`] runs in the given schedule.
+    /// Plugins whose [`ClothTick`] runs in the given schedule. In `PostUpdate` it runs before `TransformSystems::Propagate`;
+    /// systems there that move what cloth follows or touches run before [`run_cloth_tick`].
     #[must_use]
     pub fn new(schedule: impl ScheduleLabel) -> Self {
         Self { host: schedule.intern() }

@@ -27,8 +27,9 @@ pub(crate) const TELEPORT_SPEED: f32 = 25.0;
 /// frame, and newly held vertices move to their places within one and a half seconds. A cloth more than 2 m away
 /// is first put in place, as by a teleport.
 ///
-/// The target may move in any schedule, by physics or by animation. What moves while no time passes, as while
-/// `Time<Virtual>` is paused, is teleported. The target's scale scales the offset's translation and is otherwise ignored.
+/// The target may move in any schedule, by physics or by animation; in `PostUpdate`, before `TransformSystems::Propagate`, else
+/// it counts as moved a frame later. What moves while no time passes, as while `Time<Virtual>` is paused, is teleported. The
+/// target's scale scales the offset's translation and is otherwise ignored.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;

@@ -19,7 +19,7 @@ type Placement = (Entity, Option<Transform>, GlobalTransform);
 
 /// Writes the transforms of cloths that may have moved. A cloth's frame follows from the current pose of its
 /// target, which may be newer than the pose in the last tick.
-pub(super) fn place_cloths(
+pub(crate) fn place_cloths(
     cloths: Query<PlacedCloth, With<ClothMesh>>,
     new: Query<Entity, Added<ClothMesh>>,
     mut transforms: ParamSet<((TransformHelper, MovedEntities), Transforms)>,

@@ -4,7 +4,9 @@ use bevy_app::prelude::*;
 use bevy_app::{AnimationSystems, RunFixedMainLoop, RunFixedMainLoopSystems};
 use bevy_ecs::prelude::*;
 use bevy_transform::TransformSystems;
-use bevy_transform::systems::{propagate_parent_transforms, sync_simple_transforms};
+use bevy_transform::systems::{
+    mark_dirty_trees, propagate_parent_transforms, sync_simple_transforms,
+};
 
 use crate::environment::drive::drive_cloths;
 use crate::fabric::prepare::change_materials;
@@ -22,7 +24,7 @@ use crate::motion::observe::{observe_end_of_ticks, observe_frames, observe_ticks
 use crate::motion::place::place_cloths;
 use crate::motion::report_inertia::report_inertia;
 use crate::motion::scale::remove_scales;
-use crate::schedule::{ClothSystems, ClothTick};
+use crate::schedule::{ClothSystems, ClothTick, run_cloth_tick};
 
 /// Observes the targets of attachments, and places cloths on them.
 #[derive(Debug, Default)]
@@ -68,6 +70,7 @@ impl Plugin for AttachmentPlugin {
                     place_cloths.in_set(ClothSystems::Publish),
                 ),
             )
+            // The first part of the propagation, so that it sees whatever a system that runs before the propagation moves.
             .add_systems(
                 PostUpdate,
                 (
@@ -78,7 +81,9 @@ impl Plugin for AttachmentPlugin {
                 )
                     .chain_ignore_deferred()
                     .after(AnimationSystems)
-                    .before(TransformSystems::Propagate),
+                    .after(run_cloth_tick)
+                    .in_set(TransformSystems::Propagate)
+                    .before(mark_dirty_trees),
             )
             .add_systems(
                 PostUpdate,

@@ -5,6 +5,7 @@ use bevy_asset::{AssetEventSystems, Assets};
 use bevy_camera::visibility::VisibilitySystems;
 use bevy_ecs::prelude::*;
 use bevy_mesh::Mesh;
+use bevy_transform::TransformSystems;
 
 use crate::fabric::release::is_due;
 use crate::lod::select::select_levels;
@@ -27,7 +28,8 @@ use crate::schedule::{ClothSystems, ClothTick};
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ClothRenderSystems {
     /// Assigns meshes to new cloths, shows each cloth with the mesh of its level, computes bounds, and writes
-    /// the meshes of cloths that were visible in the last frame. Runs before `AssetEventSystems`.
+    /// the meshes of cloths that were visible in the last frame. Runs after `TransformSystems::Propagate` and before
+    /// `AssetEventSystems`.
     UpdateMeshes,
     /// Writes the meshes of cloths that come into view in this frame. Runs after `VisibilitySystems`.
     WriteNewlyVisible,
@@ -94,6 +96,7 @@ impl Plugin for ClothRenderPlugin {
                 PostUpdate,
                 (
                     ClothRenderSystems::UpdateMeshes
+                        .after(TransformSystems::Propagate)
                         .before(AssetEventSystems)
                         .before(VisibilitySystems::VisibilityPropagate),
                     ClothRenderSystems::WriteNewlyVisible

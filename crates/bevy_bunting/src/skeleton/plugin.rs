@@ -4,6 +4,7 @@ use bevy_app::prelude::*;
 use bevy_app::{AnimationSystems, RunFixedMainLoop};
 use bevy_ecs::prelude::*;
 use bevy_transform::TransformSystems;
+use bevy_transform::systems::mark_dirty_trees;
 
 use crate::anchors::hold::hold_cloths;
 use crate::batch::publish::{publish_states, reset_diverged};
@@ -11,9 +12,10 @@ use crate::fabric::prepare::change_materials;
 use crate::motion::lead::lead_pins;
 use crate::motion::observation_times::begin_frame;
 use crate::motion::observe::{observe_frames, observe_ticks};
+use crate::motion::place::place_cloths;
 #[cfg(feature = "render")]
 use crate::render::plugin::ClothRenderSystems;
-use crate::schedule::{ClothSystems, ClothTick};
+use crate::schedule::{ClothSystems, ClothTick, run_cloth_tick};
 use crate::skeleton::by_vertex::ByVertex;
 use crate::skeleton::check::{bare, check_skins, free, release};
 use crate::skeleton::joints::{observe_joints_in_frames, observe_joints_in_ticks};
@@ -53,10 +55,13 @@ impl Plugin for SkeletonPlugin {
                         .before(reset_diverged),
                 ),
             );
-        let show = (observe_joints_in_frames::<false>.before(observe_frames::<false>), show_poses)
+        let observe = observe_joints_in_frames::<false>.before(observe_frames::<false>);
+        let show = (observe, show_poses.after(place_cloths))
             .chain()
             .after(AnimationSystems)
-            .before(TransformSystems::Propagate);
+            .after(run_cloth_tick)
+            .in_set(TransformSystems::Propagate)
+            .before(mark_dirty_trees);
         #[cfg(feature = "render")]
         let show = show.before(ClothRenderSystems::UpdateMeshes);
         app.add_systems(PostUpdate, show);

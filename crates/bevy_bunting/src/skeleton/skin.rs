@@ -19,10 +19,10 @@ const SNAP_SPEED: f32 = 15.0;
 /// anchors hold nothing. Triangles whose vertices all have weight 0 are not simulated and do not follow joints: leave them
 /// to the skinned mesh.
 ///
-/// Joints may be moved in any schedule, or by animation in `PostUpdate`. As the frames of cloths, they are resampled at the
-/// time of each tick. Where the skin gets other joints, pins move to them within one and a half seconds. A
-/// [`ClothSurface`](crate::ClothSurface) is moved to the pose of the frame that is shown, between `AnimationSystems` and the
-/// propagation of transforms.
+/// Joints may be moved in any schedule, as by animation in `PostUpdate` before `TransformSystems::Propagate`. As the frames of
+/// cloths, they are resampled at the time of each tick. Where the skin gets other joints, pins move to them within one and a
+/// half seconds. A [`ClothSurface`](crate::ClothSurface) is moved to the pose of the frame that is shown, at the beginning of
+/// `TransformSystems::Propagate`.
 ///
 /// With the feature `render`, `ClothFromMesh` makes this component of Bevy's `SkinnedMesh`.
 ///
