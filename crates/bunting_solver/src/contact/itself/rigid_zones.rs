@@ -228,12 +228,52 @@ mod tests {
         }
     }
 
+    /// Edges above triangles, of which the first has passed through its triangle. Each further edge ends at a corner of the
+    /// triangle before it, just above its own triangle: it passes as soon as the zone that holds this corner moves down.
+    fn passes_in_turn(count: u32) -> (Pairs, Particles) {
+        /// Distance of an edge's end from the triangle below it, m: less than the zone of all particles moves.
+        const ABOVE: f32 = 1e-3;
+        let mut pairs = Pairs::default();
+        let mut at = vec![Vec3::ZERO];
+        for index in 0..count {
+            // The corner that the next edge hangs from is the last one.
+            let end = at.len() as u32 - 1;
+            let below = at[end as usize] - ABOVE * Vec3::Y;
+            let around = [[-1.0, 0.0, -1.0], [-1.0, 0.0, 1.0], [2.0, 0.0, 0.0]].map(Vec3::from);
+            at.push(at[end as usize] + Vec3::Y);
+            at.extend(around.map(|corner| below + corner));
+            pairs.edges_triangles.push(EdgeTriangle {
+                index,
+                edge: [end, end + 1],
+                triangle: [end + 2, end + 3, end + 4],
+                patches: [0, 1],
+            });
+        }
+        let mut particles = Particles::default();
+        particles.resize(at.len());
+        particles.end.clone_from(&at);
+        particles.start = at;
+        particles.end[0].y = -1.0;
+        particles.inverse_mass.fill(1.0);
+        (pairs, particles)
+    }
+
     #[test]
-    fn zones_that_have_grown_too_often_are_given_up() {
-        let (pairs, mut particles) = passed();
+    fn zones_take_in_what_they_meet_until_they_have_grown_too_often() {
+        let (pairs, mut particles) = passes_in_turn(GROWTHS as u32);
+        let count = particles.start.len();
+        let mut zones = RigidZones::new(&particles);
+        assert!(zones.grow(&pairs, &Tangles::of_none(count), &mut particles));
+        assert!(!zones.are_given_up());
+        let moved = -1.0 / count as f32 * Vec3::Y;
+        for (start, end) in particles.start.iter().zip(&particles.end) {
+            assert!(end.distance(*start + moved) < 1e-6, "{start} {end}");
+        }
+        let (pairs, mut particles) = passes_in_turn(GROWTHS as u32 + 1);
         let before = particles.end.clone();
-        let mut zones = RigidZones { growths: GROWTHS, ..RigidZones::new(&particles) };
-        assert!(!zones.grow(&pairs, &Tangles::of_none(5), &mut particles) && zones.are_given_up());
+        let mut zones = RigidZones::new(&particles);
+        assert!(!zones.grow(&pairs, &Tangles::of_none(before.len()), &mut particles));
+        assert!(zones.are_given_up());
         assert_eq!(particles.end, before);
         assert!(!particles.touched.contains(&true));
     }
