@@ -5,7 +5,7 @@ use bevy_bunting::prelude::*;
 use bevy_bunting::{ClothBatches, bunting_solver::LaneCount};
 use bevy_ecs::prelude::*;
 use bevy_math::{Mat4, Quat, Vec3};
-use bevy_time::{Fixed, Time};
+use bevy_time::{Fixed, Time, Virtual};
 use bevy_transform::TransformSystems;
 use bevy_transform::prelude::*;
 use bunting_tests::{
@@ -379,6 +379,44 @@ fn cloth_sleeps_on_a_resting_skeleton_and_wakes_with_it() {
     assert_eq!(state(&app, wearer.cape).activity(), ClothActivity::Ticking);
     let error = apart(state(&app, wearer.cape).positions(), &places(&app, &wearer), COUNT);
     assert!(error < TOLERANCE, "{error} m");
+}
+
+#[test]
+fn cloth_asleep_is_carried_by_a_skeleton_that_snaps() {
+    /// How far both joints snap, m.
+    const SNAP: Vec3 = Vec3::new(0.0, 0.5, 0.0);
+    /// Greatest distance by which the woken cloth has moved by itself, m.
+    const BY_ITSELF: f32 = 2e-3;
+    fn move_joints(app: &mut App, wearer: &Wearer) {
+        for joint in wearer.joints {
+            app.world_mut().get_mut::<Transform>(joint).expect("a joint").translation += SNAP;
+        }
+    }
+    let snaps: [(&str, fn(&mut App, &Wearer)); 2] =
+        [("while time passes", move_joints), ("in a pause", |app, wearer| {
+            app.world_mut().resource_mut::<Time<Virtual>>().pause();
+            run(app, 3);
+            move_joints(app, wearer);
+            run(app, 3);
+            app.world_mut().resource_mut::<Time<Virtual>>().unpause();
+        })];
+    for (name, snap) in snaps {
+        let mut app = app();
+        let wearer = wearer(&mut app, Vec3::Y, [left, right]);
+        run(&mut app, (19.0 / TICK) as usize);
+        let asleep = state(&app, wearer.cape);
+        assert_eq!(asleep.activity(), ClothActivity::AtRest, "{name}");
+        let before = asleep.positions().to_vec();
+        snap(&mut app, &wearer);
+        run(&mut app, 4);
+        let woken = state(&app, wearer.cape);
+        assert_eq!(woken.activity(), ClothActivity::Ticking, "{name}");
+        let error = apart(woken.positions(), &places(&app, &wearer), COUNT);
+        assert!(error < TOLERANCE, "{error} m, {name}");
+        let carried: Vec<Vec3> = before.iter().map(|at| *at + SNAP).collect();
+        let moved = apart(woken.positions(), &carried, COUNT * COUNT);
+        assert!(moved < BY_ITSELF, "{moved} m, {name}");
+    }
 }
 
 /// Bits of a cape with limits, and of a flag beside it, after a second.

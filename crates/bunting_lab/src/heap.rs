@@ -8,6 +8,14 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
+/// Number of times that `work` allocates memory or moves it to a larger place. Other threads must not allocate at that time.
+pub fn allocations_of(work: impl FnOnce()) -> usize {
+    let region = Region::new(ALLOCATOR);
+    work();
+    let change = region.change();
+    change.allocations + change.reallocations
+}
+
 /// Returns the value made by `make`, and the bytes that the value holds on the heap: those allocated and not
 /// freed meanwhile. Other threads must not allocate at that time.
 pub fn held_by<Value>(make: impl FnOnce() -> Value) -> (Value, usize) {

@@ -2,10 +2,51 @@
 
 use std::hint::black_box;
 
-use bunting_lab::{commands::memory, heap::held_by};
+use bevy_bunting::{ClothBatches, ClothEffort, LodSet};
+use bevy_transform::systems::StaticTransformOptimizations;
+use bunting_lab::{
+    commands::memory,
+    fleet::Fleet,
+    game,
+    heap::{allocations_of, held_by},
+    product::DEFAULT,
+    scenes::Scene,
+};
+use glam::Vec3;
 
 #[test]
-fn memory_is_counted_and_grows_with_the_number_of_particles() {
+fn memory_is_counted() {
+    memory_grows_with_the_number_of_particles();
+    the_plugin_steps_no_more_than_plain_calls_and_allocates_nothing();
+}
+
+/// What the plugin costs over plain calls of the solver, in numbers that no other program of the machine changes: batches,
+/// substeps and allocations of eight flags that fly.
+fn the_plugin_steps_no_more_than_plain_calls_and_allocates_nothing() {
+    /// Flags: a full batch of eight lanes.
+    const FLAGS: usize = 8;
+    const N: u32 = 33;
+    /// Updates until all buffers are as long as they become, and those that are counted.
+    const WARM_UP: usize = 120;
+    const COUNTED: usize = 600;
+    let mut plain = Fleet::new(Scene::flag(N as usize), FLAGS, DEFAULT);
+    let mut app = game::app_in_wind([DEFAULT]);
+    // Otherwise Bevy looks for changed transforms in tasks of the pool, which it allocates in each update.
+    app.insert_resource(StaticTransformOptimizations::Disabled);
+    for flag in 0..FLAGS {
+        game::spawn_flag(&mut app, N, Vec3::X * flag as f32, LodSet::default());
+    }
+    plain.advance(WARM_UP);
+    (0..WARM_UP).for_each(|_| app.update());
+    let world = app.world_mut();
+    assert_eq!(world.resource::<ClothBatches>().batch_count(), plain.batches_mut().len());
+    let mut efforts = world.query::<&ClothEffort>();
+    assert!(efforts.iter(world).all(|effort| effort.settings() == plain.settings()));
+    assert_eq!(allocations_of(|| plain.advance(COUNTED)), 0);
+    assert_eq!(allocations_of(|| (0..COUNTED).for_each(|_| app.update())), 0);
+}
+
+fn memory_grows_with_the_number_of_particles() {
     let (_list, held) = held_by(|| {
         // `black_box` keeps the compiler from removing the unused memory.
         drop(black_box(vec![0_u8; 1 << 20]));
