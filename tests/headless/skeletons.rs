@@ -392,14 +392,16 @@ fn cloth_asleep_is_carried_by_a_skeleton_that_snaps() {
             app.world_mut().get_mut::<Transform>(joint).expect("a joint").translation += SNAP;
         }
     }
-    let snaps: [(&str, fn(&mut App, &Wearer)); 2] =
-        [("while time passes", move_joints), ("in a pause", |app, wearer| {
+    let snaps: [(&str, fn(&mut App, &Wearer)); 2] = [
+        ("while time passes", move_joints),
+        ("in a pause", |app, wearer| {
             app.world_mut().resource_mut::<Time<Virtual>>().pause();
             run(app, 3);
             move_joints(app, wearer);
             run(app, 3);
             app.world_mut().resource_mut::<Time<Virtual>>().unpause();
-        })];
+        }),
+    ];
     for (name, snap) in snaps {
         let mut app = app();
         let wearer = wearer(&mut app, Vec3::Y, [left, right]);

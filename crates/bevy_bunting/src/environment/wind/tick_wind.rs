@@ -19,7 +19,7 @@ pub(crate) const FASTEST: f32 = 340.0;
 const CORE: f32 = 0.999;
 
 /// Air in this tick: the sum of all winds, of which those with a place are felt only there.
-#[derive(Resource, Clone, Debug, Default, PartialEq, Reflect)]
+#[derive(Resource, Debug, Default, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct TickWind {
@@ -27,6 +27,22 @@ pub struct TickWind {
     /// Balls in which local winds blow, beside one another in memory since each cloth is compared with all of them.
     balls: Vec<Ball>,
     local: Vec<LocalAir>,
+}
+
+impl Clone for TickWind {
+    fn clone(&self) -> Self {
+        let mut copy = Self::default();
+        copy.clone_from(self);
+        copy
+    }
+
+    /// Copies into the present lists: a derived `clone_from` would allocate them in each tick.
+    fn clone_from(&mut self, source: &Self) {
+        let Self { everywhere, balls, local } = source;
+        self.everywhere.clone_from(everywhere);
+        self.balls.clone_from(balls);
+        self.local.clone_from(local);
+    }
 }
 
 /// A ball in the world.
