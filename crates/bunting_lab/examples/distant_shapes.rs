@@ -11,7 +11,7 @@ use bevy_bunting::parry3d::shape::{HeightField, SharedShape, TriMesh};
 use bevy_bunting::parry3d::utils::Array2;
 use bevy_bunting::{Attachment, ClothCollider, ClothEdge, ClothMesh, ClothTimings, WindField};
 use bevy_transform::components::Transform;
-use bunting_lab::{game, timing::Timing};
+use bunting_lab::game;
 use bunting_solver::StepSettings;
 use glam::{Quat, Vec3};
 
@@ -67,25 +67,23 @@ fn app(shape: Option<SharedShape>) -> App {
 
 fn main() {
     let field = |cells| SharedShape::new(bowl(cells));
-    let mut apps = [
+    let shapes = [
         ("no shape", None),
         ("heightfield of 16²", Some(field(16))),
         ("heightfield of 64²", Some(field(64))),
         ("heightfield of 256²", Some(field(256))),
         ("mesh of 64²", Some(mesh())),
         ("ring of boxes", Some(ring())),
-    ]
-    .map(|(name, shape)| (name, app(shape), Timing::default()));
-    // The apps take turns, so that what else the machine does slows all of them.
-    for tick in 0..WARM_UP + TICKS {
-        for (_, app, times) in &mut apps {
-            app.update();
-            if tick >= WARM_UP {
-                times.push(app.world().resource::<ClothTimings>().total().as_secs_f64() * 1e6);
-            }
-        }
+    ];
+    let names = shapes.each_ref().map(|(name, _)| *name);
+    let mut apps = shapes.map(|(_, shape)| app(shape));
+    for app in &mut apps {
+        (0..WARM_UP).for_each(|_| app.update());
     }
-    for (name, _, times) in &apps {
+    let times = game::time_in_turn(&mut apps, TICKS, |app| {
+        app.world().resource::<ClothTimings>().total().as_secs_f64() * 1e6
+    });
+    for (name, times) in names.iter().zip(&times) {
         println!("{name}: least {:.1} µs, median {:.1} µs", times.min(), times.median());
     }
 }

@@ -11,7 +11,7 @@ use bevy_bunting::{
     Attachment, ClothEdge, ClothMesh, ClothSystems, ClothTimings, LodSet, WindField, WindRegion,
 };
 use bevy_transform::components::Transform;
-use bunting_lab::{game, settings::steps_of_levels, timing::Timing};
+use bunting_lab::{game, settings::steps_of_levels};
 use glam::Vec3;
 
 /// Updates before anything is measured.
@@ -80,19 +80,16 @@ fn main() -> Result<()> {
     let [ticks] = &arguments[..] else { bail!("TICKS") };
     let ticks: usize = ticks.parse().context("TICKS")?;
     let all = [Winds::Uniform, Winds::Spread, Winds::Falloff, Winds::Gusty];
-    let mut apps = all.map(|winds| (winds, app(winds), Timing::default()));
-    // The apps take turns, so that what else the machine does slows all of them.
-    for tick in 0..WARM_UP + ticks {
-        for (_, app, times) in &mut apps {
-            app.update();
-            let timings = app.world().resource::<ClothTimings>();
-            let sets = [ClothSystems::Prepare, ClothSystems::Drive];
-            if tick >= WARM_UP {
-                times.push(sets.map(|set| timings.of(set).as_secs_f64() * 1e3).iter().sum());
-            }
-        }
+    let mut apps = all.map(app);
+    for app in &mut apps {
+        (0..WARM_UP).for_each(|_| app.update());
     }
-    for (winds, _, times) in &apps {
+    let times = game::time_in_turn(&mut apps, ticks, |app| {
+        let timings = app.world().resource::<ClothTimings>();
+        let sets = [ClothSystems::Prepare, ClothSystems::Drive];
+        sets.map(|set| timings.of(set).as_secs_f64() * 1e3).iter().sum()
+    });
+    for (winds, times) in all.iter().zip(&times) {
         println!("{winds:?}: least {:.4} ms, median {:.4} ms", times.min(), times.median());
     }
     Ok(())

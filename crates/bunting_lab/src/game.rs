@@ -16,7 +16,7 @@ use bevy_time::{Fixed, Time, TimePlugin, TimeUpdateStrategy};
 use bevy_transform::{TransformPlugin, components::Transform};
 use glam::Vec3;
 
-use crate::{product, scenes::Scene};
+use crate::{product, scenes::Scene, timing::Timing};
 
 /// Strength of the gusts, m/s.
 const GUST: f32 = 1.0;
@@ -69,4 +69,21 @@ pub fn spawn_flag(app: &mut App, n: u32, at: Vec3, lods: LodSet) -> Entity {
         lods,
     );
     app.world_mut().spawn(flag).id()
+}
+
+/// Updates apps in turn, so that what else the machine does slows all of them. Returns for each app what `time` reads after each
+/// of its updates.
+pub fn time_in_turn<const APPS: usize>(
+    apps: &mut [App; APPS],
+    updates: usize,
+    time: impl Fn(&App) -> f64,
+) -> [Timing; APPS] {
+    let mut timings = core::array::from_fn(|_| Timing::default());
+    for _ in 0..updates {
+        for (app, timing) in apps.iter_mut().zip(&mut timings) {
+            app.update();
+            timing.push(time(app));
+        }
+    }
+    timings
 }

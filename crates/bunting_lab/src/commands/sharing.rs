@@ -94,14 +94,9 @@ fn compare(flags: usize, wind: f32, ticks: usize) -> Row {
     let [less, more] = whole;
     let settings = [ClothSettings::default(), apart, fixed(sums.greatest), less, more];
     let mut apps = settings.map(|settings| app(flags, wind, settings));
-    let mut times: [Timing; 5] = Default::default();
-    for _ in 0..ticks {
-        for (app, timing) in apps.iter_mut().zip(&mut times) {
-            app.update();
-            let step = app.world().resource::<ClothTimings>().of(ClothSystems::Step);
-            timing.push(step.as_secs_f64() * 1e6);
-        }
-    }
+    let times = game::time_in_turn(&mut apps, ticks, |app| {
+        app.world().resource::<ClothTimings>().of(ClothSystems::Step).as_secs_f64() * 1e6
+    });
     let [us, us_apart, us_greatest, less, more] = times.map(|times| undisturbed_mean(&times));
     Row {
         flags,

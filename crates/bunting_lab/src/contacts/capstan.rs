@@ -2,8 +2,8 @@
 //!
 //! The law does not depend on the force. The solver does: what contacts push out in a substep, chains have pulled in
 //! before, by (β h)² T/(ρ r) for a tension T per width, so that links on the cylinder are stretched by (β h)² T/(ρ r²).
-//! Effort by need takes as many substeps as keep that strain slight in the mean over all links; at the great force and
-//! half a turn it is 5 to 10 % on the cylinder, and these rows are known to fail.
+//! Effort by need takes as many substeps as keep that strain slight where the cylinder presses most. At the great force it takes
+//! too few for a quarter of a turn with little friction, where the strip slips too early: that row is known to fail.
 
 use std::sync::Arc;
 
