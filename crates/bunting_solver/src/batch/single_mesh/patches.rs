@@ -3,23 +3,24 @@
 //! The terms of a particle's sum are added in the order of the fabric's patches, so that it has the bits of scalar code.
 
 use fearless_simd::{Simd, SimdBase, f32x4};
-use glam::Vec3;
 
-use super::vectors::{pack_count, read_vectors, write_vectors};
+use super::vectors::{pack_count, write_vectors};
 use crate::fabric::Patch;
 use crate::geometry::corners::{Contribution, CornerSums, Corners};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::level::dispatch;
 use crate::simd::registers::{Pack4, Pack8};
-use crate::simd::vec3::{Pack3, V3, splat3};
+use crate::simd::vec3::{Pack3, V3};
+
+/// The number of each lane.
+const LANES: [u32; Pack8::WIDTH] = [0, 1, 2, 3, 4, 5, 6, 7];
 
 /// The patches of a mesh, in packs.
 #[derive(Clone, Debug)]
 pub(crate) struct PatchPacks {
     packs: Vec<PatchPack>,
-    /// Terms of both triangles, of the first and of the second, of each pack of patches: in packs, and as vectors.
-    terms: Vec<[Pack3<Pack8>; 3]>,
-    term_vectors: Vec<Pack4>,
+    /// Terms of both triangles, of the first and of the second, of each pack of patches.
+    terms: Vec<[[Pack4; Pack8::WIDTH]; 3]>,
     /// The sum of each particle.
     sums: Vec<Pack4>,
 }
@@ -39,8 +40,7 @@ impl PatchPacks {
     pub fn new(patches: &[Patch], particles: usize) -> Self {
         let packs: Vec<PatchPack> = patches.chunks(Pack8::WIDTH).map(PatchPack::new).collect();
         Self {
-            terms: vec![[splat3(Vec3::ZERO); 3]; packs.len()],
-            term_vectors: vec![Pack4::splat(0.0); 3 * Pack8::WIDTH * packs.len()],
+            terms: vec![[[Pack4::splat(0.0); Pack8::WIDTH]; 3]; packs.len()],
             packs,
             sums: vec![Pack4::splat(0.0); pack_count(particles) * Pack8::WIDTH],
         }
@@ -102,16 +102,15 @@ impl CornerSums<Pack8> for &mut PatchPacks {
         contribution: &T,
         sums: &mut [Pack3<Pack8>],
     ) {
-        let PatchPacks { packs, terms, term_vectors, sums: vectors } = self;
+        let PatchPacks { packs, terms, sums: vectors } = self;
         for (pack, terms) in packs.iter().zip(&mut *terms) {
             let [first, second] = contribution.of(token, &pack);
             let [to_both, to_first, to_second] = terms;
-            (first + second).store(to_both);
-            first.store(to_first);
-            second.store(to_second);
+            (first + second).scatter(token, to_both, &LANES);
+            first.scatter(token, to_first, &LANES);
+            second.scatter(token, to_second, &LANES);
         }
-        read_vectors(terms.as_flattened(), term_vectors);
-        dispatch!(set => sum_terms(set, packs, term_vectors, vectors));
+        dispatch!(set => sum_terms(set, packs, terms, vectors));
         write_vectors(vectors, sums);
         for sum in sums {
             contribution.finish(token, V3::load(token, sum)).store(sum);
@@ -121,10 +120,13 @@ impl CornerSums<Pack8> for &mut PatchPacks {
 
 /// Adds the terms of each patch to the sums of its corners.
 #[inline(always)]
-fn sum_terms<S: Simd>(set: S, packs: &[PatchPack], terms: &[Pack4], sums: &mut [Pack4]) {
+fn sum_terms<S: Simd>(
+    set: S,
+    packs: &[PatchPack],
+    terms: &[[[Pack4; Pack8::WIDTH]; 3]],
+    sums: &mut [Pack4],
+) {
     sums.fill(Pack4::splat(0.0));
-    let (terms, _) = terms.as_chunks::<{ Pack8::WIDTH }>();
-    let (terms, _) = terms.as_chunks::<3>();
     for (pack, [both, first, second]) in packs.iter().zip(terms) {
         let [a, b, c, d] = &pack.corners;
         for lane in 0..pack.count {

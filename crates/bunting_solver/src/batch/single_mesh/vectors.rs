@@ -8,11 +8,8 @@ use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;
 use crate::simd::level::dispatch;
 use crate::simd::registers::{Pack4, Pack8};
-use crate::simd::transpose::{coordinates, vectors};
-use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
-
-/// Number of vectors that are transposed at once.
-const QUAD: usize = 4;
+use crate::simd::transpose::{joined, split};
+use crate::simd::vec3::{Pack3, V3, lane3, set_lane3, splat3};
 
 /// Number of packs that hold `count` vectors.
 pub(crate) fn pack_count(count: usize) -> usize {
@@ -32,17 +29,9 @@ pub(crate) fn write_vectors(vectors: &[Pack4], into: &mut [Pack3<Pack8>]) {
 #[inline(always)]
 fn read_all<S: Simd>(token: S, packs: &[Pack3<Pack8>], into: &mut [Pack4]) {
     let (into, _) = into.as_chunks_mut::<{ Pack8::WIDTH }>();
-    for ([x, y, z], into) in packs.iter().zip(into) {
-        let (into, _) = into.as_chunks_mut::<QUAD>();
-        for (quad, [a, b, c, d]) in into.iter_mut().enumerate() {
-            let first = quad * QUAD;
-            let x = f32x4::from_slice(token, &x.lanes()[first..first + QUAD]);
-            let y = f32x4::from_slice(token, &y.lanes()[first..first + QUAD]);
-            let z = f32x4::from_slice(token, &z.lanes()[first..first + QUAD]);
-            let vectors = vectors(token, [x, y, z]);
-            for (vector, into) in vectors.into_iter().zip([a, b, c, d]) {
-                vector.store_slice(into.lanes_mut());
-            }
+    for (pack, into) in packs.iter().zip(into) {
+        for (vector, into) in split(token, V3::load(token, pack)).into_iter().zip(into) {
+            vector.store_slice(into.lanes_mut());
         }
     }
 }
@@ -50,19 +39,12 @@ fn read_all<S: Simd>(token: S, packs: &[Pack3<Pack8>], into: &mut [Pack4]) {
 #[inline(always)]
 fn write_all<S: Simd>(token: S, vectors: &[Pack4], into: &mut [Pack3<Pack8>]) {
     let (vectors, _) = vectors.as_chunks::<{ Pack8::WIDTH }>();
-    for (vectors, [x, y, z]) in vectors.iter().zip(into) {
-        let (quads, _) = vectors.as_chunks::<QUAD>();
-        for (quad, [a, b, c, d]) in quads.iter().enumerate() {
-            let first = quad * QUAD;
-            let a = f32x4::from_slice(token, a.lanes());
-            let b = f32x4::from_slice(token, b.lanes());
-            let c = f32x4::from_slice(token, c.lanes());
-            let d = f32x4::from_slice(token, d.lanes());
-            let coordinates = coordinates([a, b, c, d]);
-            for (values, into) in coordinates.into_iter().zip([&mut *x, y, z]) {
-                values.store_slice(&mut into.lanes_mut()[first..first + QUAD]);
-            }
+    for (vectors, into) in vectors.iter().zip(into) {
+        let mut loaded = [<f32x4<S> as SimdBase<S>>::splat(token, 0.0); Pack8::WIDTH];
+        for (loaded, vector) in loaded.iter_mut().zip(vectors) {
+            *loaded = f32x4::from_slice(token, vector.lanes());
         }
+        joined(loaded).store(into);
     }
 }
 
