@@ -14,6 +14,12 @@ impl Colours {
     pub fn ranges(&self) -> &[Range<usize>] {
         &self.0
     }
+
+    /// Adds the colours of a list of constraints that follows.
+    pub fn extend(&mut self, following: &Self) {
+        let count = self.0.last().map_or(0, |range| range.end);
+        self.0.extend(following.0.iter().map(|range| count + range.start..count + range.end));
+    }
 }
 
 /// Gives each constraint the smallest colour that no earlier constraint of its particles has (greedy

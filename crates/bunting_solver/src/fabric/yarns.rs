@@ -53,6 +53,23 @@ impl Yarns {
         Self::coloured(yarns, links, rest.len())
     }
 
+    /// Gives the yarns of each family colours by themselves, so that a family has few, the longest first.
+    pub(super) fn coloured_by_family(
+        mut yarns: Vec<Yarn>,
+        links: &[Link],
+        particle_count: usize,
+    ) -> Self {
+        let family = |yarn: &Yarn| links[yarn.links[0] as usize].family as u32;
+        yarns.sort_by_key(|yarn| (family(yarn), core::cmp::Reverse(yarn.links.len())));
+        let mut all = Self::default();
+        for of_family in yarns.chunk_by(|one, other| family(one) == family(other)) {
+            let of_family = Self::coloured(of_family.to_vec(), links, particle_count);
+            all.colours.extend(&of_family.colours);
+            all.list.extend(of_family.list);
+        }
+        all
+    }
+
     /// Gives yarns colours, the longest first.
     pub(super) fn coloured(mut yarns: Vec<Yarn>, links: &[Link], particle_count: usize) -> Self {
         yarns.sort_by_key(|yarn| core::cmp::Reverse(yarn.links.len()));

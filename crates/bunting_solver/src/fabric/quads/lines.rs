@@ -65,9 +65,23 @@ pub(super) fn lines(cells: &[Cell], positions: &[Vec3]) -> Option<Vec<Line>> {
             nodes.push(to);
             (at, after) = (after, to);
         }
-        lines.push(Line { nodes });
+        without_crossings(nodes, &mut lines);
     }
     Some(lines)
+}
+
+/// Adds the parts of a line that crosses itself, which has no node twice in any of them.
+fn without_crossings(nodes: Vec<u32>, into: &mut Vec<Line>) {
+    let mut part: Vec<u32> = Vec::new();
+    let (first, last) = (nodes[0], nodes.len() - 1);
+    for (at, &node) in nodes.iter().enumerate() {
+        let closes = at == last && node == first && part[0] == first;
+        if !closes && let (true, Some(&end)) = (part.contains(&node), part.last()) {
+            into.push(Line { nodes: core::mem::replace(&mut part, vec![end]) });
+        }
+        part.push(node);
+    }
+    into.push(Line { nodes: part });
 }
 
 /// Mean magnitude of half of the difference of the turns at neighbouring nodes of a line, rad. A line that is curved evenly within the surface has

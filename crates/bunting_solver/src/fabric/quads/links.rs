@@ -95,7 +95,8 @@ pub(super) fn links(
     (Links::of_classes(mesh, links.into_iter(), None), widths)
 }
 
-/// Lines without the links between pins, which are none, and all diagonals.
+/// Lines without the links between pins, which are none, and all diagonals. Where a line turns from warp to weft, as along a round
+/// border, another one begins: lines of one family seldom meet, so that few colours hold many lines each.
 pub(super) fn yarns(mesh: &RestMesh, lines: &[Line], links: &Links) -> Yarns {
     let [sides, diagonals]: [Vec<_>; 2] = [false, true].map(|is_diagonal| {
         let list = (0..).zip(&links.list);
@@ -108,11 +109,16 @@ pub(super) fn yarns(mesh: &RestMesh, lines: &[Line], links: &Links) -> Yarns {
         let link = |ends: &[u32]| number.get(&ascending([ends[0], ends[1]])).copied();
         let mut steps: Vec<([u32; 2], Option<u32>)> =
             line.nodes.windows(2).map(|ends| ([ends[0], ends[1]], link(ends))).collect();
-        let gap = steps.iter().position(|(_, link)| link.is_none());
-        if let (true, Some(gap)) = (line.is_ring(), gap) {
-            steps.rotate_left(gap);
+        let family = |link: u32| links.list[link as usize].family;
+        let go_on = |(_, one): &([u32; 2], Option<u32>), (_, other): &([u32; 2], Option<u32>)| {
+            one.zip(*other).is_some_and(|(one, other)| family(one) == family(other))
+        };
+        let last = steps.len() - 1;
+        let begins = |at: &usize| !go_on(&steps[at.checked_sub(1).unwrap_or(last)], &steps[*at]);
+        if let (true, Some(first)) = (line.is_ring(), (0..=last).find(begins)) {
+            steps.rotate_left(first);
         }
-        for run in steps.split(|(_, link)| link.is_none()).filter(|run| !run.is_empty()) {
+        for run in steps.chunk_by(go_on).filter(|run| run[0].1.is_some()) {
             let ends = run.iter().map(|([_, to], _)| *to);
             list.push(Yarn {
                 particles: core::iter::once(run[0].0[0]).chain(ends).collect(),
@@ -125,5 +131,5 @@ pub(super) fn yarns(mesh: &RestMesh, lines: &[Line], links: &Links) -> Yarns {
             .iter()
             .map(|(at, link)| Yarn { particles: link.particles.to_vec(), links: vec![*at] }),
     );
-    Yarns::coloured(list, &links.list, mesh.positions.len())
+    Yarns::coloured_by_family(list, &links.list, mesh.positions.len())
 }
