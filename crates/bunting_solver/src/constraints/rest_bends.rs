@@ -16,8 +16,10 @@ use crate::simd::vec3::{Pack3, V3, splat3};
 #[derive(Clone, Debug)]
 pub(crate) struct RestBendPacks<P: Pack, Y: Layout<P>> {
     frames: Vec<NodeFrame<Y::Constant>>,
-    /// Second differences along rows, and along columns, and the twists of cells, m.
-    turned: [Y::Positions; 3],
+    /// Second differences along rows, and along columns, m.
+    turned: [Y::Positions; 2],
+    /// Twists of cells, m, if the grid resists twist.
+    twists: Option<Y::Positions>,
 }
 
 /// What the frame of each node of a pack is found from, and what is constant in it.
@@ -63,7 +65,8 @@ impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
         let zero = || layout.positions(vec![splat3(glam::Vec3::ZERO); layout.pack_count()]);
         Some(Self {
             frames: nodes_of_packs.iter().enumerate().map(frame).collect(),
-            turned: [zero(), zero(), zero()],
+            turned: [zero(), zero()],
+            twists: (!fabric.is_net()).then(zero),
         })
     }
 
@@ -75,18 +78,18 @@ impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
         masses: &'a [P],
         linked: &'a [P],
     ) -> <Y::Positions as Positions<P>>::Particles<'a> {
-        let [rows, columns, _] = &mut self.turned;
+        let [rows, columns] = &mut self.turned;
         if are_rows { rows } else { columns }.particles(order, masses, linked)
     }
 
-    /// The twists of cells as the positions of their first nodes.
+    /// The twists of cells as the positions of their first nodes, if the grid resists twist.
     pub fn of_cells<'a>(
         &'a mut self,
         order: Order,
         masses: &'a [P],
         linked: &'a [P],
-    ) -> <Y::Positions as Positions<P>>::Particles<'a> {
-        self.turned[2].particles(order, masses, linked)
+    ) -> Option<<Y::Positions as Positions<P>>::Particles<'a>> {
+        Some(self.twists.as_mut()?.particles(order, masses, linked))
     }
 }
 
@@ -98,6 +101,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         P::run(TurnRestBends {
             frames: &rest.frames,
             turned: rest.turned.each_mut().map(|vectors| vectors.overwritten()),
+            twists: rest.twists.as_mut().map(|vectors| vectors.overwritten()),
             nodes: self.positions.particles(Order::RowMajor, masses, linked),
         });
     }
@@ -105,17 +109,18 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
 struct TurnRestBends<'a, P: Pack, S: Particles<P>> {
     frames: &'a [NodeFrame<S::Constant>],
-    turned: [&'a mut [Pack3<P>]; 3],
+    turned: [&'a mut [Pack3<P>]; 2],
+    twists: Option<&'a mut [Pack3<P>]>,
     nodes: S,
 }
 
 impl<P: Pack, S: Particles<P>> Kernel<P> for TurnRestBends<'_, P, S> {
     #[inline(always)]
-    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
+    fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         let zero = L::splat(token, 0.0);
-        let [rows, columns, cells] = self.turned;
-        let turned = rows.iter_mut().zip(columns).zip(cells);
-        for (frame, ((row, column), cell)) in self.frames.iter().zip(turned) {
+        let [rows, columns] = self.turned;
+        let turned = rows.iter_mut().zip(columns).enumerate();
+        for (frame, (pack, (row, column))) in self.frames.iter().zip(turned) {
             let at: V3<L> = self.nodes.position(token, frame.at);
             let [before, after, above, below] = frame.neighbours;
             let [has_before, has_after] = &frame.has_in_row;
@@ -133,16 +138,27 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for TurnRestBends<'_, P, S> {
             let normal = unit(token, along.cross(across));
             let tangent = unit(token, along);
             let product = normal.cross(tangent);
-            for (turned, [first, second, third]) in
-                [row, column, cell].into_iter().zip(&frame.at_rest)
-            {
-                (normal * first.load(token))
-                    .plus_scaled(tangent, second.load(token))
-                    .plus_scaled(product, third.load(token))
-                    .store(turned);
+            let [of_row, of_column, of_cell] = &frame.at_rest;
+            let axes = [normal, tangent, product];
+            along_axes(token, axes, of_row).store(row);
+            along_axes(token, axes, of_column).store(column);
+            if let Some(twists) = &mut self.twists {
+                along_axes(token, axes, of_cell).store(&mut twists[pack]);
             }
         }
     }
+}
+
+/// The vector with these parts along axes.
+#[inline(always)]
+fn along_axes<L: Lane, C: Constant<L::Pack>>(
+    token: L::Token,
+    [normal, tangent, product]: [V3<L>; 3],
+    [first, second, third]: &[C; 3],
+) -> V3<L> {
+    (normal * first.load(token))
+        .plus_scaled(tangent, second.load(token))
+        .plus_scaled(product, third.load(token))
 }
 
 /// The unit vector along a vector.

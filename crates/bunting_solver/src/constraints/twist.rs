@@ -27,7 +27,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             ribbons,
             factors: &self.layout.factors().twist,
             moments: &mut self.moments,
-            at_rest: self.rest_bends.as_mut().map(|rest| rest.of_cells(order, masses, linked)),
+            at_rest: self.rest_bends.as_mut().and_then(|rest| rest.of_cells(order, masses, linked)),
             particles: self.positions.particles(order, masses, linked),
         });
     }
