@@ -174,6 +174,8 @@ pub(crate) trait Positions<P: Pack>: Clone + Debug + Send + Sync + 'static {
     type Constant: Constant<P>;
     /// Particles in the form in which constraints access them.
     type Particles<'a>: Particles<P, Constant = Self::Constant>;
+    /// Particles for constraints along lines, which [bring](Particles::bring) those of a line before they solve it.
+    type Lines<'a>: Particles<P, Constant = Self::Constant>;
     /// Vectors of all particles in the form that sums over triangles read.
     type Field: ?Sized;
 
@@ -203,6 +205,14 @@ pub(crate) trait Positions<P: Pack>: Clone + Debug + Send + Sync + 'static {
         linked: &'a [P],
     ) -> Self::Particles<'a>;
 
+    /// The same for constraints along lines.
+    fn lines<'a>(
+        &'a mut self,
+        order: Order,
+        inverse_masses: &'a [P],
+        linked: &'a [P],
+    ) -> Self::Lines<'a>;
+
     /// The positions in the form that sums over triangles read.
     fn field(&mut self) -> &Self::Field;
 
@@ -223,6 +233,27 @@ pub(super) fn visit_packs<P: Pack>(packs: &mut [Pack3<P>], mut visit: impl FnMut
 pub(crate) trait Particles<P: Pack> {
     /// Number of the fabric for a pack.
     type Constant: Constant<P>;
+
+    /// Brings the particles in the first columns of rows to where the other functions find them.
+    #[inline(always)]
+    fn bring<L: Lane<Pack = P>, const N: usize>(
+        &mut self,
+        _: L::Token,
+        _: &[[u32; N]],
+        _columns: usize,
+    ) {
+    }
+
+    /// Puts particles back that have been brought, from the first row to the last: a particle in several rows is where the last one
+    /// has it.
+    #[inline(always)]
+    fn put_back<L: Lane<Pack = P>, const N: usize>(
+        &mut self,
+        _: L::Token,
+        _: &[[u32; N]],
+        _columns: usize,
+    ) {
+    }
 
     /// Position, m.
     fn position<L: Lane<Pack = P>>(&self, token: L::Token, at: u32) -> V3<L>;

@@ -212,6 +212,7 @@ impl<P: Pack, C> Packs<P, C> {
 impl<P: Pack, C: Constant<P>> Positions<P> for Packs<P, C> {
     type Constant = C;
     type Particles<'a> = PackParticles<'a, P, C>;
+    type Lines<'a> = PackParticles<'a, P, C>;
     type Field = [Pack3<P>];
 
     fn packs(&self) -> &[Pack3<P>] {
@@ -229,6 +230,15 @@ impl<P: Pack, C: Constant<P>> Positions<P> for Packs<P, C> {
         _: &'a [P],
     ) -> PackParticles<'a, P, C> {
         PackParticles { inverse_masses, position: &mut self.0, constant: PhantomData }
+    }
+
+    fn lines<'a>(
+        &'a mut self,
+        order: Order,
+        inverse_masses: &'a [P],
+        linked: &'a [P],
+    ) -> Self::Lines<'a> {
+        self.particles(order, inverse_masses, linked)
     }
 
     fn field(&mut self) -> &[Pack3<P>] {

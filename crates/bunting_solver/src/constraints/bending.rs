@@ -25,37 +25,40 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                     factors: &self.layout.factors().bending,
                     moments: &mut self.moments,
                     at_rest: rest.map(|rest| rest.of_lines(lines[0].is_row, order, masses, linked)),
-                    particles: self.positions.particles(order, masses, linked),
+                    particles: self.positions.lines(order, masses, linked),
                 });
             }
         }
     }
 }
 
-struct Bending<'a, P: Pack, S: Particles<P>> {
+struct Bending<'a, P: Pack, S: Particles<P>, R: Particles<P>> {
     lines: &'a [BendLine],
     factors: &'a [BendFactors<P, S::Constant>],
     moments: &'a mut [Pack3<P>],
     /// Second differences at rest, m, if the grid is curved there.
-    at_rest: Option<S>,
+    at_rest: Option<R>,
     particles: S,
 }
 
-impl<P: Pack, S: Particles<P>> Kernel<P> for Bending<'_, P, S> {
+impl<P: Pack, S: Particles<P>, R: Particles<P>> Kernel<P> for Bending<'_, P, S, R> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         for line in self.lines {
             let factors = &self.factors[line.profile as usize];
+            let (rows, _) = line.particles.as_chunks::<1>();
+            self.particles.bring::<L, 1>(token, rows, 1);
             self.eliminate::<L>(token, &line.particles, factors);
             self.substitute::<L>(token, &line.particles, factors);
             if !factors.closing.is_empty() {
                 self.close::<L>(token, &line.particles, &factors.closing);
             }
+            self.particles.put_back::<L, 1>(token, rows, 1);
         }
     }
 }
 
-impl<P: Pack, S: Particles<P>> Bending<'_, P, S> {
+impl<P: Pack, S: Particles<P>, R: Particles<P>> Bending<'_, P, S, R> {
     /// Solves L y = −l C along a line. A factor of one over the spacing is contained in `mobilities`.
     #[inline(always)]
     fn eliminate<L: Lane<Pack = P>>(

@@ -76,6 +76,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Solves the chains of one colour, which share no particle.
     fn solve_colour(&mut self, colour: usize, pass: Pass, is_any_overlong: &mut bool) {
         let chains = self.layout.chains(&self.fabric);
+        if chains.colours[colour].are_swept_diagonals() {
+            self.sweep_colour(colour, false);
+            return;
+        }
         let order = self.layout.order_of_chains(colour);
         let (masses, linked) = (&self.masses.inverse, self.layout.linked());
         P::run(SolveChains {
@@ -86,7 +90,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             rows: &mut self.rows,
             target: &mut self.link_target,
             by_closing: &mut self.by_closing,
-            particles: self.positions.particles(order, masses, linked),
+            particles: self.positions.lines(order, masses, linked),
         });
     }
 }
@@ -185,6 +189,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
         const TWO: usize = CHAINS_PER_PAIR;
         for pair in self.pairs {
+            self.particles.bring::<L, TWO>(token, &pair.particles, pair.count);
             match (pair.count, self.pass) {
                 (TWO, Pass::First) => self.solve::<L, TWO>(token, pair, Pass::First),
                 (TWO, Pass::Again) => self.solve::<L, TWO>(token, pair, Pass::Again),
@@ -224,15 +229,14 @@ impl<P: Pack, S: Particles<P>> SolveChains<'_, P, S> {
     ) {
         if pair.is_closed {
             self.solve_closed::<L, N>(token, pair, pass);
-            return;
-        }
-        if let ([ends, other_ends], [links]) = (&pair.particles[..], &pair.links[..]) {
+        } else if let ([ends, other_ends], [links]) = (&pair.particles[..], &pair.links[..]) {
             let ends = [first_of::<N>(ends), first_of::<N>(other_ends)];
             self.solve_links::<L, N>(token, ends, links, &pair.targets, pass);
-            return;
+        } else {
+            self.eliminate::<L, N>(token, pair, pass);
+            self.substitute::<L, N>(token, pair, pass);
         }
-        self.eliminate::<L, N>(token, pair, pass);
-        self.substitute::<L, N>(token, pair, pass);
+        self.particles.put_back::<L, CHAINS_PER_PAIR>(token, &pair.particles, N);
     }
 
     /// Eliminates the unknowns of `N` chains side by side, from their first links to their last.

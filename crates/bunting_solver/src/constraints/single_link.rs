@@ -1,4 +1,4 @@
-//! Chains of a single link, as the diagonals of a net are: there is nothing to eliminate, and rows are not stored.
+//! Chains of a single link: there is nothing to eliminate, and rows are not stored.
 
 use core::ops::Range;
 

@@ -2,11 +2,13 @@
 //!
 //! Where a flag snaps like a whip, a chain overshoots at its free end, as its directions are frozen. A sweep,
 //! link by link, corrects single lengths. It has the constraint and the targets of the chains.
+//!
+//! The diagonals of a net, each of which is a chain by itself, are solved by the same sweep in each pass.
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
 use crate::constraints::direction::sweep_order;
-use crate::fabric::SweepLink;
+use crate::fabric::{CHAINS_PER_PAIR, ChainPair, LinkFamily, SweepLink};
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
 
@@ -16,25 +18,39 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn sweep_links(&mut self) {
         let reverses_colours = self.begins_with_tethers() && self.fabric.is_cut();
         let reverses_links = self.begins_with_tethers() && !self.fabric.is_net();
-        let chains = self.layout.chains(&self.fabric);
-        for index in sweep_order(chains.colours.len(), reverses_colours) {
-            let colour = &chains.colours[index];
-            if !colour.sweep_links.is_empty() {
-                let order = self.layout.order_of_chains(index);
-                let (masses, linked) = (&self.masses.inverse, self.layout.linked());
-                P::run(Sweep {
-                    links: &chains.sweep_links[colour.sweep_links.clone()],
-                    reverses_links,
-                    compliance: &self.layout.factors().link_compliance,
-                    target: &mut self.link_target,
-                    particles: self.positions.particles(order, masses, linked),
-                });
+        for colour in sweep_order(self.colour_count(), reverses_colours) {
+            let family = self.layout.chains(&self.fabric).colours[colour].family;
+            if family != LinkFamily::Diagonal {
+                self.sweep_colour(colour, reverses_links);
             }
+        }
+    }
+
+    /// Solves each link of a colour once.
+    pub(super) fn sweep_colour(&mut self, index: usize, reverses_links: bool) {
+        let chains = self.layout.chains(&self.fabric);
+        let colour = &chains.colours[index];
+        let order = self.layout.order_of_chains(index);
+        let (masses, linked) = (&self.masses.inverse, self.layout.linked());
+        let links = &chains.sweep_links[colour.sweep_links.clone()];
+        let compliance = &self.layout.factors().link_compliance;
+        let target = &mut self.link_target;
+        let pairs = &chains.pairs[colour.pairs.clone()];
+        // A ring that begins later than others in its pack has its first particle in two rows.
+        let has_leading = pairs.iter().any(|pair| pair.leading > 0);
+        if colour.family == LinkFamily::Diagonal || has_leading {
+            let particles = self.positions.particles(order, masses, linked);
+            P::run(Sweep { lines: &[], links, reverses_links, compliance, target, particles });
+        } else {
+            let particles = self.positions.lines(order, masses, linked);
+            P::run(Sweep { lines: pairs, links, reverses_links, compliance, target, particles });
         }
     }
 }
 
 struct Sweep<'a, P: Pack, S: Particles<P>> {
+    /// The lines of the links, if particles are brought.
+    lines: &'a [ChainPair<S::Constant>],
     /// The links of one colour.
     links: &'a [SweepLink],
     reverses_links: bool,
@@ -46,6 +62,9 @@ struct Sweep<'a, P: Pack, S: Particles<P>> {
 impl<P: Pack, S: Particles<P>> Kernel<P> for Sweep<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
+        for pair in self.lines {
+            self.particles.bring::<L, CHAINS_PER_PAIR>(token, &pair.particles, pair.count);
+        }
         let least = L::splat(token, f32::MIN_POSITIVE);
         for index in sweep_order(self.links.len(), self.reverses_links) {
             let link = &self.links[index];
@@ -69,6 +88,9 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Sweep<'_, P, S> {
             let tension = along * unknown;
             self.particles.set_position(token, a, from.minus_scaled(tension, mass_a));
             self.particles.set_position(token, b, to.plus_scaled(tension, mass_b));
+        }
+        for pair in self.lines {
+            self.particles.put_back::<L, CHAINS_PER_PAIR>(token, &pair.particles, pair.count);
         }
     }
 }

@@ -88,6 +88,7 @@ impl Fabric {
         let mut chains = Chains::of(&yarns.list, &yarns.colours, &links.list, None, false);
         chains.find_cells(corners.into_iter());
         chains.measure_diagonals(&mesh.positions);
+        chains.sweep_diagonals();
         let fabric = Self {
             bending,
             twist: Twist::default(),

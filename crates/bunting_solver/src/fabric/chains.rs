@@ -30,12 +30,12 @@ pub(crate) struct Chain<C = f32> {
     pub particles: Vec<u32>,
     /// Links along the chain.
     pub links: Vec<ChainLink<C>>,
-    /// Order in which a Gauss–Seidel sweep visits the links: every second link, then the others, each with
-    /// its class.
+    /// Order in which a Gauss–Seidel sweep visits the links: every second link, the last one of a ring among them, then the others,
+    /// each with its class.
     pub sweep_order: Vec<(usize, u32)>,
     /// Whether its ends are at one place.
     pub is_closed: bool,
-    /// Number of rows in which some lanes of a closed chain have not begun: even in all lanes, or odd in all.
+    /// Number of rows in which some lanes of a closed chain have not begun.
     pub leading: usize,
 }
 
@@ -48,7 +48,10 @@ impl<C> Chain<C> {
         leading: usize,
     ) -> Self {
         let rows = |first: usize| (first..links.len()).step_by(2);
-        let order = rows(leading % 2).chain(rows(1 - leading % 2));
+        // Rings side by side and across the lanes end in one row.
+        let is_ring = particles.first() == particles.last();
+        let first = if is_ring { (links.len() + 1) % 2 } else { 0 };
+        let order = rows(first).chain(rows(1 - first));
         let sweep_order = order.map(|at| (at, links[at].class)).collect();
         Self { particles, links, sweep_order, is_closed, leading }
     }
@@ -92,6 +95,13 @@ pub(crate) struct ChainColour {
     pub sweep_links: Range<usize>,
 }
 
+impl ChainColour {
+    /// Whether these are diagonals that a sweep over them solves.
+    pub fn are_swept_diagonals(&self) -> bool {
+        self.family == LinkFamily::Diagonal && !self.sweep_links.is_empty()
+    }
+}
+
 /// A link of a Gauss–Seidel sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SweepLink {
@@ -120,7 +130,8 @@ pub(crate) struct Chains<C = f32> {
     pub pairs: Vec<ChainPair<C>>,
     /// Colours in the order in which they are solved: warp, weft, diagonals.
     pub colours: Vec<ChainColour>,
-    /// Links of warp and weft, chain after chain; neighbours in the list share no particle.
+    /// Links of warp and weft, chain after chain; neighbours in the list share no particle. Those of diagonals, too, if a sweep solves
+    /// them.
     pub sweep_links: Vec<SweepLink>,
     /// The cells of a grid whose diagonals are links; none for other meshes.
     pub cells: Vec<Cell>,
@@ -232,6 +243,24 @@ impl<C: Copy> Chains<C> {
                 class,
                 target: (first_target + row * chains.len() + column) as u32,
             }));
+        }
+    }
+
+    /// Lists diagonals for a sweep, which solves them in place of chains, where each of them is a chain by itself.
+    pub fn sweep_diagonals(&mut self) {
+        for colour in &mut self.colours {
+            if colour.family != LinkFamily::Diagonal {
+                continue;
+            }
+            let first = self.sweep_links.len();
+            for pair in &self.pairs[colour.pairs.clone()] {
+                self.sweep_links.extend((0..pair.count).map(|column| SweepLink {
+                    particles: [0, 1].map(|end| pair.particles[end][column]),
+                    class: pair.links[0][column].class,
+                    target: (pair.targets.start + column) as u32,
+                }));
+            }
+            colour.sweep_links = first..self.sweep_links.len();
         }
     }
 

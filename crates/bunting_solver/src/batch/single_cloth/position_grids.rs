@@ -76,6 +76,7 @@ impl<P: Pack> PositionGrids<P> {
 impl<P: Pack> Positions<P> for PositionGrids<P> {
     type Constant = P;
     type Particles<'a> = GridParticles<'a, P>;
+    type Lines<'a> = GridParticles<'a, P>;
     type Field = VectorGrid;
 
     fn packs(&self) -> &[Pack3<P>] {
@@ -120,6 +121,15 @@ impl<P: Pack> Positions<P> for PositionGrids<P> {
             Order::ColumnMajor => &mut self.column_major,
         };
         GridParticles { position: position.coordinates_mut(), inverse_mass, linked }
+    }
+
+    fn lines<'a>(
+        &'a mut self,
+        order: Order,
+        inverse_masses: &'a [P],
+        linked: &'a [P],
+    ) -> Self::Lines<'a> {
+        self.particles(order, inverse_masses, linked)
     }
 
     fn field(&mut self) -> &VectorGrid {

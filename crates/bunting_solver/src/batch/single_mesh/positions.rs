@@ -40,6 +40,7 @@ impl MeshPositions {
 impl Positions<Pack8> for MeshPositions {
     type Constant = Pack8;
     type Particles<'a> = PackParticles<'a, Pack8, Pack8>;
+    type Lines<'a> = PackParticles<'a, Pack8, Pack8>;
     type Field = [Pack4];
 
     fn packs(&self) -> &[Pack3<Pack8>] {
@@ -57,6 +58,15 @@ impl Positions<Pack8> for MeshPositions {
         linked: &'a [Pack8],
     ) -> PackParticles<'a, Pack8, Pack8> {
         self.packs.particles(order, inverse_masses, linked)
+    }
+
+    fn lines<'a>(
+        &'a mut self,
+        order: Order,
+        inverse_masses: &'a [Pack8],
+        linked: &'a [Pack8],
+    ) -> Self::Lines<'a> {
+        self.particles(order, inverse_masses, linked)
     }
 
     fn field(&mut self) -> &[Pack4] {

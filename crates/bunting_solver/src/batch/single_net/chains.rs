@@ -28,6 +28,7 @@ impl ChainPacks {
             (family, packer.pack(yarns))
         });
         let mut chains = Chains::of_colours(colours.collect::<Vec<_>>().into_iter());
+        chains.sweep_diagonals();
         let classes = packer.classes;
         (chains.cells, chains.diagonal_lengths) = cells(fabric, &chains, nodes);
         Self { chains, classes }

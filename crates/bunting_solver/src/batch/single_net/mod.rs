@@ -2,8 +2,9 @@
 //!
 //! A pack of the state holds consecutive nodes. Lines of a net are no neighbours in memory, and differ in length: eight
 //! lines that share no node are solved in one pack, whose nodes are gathered as vectors of x, y, z and zero. Where a lane's
-//! line has ended, the lane holds a vector that nothing moves (`node_packs.rs`). The kernels are those of cloths side by side, and
-//! every line has the bits of scalar code.
+//! line has ended, the lane holds a vector that nothing moves (`node_packs.rs`). A line's nodes are gathered before it is solved, and
+//! scattered afterwards; diagonals are gathered link by link. The kernels are those of cloths side by side, and every line has the bits
+//! of scalar code.
 
 mod bend_lines;
 mod chains;
@@ -216,5 +217,62 @@ impl Layout<Pack8> for SingleNet {
     ) -> (&'a mut PatchPacks, &'a [Pack4]) {
         read_vectors(velocity, &mut self.velocity);
         (&mut self.patches, &self.velocity)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::Vec3;
+
+    use crate::batch::cloth_batch::ClothBatch;
+    use crate::batch::lane_count::LaneCount;
+    use crate::batch::snapshot::ClothSnapshot;
+    use crate::fabric::{Fabric, FabricBuilder, FabricMaterial};
+    use crate::simd::level::with_every_instruction_set;
+    use crate::step::{Drive, StepSettings};
+
+    /// Two cones from a waist, whose rings of nodes have different lengths.
+    fn skirt() -> Fabric {
+        const AROUND: u32 = 36;
+        let place = |column: u32, row: u32| {
+            let (sin, cos) = libm::sincosf(core::f32::consts::TAU * column as f32 / AROUND as f32);
+            let radius = 0.1 + 0.02 * row as f32;
+            Vec3::new(radius * sin, -0.03 * row as f32, radius * cos)
+        };
+        let index = |column: u32, row: u32| row * AROUND + column % AROUND;
+        let corners = (0..9).flat_map(|row| (0..AROUND).map(move |column| (column, row)));
+        let corners = corners.flat_map(|(column, row)| {
+            let [a, b] = [0, 1].map(|by| index(column + by, row));
+            let [c, d] = [0, 1].map(|by| index(column + by, row + 1));
+            [a, c, d, a, d, b]
+        });
+        let places = (0..10).flat_map(|row| (0..AROUND).map(move |column| (column, row)));
+        let positions = places.map(|(column, row)| place(column, row)).collect();
+        let builder = FabricBuilder::new(positions, corners.collect()).pin(0..AROUND);
+        builder.resampled(None).expect("a good mesh").fabric
+    }
+
+    #[test]
+    fn a_net_has_the_same_bits_alone_and_side_by_side() {
+        let fabric = Arc::new(skirt());
+        let rings = fabric.yarns().iter().filter(|yarn| yarn.is_ring());
+        let mut lengths: Vec<usize> = rings.map(|yarn| yarn.links.len()).collect();
+        lengths.dedup();
+        assert!(lengths.iter().any(|it| it % 2 == 0) && lengths.iter().any(|it| it % 2 == 1));
+        let blown = |lanes: LaneCount| {
+            let mut batch = ClothBatch::new(Arc::clone(&fabric), lanes);
+            let at_rest = ClothSnapshot::at_rest(&fabric);
+            batch.insert(&at_rest, FabricMaterial::NYLON).expect("a free lane");
+            let wind = Vec3::new(6.0, 0.0, 2.0);
+            batch.drive(0, Drive { wind, ..Drive::default() }).expect("a good drive");
+            (0..20).for_each(|_| batch.step(1.0 / 60.0, StepSettings::default()));
+            batch.snapshot(0)
+        };
+        let all = with_every_instruction_set(|| [LaneCount::One, LaneCount::Eight].map(blown));
+        for [alone, side_by_side] in &all {
+            assert!(alone == side_by_side, "other bits");
+        }
     }
 }

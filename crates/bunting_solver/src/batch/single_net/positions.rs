@@ -2,12 +2,14 @@
 
 use std::sync::Arc;
 
+use glam::Vec3;
+
 use super::node_packs::NodePack;
 use crate::batch::layout::{Order, Particles, Positions};
 use crate::batch::single_mesh::{read_vectors, write_vectors};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::registers::{Pack4, Pack8};
-use crate::simd::vec3::{Pack3, V3};
+use crate::simd::vec3::{Pack3, V3, splat3};
 
 /// Positions of a single net, m. They are valid in the packs or in the vectors.
 #[derive(Clone, Debug)]
@@ -21,6 +23,8 @@ pub(crate) struct NetPositions {
     nodes: Arc<[NodePack]>,
     /// Inverse masses per unit area density of each pack that is gathered, 1/m².
     inverse_masses: Vec<Pack8>,
+    /// Positions in each pack that is gathered while its line is solved, m.
+    brought: Vec<Pack3<Pack8>>,
 }
 
 impl NetPositions {
@@ -30,6 +34,7 @@ impl NetPositions {
             packs,
             are_vectors_valid: false,
             inverse_masses: vec![Pack8::splat(0.0); nodes.len()],
+            brought: vec![splat3(Vec3::ZERO); nodes.len()],
             nodes,
         }
     }
@@ -38,6 +43,7 @@ impl NetPositions {
 impl Positions<Pack8> for NetPositions {
     type Constant = Pack8;
     type Particles<'a> = NetParticles<'a>;
+    type Lines<'a> = NetLines<'a>;
     type Field = [Pack4];
 
     fn packs(&self) -> &[Pack3<Pack8>] {
@@ -68,6 +74,13 @@ impl Positions<Pack8> for NetPositions {
         self.are_vectors_valid = true;
         let Self { vectors, nodes, inverse_masses, .. } = self;
         NetParticles { vectors, nodes, inverse_masses, linked }
+    }
+
+    fn lines<'a>(&'a mut self, _: Order, _: &'a [Pack8], linked: &'a [Pack8]) -> NetLines<'a> {
+        self.field();
+        self.are_vectors_valid = true;
+        let Self { vectors, nodes, inverse_masses, brought, .. } = self;
+        NetLines { vectors, nodes, inverse_masses, linked, brought }
     }
 
     fn field(&mut self) -> &[Pack4] {
@@ -110,6 +123,70 @@ impl Particles<Pack8> for NetParticles<'_> {
     #[inline(always)]
     fn set_position<L: Lane<Pack = Pack8>>(&mut self, token: L::Token, at: u32, position: V3<L>) {
         position.scatter(token, self.vectors, &self.nodes[at as usize]);
+    }
+
+    #[inline(always)]
+    fn inverse_mass<L: Lane<Pack = Pack8>>(&self, token: L::Token, at: u32) -> L {
+        L::load(token, &self.inverse_masses[at as usize])
+    }
+
+    #[inline(always)]
+    fn one_if_linked<L: Lane<Pack = Pack8>>(&self, token: L::Token, class: u32) -> L {
+        L::load(token, &self.linked[class as usize])
+    }
+}
+
+/// Nodes of lines, which are gathered before a line is solved and scattered afterwards. Each node of a line is in one place of it, but
+/// for the first one of a ring and those of rows without a link, which no link moves.
+pub(crate) struct NetLines<'a> {
+    vectors: &'a mut [Pack4],
+    nodes: &'a [NodePack],
+    inverse_masses: &'a [Pack8],
+    linked: &'a [Pack8],
+    brought: &'a mut [Pack3<Pack8>],
+}
+
+impl Particles<Pack8> for NetLines<'_> {
+    type Constant = Pack8;
+
+    #[inline(always)]
+    fn bring<L: Lane<Pack = Pack8>, const N: usize>(
+        &mut self,
+        token: L::Token,
+        rows: &[[u32; N]],
+        columns: usize,
+    ) {
+        for row in rows {
+            for &at in &row[..columns] {
+                let nodes = &self.nodes[at as usize];
+                V3::<L>::gather(token, self.vectors, nodes).store(&mut self.brought[at as usize]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn put_back<L: Lane<Pack = Pack8>, const N: usize>(
+        &mut self,
+        token: L::Token,
+        rows: &[[u32; N]],
+        columns: usize,
+    ) {
+        for row in rows {
+            for &at in &row[..columns] {
+                let position = V3::<L>::load(token, &self.brought[at as usize]);
+                position.scatter(token, self.vectors, &self.nodes[at as usize]);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn position<L: Lane<Pack = Pack8>>(&self, token: L::Token, at: u32) -> V3<L> {
+        V3::load(token, &self.brought[at as usize])
+    }
+
+    #[inline(always)]
+    fn set_position<L: Lane<Pack = Pack8>>(&mut self, _: L::Token, at: u32, position: V3<L>) {
+        position.store(&mut self.brought[at as usize]);
     }
 
     #[inline(always)]
