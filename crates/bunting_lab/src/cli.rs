@@ -6,8 +6,8 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 
 use crate::commands::{
-    budget, contacts, effort, families, files, forces, fuzz, gate, lod, memory, oracles, pareto,
-    report, schedule, sharing, stability,
+    budget, contacts, effort, families, files, forces, fuzz, gate, lod, memory, nets, oracles,
+    pareto, report, schedule, sharing, stability,
 };
 use crate::output::Outcome;
 
@@ -56,8 +56,8 @@ enum Command {
         /// Only files whose names contain this.
         filter: Option<String>,
     },
-    /// Time of resampled meshes, beside that of a grid. The filter may be several parts of names, with commas between them.
-    NetCost { filter: Option<String> },
+    /// Time of garments in cells of their own, beside that of a grid.
+    Nets,
     /// The hard cases.
     Stability(families::Selection),
     /// Cost of the schedule over plain calls.
@@ -91,10 +91,7 @@ impl Arguments {
             Command::Forces(selection) => forces::run(&selection, self.quick)?,
             Command::Fuzz(selection) => fuzz::run(&selection),
             Command::Files { folder, filter } => files::run(&folder, filter.as_deref())?,
-            Command::NetCost { filter } => {
-                crate::stability::net_cost::print(filter.as_deref().unwrap_or(""));
-                return Ok(());
-            }
+            Command::Nets => nets::run(),
             Command::Memory => memory::run(),
             Command::Oracles(selection) => oracles::run(&selection)?,
             Command::Stability(selection) => stability::run(&selection, self.quick)?,

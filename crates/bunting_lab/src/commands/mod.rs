@@ -6,8 +6,8 @@ pub mod contacts;
 mod differences;
 pub mod effort;
 pub mod families;
-pub mod files;
 mod figures;
+pub mod files;
 pub mod forces;
 pub mod fuzz;
 pub mod gate;
@@ -15,6 +15,7 @@ mod gate_cases;
 mod gate_jobs;
 pub mod lod;
 pub mod memory;
+pub mod nets;
 pub mod oracles;
 pub mod pareto;
 #[cfg(feature = "peers")]

@@ -9,7 +9,6 @@ mod flags;
 mod levels;
 mod lone;
 mod motion;
-pub mod net_cost;
 mod resampled;
 mod rig;
 mod sleep;
