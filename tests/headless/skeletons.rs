@@ -381,6 +381,9 @@ fn cloth_sleeps_on_a_resting_skeleton_and_wakes_with_it() {
     assert!(error < TOLERANCE, "{error} m");
 }
 
+/// Moves the joints of a wearer at once.
+type Snap = fn(&mut App, &Wearer);
+
 #[test]
 fn cloth_asleep_is_carried_by_a_skeleton_that_snaps() {
     /// How far both joints snap, m.
@@ -392,7 +395,7 @@ fn cloth_asleep_is_carried_by_a_skeleton_that_snaps() {
             app.world_mut().get_mut::<Transform>(joint).expect("a joint").translation += SNAP;
         }
     }
-    let snaps: [(&str, fn(&mut App, &Wearer)); 2] = [
+    let snaps: [(&str, Snap); 2] = [
         ("while time passes", move_joints),
         ("in a pause", |app, wearer| {
             app.world_mut().resource_mut::<Time<Virtual>>().pause();
