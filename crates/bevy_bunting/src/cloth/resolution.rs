@@ -13,6 +13,8 @@ use bunting_solver::Resolution;
 /// on lines along warp and weft, at about the same distance everywhere, and its mesh follows. Coarser levels of detail have
 /// cells twice as large each.
 ///
+/// What is drawn has the triangles of the mesh: folds that are narrower than these are simulated, and not seen.
+///
 /// The numbers of the vertices stay those of the mesh wherever vertices are named, as in
 /// [`AttachedVertices::List`](crate::AttachedVertices::List); [`ClothState::vertex_position`](crate::ClothState::vertex_position)
 /// reads them. A [`ClothMesh::grid`](crate::ClothMesh::grid) is simulated as it is.

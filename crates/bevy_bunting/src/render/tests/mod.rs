@@ -11,6 +11,7 @@ mod given;
 mod levels;
 mod parts;
 pub(crate) mod reflect;
+mod resolution;
 mod simplified;
 mod subdivided;
 mod written;
