@@ -229,12 +229,12 @@ mod tests {
     use crate::batch::cloth_batch::ClothBatch;
     use crate::batch::lane_count::LaneCount;
     use crate::batch::snapshot::ClothSnapshot;
-    use crate::fabric::{Fabric, FabricBuilder, FabricMaterial};
+    use crate::fabric::{Fabric, FabricBuilder, FabricMaterial, Resolution};
     use crate::simd::level::with_every_instruction_set;
     use crate::step::{Drive, StepSettings};
 
     /// Two cones from a waist, whose rings of nodes have different lengths.
-    fn skirt() -> Fabric {
+    fn skirt() -> Arc<Fabric> {
         const AROUND: u32 = 36;
         let place = |column: u32, row: u32| {
             let (sin, cos) = libm::sincosf(core::f32::consts::TAU * column as f32 / AROUND as f32);
@@ -251,12 +251,12 @@ mod tests {
         let places = (0..10).flat_map(|row| (0..AROUND).map(move |column| (column, row)));
         let positions = places.map(|(column, row)| place(column, row)).collect();
         let builder = FabricBuilder::new(positions, corners.collect()).pin(0..AROUND);
-        builder.resampled(None).expect("a good mesh").fabric
+        builder.resampled(Resolution::Particles(10 * AROUND)).expect("a good mesh").fabric
     }
 
     #[test]
     fn a_net_has_the_same_bits_alone_and_side_by_side() {
-        let fabric = Arc::new(skirt());
+        let fabric = skirt();
         let rings = fabric.yarns().iter().filter(|yarn| yarn.is_ring());
         let mut lengths: Vec<usize> = rings.map(|yarn| yarn.links.len()).collect();
         lengths.dedup();
