@@ -9,7 +9,8 @@
 //! diagonals; `yarns` cuts the links into straight paths and `chains` arranges these for solving; `bending` and
 //! `twist` (grids) or `hinges` (other meshes) resist bending; `background` lays a grid under meshes that are
 //! flat at rest or textured like their shape, and `quads` finds lines in others, with
-//! nodes of `remesh` where their vertices are uneven; `tethers` bounds the distances from the pins;
+//! nodes of `remesh` where their vertices are uneven; `builder/resampled` makes particles of such nodes, and `carried` lets the mesh
+//! follow them; `tethers` bounds the distances from the pins;
 //! `patches` pairs triangles for sums over them.
 
 mod background;
