@@ -7,7 +7,7 @@ use crate::gltf::components::insert_components;
 use crate::render::tests::reflect::public_types;
 
 /// Each public component as an artist may write it, with the fields that have no default; `{}` is a default.
-const COMPONENTS: [(&str, &str); 33] = [
+const COMPONENTS: [(&str, &str); 34] = [
     ("AnchorReactions", "{}"),
     (
         "Attachment",
@@ -34,6 +34,7 @@ const COMPONENTS: [(&str, &str); 33] = [
     ("ClothPaused", "{}"),
     ("ClothPreroll", "{}"),
     ("ClothReactions", "{}"),
+    ("ClothResolution", r#"{"CellSize": 0.03}"#),
     ("ClothSeed", "7"),
     ("ClothSkin", r#"{"joints": ["Post"]}"#),
     ("ClothSubdivision", "{}"),
