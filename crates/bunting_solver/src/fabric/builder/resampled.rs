@@ -54,8 +54,8 @@ impl FabricBuilder {
     /// use bunting_solver::{FabricBuilder, Grid, Resolution};
     ///
     /// // A mesh of 84 triangles is far too coarse to drape.
-    /// let grid = Grid::new(8, 7, 0.7, 0.6);
-    /// let coarse = FabricBuilder::new(grid.positions(), grid.triangles(false).into_flattened());
+    /// let grid = FabricBuilder::grid(Grid::new(8, 7, 0.7, 0.6));
+    /// let coarse = FabricBuilder::new(grid.positions().to_vec(), grid.indices().to_vec());
     /// let cape = coarse.pin_where(|at, _| at.y == 0.0).resampled(Resolution::CellSize(0.03))?;
     /// assert!(cape.fabric.particle_count() > 400);
     /// let positions = cape.carried.positions(cape.fabric.rest_positions());
