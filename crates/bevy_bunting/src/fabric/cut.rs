@@ -106,6 +106,9 @@ fn coarser(
 ) -> Option<(Resampled, LevelTransfer)> {
     let level = builder.resampled(Resolution::CellSize(size)).ok()?;
     let most = MOST_OF_FINER * finer.particle_count() as f32;
+    if level.fabric.particle_count() as f32 > most {
+        return None;
+    }
     let transfer = LevelTransfer::of_surface(finer, &level.fabric).ok()?;
-    (level.fabric.particle_count() as f32 <= most).then_some((level, transfer))
+    Some((level, transfer))
 }

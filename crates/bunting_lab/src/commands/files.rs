@@ -18,6 +18,7 @@ use serde_json::json;
 
 use crate::{
     flight::almost_at_rest,
+    meshes::clothes::FABRIC,
     need::Need,
     output::{
         Outcome,
@@ -48,16 +49,6 @@ const TIMED: usize = 50;
 const HEIGHT: f32 = 1.0;
 /// Part of the height from the top in which vertices are held.
 const HELD: f32 = 0.02;
-/// Fabric of all cloths.
-const CLOTH: FabricMaterial = FabricMaterial {
-    area_density: 0.2,
-    warp_stiffness: 1e4,
-    weft_stiffness: 1e4,
-    shear_stiffness: 200.0,
-    bend_stiffness: 2e-5,
-    ..FabricMaterial::FLAG_POLYESTER
-};
-
 /// A mesh of a file.
 struct FileMesh {
     positions: Vec<Vec3>,
@@ -217,12 +208,12 @@ fn measured(FileMesh { mut positions, uv, indices }: FileMesh) -> Result<Figures
     let built_ms = begun.elapsed().as_secs_f64() * 1e3;
     let triangles = held.indices().as_chunks::<3>().0;
 
-    let calm = FabricMaterial { damping: DAMPING, ..CLOTH };
+    let calm = FabricMaterial { damping: DAMPING, ..FABRIC };
     let (hung, mut batch) = flown(&fabric, calm, Drive::default(), &[], HANGS);
     let (strain, tension) = strains(&fabric, &hung);
     let speed = 1e3 * rms_speed(&batch, 0);
     let drive = Drive { wind: WIND, ..Drive::default() };
-    let (blown, _) = flown(&fabric, CLOTH, drive, &[], FLIES);
+    let (blown, _) = flown(&fabric, FABRIC, drive, &[], FLIES);
     let dropped = free.resampled(resolution)?.fabric;
     let [low, high] = bounds(dropped.rest_positions());
     let below = low.midpoint(high).with_y(low.y - BALL - GAP);

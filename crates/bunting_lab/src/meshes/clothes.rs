@@ -2,11 +2,20 @@
 
 use std::f32::consts::{PI, TAU};
 
-use bunting_solver::FabricBuilder;
+use bunting_solver::{FabricBuilder, FabricMaterial};
 use glam::{DVec2, Vec2, Vec3};
 
 use super::{CANDIDATES, Random, Sheet, Triangulation, ball_with_poles, delaunay, farthest};
 
+/// Fabric of the garments.
+pub(crate) const FABRIC: FabricMaterial = FabricMaterial {
+    area_density: 0.2,
+    warp_stiffness: 1e4,
+    weft_stiffness: 1e4,
+    shear_stiffness: 200.0,
+    bend_stiffness: 2e-5,
+    ..FabricMaterial::FLAG_POLYESTER
+};
 /// Radii of the waist and the hem of the skirts, m, and their length along the cloth.
 const SKIRT: [f32; 3] = [0.13, 0.35, 0.6];
 /// Vertices around the skirts, and along them.

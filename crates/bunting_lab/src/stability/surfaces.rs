@@ -8,20 +8,11 @@ use glam::{Vec2, Vec3};
 use super::{case::HardCase, lone::Lone};
 use crate::{
     flight::almost_at_rest,
-    meshes::clothes::Garment,
+    meshes::clothes::{FABRIC, Garment},
     scenes::ticks,
     surface::{Condition, Observed, Surface},
 };
 
-/// Fabric of the garments.
-const CLOTH: FabricMaterial = FabricMaterial {
-    area_density: 0.2,
-    warp_stiffness: 1e4,
-    weft_stiffness: 1e4,
-    shear_stiffness: 200.0,
-    bend_stiffness: 2e-5,
-    ..FabricMaterial::FLAG_POLYESTER
-};
 /// Damping of garments that hang, 1/s.
 const DAMPING: f32 = 2.0;
 /// Wind in which they fly, m/s.
@@ -129,8 +120,8 @@ impl State {
     /// A garment at rest but for a tenth of a millimetre.
     pub fn begin(self, fabric: &Arc<Fabric>) -> Lone {
         let (material, drive) = match self {
-            Self::Hung => (FabricMaterial { damping: DAMPING, ..CLOTH }, Drive::default()),
-            Self::Blown => (CLOTH, Drive { wind: WIND, ..Drive::default() }),
+            Self::Hung => (FabricMaterial { damping: DAMPING, ..FABRIC }, Drive::default()),
+            Self::Blown => (FABRIC, Drive { wind: WIND, ..Drive::default() }),
         };
         Lone::new(fabric, &almost_at_rest(fabric), material, drive)
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::background::{BackgroundMesh, GridTransfer, lies_in_plane};
 use super::bending::Bending;
 use super::chains::Chains;
-use super::fabric::Fabric;
+use super::fabric::{Fabric, tautness};
 use super::hinges::Hinges;
 use super::laid_yarns::LaidYarns;
 use super::links::Links;
@@ -17,7 +17,6 @@ use super::tethers::Tethers;
 use super::topology;
 use super::twist::Twist;
 use super::yarns::Yarns;
-use crate::constants::FREE_LENGTH;
 
 /// The grid that solves stretch, shear and bending of a mesh.
 #[derive(Clone, Debug)]
@@ -75,8 +74,7 @@ impl Fabric {
         let (mut fabric, _) = Self::of_net(net, tethered);
         fabric.hinges = Hinges::of(&fabric.mesh, &edges);
         let (reach, shortest) = (fabric.reach(), fabric.links.shortest());
-        fabric.tautness =
-            if reach > 0.0 { reach } else { FREE_LENGTH * shortest }.sqrt() / shortest;
+        fabric.tautness = tautness(reach, shortest);
         fabric.shortest = shortest;
         fabric.probes = fabric.links.probes();
         fabric

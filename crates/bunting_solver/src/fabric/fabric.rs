@@ -53,6 +53,11 @@ pub struct Fabric {
     pub(super) background: Option<Background>,
 }
 
+/// [`Fabric::tautness`] of a fabric with this [`reach`](Fabric::reach) and shortest link, m. Without pins it counts as a few links long.
+pub(super) fn tautness(reach: f32, shortest: f32) -> f32 {
+    if reach > 0.0 { reach } else { FREE_LENGTH * shortest }.sqrt() / shortest
+}
+
 impl Fabric {
     /// The constraints of a mesh, or of the grid that the mesh was made from.
     pub(super) fn new(
@@ -102,7 +107,7 @@ impl Fabric {
         };
         let mut fabric = Self {
             patch_grid_columns: cells.map(|grid| grid.columns as usize),
-            tautness: if reach > 0.0 { reach } else { FREE_LENGTH * shortest }.sqrt() / shortest,
+            tautness: tautness(reach, shortest),
             shortest,
             probes: links.probes(),
             grid,

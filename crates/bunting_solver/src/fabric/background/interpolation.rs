@@ -22,6 +22,13 @@ pub(crate) struct Term {
     pub weight: f32,
 }
 
+impl Term {
+    /// The term of a row with the greatest weight; none of an empty row.
+    pub(in crate::fabric) fn heaviest(row: &[Self]) -> Option<&Self> {
+        row.iter().max_by(|one, other| one.weight.total_cmp(&other.weight))
+    }
+}
+
 /// For each row the terms of its interpolated value.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Interpolation {

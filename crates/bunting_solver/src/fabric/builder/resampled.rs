@@ -121,18 +121,15 @@ fn particles_of_places(mesh: &RestMesh, nodes: &Nodes, rows: &Interpolation) -> 
         .filter(|(node, _)| nodes.mesh.is_pinned(*node))
         .map(|(node, at)| (node, *at))
         .collect();
-    let nearest = |place: u32| {
+    let nearest_pin = |place: u32| {
         let at = mesh.positions[place as usize];
         let away = |pin: &(u32, Vec3)| pin.1.distance_squared(at);
-        let nearest = pins.iter().min_by(|one, other| away(one).total_cmp(&away(other)));
-        nearest.filter(|_| mesh.is_pinned(place)).map(|(node, _)| *node)
-    };
-    let heaviest = |row: &[Term]| {
-        row.iter().max_by(|one, other| one.weight.total_cmp(&other.weight)).map_or(0, |it| it.from)
+        pins.iter().min_by(|one, other| away(one).total_cmp(&away(other))).map(|(node, _)| *node)
     };
     let places = (0..).zip(&nodes.node_of).zip(rows.rows());
     let of_place = |((place, node), row): ((u32, &Option<u32>), &[Term])| {
-        node.or_else(|| nearest(place)).unwrap_or_else(|| heaviest(row))
+        let of_pin = || if mesh.is_pinned(place) { nearest_pin(place) } else { None };
+        node.or_else(of_pin).or_else(|| Some(Term::heaviest(row)?.from)).unwrap_or(0)
     };
     places.map(of_place).collect()
 }

@@ -70,8 +70,7 @@ impl<'a> Source<'a> {
 
     /// The vertex that is nearest to a place, of those of its triangle.
     pub(super) fn nearest_vertex(&self, place: &Place) -> u32 {
-        let heaviest = self.terms(place).into_iter();
-        heaviest.max_by(|one, other| one.weight.total_cmp(&other.weight)).map_or(0, |it| it.from)
+        Term::heaviest(&self.terms(place)).map_or(0, |term| term.from)
     }
 
     /// The place of a vertex, in no triangle of its own.
