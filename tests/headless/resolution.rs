@@ -27,11 +27,12 @@ fn sheet() -> ClothMesh {
 fn a_coarse_mesh_is_simulated_in_cells_of_its_own() {
     let mut app = app();
     let held = || (sheet(), Attachment::in_place(ClothEdge::Top), Transform::default());
-    let coarse = app.world_mut().spawn(held()).id();
+    let usual = app.world_mut().spawn(held()).id();
     let fine = app.world_mut().spawn((held(), ClothResolution::CellSize(0.05))).id();
     run(&mut app, 200);
     assert!(app.world().resource::<Seen<ClothFailed>>().0.is_empty());
-    assert_eq!(state(&app, coarse).positions().len(), COUNT * COUNT);
+    let count = state(&app, usual).positions().len();
+    assert!((800..1200).contains(&count), "{count}: about a thousand");
     let cloth = state(&app, fine);
     assert!(cloth.positions().len() > 300, "{}", cloth.positions().len());
     for vertex in 0..COUNT as u32 {
@@ -65,7 +66,7 @@ fn the_resolution_can_be_changed_and_removed() {
     assert_eq!(count(&app), second);
     app.world_mut().entity_mut(cloth).remove::<ClothResolution>();
     run(&mut app, 10);
-    assert_eq!(count(&app), COUNT * COUNT);
+    assert!((800..1200).contains(&count(&app)), "{}", count(&app));
     assert_finite(&app, cloth);
 }
 
@@ -112,4 +113,92 @@ fn springs_and_grabs_hold_vertices_that_have_no_particle() {
     run(&mut app, 120);
     let at = state(&app, cloth).vertex_position((COUNT * COUNT) as u32 - 1).expect("a vertex");
     assert!(at.z > 0.4, "{at}");
+}
+
+/// Greatest distance of a vertex between two ticks, m.
+fn jump(
+    app: &mut bevy_app::App,
+    cloth: bevy_ecs::entity::Entity,
+    change: impl FnOnce(&mut bevy_app::App),
+) -> f32 {
+    let places = |app: &bevy_app::App| -> Vec<Vec3> {
+        let vertices = 0..(COUNT * COUNT) as u32;
+        vertices.filter_map(|vertex| state(app, cloth).vertex_position(vertex)).collect()
+    };
+    let before = places(app);
+    change(app);
+    run(app, 1);
+    let after = places(app);
+    assert_eq!(before.len(), after.len());
+    before.iter().zip(&after).map(|(one, other)| one.distance(*other)).fold(0.0, f32::max)
+}
+
+#[test]
+fn a_cloth_keeps_its_shape_when_vertices_are_let_go_or_the_resolution_changes() {
+    let mut app = app();
+    app.world_mut().spawn(WindField::steady(Vec3::new(0.0, 0.0, 4.0)));
+    let corners = [ClothCorner::TopLeft, ClothCorner::TopRight];
+    let held = AttachedVertices::Corners(corners.to_vec());
+    let held = (sheet(), Attachment::in_place(held), Transform::default());
+    let cloth = app.world_mut().spawn((held, ClothResolution::CellSize(0.07))).id();
+    run(&mut app, 90);
+    let flown = state(&app, cloth).vertex_position((COUNT * COUNT) as u32 - 1).expect("a vertex");
+    assert!(flown.z > 0.3, "{flown}");
+    let usual = jump(&mut app, cloth, |_| ());
+    let other = jump(&mut app, cloth, |app| {
+        app.world_mut().entity_mut(cloth).insert(ClothResolution::CellSize(0.05));
+    });
+    let let_go = jump(&mut app, cloth, |app| {
+        let held = AttachedVertices::from(corners[0]);
+        app.world_mut().entity_mut(cloth).insert(Attachment::in_place(held));
+    });
+    let free = jump(&mut app, cloth, |app| {
+        app.world_mut().entity_mut(cloth).remove::<Attachment>();
+    });
+    for moved in [other, let_go, free] {
+        assert!(moved < usual + 0.02, "{moved} m, without a change {usual} m");
+    }
+    run(&mut app, 60);
+    assert_finite(&app, cloth);
+    let fallen = state(&app, cloth).vertex_position(0).expect("a vertex");
+    assert!(fallen.y < -1.0, "it falls: {fallen}");
+}
+
+#[test]
+fn what_lies_between_held_vertices_is_held_with_them() {
+    let mut app = app();
+    let [left, right] = [(); 2].map(|()| app.world_mut().spawn(Transform::default()).id());
+    let list = |vertices: [u32; 2]| AttachedVertices::List(vertices.to_vec());
+    let attachment =
+        Attachment::new(left, list([0, 1])).with_anchor(Anchor::new(right, list([2, 3])));
+    let cloth = (sheet(), attachment, ClothResolution::CellSize(0.05));
+    let cloth = app.world_mut().spawn(cloth).id();
+    run(&mut app, 3);
+    for step in 0..30 {
+        let to = Vec3::new(-0.003 * step as f32, 0.0, 0.01 * step as f32);
+        app.world_mut().get_mut::<Transform>(right).expect("a hand").translation = to;
+        run(&mut app, 1);
+    }
+    run(&mut app, 120);
+    let moved = Vec3::new(-0.087, 0.0, 0.29);
+    let state = state(&app, cloth);
+    let fabric = state.fabric().expect("a fabric");
+    let mut counts = [0; 3];
+    for (particle, rest) in fabric.rest_positions().iter().enumerate() {
+        if !fabric.is_pinned(particle) {
+            continue;
+        }
+        // All of the upper edge is held: on each hand, and evenly between both.
+        let part = ((rest.x - 1.0 / 3.0) * 3.0).clamp(0.0, 1.0);
+        let off = state.positions()[particle].distance(*rest + part * moved);
+        assert!(rest.y == 0.0 && off < 1e-4, "{rest}: {off} m");
+        counts[if part == 0.0 {
+            0
+        } else if part == 1.0 {
+            2
+        } else {
+            1
+        }] += 1;
+    }
+    assert!(counts.iter().all(|&count| count > 4), "{counts:?}");
 }

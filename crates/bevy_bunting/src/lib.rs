@@ -35,7 +35,7 @@
 //! | Component | On | What it does |
 //! | --- | --- | --- |
 //! | [`ClothMesh`] | a cloth | shape at rest; requires the components that a cloth needs |
-//! | [`ClothResolution`] | a cloth | size of the simulated cells, whatever the triangles of its mesh |
+//! | [`ClothResolution`] | a cloth | how finely a mesh that is no grid is simulated, whatever its triangles |
 //! | [`ClothMaterial`] | a cloth | area density, stiffnesses, damping, friction |
 //! | [`LodSet`] | a cloth | levels of detail |
 //! | [`Attachment`] | a cloth | holds vertices on another entity |

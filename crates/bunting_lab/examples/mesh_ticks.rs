@@ -11,7 +11,7 @@ use std::{f32::consts::TAU, sync::Arc, time::Instant};
 
 use anyhow::{Context, Result, bail};
 use bunting_lab::{
-    meshes::{Sheet, Triangulation},
+    meshes::{Sheet, Triangulation, net},
     product::TICK,
     scenes::GRAVITY,
 };
@@ -38,7 +38,7 @@ struct Timed {
 impl Timed {
     fn new(name: &str, builder: FabricBuilder, lanes: LaneCount) -> Result<Self> {
         let start = Instant::now();
-        let fabric = Arc::new(builder.build()?);
+        let fabric = if name == "grid" { Arc::new(builder.build()?) } else { net(&builder) };
         let build_time = start.elapsed().as_secs_f64();
         let mut batch = ClothBatch::new(Arc::clone(&fabric), lanes);
         for cloth in 0..lanes.get() {

@@ -56,7 +56,7 @@ enum Command {
         /// Only files whose names contain this.
         filter: Option<String>,
     },
-    /// Time of garments in cells of their own, beside that of a grid.
+    /// Time of garments, beside that of a grid.
     Nets,
     /// The hard cases.
     Stability(families::Selection),

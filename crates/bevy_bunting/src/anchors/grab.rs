@@ -72,7 +72,8 @@ pub struct ClothGrab {
 #[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
 pub enum GrabbedVertices {
-    /// Vertices of the [`ClothMesh`](crate::ClothMesh) by index. A coarser level holds those that it has.
+    /// Vertices of the [`ClothMesh`](crate::ClothMesh) by index, and what lies between them. A coarser level of a grid holds those
+    /// that it has.
     List(Vec<u32>),
     /// All vertices in a ball.
     Ball {
@@ -170,8 +171,8 @@ impl Grabbed {
         let fabric = levels.fabric(level);
         let is_chosen: Box<dyn Fn(usize) -> bool> = match &grab.vertices {
             GrabbedVertices::List(vertices) => {
-                let particles = vertices.iter().filter_map(|&it| levels.particle(level, it));
-                let particles: HashSet<usize> = particles.collect();
+                let held = levels.held(level, core::slice::from_ref(vertices));
+                let particles: HashSet<usize> = held.iter().map(|it| it.particle).collect();
                 Box::new(move |particle| particles.contains(&particle))
             }
             GrabbedVertices::Ball { centre, radius } => {
@@ -187,8 +188,8 @@ impl Grabbed {
         self.of = Some(KnownLevel::new(levels, level));
     }
 
-    /// Chooses the particles at another level that were grabbed, and holds them at their places; if it has none of them, the
-    /// one that is nearest at rest, where it is.
+    /// Chooses the particles at another level that were grabbed, and holds them at their places; if it has none of them, those
+    /// that are nearest at rest, where they are.
     pub(crate) fn change_level(
         &mut self,
         levels: &Arc<ClothLevels>,
@@ -208,8 +209,10 @@ impl Grabbed {
         });
         self.held = shared.collect();
         if self.held.is_empty() {
-            let particle = self.grabbed.first().and_then(|&(at_rest, _)| nearest(at_rest));
-            self.held.extend(particle.map(|at| (at as u32, places[at])));
+            let nearest = self.grabbed.iter().filter_map(|&(at_rest, _)| nearest(at_rest));
+            self.held.extend(nearest.map(|at| (at as u32, places[at])));
+            self.held.sort_unstable_by_key(|held| held.0);
+            self.held.dedup_by_key(|held| held.0);
         }
         self.of = Some(KnownLevel::new(levels, level));
     }

@@ -52,11 +52,10 @@ impl ClothHolds {
         self.anchored.clear();
         self.counts.clear();
         let rest = levels.fabric(level).rest_positions();
+        let held = levels.held(level, groups);
         for (anchor, group) in groups.iter().enumerate() {
-            let particles = group.iter().filter_map(|&vertex| levels.particle(level, vertex));
-            let mut particles: Vec<usize> = particles.collect();
-            particles.sort_unstable();
-            particles.dedup();
+            let of_group = held.iter().filter(|it| it.group() == anchor);
+            let mut particles: Vec<usize> = of_group.map(|it| it.particle).collect();
             if particles.is_empty() {
                 particles.extend(group.first().and_then(|&vertex| nearest(levels, level, vertex)));
             }

@@ -69,11 +69,10 @@ impl PinReporting {
 
     /// Finds the groups of a level, given the vertices that are held on each target.
     pub fn find(&mut self, levels: &Arc<ClothLevels>, level: usize, held: &[Vec<u32>]) {
-        let particles = |group: &Vec<u32>| -> Vec<u32> {
-            let particles = group.iter().filter_map(|&vertex| levels.particle(level, vertex));
-            particles.map(|particle| particle as u32).collect()
-        };
-        let groups: Vec<Vec<u32>> = held.iter().map(particles).collect();
+        let mut groups = vec![Vec::new(); held.len()];
+        for of_level in levels.held(level, held) {
+            groups[of_level.group()].push(of_level.particle as u32);
+        }
         self.groups = Some(Arc::new(PinGroups::new(levels.fabric(level), &groups)));
         self.of = Some(KnownLevel::new(levels, level));
     }

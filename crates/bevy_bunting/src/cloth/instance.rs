@@ -17,6 +17,7 @@ use crate::cloth::resolution::ClothResolution;
 use crate::cloth::state::ClothState;
 use crate::fabric::awaited::AwaitedLevels;
 use crate::fabric::levels::ClothLevels;
+use crate::fabric::same_surface::{MovedState, on_other_particles};
 use crate::lod::lod_set::LodSet;
 use crate::motion::inertia::ClothInertia;
 use crate::motion::take_up::TakingUp;
@@ -49,6 +50,20 @@ pub(crate) struct Refusal {
     pub target: Option<Entity>,
     /// Whether the attachment is another than that of the fabrics.
     pub has_new_attachment: bool,
+}
+
+/// What a cloth keeps of its state with other fabrics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kept {
+    /// It starts at rest.
+    Nothing,
+    /// All.
+    State,
+    /// The surface, on other particles.
+    Surface {
+        /// Whether all pins were pins before.
+        had_pins: bool,
+    },
 }
 
 /// The simulated side of a [`ClothMesh`](crate::ClothMesh).
@@ -226,8 +241,8 @@ impl ClothInstance {
     }
 
     /// Replaces the fabrics. A state that fits them, as when only the pins change, is kept, and the pins stay
-    /// where they are; otherwise the cloth starts at rest. Returns whether the state was kept.
-    pub fn replace_levels(&mut self, levels: Arc<ClothLevels>, batches: &mut ClothBatches) -> bool {
+    /// where they are. On other particles of the same surface it is interpolated. Otherwise the cloth starts at rest.
+    pub fn replace_levels(&mut self, levels: Arc<ClothLevels>, batches: &mut ClothBatches) -> Kept {
         self.wake();
         self.leave_lane(batches);
         let level = self.level.min(levels.count() - 1);
@@ -236,15 +251,24 @@ impl ClothInstance {
             && self
                 .fabric()
                 .is_some_and(|old| old.rest_positions() == levels.fabric(level).rest_positions());
+        let other = self.levels.as_ref().filter(|old| !fits && old.has_surface_of(&levels));
+        let moved = self.snapshot().zip(other).filter(|_| !self.unmoved);
+        let moved = moved.and_then(|(state, old)| {
+            on_other_particles(state, old.fabric(self.level), levels.fabric(level))
+        });
         self.level = level;
         let rest = levels.fabric(0).rest_positions();
         self.rest_middle = rest.get(rest.len() / 2).copied().unwrap_or_default();
         self.levels = Some(levels);
-        let keeps = fits && self.snapshot().is_some();
-        if !keeps {
-            self.start_at_rest();
+        if let Some(MovedState { state, had_pins }) = moved {
+            self.storage = state.into();
+            return Kept::Surface { had_pins };
         }
-        keeps
+        if fits && self.snapshot().is_some() {
+            return Kept::State;
+        }
+        self.start_at_rest();
+        Kept::Nothing
     }
 
     /// Resets the cloth to its shape at rest, without velocity, and shows that shape.

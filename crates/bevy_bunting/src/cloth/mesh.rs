@@ -55,7 +55,7 @@ use crate::motion::pose::PoseHistory;
     PoseHistory
 )]
 pub enum ClothMesh {
-    /// A rectangular grid of particles. The origin is the top left corner and the front faces +z; u grows
+    /// A rectangular grid of particles, which is simulated as it is. The origin is the top left corner and the front faces +z; u grows
     /// along +x, v along −y.
     Grid {
         /// Particles in a row, at least 2.
@@ -67,7 +67,7 @@ pub enum ClothMesh {
         /// Extent along a column, m.
         height: f32,
     },
-    /// A mesh of triangles.
+    /// A mesh of triangles. How finely it is simulated is said by a [`ClothResolution`](crate::ClothResolution).
     Triangles {
         /// Positions of the vertices, m.
         positions: Vec<Vec3>,
@@ -114,8 +114,8 @@ impl ClothMesh {
     /// tick. A vertex of weight 0 on any other triangle is pinned, which attaches the simulated part to the
     /// rigid one.
     ///
-    /// The method turns a grid into triangles, whose bending is less exact than a grid's. Invalid weights are
-    /// reported in a [`ClothFailed`](crate::ClothFailed) event.
+    /// The method turns a grid into triangles, which are simulated with particles of their own, see
+    /// [`ClothResolution`](crate::ClothResolution). Invalid weights are reported in a [`ClothFailed`](crate::ClothFailed) event.
     #[must_use]
     pub fn with_weights(self, weights: Vec<f32>) -> Self {
         let builder = self.builder();
@@ -154,27 +154,6 @@ impl ClothMesh {
             merged: builder.merged().to_vec(),
         };
         Ok((repaired, repair))
-    }
-
-    /// A mesh with at most this number of vertices that are not rigid, and the vertex that each of its vertices comes
-    /// from. Rigid and held vertices stay. None if it has no more, or cannot be simplified; grids are not.
-    #[cfg(feature = "render")]
-    pub(crate) fn simplified(&self, vertices: usize, held: &[u32]) -> Option<(Self, Vec<u32>)> {
-        let Self::Triangles { uv, weights, .. } = self else { return None };
-        let rigid = (0..).zip(weights).filter(|(_, weight)| **weight == 0.0).map(|(at, _)| at);
-        let rigid: Vec<u32> = rigid.collect();
-        let all = vertices.saturating_add(rigid.len());
-        let kept = rigid.into_iter().chain(held.iter().copied());
-        let simple = self.builder().pin(kept).decimated(all)?;
-        let of_simple = || simple.vertices.iter().map(|&vertex| vertex as usize);
-        let mesh = Self::Triangles {
-            positions: simple.builder.positions().to_vec(),
-            indices: simple.builder.indices().to_vec(),
-            uv: of_simple().filter_map(|vertex| uv.get(vertex).copied()).collect(),
-            weights: of_simple().filter_map(|vertex| weights.get(vertex).copied()).collect(),
-            merged: simple.builder.merged().to_vec(),
-        };
-        Some((mesh, simple.vertices))
     }
 
     /// Weights of all vertices; empty where all vertices are simulated.
@@ -267,12 +246,12 @@ mod tests {
         assert_eq!((&repair.vertices[..], &repair.loose[..]), (&[0, 2, 3, 4, 5, 2][..], &[1][..]));
         assert_eq!(mesh.weights(), [1.0, 0.0, 1.0, 0.5, 1.0, 0.0]);
         assert_eq!(mesh.uvs()[5], Vec2::ONE);
-        let fabric = |mesh: &ClothMesh| mesh.builder().build().expect("a fabric");
-        assert_eq!(fabric(&mesh).particle_count(), 6, "the split vertex is two particles");
+        let places = |builder: &FabricBuilder| builder.particle_count();
+        assert_eq!(places(&mesh.builder()), 6, "the split vertex is in two places");
         let part = SimulatedPart::of(&mesh, &[]).expect("a part");
-        assert_eq!(part.builder.build().map(|part| part.particle_count()), Ok(6), "in parts, too");
+        assert_eq!(places(&part.builder), 6, "in parts, too");
         let weighted = mesh.with_weights(vec![1.0; 6]);
-        assert_eq!(fabric(&weighted).particle_count(), 6, "and stays two");
+        assert_eq!(places(&weighted.builder()), 6, "and stays in two");
         let grid = ClothMesh::grid(3, 3, 1.0, 1.0);
         assert_eq!(grid.clone().repaired().map(|(mesh, _)| mesh), Ok(grid));
     }

@@ -5,19 +5,19 @@ use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bunting_solver::Resolution;
 
-/// How finely a [`ClothMesh`](crate::ClothMesh) of triangles is simulated: with its own vertices, or with particles of the
-/// simulation's own.
+/// How finely a [`ClothMesh`](crate::ClothMesh) of triangles is simulated.
 ///
 /// Triangles are made for the eye, and seldom good for cloth: those of a game's cape are too coarse to drape, those of a
-/// garment too fine, and loads do not run along their edges. A cloth with a cell size or a number of particles is simulated
-/// on lines along warp and weft, at about the same distance everywhere, and its mesh follows. Coarser levels of detail have
-/// cells twice as large each.
+/// garment too fine, and loads do not run along their edges. Such a mesh is simulated with particles of the simulation's own,
+/// on lines along warp and weft at about the same distance everywhere, and its vertices follow. Coarser levels of detail have
+/// cells twice as large each. A [`ClothMesh::grid`](crate::ClothMesh::grid) is simulated as it is, whatever the resolution.
 ///
-/// What is drawn has the triangles of the mesh: folds that are narrower than these are simulated, and not seen.
+/// What is drawn has the triangles of the mesh; a `ClothSubdivision` (feature `render`) halves those that are larger than the cells of the
+/// simulation, whose folds they would hide.
 ///
 /// The numbers of the vertices stay those of the mesh wherever vertices are named, as in
 /// [`AttachedVertices::List`](crate::AttachedVertices::List); [`ClothState::vertex_position`](crate::ClothState::vertex_position)
-/// reads them. A [`ClothMesh::grid`](crate::ClothMesh::grid) is simulated as it is.
+/// reads them.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;
@@ -37,9 +37,9 @@ use bunting_solver::Resolution;
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 pub enum ClothResolution {
-    /// Each vertex is simulated.
+    /// About a thousand particles.
     #[default]
-    Vertices,
+    Auto,
     /// Size of the cells between particles, m in the world.
     CellSize(f32),
     /// About this number of particles.
@@ -47,19 +47,19 @@ pub enum ClothResolution {
 }
 
 impl ClothResolution {
-    /// That of the solver; none if the vertices are simulated.
-    pub(crate) fn of_solver(self) -> Option<Resolution> {
+    /// That of the solver.
+    pub(crate) fn of_solver(self) -> Resolution {
         match self {
-            Self::Vertices => None,
-            Self::CellSize(size) => Some(Resolution::CellSize(size)),
-            Self::Particles(count) => Some(Resolution::Particles(count)),
+            Self::Auto => Resolution::Auto,
+            Self::CellSize(size) => Resolution::CellSize(size),
+            Self::Particles(count) => Resolution::Particles(count),
         }
     }
 
     /// A key that tells it from others.
     pub(crate) fn key(self) -> [u32; 2] {
         match self {
-            Self::Vertices => [0, 0],
+            Self::Auto => [0, 0],
             Self::CellSize(size) => [1, size.to_bits()],
             Self::Particles(count) => [2, count],
         }

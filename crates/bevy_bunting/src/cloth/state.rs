@@ -16,9 +16,9 @@ use crate::fabric::levels::ClothLevels;
 /// entity's own. After [`ClothSystems::Publish`] and after each frame, the `GlobalTransform` follows the
 /// target's current pose.
 ///
-/// A grid has one particle for each vertex. In a mesh of triangles, vertices at the same position share one
-/// particle, and rigid vertices have none, see [`particle_of_vertex`](Self::particle_of_vertex). Particles
-/// with a weight below 1 are blended with their position at rest, see
+/// A grid has one particle for each vertex. The particles of a mesh of triangles are others, see
+/// [`ClothResolution`](crate::ClothResolution): its vertices lie between them, see [`vertex_position`](Self::vertex_position).
+/// Rigid vertices have none. Particles with a weight below 1 are blended with their position at rest, see
 /// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights): this component holds the blended surface.
 ///
 /// [`ClothSystems::Publish`]: crate::ClothSystems::Publish
@@ -109,17 +109,16 @@ impl ClothState {
     }
 
     /// The particle of a vertex of the [`ClothMesh`](crate::ClothMesh) at the cloth's level: an index into
-    /// [`positions`](Self::positions). Where a [`ClothResolution`](crate::ClothResolution) gives the cloth particles of its
-    /// own, that which is nearest to the vertex at rest. None if the level leaves the vertex out, or if the vertex is rigid and
-    /// so stays where the mesh has it.
+    /// [`positions`](Self::positions). Of a mesh that is no grid, that which is nearest to the vertex at rest. None if the level
+    /// leaves the vertex out, or if the vertex is rigid and so stays where the mesh has it.
     #[must_use]
     pub fn particle_of_vertex(&self, vertex: u32) -> Option<usize> {
         self.levels.as_ref()?.particle(self.level, vertex)
     }
 
     /// Position of a vertex of the [`ClothMesh`](crate::ClothMesh) after the last tick, m, in the cloth's frame: that of its
-    /// particle, or on the surface between particles where a [`ClothResolution`](crate::ClothResolution) gives the cloth
-    /// particles of its own. None if the level leaves the vertex out, or if the vertex is rigid.
+    /// particle or, of a mesh that is no grid, on the surface between particles. None if the level leaves the vertex out, or if
+    /// the vertex is rigid.
     #[must_use]
     pub fn vertex_position(&self, vertex: u32) -> Option<Vec3> {
         self.levels.as_ref()?.vertex_position(self.level, vertex, &self.positions)

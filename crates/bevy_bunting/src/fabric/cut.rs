@@ -9,6 +9,7 @@ use bunting_solver::{
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::resolution::ClothResolution;
 use crate::fabric::levels::{ClothLevels, Level, Shortage};
+use crate::fabric::same_surface::surface_key;
 use crate::fabric::simulated::SimulatedPart;
 
 /// Part of a finer level's particles that a coarser one has at most. More: it hardly takes less time.
@@ -26,18 +27,20 @@ pub(super) fn cut_levels(
     resolution: ClothResolution,
 ) -> Result<ClothLevels, FabricError> {
     let part = SimulatedPart::of(mesh, attached)?;
-    match resolution.of_solver().filter(|_| mesh.as_grid().is_none()) {
-        Some(resolution) => resampled(part, resolution, asked),
-        None => of_vertices(part, asked),
-    }
+    let mut cut = match mesh.as_grid() {
+        Some(_) => of_grid(part, asked)?,
+        None => resampled(part, resolution.of_solver(), asked)?,
+    };
+    cut.surface = surface_key(mesh);
+    Ok(cut)
 }
 
-/// Levels whose particles are vertices of the mesh.
-fn of_vertices(part: SimulatedPart, asked: usize) -> Result<ClothLevels, FabricError> {
+/// Levels of a grid, of half as many cells along each side each.
+fn of_grid(part: SimulatedPart, asked: usize) -> Result<ClothLevels, FabricError> {
     let fabric = part.builder.clone().build().map_err(|error| part.renumber(error))?;
     let SimulatedPart { mut builder, vertices, rigid, .. } = part;
     let has_pins = fabric.has_pins();
-    let finest = Level::new(Arc::new(fabric), vertices, &builder, &rigid);
+    let finest = Level::of_grid(Arc::new(fabric), vertices);
     let mut cut = ClothLevels::of_finest(finest, rigid, asked);
     while cut.levels.len() < asked {
         let finer = cut.level(usize::MAX);
@@ -52,13 +55,13 @@ fn of_vertices(part: SimulatedPart, asked: usize) -> Result<ClothLevels, FabricE
         let in_mesh = |&vertex: &u32| finer.vertices[vertex as usize];
         let vertices = coarser.vertices.iter().map(in_mesh).collect();
         builder = coarser.builder;
-        cut.levels.push(Level::new(fabric, vertices, &builder, &cut.rigid));
+        cut.levels.push(Level::of_grid(fabric, vertices));
         cut.transfers.push(transfer);
     }
     Ok(cut)
 }
 
-/// Builds the next coarser level: builder, fabric, and the transfer between the two levels. None if there is
+/// Builds the next coarser level of a grid: builder, fabric, and the transfer between the two levels. None if there is
 /// no coarser level.
 fn coarsen(
     builder: &FabricBuilder,
@@ -66,11 +69,11 @@ fn coarsen(
 ) -> Option<(CoarserMesh, Arc<Fabric>, LevelTransfer)> {
     let coarser = builder.coarser()?;
     let coarse_fabric = Arc::new(coarser.builder.clone().build().ok()?);
-    let transfer = LevelTransfer::nested(fabric, &coarse_fabric, &coarser.vertices).ok()?;
+    let transfer = LevelTransfer::between(fabric, &coarse_fabric).ok()?;
     Some((coarser, coarse_fabric, transfer))
 }
 
-/// Levels with particles of their own, in cells twice as large each.
+/// Levels of a mesh that is no grid, in cells twice as large each.
 fn resampled(
     part: SimulatedPart,
     resolution: Resolution,

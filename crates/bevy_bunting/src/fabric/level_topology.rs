@@ -40,13 +40,6 @@ impl LevelTopology {
         }
     }
 
-    /// The simulated triangles, three vertices each in the order of the level's fabric, given the rigid part.
-    pub fn simulated_indices(&self, part: &RigidPart) -> Vec<u32> {
-        let moving = &self.indices[..self.indices.len() - 3 * part.triangles.len()];
-        let index = |vertex: &u32| self.simulated.binary_search(vertex).ok().map(|it| it as u32);
-        moving.iter().filter_map(index).collect()
-    }
-
     /// Number of vertices.
     pub fn vertex_count(&self) -> usize {
         self.vertices.len()

@@ -20,6 +20,8 @@ pub(crate) struct ClothLevels {
     /// Transfer between each level and the next coarser one: one fewer than levels.
     pub(super) transfers: Vec<LevelTransfer>,
     pub(super) rigid: RigidPart,
+    /// What tells the surface from others; none of a grid.
+    pub(super) surface: Option<u64>,
     /// Number of levels that the [`LodSet`](crate::LodSet) asks for.
     pub(super) asked: usize,
     /// Reason why there are fewer levels than asked for; none if there are not.
@@ -32,78 +34,104 @@ pub(crate) struct ClothLevels {
 #[derive(Debug)]
 pub(super) struct Level {
     pub fabric: Arc<Fabric>,
-    /// The simulated vertices as indices in the [`ClothMesh`](crate::ClothMesh), ascending; of a level that carries the mesh all
-    /// vertices that are not rigid.
+    /// The vertices that the level has as indices in the [`ClothMesh`](crate::ClothMesh), ascending: of a grid those that are
+    /// simulated, of another mesh all that are not rigid.
     pub vertices: Vec<u32>,
-    /// The particle of each of these vertices, or the nearest one.
-    particles: Vec<u32>,
-    /// Of each particle the vertex that is nearest to it, of those that it stands for the first one.
-    nearest_vertices: Vec<u32>,
-    /// How the mesh follows, if the particles are not its vertices.
-    carried: Option<Carried>,
-    /// Particles with a weight below 1.
-    blends: Vec<Blend>,
+    /// The particles of a mesh that is no grid.
+    own: Option<OwnParticles>,
     #[cfg(feature = "render")]
     topology: LevelTopology,
 }
 
+/// Particles that are no vertices.
+#[derive(Debug)]
+struct OwnParticles {
+    /// How the mesh follows.
+    carried: Carried,
+    /// The vertices around each particle, as indices in the [`ClothMesh`](crate::ClothMesh), with their weights.
+    corners: Vec<Vec<(u32, f32)>>,
+    /// Particles with a weight below 1.
+    blends: Vec<Blend>,
+    /// Places of vertices with a weight below 1, the weights, and unit normals at rest.
+    #[cfg(feature = "render")]
+    blended_normals: Vec<(u32, f32, Vec3)>,
+}
+
 impl Level {
-    /// A level of a fabric and its builder, with its vertices in the [`ClothMesh`](crate::ClothMesh).
-    #[cfg_attr(not(feature = "render"), expect(unused_variables, reason = "for meshes only"))]
-    pub fn new(
-        fabric: Arc<Fabric>,
-        vertices: Vec<u32>,
-        builder: &FabricBuilder,
-        rigid: &RigidPart,
-    ) -> Self {
-        let particles = fabric.particle_of_vertex().to_vec();
-        let mut nearest_vertices = vec![u32::MAX; fabric.particle_count()];
-        for (&vertex, &particle) in vertices.iter().zip(&particles) {
-            let first = &mut nearest_vertices[particle as usize];
-            *first = vertex.min(*first);
-        }
+    /// A level of a grid, with its vertices in the [`ClothMesh`](crate::ClothMesh).
+    pub fn of_grid(fabric: Arc<Fabric>, vertices: Vec<u32>) -> Self {
         Self {
-            blends: Blend::all(rigid, &vertices, &fabric),
             #[cfg(feature = "render")]
-            topology: LevelTopology::new(&vertices, builder.indices(), rigid),
+            topology: {
+                let indices = fabric.triangles().as_flattened();
+                LevelTopology::new(&vertices, indices, &RigidPart::default())
+            },
             fabric,
             vertices,
-            particles,
-            nearest_vertices,
-            carried: None,
+            own: None,
         }
     }
 
-    /// A level with particles of its own, given the builder of the mesh's simulated part and its vertices in the
+    /// A level of a mesh that is no grid, given the builder of its simulated part and its vertices in the
     /// [`ClothMesh`](crate::ClothMesh).
     #[cfg_attr(not(feature = "render"), expect(unused_variables, reason = "for meshes only"))]
     pub fn resampled(
-        Resampled { fabric, carried, particles, nearest_vertices, .. }: Resampled,
+        Resampled { fabric, carried, mut corners, .. }: Resampled,
         vertices: &[u32],
         builder: &FabricBuilder,
         rigid: &RigidPart,
     ) -> Self {
-        let in_mesh = |&vertex: &u32| vertices[vertex as usize];
-        let nearest_vertices: Vec<u32> = nearest_vertices.iter().map(in_mesh).collect();
+        for (vertex, _) in corners.iter_mut().flatten() {
+            *vertex = vertices[*vertex as usize];
+        }
         Self {
-            blends: Blend::of_nearest(rigid, &nearest_vertices, &fabric),
             #[cfg(feature = "render")]
             topology: LevelTopology::new(vertices, builder.indices(), rigid),
-            fabric,
             vertices: vertices.to_vec(),
-            particles,
-            nearest_vertices,
-            carried: Some(carried),
+            own: Some(OwnParticles {
+                blends: Blend::all(rigid, &corners, &fabric),
+                #[cfg(feature = "render")]
+                blended_normals: blended_normals(&carried, vertices, rigid),
+                carried,
+                corners,
+            }),
+            fabric,
         }
+    }
+
+    /// The index among the level's vertices of a vertex of the [`ClothMesh`](crate::ClothMesh).
+    fn index(&self, vertex: u32) -> Option<usize> {
+        self.vertices.binary_search(&vertex).ok()
+    }
+
+    /// Particle of a vertex, or the nearest one.
+    pub fn particle(&self, vertex: u32) -> Option<usize> {
+        Some(self.fabric.particle_of_vertex()[self.index(vertex)?] as usize)
+    }
+
+    /// A number that a vertex shares with those at the same position.
+    pub fn place(&self, vertex: u32) -> Option<u32> {
+        let index = self.index(vertex)?;
+        let of_own = self.own.as_ref().map(|own| own.carried.place_of_vertex()[index]);
+        Some(of_own.unwrap_or(index as u32))
+    }
+
+    /// The vertices around a particle, as indices in the [`ClothMesh`](crate::ClothMesh), with their weights, whose sum is 1.
+    pub fn corners(&self, particle: usize) -> impl Iterator<Item = (u32, f32)> {
+        let (alone, several) = match &self.own {
+            Some(own) => (None, &own.corners[particle][..]),
+            None => (Some((self.vertices[particle], 1.0)), &[][..]),
+        };
+        alone.into_iter().chain(several.iter().copied())
     }
 
     /// What is drawn when the particles are at these positions, m.
     #[cfg(feature = "render")]
     fn drawn<'a>(&'a self, positions: &'a [Vec3]) -> DrawnPoints<'a> {
-        match &self.carried {
-            Some(carried) => DrawnPoints {
-                positions: carried.places(positions).into(),
-                point_of_vertex: carried.place_of_vertex(),
+        match &self.own {
+            Some(own) => DrawnPoints {
+                positions: own.carried.places(positions).into(),
+                point_of_vertex: own.carried.place_of_vertex(),
             },
             None => DrawnPoints {
                 positions: positions.into(),
@@ -111,6 +139,20 @@ impl Level {
             },
         }
     }
+}
+
+/// Places of vertices with a weight below 1 among a level's vertices, the weights, and unit normals at rest.
+#[cfg(feature = "render")]
+fn blended_normals(
+    carried: &Carried,
+    vertices: &[u32],
+    rigid: &RigidPart,
+) -> Vec<(u32, f32, Vec3)> {
+    let blended = rigid.blended.iter().filter_map(|(rest, weight)| {
+        let index = vertices.binary_search(&rest.vertex).ok()?;
+        Some((carried.place_of_vertex()[index], *weight, rest.normal))
+    });
+    blended.collect()
 }
 
 /// The points between which a level is drawn: its particles, or places of its mesh that follow these.
@@ -126,9 +168,9 @@ pub(crate) struct DrawnPoints<'a> {
 /// Why a mesh has fewer levels than asked for, and what to do. The cloth is simulated with the levels that it has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub(crate) enum FewerLevels {
-    /// The border and the attached vertices stay at every level, which limits how far the number of triangles can fall.
+    /// Particles on borders and at attached vertices stay at every level, which limits how far their number can fall.
     #[error(
-        "cloth {entity}, and all others of its mesh, have {built} levels, not {asked}: the mesh has hardly any triangle left to remove; give their LodSets fewer levels"
+        "cloth {entity}, and all others of its mesh, have {built} levels, not {asked}: cells twice as large would leave hardly fewer particles; give their LodSets fewer levels or a finer ClothResolution"
     )]
     Triangles { entity: Entity, built: usize, asked: usize },
     /// For each further level, columns − 1 and rows − 1 must be multiples of 2 once more.
@@ -146,7 +188,7 @@ pub(crate) enum FewerLevels {
 /// Reason why a level cannot be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shortage {
-    /// The grid cannot be halved, or no vertex of the mesh can be left out.
+    /// The grid cannot be halved, or larger cells have hardly fewer particles.
     Particles,
     /// No pinned vertex would be left.
     Pins,
@@ -159,6 +201,7 @@ impl ClothLevels {
             levels: vec![finest],
             transfers: Vec::new(),
             rigid,
+            surface: None,
             asked,
             shortage: None,
             is_shortage_told: false.into(),
@@ -173,6 +216,11 @@ impl ClothLevels {
     /// The fabrics of all levels.
     pub fn fabrics(&self) -> impl Iterator<Item = &Arc<Fabric>> {
         self.levels.iter().map(|level| &level.fabric)
+    }
+
+    /// Whether other levels have particles of their own on the same surface.
+    pub fn has_surface_of(&self, other: &Self) -> bool {
+        self.surface.is_some() && self.surface == other.surface
     }
 
     /// Number of levels that the [`LodSet`](crate::LodSet) asks for.
@@ -192,16 +240,16 @@ impl ClothLevels {
         &self.rigid
     }
 
-    /// Particle at a level of a vertex of the [`ClothMesh`](crate::ClothMesh), if there is one.
+    /// Particle at a level of a vertex of the [`ClothMesh`](crate::ClothMesh), or the nearest one; none if the level leaves the
+    /// vertex out, or it is rigid.
     pub fn particle(&self, level: usize, vertex: u32) -> Option<usize> {
-        let level = self.level(level);
-        let index = level.vertices.binary_search(&vertex).ok()?;
-        Some(level.particles[index] as usize)
+        self.level(level).particle(vertex)
     }
 
-    /// For each particle of a level, the first of its vertices in the [`ClothMesh`](crate::ClothMesh), or the nearest one.
-    pub fn vertices(&self, level: usize) -> &[u32] {
-        &self.level(level).nearest_vertices
+    /// The vertices around a particle of a level, as indices in the [`ClothMesh`](crate::ClothMesh), with their weights, whose sum
+    /// is 1.
+    pub fn corners(&self, level: usize, particle: usize) -> impl Iterator<Item = (u32, f32)> {
+        self.level(level).corners(particle)
     }
 
     /// What is drawn of a level when its particles are at these positions, m.
@@ -210,27 +258,70 @@ impl ClothLevels {
         self.level(level).drawn(positions)
     }
 
-    /// How the mesh follows a level; none if the level's particles are vertices of the mesh.
+    /// How often the edges of the drawn mesh of a level must be halved to be as short as the cells of its simulation.
+    #[cfg(feature = "render")]
+    pub fn halvings_to_cells(&self, level: usize) -> u32 {
+        let level = self.level(level);
+        let triangles = |indices: usize| (indices / 3).max(1) as f32;
+        let simulated = triangles(3 * level.fabric.triangles().len());
+        let ratio = simulated / triangles(level.topology.indices.len());
+        match level.own {
+            Some(_) => (0.5 * ratio.log2()).round().max(0.0) as u32,
+            None => 0,
+        }
+    }
+
+    /// The points that a subdivision of a level is evaluated from, m: those that are drawn, and behind them the particles if these
+    /// [lie closer](Self::halvings_to_cells).
+    #[cfg(feature = "render")]
+    pub fn points<'a>(&'a self, level: usize, positions: &'a [Vec3]) -> Cow<'a, [Vec3]> {
+        let drawn = self.drawn(level, positions).positions;
+        match self.halvings_to_cells(level) {
+            0 => drawn,
+            _ => drawn.iter().chain(positions).copied().collect(),
+        }
+    }
+
+    /// How the mesh follows a level; none of a grid, whose particles are its vertices.
     #[cfg(feature = "render")]
     pub fn carried(&self, level: usize) -> Option<&Carried> {
-        self.level(level).carried.as_ref()
+        self.level(level).own.as_ref().map(|own| &own.carried)
+    }
+
+    /// Unit normals at the points of a level that are drawn, given their positions, m, and the normals of the particles. Those of
+    /// a cloth that is blended with its place at rest go over into the normals of its rigid part.
+    #[cfg(feature = "render")]
+    pub fn drawn_normals<'a>(
+        &self,
+        level: usize,
+        drawn: &[Vec3],
+        normals: &'a [Vec3],
+        is_blended: bool,
+    ) -> Cow<'a, [Vec3]> {
+        let Some(own) = &self.level(level).own else { return normals.into() };
+        let mut normals = own.carried.normals(drawn);
+        for &(place, weight, at_rest) in own.blended_normals.iter().filter(|_| is_blended) {
+            let normal = &mut normals[place as usize];
+            *normal = at_rest.lerp(*normal, weight).normalize_or_zero();
+        }
+        normals.into()
     }
 
     /// Where a vertex of the [`ClothMesh`](crate::ClothMesh) is when the particles of a level are at these positions, m. None
     /// if the level leaves it out, or it is rigid.
     pub fn vertex_position(&self, level: usize, vertex: u32, positions: &[Vec3]) -> Option<Vec3> {
         let level = self.level(level);
-        let index = level.vertices.binary_search(&vertex).ok()?;
-        match &level.carried {
-            Some(carried) => Some(carried.position(index, positions)),
-            None => positions.get(level.particles[index] as usize).copied(),
+        let index = level.index(vertex)?;
+        match &level.own {
+            Some(own) => Some(own.carried.position(index, positions)),
+            None => positions.get(index).copied(),
         }
     }
 
     /// Blends simulated positions (m) and normals of a level's particles with those at rest.
     pub fn blend(&self, level: usize, positions: &mut [Vec3], normals: &mut [Vec3]) {
-        let blends = &self.level(level).blends;
-        blends.iter().for_each(|blend| blend.apply(positions, normals));
+        let own = self.level(level).own.iter();
+        own.flat_map(|own| &own.blends).for_each(|blend| blend.apply(positions, normals));
     }
 
     /// A level, or the coarsest one if there are fewer.

@@ -17,7 +17,7 @@ use crate::fabric::levels::ClothLevels;
 use crate::lod::lod_set::{LodChoice, LodSet};
 use crate::motion::attachment::Attachment;
 
-/// Number of vertices from which levels are built on another thread, where there are threads: building takes
+/// Number of vertices, as by [`work`], from which levels are built on another thread, where there are threads: building takes
 /// longer than a tick then. Fewer: cloths appear some ticks late without need.
 const ASYNC_VERTICES: usize = 8192;
 
@@ -25,6 +25,15 @@ const ASYNC_VERTICES: usize = 8192;
 /// 33 × 33 with its levels takes some milliseconds. Larger: ticks wait for other threads. Smaller: many new
 /// cloths appear late without need.
 const VERTICES_PER_TICK: usize = 1024;
+
+/// Number of a grid's vertices whose fabric takes as long as that of one particle of another mesh.
+const DEARER: f32 = 3.0;
+
+/// Number of particles of a mesh that is no grid by default.
+const PARTICLES: f32 = 1000.0;
+
+/// Number of particles of which no fabric is built.
+const MOST_PARTICLES: f32 = 1e6;
 
 /// Number of ticks by which levels may be late where they depend on the machine anyway. Fewer: ticks wait for other
 /// threads on a busy machine. More: cloths appear late there.
@@ -170,7 +179,7 @@ impl FabricLibrary {
         if let Some(cutting) = self.cutting.remove(key) {
             return Some(cutting.levels.take());
         }
-        let vertices = mesh.vertex_count();
+        let vertices = work(mesh, resolution);
         let fits = self.expected == 0 || self.expected + vertices <= VERTICES_PER_TICK;
         // Small cloths are built at once and do not wait for large ones.
         let is_large = vertices >= ASYNC_VERTICES;
@@ -187,6 +196,26 @@ impl FabricLibrary {
         self.cutting.insert(key.clone(), Cutting { due, levels });
         None
     }
+}
+
+/// Number of a grid's vertices whose levels take about as long as those of a mesh.
+fn work(mesh: &ClothMesh, resolution: ClothResolution) -> usize {
+    let ClothMesh::Triangles { positions, indices, .. } = mesh else { return mesh.vertex_count() };
+    let area = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|corner| positions.get(corner as usize).copied());
+        let area = a.zip(b).zip(c).map(|((a, b), c)| 0.5 * (b - a).cross(c - a).length());
+        area.unwrap_or_default()
+    };
+    let particles = match resolution {
+        ClothResolution::Auto => PARTICLES,
+        ClothResolution::Particles(count) => count as f32,
+        ClothResolution::CellSize(size) => {
+            indices.as_chunks::<3>().0.iter().map(area).sum::<f32>() / (size * size)
+        }
+    };
+    // More are refused at once.
+    let particles = if particles < MOST_PARTICLES { particles } else { 0.0 };
+    (DEARER * particles.max(positions.len() as f32)) as usize
 }
 
 fn content_key(
@@ -244,7 +273,7 @@ mod tests {
     ) -> Result<Arc<ClothLevels>, ClothError> {
         let attachment = Attachment::in_place(edge);
         library
-            .levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods, ClothResolution::Vertices)
+            .levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods, ClothResolution::Auto)
             .map(at_once)
     }
 
@@ -265,7 +294,7 @@ mod tests {
                 &mesh,
                 None,
                 &LodSet::automatic(1),
-                ClothResolution::Vertices,
+                ClothResolution::Auto,
             );
             library.awaited = true;
             library.begin_tick();
@@ -335,16 +364,20 @@ mod tests {
     fn levels_of_a_mesh_keep_its_attached_vertices() {
         let mesh = triangles();
         let attachment = Attachment::in_place(ClothEdge::Left);
-        let lods = LodSet::new([5.0, 10.0, 20.0]);
+        let lods = LodSet::new([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0, 640.0]);
         let levels = FabricLibrary::default()
-            .levels(Entity::PLACEHOLDER, &mesh, Some(&attachment), &lods, ClothResolution::Vertices)
+            .levels(Entity::PLACEHOLDER, &mesh, Some(&attachment), &lods, ClothResolution::Auto)
             .map(at_once)
             .expect("a cloth");
-        let fabric = levels.fabric(1);
-        assert!(fabric.particle_count() < 45);
-        let pinned = (0..fabric.particle_count()).filter(|&particle| fabric.is_pinned(particle));
-        assert_eq!(pinned.count(), 5);
+        for level in 0..9 {
+            let fabric = levels.fabric(level);
+            for vertex in (0..45).step_by(9) {
+                let particle = levels.particle(level, vertex).expect("a particle");
+                assert!(fabric.is_pinned(particle), "{vertex} at level {level}");
+            }
+        }
+        assert!(levels.fabric(1).particle_count() < levels.fabric(0).particle_count() / 2);
         let told = levels.tell_fewer(Entity::PLACEHOLDER, mesh.as_grid());
-        assert!(matches!(told, Some(FewerLevels::Triangles { asked: 4, .. })), "{told:?}");
+        assert!(matches!(told, Some(FewerLevels::Triangles { asked: 9, .. })), "{told:?}");
     }
 }

@@ -2,6 +2,7 @@
 
 pub mod awaited;
 pub mod cut;
+pub mod held;
 pub(crate) mod known_level;
 #[cfg(feature = "render")]
 pub mod level_topology;
@@ -10,6 +11,7 @@ pub mod library;
 pub mod prepare;
 pub(crate) mod release;
 pub mod rigid;
+pub(crate) mod same_surface;
 pub mod scale;
 pub mod simulated;
 pub mod transfer;

@@ -8,14 +8,13 @@ use bevy_ecs::query::QueryData;
 use bevy_math::{Isometry3d, Mat3};
 use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
-use bunting_solver::Fabric;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::activity::ClothPaused;
 use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::cloth::imperfection::ClothSeed;
-use crate::cloth::instance::{ClothInstance, Refusal, StateStorage};
+use crate::cloth::instance::{ClothInstance, Kept, Refusal, StateStorage};
 use crate::cloth::material::ClothMaterial;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::place::place;
@@ -24,6 +23,7 @@ use crate::cloth::state::ClothState;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::library::{FabricLibrary, Found};
 use crate::fabric::release::{is_due, release_unused};
+use crate::fabric::same_surface::has_pins_of;
 use crate::fabric::scale::{ScaleBaked, bake, scale_of};
 use crate::lod::budget::{ClothBudget, LodCosts};
 use crate::lod::lod_set::{LodChoice, LodSet};
@@ -318,19 +318,26 @@ impl CutClothItem<'_, '_> {
         }
         let former = instance.fabric().cloned();
         let was_free = former.as_ref().is_some_and(|fabric| !fabric.has_pins());
-        let keeps_state = instance.replace_levels(levels, batches);
+        let kept = instance.replace_levels(levels, batches);
         let under_way = instance.taking_up.take();
         instance.taking_up = match (instance.fabric().cloned(), &mut instance.storage) {
             // Pins that are only let go do not move those that stay.
             (Some(fabric), StateStorage::Snapshot(state))
-                if keeps_state
+                if kept == Kept::State
                     && change == Isometry3d::IDENTITY
                     && former.is_some_and(|former| has_pins_of(&fabric, &former)) =>
             {
                 **state = core::mem::take(&mut **state).without_history();
                 under_way.map(|way| way.of_pins(&fabric))
             }
-            (Some(fabric), StateStorage::Snapshot(state)) if keeps_state => {
+            // The same with other particles.
+            _ if kept == (Kept::Surface { had_pins: true })
+                && change == Isometry3d::IDENTITY
+                && under_way.is_none() =>
+            {
+                None
+            }
+            (Some(fabric), StateStorage::Snapshot(state)) if kept != Kept::Nothing => {
                 TakingUp::begin(state, &fabric, change, was_free)
             }
             _ => None,
@@ -364,15 +371,6 @@ impl CutClothItem<'_, '_> {
         let change = before.zip(frame).map(|(before, now)| now.inverse() * before);
         change.filter(is_finite).unwrap_or_default()
     }
-}
-
-/// Whether all pins of a fabric are pins of the former one, with as many particles, and some are no longer.
-fn has_pins_of(fabric: &Fabric, former: &Fabric) -> bool {
-    let pinned = |fabric: &Fabric, particle| fabric.is_pinned(particle);
-    let count = fabric.particle_count();
-    count == former.particle_count()
-        && (0..count).all(|at| !pinned(fabric, at) || pinned(former, at))
-        && (0..count).any(|at| pinned(fabric, at) != pinned(former, at))
 }
 
 /// Changes materials from this tick on. An invalid material is reported, and the last valid one is kept.

@@ -11,6 +11,7 @@ pub(crate) struct RestVertex {
     /// Index in the mesh.
     pub vertex: u32,
     /// Position in the cloth's frame, m.
+    #[cfg_attr(not(feature = "render"), allow(dead_code, reason = "only drawing reads it"))]
     pub position: Vec3,
     /// Unit normal in the whole mesh.
     pub normal: Vec3,
@@ -61,49 +62,41 @@ pub(crate) struct Blend {
     particle: usize,
     /// Weight: 0 at rest, 1 simulated.
     weight: f32,
-    rest: RestVertex,
+    /// Position at rest, m.
+    position: Vec3,
+    /// Unit normal at rest.
+    normal: Vec3,
 }
 
 impl Blend {
-    /// The blended particles of a level with the given vertices of the mesh, ascending. If vertices were
-    /// merged into one particle, the first vertex's weight is used.
-    pub fn all(rigid: &RigidPart, vertices: &[u32], fabric: &Fabric) -> Vec<Self> {
-        let mut blends: Vec<Self> = rigid
-            .blended
-            .iter()
-            .filter_map(|&(rest, weight)| {
-                let index = vertices.binary_search(&rest.vertex).ok()?;
-                let particle = fabric.particle_of_vertex()[index] as usize;
-                Some(Self { particle, weight, rest })
-            })
-            .collect();
-        blends.sort_by_key(|blend| blend.particle);
-        blends.dedup_by_key(|blend| blend.particle);
-        blends
-    }
-
-    /// The blended particles of a level whose particles are not vertices, each with the weight of the vertex that is nearest to it.
-    pub fn of_nearest(rigid: &RigidPart, nearest_vertices: &[u32], fabric: &Fabric) -> Vec<Self> {
-        let weights: HashMap<u32, f32> =
-            rigid.blended.iter().map(|(rest, weight)| (rest.vertex, *weight)).collect();
-        if weights.is_empty() {
+    /// The blended particles of a fabric, given the vertices of the mesh around each particle with their weights.
+    pub fn all(rigid: &RigidPart, corners: &[Vec<(u32, f32)>], fabric: &Fabric) -> Vec<Self> {
+        let blended =
+            rigid.blended.iter().map(|(rest, weight)| (rest.vertex, (rest.normal, *weight)));
+        let blended: HashMap<u32, (Vec3, f32)> = blended.collect();
+        if blended.is_empty() {
             return Vec::new();
         }
         let positions = fabric.rest_positions();
         let normals = fabric.normals(positions);
-        let blend = |(particle, vertex): (usize, &u32)| {
-            let weight = *weights.get(vertex)?;
-            let (position, normal) = (positions[particle], normals[particle]);
-            let rest = RestVertex { vertex: *vertex, position, normal };
-            Some(Self { particle, weight, rest })
+        let blend = |(particle, corners): (usize, &Vec<(u32, f32)>)| {
+            let (mut normal, mut weight) = (Vec3::ZERO, 0.0);
+            for (vertex, part) in corners {
+                let of_vertex = blended.get(vertex).copied().unwrap_or((normals[particle], 1.0));
+                normal += *part * of_vertex.0;
+                weight += *part * of_vertex.1;
+            }
+            let is_blended = corners.iter().any(|(vertex, _)| blended.contains_key(vertex));
+            let (position, normal) = (positions[particle], normal.normalize_or_zero());
+            is_blended.then_some(Self { particle, weight, position, normal })
         };
-        nearest_vertices.iter().enumerate().filter_map(blend).collect()
+        corners.iter().enumerate().filter_map(blend).collect()
     }
 
     /// Blends the particle's simulated position (m) and normal with those at rest.
     pub fn apply(&self, positions: &mut [Vec3], normals: &mut [Vec3]) {
         let (position, normal) = (&mut positions[self.particle], &mut normals[self.particle]);
-        *position = self.rest.position.lerp(*position, self.weight);
-        *normal = self.rest.normal.lerp(*normal, self.weight).normalize_or_zero();
+        *position = self.position.lerp(*position, self.weight);
+        *normal = self.normal.lerp(*normal, self.weight).normalize_or_zero();
     }
 }

@@ -136,6 +136,7 @@ fn part_builder(
 #[cfg(test)]
 mod tests {
     use bevy_math::Vec3;
+    use bunting_solver::Resolution;
 
     use super::*;
     use crate::fabric::rigid::Blend;
@@ -161,12 +162,15 @@ mod tests {
         assert_eq!(part.rigid.triangles.len(), 4);
         let rigid: Vec<u32> = part.rigid.vertices.iter().map(|rest| rest.vertex).collect();
         assert_eq!(rigid, [0, 1, 5, 6]);
-        let fabric = part.builder.build().expect("a fabric");
-        assert_eq!((fabric.particle_count(), fabric.triangles().len()), (6, 4));
+        assert_eq!((part.builder.particle_count(), part.builder.indices().len()), (6, 12));
         // The border to the rigid part and the attached vertices are pinned.
-        let pinned: Vec<usize> = (0..6).filter(|&particle| fabric.is_pinned(particle)).collect();
-        assert_eq!(pinned, [0, 2, 3]);
-        assert_eq!(fabric.uvs()[1].x, 0.75);
+        let fabric = part.builder.build().expect("a fabric");
+        for (vertex, &particle) in fabric.particle_of_vertex().iter().enumerate() {
+            let is_pinned = [0, 2, 3].contains(&vertex);
+            assert_eq!(fabric.is_pinned(particle as usize), is_pinned, "{vertex}");
+        }
+        let least = fabric.uvs().iter().map(|uv| uv.x).fold(1.0, f32::min);
+        assert_eq!(least, 0.5, "coordinates of its right half");
     }
 
     #[test]
@@ -194,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn a_particle_of_two_vertices_is_blended_once() {
+    fn particles_are_blended_as_the_vertices_around_them() {
         // The strip again, with vertices 3 and 8 twice, as along a seam.
         let ClothMesh::Triangles { mut positions, mut indices, mut weights, .. } = strip() else {
             unreachable!("it has weights")
@@ -211,15 +215,25 @@ mod tests {
         (weights[3], weights[8]) = (0.5, 0.5);
         let mesh = ClothMesh::triangles(positions, indices, Vec::new()).with_weights(weights);
         let part = SimulatedPart::of(&mesh, &[]).expect("a part");
-        let fabric = part.builder.clone().build().expect("a fabric");
-        assert_eq!((part.vertices.len(), fabric.particle_count()), (8, 6));
-        let blends = Blend::all(&part.rigid, &part.vertices, &fabric);
-        assert_eq!(blends.len(), 4);
-        let (mut positions, mut normals) = (vec![Vec3::ZERO; 6], vec![Vec3::X; 6]);
+        let mut made = part.builder.resampled(Resolution::CellSize(0.25)).expect("a fabric");
+        for (vertex, _) in made.corners.iter_mut().flatten() {
+            *vertex = part.vertices[*vertex as usize];
+        }
+        let (fabric, corners) = (&made.fabric, &made.corners);
+        let blends = Blend::all(&part.rigid, corners, fabric);
+        let rest = fabric.rest_positions();
+        let (mut positions, mut normals) =
+            (vec![Vec3::ZERO; rest.len()], vec![Vec3::X; rest.len()]);
         blends.iter().for_each(|blend| blend.apply(&mut positions, &mut normals));
-        assert_eq!(positions[1], 0.5 * fabric.rest_positions()[1]);
-        assert!((normals[1] - Vec3::new(1.0, 0.0, 1.0).normalize()).length() < 1e-6);
-        assert_eq!(positions[0], fabric.rest_positions()[0]);
-        assert_eq!((positions[2], normals[0]), (Vec3::ZERO, Vec3::Z));
+        let mut between = 0;
+        for (at, (position, normal)) in rest.iter().zip(positions.iter().zip(&normals)) {
+            // The weight grows from 0 at x = 2 over 0.5 at x = 3 to 1 at x = 4.
+            let weight = 0.5 * (at.x - 2.0);
+            assert!(position.distance((1.0 - weight) * *at) < 1e-5, "{at}: {position}");
+            let expected = Vec3::Z.lerp(Vec3::X, weight).normalize();
+            assert!(normal.distance(expected) < 1e-5, "{at}: {normal}");
+            between += usize::from(weight > 0.1 && weight < 0.4);
+        }
+        assert!(between >= 5, "{between} particles lie between vertices");
     }
 }

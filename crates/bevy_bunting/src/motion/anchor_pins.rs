@@ -14,6 +14,9 @@ use crate::motion::anchor_poses::AnchorPoses;
 /// after which pins are interpolated, counts. Larger: pins visibly jump.
 const IN_PLACE: f32 = 1e-3;
 
+/// Part of a pin from which an anchor holds it alone. Larger: rounding moves it.
+const NEARLY_ALL: f32 = 0.999;
+
 /// The pins of a cloth that are held by its anchors, at its present level.
 #[derive(Component, Debug, Default)]
 pub(crate) struct AnchorPins {
@@ -22,11 +25,12 @@ pub(crate) struct AnchorPins {
     pins: Vec<AnchoredPin>,
 }
 
-/// A pin that an anchor holds.
-#[derive(Clone, Copy, Debug)]
+/// A pin that anchors hold, by itself or between vertices that they hold.
+#[derive(Clone, Debug)]
 struct AnchoredPin {
     particle: u32,
-    anchor: usize,
+    /// The anchors with their parts in it; the frame has the rest.
+    shares: Vec<(usize, f32)>,
     /// Position now, in the cloth's frame, m.
     at: Vec3,
     /// Place at the end of the tick, in the cloth's frame at that time, m.
@@ -49,16 +53,10 @@ impl AnchorPins {
     ) {
         self.of = Some(KnownLevel::new(levels, level));
         self.pins.clear();
-        for (anchor, group) in groups.iter().enumerate() {
-            let particles = group.iter().filter_map(|&vertex| levels.particle(level, vertex));
-            self.pins.extend(particles.map(|particle| {
-                let at = positions[particle];
-                AnchoredPin { particle: particle as u32, anchor, at, place: at }
-            }));
-        }
-        // Vertices that share a particle may be of different anchors: the first one holds it.
-        self.pins.sort_by_key(|pin| (pin.particle, pin.anchor));
-        self.pins.dedup_by_key(|pin| pin.particle);
+        self.pins.extend(levels.held(level, groups).into_iter().map(|held| {
+            let at = positions[held.particle];
+            AnchoredPin { particle: held.particle as u32, shares: held.shares, at, place: at }
+        }));
     }
 
     /// Finds the places of the pins in a tick, given the cloth's frame at its start and at its end. Returns whether all
@@ -72,10 +70,17 @@ impl AnchorPins {
         let (start, end) = (start.inverse(), end.inverse());
         let mut are_in_place = true;
         for pin in &mut self.pins {
-            let Some((from, to)) = poses.span(pin.anchor) else { continue };
             let rest = fabric.rest_positions()[pin.particle as usize];
-            pin.place = end * (to * rest);
-            are_in_place &= (start * (from * rest)).distance(pin.at) < IN_PLACE;
+            let place = |pin: &AnchoredPin, of: &dyn Fn((Isometry3d, Isometry3d)) -> Vec3| {
+                let parts = pin
+                    .shares
+                    .iter()
+                    .filter_map(|&(anchor, part)| Some((of(poses.span(anchor)?), part)));
+                between(rest, parts)
+            };
+            pin.place = place(pin, &|(_, to)| end * (to * rest));
+            let from = place(pin, &|(from, _)| start * (from * rest));
+            are_in_place &= from.distance(pin.at) < IN_PLACE;
         }
         are_in_place
     }
@@ -103,4 +108,17 @@ impl AnchorPins {
             }
         }
     }
+}
+
+/// The mean of places (m) with their parts, and of one with what is left to 1.
+fn between(rest: Vec3, places: impl Iterator<Item = (Vec3, f32)>) -> Vec3 {
+    let (mut sum, mut left) = (Vec3::ZERO, 1.0);
+    for (place, part) in places {
+        if part > NEARLY_ALL {
+            return place;
+        }
+        sum += part * place;
+        left -= part;
+    }
+    sum + left.max(0.0) * rest
 }

@@ -57,7 +57,8 @@ pub enum ClothCorner {
 
 /// The vertices that an [`Attachment`](crate::Attachment) holds.
 ///
-/// A coarser level of detail holds those of the vertices that it has.
+/// A coarser level of a grid holds those of the vertices that it has. A mesh that is no grid is held at all of them at each level,
+/// and between those that an edge joins.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;

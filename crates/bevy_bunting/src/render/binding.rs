@@ -125,10 +125,9 @@ mod tests {
 
     #[test]
     fn a_rigid_motion_carries_the_mesh_rigidly() {
-        let builder = FabricBuilder::grid(Grid::new(9, 7, 2.0, 1.0));
-        let indices = builder.indices().to_vec();
-        let fabric = builder.build().expect("a grid");
-        let subdivision = Subdivision::new(&fabric, &indices, 1);
+        let grid = Grid::new(9, 7, 2.0, 1.0);
+        let fabric = FabricBuilder::grid(grid).build().expect("a grid");
+        let subdivision = Subdivision::of_grid(&grid, 1);
         let bent: Vec<Vec3> =
             fabric.rest_positions().iter().map(|at| at.with_z(0.3 * at.x * at.x)).collect();
         let surface = |positions: &[Vec3]| {

@@ -26,10 +26,13 @@ type IsStale =
 /// a cell add up to 0.28, and its sixteen particles are at most three diagonals apart.
 const BEYOND: f32 = 1.2;
 
-/// Distance by which a smooth surface may lie beyond the box of the particles, m.
+/// Distance by which a smooth surface, or a mesh that follows particles, may lie beyond the box of the particles, m.
 fn beyond_particles(levels: &ClothLevels) -> f32 {
-    // The coarsest level has the longest edges.
-    BEYOND * edge_length(levels.fabric(levels.count() - 1))
+    // The coarsest level has the longest edges between particles, and a mesh that follows may have longer ones.
+    let coarsest = levels.count() - 1;
+    let fabric = levels.fabric(coarsest);
+    let of_particles = (2.0 * fabric.area() / fabric.triangles().len().max(1) as f32).sqrt();
+    BEYOND * of_particles.max(edge_length(levels, coarsest))
 }
 
 /// Bounds the rigid part and the surfaces before and after the last tick, between which the shown surface
@@ -37,7 +40,8 @@ fn beyond_particles(levels: &ClothLevels) -> f32 {
 pub fn bound_cloths(mut cloths: Query<BoundedCloth, (With<NoAutoAabb>, IsStale)>) {
     for (state, easing, level_meshes, carried, mut bounds) in &mut cloths {
         let levels = level_meshes.map(|it| &*it.levels).or(carried.and_then(Carried::levels));
-        let smooth = carried.is_some() || level_meshes.is_some_and(|it| it.halvings > 0);
+        let smooth = carried.is_some()
+            || level_meshes.is_some_and(|it| it.halvings > 0 || it.levels.carried(0).is_some());
         let [from, to] = match easing {
             Some(easing) if easing.level().is_some() => {
                 [&*easing.previous_positions, &*easing.positions]

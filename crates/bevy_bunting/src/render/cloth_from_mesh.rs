@@ -21,7 +21,7 @@ use crate::cloth::state::ClothState;
 use crate::fabric::scale::ScaleBaked;
 use crate::motion::attachment::Attachment;
 use crate::render::convert_mesh::Converted;
-use crate::render::deformer::{Carried, ClothDeformer};
+use crate::render::deformer::Carried;
 use crate::render::from_skin::{BindPoses, LoadedSkin, unbind};
 use crate::render::level_meshes::LevelMeshes;
 use crate::render::mesh_content::{changed_meshes, content_of};
@@ -31,7 +31,8 @@ use crate::skeleton::limits::SkinLimits;
 
 /// Makes the entity's own `Mesh3d` a cloth, as soon as it is loaded: inserts a [`ClothMesh`] and shows a copy of the
 /// mesh, which keeps its texture coordinates, tangents, vertex colours and all other attributes. The
-/// material stays. Other entities with the same mesh asset stay as they are.
+/// material stays. Other entities with the same mesh asset stay as they are. How finely the cloth is simulated does not depend on
+/// the mesh's triangles, but on its [`ClothResolution`](crate::ClothResolution).
 ///
 /// A skinned mesh becomes a cloth that its skeleton leads: Bevy's `SkinnedMesh` is replaced by a
 /// [`ClothSkin`](crate::ClothSkin), and the copy has no joints.
@@ -75,12 +76,6 @@ pub struct ClothFromMesh {
     /// Weights of the vertices, painted by the artist; without them all vertices are simulated. What
     /// is pinned stays on the entity, or on the target of its [`Attachment`](crate::Attachment) if it has one.
     pub weights: Option<PaintedWeights>,
-    /// Greatest number of simulated vertices. A mesh with more is simulated as one with fewer triangles, which carries the
-    /// detailed one like a [`ClothDeformer`](crate::ClothDeformer); pinned and held vertices stay, as
-    /// [`FabricBuilder::decimated`](bunting_solver::FabricBuilder::decimated) says. The [`ClothMesh`] has the vertices of the
-    /// simple mesh, by which [`AttachedVertices::List`](crate::AttachedVertices::List) names them. It has more vertices where
-    /// no fabric can be built with fewer.
-    pub max_vertices: Option<u32>,
     /// Greatest distances of the particles of a skinned mesh from their animated places, painted by the artist; written into
     /// the entity's [`SkinLimits`](crate::SkinLimits).
     pub max_distance: Option<PaintedDistance>,
@@ -254,7 +249,7 @@ pub fn make_cloths(
         let scale = if is_scale(scale) { scale } else { Vec3::ONE };
         let wanted = &cloth.wanted;
         let converted = wanted.convert(entity, mesh, scale).and_then(|converted| {
-            let mesh = converted.of_shape();
+            let mesh = &converted.shown;
             let limits = wanted.painted_limits(cloth.limits, entity, mesh)?;
             let attachment = painted_attachment(&wanted.held, cloth.attachment, entity, mesh)?;
             Ok((converted, limits, attachment))
@@ -269,7 +264,7 @@ pub fn make_cloths(
                 if let Some(attachment) = attachment {
                     made.insert(attachment);
                 }
-                show(&cloth, converted, (loaded, scale), made_of, &mut meshes, &mut made);
+                show(converted, (loaded, scale), made_of, &mut meshes, &mut made);
             }
             Err(error) => {
                 if !cloth.is_cloth {
@@ -284,22 +279,16 @@ pub fn make_cloths(
 
 /// Makes an entity a cloth, and shows its mesh.
 fn show(
-    cloth: &AskedItem,
-    Converted { shape, mut shown, simple }: Converted,
+    Converted { shape, mut shown }: Converted,
     (loaded, scale): (Option<LoadedSkin>, Vec3),
     made_of: SourceMesh,
     meshes: &mut Assets<Mesh>,
     made: &mut EntityCommands,
 ) {
     if let Some(skin) = loaded {
-        made.insert(skin.convert(simple.as_ref().unwrap_or(&shown), scale));
+        made.insert(skin.convert(&shown, scale));
         made.remove::<(SkinnedMesh, DynamicSkinnedMeshBounds)>();
         unbind(&mut shown);
-    }
-    if simple.is_some() {
-        made.insert(ClothDeformer { cloth: cloth.entity }).remove::<LevelMeshes>();
-    } else if cloth.carried.is_some_and(|carried| carried.is_of(cloth.entity)) {
-        made.remove::<(ClothDeformer, Carried)>();
     }
     let copy = meshes.add(shown);
     let made_of = SourceMesh { shown: copy.clone(), ..made_of };

@@ -1,4 +1,4 @@
-//! Conversion of a mesh as `ClothFromMesh` asks for it: with painted weights, repaired, simplified.
+//! Conversion of a mesh as `ClothFromMesh` asks for it: with painted weights, repaired.
 
 use bevy_asset::RenderAssetUsages;
 use bevy_ecs::prelude::*;
@@ -19,15 +19,6 @@ pub(super) struct Converted {
     pub shape: ClothMesh,
     /// The mesh that shows it.
     pub shown: Mesh,
-    /// The mesh with the vertices of the shape, if these are fewer than those that are shown.
-    pub simple: Option<Mesh>,
-}
-
-impl Converted {
-    /// The mesh with the vertices of the shape.
-    pub fn of_shape(&self) -> &Mesh {
-        self.simple.as_ref().unwrap_or(&self.shown)
-    }
 }
 
 impl ClothFromMesh {
@@ -92,32 +83,17 @@ impl ClothFromMesh {
                 shown.insert_indices(Indices::U32(indices.clone()));
             }
         }
-        let mut held = Vec::new();
-        for painted in &self.held {
-            held.extend(painted.read(entity, &shown)?);
-        }
-        let simplified = self.max_vertices.and_then(|most| shape.simplified(most as usize, &held));
-        let simplified = simplified.filter(|(simple, _)| check_shape(entity, simple).is_ok());
-        let simple = match simplified {
-            Some((simplified, vertices)) => {
-                shape = simplified;
-                Some(with_vertices(shown.clone(), vertices))
-            }
-            None => {
-                let vertex = |of: usize| {
-                    let given = given.as_ref().and_then(|given| given.get(of));
-                    given.map_or(of, |&vertex| vertex as usize)
-                };
-                check_shape(entity, &shape).map_err(|error| match error {
-                    ClothError::Mesh { entity, source } => {
-                        ClothError::Mesh { entity, source: renumbered(source, vertex, |it| it) }
-                    }
-                    other => other,
-                })?;
-                None
-            }
+        let vertex = |of: usize| {
+            let given = given.as_ref().and_then(|given| given.get(of));
+            given.map_or(of, |&vertex| vertex as usize)
         };
-        Ok(Converted { shape, shown, simple })
+        check_shape(entity, &shape).map_err(|error| match error {
+            ClothError::Mesh { entity, source } => {
+                ClothError::Mesh { entity, source: renumbered(source, vertex, |it| it) }
+            }
+            other => other,
+        })?;
+        Ok(Converted { shape, shown })
     }
 }
 

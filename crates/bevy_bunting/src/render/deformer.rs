@@ -34,8 +34,8 @@ const HALVINGS: u32 = 1;
 /// without a transform of its own. The mesh that is shown is a copy; other entities with the same asset stay as they
 /// are. It is drawn as it is until another thread has bound it. The cloth itself is drawn only if it has a material.
 ///
-/// A cloth that names itself is drawn by its own detailed mesh alone: that is what
-/// [`ClothFromMesh::max_vertices`](crate::ClothFromMesh) does.
+/// A cloth that names itself is drawn by its own detailed mesh alone. A detailed mesh of one surface needs none of this: as a
+/// [`ClothFromMesh`](crate::ClothFromMesh) it is simulated as finely as its [`ClothResolution`](crate::ClothResolution) says.
 ///
 /// # Errors
 ///
@@ -85,11 +85,6 @@ impl Carried {
     /// The mesh that is shown.
     pub fn shown(&self) -> &Handle<Mesh> {
         &self.shown
-    }
-
-    /// Whether this cloth carries it.
-    pub fn is_of(&self, cloth: Entity) -> bool {
-        self.cloth == cloth
     }
 
     /// Whether the mesh is bound to these levels, or is being bound.
@@ -235,11 +230,14 @@ fn at_rest(mesh: &Mesh) -> Option<SurfaceVertices> {
 /// Binds a mesh to the finest level at rest.
 fn bind(levels: &ClothLevels, mesh: &SurfaceVertices) -> Option<Bound> {
     let (fabric, rigid) = (levels.fabric(0), levels.rigid());
-    let indices = match levels.carried(0) {
-        Some(_) => fabric.triangles().as_flattened().to_vec(),
-        None => levels.topology(0).simulated_indices(rigid),
+    let indices = fabric.triangles().as_flattened();
+    let subdivision = match fabric.grid() {
+        Some(grid) => Subdivision::of_grid(grid, HALVINGS),
+        None => {
+            let particles: Vec<u32> = (0..fabric.particle_count() as u32).collect();
+            Subdivision::of_mesh(fabric.rest_positions(), &particles, indices, HALVINGS)
+        }
     };
-    let subdivision = Subdivision::new(fabric, &indices, HALVINGS);
     let mut surface = SurfaceVertices::default();
     let buffers = &mut SubdivisionBuffers::default();
     evaluate(&subdivision, fabric.rest_positions(), buffers, &mut surface);

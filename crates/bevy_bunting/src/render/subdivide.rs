@@ -8,9 +8,10 @@ use bevy_camera::visibility::InheritedVisibility;
 use bevy_ecs::prelude::*;
 use bevy_mesh::Mesh;
 use bevy_transform::components::GlobalTransform;
-use bunting_solver::{Fabric, SubdivisionBuffers};
+use bunting_solver::SubdivisionBuffers;
 
 use crate::display::surface::ClothSurface;
+use crate::fabric::levels::ClothLevels;
 use crate::lod::view::{Sighting, View};
 use crate::lod::viewer::LodViewer;
 use crate::render::level_meshes::{LevelMeshes, MeshOrigin, SubdividedMesh};
@@ -52,8 +53,8 @@ pub fn subdivide_cloths(
         if !is_drawn {
             continue;
         }
-        let length = sighting.pixels_per_metre * edge_length(levels.fabric(level));
-        let halvings = wanted.halvings_for(length, present);
+        let length = sighting.pixels_per_metre * edge_length(levels, level);
+        let halvings = wanted.halvings_for(length, present, levels.halvings_to_cells(level));
         if halvings > 0 && level_meshes.subdivided(level, halvings).is_none() {
             let Some(subdivision) = subdivisions.find(levels, level, halvings) else { continue };
             let Some(base) = level_meshes.meshes.get(level).and_then(|base| meshes.get(base))
@@ -61,8 +62,8 @@ pub fn subdivide_cloths(
                 continue;
             };
             let mut mesh = subdivided_mesh::new(base, &subdivision);
-            let drawn = levels.drawn(level, &surface.positions);
-            subdivided_mesh::write(&mut mesh, &subdivision, &drawn.positions, &mut buffers);
+            let points = levels.points(level, &surface.positions);
+            subdivided_mesh::write(&mut mesh, &subdivision, &points, &mut buffers);
             let mesh = meshes.add(mesh);
             let made = SubdividedMesh { level, halvings, subdivision, mesh };
             level_meshes.subdivided.push(Arc::new(made));
@@ -73,7 +74,8 @@ pub fn subdivide_cloths(
     }
 }
 
-/// Typical length of an edge of a fabric, m: that of squares of two triangles.
-pub fn edge_length(fabric: &Fabric) -> f32 {
-    (2.0 * fabric.area() / fabric.triangles().len().max(1) as f32).sqrt()
+/// Typical length of an edge of the mesh that shows a level without rigid part, m: that of squares of two triangles.
+pub fn edge_length(levels: &ClothLevels, level: usize) -> f32 {
+    let triangles = levels.topology(level).indices.len() / 3;
+    (2.0 * levels.fabric(level).area() / triangles.max(1) as f32).sqrt()
 }

@@ -60,15 +60,20 @@ pub fn forget_subdivisions(mut subdivisions: ResMut<Subdivisions>) {
 }
 
 fn begin(levels: &Arc<ClothLevels>, level: usize, halvings: u32) -> Known {
+    if let (None, Some(grid)) = (levels.carried(level), levels.fabric(level).grid()) {
+        return Known::Built(Arc::new(Subdivision::of_grid(grid, halvings)));
+    }
     let levels = Arc::clone(levels);
-    let is_grid = levels.fabric(level).grid().is_some();
-    let build = move || match levels.carried(level) {
-        Some(carried) => {
-            let rest = carried.places(levels.fabric(level).rest_positions());
-            let indices = &levels.topology(level).indices;
-            Subdivision::of_mesh(&rest, carried.place_of_vertex(), indices, halvings)
+    Known::Awaited(Background::begin(move || {
+        let drawn = levels.drawn(level, levels.fabric(level).rest_positions());
+        let indices = &levels.topology(level).indices;
+        let (places, place_of) = (&drawn.positions, drawn.point_of_vertex);
+        match levels.halvings_to_cells(level) {
+            0 => Subdivision::of_mesh(places, place_of, indices, halvings),
+            _ => {
+                let fabric = levels.fabric(level);
+                Subdivision::on_surface(fabric, places, place_of, indices, halvings)
+            }
         }
-        None => Subdivision::new(levels.fabric(level), &levels.topology(level).indices, halvings),
-    };
-    if is_grid { Known::Built(Arc::new(build())) } else { Known::Awaited(Background::begin(build)) }
+    }))
 }

@@ -1,6 +1,5 @@
 //! Writes surfaces into meshes, in place.
 
-use std::borrow::Cow;
 use std::sync::Arc;
 
 use bevy_asset::{AssetEvent, AssetId, Assets};
@@ -40,8 +39,13 @@ pub fn write_visible(
         let levels = levels_to_write(state, surface, visibility, &level_meshes, shown.id());
         let Some(levels) = levels else { continue };
         let subdivided = level_meshes.subdivided_mesh(shown.id()).cloned();
-        let to_write =
-            ToWrite { entity, levels: &levels, subdivided: subdivided.as_deref(), surface };
+        let to_write = ToWrite {
+            entity,
+            levels: &levels,
+            subdivided: subdivided.as_deref(),
+            surface,
+            is_skinned: state.is_skinned,
+        };
         let Some(mut mesh) = meshes.get_mut(shown.id()) else { continue };
         match to_write.write(mesh.bypass_change_detection(), &mut buffers) {
             Ok(true) => {
@@ -66,8 +70,13 @@ pub fn write_newly_visible(
         let levels = levels_to_write(state, surface, visibility, &level_meshes, shown.id());
         let Some(levels) = levels else { continue };
         let subdivided = level_meshes.subdivided_mesh(shown.id()).cloned();
-        let to_write =
-            ToWrite { entity, levels: &levels, subdivided: subdivided.as_deref(), surface };
+        let to_write = ToWrite {
+            entity,
+            levels: &levels,
+            subdivided: subdivided.as_deref(),
+            surface,
+            is_skinned: state.is_skinned,
+        };
         let Some(mesh) = meshes.get_mut_untracked(shown.id()) else { continue };
         match to_write.write(mesh, &mut buffers) {
             Ok(true) => {
@@ -120,6 +129,8 @@ struct ToWrite<'a> {
     /// The subdivision that the mesh shows; none if it shows the particles.
     subdivided: Option<&'a SubdividedMesh>,
     surface: &'a ClothSurface,
+    /// Whether the cloth is blended with the animated places instead of those at rest.
+    is_skinned: bool,
 }
 
 impl ToWrite<'_> {
@@ -144,10 +155,12 @@ impl ToWrite<'_> {
         check_mesh(entity, mesh, topology.vertex_count())?;
         let drawn = levels.drawn(surface.level(), &surface.positions);
         let vertices = || topology.simulated.iter().zip(drawn.point_of_vertex);
-        let normals = match levels.carried(surface.level()) {
-            Some(carried) => carried.normals(&drawn.positions).into(),
-            None => Cow::from(&surface.normals),
-        };
+        let normals = levels.drawn_normals(
+            surface.level(),
+            &drawn.positions,
+            &surface.normals,
+            !self.is_skinned,
+        );
         let mut changed = false;
         for (attribute, source) in
             [(Mesh::ATTRIBUTE_POSITION, &drawn.positions), (Mesh::ATTRIBUTE_NORMAL, &normals)]
@@ -167,12 +180,13 @@ impl ToWrite<'_> {
         buffers: &mut SubdivisionBuffers,
     ) -> Result<bool, ClothError> {
         check_mesh(self.entity, mesh, subdivision.attributes().rows().len())?;
-        let drawn = self.levels.drawn(self.surface.level(), &self.surface.positions);
-        let positions = &drawn.positions;
-        if subdivided_mesh::is_current(mesh, subdivision, drawn.point_of_vertex, positions) {
+        let level = self.surface.level();
+        let point_of_vertex = self.levels.drawn(level, &self.surface.positions).point_of_vertex;
+        let points = self.levels.points(level, &self.surface.positions);
+        if subdivided_mesh::is_current(mesh, subdivision, point_of_vertex, &points) {
             return Ok(false);
         }
-        subdivided_mesh::write(mesh, subdivision, positions, buffers);
+        subdivided_mesh::write(mesh, subdivision, &points, buffers);
         Ok(true)
     }
 }

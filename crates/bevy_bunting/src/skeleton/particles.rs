@@ -110,11 +110,11 @@ impl SkinnedParticles {
     /// Finds the particles of a level.
     pub fn find(&mut self, levels: &Arc<ClothLevels>, level: usize) {
         let fabric = levels.fabric(level);
-        let at_rest = levels.vertices(level).iter().zip(fabric.rest_positions());
+        let at_rest = fabric.rest_positions().iter().enumerate();
         self.particles.clear();
-        self.particles.extend(at_rest.map(|(&vertex, &rest)| {
-            let vertex = vertex as usize;
-            SkinnedParticle { rest, ..self.skins.particle(vertex) }
+        self.particles.extend(at_rest.map(|(particle, &rest)| SkinnedParticle {
+            rest,
+            ..self.skins.particle(levels.corners(level, particle))
         }));
         self.of = Some(KnownLevel::new(levels, level));
         let pins = (0..self.particles.len()).filter(|&particle| fabric.is_pinned(particle));

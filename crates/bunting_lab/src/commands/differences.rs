@@ -49,22 +49,25 @@ impl Differences {
         };
         let failing: BTreeSet<&str> = of(Verdict::Fails).collect();
         let unclear: BTreeSet<&str> = of(Verdict::Unclear).collect();
-        for case in failing.difference(&known) {
-            self.add(*case, "fails, and is not on the list of known failures");
-        }
         for case in known.difference(&failing).filter(|case| !unclear.contains(**case)) {
             let how = if counts.contains_key(case) { "passes" } else { "does not exist" };
             self.add(*case, format!("is on the list of known failures, and {how}"));
         }
         let failing = cases.iter().filter(|case| case.verdict == Verdict::Fails);
-        for case in failing {
-            let known = figures.get(case.identity.as_str()).copied().flatten();
-            let (Some(known), Some(error)) = (known, case.error) else { continue };
-            // What is no number any more is worse than any.
-            if error.is_nan() || error > WORSE * known {
-                let how = format!("has {error:.3e}, worse than the {known:.3e} of the list");
-                self.add(&case.identity, how);
-            }
+        for GateCase { identity, error, limit, .. } in failing {
+            let how = match (figures.get(identity.as_str()), *error) {
+                (None, error) => {
+                    let error =
+                        error.map_or(String::new(), |it| format!(": {it:.3e}, limit {limit:.3e}"));
+                    format!("fails, and is not on the list of known failures{error}")
+                }
+                // What is no number any more is worse than any.
+                (Some(Some(known)), Some(error)) if error.is_nan() || error > WORSE * known => {
+                    format!("has {error:.3e}, worse than the {known:.3e} of the list")
+                }
+                _ => continue,
+            };
+            self.add(identity, how);
         }
     }
 
@@ -99,6 +102,7 @@ mod tests {
             identity: identity.into(),
             verdict: if fails { Verdict::Fails } else { Verdict::Passes },
             error: None,
+            limit: 1.0,
             figure: None,
         };
         verdicts.iter().map(case).collect()
@@ -126,8 +130,13 @@ mod tests {
 
     #[test]
     fn unclear_cases_may_be_known_to_fail_or_not() {
-        let unclear =
-            GateCase { identity: "a".into(), verdict: Verdict::Unclear, error: None, figure: None };
+        let unclear = GateCase {
+            identity: "a".into(),
+            verdict: Verdict::Unclear,
+            error: None,
+            limit: 1.0,
+            figure: None,
+        };
         for known in ["", "a\n"] {
             let mut differences = Differences::default();
             differences.compare_cases(known, std::slice::from_ref(&unclear));
@@ -138,7 +147,13 @@ mod tests {
     #[test]
     fn a_known_failure_that_becomes_worse_is_a_difference() {
         let failing = |error| {
-            [GateCase { identity: "a".into(), verdict: Verdict::Fails, error, figure: None }]
+            [GateCase {
+                identity: "a".into(),
+                verdict: Verdict::Fails,
+                error,
+                limit: 1.0,
+                figure: None,
+            }]
         };
         let count = |list: &str, error| {
             let mut differences = Differences::default();
@@ -159,6 +174,7 @@ mod tests {
             identity: "a, n = 1".into(),
             verdict: Verdict::Fails,
             error: Some(0.0123456),
+            limit: 0.01,
             figure: None,
         };
         assert_eq!(known_failures(&case.line())["a, n = 1"], Some(1.235e-2));

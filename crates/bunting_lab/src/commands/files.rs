@@ -9,7 +9,7 @@ use std::{
 use anyhow::{Context, Result};
 use bunting_solver::{
     ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial, LaneCount,
-    LinkFamily, Resampled, Resolution, StepLimits,
+    Resampled, StepLimits,
 };
 use glam::{Quat, Vec2, Vec3};
 use parry3d::shape::SharedShape;
@@ -18,13 +18,13 @@ use serde_json::json;
 
 use crate::{
     flight::almost_at_rest,
-    meshes::clothes::FABRIC,
+    meshes::{clothes::FABRIC, resampled},
     need::Need,
     output::{
         Outcome,
         table::{Table, figure},
     },
-    product::{TICK, rms_speed},
+    product::{TICK, rms_speed, yarn_strains},
     scenes::ticks,
     stats::{mean, percentile},
     timing::Timing,
@@ -203,8 +203,7 @@ fn measured(FileMesh { mut positions, uv, indices }: FileMesh) -> Result<Figures
     let begun = Instant::now();
     let (free, _) = FabricBuilder::new(positions, indices).uv(uv).repair()?;
     let held = free.clone().pin_where(|at, _| at.y > HEIGHT * (1.0 - HELD));
-    let resolution = Resolution::Particles(held.particle_count() as u32);
-    let Resampled { fabric, carried, .. } = held.resampled(resolution)?;
+    let Resampled { fabric, carried, .. } = resampled(&held)?;
     let built_ms = begun.elapsed().as_secs_f64() * 1e3;
     let triangles = held.indices().as_chunks::<3>().0;
 
@@ -214,7 +213,7 @@ fn measured(FileMesh { mut positions, uv, indices }: FileMesh) -> Result<Figures
     let speed = 1e3 * rms_speed(&batch, 0);
     let drive = Drive { wind: WIND, ..Drive::default() };
     let (blown, _) = flown(&fabric, FABRIC, drive, &[], FLIES);
-    let dropped = free.resampled(resolution)?.fabric;
+    let dropped = resampled(&free)?.fabric;
     let [low, high] = bounds(dropped.rest_positions());
     let below = low.midpoint(high).with_y(low.y - BALL - GAP);
     let ball = Collider::fixed(SharedShape::ball(BALL), below, Quat::IDENTITY);
@@ -275,12 +274,7 @@ fn bounds(positions: &[Vec3]) -> [Vec3; 2] {
 
 /// The mean size of the strain along warp and weft, and its 99.9 %, in percent.
 fn strains(fabric: &Fabric, positions: &[Vec3]) -> (f64, f64) {
-    let links = fabric.links().iter().filter(|link| link.family != LinkFamily::Diagonal);
-    let strain = |ends: [u32; 2], rest: f32| {
-        let [a, b] = ends.map(|at| positions[at as usize]);
-        f64::from(a.distance(b) / rest) - 1.0
-    };
-    let mut strains: Vec<f64> = links.map(|it| strain(it.particles, it.rest_length)).collect();
+    let mut strains: Vec<f64> = yarn_strains(fabric, positions).collect();
     let sizes: Vec<f64> = strains.iter().map(|it| it.abs()).collect();
     strains.sort_by(f64::total_cmp);
     (100.0 * mean(&sizes), 100.0 * percentile(&strains, 0.999))

@@ -17,16 +17,16 @@ use crate::{
 
 /// Speeds at the end above which cloths are counted, mm/s.
 const SPEEDS: [f64; 3] = [1.0, 5.0, 20.0];
-/// Strains of an edge at the end above which cloths are counted.
+/// Strains of a link at the end above which cloths are counted.
 const STRAINS: [f64; 2] = [0.3, 1.0];
-/// Strain of an edge in wind above which cloths are counted.
+/// Strain of a link in wind above which cloths are counted.
 const BLOWN: f64 = 1.0;
 /// Errors of the sag above which cloths are counted, mm.
 const SAGS: [f64; 2] = [5.0, 50.0];
 /// Cloths that are listed for each figure.
 const LISTED: usize = 12;
 /// Headers of what tells a trial from others.
-const IDENTITY: [&str; 5] = ["seed", "mesh", "solved by", "particles", "effort"];
+const IDENTITY: [&str; 4] = ["seed", "mesh", "particles", "effort"];
 
 /// Which cloths.
 #[derive(Clone, Debug, Args)]
@@ -70,23 +70,21 @@ fn measured(trials: &[Trial]) -> impl Iterator<Item = (&Trial, &Figures)> {
     trials.iter().filter_map(|trial| Some((trial, trial.outcome.as_ref().ok()?)))
 }
 
-/// Counts and medians of each family of meshes and what solves it.
+/// Counts and medians of each family of meshes.
 fn summary(trials: &[Trial]) -> Table {
-    let mut groups: BTreeMap<(String, &str), Vec<&Figures>> = BTreeMap::new();
+    let mut groups: BTreeMap<String, Vec<&Figures>> = BTreeMap::new();
     for (trial, figures) in measured(trials) {
-        let family = format!("{:?}", trial.family);
-        groups.entry((family, &figures.solver)).or_default().push(figures);
-        groups.entry(("all".into(), "")).or_default().push(figures);
+        groups.entry(format!("{:?}", trial.family)).or_default().push(figures);
+        groups.entry("all".into()).or_default().push(figures);
     }
     Table {
         name: "fuzz".into(),
         title: format!("{} cloths at random", trials.len()),
         headers: vec![
             "meshes",
-            "solved by",
             "cloths",
             "> 1; 5; 20 mm/s",
-            "edge > 30; 100 % at rest",
+            "link > 30; 100 % at rest",
             "> 100 % in wind",
             "mean strain in wind, %",
             "99.9 %",
@@ -94,17 +92,16 @@ fn summary(trials: &[Trial]) -> Table {
             "of a substep",
             "ms to build",
         ],
-        rows: groups.into_iter().map(|((family, solver), of)| group(family, solver, &of)).collect(),
+        rows: groups.into_iter().map(|(family, of)| group(family, &of)).collect(),
     }
 }
 
-fn group(family: String, solver: &str, cloths: &[&Figures]) -> Vec<String> {
+fn group(family: String, cloths: &[&Figures]) -> Vec<String> {
     let figures = |of: &dyn Fn(&Figures) -> f64| cloths.iter().map(|it| of(it)).collect::<Vec<_>>();
     let counts = |limits: &[f64], of: &dyn Fn(&Figures) -> f64| counts(limits, &figures(of));
     let median = |of: &dyn Fn(&Figures) -> f64| figure(percentile(figures(of), 0.5));
     vec![
         family,
-        solver.into(),
         cloths.len().to_string(),
         counts(&SPEEDS, &|it| it.speed * 1e3),
         counts(&STRAINS, &|it| it.stretch[1]),
@@ -130,18 +127,18 @@ fn percentile(mut figures: Vec<f64>, part: f64) -> f64 {
     stats::percentile(&figures, part)
 }
 
-/// How far cloths sink, beside a high effort, by what solves them.
+/// How far cloths sink, beside a high effort, by their family.
 fn sags(trials: &[Trial]) -> Table {
-    let mut groups: BTreeMap<&str, Vec<Sag>> = BTreeMap::new();
-    for (_, figures) in measured(trials) {
-        groups.entry(&figures.solver).or_default().extend(figures.sag);
+    let mut groups: BTreeMap<String, Vec<Sag>> = BTreeMap::new();
+    for (trial, figures) in measured(trials) {
+        groups.entry(format!("{:?}", trial.family)).or_default().extend(figures.sag);
     }
-    let row = |(solver, sags): (&str, Vec<Sag>)| {
+    let row = |(family, sags): (String, Vec<Sag>)| {
         let errors: Vec<f64> = sags.iter().map(|sag| sag.error() * 1e3).collect();
         let converged = sags.iter().map(|sag| sag.converged * 1e3).collect();
         let at = |part| figure(percentile(errors.clone(), part));
         vec![
-            solver.into(),
+            family,
             sags.len().to_string(),
             figure(percentile(converged, 0.5)),
             at(0.5),
@@ -152,7 +149,7 @@ fn sags(trials: &[Trial]) -> Table {
     Table {
         name: "fuzz_sag".into(),
         title: "How far they sink under their weight, beside a high effort".into(),
-        headers: vec!["solved by", "cloths", "sag, mm", "error, mm", "80 %", "> 5; 50 mm"],
+        headers: vec!["meshes", "cloths", "sag, mm", "error, mm", "80 %", "> 5; 50 mm"],
         rows: groups.into_iter().map(row).collect(),
     }
 }
@@ -174,7 +171,7 @@ fn worst_sags(trials: &[Trial]) -> Table {
     }
 }
 
-/// The cloths that move fastest, and those with the most strained edges.
+/// The cloths that move fastest, and those with the most strained links.
 fn worst(trials: &[Trial]) -> Table {
     let figures: [fn(&Figures) -> f64; 3] = [|it| it.speed, |it| it.stretch[1], |it| it.stretch[0]];
     let mut rows = Vec::new();
@@ -186,11 +183,11 @@ fn worst(trials: &[Trial]) -> Table {
     Table {
         name: "fuzz_worst".into(),
         title:
-            "The fastest at the end, and those with the most strained edges at the end, and in wind"
+            "The fastest at the end, and those with the most strained links at the end, and in wind"
                 .into(),
         headers: IDENTITY
             .into_iter()
-            .chain(["mm/s", "edge at rest, %", "in wind, %", "ns a particle"])
+            .chain(["mm/s", "link at rest, %", "in wind, %", "ns a particle"])
             .collect(),
         rows,
     }
@@ -207,12 +204,11 @@ fn row(trial: &Trial, figures: &Figures) -> Vec<String> {
 }
 
 /// What tells a trial from others, in the order of [`IDENTITY`].
-fn identity(trial: &Trial, figures: &Figures) -> [String; 5] {
+fn identity(trial: &Trial, figures: &Figures) -> [String; 4] {
     let [substeps, passes] = figures.effort;
     [
         trial.seed.to_string(),
         format!("{:?}", trial.family),
-        figures.solver.clone(),
         figures.particles.to_string(),
         format!("{substeps} × {passes}"),
     ]

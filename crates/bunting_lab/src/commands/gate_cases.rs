@@ -31,6 +31,8 @@ pub struct GateCase {
     pub verdict: Verdict,
     /// What must not exceed a limit, less being better; none of times, which change from run to run.
     pub error: Option<f64>,
+    /// The limit.
+    pub limit: f64,
     /// What was measured, as the file of figures watches it; none of times.
     pub figure: Option<Figure>,
 }
@@ -40,7 +42,7 @@ impl GateCase {
     fn new(identity: String, passes: bool, value: f64, limit: f64) -> Self {
         let verdict = if passes { Verdict::Passes } else { Verdict::Fails };
         let figure = Some(Figure::of_case(identity.clone(), value, limit));
-        Self { identity, verdict, error: Some(value), figure }
+        Self { identity, verdict, error: Some(value), limit, figure }
     }
 
     /// The line of the case in the list of known failures: its identity and its error, a dash where that is not compared.
@@ -58,7 +60,8 @@ impl GateCase {
         let identity = format!("oracles: {}", case.name);
         let allowed = case.tolerance * case.expected;
         let error = Some(case.relative_error);
-        Self { error, ..Self::new(identity, case.pass, case.measured, allowed) }
+        let limit = case.tolerance;
+        Self { error, limit, ..Self::new(identity, case.pass, case.measured, allowed) }
     }
 
     /// A hard case; none where it was not run.

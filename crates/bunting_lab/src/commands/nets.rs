@@ -1,10 +1,10 @@
-//! Time of garments in cells of their own, beside that of a grid: alone, and in eight lanes.
+//! Time of garments, beside that of a grid: alone, and in eight lanes.
 
 use std::{sync::Arc, time::Instant};
 
 use bunting_solver::{
-    ClothBatch, Drive, Fabric, FabricBuilder, FabricMaterial, Grid, LaneCount, Resolution,
-    StepLimits, StepSettings,
+    ClothBatch, Drive, Fabric, FabricBuilder, FabricMaterial, Grid, LaneCount, StepLimits,
+    StepSettings,
 };
 use glam::Vec3;
 use serde::Serialize;
@@ -12,7 +12,7 @@ use serde_json::json;
 
 use crate::{
     flight::almost_at_rest,
-    meshes::clothes::Garment,
+    meshes::{clothes::Garment, net},
     output::{
         Outcome,
         table::{Table, figure},
@@ -53,11 +53,7 @@ pub fn run() -> Outcome {
     let grid = FabricBuilder::grid(Grid::new(33, 33, 1.0, 1.0));
     let grid = grid.pin_where(|at, _| at.y == 0.0).build().expect("a good fabric");
     let mut fabrics = vec![("grid of 33 × 33", Arc::new(grid))];
-    fabrics.extend(Garment::all().iter().map(|garment| {
-        let builder = garment.builder();
-        let resolution = Resolution::Particles(builder.particle_count() as u32);
-        (garment.name, builder.resampled(resolution).expect("a good mesh").fabric)
-    }));
+    fabrics.extend(Garment::all().iter().map(|garment| (garment.name, net(&garment.builder()))));
     let mut flights: Vec<Flight> = [LaneCount::One, LaneCount::Eight]
         .iter()
         .flat_map(|lanes| fabrics.iter().map(|(name, fabric)| Flight::new(name, fabric, *lanes)))
@@ -73,7 +69,7 @@ pub fn run() -> Outcome {
     };
     let table = Table {
         name: "nets".into(),
-        title: "Garments in cells of their own, beside a grid, in 6 m/s".into(),
+        title: "Garments beside a grid, in 6 m/s".into(),
         headers: vec![
             "cloth",
             "cloths",

@@ -4,7 +4,7 @@ use bunting_solver::FabricBuilder;
 use glam::{DVec2, IVec2, Vec2, Vec3};
 
 use super::pieces::largest_piece;
-use crate::meshes::{CANDIDATES, Random, delaunay, farthest};
+use crate::meshes::{CANDIDATES, Random, delaunay, farthest, uneven};
 
 /// The cells of a lattice that are cloth, and which sides are open.
 struct Outline {
@@ -29,17 +29,12 @@ pub fn of_quads(random: &mut Random) -> FabricBuilder {
     outline.sewn(&panel, random)
 }
 
-/// A garment of Delaunay triangles, or of what simplification leaves of four times as many quads.
+/// A garment of Delaunay triangles, all of about one size or of areas that vary fourfold.
 pub fn of_triangles(random: &mut Random) -> FabricBuilder {
     let outline = Outline::at_random(random);
-    if random.next() < 0.5 {
-        let panel = outline.delaunay(random);
-        return outline.sewn(&panel, random);
-    }
-    let fine = outline.halved();
-    let panel = fine.quads(0.2, random);
-    let mesh = fine.sewn(&panel, random);
-    mesh.coarser().map_or(mesh, |coarser| coarser.builder)
+    let is_even = random.next() < 0.5;
+    let panel = outline.delaunay(random, |at| if is_even { 1.0 } else { uneven(at) });
+    outline.sewn(&panel, random)
 }
 
 impl Outline {
@@ -82,13 +77,6 @@ impl Outline {
         };
         let is_cloth = largest_piece(self.is_cloth.len(), beside);
         Self { is_cloth, ..self }
-    }
-
-    fn halved(&self) -> Self {
-        let [columns, rows] = [2 * self.columns, 2 * self.rows];
-        let cells = (0..rows).flat_map(|row| (0..columns).map(move |column| [column, row]));
-        let is_cloth = cells.map(|cell| self.is_cloth(cell.map(|at| at / 2)));
-        Self { columns, rows, is_cloth: is_cloth.collect(), open: self.open }
     }
 
     fn is_cloth(&self, [column, row]: [i32; 2]) -> bool {
@@ -141,7 +129,8 @@ impl Outline {
         Panel { places, triangles: triangles.collect() }
     }
 
-    fn delaunay(&self, random: &mut Random) -> Panel {
+    /// Delaunay triangles, given how far apart their corners are to be at a place of the unit square, over those of the border.
+    fn delaunay(&self, random: &mut Random, length: impl Fn(DVec2) -> f64) -> Panel {
         let (inner, border): (Vec<_>, Vec<_>) =
             self.corners().partition(|corner| self.cells_around(*corner) == 4);
         let in_plane = |[column, row]: &[i32; 2]| DVec2::new(f64::from(*column), f64::from(*row));
@@ -154,7 +143,7 @@ impl Outline {
                 corners.into_iter().all(|by| self.is_cloth(cell(by)))
             };
             let candidates = (0..2 * CANDIDATES).map(|_| random.place() * size).filter(is_inside);
-            places.extend(farthest(candidates, &places));
+            places.extend(farthest(candidates, &places, |at| length(at / size)));
         }
         // Shifted a little, so that no four of them lie on one circle.
         let shifted: Vec<DVec2> = places.iter().map(|at| *at + 1e-5 * random.place()).collect();

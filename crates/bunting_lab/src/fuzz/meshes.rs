@@ -6,7 +6,7 @@ use bunting_solver::FabricBuilder;
 use glam::{DVec2, Vec2, Vec3};
 
 use super::{garments, pieces::largest_piece};
-use crate::meshes::{Random, Sheet, Triangulation, around, moebius, sphere, torus};
+use crate::meshes::{Random, Sheet, Triangulation, around, sphere, torus};
 
 /// What a mesh is like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
@@ -21,7 +21,7 @@ pub enum Family {
     QuadGarment,
     /// One or two panels of triangles.
     TriangleGarment,
-    /// A ball, a bowl, a torus or a Möbius strip.
+    /// A ball, a bowl or a torus.
     Round,
 }
 
@@ -166,10 +166,10 @@ fn round(random: &mut Random) -> FabricBuilder {
     let [columns, rings] = [8 + random.below(20) as u32, 6 + random.below(14) as u32];
     let first = random.within(0.1, 0.5) as f32;
     let last = random.within(1.5, 3.0) as f32;
-    match random.below(3) {
-        0 => around(columns, rings, false, sphere([first, last])),
-        1 => torus(columns, rings, 0.3 * first),
-        _ => around(2 * columns, rings.min(9), true, moebius(0.4 * first)),
+    if random.next() < 0.5 {
+        around(columns, rings, sphere([first, last]))
+    } else {
+        torus(columns, rings, 0.3 * first)
     }
 }
 

@@ -14,9 +14,9 @@ use super::{
     sag::Sag,
 };
 use crate::{
-    meshes::Random,
+    meshes::{Random, resampled},
     need::Need,
-    product::{TICK, rms_speed},
+    product::{TICK, rms_speed, yarn_strains},
     scenes::GRAVITY,
     stats::{Strain, worse},
 };
@@ -44,8 +44,6 @@ pub struct Trial {
 /// What was measured of a cloth.
 #[derive(Clone, Debug, Serialize)]
 pub struct Figures {
-    /// What solves it.
-    pub solver: String,
     /// Number of particles.
     pub particles: usize,
     /// Substeps and passes under its weight alone.
@@ -54,9 +52,9 @@ pub struct Figures {
     pub build: f64,
     /// Least time of a tick alone under its weight, in wind, over the particles, s.
     pub tick: f64,
-    /// Strain of the mesh's edges in the wind.
+    /// Strain along warp and weft in the wind.
     pub blown: Strain,
-    /// Greatest stretch of an edge in the wind and at the end.
+    /// Greatest stretch of a link in the wind and at the end.
     pub stretch: [f64; 2],
     /// RMS speed at the end, m/s.
     pub speed: f64,
@@ -70,9 +68,9 @@ pub fn of_seed(seed: u64, sags: bool) -> Trial {
     let family = Family::ALL[random.below(Family::ALL.len())];
     let builder = mesh(family, &mut random);
     let start = Instant::now();
-    let fabric = builder.build();
+    let resampled = resampled(&builder);
     let build = start.elapsed().as_secs_f64();
-    let measured = fabric.map(|fabric| figures(Arc::new(fabric), build, &mut random, sags));
+    let measured = resampled.map(|it| figures(it.fabric, build, &mut random, sags));
     Trial { seed, family, outcome: measured.map_err(|error| error.to_string()) }
 }
 
@@ -83,13 +81,12 @@ pub fn time_to_build(seed: u64) -> f64 {
     let builder = mesh(family, &mut random);
     let start = Instant::now();
     // Whether it is a cloth is another question.
-    let _ = builder.build();
+    let _ = resampled(&builder);
     start.elapsed().as_secs_f64()
 }
 
 /// Blows at a cloth, pulls it, and lets it rest.
 fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random, sags: bool) -> Figures {
-    let solver = format!("{:?}", fabric.stretch_solver());
     let particles = fabric.particle_count();
     let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY as f32);
     let stiffness = 10_f64.powf(random.within(2.5, 5.0)) as f32;
@@ -115,7 +112,6 @@ fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random, sags: bool) -> 
     cloth.advance(TICK, Drive { motion, ..still });
     cloth.advance(SETTLING, still);
     Figures {
-        solver,
         particles,
         effort: [settings.substeps, settings.passes],
         build,
@@ -173,11 +169,9 @@ impl Cloth {
         least
     }
 
+    /// Strains of the links along warp and weft.
     fn strains(&self) -> impl Iterator<Item = f64> {
-        self.batch.fabric().links().iter().map(|link| {
-            let [from, to] = link.particles.map(|at| self.positions[at as usize]);
-            f64::from(from.distance(to) / link.rest_length) - 1.0
-        })
+        yarn_strains(self.batch.fabric(), &self.positions)
     }
 
     fn greatest_stretch(&self) -> f64 {

@@ -107,7 +107,7 @@ pub(crate) fn disk(radius: f32, count: usize) -> Garment {
     while points.len() < count {
         let candidates = (0..2 * CANDIDATES).map(|_| 2.0 * random.place() - 1.0);
         let inside = candidates.filter(|at| at.length() < 1.0 - 0.5 * spacing);
-        points.extend(farthest(inside, &points));
+        points.extend(farthest(inside, &points, |_| 1.0));
     }
     // The triangulation wants coordinates of this order, and no four points on one circle.
     let scaled: Vec<DVec2> = points.iter().map(|at| *at * 30.0 + 1e-5 * random.place()).collect();

@@ -5,9 +5,9 @@ pub(crate) mod delaunay;
 mod graded;
 mod rings;
 
-use std::{f32::consts::TAU, sync::Arc};
+use std::{f32::consts::TAU, f64, sync::Arc};
 
-use bunting_solver::{Fabric, FabricBuilder};
+use bunting_solver::{Fabric, FabricBuilder, FabricError, Resampled, Resolution};
 use glam::{DVec2, Vec2, Vec3};
 
 pub(crate) use rings::{around, ball_with_poles, moebius, sphere, torus};
@@ -19,8 +19,8 @@ pub enum Triangulation {
     Delaunay,
     /// Cells whose corners are moved at random, each cut along one of its diagonals at random.
     Quads,
-    /// What simplification leaves of a mesh of four times as many triangles, as of a scan: triangles of uneven sizes,
-    /// and a border of which nothing is left out.
+    /// Delaunay triangles as well, as of a scan: the area around a point varies smoothly over the sheet, by a factor of
+    /// four.
     Scan,
 }
 
@@ -37,6 +37,29 @@ pub struct Sheet {
 pub(crate) const CANDIDATES: usize = 8;
 /// Greatest shift of a cell's corner along each axis, in cells.
 const SHIFT: f64 = 0.2;
+
+/// Greatest relative departure of the distance between a scan's points from that on its border, as candidates at random are
+/// asked for: with so few of them, areas vary by a factor of four instead of six.
+const UNEVENNESS: f64 = 0.42;
+
+/// The fabric of a mesh, of about as many particles as the mesh has vertices.
+///
+/// # Panics
+///
+/// When the mesh is no cloth.
+#[must_use]
+pub fn net(mesh: &FabricBuilder) -> Arc<Fabric> {
+    resampled(mesh).expect("a cloth").fabric
+}
+
+/// The same with how the mesh follows.
+///
+/// # Errors
+///
+/// The mesh is no cloth.
+pub fn resampled(mesh: &FabricBuilder) -> Result<Resampled, FabricError> {
+    mesh.resampled(Resolution::Particles(mesh.particle_count() as u32))
+}
 
 /// Numbers from 0 to 1, one after the other (xorshift, Marsaglia 2003).
 pub(crate) struct Random(u64);
@@ -78,10 +101,6 @@ impl Random {
 impl Sheet {
     /// A sheet with about as many vertices as a grid of `columns` × `rows`. Those of the first columns of the grid, as
     /// many as are `kept`, and of its border are vertices of the sheet.
-    ///
-    /// # Panics
-    ///
-    /// When a scan cannot be simplified.
     #[must_use]
     pub fn new(
         triangulation: Triangulation,
@@ -97,17 +116,20 @@ impl Sheet {
         let grid = (0..rows).flat_map(|row| (0..columns).map(move |column| (column, row)));
         let place = |(column, row): (usize, usize)| DVec2::new(column as f64, row as f64);
         let (points, triangles) = match triangulation {
-            Triangulation::Delaunay => {
+            Triangulation::Delaunay | Triangulation::Scan => {
                 let border = grid.filter(|&(column, row)| is_kept(column, row)).map(place);
                 let mut points: Vec<DVec2> = border.collect();
+                let length = |at: DVec2| match triangulation {
+                    Triangulation::Scan => uneven(at / cells),
+                    _ => 1.0,
+                };
                 while points.len() < columns * rows {
                     let candidate = |_| 0.5 + random.place() * (cells - 1.0);
-                    points.extend(farthest((0..CANDIDATES).map(candidate), &points));
+                    points.extend(farthest((0..CANDIDATES).map(candidate), &points, length));
                 }
                 let triangles = delaunay::triangulate(&points);
                 (points, triangles)
             }
-            Triangulation::Scan => return Self::simplified([columns, rows], size, kept),
             Triangulation::Quads => {
                 let points = grid.map(|at| {
                     let shift = random.place() * 2.0 - 1.0;
@@ -122,16 +144,6 @@ impl Sheet {
         // The second axis points down, which turns the triangles over.
         let front = triangles.into_iter().flat_map(|[a, b, c]| [a, c, b]);
         Self { positions: positions.collect(), indices: front.map(|at| at as u32).collect() }
-    }
-
-    fn simplified([columns, rows]: [usize; 2], size: DVec2, kept: usize) -> Self {
-        let fine = [2 * columns - 1, 2 * rows - 1];
-        let fine = Self::new(Triangulation::Quads, fine, size, 2 * kept - 1);
-        let last_kept = (size.x * (kept as f64 - 0.9) / (columns - 1) as f64) as f32;
-        let builder = FabricBuilder::new(fine.positions, fine.indices);
-        let coarser = builder.pin_where(|at, _| at.x < last_kept).coarser();
-        let builder = coarser.expect("a mesh that can be simplified").builder;
-        Self { positions: builder.positions().to_vec(), indices: builder.indices().to_vec() }
     }
 
     /// The sheet as a fabric of two pieces that share a seam halfway down, with pins. The warp of the upper one runs
@@ -158,7 +170,7 @@ impl Sheet {
         }
         let indices = (0..positions.len() as u32).collect();
         let builder = FabricBuilder::new(positions, indices).uv(uv).weld_distance(1e-6 * height);
-        Arc::new(builder.pin_where(|at, _| is_pinned(at)).build().expect("a cloth"))
+        net(&builder.pin_where(|at, _| is_pinned(at)))
     }
 
     /// The sheet as a fabric whose warp runs at an angle to its rows, rad, with pins.
@@ -172,7 +184,7 @@ impl Sheet {
         let turned = |at: &Vec3| Vec2::new(cos * at.x - sin * at.y, sin * at.x + cos * at.y);
         let uv = self.positions.iter().map(turned).collect();
         let builder = FabricBuilder::new(self.positions.clone(), self.indices.clone()).uv(uv);
-        Arc::new(builder.pin_where(|at, _| is_pinned(at)).build().expect("a cloth"))
+        net(&builder.pin_where(|at, _| is_pinned(at)))
     }
 }
 
@@ -276,15 +288,26 @@ impl Sheet {
         let positions = self.bent(width / TAU);
         let uv = self.positions.iter().map(|at| Vec2::new(at.x, -at.y)).collect();
         let builder = FabricBuilder::new(positions, self.indices.clone()).uv(uv);
-        let builder = builder.weld_distance(1e-5 * width).pin_where(|at, _| is_pinned(at));
-        Arc::new(builder.build().expect("a cloth"))
+        net(&builder.weld_distance(1e-5 * width).pin_where(|at, _| is_pinned(at)))
     }
 }
 
-/// The candidate that is farthest from all points; none if there is none.
-pub(crate) fn farthest(candidates: impl Iterator<Item = DVec2>, points: &[DVec2]) -> Option<DVec2> {
+/// Distance between the points of a scan at a place of the unit square, over that on its border.
+pub(crate) fn uneven(at: DVec2) -> f64 {
+    let [x, y] = at.to_array().map(|part| libm::sin(f64::consts::TAU * part));
+    1.0 + UNEVENNESS * x * y
+}
+
+/// The candidate that is farthest from all points, over the length that points at its place are to be apart; none if there is
+/// none.
+pub(crate) fn farthest(
+    candidates: impl Iterator<Item = DVec2>,
+    points: &[DVec2],
+    length: impl Fn(DVec2) -> f64,
+) -> Option<DVec2> {
     let nearest = |at: DVec2| {
-        points.iter().map(|point| point.distance_squared(at)).fold(f64::INFINITY, f64::min)
+        let squares = points.iter().map(|point| point.distance_squared(at));
+        squares.fold(f64::INFINITY, f64::min) / length(at).powi(2)
     };
     candidates.max_by(|a, b| nearest(*a).total_cmp(&nearest(*b)))
 }
@@ -302,4 +325,23 @@ fn cut_cells(columns: usize, rows: usize, random: &mut Random) -> Vec<[usize; 3]
         });
     }
     triangles
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn areas_around_the_points_of_a_scan_vary_fourfold() {
+        let sheet = Sheet::new(Triangulation::Scan, [33, 33], DVec2::ONE, 1);
+        let within = |x: f32, y: f32| {
+            let middle = Vec3::new(x, -y, 0.0);
+            sheet.positions.iter().filter(|at| at.distance(middle) < 0.12).count()
+        };
+        let dense = within(0.75, 0.25) + within(0.25, 0.75);
+        let sparse = within(0.25, 0.25) + within(0.75, 0.75);
+        // Around the middles of the quarters, where areas are least and largest; in the mean of these disks a ratio of 4 is 2.8.
+        assert!((2.4..3.4).contains(&(dense as f64 / sparse as f64)), "{dense}, {sparse}");
+        assert_eq!(sheet.positions.len(), 33 * 33);
+    }
 }

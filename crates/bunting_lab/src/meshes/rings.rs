@@ -8,9 +8,13 @@ use glam::Vec3;
 /// Radius of bowls and balls, and of the circle that tori and Möbius strips go around, m.
 const RADIUS: f32 = 0.3;
 
-/// A mesh of `rings` rings of `columns` quads, given the place of a ring, from 0 to 1, and an azimuth, rad. Where it is
-/// twisted, the first ring goes on as the last.
-pub(crate) fn around(
+/// A mesh of `rings` rings of `columns` quads, given the place of a ring, from 0 to 1, and an azimuth, rad.
+pub(crate) fn around(columns: u32, rings: u32, at: impl Fn(f32, f32) -> Vec3) -> FabricBuilder {
+    closed(columns, rings, false, at)
+}
+
+/// The same; where it is twisted, the first ring goes on as the last.
+fn closed(
     columns: u32,
     rings: u32,
     is_twisted: bool,
@@ -43,18 +47,18 @@ pub(crate) fn sphere([first, last]: [f32; 2]) -> impl Fn(f32, f32) -> Vec3 {
     }
 }
 
-/// A strip of a width, m, that has made half a turn when it has gone around.
-pub(crate) fn moebius(width: f32) -> impl Fn(f32, f32) -> Vec3 {
-    move |across, azimuth| {
+/// A strip of a width, m, of `rings` rings of `columns` quads that has made half a turn when it has gone around.
+pub(crate) fn moebius(columns: u32, rings: u32, width: f32) -> FabricBuilder {
+    closed(columns, rings, true, |across, azimuth| {
         let aside = width * (across - 0.5);
         let away = RADIUS + aside * (0.5 * azimuth).cos();
         Vec3::new(away * azimuth.cos(), aside * (0.5 * azimuth).sin(), away * azimuth.sin())
-    }
+    })
 }
 
 /// A torus of `rings` rings of `columns` quads, whose tube has a radius, m.
 pub(crate) fn torus(columns: u32, rings: u32, of_tube: f32) -> FabricBuilder {
-    let mesh = around(columns, rings, false, |ring, azimuth| {
+    let mesh = around(columns, rings, |ring, azimuth| {
         let (sin, cos) = (TAU * ring).sin_cos();
         let away = RADIUS + of_tube * cos;
         Vec3::new(away * azimuth.cos(), of_tube * sin, away * azimuth.sin())

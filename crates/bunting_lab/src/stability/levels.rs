@@ -14,6 +14,7 @@ use super::{
 };
 use crate::{
     levels::pops::{self, Pop},
+    meshes::moebius,
     product::{DEFAULT, Product, TICK, fabric, material},
     reference::grid::Grid,
     scenes::{Scene, ticks},
@@ -146,6 +147,7 @@ fn bad_input() -> HardCase {
         FabricBuilder::new(corners.clone(), vec![0, 1]),
         FabricBuilder::new(corners.clone(), vec![0, 1, 1]),
         FabricBuilder::new(corners, vec![0, 1, 2]).pin([7]),
+        moebius(24, 8, 0.1),
         FabricBuilder::grid(RestGrid::new(1, 9, 1.0, 1.0)),
         FabricBuilder::grid(RestGrid::new(9, 9, f32::INFINITY, 1.0)),
     ];

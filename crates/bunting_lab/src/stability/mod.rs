@@ -6,16 +6,15 @@
 mod case;
 mod crumple;
 mod flags;
+mod garments;
 mod levels;
 mod lone;
 mod motion;
-mod resampled;
 mod rig;
 mod sleep;
 mod soundness;
 mod stiff;
 mod storms;
-mod surfaces;
 mod sweeps;
 mod touch;
 mod weather;
@@ -26,7 +25,7 @@ pub use case::{HardCase, Status};
 pub type Family = fn(quick: bool) -> Vec<HardCase>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 16] = [
+pub const ALL: [(&str, Family); 14] = [
     ("sweeps of size, passes and rate", sweeps::cases),
     ("motion of pins and frames", motion::cases),
     ("wind and weight", weather::cases),
@@ -36,9 +35,7 @@ pub const ALL: [(&str, Family); 16] = [
     ("colliders", touch::cases),
     ("sleep", sleep::cases),
     ("soundness", soundness::cases),
-    ("surfaces of meshes that hang", surfaces::hung),
-    ("surfaces of meshes in wind", surfaces::blown),
-    ("meshes in cells of their own", resampled::cases),
+    ("garments", garments::cases),
     ("stiff cloth at rest", stiff::at_rest),
     ("taut cloth", stiff::taut),
     ("flights of flags", flags::flights),

@@ -96,16 +96,10 @@ pub(crate) fn carrying_links<'a>(
     fabric: &'a Fabric,
     material: &'a FabricMaterial,
 ) -> impl Iterator<Item = CarryingLink> + 'a {
-    let is_sheared = fabric.has_shear_cells();
-    let links = fabric.links().iter();
-    let links = links.filter(move |link| !(is_sheared && link.family == LinkFamily::Diagonal));
-    links.map(move |link| {
-        let class = &fabric.link_classes()[link.class as usize];
-        let stiffness = if is_sheared {
-            class.uncoupled_stiffness(material)
-        } else {
-            class.stiffness(material)
-        };
-        CarryingLink { particles: link.particles, rest_length: link.rest_length, stiffness }
+    let straight = fabric.links().iter().filter(|link| link.family != LinkFamily::Diagonal);
+    straight.map(|link| CarryingLink {
+        particles: link.particles,
+        rest_length: link.rest_length,
+        stiffness: fabric.link_classes()[link.class as usize].uncoupled_stiffness(material),
     })
 }

@@ -5,8 +5,6 @@
 //! that mass solve the spring exactly with the cloth, whatever its stiffness: a particle that only the spring held would be
 //! stretched by the solver's own compliance.
 //!
-//! On a background grid the spring moves the nodes instead: X̂ = X̃ + Pᵀ k τ² (p − x̃) / (M + Pᵀ k τ²).
-//!
 //! A ring on a rail is a spring to the nearest point of the rail, which has no force along it, with the stiffness that gives
 //! it the ring's mass. What the constraints move it off the rail is then taken back.
 
@@ -17,7 +15,6 @@ use crate::anchors::holds::{Held, Holds};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
-use crate::constraints::background::node_inverse_masses;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
 
@@ -43,27 +40,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn draw_held(&mut self) {
         for cloth in 0..self.lanes.len() {
             self.with_holds(cloth, |batch, state, holds| batch.draw_held_of(cloth, state, holds));
-        }
-    }
-
-    /// Draws the nodes of background grids instead of the particles, which follow the nodes. Called when the nodes have
-    /// moved as the particles have: their means are weighted by the particles' own masses, without the holds'.
-    pub fn draw_nodes(&mut self) {
-        let (Some(background), Some(grid)) = (&mut self.background, self.fabric.background())
-        else {
-            return;
-        };
-        for (cloth, state) in self.lanes.iter().enumerate() {
-            let Some(holds) = state.as_ref().and_then(|state| state.holds.as_ref()) else {
-                continue;
-            };
-            for (hold, held) in holds.list.iter().zip(&holds.now) {
-                let Some(held) = held else { continue };
-                let pull = held.inertia * (held.drawn - held.predicted);
-                for term in grid.transfer.particles.row(hold.particle as usize) {
-                    background.push_node(cloth, term.from as usize, term.weight * pull);
-                }
-            }
         }
     }
 
@@ -126,18 +102,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             } / density;
             let inertia = own + added;
             let drawn = predicted + (place - predicted) * (added / inertia);
-            if self.background.is_none() {
-                set_lane3(&mut self.positions.packs_mut()[pack], lane, drawn);
-            }
+            set_lane3(&mut self.positions.packs_mut()[pack], lane, drawn);
             self.masses.inverse[pack].lanes_mut()[lane] = inverse(inertia);
             inverse_masses[particle] = inverse(inertia);
             holds.now.push(Some(Held { predicted, drawn, inertia, given: Vec3::ZERO }));
         }
         self.positions.set_inverse_masses(&inverse_masses);
-        if let Some(background) = &mut self.background {
-            let nodes = node_inverse_masses(&self.fabric, &inverse_masses);
-            background.set_inverse_masses(cloth, &nodes);
-        }
     }
 
     fn finish_holds_of(&mut self, cloth: usize, state: &mut LaneState, holds: &mut Holds) {

@@ -11,7 +11,6 @@ use crate::batch::lane_count::LaneCount;
 use crate::batch::mixed::Mixed;
 use crate::batch::particles_mut::ParticlesMut;
 use crate::batch::single_cloth::SingleCloth;
-use crate::batch::single_mesh::SingleMesh;
 use crate::batch::single_net::SingleNet;
 use crate::batch::snapshot::ClothSnapshot;
 use crate::batch::surfaces::LaneSurface;
@@ -61,8 +60,6 @@ pub struct ClothBatch(pub(super) Lanes);
 pub(super) enum Lanes {
     /// One cloth across all lanes of a vector.
     Single(Box<LaneBatch<Pack8, SingleCloth<Pack8>>>),
-    /// One mesh across all lanes of a vector.
-    SingleMesh(Box<LaneBatch<Pack8, SingleMesh>>),
     /// One net across all lanes of a vector.
     SingleNet(Box<LaneBatch<Pack8, SingleNet>>),
     One(Box<LaneBatch<Pack1>>),
@@ -76,7 +73,6 @@ macro_rules! with_batch {
     ($lanes:expr, $batch:ident => $body:expr) => {
         match $lanes {
             Lanes::Single($batch) => $body,
-            Lanes::SingleMesh($batch) => $body,
             Lanes::SingleNet($batch) => $body,
             Lanes::One($batch) => $body,
             Lanes::Eight($batch) => $body,

@@ -8,10 +8,8 @@ use crate::batch::lane_batch::{LaneBatch, without_minus_zero};
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, OfCloth, Positions};
 use crate::batch::single_cloth::SingleCloth;
-use crate::batch::single_mesh::SingleMesh;
 use crate::batch::single_net::SingleNet;
 use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
-use crate::constraints::background::nodes_of;
 use crate::fabric::{Fabric, FabricMaterial};
 use crate::simd::lane::Pack;
 use crate::simd::registers::Pack8;
@@ -105,12 +103,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 states.iter().map(|&(lane, state)| (lane, vectors(state))).collect();
             self.layout.write(packs, &of_cloths);
         }
-        if !self.correction.is_empty() {
-            let left_out = |state| Some(&history(state)?.left_out[..]).filter(|it| !it.is_empty());
-            let of_cloths: Vec<OfCloth> =
-                states.iter().map(|&(lane, state)| (lane, left_out(state))).collect();
-            self.layout.write(&mut self.correction, &of_cloths);
-        }
     }
 
     /// Restores the state of a lane besides its vectors.
@@ -128,16 +120,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.positions.clear();
         let fabric = &self.fabrics[Y::fabric_of(lane)].fabric;
         self.layout.set_pins(lane, fabric, positions);
-        if let Some(grid) = &mut self.background {
-            let nodes = history.and_then(|history| history.nodes.as_deref());
-            match nodes {
-                Some(nodes) => grid.restore(lane, nodes),
-                None => grid.restore(lane, &nodes_of(fabric, positions, &state.velocities)),
-            }
-        }
         if let Some(cloth) = &mut self.lanes[lane] {
-            // The nodes take over what the particles' state has beyond their own.
-            cloth.follows_nodes = false;
             cloth.history =
                 history.map_or_else(IntegratorHistory::default, |history| history.integrator);
             cloth.are_pins_at_rest = fabric.are_pins_at_rest(positions);
@@ -163,14 +146,6 @@ impl LaneBatch<Pack8, SingleNet> {
     /// An empty batch of one net across the lanes; none unless the fabric is one.
     pub fn single_net(fabric: &Arc<Fabric>) -> Option<Self> {
         let layout = SingleNet::of(fabric)?;
-        Some(Self::new(Arc::clone(fabric), layout))
-    }
-}
-
-impl LaneBatch<Pack8, SingleMesh> {
-    /// An empty batch of one mesh across the lanes; none unless its background grid can lie across them, too.
-    pub fn single_mesh(fabric: &Arc<Fabric>) -> Option<Self> {
-        let layout = SingleMesh::of(fabric)?;
         Some(Self::new(Arc::clone(fabric), layout))
     }
 }

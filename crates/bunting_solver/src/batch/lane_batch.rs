@@ -11,19 +11,12 @@ use crate::batch::masses::Masses;
 use crate::batch::mixed::Mixed;
 use crate::batch::probe_motion::ProbeMotion;
 use crate::batch::side_by_side::SideBySide;
-use crate::batch::single_cloth::SingleCloth;
-use crate::batch::single_mesh::HeightPacks;
-use crate::batch::single_net::SingleNet;
-use crate::constraints::extrapolation::BeforePass;
-use crate::constraints::join;
-use crate::constraints::laid_yarns::{BandRow, YarnLink};
-use crate::constraints::lone_mesh::LoneMesh;
+use crate::constraints::order::{Order, order_of};
 use crate::constraints::rest_bends::RestBendPacks;
 use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
-use crate::fabric::{CHAINS_PER_PAIR, Fabric, GridTransfer};
+use crate::fabric::{CHAINS_PER_PAIR, Fabric};
 use crate::simd::lane::Pack;
-use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
 use crate::stability::pole::Pole;
 use crate::step::clock::Clock;
@@ -46,6 +39,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     /// For each lane that can hold a cloth, the cloth that it holds.
     pub lanes: Vec<Option<LaneState>>,
     pub layout: Y,
+    /// The stages in which constraints are solved.
+    pub order: Order,
 
     /// Positions in the cloth's frame, m.
     pub positions: Y::Positions,
@@ -70,13 +65,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     /// Length that each link has under the tension found so far in the substep, l − α̃ λ, m, in the order in
     /// which the scheme solves links.
     pub link_target: Vec<P>,
-    /// Positions and targets before a pass that is extrapolated, or targets before bending after stretch.
-    pub before_pass: BeforePass<P>,
-    /// Corrections that are not yet added to the positions, m, and what the positions' rounding has left out; empty
-    /// unless the fabric [sums corrections](Fabric::sums_corrections).
-    pub correction: Vec<Pack3<P>>,
-    /// These when positions had been predicted, m.
-    pub predicted_correction: Vec<Pack3<P>>,
+    /// Scratch array of targets before bending that comes after stretch, m.
+    pub targets_before_bending: Vec<P>,
     /// Scratch array of predicted positions, m, for lanes that bend stiffly.
     pub predicted_position: Vec<Pack3<P>>,
     /// Scratch array of displacements by stretch, m, for lanes that bend stiffly.
@@ -85,15 +75,7 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub rows: Vec<TridiagonalRow<P>>,
     /// Scratch array of the closing links' parts in the unknowns of closed chains.
     pub by_closing: Vec<P>,
-    /// The links of laid yarns in the substep; empty where the batch has a `lone_mesh`.
-    pub yarn_links: Vec<YarnLink<P>>,
-    /// Scratch array of the system of a laid yarn.
-    pub band_rows: Vec<BandRow<P>>,
-    /// The constraints of a single cloth across the lanes, where its fabric is a mesh that does not follow a background grid.
-    pub lone_mesh: Option<Box<LoneMesh>>,
-    /// Indices in row-major order of the nodes of the first and the last row of a closed grid.
-    pub joined: Vec<[u32; 2]>,
-    /// Second differences at rest, if the fabric is a grid that is curved there.
+    /// Second differences at rest, if the fabric is a net.
     pub rest_bends: Option<Box<RestBendPacks<P, Y>>>,
     /// Scratch array of the block tridiagonal system of a strip.
     pub strip_blocks: Vec<StripBlock<P>>,
@@ -110,36 +92,6 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub guides: Option<Box<Guides<P>>>,
     /// Wind at the particles, where it differs from particle to particle.
     pub local_wind: Option<Box<LocalWind<P>>>,
-    /// The background grids of the cloths, if the fabric has one.
-    pub background: Option<BackgroundGrid<P>>,
-}
-
-/// The background grids of a batch.
-#[derive(Clone, Debug)]
-pub(crate) enum BackgroundGrid<P: Pack> {
-    /// One in each lane.
-    SideBySide(Box<LaneBatch<P>>),
-    /// That of a single mesh, across the lanes.
-    Single(Box<SingleGrid<SingleCloth<Pack8>>>),
-    /// The net of a single mesh, across the lanes.
-    SingleNet(Box<SingleGrid<SingleNet>>),
-}
-
-/// The background grid or the net of a single mesh. Its particles and nodes are interpolated from one another as vectors whose
-/// lanes are x, y, z and zero.
-#[derive(Clone, Debug)]
-pub(crate) struct SingleGrid<Y: Layout<Pack8>> {
-    pub batch: LaneBatch<Pack8, Y>,
-    /// Positions of the nodes, m, in the order of the batch's packs.
-    pub nodes: Vec<Pack4>,
-    /// What the grid does not resolve of the particles' positions, m.
-    pub unresolved: Vec<Pack4>,
-    /// Scratch array for what is lowered by the heights, m; empty if there are none.
-    pub lowered: Vec<Pack3<Pack8>>,
-    /// How nodes and particles are interpolated from one another, with nodes numbered as they are stored.
-    pub transfer: GridTransfer,
-    /// The heights of the particles above the surface between nodes.
-    pub heights: HeightPacks,
 }
 
 impl<P: Pack> LaneBatch<P> {
@@ -172,14 +124,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         let chains = layout.chains(&fabric);
         let longest_line = fabric.longest_line();
-        let is_lone = P::WIDTH == 1;
-        let lone_mesh = if is_lone { LoneMesh::of(&fabric).map(Box::new) } else { None };
-        let (mut yarn_links, mut band_rows) = (Vec::new(), Vec::new());
-        if lone_mesh.is_none() {
-            yarn_links.resize(fabric.laid_yarns().link_count(), YarnLink::new());
-            band_rows.resize(fabric.laid_yarns().longest(), BandRow::new());
-        }
-        let correction = if fabric.sums_corrections() { zero.clone() } else { Vec::new() };
         let of_lanes = LaneFabric::new(Arc::clone(&fabric), 0.0);
         let mut batch = Self {
             numbers: FabricNumbers::new(&of_lanes),
@@ -191,20 +135,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             older_displacement: zero.clone(),
             older_velocity: zero.clone(),
             oldest_velocity: zero.clone(),
-            predicted_correction: correction.clone(),
-            correction,
             predicted_position: Vec::new(),
             stretch_shift: Vec::new(),
             velocity: zero,
             relaxation: vec![P::splat(1.0); layout.pack_count()],
             link_target: vec![P::splat(0.0); chains.target_count()],
-            before_pass: BeforePass::none(),
+            targets_before_bending: Vec::new(),
             rows: vec![TridiagonalRow::new(); CHAINS_PER_PAIR * chains.longest()],
             by_closing: vec![P::splat(0.0); CHAINS_PER_PAIR * chains.longest_closed()],
-            yarn_links,
-            band_rows,
-            lone_mesh,
-            joined: join::joined_rows(&fabric, &layout),
             rest_bends: RestBendPacks::of(&fabric, &layout).map(Box::new),
             strip_blocks: Vec::new(),
             moments: vec![splat3(Vec3::ZERO); longest_line],
@@ -213,13 +151,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 layout.constants(fabric.inverse_areas()),
                 layout.pack_count(),
             ),
+            order: order_of(&fabric),
             partial_sums: layout.partial_sums(),
             parameters: Parameters::new(),
             clock: Clock::default(),
             probe_motion: ProbeMotion::default(),
             guides: None,
             local_wind: None,
-            background: BackgroundGrid::of(&fabric, P::WIDTH > 1 && Y::CLOTHS == 1),
             fabric,
             layout,
         };

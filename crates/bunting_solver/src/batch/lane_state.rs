@@ -13,7 +13,7 @@ use crate::fabric::FabricMaterial;
 use crate::stability::added_mass::AddedMass;
 use crate::stability::pin_strain::PinStrain;
 use crate::step::Drive;
-use crate::step::bdf::{IntegratorHistory, MotionSums};
+use crate::step::bdf::IntegratorHistory;
 use crate::step::guides::ClothGuides;
 use crate::step::moving_pins::MovingPins;
 use crate::step::parameters::ParameterInputs;
@@ -49,10 +49,6 @@ pub(crate) struct LaneState {
     pub holds: Option<Box<Holds>>,
     /// What the cloth does to its pins, if that is asked for.
     pub pin_reports: Option<Box<PinReports>>,
-    /// Whether the particles follow the nodes of a background grid in this tick (`step/follow.rs`).
-    pub follows_nodes: bool,
-    /// Sums over the nodes of a background grid.
-    pub motion_of_nodes: MotionSums<f32>,
     /// Inputs of the lane's parameters; none if the parameters must be computed.
     pub inputs: Option<ParameterInputs>,
     /// Inputs of the lane's inverse masses besides the substep; none if the masses must be computed.
@@ -80,10 +76,19 @@ impl LaneState {
             local_wind: None,
             holds: None,
             pin_reports: None,
-            follows_nodes: false,
-            motion_of_nodes: MotionSums::default(),
             inputs: None,
             added_mass: None,
         }
+    }
+
+    /// Whether something may act on single particles in this tick.
+    pub fn is_acted_on(&self) -> bool {
+        self.contacts.iter().any(|candidates| !candidates.is_empty())
+            || self.self_contacts.is_some()
+            || self.guides.is_some()
+            || self.local_wind.is_some()
+            || self.holds.is_some()
+            || self.pin_reports.is_some()
+            || !self.moving_pins.is_empty()
     }
 }

@@ -1,13 +1,12 @@
 //! The layouts of a batch: the pack and lane of each particle, and the order in which constraints are solved.
 //!
-//! There are five. [`SideBySide`](crate::batch::side_by_side::SideBySide) holds up to as many cloths of one
+//! There are four. [`SideBySide`](crate::batch::side_by_side::SideBySide) holds up to as many cloths of one
 //! fabric as there are lanes: a pack holds the same particle of each cloth, and numbers of the fabric are
 //! the same in all lanes. [`Mixed`](crate::batch::mixed::Mixed) does so with cloths of different fabrics of one
 //! topology: numbers of the fabric are each lane's own. [`SingleCloth`](crate::batch::single_cloth::SingleCloth) spreads one cloth across
 //! the lanes: a pack holds consecutive particles of a row of its grid, constraints that share no particle
 //! are solved in one pack, and numbers of the fabric are each lane's own, too.
-//! [`SingleMesh`](crate::batch::single_mesh::SingleMesh) does so with a mesh, whose constraints are those of its background
-//! grid, and [`SingleNet`](crate::batch::single_net::SingleNet) with a net, whose lines are gathered.
+//! [`SingleNet`](crate::batch::single_net::SingleNet) does so with a net, whose lines are gathered.
 //!
 //! Kernels are written once for all, over [`Constant`] and [`Particles`].
 
@@ -191,12 +190,6 @@ pub(crate) trait Positions<P: Pack>: Clone + Debug + Send + Sync + 'static {
         self.packs_mut()
     }
 
-    /// Calls `visit` with the coordinates of all positions, m, array by array, in the order in which they are stored now.
-    #[inline(always)]
-    fn visit_coordinates(&mut self, visit: impl FnMut(&mut [f32])) {
-        visit_packs(self.packs_mut(), visit);
-    }
-
     /// The particles in an order, for the constraints. `inverse_masses` are given for each pack, 1/m².
     fn particles<'a>(
         &'a mut self,
@@ -221,12 +214,6 @@ pub(crate) trait Positions<P: Pack>: Clone + Debug + Send + Sync + 'static {
 
     /// Discards the constraints' arrays, before a new state is written.
     fn clear(&mut self);
-}
-
-/// Calls `visit` with the coordinates of packs, array by array.
-#[inline(always)]
-pub(super) fn visit_packs<P: Pack>(packs: &mut [Pack3<P>], mut visit: impl FnMut(&mut [f32])) {
-    packs.as_flattened_mut().iter_mut().for_each(|axis| visit(axis.lanes_mut()));
 }
 
 /// The particles that constraints move: in each pack one of each cloth, or several of one cloth.

@@ -20,8 +20,6 @@ impl Lanes {
     pub(super) fn of_one_cloth(fabric: Arc<Fabric>) -> Self {
         if let Some(batch) = LaneBatch::single_cloth(&fabric) {
             Self::Single(Box::new(batch))
-        } else if let Some(batch) = LaneBatch::single_mesh(&fabric) {
-            Self::SingleMesh(Box::new(batch))
         } else if let Some(batch) = LaneBatch::single_net(&fabric) {
             Self::SingleNet(Box::new(batch))
         } else {
@@ -37,9 +35,6 @@ impl ClothBatch {
             (Lanes::Single(single), Scheme::GaussSeidel) => {
                 Lanes::One(Box::new(single.to_one_lane()))
             }
-            (Lanes::SingleMesh(single), Scheme::GaussSeidel) => {
-                Lanes::One(Box::new(single.to_one_lane()))
-            }
             (Lanes::SingleNet(single), Scheme::GaussSeidel) => {
                 Lanes::One(Box::new(single.to_one_lane()))
             }
@@ -49,7 +44,6 @@ impl ClothBatch {
                 let mut lanes = Lanes::of_one_cloth(Arc::clone(&one.fabric));
                 match &mut lanes {
                     Lanes::Single(single) => single.take_over(one),
-                    Lanes::SingleMesh(single) => single.take_over(one),
                     Lanes::SingleNet(single) => single.take_over(one),
                     _ => return,
                 }
@@ -79,7 +73,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             state.guides.iter_mut().for_each(ClothGuides::write_again);
             self.lanes[0] = Some(state);
         }
-        // The scheme of the last tick tells whether the nodes of a mesh lie where its particles are.
         self.clock = other.clock;
         self.fabrics[0].contact_mesh.clone_from(&other.fabrics[0].contact_mesh);
         // Between two ticks the scratch array holds the normals.
@@ -100,7 +93,7 @@ mod tests {
     use crate::fabric::{FabricBuilder, FabricMaterial, Grid};
     use crate::step::{Drive, StepSettings};
 
-    /// A flag as a grid, and as a mesh that lies on a background grid.
+    /// A flag as a grid, and as a net.
     fn flags() -> [Fabric; 2] {
         let grid = Grid::new(12, 12, 1.0, 1.0);
         let mesh = FabricBuilder::new(grid.positions(), grid.triangles(false).into_flattened());
@@ -124,7 +117,7 @@ mod tests {
                         1.0 / 60.0,
                         if is_yarns { yarns } else { StepSettings::gauss_seidel(4) },
                     );
-                    let is_lone = matches!(batch.0, Lanes::Single(_) | Lanes::SingleMesh(_));
+                    let is_lone = matches!(batch.0, Lanes::Single(_) | Lanes::SingleNet(_));
                     assert_eq!(is_lone, lanes == LaneCount::One && is_yarns, "tick {tick}");
                 }
                 let mut normals = Vec::new();

@@ -1,6 +1,5 @@
 //! Batches: the state of cloths of one fabric, or of one topology, in the lanes of vectors.
 
-pub(crate) mod background_grid;
 mod cloth_batch;
 mod error;
 pub(crate) mod exchange;
@@ -19,7 +18,6 @@ pub(crate) mod probe_motion;
 mod readout;
 pub(crate) mod side_by_side;
 pub(crate) mod single_cloth;
-pub(crate) mod single_mesh;
 pub(crate) mod single_net;
 mod single_tethers;
 pub(crate) mod snapshot;

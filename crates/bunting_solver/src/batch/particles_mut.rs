@@ -20,9 +20,6 @@ use crate::simd::vec3::{Pack3, lane3, set_lane3};
 /// Vectors are along the axes of the cloth's frame in this substep. Particles are numbered as in the
 /// [`Fabric`](crate::Fabric); methods panic if there is no particle with the given number. Pinned particles
 /// cannot be moved: values written to them are ignored.
-///
-/// A mesh whose particles are asked for takes up to half more time in this tick and in the next: its particles, which
-/// otherwise follow a grid, then move by themselves.
 pub struct ParticlesMut<'a> {
     batch: &'a mut dyn ParticleAccess,
     lane: usize,
@@ -38,7 +35,7 @@ impl<'a> ParticlesMut<'a> {
         if !exists {
             return None;
         }
-        batch.access_particles(lane);
+        batch.disturb(lane);
         Some(Self { batch, lane })
     }
 

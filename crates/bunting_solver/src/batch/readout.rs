@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::batch::lane_batch::{BackgroundGrid, LaneBatch};
+use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
 use crate::simd::lane::Pack;
@@ -10,37 +10,18 @@ use crate::simd::vec3::{Pack3, lane3};
 use crate::step::bdf::IntegratorHistory;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// The state of a lane, with its history.
+    /// The state of a lane, with its history if the integrator has one.
     pub fn snapshot(&self, lane: usize) -> ClothSnapshot {
         let integrator = self.lanes[lane]
             .as_ref()
             .map_or_else(IntegratorHistory::default, |cloth| cloth.history);
-        self.snapshot_with(lane, integrator)
-    }
-
-    /// The state of a lane, with its history if the integrator has one.
-    pub fn snapshot_with(&self, lane: usize, integrator: IntegratorHistory) -> ClothSnapshot {
         let read = |packs: &Vec<Pack3<P>>| self.read(packs, lane);
-        let nodes = |grid: &BackgroundGrid<P>| Box::new(grid.snapshot(lane, integrator));
-        let own = || {
-            [
-                &self.displacement,
-                &self.older_displacement,
-                &self.older_velocity,
-                &self.oldest_velocity,
-            ]
-            .map(read)
-        };
-        let history = || self.followed_history(lane).unwrap_or_else(own);
-        let history =
-            integrator.exists().then(history).map(|[last, older, newer, oldest]| SnapshotHistory {
-                integrator,
-                displacements: [last, older],
-                older_velocities: [newer, oldest],
-                left_out: self.left_out_of(lane),
-                relaxation: self.relaxation_of(lane),
-                nodes: self.background.as_ref().map(nodes),
-            });
+        let history = integrator.exists().then(|| SnapshotHistory {
+            integrator,
+            displacements: [&self.displacement, &self.older_displacement].map(read),
+            older_velocities: [&self.older_velocity, &self.oldest_velocity].map(read),
+            relaxation: self.relaxation_of(lane),
+        });
         ClothSnapshot { history, ..self.snapshot_without_history(lane) }
     }
 
@@ -56,11 +37,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             located.map(|(pack, lane)| lane3(&packs[pack], lane)).collect()
         };
         ClothSnapshot::new(read(self.positions.packs()), read(&self.velocity))
-    }
-
-    /// What the rounding of a lane's positions has left out, m; empty where it is not kept.
-    fn left_out_of(&self, lane: usize) -> Vec<Vec3> {
-        if self.correction.is_empty() { Vec::new() } else { self.read(&self.correction, lane) }
     }
 
     fn read(&self, packs: &[Pack3<P>], lane: usize) -> Vec<Vec3> {

@@ -23,8 +23,6 @@ pub(crate) struct SideBySide<P: Pack> {
     columns: usize,
     particles: usize,
     factors: Factors<P, f32>,
-    /// Compliance of a square of cloth along warp, weft and diagonals of laid yarns, σ/(Y h²), 1/m².
-    pub modulus_compliance: [P; 3],
     /// Compliance of each class of hinges, σ/(k h²), 1/m⁴.
     pub hinge_compliance: Vec<P>,
     /// XPBD multiplier of each hinge, kept from pass to pass of a substep.
@@ -49,7 +47,6 @@ impl<P: Pack> SideBySide<P> {
                 twist: twist.map(|profile| TwistFactors::new(&[Some(profile)])).collect(),
                 resists_twist: P::splat(0.0),
             },
-            modulus_compliance: [zero; 3],
             hinge_compliance: vec![zero; fabric.hinge_classes().len()],
             hinge_multiplier: vec![zero; fabric.hinges().len()],
             below: vec![splat3(Vec3::ZERO); fabric.patch_grid_columns().unwrap_or(0)],
@@ -142,11 +139,6 @@ impl<P: Pack> Layout<P> for SideBySide<P> {
         }
         for (factors, rows) in twist.iter_mut().zip(&of_cloth.twist) {
             factors.set_lane(lane, rows);
-        }
-        for (pack, compliance) in
-            self.modulus_compliance.iter_mut().zip(stiffness.of_moduli(fabric))
-        {
-            pack.lanes_mut()[lane] = compliance;
         }
         let hinges = stiffness.of_hinges(fabric);
         for (pack, compliance) in self.hinge_compliance.iter_mut().zip(hinges) {

@@ -37,12 +37,8 @@ pub(crate) struct SnapshotHistory {
     pub displacements: [Vec<Vec3>; 2],
     /// Velocities one and two substeps earlier, m/s.
     pub older_velocities: [Vec<Vec3>; 2],
-    /// What the rounding of positions has left out, m; empty where it is not kept.
-    pub left_out: Vec<Vec3>,
     /// Under-relaxation factor of each particle; empty where all are 1.
     pub relaxation: Vec<f32>,
-    /// State of the nodes of a mesh's background grid.
-    pub nodes: Option<Box<ClothSnapshot>>,
 }
 
 impl ClothSnapshot {

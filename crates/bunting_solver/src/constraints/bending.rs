@@ -2,7 +2,7 @@
 //! of stiffness B × width/l.
 //!
 //! The XPBD system (D W Dᵀ + α̃) λ = −C of a line is pentadiagonal, constant, and the same for x, y and z (see
-//! `bend_factors.rs`). On a grid that is curved at rest C is less by the bend at rest (`rest_bends.rs`). Solved before stretch, three substeps suffice for the heavy cantilever, where Gauss–Seidel
+//! `bend_factors.rs`). On a net C is less by the bend at rest (`rest_bends.rs`). Solved before stretch, three substeps suffice for the heavy cantilever, where Gauss–Seidel
 //! needs hundreds.
 
 use crate::batch::lane_batch::LaneBatch;
@@ -36,7 +36,7 @@ struct Bending<'a, P: Pack, S: Particles<P>, R: Particles<P>> {
     lines: &'a [BendLine],
     factors: &'a [BendFactors<P, S::Constant>],
     moments: &'a mut [Pack3<P>],
-    /// Second differences at rest, m, if the grid is curved there.
+    /// Second differences at rest, m, of a net.
     at_rest: Option<R>,
     particles: S,
 }
@@ -50,9 +50,6 @@ impl<P: Pack, S: Particles<P>, R: Particles<P>> Kernel<P> for Bending<'_, P, S, 
             self.particles.bring::<L, 1>(token, rows, 1);
             self.eliminate::<L>(token, &line.particles, factors);
             self.substitute::<L>(token, &line.particles, factors);
-            if !factors.closing.is_empty() {
-                self.close::<L>(token, &line.particles, &factors.closing);
-            }
             self.particles.put_back::<L, 1>(token, rows, 1);
         }
     }
@@ -119,34 +116,6 @@ impl<P: Pack, S: Particles<P>, R: Particles<P>> Bending<'_, P, S, R> {
         let difference = after_next.minus_scaled(next, two);
         self.shift::<L>(token, particles[1], difference, mobilities[1]);
         self.shift::<L>(token, particles[0], next, mobilities[0]);
-    }
-
-    /// Solves the bend at the ends of a closed line together with their distance.
-    #[inline(always)]
-    fn close<L: Lane<Pack = P>>(
-        &mut self,
-        token: L::Token,
-        particles: &[u32],
-        moved_by: &[[P; 2]],
-    ) {
-        let [first, second, .., before_last, last] = particles else { return };
-        let start: V3<L> = self.particles.position(token, *first);
-        let end: V3<L> = self.particles.position(token, *last);
-        let after = self.particles.position(token, *second);
-        let before = self.particles.position(token, *before_last);
-        let mut bend = (start + end) - (before + after);
-        if let Some(at_rest) = &self.at_rest {
-            bend = bend + at_rest.position(token, *first);
-        }
-        let apart = end - start;
-        for (&particle, [by_bend, by_distance]) in particles.iter().zip(moved_by) {
-            let moved = self
-                .particles
-                .position(token, particle)
-                .plus_scaled(bend, L::load(token, by_bend))
-                .plus_scaled(apart, L::load(token, by_distance));
-            self.particles.set_position(token, particle, moved);
-        }
     }
 
     /// Moves a particle by the second difference of moments that acts on it.

@@ -13,7 +13,6 @@
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Particles, Positions};
-use crate::constraints::corrections::CorrectedParticles;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::fabric::{CHAINS_PER_PAIR, ChainLink, ChainPair, LinkFamily};
 use crate::simd::constant::Constant;
@@ -21,17 +20,12 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves warp, weft and diagonals, then warp and weft again in each pass, or all of them both ways: the chains of a grid
-    /// whose diagonals carry shear alone. The diagonals' targets follow from the first solution of warp and weft.
+    /// Solves warp, weft and diagonals, then warp and weft again in each pass: the lines of a grid, whose diagonals carry shear
+    /// alone. The diagonals' targets follow from the first solution of warp and weft.
     ///
     /// Diagonals must not come last, since they move particles far compared with the strain of warp and weft.
-    pub fn solve_chains(&mut self, passes: u32) {
+    pub(super) fn solve_lines(&mut self, passes: u32) {
         self.solve_warp_and_weft(Pass::First);
-        if self.is_solved_both_ways() {
-            self.find_diagonal_targets();
-            self.solve_passes_both_ways(passes);
-            return;
-        }
         if self.clock.begun == 1 {
             self.find_diagonal_targets();
         }
@@ -77,7 +71,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     fn solve_colour(&mut self, colour: usize, pass: Pass, is_any_overlong: &mut bool) {
         let chains = self.layout.chains(&self.fabric);
         if chains.colours[colour].are_swept_diagonals() {
-            self.sweep_colour(colour, false);
+            self.sweep_colour(colour);
             return;
         }
         let order = self.layout.order_of_chains(colour);
@@ -92,41 +86,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             by_closing: &mut self.by_closing,
             particles: self.positions.lines(order, masses, linked),
         });
-    }
-}
-
-impl<P: Pack> LaneBatch<P> {
-    /// Solves the chains of all colours of a grid with long cells, diagonals included, forwards and then backwards in each
-    /// pass.
-    pub fn solve_chains_both_ways(&mut self, passes: u32) {
-        let colours = self.layout.chains(&self.fabric).colours.len();
-        for pass in 0..passes {
-            // A pass begins with the colour that ended the pass before, which is not solved again.
-            let (first, forwards) = if pass == 0 { (0, Pass::First) } else { (1, Pass::Again) };
-            (first..colours).for_each(|colour| self.correct_by_colour(colour, forwards));
-            let backwards = (0..colours.saturating_sub(1)).rev();
-            backwards.for_each(|colour| self.correct_by_colour(colour, Pass::Again));
-        }
-        self.apply_corrections();
-    }
-
-    /// Solves the chains of one colour, and adds to the sums of corrections.
-    pub(super) fn correct_by_colour(&mut self, colour: usize, pass: Pass) {
-        let chains = self.fabric.chains();
-        P::run(SolveChainsOfLongCells(SolveChains {
-            pairs: &chains.pairs[chains.colours[colour].pairs.clone()],
-            pass,
-            is_any_overlong: &mut false,
-            compliance: &self.layout.factors().link_compliance,
-            rows: &mut self.rows,
-            target: &mut self.link_target,
-            by_closing: &mut [],
-            particles: CorrectedParticles {
-                inverse_masses: &self.masses.inverse,
-                predicted: self.positions.packs(),
-                correction: &mut self.correction,
-            },
-        }));
     }
 }
 
@@ -197,22 +156,6 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for SolveChains<'_, P, S> {
                 (TWO, Pass::Overlong) => self.solve_overlong::<L, TWO>(token, pair),
                 (_, Pass::Overlong) => self.solve_overlong::<L, 1>(token, pair),
                 (_, pass) => self.solve::<L, 1>(token, pair, pass),
-            }
-        }
-    }
-}
-
-/// The chains of one colour of a grid with long cells, without [`Pass::Diagonals`] and [`Pass::Overlong`].
-struct SolveChainsOfLongCells<'a, P: Pack>(SolveChains<'a, P, CorrectedParticles<'a, P>>);
-
-impl<P: Pack> Kernel<P> for SolveChainsOfLongCells<'_, P> {
-    #[inline(always)]
-    fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
-        let (pairs, pass) = (self.0.pairs, self.0.pass);
-        for pair in pairs {
-            match pair.count {
-                CHAINS_PER_PAIR => self.0.solve::<L, CHAINS_PER_PAIR>(token, pair, pass),
-                _ => self.0.solve::<L, 1>(token, pair, pass),
             }
         }
     }
@@ -370,7 +313,7 @@ mod tests {
         let stretched: Vec<Vec3> =
             fabric.rest_positions().iter().map(|at| *at * Vec3::new(1.2, 1.0, 1.0)).collect();
         let mut batch = cloth_at(&fabric, material, &stretched);
-        batch.solve_chains(1);
+        batch.solve_lines(1);
         for (end, rest) in positions(&batch).iter().zip(fabric.rest_positions()) {
             // The tolerance is the least compliance of a link.
             assert!((end.x - rest.x).abs() < 2e-4, "{end} {rest}");
@@ -386,7 +329,7 @@ mod tests {
             .map(|at| *at * 1.1 + Vec3::Z * 0.1 * libm::sinf(9.0 * at.x + 5.0 * at.y))
             .collect();
         let mut batch = cloth_at(&fabric, FabricMaterial::SILK, &crumpled);
-        batch.solve_chains(2);
+        batch.solve_lines(2);
         let areas = fabric.particle_areas();
         let centre = |at: &[Vec3]| -> Vec3 {
             at.iter().zip(areas).map(|(at, &area)| *at * area).sum::<Vec3>() / fabric.area()
@@ -414,8 +357,8 @@ mod tests {
         let point = vec![Vec3::splat(0.3); 25];
         for start in [point, fabric.rest_positions().to_vec()] {
             let mut batch = cloth_at(&fabric, stiff, &start);
-            batch.solve_chains(2);
-            batch.sweep_links();
+            batch.solve_lines(2);
+            batch.sweep_links(false);
             assert!(positions(&batch).iter().all(|position| position.is_finite()));
         }
     }

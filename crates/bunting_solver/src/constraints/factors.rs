@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use crate::constraints::bend_factors::{self, BendFactors, LineFactors};
+use crate::constraints::bend_factors::{self, BendFactors, BendRow};
 use crate::constraints::stiffness::{Stiffness, resists_twist};
 use crate::constraints::twist_factors::{self, TwistFactors, TwistRow};
 use crate::fabric::Fabric;
@@ -36,7 +36,7 @@ impl<P: Pack, C> Factors<P, C> {
 /// Compliances and factorised systems of one cloth, for each class and profile of its fabric.
 pub(crate) struct ClothFactors {
     pub link_compliance: Vec<f32>,
-    pub bending: Vec<LineFactors>,
+    pub bending: Vec<Vec<BendRow<f32>>>,
     pub twist: Vec<Vec<TwistRow<f32>>>,
     /// Whether the cloth resists twist.
     pub resists_twist: bool,

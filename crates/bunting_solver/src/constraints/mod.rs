@@ -5,8 +5,6 @@
 //! and 4.14). The inverse mass of a particle is w/σ, with w one over its area and σ the area density, so the
 //! equation is multiplied through by σ: inverse masses are w, 1/m², and compliances σ/(k h²).
 
-pub(crate) mod background;
-mod background_single;
 #[cfg(test)]
 mod bench;
 pub(crate) mod bend_factors;
@@ -14,17 +12,11 @@ mod bending;
 mod both_ways;
 mod chain;
 mod closed_chain;
-mod corrections;
 mod direction;
-pub(crate) mod extrapolation;
 pub(crate) mod factors;
 mod gauss_seidel;
 mod guide;
-mod interpolate;
-pub(crate) mod join;
-pub(crate) mod laid_yarns;
-pub(crate) mod lone_mesh;
-mod mesh_sweep;
+pub(crate) mod order;
 mod overlong;
 pub(crate) mod rest_bends;
 pub(crate) mod shear;
@@ -40,6 +32,5 @@ mod tether;
 pub(crate) mod tridiagonal;
 mod twist;
 pub(crate) mod twist_factors;
-mod vector_particles;
 
 pub(crate) use stiffness::resists_twist;

@@ -155,7 +155,7 @@ mod tests {
             ..FabricMaterial::FLAG_POLYESTER
         };
         let mut batch = cloth_at(&fabric, stiff, &folded);
-        batch.solve_chains(2);
+        batch.solve_lines(2);
         let before = greatest_strain(&fabric, &positions(&batch));
         batch.solve_overlong_chains();
         let after = greatest_strain(&fabric, &positions(&batch));
@@ -167,7 +167,7 @@ mod tests {
         let fabric = sheet();
         let stretched: Vec<Vec3> = fabric.rest_positions().iter().map(|at| *at * 1.04).collect();
         let mut batch = cloth_at(&fabric, FabricMaterial::FLAG_POLYESTER, &stretched);
-        batch.solve_chains(2);
+        batch.solve_lines(2);
         let before = positions(&batch);
         batch.solve_overlong_chains();
         assert_eq!(positions(&batch), before);

@@ -1,4 +1,4 @@
-//! The second differences at rest of a curved grid, turned with the cloth.
+//! The second differences at rest of a net, turned with the cloth.
 //!
 //! Before bending is solved, the frame of each node is found from its neighbours at their predicted positions. The second
 //! differences at rest (`fabric/rest_bends.rs`), which are constant in this frame, are then constant vectors of the systems'
@@ -12,14 +12,12 @@ use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3, splat3};
 
-/// The second differences at rest of the nodes of a batch of grids.
+/// The second differences at rest of the nodes of a batch of nets.
 #[derive(Clone, Debug)]
 pub(crate) struct RestBendPacks<P: Pack, Y: Layout<P>> {
     frames: Vec<NodeFrame<Y::Constant>>,
     /// Second differences along rows, and along columns, m.
     turned: [Y::Positions; 2],
-    /// Twists of cells, m, if the grid resists twist.
-    twists: Option<Y::Positions>,
 }
 
 /// What the frame of each node of a pack is found from, and what is constant in it.
@@ -34,11 +32,11 @@ struct NodeFrame<C> {
     /// Positive in lanes whose node has neighbours before and after it in its row.
     has_in_row: [C; 2],
     /// As `RestBends::of_nodes`, m.
-    at_rest: [[C; 3]; 3],
+    at_rest: [[C; 3]; 2],
 }
 
 impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
-    /// Those of a fabric; none if it is flat at rest.
+    /// Those of a fabric; none of a grid.
     pub fn of(fabric: &Fabric, layout: &Y) -> Option<Self> {
         let rest = fabric.rest_bends()?;
         let mut nodes_of_packs = vec![Vec::new(); layout.pack_count()];
@@ -57,7 +55,7 @@ impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
                 neighbours: layout.neighbours_of_pack(pack, nodes, rest),
                 has_in_row: masks([0, 1]),
                 has_in_column: masks([2, 3]),
-                at_rest: [0, 1, 2].map(|kind| {
+                at_rest: [0, 1].map(|kind| {
                     [0, 1, 2].map(|axis| constant(&|node| rest.of_nodes[node][kind][axis]))
                 }),
             }
@@ -66,7 +64,6 @@ impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
         Some(Self {
             frames: nodes_of_packs.iter().enumerate().map(frame).collect(),
             turned: [zero(), zero()],
-            twists: (!fabric.is_net()).then(zero),
         })
     }
 
@@ -81,27 +78,16 @@ impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
         let [rows, columns] = &mut self.turned;
         if are_rows { rows } else { columns }.particles(order, masses, linked)
     }
-
-    /// The twists of cells as the positions of their first nodes, if the grid resists twist.
-    pub fn of_cells<'a>(
-        &'a mut self,
-        order: Order,
-        masses: &'a [P],
-        linked: &'a [P],
-    ) -> Option<<Y::Positions as Positions<P>>::Particles<'a>> {
-        Some(self.twists.as_mut()?.particles(order, masses, linked))
-    }
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Turns the second differences at rest of curved grids with the nodes at their present positions.
+    /// Turns the second differences at rest of nets with the nodes at their present positions.
     pub(super) fn turn_rest_bends(&mut self) {
         let Some(rest) = &mut self.rest_bends else { return };
         let (masses, linked) = (&self.masses.inverse, self.layout.linked());
         P::run(TurnRestBends {
             frames: &rest.frames,
             turned: rest.turned.each_mut().map(|vectors| vectors.overwritten()),
-            twists: rest.twists.as_mut().map(|vectors| vectors.overwritten()),
             nodes: self.positions.particles(Order::RowMajor, masses, linked),
         });
     }
@@ -110,17 +96,15 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 struct TurnRestBends<'a, P: Pack, S: Particles<P>> {
     frames: &'a [NodeFrame<S::Constant>],
     turned: [&'a mut [Pack3<P>]; 2],
-    twists: Option<&'a mut [Pack3<P>]>,
     nodes: S,
 }
 
 impl<P: Pack, S: Particles<P>> Kernel<P> for TurnRestBends<'_, P, S> {
     #[inline(always)]
-    fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
+    fn run<L: Lane<Pack = P>>(self, token: L::Token) {
         let zero = L::splat(token, 0.0);
         let [rows, columns] = self.turned;
-        let turned = rows.iter_mut().zip(columns).enumerate();
-        for (frame, (pack, (row, column))) in self.frames.iter().zip(turned) {
+        for (frame, (row, column)) in self.frames.iter().zip(rows.iter_mut().zip(columns)) {
             let at: V3<L> = self.nodes.position(token, frame.at);
             let [before, after, above, below] = frame.neighbours;
             let [has_before, has_after] = &frame.has_in_row;
@@ -138,13 +122,10 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for TurnRestBends<'_, P, S> {
             let normal = unit(token, along.cross(across));
             let tangent = unit(token, along);
             let product = normal.cross(tangent);
-            let [of_row, of_column, of_cell] = &frame.at_rest;
+            let [of_row, of_column] = &frame.at_rest;
             let axes = [normal, tangent, product];
             along_axes(token, axes, of_row).store(row);
             along_axes(token, axes, of_column).store(column);
-            if let Some(twists) = &mut self.twists {
-                along_axes(token, axes, of_cell).store(&mut twists[pack]);
-            }
         }
     }
 }

@@ -33,9 +33,6 @@ const GREATEST_PUSH: f32 = 1.25;
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Computes the target of each diagonal from positions at which warp and weft are satisfied.
     pub fn find_diagonal_targets(&mut self) {
-        if !self.fabric.has_shear_cells() {
-            return;
-        }
         let (masses, linked) = (&self.masses.inverse, self.layout.linked());
         P::run(DiagonalTargets {
             cells: &self.layout.chains(&self.fabric).cells,
@@ -49,9 +46,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Sets the targets of a cloth's diagonals to their length at rest until its next tick.
     pub fn set_diagonals_at_rest(&mut self, lanes: Range<usize>) {
-        if !self.fabric.has_shear_cells() {
-            return;
-        }
         let lengths = &self.numbers.diagonal_length.lanes()[lanes.clone()];
         for target in &mut self.link_target {
             target.lanes_mut()[lanes.clone()].copy_from_slice(lengths);

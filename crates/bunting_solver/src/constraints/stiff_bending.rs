@@ -23,27 +23,20 @@ use crate::step::parameters::Parameters;
 const TRIALS: u32 = 3;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves bending and twist of a grid, unless they come after stretch in this substep.
-    pub fn solve_bending_before_stretch(&mut self) {
-        if !self.begins_with_tethers() {
-            self.bend_with_trials();
-        }
-    }
-
-    /// Solves bending and twist of a grid after stretch, whose tensions stay as they are: those of the trials are dropped.
-    pub(super) fn solve_bending_after_stretch(&mut self) {
+    /// Solves bending and twist after stretch, whose tensions stay as they are: those of the trials are dropped.
+    pub(super) fn solve_bends_of_taut_lines(&mut self) {
         let has_trials = self.parameters.any_bends_stiffly();
         if has_trials {
-            self.before_pass.targets.clone_from(&self.link_target);
+            self.targets_before_bending.clone_from(&self.link_target);
         }
-        self.bend_with_trials();
+        self.solve_all_bends();
         if has_trials {
-            core::mem::swap(&mut self.link_target, &mut self.before_pass.targets);
+            core::mem::swap(&mut self.link_target, &mut self.targets_before_bending);
         }
     }
 
     /// Solves bending and twist; for stiff cloth at positions that contain the displacement by stretch.
-    fn bend_with_trials(&mut self) {
+    pub(super) fn solve_all_bends(&mut self) {
         self.turn_rest_bends();
         if !self.parameters.any_bends_stiffly() {
             self.bend();

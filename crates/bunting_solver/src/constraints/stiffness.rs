@@ -14,11 +14,6 @@ const LIMP: f32 = 1000.0;
 /// 33 flag has 0.02.
 const STIFF_BENDING: f32 = 1.0;
 
-/// Stiffness of the links of a mesh that is solved on a background grid or by laid yarns, as a part of that of the material. Smaller: the sweep
-/// over them corrects less of what chains overshoot. Larger: the links take part of the load, and the cloth stretches
-/// too little.
-const LINKS_OF_MESH: f32 = 0.02;
-
 /// Whether a cloth is stiff enough for its resistance to twist to be visible.
 pub(crate) fn resists_twist(fabric: &Fabric, material: &FabricMaterial) -> bool {
     let Some(grid) = fabric.grid() else { return false };
@@ -44,26 +39,13 @@ impl Stiffness<'_> {
 
     /// Compliance of each class of links, 1/m².
     pub fn of_links(&self, fabric: &Fabric) -> Vec<f32> {
-        let least = LEAST_LINK_COMPLIANCE / fabric.first_whole_area();
+        let least = LEAST_LINK_COMPLIANCE / fabric.particle_areas()[0];
         let classes = fabric.link_classes().iter();
         let stiffnesses = classes.map(|class| match self.scheme {
-            Scheme::Yarns if fabric.has_shear_cells() => class.uncoupled_stiffness(self.material),
-            // The background grid, or laid yarns, carry the load.
-            Scheme::Yarns if fabric.grid().is_none() => {
-                LINKS_OF_MESH * class.stiffness(self.material)
-            }
-            _ => class.stiffness(self.material),
+            Scheme::Yarns => class.uncoupled_stiffness(self.material),
+            Scheme::GaussSeidel => class.stiffness(self.material),
         });
         stiffnesses.map(|stiffness| self.compliance(stiffness).max(least)).collect()
-    }
-
-    /// Compliance of a square of cloth along warp, weft and diagonals, 1/m².
-    pub fn of_moduli(&self, fabric: &Fabric) -> [f32; 3] {
-        let least = LEAST_LINK_COMPLIANCE / fabric.first_whole_area();
-        let [warp, weft, shear] = self.material.lattice_moduli();
-        // Diagonals that resist shear by G resist stretch along warp and weft by as much.
-        let moduli = [warp - shear, weft - shear, 2.0 * shear];
-        moduli.map(|modulus| self.compliance(modulus).max(least))
     }
 
     /// Compliance of each class of hinges, 1/m⁴.

@@ -24,11 +24,6 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Whether the cloth is a grid that is solved by strips.
-    pub(super) fn is_narrow(&self) -> bool {
-        !self.fabric.strips().is_empty()
-    }
-
     /// Solves all strips in each pass.
     pub(super) fn solve_strips(&mut self, passes: u32) {
         self.solve_warp_and_weft(Pass::First);

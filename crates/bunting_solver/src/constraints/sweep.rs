@@ -13,21 +13,18 @@ use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Solves each link of warp and weft once. In substeps that begin with tethers colours or their links go backwards
-    /// (`both_ways.rs`).
-    pub fn sweep_links(&mut self) {
-        let reverses_colours = self.begins_with_tethers() && self.fabric.is_cut();
-        let reverses_links = self.begins_with_tethers() && !self.fabric.is_net();
-        for colour in sweep_order(self.colour_count(), reverses_colours) {
+    /// Solves each link of warp and weft once, of the last colour first if `reverses`.
+    pub fn sweep_links(&mut self, reverses: bool) {
+        for colour in sweep_order(self.colour_count(), reverses) {
             let family = self.layout.chains(&self.fabric).colours[colour].family;
             if family != LinkFamily::Diagonal {
-                self.sweep_colour(colour, reverses_links);
+                self.sweep_colour(colour);
             }
         }
     }
 
     /// Solves each link of a colour once.
-    pub(super) fn sweep_colour(&mut self, index: usize, reverses_links: bool) {
+    pub(super) fn sweep_colour(&mut self, index: usize) {
         let chains = self.layout.chains(&self.fabric);
         let colour = &chains.colours[index];
         let order = self.layout.order_of_chains(index);
@@ -40,10 +37,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let has_leading = pairs.iter().any(|pair| pair.leading > 0);
         if colour.family == LinkFamily::Diagonal || has_leading {
             let particles = self.positions.particles(order, masses, linked);
-            P::run(Sweep { lines: &[], links, reverses_links, compliance, target, particles });
+            P::run(Sweep { lines: &[], links, compliance, target, particles });
         } else {
             let particles = self.positions.lines(order, masses, linked);
-            P::run(Sweep { lines: pairs, links, reverses_links, compliance, target, particles });
+            P::run(Sweep { lines: pairs, links, compliance, target, particles });
         }
     }
 }
@@ -53,7 +50,6 @@ struct Sweep<'a, P: Pack, S: Particles<P>> {
     lines: &'a [ChainPair<S::Constant>],
     /// The links of one colour.
     links: &'a [SweepLink],
-    reverses_links: bool,
     compliance: &'a [P],
     target: &'a mut [P],
     particles: S,
@@ -66,8 +62,7 @@ impl<P: Pack, S: Particles<P>> Kernel<P> for Sweep<'_, P, S> {
             self.particles.bring::<L, CHAINS_PER_PAIR>(token, &pair.particles, pair.count);
         }
         let least = L::splat(token, f32::MIN_POSITIVE);
-        for index in sweep_order(self.links.len(), self.reverses_links) {
-            let link = &self.links[index];
+        for link in self.links {
             let stored = &mut self.target[link.target as usize];
             let [a, b] = link.particles;
             let mass_a: L = self.particles.inverse_mass(token, a);

@@ -1,8 +1,6 @@
 //! Twist along the ribbons of a grid, each ribbon solved exactly: C = x₀₀ − x₁₀ − x₀₁ + x₁₁ in every cell, of
 //! stiffness 2 B/(Δx Δy).
 //!
-//! On a grid that is curved at rest C is less by the twist at rest (`rest_bends.rs`).
-//!
 //! The XPBD system of a ribbon is tridiagonal, constant, and the same for x, y and z (see
 //! `twist_factors.rs`). Gauss–Seidel, cell by cell, would need as many sweeps as a strip has cells to hold
 //! the strip on edge.
@@ -27,7 +25,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             ribbons,
             factors: &self.layout.factors().twist,
             moments: &mut self.moments,
-            at_rest: self.rest_bends.as_mut().and_then(|rest| rest.of_cells(order, masses, linked)),
             particles: self.positions.particles(order, masses, linked),
         });
     }
@@ -37,8 +34,6 @@ struct Twist<'a, P: Pack, S: Particles<P>> {
     ribbons: &'a [Ribbon],
     factors: &'a [TwistFactors<P, S::Constant>],
     moments: &'a mut [Pack3<P>],
-    /// Twists at rest, m, if the grid is curved there.
-    at_rest: Option<S>,
     particles: S,
 }
 
@@ -67,11 +62,7 @@ impl<P: Pack, S: Particles<P>> Twist<'_, P, S> {
         let mut last = zero;
         for (cell, (row, &pair)) in factors.rows.iter().zip(&pairs[1..]).enumerate() {
             let next = self.across(token, pair);
-            let mut right = across - next;
-            if let Some(at_rest) = &self.at_rest {
-                right = right + at_rest.position(token, pairs[cell][0]);
-            }
-            last = right.minus_scaled(last, L::load(token, &row.lower));
+            last = (across - next).minus_scaled(last, L::load(token, &row.lower));
             last.store(&mut self.moments[cell]);
             across = next;
         }

@@ -2,9 +2,8 @@
 
 use glam::Vec3;
 
-use super::background::{Height, Interpolation};
+use super::interpolation::{Height, Interpolation, Term};
 use super::normals::vertex_normals;
-use crate::step::follow;
 
 /// The places of a mesh's vertices on the surface between the particles of a [`Resampled`](crate::Resampled) fabric. Vertices at
 /// the same position, as along the seams of a texture, have one place.
@@ -14,6 +13,8 @@ pub struct Carried {
     pub(super) rows: Interpolation,
     /// How far places lie above the surface between particles.
     pub(super) heights: Vec<Height>,
+    /// How far pinned places lie from the straight line between the pinned particles beside them, m: constant in the cloth's frame.
+    pub(super) held: Vec<(u32, Vec3)>,
     /// The place of each vertex.
     pub(super) place_of_vertex: Vec<u32>,
     /// The mesh's triangles as places.
@@ -28,8 +29,14 @@ impl Carried {
     /// If the positions are those of another fabric with fewer particles.
     #[must_use]
     pub fn places(&self, particles: &[Vec3]) -> Vec<Vec3> {
-        let mut places = vec![Vec3::ZERO; self.rows.len()];
-        follow::follow(&self.rows, &self.heights, particles, &mut places);
+        let on_surface = |row: &[Term]| interpolated(row, particles);
+        let mut places: Vec<Vec3> = self.rows.rows().map(on_surface).collect();
+        for height in &self.heights {
+            places[height.place as usize] += height.raise(particles);
+        }
+        for (place, offset) in &self.held {
+            places[*place as usize] += *offset;
+        }
         places
     }
 
@@ -56,9 +63,11 @@ impl Carried {
     #[must_use]
     pub fn position(&self, vertex: usize, particles: &[Vec3]) -> Vec3 {
         let place = self.place_of_vertex[vertex];
-        let height = self.heights.binary_search_by_key(&place, |it| it.particle);
-        let height = height.ok().map(|at| Height { particle: 0, ..self.heights[at] });
-        follow::followed(self.rows.row(place as usize), height.as_slice(), particles)
+        let above = self.heights.binary_search_by_key(&place, |it| it.place);
+        let above = above.map_or(Vec3::ZERO, |at| self.heights[at].raise(particles));
+        let held = self.held.binary_search_by_key(&place, |it| it.0);
+        let aside = held.map_or(Vec3::ZERO, |at| self.held[at].1);
+        interpolated(self.rows.row(place as usize), particles) + above + aside
     }
 
     /// Positions of all vertices, m, given those of the particles, m.
@@ -71,4 +80,9 @@ impl Carried {
         let places = self.places(particles);
         self.place_of_vertex.iter().map(|&place| places[place as usize]).collect()
     }
+}
+
+/// A position on the surface between particles, m.
+fn interpolated(row: &[Term], particles: &[Vec3]) -> Vec3 {
+    row.iter().map(|term| particles[term.from as usize] * term.weight).sum()
 }

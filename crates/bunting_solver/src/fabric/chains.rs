@@ -14,7 +14,6 @@ use std::collections::HashMap;
 use glam::Vec3;
 
 use super::colour::Colours;
-use super::grid::Grid;
 use super::links::{Link, LinkFamily};
 use super::topology::ascending;
 use super::yarns::Yarn;
@@ -140,29 +139,17 @@ pub(crate) struct Chains<C = f32> {
 }
 
 impl Chains {
-    /// Chains of all yarns, and the cells of a grid, whose first and last row may be joined.
-    pub(super) fn of(
-        yarns: &[Yarn],
-        colours: &Colours,
-        links: &[Link],
-        grid: Option<&Grid>,
-        is_joined: bool,
-    ) -> Self {
-        let is_column = |yarn: &Yarn| grid.is_some_and(|grid| grid.is_whole_column(yarn));
+    /// Chains of all yarns.
+    pub(super) fn of(yarns: &[Yarn], colours: &Colours, links: &[Link]) -> Self {
         let chain = |yarn: &Yarn| {
             let of_chain = yarn.links.iter().map(|link| ChainLink::of(&links[*link as usize]));
-            let is_closed = is_joined && is_column(yarn) || yarn.is_ring();
-            Chain::new(yarn.particles.clone(), of_chain.collect(), is_closed, 0)
+            Chain::new(yarn.particles.clone(), of_chain.collect(), yarn.is_ring(), 0)
         };
-        let mut chains = Self::of_colours(colours.ranges().iter().map(|range| {
+        Self::of_colours(colours.ranges().iter().map(|range| {
             let yarns = &yarns[range.clone()];
             let family = links[yarns[0].links[0] as usize].family;
             (family, yarns.iter().map(chain).collect())
-        }));
-        if let Some(grid) = grid {
-            chains.find_cells(grid.cells().map(|(corners, _)| corners));
-        }
-        chains
+        }))
     }
 
     /// Notes the lengths at rest of each cell's diagonals, given the positions of the particles, m.
@@ -198,11 +185,6 @@ impl Chains {
 }
 
 impl<C: Copy> Chains<C> {
-    /// No chains.
-    pub fn none() -> Self {
-        Self::of_colours(core::iter::empty())
-    }
-
     /// Arranges chains, given colour by colour, in pairs. There are no cells.
     pub fn of_colours(colours: impl Iterator<Item = (LinkFamily, Vec<Chain<C>>)>) -> Self {
         let mut chains = Self {

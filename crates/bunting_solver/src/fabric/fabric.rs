@@ -2,20 +2,16 @@
 
 use glam::{Vec2, Vec3};
 
-use super::background::BackgroundMesh;
-use super::background_fabric::Background;
 use super::bending::{BendLine, BendProfile, Bending};
 use super::chains::Chains;
 use super::colour::Colours;
 use super::grid::Grid;
 use super::hinges::{Hinge, HingeClass, Hinges};
-use super::laid_yarns::LaidYarns;
 use super::links::{Link, LinkClass, Links, Probe};
 use super::material::FabricMaterial;
 use super::mesh::{RestMesh, Surface};
 use super::patches::{self, Patch};
 use super::pin_paths::PinPaths;
-use super::quads::Net;
 use super::rest_bends::RestBends;
 use super::strip::{self, StripRow};
 use super::tethers::{Pin, Tether, Tethers};
@@ -25,9 +21,8 @@ use crate::constants::FREE_LENGTH;
 
 /// A piece of cloth at rest, with its pins. It is immutable; all cloths made of it share it in an `Arc`.
 ///
-/// A [`FabricBuilder`](crate::FabricBuilder) builds it. Vertices of the source mesh at the same position are
-/// one particle, see [`particle_of_vertex`](Self::particle_of_vertex); everything else is indexed by
-/// particle.
+/// A [`FabricBuilder`](crate::FabricBuilder) builds it. The particles of a grid are its vertices, those of any other mesh lie on lines
+/// along warp and weft, see [`particle_of_vertex`](Self::particle_of_vertex); everything is indexed by particle.
 #[derive(Clone, Debug)]
 pub struct Fabric {
     pub(super) grid: Option<Grid>,
@@ -37,7 +32,6 @@ pub struct Fabric {
     pub(super) links: Links,
     pub(super) yarns: Yarns,
     pub(super) chains: Chains,
-    pub(super) laid_yarns: LaidYarns,
     pub(super) strips: Vec<Vec<StripRow>>,
     pub(super) hinges: Hinges,
     pub(super) bending: Bending,
@@ -45,12 +39,12 @@ pub struct Fabric {
     pub(super) rest_bends: Option<RestBends>,
     pub(super) tethers: Tethers,
     pub(super) pin_paths: PinPaths,
-    pub(super) covered: Vec<f32>,
     pub(super) tautness: f32,
     pub(super) shortest: f32,
     pub(super) probes: Vec<Probe>,
     pub(super) topology: Option<u64>,
-    pub(super) background: Option<Background>,
+    /// cos² of the angle between the rows of a grid and the warp.
+    pub(super) warp_cos2: f32,
 }
 
 /// [`Fabric::tautness`] of a fabric with this [`reach`](Fabric::reach) and shortest link, m. Without pins it counts as a few links long.
@@ -59,77 +53,55 @@ pub(super) fn tautness(reach: f32, shortest: f32) -> f32 {
 }
 
 impl Fabric {
-    /// The constraints of a mesh, or of the grid that the mesh was made from.
-    pub(super) fn new(
+    /// The constraints of a grid whose rows have an angle to the warp, given its cos².
+    pub(super) fn of_grid(
         mut mesh: RestMesh,
         surface: &Surface,
-        grid: Option<Grid>,
+        grid: Grid,
+        warp_cos2: f32,
         tethered: bool,
     ) -> Self {
-        let background = match &grid {
-            Some(_) => None,
-            None => BackgroundMesh::of(&mesh, surface)
-                .and_then(|grid| Background::of(grid, tethered))
-                .or_else(|| Some(Background::of_net(Net::of(&mesh, surface)?, tethered))),
-        };
-        let net = background.as_ref().filter(|it| it.nodes_are_particles);
-        if let Some(Background { fabric: net, .. }) = net {
-            mesh.set_areas(net.mesh.areas.clone());
-        }
         let mut patches = patches::patches(&mesh.triangles, &surface.triangle_areas);
-        let cells = grid.filter(|grid| patches::are_cells(&patches, grid));
+        let cells = Some(grid).filter(|grid| patches::are_cells(&patches, grid));
         if let Some(grid) = &cells {
             mesh.set_areas(grid.particle_areas());
             patches::quarter(&mut patches, grid);
         }
-        let links = Links::of(&mesh, grid.as_ref(), None, &surface.corner_uv, false);
-        // Only a grid is solved along its own links.
-        let (yarns, laid_yarns) = match (&grid, &background) {
-            (Some(_), _) => (Yarns::of(&mesh.positions, &links.list), LaidYarns::default()),
-            (None, Some(_)) => Default::default(),
-            (None, None) => (Yarns::default(), LaidYarns::of(&mesh, surface)),
-        };
-        let chains = Chains::of(&yarns.list, &yarns.colours, &links.list, grid.as_ref(), false);
-        let strips =
-            grid.map(|grid| strip::strips(&grid, &links.list, &chains)).unwrap_or_default();
-        let hinges = Hinges::of(&mesh, &surface.edges);
-        let bending = grid
-            .map(|grid| Bending::of(&grid, &mesh.inverse_areas, false, None))
-            .unwrap_or_default();
-        let twist =
-            grid.map(|grid| Twist::of(&grid, &mesh.inverse_areas, None)).unwrap_or_default();
-        let tethers = Tethers::of(&mesh, &surface.edges, grid.is_some(), tethered);
-        // A load runs along the straight lines of a background grid, not along the edges of the mesh, which zigzag.
-        let (reach, shortest) = match (&grid, &background) {
-            (_, Some(Background { fabric, .. })) => (fabric.reach(), fabric.links.shortest()),
-            (Some(_), None) => (tethers.reach, links.shortest()),
-            (None, None) => (tethers.reach, laid_yarns.least_spacing),
-        };
+        let links = Links::of(&mesh, &grid, warp_cos2);
+        let yarns = Yarns::of(&mesh.positions, &links.list);
+        let mut chains = Chains::of(&yarns.list, &yarns.colours, &links.list);
+        chains.find_cells(grid.cells().map(|(corners, _)| corners));
+        let tethers = Tethers::of(&mesh, &surface.edges, true, tethered);
+        let (reach, shortest) = (tethers.reach, links.shortest());
         let mut fabric = Self {
             patch_grid_columns: cells.map(|grid| grid.columns as usize),
             tautness: tautness(reach, shortest),
             shortest,
             probes: links.probes(),
-            grid,
+            strips: strip::strips(&grid, &links.list, &chains),
+            hinges: Hinges::of(&mesh, &surface.edges),
+            bending: Bending::of(&grid, &mesh.inverse_areas),
+            twist: Twist::of(&grid, &mesh.inverse_areas),
+            rest_bends: None,
+            grid: Some(grid),
             mesh,
             patches,
             links,
             yarns,
             chains,
-            laid_yarns,
-            strips,
-            hinges,
-            bending,
-            twist,
-            rest_bends: None,
             tethers,
             pin_paths: PinPaths::default(),
-            covered: Vec::new(),
             topology: None,
-            background,
+            warp_cos2,
         };
         fabric.topology = fabric.hash_topology();
         fabric
+    }
+
+    /// Sets the particle at each vertex of the mesh that it was made from, given the place of each vertex and the particle there.
+    pub(super) fn set_vertices(&mut self, place_of_vertex: &[u32], particles: &[u32]) {
+        let of_places = place_of_vertex.iter().map(|&place| particles[place as usize]);
+        self.mesh.particle_of_vertex = of_places.collect();
     }
 
     /// Positions at rest in the cloth's frame, m, one per particle.
@@ -150,7 +122,8 @@ impl Fabric {
         &self.mesh.triangles
     }
 
-    /// The particle that each vertex of the source mesh was merged into.
+    /// The particle at each vertex of the source mesh; of a mesh that is no grid the nearest one, of a pinned vertex the nearest
+    /// pinned one.
     #[must_use]
     pub fn particle_of_vertex(&self) -> &[u32] {
         &self.mesh.particle_of_vertex
@@ -264,23 +237,6 @@ impl Fabric {
         &self.chains
     }
 
-    /// Yarns laid across the triangles of a mesh; none of grids, and of meshes with a background grid.
-    pub(crate) fn laid_yarns(&self) -> &LaidYarns {
-        &self.laid_yarns
-    }
-
-    /// Whether diagonals resist shear alone (`constraints/shear.rs`): on grids with diagonals of the family
-    /// [`Diagonal`](crate::LinkFamily::Diagonal).
-    pub(crate) fn has_shear_cells(&self) -> bool {
-        !self.chains.cells.is_empty()
-    }
-
-    /// Whether corrections of particles are summed by themselves (`constraints/corrections.rs`): on grids without such
-    /// cells, and on meshes without a background grid.
-    pub(crate) fn sums_corrections(&self) -> bool {
-        self.background.is_none() && !self.has_shear_cells()
-    }
-
     /// Strips of a narrow grid, each row by row; none of other fabrics.
     pub(crate) fn strips(&self) -> &[Vec<StripRow>] {
         &self.strips
@@ -316,18 +272,12 @@ impl Fabric {
         &self.twist.profiles
     }
 
-    /// The background grid or the net that solves stretch, shear and bending in place of the mesh's own links; none of grids,
-    /// and of meshes that are solved by laid yarns.
-    pub(crate) fn background(&self) -> Option<&Background> {
-        self.background.as_ref()
+    /// A material along the rows and columns of a grid.
+    pub(crate) fn material_along_rows(&self, material: &FabricMaterial) -> FabricMaterial {
+        material.turned(self.warp_cos2)
     }
 
-    /// A material along the directions in which stretch is solved.
-    pub(crate) fn material_of_stretch(&self, material: &FabricMaterial) -> FabricMaterial {
-        self.background.as_ref().map_or(*material, |grid| material.turned(grid.warp_cos2))
-    }
-
-    /// The second differences of a background grid that is curved at rest.
+    /// The second differences at rest of a net, which is curved there; none of a grid.
     pub(crate) fn rest_bends(&self) -> Option<&RestBends> {
         self.rest_bends.as_ref()
     }
@@ -360,7 +310,7 @@ impl Fabric {
     }
 
     /// Tautness √L/l, m^−½, with L the [`reach`](Self::reach) and l the length of the shortest link of warp
-    /// and weft, both of the background grid if there is one. The topmost links of a cloth of length L that
+    /// and weft. The topmost links of a cloth of length L that
     /// hangs under gravity g vibrate at 2 √g times this value, rad/s.
     pub(crate) fn tautness(&self) -> f32 {
         self.tautness

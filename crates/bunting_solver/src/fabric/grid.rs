@@ -4,7 +4,6 @@ use glam::{Vec2, Vec3};
 
 use super::error::FabricError;
 use super::links::LinkFamily;
-use super::yarns::Yarn;
 
 /// A rectangular grid of particles.
 ///
@@ -42,36 +41,6 @@ impl Grid {
         libm::hypotf(self.width / (self.columns - 1) as f32, self.height / (self.rows - 1) as f32)
     }
 
-    /// Whether a yarn runs down a whole column.
-    pub(super) fn is_whole_column(&self, yarn: &Yarn) -> bool {
-        let steps = yarn.particles.windows(2);
-        yarn.particles.len() == self.rows as usize
-            && steps.into_iter().all(|ends| ends[1] == ends[0] + self.columns)
-    }
-
-    /// The first and the last particle of each column, which are at one place where a grid is closed.
-    pub(crate) fn ends_of_columns(&self) -> impl Iterator<Item = [u32; 2]> + use<> {
-        let last = (self.rows - 1) * self.columns;
-        (0..self.columns).map(move |column| [column, last + column])
-    }
-
-    /// The pairs of neighbours in columns that no link joins, of the columns in which links join some.
-    pub(super) fn gaps_of_columns(&self, links: &[[u32; 2]]) -> Vec<[u32; 2]> {
-        let Self { columns, rows, .. } = *self;
-        let mut is_joined = vec![false; (columns * rows) as usize];
-        for &[one, other] in links {
-            if one.abs_diff(other) == columns {
-                is_joined[one.min(other) as usize] = true;
-            }
-        }
-        let starts = |column: u32| (0..rows - 1).map(move |row| self.index(column, row));
-        let is_joined = |start: &u32| is_joined[*start as usize];
-        let has_links =
-            (0..columns).filter(|&column| starts(column).any(|start| is_joined(&start)));
-        let gaps = has_links.flat_map(starts).filter(|start| !is_joined(start));
-        gaps.map(|start| [start, start + columns]).collect()
-    }
-
     /// The family of a link between two particles of a cell. Of two columns a diagonal joins consecutive particles, too.
     pub(super) fn family(&self, ends: [u32; 2]) -> LinkFamily {
         let [one, other] = ends.map(|end| (end % self.columns, end / self.columns));
@@ -82,23 +51,6 @@ impl Grid {
         } else {
             LinkFamily::Diagonal
         }
-    }
-
-    /// The particles before and after a place in its row, and those above and below it: the particle itself where the grid
-    /// ends. The first and the last row of a closed grid are at one place.
-    pub(super) fn neighbours(&self, (column, row): (u32, u32), is_closed: bool) -> [u32; 4] {
-        let (last_column, last_row) = (self.columns - 1, self.rows - 1);
-        let above = match row {
-            0 if is_closed => last_row - 1,
-            _ => row.saturating_sub(1),
-        };
-        let below = if is_closed && row == last_row { 1 } else { (row + 1).min(last_row) };
-        [
-            self.index(column.saturating_sub(1), row),
-            self.index((column + 1).min(last_column), row),
-            self.index(column, above),
-            self.index(column, below),
-        ]
     }
 
     /// Index of the particle in a column and row.

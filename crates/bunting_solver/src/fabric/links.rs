@@ -1,6 +1,6 @@
 //! Distance constraints ("links"): the particles that they join, and their stiffnesses.
 //!
-//! Each triangle gives its three edges the stiffnesses with which links in those directions reproduce the
+//! Each triangle of a grid gives its three edges the stiffnesses with which links in those directions reproduce the
 //! material's moduli: Σ q c⁴ = A C₁₁, Σ q s⁴ = A C₂₂ and Σ q c²s² = A G, with q = k l² for an edge of
 //! stiffness k and length l, (c, s) its direction in the material and A the triangle's area. If a triangle's
 //! directions do not determine q, least squares selects the smallest solution. On a grid, whose cells are
@@ -47,11 +47,11 @@ const LEAST_PROBE_DISTANCE: usize = 3;
 /// The direction of a link in the cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LinkFamily {
-    /// Within 22.5° of the warp (u).
+    /// Along the warp (u).
     Warp,
-    /// Within 22.5° of the weft (v).
+    /// Along the weft (v).
     Weft,
-    /// In between: the link resists shear.
+    /// Across a cell: the link resists shear.
     Diagonal,
 }
 
@@ -67,9 +67,6 @@ pub(crate) struct LinkClass {
 }
 
 impl LinkClass {
-    /// Without stiffness.
-    const NONE: Self = Self { coefficients: [0.0; 3], floor: 0.0, warp_cos2: 1.0 };
-
     /// Of a family's modulus alone.
     pub fn of_family(family: LinkFamily, coefficient: f32, warp_cos2: f32) -> Self {
         let mut coefficients = [0.0; 3];
@@ -81,6 +78,7 @@ impl LinkClass {
     /// [`FabricMaterial::lattice_moduli`].
     pub fn stiffness(&self, material: &FabricMaterial) -> f32 {
         // Coefficients of zero are skipped: an inextensible material's moduli are infinite.
+        let material = &material.turned(self.warp_cos2);
         let moduli = material.lattice_moduli();
         self.combined(moduli, |coefficient| coefficient != 0.0).max(self.least(material))
     }
@@ -123,9 +121,6 @@ const RIDGE: f64 = 1e-7;
 /// coefficients of triangles nearly along the warp are lost.
 const LEAST_COEFFICIENT: f64 = 1e-4;
 
-/// cos² of the angle to the warp above which a link counts as warp: 22.5°.
-const FAMILY_COS2: f64 = 0.853_553_390_6;
-
 /// The links of a fabric.
 #[derive(Clone, Debug)]
 pub(crate) struct Links {
@@ -136,65 +131,34 @@ pub(crate) struct Links {
 }
 
 impl Links {
-    /// Links along the edges of a mesh, or along the rows, columns and both diagonals of a grid. A link
+    /// Links along the rows, columns and both diagonals of a grid, given cos² of the angle between its rows and the warp. A link
     /// between two pinned particles moves nothing and is left out.
-    ///
-    /// `corner_uv` are the texture coordinates at the corners of the triangles of a mesh. `coverage` is the part of each
-    /// cell of a grid that is cloth: the cell has this part of the stiffness. The columns of a closed grid are whole.
-    pub fn of(
-        mesh: &RestMesh,
-        grid: Option<&Grid>,
-        coverage: Option<&[f32]>,
-        corner_uv: &[[Vec2; 3]],
-        is_closed: bool,
-    ) -> Self {
+    pub fn of(mesh: &RestMesh, grid: &Grid, warp_cos2: f32) -> Self {
         let mut sums = EdgeSums::new(mesh.positions.len());
-        match grid {
-            // A cell is split both ways, and each way contributes half.
-            Some(grid) => {
-                for flipped in [false, true] {
-                    for (index, triangle) in grid.triangles(flipped).into_iter().enumerate() {
-                        let part = coverage.map_or(1.0, |of_cells| of_cells[index / 2]);
-                        if part > 0.0 {
-                            let uv = triangle.map(|corner| mesh.uv[corner as usize]);
-                            add_triangle(&mut sums, mesh, triangle, uv, 0.5 * f64::from(part));
-                        }
-                    }
-                }
-            }
-            None => {
-                for (&triangle, &uv) in mesh.triangles.iter().zip(corner_uv) {
-                    add_triangle(&mut sums, mesh, triangle, uv, 1.0);
-                }
+        let along_rows = grid.uvs();
+        // A cell is split both ways, and each way contributes half.
+        for flipped in [false, true] {
+            for triangle in grid.triangles(flipped) {
+                let uv = triangle.map(|corner| along_rows[corner as usize]);
+                add_triangle(&mut sums, mesh, triangle, uv, 0.5);
             }
         }
-        // Nodes of a background grid may be moved, but lie in rows and columns all the same.
-        let background = grid.filter(|_| coverage.is_some());
-        let links = sums.sorted().map(|(ends, sum)| {
-            let family = background.map_or_else(|| sum.family(), |grid| grid.family(ends));
-            (ends, sum.class(), family)
-        });
-        Self::of_classes(mesh, links, grid.filter(|_| is_closed))
+        let links = sums
+            .sorted()
+            .map(|(ends, sum)| (ends, LinkClass { warp_cos2, ..sum.class() }, grid.family(ends)));
+        Self::of_classes(mesh, links)
     }
 
-    /// Links between particles, with their stiffnesses and families. The columns of a closed grid are whole: where a hole or pins
-    /// cut them, links without stiffness join their parts.
+    /// Links between particles, with their stiffnesses and families.
     pub(super) fn of_classes(
         mesh: &RestMesh,
         links: impl Iterator<Item = ([u32; 2], LinkClass, LinkFamily)>,
-        closed: Option<&Grid>,
     ) -> Self {
         let is_free = |ends: &[u32; 2]| !ends.iter().all(|&end| mesh.is_pinned(end));
-        let mut links: Vec<_> = links.filter(|(ends, ..)| is_free(ends)).collect();
-        if let Some(grid) = closed {
-            let all: Vec<[u32; 2]> = links.iter().map(|(ends, ..)| *ends).collect();
-            let missing = grid.gaps_of_columns(&all).into_iter();
-            links.extend(missing.map(|ends| (ends, LinkClass::NONE, LinkFamily::Weft)));
-            links.sort_unstable_by_key(|(ends, ..)| *ends);
-        }
+        let links = links.filter(|(ends, ..)| is_free(ends));
         let mut table = Vec::new();
         let mut classes = Classes::new();
-        let links = links.into_iter().map(|(particles, value, family)| {
+        let links = links.map(|(particles, value, family)| {
             let [a, b, c] = value.coefficients;
             let (class, is_new) =
                 classes.class_of([a, b, c, value.floor, value.warp_cos2].map(rounded_bits));
@@ -215,12 +179,8 @@ impl Links {
 
     /// Length of the shortest link of warp and weft, m.
     pub fn shortest(&self) -> f32 {
-        let is_stretched = |link: &&Link| {
-            let class = &self.classes[link.class as usize];
-            link.family != LinkFamily::Diagonal && *class != LinkClass::NONE
-        };
-        let stretching = self.list.iter().filter(is_stretched);
-        stretching.map(|link| link.rest_length).fold(f32::INFINITY, f32::min)
+        let straight = self.list.iter().filter(|link| link.family != LinkFamily::Diagonal);
+        straight.map(|link| link.rest_length).fold(f32::INFINITY, f32::min)
     }
 
     /// Links of warp and weft, evenly spread over the list of them.
@@ -244,10 +204,6 @@ struct LinkSum {
     coefficients: [f64; 3],
     /// Factor of Young's modulus in an isotropic mesh.
     isotropic: f64,
-    /// Sum over the triangles of cos² of the angle to the warp, times the triangle's fraction.
-    cos2: f64,
-    /// Sum of the fractions.
-    parts: f64,
 }
 
 impl LinkSum {
@@ -258,17 +214,6 @@ impl LinkSum {
             }),
             floor: (LEAST_STIFFNESS * self.isotropic) as f32,
             warp_cos2: 1.0,
-        }
-    }
-
-    fn family(&self) -> LinkFamily {
-        let cos2 = self.cos2 / self.parts;
-        if cos2 > FAMILY_COS2 {
-            LinkFamily::Warp
-        } else if cos2 < 1.0 - FAMILY_COS2 {
-            LinkFamily::Weft
-        } else {
-            LinkFamily::Diagonal
         }
     }
 }
@@ -306,8 +251,6 @@ fn add_triangle(
             *coefficient += found;
         }
         sum.isotropic += scale;
-        sum.cos2 += part * (rows[index].x + rows[index].z);
-        sum.parts += part;
     }
 }
 
@@ -327,7 +270,7 @@ pub(super) fn along_u([a, b, c]: [Vec3; 3], [uv_a, uv_b, uv_c]: [Vec2; 3]) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fabric::{Fabric, FabricBuilder};
+    use crate::fabric::FabricBuilder;
 
     #[test]
     fn grid_links_have_the_textbook_stiffness() {
@@ -360,38 +303,5 @@ mod tests {
             assert!((stiffness / expected - 1.0).abs() < 2e-3, "{a}–{b}: {stiffness} {expected}");
         }
         assert!(fabric.link_classes().len() <= 6, "{:?}", fabric.link_classes());
-    }
-
-    /// A strip of four quads. With a seam the texture of the two on the right is shifted, and the vertices on the seam
-    /// are doubled.
-    fn strip(has_seam: bool) -> Fabric {
-        let mut positions = Vec::new();
-        let mut uv = Vec::new();
-        let mut indices = Vec::new();
-        for (columns, shift) in [(0..3, 0.0), (2..5, if has_seam { 1.0 } else { 0.0 })] {
-            for column in columns {
-                for row in 0..2 {
-                    let at = Vec2::new(column as f32, row as f32 + 0.2 * column as f32);
-                    positions.push(Vec3::new(at.x, -at.y, 0.0));
-                    uv.push(at + Vec2::new(0.0, shift));
-                }
-            }
-        }
-        for first in [0, 2, 6, 8] {
-            indices.extend([0, 1, 2, 2, 1, 3].map(|corner| first + corner));
-        }
-        FabricBuilder::new(positions, indices).uv(uv).build().expect("a good fabric")
-    }
-
-    #[test]
-    fn the_warp_is_that_of_each_side_of_a_seam() {
-        let (whole, seamed) = (strip(false), strip(true));
-        assert_eq!(seamed.particle_count(), 10);
-        for (one, other) in whole.links().iter().zip(seamed.links()) {
-            assert_eq!(one.particles, other.particles);
-            let [one, other] = [(&whole, one), (&seamed, other)]
-                .map(|(fabric, link)| fabric.link_stiffness(link, &FabricMaterial::DENIM));
-            assert!((one / other - 1.0).abs() < 1e-4, "{one} {other}");
-        }
     }
 }

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3};
 
 use super::error::FabricError;
 use super::normals::vertex_normals;
-use super::topology::{self, Edge};
+use super::topology::{self, Edge, Side};
 use super::weld::Weld;
 
 /// Least area of a triangle over the square of its longest edge. Smaller: the normals and stiffnesses of thin
@@ -110,17 +110,18 @@ impl RestMesh {
         self.areas = areas;
     }
 
-    /// Area of each particle, m², zero if it is pinned.
-    pub fn free_areas(&self) -> Vec<f32> {
-        let areas = self.areas.iter().zip(&self.inverse_areas);
-        areas.map(|(&area, &inverse)| if inverse > 0.0 { area } else { 0.0 }).collect()
+    /// The ends of an edge whose two triangles face opposite ways, if there is one, as on a Möbius strip.
+    pub fn one_sided_edge(&self, edges: &[Edge]) -> Option<[u32; 2]> {
+        let runs_along = |side: Side, [from, to]: [u32; 2]| {
+            let corners = self.triangles[side.triangle as usize];
+            (0..3).any(|at| [corners[at], corners[(at + 1) % 3]] == [from, to])
+        };
+        let faces_both = |edge: &&Edge| {
+            let other = edge.other_side.is_some_and(|it| runs_along(it, edge.ends));
+            edge.other_side.is_some() && runs_along(edge.side, edge.ends) == other
+        };
+        edges.iter().find(faces_both).map(|edge| edge.ends)
     }
-
-    /// Whether any particle is pinned.
-    pub fn has_pins(&self) -> bool {
-        self.inverse_areas.contains(&0.0)
-    }
-
     /// Whether a particle is pinned.
     pub fn is_pinned(&self, particle: u32) -> bool {
         self.inverse_areas[particle as usize] == 0.0
@@ -174,8 +175,9 @@ mod tests {
     #[test]
     fn mass_is_a_third_of_each_bordering_triangle() {
         let corners = vec![Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::new(1.0, 2.0, 0.0)];
-        let fabric = FabricBuilder::new(corners, vec![0, 1, 2, 1, 3, 2]).build().expect("good");
-        for (found, expected) in fabric.particle_areas().iter().zip([0.5, 1.5, 1.5, 1.0]) {
+        let builder = FabricBuilder::new(corners, vec![0, 1, 2, 1, 3, 2]);
+        let (mesh, _) = builder.rest_mesh().expect("a good mesh");
+        for (found, expected) in mesh.areas.iter().zip([0.5, 1.5, 1.5, 1.0]) {
             assert!((3.0 * found - expected).abs() < 1e-5, "{found}");
         }
     }

@@ -5,46 +5,41 @@
 //! constraint, so that cloths of different [`FabricMaterial`]s share one fabric and one batch.
 //!
 //! From a mesh to a fabric, a file a step: [`FabricBuilder`] checks the mesh and merges its seams
-//! (`builder/`, `weld`); `mesh` finds areas, edges and pins; `links` joins particles along warp, weft and
-//! diagonals; `yarns` cuts the links into straight paths and `chains` arranges these for solving; `bending` and
-//! `twist` (grids) or `hinges` (other meshes) resist bending; `background` lays a grid under meshes that are
-//! flat at rest or textured like their shape, and `quads` finds lines in others, with
-//! nodes of `remesh` where their vertices are uneven; `builder/resampled` makes particles of such nodes, and `carried` lets the mesh
-//! follow them; `tethers` bounds the distances from the pins;
-//! `patches` pairs triangles for sums over them.
+//! (`builder/`, `weld`); `mesh` finds areas, edges and pins. A grid is its own result: `links` joins particles along warp, weft and
+//! diagonals, and `yarns` cuts the links into straight paths. On any other mesh `remesh/` lays nodes along warp and weft, `net/` finds the
+//! lines between them, `of_nodes` makes particles of the nodes, and `carried` lets the mesh follow. Of both, `chains` arranges the lines
+//! for solving, `bending` and `twist` resist bending, `tethers` bounds the distances from the pins, and `patches` pairs triangles for
+//! sums over them.
 
-mod background;
-mod background_fabric;
 mod bending;
 mod builder;
 mod carried;
-mod cell_sizes;
 mod chains;
 mod clamp;
 mod classes;
 mod colour;
-mod covered;
-mod curved_links;
+mod directions;
 mod edge_sums;
 mod error;
 #[expect(clippy::module_inception, reason = "the file of the type that gives the folder its name")]
 mod fabric;
+mod faces;
 mod farthest;
 mod grid;
 mod hinges;
-mod laid_yarns;
+mod interpolation;
 mod links;
 mod material;
 mod mesh;
+mod net;
 mod normals;
+mod of_nodes;
 mod patches;
 mod pin_paths;
-mod quads;
 mod remesh;
 mod rest_bends;
 mod rest_paths;
 mod shared_topology;
-mod stretch_solver;
 mod strip;
 mod tethers;
 mod topology;
@@ -52,12 +47,10 @@ mod twist;
 mod weld;
 mod yarns;
 
-pub(crate) use background::{GridTransfer, Height, Interpolation, RowGroup, Term};
-pub(crate) use background_fabric::Background;
 pub(crate) use bending::{BendLine, BendProfile};
 pub(crate) use chains::{CHAINS_PER_PAIR, Cell, Chain, ChainLink, ChainPair, Chains, SweepLink};
-pub(crate) use hinges::{Hinge, angle as hinge_angle};
-pub(crate) use laid_yarns::{BAND, Coupling, LaidLink, LaidYarn, LaidYarns, Node, YARNS_AT_ONCE};
+#[cfg(test)]
+pub(crate) use hinges::angle as hinge_angle;
 pub(crate) use patches::Patch;
 pub(crate) use pin_paths::DistancesFromPin;
 pub(crate) use rest_bends::RestBends;
@@ -74,4 +67,3 @@ pub use fabric::Fabric;
 pub use grid::Grid;
 pub use links::{Link, LinkFamily};
 pub use material::FabricMaterial;
-pub use stretch_solver::StretchSolver;

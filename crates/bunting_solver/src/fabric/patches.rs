@@ -3,7 +3,6 @@
 //! A pair has four corners, two single triangles six, so that a third fewer positions are loaded and results
 //! added. Neighbours in the list are neighbours in space.
 
-use super::cell_sizes::CellSizes;
 use super::grid::Grid;
 use crate::simd::lane::Lane;
 use crate::simd::vec3::{Pack3, V3};
@@ -42,17 +41,6 @@ pub(super) fn are_cells(patches: &[Patch], grid: &Grid) -> bool {
         }
     });
     cells.eq(patches.iter().map(|patch| patch.corners))
-}
-
-/// The cells of a grid, row by row, which are alike unless sizes are given.
-pub(super) fn cells(triangles: &[[u32; 3]], grid: &Grid, sizes: Option<&CellSizes>) -> Vec<Patch> {
-    let mut cells = patches(triangles, &vec![0.0; triangles.len()]);
-    debug_assert!(are_cells(&cells, grid));
-    quarter(&mut cells, grid);
-    for (cell, &area) in cells.iter_mut().zip(sizes.iter().flat_map(|sizes| &sizes.areas)) {
-        cell.corner_areas = [0.125 * area; 2];
-    }
-    cells
 }
 
 /// Makes the corner areas of a grid's cells quarters.

@@ -9,8 +9,7 @@ use crate::stability::pole::Pole;
 impl Fabric {
     /// A hash of the topology of a grid: of its particles and pins, of the links between them, and of the order in
     /// which they are solved. Cloths of fabrics of one topology can lie in one
-    /// [`ClothBatch::mixed`](crate::ClothBatch::mixed). None for meshes that are not grids, for narrow grids, and for grids
-    /// of very long cells.
+    /// [`ClothBatch::mixed`](crate::ClothBatch::mixed). None for meshes that are not grids, and for narrow grids.
     #[must_use]
     pub fn topology(&self) -> Option<u64> {
         self.topology
@@ -35,7 +34,7 @@ impl Fabric {
     /// The hash of [`topology`](Self::topology).
     pub(super) fn hash_topology(&self) -> Option<u64> {
         let has_strips = !self.strips().is_empty();
-        let grid = self.grid().filter(|_| self.has_shear_cells() && !has_strips)?;
+        let grid = self.grid().filter(|_| !has_strips)?;
         self.patch_grid_columns()?;
         let mut hash = DefaultHasher::new();
         [grid.columns, grid.rows].hash(&mut hash);
@@ -71,8 +70,7 @@ mod tests {
         let free = FabricBuilder::grid(Grid::new(9, 5, 1.5, 1.0)).build().expect("good");
         let finer = FabricBuilder::grid(Grid::new(9, 9, 1.5, 1.0));
         let finer = finer.pin_where(|_, uv| uv.x == 0.0).build().expect("good");
-        // Diagonals of long cells count as warp.
-        for other in [free, finer, flag(12.0, 0.5)] {
+        for other in [free, finer] {
             assert!(!flag(1.5, 1.0).has_topology_of(&other));
         }
     }

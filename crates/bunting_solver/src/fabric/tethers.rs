@@ -174,6 +174,7 @@ fn spread(mut pins: Vec<usize>, place: impl Fn(usize) -> Vec3) -> Vec<usize> {
 mod tests {
     use glam::Vec3;
 
+    use super::{SLACK_TO_LINE, Tether};
     use crate::fabric::{Fabric, FabricBuilder, Grid};
 
     #[test]
@@ -215,11 +216,13 @@ mod tests {
             .collect();
         let indices = vec![0, 2, 1, 1, 2, 3, 2, 4, 3, 3, 4, 5];
         let fabric = FabricBuilder::new(positions, indices).pin([0, 1]).build().expect("good");
-        let far = fabric.tethers().iter().find(|tether| tether.particle == 4).expect("tethered");
-        assert!((far.length / 2.0 - 1.005).abs() < 1e-4, "{}", far.length);
-        // The shortest path along the edges: a diagonal of one of the squares, and a side of the other.
-        let far = fabric.far_tethers().iter().find(|tether| tether.particle == 4).expect("far");
-        let way = 1.0 + core::f32::consts::SQRT_2;
-        assert!((far.length / way - 1.05).abs() < 1e-4, "{}", far.length);
+        let rest = fabric.rest_positions();
+        let at_end = |tether: &&Tether| rest[tether.particle as usize].z > 1.0 - 1e-5;
+        let slack = 1.0 + SLACK_TO_LINE;
+        let near = fabric.tethers().iter().filter(at_end);
+        let near: Vec<f32> = near.map(|tether| tether.length / slack).collect();
+        // Paths run along edges, which are not always straight, and cut the fold's edge off.
+        assert!(near.len() > 10, "{}", near.len());
+        assert!(near.iter().all(|length| (1.95..2.2).contains(length)), "{near:?}");
     }
 }

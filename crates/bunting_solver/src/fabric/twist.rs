@@ -4,7 +4,6 @@
 //! energy that rows and columns leave out. Neighbouring cells of a ribbon share two particles, so that the implicit
 //! step of a whole ribbon is a tridiagonal system with constant factors.
 
-use super::cell_sizes::CellSizes;
 use super::classes::{Classes, rounded_bits};
 use super::grid::Grid;
 
@@ -36,9 +35,8 @@ pub(crate) struct Twist {
 }
 
 impl Twist {
-    /// The ribbons along a grid's longer side, where twist accumulates over most cells. Cells are alike unless sizes are
-    /// given.
-    pub fn of(grid: &Grid, inverse_areas: &[f32], sizes: Option<&CellSizes>) -> Self {
+    /// The ribbons along a grid's longer side, where twist accumulates over most cells.
+    pub fn of(grid: &Grid, inverse_areas: &[f32]) -> Self {
         let along_columns = grid.rows >= grid.columns;
         let (across, along) =
             if along_columns { (grid.columns, grid.rows) } else { (grid.rows, grid.columns) };
@@ -48,21 +46,13 @@ impl Twist {
         let inverse_area = |particle: u32| inverse_areas[particle as usize];
         let [dx, _] = grid.spacing();
         let cell_area = dx * grid.height / (grid.rows - 1) as f32;
-        let coefficients = |line: u32| -> Vec<f32> {
-            let columns = grid.columns - 1;
-            let (first, step) = if along_columns { (line, columns) } else { (line * columns, 1) };
-            let of_cell = |cell: u32| {
-                sizes.map_or(2.0 / cell_area, |sizes| sizes.twists[(first + cell * step) as usize])
-            };
-            (0..along - 1).map(of_cell).collect()
-        };
         let mut profiles: Vec<RibbonProfile> = Vec::new();
         let mut classes = Classes::new();
         let ribbon = |line: u32| {
             let pair = |place: u32| [particle(line, place), particle(line + 1, place)];
             let pairs: Vec<[u32; 2]> = (0..along).map(pair).collect();
             let profile = RibbonProfile {
-                coefficients: coefficients(line),
+                coefficients: vec![2.0 / cell_area; along as usize - 1],
                 inverse_areas: pairs.iter().map(|pair| pair.map(inverse_area)).collect(),
             };
             let (class, is_new) = classes.class_of(profile.key());

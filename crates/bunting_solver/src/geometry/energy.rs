@@ -3,23 +3,17 @@
 use glam::{DVec3, Vec3};
 
 use crate::constraints::resists_twist;
-use crate::fabric::{BendLine, Fabric, FabricMaterial, Hinge, Ribbon, hinge_angle};
+use crate::fabric::{BendLine, Fabric, FabricMaterial, Ribbon};
 
 /// Elastic energy of links and bending, J, at positions in m, by the formulas of the constraints.
 /// Inextensible links store none.
 ///
 /// Distances are computed in single precision, like the positions; only their sums need double precision.
 pub(crate) fn elastic(fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> f64 {
-    let bending = if fabric.bends_along_lines() {
-        let lines = fabric.bend_lines().iter();
-        let along_lines: f64 = lines.map(|line| line_bending(fabric, line, positions)).sum();
-        let twists = resists_twist(fabric, material);
-        along_lines + if twists { twist(fabric, positions) } else { 0.0 }
-    } else {
-        let hinges = fabric.hinges().iter().map(|hinge| hinge_bending(fabric, hinge, positions));
-        // A hinge without area has no angle.
-        hinges.filter(|energy| energy.is_finite()).sum()
-    };
+    let lines = fabric.bend_lines().iter();
+    let along_lines: f64 = lines.map(|line| line_bending(fabric, line, positions)).sum();
+    let twists = resists_twist(fabric, material);
+    let bending = along_lines + if twists { twist(fabric, positions) } else { 0.0 };
     0.5 * (stretch(fabric, material, positions) + bending * f64::from(material.bend_stiffness))
 }
 
@@ -39,24 +33,19 @@ fn stretch(fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> f6
     energies.sum()
 }
 
-/// Twice the energy of a line of a grid at a bending stiffness of 1 N·m, J.
+/// Twice the energy of a line at a bending stiffness of 1 N·m, J.
 fn line_bending(fabric: &Fabric, line: &BendLine, positions: &[Vec3]) -> f64 {
     let profile = &fabric.bend_profiles()[line.profile as usize];
     let at = |particle: u32| positions[particle as usize];
     let turns = line.particles.windows(3).map(|three| {
         let turn = (at(three[0]) - at(three[1])) + (at(three[2]) - at(three[1]));
-        turn.length_squared()
+        let rest = fabric.rest_bends();
+        (turn - rest.map_or(Vec3::ZERO, |rest| rest.turned(three[1], line.is_row, positions)))
+            .length_squared()
     });
     let energies = turns.zip(&profile.coefficients);
     let sum: f64 = energies.map(|(turn, &coefficient)| f64::from(turn * coefficient)).sum();
     sum * f64::from(profile.inverse_spacing).powi(2)
-}
-
-/// Twice the energy of a hinge at a bending stiffness of 1 N·m, J.
-fn hinge_bending(fabric: &Fabric, hinge: &Hinge, positions: &[Vec3]) -> f64 {
-    let corners = hinge.particles.map(|particle| positions[particle as usize]);
-    let angle = f64::from(hinge_angle(corners) - hinge.rest_angle);
-    f64::from(fabric.hinge_classes()[hinge.class as usize].coefficient) * angle * angle
 }
 
 /// Twice the energy of a grid's twist at a bending stiffness of 1 N·m, J.

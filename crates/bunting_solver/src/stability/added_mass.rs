@@ -7,12 +7,9 @@
 //! particles; so does the upper end of an upright pole; and pins that are too far apart strain the cloth
 //! between them whatever it weighs. There the inertia is raised to the least that the substep can resolve,
 //! from static bounds alone. Gravity acts on the true mass, so that rest states are exact.
-//!
-//! Where a mesh is solved on its background grid, it is the grid's nodes that carry the load: they get the mass that a
-//! grid's particles need, and the particles of the mesh as many times their own mass as the nodes around them.
 
 use crate::constants::{GRAVITY, LEAST_LINK_COMPLIANCE};
-use crate::fabric::{Background, Fabric, FabricMaterial, Term};
+use crate::fabric::{Fabric, FabricMaterial};
 use crate::stability::pin_strain::PinStrain;
 use crate::stability::pole::Pole;
 
@@ -74,10 +71,6 @@ impl InverseMasses {
     /// Inverse masses with the added mass that a substep of the effective length `step`, s, needs.
     pub fn new(fabric: &Fabric, step: f32) -> Self {
         let mut masses = Self::without_added(fabric);
-        if let Some(background) = fabric.background() {
-            masses.multiply_as_nodes(background, step);
-            return masses;
-        }
         let pins = fabric.pins();
         if !pins.is_empty() && pins.iter().all(|pin| pin.isolated) {
             let pins: Vec<u32> = pins.iter().map(|pin| pin.particle).collect();
@@ -90,33 +83,6 @@ impl InverseMasses {
             masses.upright_reduction = upright_reduction(fabric, &pole, step);
         }
         masses
-    }
-
-    /// Gives particles without added mass as many times their mass as the nodes have among which they lie.
-    fn multiply_as_nodes(&mut self, Background { fabric, transfer, .. }: &Background, step: f32) {
-        let Self { level, upright_reduction } = Self::new(fabric, step);
-        let upright =
-            level.iter().zip(upright_reduction).map(|(level, reduction)| level - reduction);
-        let upright: Vec<f32> = upright.collect();
-        let [at_level, at_upright] = [level, upright].map(|inverse_masses| {
-            let areas = inverse_masses.iter().zip(fabric.inverse_areas());
-            // Zero of pinned nodes, which stand for no mass.
-            let multiple =
-                |(inverse, area): (&f32, &f32)| if *area > 0.0 { area / inverse } else { 0.0 };
-            let mut multiples: Vec<f32> = areas.map(multiple).collect();
-            // The nodes of a pair have half of the area each, so that half of their multiple is none. Zeros stay.
-            for &node in transfer.joined.as_flattened() {
-                let multiple = &mut multiples[node as usize];
-                *multiple = multiple.min(1.0).max(0.5 * *multiple);
-            }
-            multiples
-        });
-        let particles = self.level.iter_mut().zip(&mut self.upright_reduction);
-        for ((level, reduction), row) in particles.zip(transfer.particles.rows()) {
-            let own = *level;
-            *level = own / mean_multiple(row, &at_level);
-            *reduction = *level - own / mean_multiple(row, &at_upright);
-        }
     }
 
     /// Inverse masses of one cloth, 1/m²; zero if pinned.
@@ -135,19 +101,6 @@ impl InverseMasses {
 pub(crate) fn inertias(inverse_masses: &[f32]) -> Vec<f32> {
     let inertia = |&inverse_mass: &f32| if inverse_mass > 0.0 { 1.0 / inverse_mass } else { 0.0 };
     inverse_masses.iter().map(inertia).collect()
-}
-
-/// The mean of the multiples at the free nodes of a row, weighted by its terms; 1 if there are none.
-fn mean_multiple(row: &[Term], multiples: &[f32]) -> f32 {
-    let (mut sum, mut weights) = (0.0, 0.0);
-    for term in row {
-        let multiple = multiples[term.from as usize];
-        if multiple > 0.0 {
-            sum += term.weight * multiple;
-            weights += term.weight;
-        }
-    }
-    if weights > 0.0 { sum / weights } else { 1.0 }
 }
 
 /// Reduction of a cloth's inverse masses by an upright pole, compared with one over the areas, 1/m².
@@ -176,28 +129,26 @@ fn upright_reduction(fabric: &Fabric, pole: &Pole, step: f32) -> Vec<f32> {
 /// at every resolution.
 fn inertia_per_strain(fabric: &Fabric, material: &FabricMaterial, step: f32) -> f32 {
     let stiffest = material.warp_stiffness.max(material.weft_stiffness);
-    let most = fabric.first_whole_area() / LEAST_LINK_COMPLIANCE;
+    let most = fabric.particle_areas()[0] / LEAST_LINK_COMPLIANCE;
     INERTIA_PER_TENSION * (step * step * stiffest / material.area_density).min(most)
 }
 
-/// The inertia that each particle needs, m², where each of some particles supports a load, m³/s². A node at the border of
-/// a cut grid carries as much less as it stands for less cloth.
+/// The inertia that each particle needs, m², where each of some particles supports a load, m³/s².
 fn needed(fabric: &Fabric, supports: &[u32], load: f32, step: f32) -> impl Iterator<Item = f32> {
     let rest = fabric.rest_positions();
     let spacing = fabric.links().iter().map(|link| link.rest_length).fold(f32::MAX, f32::min);
-    rest.iter().enumerate().map(move |(particle, at)| {
+    rest.iter().map(move |at| {
         let away = supports.iter().map(|&support| at.distance(rest[support as usize]));
         let nearest = away.fold(f32::MAX, f32::min);
         // A point load spreads with the distance from its support.
         let tension = load / (nearest / spacing).max(1.0);
-        INERTIA_PER_TENSION * step * step * tension / spacing * fabric.part_of(particle)
+        INERTIA_PER_TENSION * step * step * tension / spacing
     })
 }
 
 #[cfg(test)]
 mod tests {
     use super::{InverseMasses, MOST_ADDED};
-    use crate::constraints::background::node_inverse_masses;
     use crate::fabric::{Fabric, FabricBuilder, Grid};
 
     /// Effective length of a substep, s.
@@ -241,35 +192,5 @@ mod tests {
         let InverseMasses { level, upright_reduction } = InverseMasses::new(&fabric, STEP);
         assert!(level[1] < 0.1 * fabric.inverse_areas()[1]);
         assert!(upright_reduction.iter().all(|&reduction| reduction == 0.0));
-    }
-
-    #[test]
-    fn a_mesh_has_the_added_mass_of_a_grid_wherever_its_vertices_are_dense() {
-        let grid = Grid::new(33, 33, 1.0, 1.0);
-        // Columns lie closest at the pole.
-        let denser = |at: &glam::Vec3| glam::Vec3::new(at.x * (0.4 + 0.6 * at.x), at.y, 0.0);
-        let positions = grid.positions().iter().map(denser).collect();
-        let mesh = FabricBuilder::new(positions, grid.triangles(false).into_flattened());
-        let mesh = mesh.pin_where(|at, _| at.x == 0.0).build().expect("a good fabric");
-        let nodes = &mesh.background().expect("it fills a rectangle").fabric;
-        let upright = |fabric: &Fabric| -> Vec<f32> {
-            let InverseMasses { level, upright_reduction } = InverseMasses::new(fabric, STEP);
-            level
-                .iter()
-                .zip(upright_reduction)
-                .map(|(level, reduction)| level - reduction)
-                .collect()
-        };
-        let mass = |inverse: &[f32]| -> f32 {
-            inverse.iter().filter(|inverse| **inverse > 0.0).map(|inverse| 1.0 / inverse).sum()
-        };
-        let [added, of_particles, of_nodes] = [
-            mass(&upright(nodes)) - mass(nodes.inverse_areas()),
-            mass(&upright(&mesh)) - mass(mesh.inverse_areas()),
-            mass(&node_inverse_masses(&mesh, &upright(&mesh))) - mass(nodes.inverse_areas()),
-        ];
-        for of_mesh in [of_particles, of_nodes] {
-            assert!((of_mesh / added - 1.0).abs() < 0.1, "{of_mesh} m², of a grid {added} m²");
-        }
     }
 }

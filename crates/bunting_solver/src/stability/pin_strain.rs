@@ -182,11 +182,12 @@ mod tests {
         let fabric = FabricBuilder::new(positions, indices).pin([0, 1, 4, 5]).build();
         let fabric = fabric.expect("a good fabric");
         let open = |at: Vec3, stretch: f32| Vec3::new(stretch * (at.x + at.z), at.y, 0.0);
-        assert_eq!(moved(&fabric, |at| open(at, 1.0)), PinStrain::default());
-        let PinStrain { greatest, of_particles: strains } = moved(&fabric, |at| open(at, 1.2));
-        assert!(
-            [greatest, strains[2], strains[3]].iter().all(|strain| (strain - 0.2).abs() < 1e-5)
-        );
+        // Cells between the two squares cut the fold's edge off, and are a little shorter.
+        assert!(moved(&fabric, |at| open(at, 1.0)).greatest < 0.01);
+        let PinStrain { greatest, of_particles } = moved(&fabric, |at| open(at, 1.2));
+        let mean = of_particles.iter().sum::<f32>() / of_particles.len() as f32;
+        assert!((greatest - 0.2).abs() < 0.01, "{greatest}");
+        assert!(mean > 0.15, "{mean}");
     }
 
     /// The strain by the distances of all particles from all pins, as it is defined.
@@ -257,8 +258,8 @@ mod tests {
     #[test]
     fn paths_are_found_once_and_only_from_pins_that_are_apart() {
         let skirt = skirt(24, 12);
-        // Two neighbours of the ring.
-        let is_moved = |particle: usize| particle == 3;
+        let pin = skirt.pins()[3].particle as usize;
+        let is_moved = |particle: usize| particle == pin;
         let moved = |(particle, at): (usize, &Vec3)| {
             *at + if is_moved(particle) { Vec3::new(0.0, 0.0, 0.02) } else { Vec3::ZERO }
         };
@@ -268,7 +269,11 @@ mod tests {
         assert!(known().is_empty());
         let first = PinStrain::of(&skirt, &positions);
         let found = known();
-        assert!(first.greatest > 0.0 && !found.is_empty() && found.len() < 24, "{}", found.len());
+        assert!(
+            first.greatest > 0.0 && !found.is_empty() && found.len() < skirt.pins().len(),
+            "{}",
+            found.len()
+        );
         assert!(PinStrain::of(&skirt, &positions) == first && known() == found);
     }
 }

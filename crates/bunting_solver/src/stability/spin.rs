@@ -48,40 +48,27 @@ impl LaneState {
 }
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Gives back the angular momentum that the substep has lost, to free cloths on which nothing acts. Those that
-    /// follow the nodes of a background grid have none of their own.
+    /// Something outside of the cloth may act on its particles in this substep.
+    pub fn disturb(&mut self, cloth: usize) {
+        if let Some(state) = &mut self.lanes[cloth] {
+            state.history.disturbance.disturb();
+        }
+    }
+
+    /// Gives back the angular momentum that the substep has lost, to free cloths on which nothing acts.
     pub fn keep_spin(&mut self) {
         if self.fabric.has_pins() {
             return;
         }
         let mut keeps = P::splat(0.0);
         for (cloth, state) in self.lanes.iter().enumerate() {
-            if state.as_ref().is_some_and(|state| state.keeps_spin() && !state.follows_nodes) {
+            if state.as_ref().is_some_and(|state| state.keeps_spin()) {
                 keeps.lanes_mut()[Y::lanes(cloth)].fill(1.0);
             }
         }
-        self.keep_spin_of(&keeps);
-    }
-
-    /// [`keep_spin`](Self::keep_spin) of the nodes that some cloths follow.
-    pub fn keep_spin_of_nodes(&mut self, cloths: &[Option<LaneState>]) {
-        if self.fabric.has_pins() {
-            return;
-        }
-        let mut keeps = P::splat(0.0);
-        for (cloth, state) in cloths.iter().enumerate() {
-            if state.as_ref().is_some_and(|state| state.keeps_spin() && state.follows_nodes) {
-                keeps.lanes_mut()[Y::lanes(cloth)].fill(1.0);
-            }
-        }
-        self.keep_spin_of(&keeps);
-    }
-
-    /// Keeps the spin of the cloths in the lanes that hold one.
-    fn keep_spin_of(&mut self, keeps: &P) {
         if keeps.lanes().contains(&1.0) {
             P::run(KeepSpin {
-                keeps,
+                keeps: &keeps,
                 area: &self.numbers.area,
                 areas: &self.masses.areas,
                 partial_sums: &self.partial_sums,

@@ -121,9 +121,6 @@ pub(crate) struct IntegratorHistory {
     pub pole_turn: PoleTurn,
     /// Substeps in which actions from outside have an effect on a free cloth's angular momentum.
     pub disturbance: Disturbance,
-    /// Whether something could act on single particles of a mesh with a background grid in this tick. What acts on them in
-    /// the last substep reaches the nodes in the next one.
-    pub was_acted_on: bool,
 }
 
 impl IntegratorHistory {

@@ -4,7 +4,6 @@ use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_fabric::LaneFabric;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
-use crate::constraints::background::node_inverse_masses;
 use crate::constraints::stiffness::Stiffness;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::lane3;
@@ -20,7 +19,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// candidates.
     pub fn begin_tick(&mut self, tick: f32, settings: StepSettings) {
         let step = tick / settings.substeps as f32;
-        let before = self.clock.settings.scheme;
         self.clock = Clock { settings, step, begun: 0, predicted: false };
         self.note_probes(tick);
         if self.clock.stands_still() {
@@ -42,7 +40,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.begin_local_wind();
         self.begin_pin_reports();
         self.gather_contacts(tick);
-        self.begin_following(before);
     }
 
     /// Computes all values that are constant over the coming substep.
@@ -55,12 +52,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                     self.begin_substep_of(cloth, &mut state);
                     self.lanes[cloth] = Some(state);
                 }
-                None => {
-                    self.parameters.set_empty(Y::lanes(cloth));
-                    if let Some(background) = &mut self.background {
-                        background.set_empty(cloth);
-                    }
-                }
+                None => self.parameters.set_empty(Y::lanes(cloth)),
             }
         }
         // The flag stays set for one substep after the motion, so that the velocities of pins become zero
@@ -74,9 +66,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         state.external_moment = 0.0;
         if state.history.join_last_substeps(step, settings.scheme) {
             self.join_last_substeps(cloth);
-            if let Some(background) = &mut self.background {
-                background.join_last_substeps(cloth);
-            }
         }
         let formula = state.history.begin_substep(step, settings.scheme);
         self.parameters.set_pole_turn(Y::lanes(cloth), state.history.pole_turn);
@@ -93,11 +82,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         self.set_added_mass(cloth, state);
         self.set_drive(cloth, &state.drive, &clock);
-        if let Some(background) = &mut self.background {
-            background.set_drive(cloth, &state.drive, &clock);
-            let damping = self.parameters.internal_damping_factor.lanes()[Y::lanes(cloth).start];
-            background.begin_nodes(cloth, state, damping);
-        }
         let fabric = &self.fabric_of(cloth).fabric;
         let reach = match fabric.grid() {
             // A cloth without pins is held by its own inertia.
@@ -105,15 +89,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             _ => fabric.reach(),
         };
         let stretch = LoadStretch::new(
-            &self.fabric.material_of_stretch(&state.material),
+            &fabric.material_along_rows(&state.material),
             &state.drive,
             reach,
             state.pin_strain.greatest,
         );
         self.parameters.set_load_stretch(Y::lanes(cloth), &stretch);
-        if let Some(background) = &mut self.background {
-            background.set_load_stretch(cloth, &stretch);
-        }
     }
 
     /// Sets what acts on a cloth in the substep that `clock` is about to begin. The pole of a cloth that is held at a point
@@ -159,10 +140,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.layout.set_stiffness(cloth, fabric, &stiffness);
         let bends_stiffly = stiffness.bends_stiffly(fabric);
         self.parameters.set_inputs(Y::lanes(cloth), fabric, inputs, bends_stiffly);
-        if let Some(background) = &mut self.background {
-            let along_rows = fabric.material_of_stretch(&inputs.material);
-            background.set_inputs(cloth, &ParameterInputs { material: along_rows, ..*inputs });
-        }
     }
 
     /// Computes a cloth's inverse masses if their inputs have changed.
@@ -183,10 +160,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         self.layout.write_numbers(&inverse_masses, cloth, &mut self.masses.inverse);
         self.layout.write_numbers(&inertias(&inverse_masses), cloth, &mut self.masses.inertia);
         self.positions.set_inverse_masses(&inverse_masses);
-        if let Some(background) = &mut self.background {
-            let nodes = node_inverse_masses(&self.fabric, &inverse_masses);
-            background.set_inverse_masses(cloth, &nodes);
-        }
     }
 }
 
@@ -198,16 +171,15 @@ mod tests {
 
     use super::*;
     use crate::batch::exchange::Entering;
-    use crate::batch::snapshot::{ClothSnapshot, SnapshotHistory};
+    use crate::batch::snapshot::ClothSnapshot;
     use crate::fabric::{FabricBuilder, FabricMaterial, Grid};
     use crate::simd::registers::Pack1;
     use crate::step::Drive;
 
     #[test]
-    fn substeps_of_particles_and_nodes_are_joined_before_a_long_one() {
-        let grid = Grid::new(12, 12, 1.0, 1.0);
-        let mesh = FabricBuilder::new(grid.positions(), grid.triangles(false).into_flattened());
-        let mesh = mesh.pin_where(|at, _| at.x == 0.0).build().expect("a good fabric");
+    fn substeps_are_joined_before_a_long_one() {
+        let grid = FabricBuilder::grid(Grid::new(12, 12, 1.0, 1.0));
+        let mesh = grid.pin_where(|at, _| at.x == 0.0).build().expect("a good fabric");
         let fabric = &Arc::new(mesh);
         let snapshot = &ClothSnapshot::at_rest(fabric);
         let mut batch = LaneBatch::<Pack1>::side_by_side(Arc::clone(fabric));
@@ -222,21 +194,16 @@ mod tests {
             batch.solve_constraints();
             batch.update_velocities();
         }
-        let histories = |batch: &LaneBatch<Pack1>| -> [SnapshotHistory; 2] {
-            let of_particles = batch.snapshot(0).history.expect("a history");
-            let nodes = of_particles.nodes.clone().expect("a background grid");
-            [of_particles, nodes.history.expect("a history")]
-        };
-        let before = histories(&batch);
+        let history = |batch: &LaneBatch<Pack1>| batch.snapshot(0).history.expect("a history");
+        let before = history(&batch);
         batch.begin_tick(1.0 / 60.0, StepSettings::yarns(2));
         batch.begin_substep();
-        for (before, after) in before.iter().zip(histories(&batch)) {
-            let [last, older] = &before.displacements;
-            assert!(older.iter().any(|displacement| displacement.length() > 1e-6));
-            for (at, joined) in after.displacements[0].iter().enumerate() {
-                assert_eq!(*joined, last[at] + older[at]);
-                assert_eq!(after.older_velocities[0][at], before.older_velocities[1][at]);
-            }
+        let after = history(&batch);
+        let [last, older] = &before.displacements;
+        assert!(older.iter().any(|displacement| displacement.length() > 1e-6));
+        for (at, joined) in after.displacements[0].iter().enumerate() {
+            assert_eq!(*joined, last[at] + older[at]);
+            assert_eq!(after.older_velocities[0][at], before.older_velocities[1][at]);
         }
     }
 }

@@ -27,15 +27,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if self.parameters.any_frame_moved {
             self.carry_state();
         }
-        let sums = self.integrates_particles().then(|| self.predict_particles());
+        let sums = self.predict_particles();
         self.clock.begun += 1;
         self.clock.predicted = true;
-        if self.clock.settings.scheme == Scheme::Yarns
-            && let Some(grid) = &mut self.background
-        {
-            grid.predict_nodes(self.clock, self.parameters.any_frame_moved, &mut self.lanes);
-        }
-        self.assess_motion(sums.as_ref());
+        self.assess_motion(&sums);
     }
 
     /// Predicts the particles, and sums their motion.
@@ -48,9 +43,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             self.sum_air_on_pins();
         }
         let sums = self.predict(feels_air);
-        if self.clock.settings.scheme == Scheme::Yarns {
-            self.begin_corrections();
-        }
         self.draw_held();
         sums
     }
@@ -87,30 +79,19 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 
     /// Restarts the integrator of cloths whose motion is rough, and finds which cloths are near rest.
-    /// `sums` are those over particles, if any are integrated.
-    fn assess_motion(&mut self, sums: Option<&MotionSums<P>>) {
+    fn assess_motion(&mut self, sums: &MotionSums<P>) {
         let relaxes = self.clock.settings.scheme == Scheme::Yarns;
+        let particles = self.fabric.particle_count();
         for cloth in 0..self.lanes.len() {
             let Some(state) = &mut self.lanes[cloth] else { continue };
-            let (sums, particles) = match (sums, self.fabric.background()) {
-                (_, Some(grid)) if state.follows_nodes => (state.motion_of_nodes, grid.node_count),
-                (Some(sums), _) => {
-                    (sums.of_lane(Y::lanes(cloth).start), self.fabric.particle_count())
-                }
-                (None, _) => continue,
-            };
+            let sums = sums.of_lane(Y::lanes(cloth).start);
             let is_free = state.is_free_of_wind_and_colliders();
             let near_rest = relaxes && state.history.assess_rest(sums, particles, is_free);
             state.history.restart_if_rough(sums, particles);
-            let of_nodes = near_rest && state.follows_nodes;
-            let of_particles = near_rest && !state.follows_nodes;
-            if let Some(grid) = &mut self.background {
-                grid.set_nodes_near_rest(cloth, of_nodes);
-            }
-            if self.parameters.is_near_rest(Y::lanes(cloth)) && !of_particles {
+            if self.parameters.is_near_rest(Y::lanes(cloth)) && !near_rest {
                 self.reset_relaxation(cloth);
             }
-            self.parameters.set_near_rest(Y::lanes(cloth), of_particles);
+            self.parameters.set_near_rest(Y::lanes(cloth), near_rest);
         }
     }
 }

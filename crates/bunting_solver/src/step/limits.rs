@@ -14,11 +14,6 @@ const FASTEST_VIBRATION: f32 = 0.75;
 /// than two of 1/120 s. Larger: substeps are longer than they should be.
 const TOO_LONG: f32 = 1e-3;
 
-/// Substeps of a net that lies in no plane, over those of a grid whose links are as long. Clothes hand their load from line to
-/// line by shear, which a pass solves in part. Smaller: clothes below 4,000 N/m that hang from a few points sink 17 mm too far in
-/// the median, and 8 mm with 1.5. Larger: clothes take more than five times as long as a grid.
-const SUBSTEPS_OF_CURVED_NET: f32 = 1.5;
-
 /// Limits within which the number of substeps is chosen, from the fabric, the tick and the acceleration that the cloth
 /// bears: gravity, or that of its [`EffortClass`](crate::EffortClass).
 ///
@@ -42,8 +37,7 @@ pub struct StepLimits {
     /// Least and greatest number of substeps in a tick.
     pub substeps: RangeInclusive<u32>,
     /// Least number of substeps in a second: longer ticks are divided into more. Faster motion than the
-    /// substeps resolve is damped. Clothes, and other curved meshes that are solved along
-    /// [lines of quads](crate::StretchSolver::QuadLines), take half as many again.
+    /// substeps resolve is damped.
     pub rate: u32,
     /// Passes in a substep, see [`StepSettings::passes`].
     pub passes: u32,
@@ -59,10 +53,8 @@ impl StepLimits {
     pub fn of_fabric(&self, fabric: &Fabric, tick: f32, acceleration: f32) -> StepSettings {
         let by_load = tick * fabric.tautness() * (acceleration / FASTEST_VIBRATION).sqrt();
         let by_rate = tick * self.rate as f32 - TOO_LONG;
-        let is_curved_net = fabric.background().is_some_and(|it| it.is_curved_net);
-        let factor = if is_curved_net { SUBSTEPS_OF_CURVED_NET } else { 1.0 };
         // NaN becomes zero.
-        let wanted = (factor * by_load.max(by_rate)).ceil() as u32;
+        let wanted = by_load.max(by_rate).ceil() as u32;
         let (fewest, most) = (*self.substeps.start(), *self.substeps.end());
         StepSettings {
             scheme: self.scheme,

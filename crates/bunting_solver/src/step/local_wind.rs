@@ -11,7 +11,6 @@ use crate::batch::BatchError;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
-use crate::constraints::background::nodes_of;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
 
@@ -52,7 +51,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         Ok(())
     }
 
-    /// Begins a tick: spreads the winds of all cloths, and of their nodes, over the lanes.
+    /// Begins a tick: spreads the winds of all cloths over the lanes.
     pub fn begin_local_wind(&mut self) {
         let has_any = self.lanes.iter().flatten().any(|cloth| cloth.local_wind.is_some());
         if !has_any && self.local_wind.is_none() {
@@ -63,17 +62,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             .filter_map(|(cloth, state)| Some((cloth, state.as_ref()?.local_wind.clone()?)));
         let of_cloths: Vec<(usize, Vec<Vec3>)> = of_cloths.collect();
         self.spread_local_wind(&of_cloths);
-        if let Some(grid) = &mut self.background {
-            let rest = self.fabric.rest_positions();
-            let of_nodes = |(cloth, winds): &(usize, Vec<Vec3>)| {
-                (*cloth, nodes_of(&self.fabric, rest, winds).velocities)
-            };
-            grid.spread_local_wind(&of_cloths.iter().map(of_nodes).collect::<Vec<_>>());
-        }
     }
 
     /// Spreads the winds of some cloths over the lanes; in the lanes of others there is none.
-    pub fn spread_local_wind(&mut self, of_cloths: &[(usize, Vec<Vec3>)]) {
+    fn spread_local_wind(&mut self, of_cloths: &[(usize, Vec<Vec3>)]) {
         if of_cloths.is_empty() {
             self.local_wind = None;
             return;

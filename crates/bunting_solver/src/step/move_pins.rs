@@ -7,7 +7,7 @@ use glam::Vec3;
 use crate::batch::BatchError;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
-use crate::fabric::{Fabric, Term};
+use crate::fabric::Fabric;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, lane3, set_lane3};
 use crate::stability::pin_strain::{PinStrain, are_pins_near};
@@ -43,8 +43,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 let (pack, lane) = self.layout.locate(pin.particle as usize, cloth);
                 set_lane3(&mut self.velocity[pack], lane, Vec3::ZERO);
             }
-            let MovingPins { now, next, positions, node_velocities, stay_near } =
-                &mut state.moving_pins;
+            let MovingPins { now, next, positions, stay_near } = &mut state.moving_pins;
             *now = mem::take(next);
             let fabric = &self.fabrics[Y::fabric_of(cloth)].fabric;
             read_pins(&self.layout, self.positions.packs_mut(), cloth, fabric, positions);
@@ -53,14 +52,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 now.iter().for_each(|pin| positions[pin.particle as usize] = end(pin));
                 are_pins_near(fabric, positions)
             });
-            // Held nodes come to rest with their pins.
-            if now.is_empty() {
-                node_velocities.clear();
-                let at_rest = self.velocities_of_held_nodes(cloth);
-                if let Some(grid) = &mut self.background {
-                    grid.set_velocities(cloth, &at_rest);
-                }
-            }
         }
     }
 
@@ -94,22 +85,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let of_frame = if frame_moves { lane3(velocity, lane) } else { Vec3::ZERO };
             set_lane3(velocity, lane, of_frame + (pin.to - pin.from) * rate);
         }
-        let node_velocities = self.velocities_of_held_nodes(cloth);
-        if let Some(state) = &mut self.lanes[cloth] {
-            state.moving_pins.node_velocities = node_velocities;
-        }
-    }
-
-    /// The nodes that a cloth's pins hold, with the pins' velocities, m/s: air acts on the cells beside them.
-    fn velocities_of_held_nodes(&self, cloth: usize) -> Vec<(usize, Vec3)> {
-        let Some(background) = self.fabric.background() else { return Vec::new() };
-        let of_pin = |term: &Term| {
-            let (pack, lane) = self.layout.locate(term.from as usize, cloth);
-            lane3(&self.velocity[pack], lane) * term.weight
-        };
-        let rows = background.transfer.held.rows().enumerate();
-        let held = rows.filter(|(_, row)| !row.is_empty());
-        held.map(|(node, row)| (node, row.iter().map(of_pin).sum())).collect()
     }
 
     /// Updates all that depends on the positions of a cloth's pins.

@@ -30,8 +30,6 @@ pub(crate) struct MovingPins {
     pub next: Vec<MovingPin>,
     /// Positions of the pins among those of all particles, m; those of other particles are not filled in.
     pub positions: Vec<Vec3>,
-    /// Velocities of the background grid's nodes that the pins hold, in this substep, m/s.
-    pub node_velocities: Vec<(usize, Vec3)>,
     /// Whether no pair of pins is farther apart than at rest in this tick, so that they cannot strain the cloth.
     pub stay_near: bool,
 }

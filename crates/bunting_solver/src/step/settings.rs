@@ -39,8 +39,8 @@ pub struct StepSettings {
     /// more than passes do (Macklin 2019, "Small steps in physics simulation").
     pub substeps: u32,
     /// Number of passes in a substep; at least 1. Gauss–Seidel solves all constraints in each; the scheme of
-    /// yarns solves warp and weft once more in each, and takes one pass more on [cut grids](crate::StretchSolver::CutGrid). Cloth
-    /// that snaps or folds sharply needs more passes, cloth that swings more substeps.
+    /// yarns solves warp and weft once more in each. Cloth that snaps or folds sharply needs more passes, cloth that swings more
+    /// substeps.
     pub passes: u32,
 }
 

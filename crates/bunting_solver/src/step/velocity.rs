@@ -21,21 +21,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if self.clock.stands_still() {
             return;
         }
-        if self.integrates_particles() {
-            self.update_particle_velocities();
-        }
-        self.end_following();
-        self.clock.predicted = false;
-    }
-
-    fn update_particle_velocities(&mut self) {
         let has_chains = self.clock.settings.scheme == Scheme::Yarns;
         let turns = has_chains && self.numbers.pole.is_some();
         let mut turn = self.external_moments();
         self.correct_velocities(turns, &mut turn);
-        if has_chains {
-            self.end_corrections();
-        }
         if turns {
             self.store_pole_turn(&turn);
         }
@@ -43,6 +32,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if has_chains {
             self.keep_spin();
         }
+        self.clock.predicted = false;
     }
 
     /// Computes velocities from the corrected positions. `turn` is that of [`UpdateVelocities`], if the turn about the
@@ -79,8 +69,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Stores the turns of the cloths about the pole by the corrections, rad.
     fn store_pole_turn(&mut self, turn: &P) {
         for (cloth, state) in self.lanes.iter_mut().enumerate() {
-            // Nodes that are followed have stored their own.
-            if let Some(state) = state.as_mut().filter(|state| !state.follows_nodes) {
+            if let Some(state) = state {
                 let lane = Y::lanes(cloth).start;
                 let rate = self.parameters.inverse_step.lanes()[lane];
                 state.store_pole_turn(turn.lanes()[lane], rate);

@@ -19,6 +19,8 @@ pub(super) struct Points {
     /// The third corner of the triangle that has a directed edge.
     third: HashMap<[u32; 2], u32>,
     corners: HashSet<u32>,
+    /// Whether middles lie on a smooth surface; else in the planes of the triangles.
+    is_smooth: bool,
 }
 
 impl Points {
@@ -26,7 +28,13 @@ impl Points {
     pub fn new(rest: &[Vec3], triangles: Vec<[u32; 3]>) -> Self {
         let third = thirds(&triangles);
         let corners = corners(rest, &third);
-        Self { triangles, stencils: Stencils::identity(rest.len() as u32), third, corners }
+        let stencils = Stencils::identity(rest.len() as u32);
+        Self { triangles, stencils, third, corners, is_smooth: true }
+    }
+
+    /// The same, which stay in the planes of their triangles.
+    pub fn flat(rest: &[Vec3], triangles: Vec<[u32; 3]>) -> Self {
+        Self { is_smooth: false, ..Self::new(rest, triangles) }
     }
 
     /// Splits each triangle into four.
@@ -41,7 +49,11 @@ impl Points {
                 if let Some(&known) = middles.get(&key) {
                     return known;
                 }
-                let row = self.stencils.expand(&self.middle([from, to], &border));
+                let middle = match self.is_smooth {
+                    true => self.middle([from, to], &border),
+                    false => vec![(from, 0.5), (to, 0.5)],
+                };
+                let row = self.stencils.expand(&middle);
                 let point = self.stencils.rows().len() as u32;
                 self.stencils.push(row);
                 middles.insert(key, point);

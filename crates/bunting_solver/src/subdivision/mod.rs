@@ -3,12 +3,13 @@
 mod grid;
 mod mesh;
 mod stencils;
+mod surface;
 #[cfg(test)]
 mod tests;
 
 use glam::{Vec3, Vec3A};
 
-use crate::fabric::Fabric;
+use crate::fabric::Grid;
 pub use grid::GridPlanes;
 use grid::GridScheme;
 use mesh::Points;
@@ -24,10 +25,9 @@ pub use stencils::Stencils;
 /// ```
 /// use bunting_solver::{FabricBuilder, Grid, Subdivision, SubdivisionBuffers};
 ///
-/// let builder = FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0));
-/// let indices: Vec<u32> = builder.indices().to_vec();
-/// let fabric = builder.build()?;
-/// let smooth = Subdivision::new(&fabric, &indices, 1);
+/// let grid = Grid::new(9, 9, 1.0, 1.0);
+/// let fabric = FabricBuilder::grid(grid).build()?;
+/// let smooth = Subdivision::of_grid(&grid, 1);
 /// // Twice as many cells along each side.
 /// let [mut drawn, mut normals] = [vec![[0.0; 3]; 17 * 17], vec![[0.0; 3]; 17 * 17]];
 /// let mut buffers = SubdivisionBuffers::default();
@@ -65,20 +65,16 @@ pub struct SubdivisionBuffers {
 }
 
 impl Subdivision {
-    /// Halves the edges of a fabric `steps` times. `indices` are the triangles of its mesh, three of the vertices that
-    /// [`Fabric::particle_of_vertex`] is for. Building takes milliseconds for a mesh that is no grid.
+    /// Halves the edges of a grid `steps` times.
     #[must_use]
-    pub fn new(fabric: &Fabric, indices: &[u32], steps: u32) -> Self {
-        if let Some(grid) = fabric.grid() {
-            let scheme = GridScheme::new(grid.columns, grid.rows, steps);
-            return Self {
-                attributes: scheme.bilinear(),
-                kept: scheme.kept(),
-                triangles: scheme.triangles(),
-                scheme: Scheme::Grid(scheme),
-            };
+    pub fn of_grid(grid: &Grid, steps: u32) -> Self {
+        let scheme = GridScheme::new(grid.columns, grid.rows, steps);
+        Self {
+            attributes: scheme.bilinear(),
+            kept: scheme.kept(),
+            triangles: scheme.triangles(),
+            scheme: Scheme::Grid(scheme),
         }
-        Self::of_mesh(fabric.rest_positions(), fabric.particle_of_vertex(), indices, steps)
     }
 
     /// Halves the edges of a mesh `steps` times, given the positions of its particles or places at rest, m, which of these each vertex
@@ -89,14 +85,25 @@ impl Subdivision {
     /// If there is no such vertex, particle or place.
     #[must_use]
     pub fn of_mesh(rest: &[Vec3], particle_of: &[u32], indices: &[u32], steps: u32) -> Self {
+        Self::halved(rest, particle_of, indices, steps, Points::new)
+    }
+
+    /// The same by any scheme, given how the points of triangles are made.
+    fn halved(
+        rest: &[Vec3],
+        particle_of: &[u32],
+        indices: &[u32],
+        steps: u32,
+        of_scheme: fn(&[Vec3], Vec<[u32; 3]>) -> Points,
+    ) -> Self {
         let corners = indices.as_chunks::<3>().0;
         let particle = |&vertex: &u32| particle_of[vertex as usize];
         let mut points =
-            Points::new(rest, corners.iter().map(|it| it.each_ref().map(particle)).collect());
+            of_scheme(rest, corners.iter().map(|it| it.each_ref().map(particle)).collect());
         // Attributes are subdivided like positions, so that a texture keeps its place. At a seam they have a border.
         let of_vertices =
             particle_of.iter().map(|&particle| rest[particle as usize]).collect::<Vec<_>>();
-        let mut vertices = Points::new(&of_vertices, corners.to_vec());
+        let mut vertices = of_scheme(&of_vertices, corners.to_vec());
         (0..steps).for_each(|_| {
             points.subdivide();
             vertices.subdivide();

@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3};
 
 use super::{Subdivision, SubdivisionBuffers};
-use crate::fabric::{Fabric, FabricBuilder, Grid};
+use crate::fabric::Grid;
 use crate::simd::level::{has_fused_products, with_every_instruction_set};
 
 /// Rounding of sums of some ten terms of up to two metres, m.
@@ -11,14 +11,28 @@ const ROUNDING: f32 = 2e-6;
 
 const STEPS: u32 = 2;
 
-fn grid(columns: u32, rows: u32) -> (Fabric, Vec<u32>) {
-    let builder = FabricBuilder::grid(Grid::new(columns, rows, 2.0, 1.0));
-    let indices = builder.indices().to_vec();
-    (builder.build().expect("a grid"), indices)
+/// Particles at rest, m, and what is drawn through them.
+struct Drawn {
+    rest: Vec<Vec3>,
+    subdivision: Subdivision,
+}
+
+impl Drawn {
+    /// Of a mesh whose vertices are particles.
+    fn of_mesh(rest: Vec<Vec3>, indices: &[u32], steps: u32) -> Self {
+        let particles: Vec<u32> = (0..rest.len() as u32).collect();
+        let subdivision = Subdivision::of_mesh(&rest, &particles, indices, steps);
+        Self { rest, subdivision }
+    }
+}
+
+fn grid([columns, rows]: [u32; 2], steps: u32) -> Drawn {
+    let grid = Grid::new(columns, rows, 2.0, 1.0);
+    Drawn { rest: grid.positions(), subdivision: Subdivision::of_grid(&grid, steps) }
 }
 
 /// A disc of rings of six triangles, twelve and so on: irregular at its border only.
-fn disc() -> (Fabric, Vec<u32>) {
+fn disc(steps: u32) -> Drawn {
     const RINGS: i32 = 4;
     let axial: Vec<(i32, i32)> = (-RINGS..=RINGS)
         .flat_map(|q| (-RINGS..=RINGS).map(move |r| (q, r)))
@@ -36,15 +50,13 @@ fn disc() -> (Fabric, Vec<u32>) {
     let place = |&(q, r): &(i32, i32)| {
         Vec3::new(q as f32 + 0.5 * r as f32, 0.75_f32.sqrt() * r as f32, 0.0) * 0.2
     };
-    let builder = FabricBuilder::new(axial.iter().map(place).collect(), indices.clone());
-    (builder.build().expect("a disc"), indices)
+    Drawn::of_mesh(axial.iter().map(place).collect(), &indices, steps)
 }
 
 /// A grid as a mesh of triangles, irregular everywhere.
-fn triangles() -> (Fabric, Vec<u32>) {
-    let (grid, indices) = grid(17, 9);
-    let builder = FabricBuilder::new(grid.rest_positions().to_vec(), indices.clone());
-    (builder.build().expect("a mesh"), indices)
+fn triangles(steps: u32) -> Drawn {
+    let grid = Grid::new(17, 9, 2.0, 1.0);
+    Drawn::of_mesh(grid.positions(), grid.triangles(false).as_flattened(), steps)
 }
 
 fn surface(subdivision: &Subdivision, positions: &[Vec3]) -> [Vec<Vec3>; 2] {
@@ -55,26 +67,26 @@ fn surface(subdivision: &Subdivision, positions: &[Vec3]) -> [Vec<Vec3>; 2] {
     [drawn, normals].map(|values| values.into_iter().map(Vec3::from).collect())
 }
 
-fn lifted(fabric: &Fabric, height: impl Fn(Vec2) -> f32) -> Vec<Vec3> {
-    fabric.rest_positions().iter().map(|at| at.truncate().extend(height(at.truncate()))).collect()
+fn lifted(rest: &[Vec3], height: impl Fn(Vec2) -> f32) -> Vec<Vec3> {
+    rest.iter().map(|at| at.truncate().extend(height(at.truncate()))).collect()
 }
 
 #[test]
 fn planes_stay_planes_and_particles_stay_in_place() {
-    for (fabric, indices) in [grid(7, 5), grid(2, 2), grid(3, 2), disc(), triangles()] {
-        let subdivision = Subdivision::new(&fabric, &indices, STEPS);
+    let grids = [[7, 5], [2, 2], [3, 2]].map(|size| grid(size, STEPS));
+    for Drawn { rest, subdivision } in grids.into_iter().chain([disc(STEPS), triangles(STEPS)]) {
         let slope = |at: Vec2| 0.5 * at.x - 0.25 * at.y;
         let up = Vec3::new(-0.5, 0.25, 1.0).normalize();
-        let positions = lifted(&fabric, slope);
+        let positions = lifted(&rest, slope);
         let [drawn, normals] = surface(&subdivision, &positions);
         for (at, normal) in drawn.iter().zip(&normals) {
             assert!((at.z - slope(at.truncate())).abs() < ROUNDING, "{at}");
             assert!((*normal - up).length() < 1e-4, "{normal}");
         }
-        let wavy = lifted(&fabric, |at| libm::sinf(5.0 * at.x) * libm::cosf(3.0 * at.y));
+        let wavy = lifted(&rest, |at| libm::sinf(5.0 * at.x) * libm::cosf(3.0 * at.y));
         let [drawn, _] = surface(&subdivision, &wavy);
-        for (vertex, &particle) in fabric.particle_of_vertex().iter().enumerate() {
-            assert_eq!(drawn[subdivision.kept()[vertex] as usize], wavy[particle as usize]);
+        for (vertex, at) in wavy.iter().enumerate() {
+            assert_eq!(drawn[subdivision.kept()[vertex] as usize], *at);
         }
     }
 }
@@ -84,16 +96,14 @@ fn parabolas_stay_parabolas_on_grids_and_inside_regular_meshes() {
     let height = |at: Vec2| at.x * at.x - 0.5 * at.x * at.y + 2.0 * at.y * at.y;
     let up =
         |at: Vec2| Vec3::new(-2.0 * at.x + 0.5 * at.y, 0.5 * at.x - 4.0 * at.y, 1.0).normalize();
-    let (fabric, indices) = grid(9, 5);
-    let subdivision = Subdivision::new(&fabric, &indices, STEPS);
-    let [drawn, normals] = surface(&subdivision, &lifted(&fabric, height));
+    let Drawn { rest, subdivision } = grid([9, 5], STEPS);
+    let [drawn, normals] = surface(&subdivision, &lifted(&rest, height));
     for (at, normal) in drawn.iter().zip(&normals) {
         assert!((at.z - height(at.truncate())).abs() < ROUNDING, "{at}");
         assert!((*normal - up(at.truncate())).length() < 1e-4, "{at}");
     }
-    let (fabric, indices) = disc();
-    let subdivision = Subdivision::new(&fabric, &indices, 1);
-    let [drawn, _] = surface(&subdivision, &lifted(&fabric, height));
+    let Drawn { rest, subdivision } = disc(1);
+    let [drawn, _] = surface(&subdivision, &lifted(&rest, height));
     let inside = drawn.iter().filter(|at| at.truncate().length() < 0.4);
     assert!(inside.clone().count() > 30);
     for at in inside {
@@ -103,14 +113,16 @@ fn parabolas_stay_parabolas_on_grids_and_inside_regular_meshes() {
 
 #[test]
 fn the_border_does_not_depend_on_the_interior() {
-    for (fabric, indices) in [grid(7, 5), disc(), triangles()] {
-        let subdivision = Subdivision::new(&fabric, &indices, STEPS);
-        let mut positions = lifted(&fabric, |at| libm::sinf(4.0 * at.x + at.y));
+    for (Drawn { rest, subdivision }, inner) in [
+        (grid([7, 5], STEPS), border(&Grid::new(7, 5, 2.0, 1.0).triangles(false))),
+        (disc(STEPS), border(disc(0).subdivision.triangles())),
+        (triangles(STEPS), border(triangles(0).subdivision.triangles())),
+    ] {
+        let mut positions = lifted(&rest, |at| libm::sinf(4.0 * at.x + at.y));
         let [before, _] = surface(&subdivision, &positions);
         let border = border(subdivision.triangles());
         assert!(border.len() > 20);
-        let inner = self::border(fabric.triangles());
-        for particle in 0..fabric.particle_count() as u32 {
+        for particle in 0..rest.len() as u32 {
             if !inner.contains(&particle) {
                 positions[particle as usize].z += 1.0;
             }
@@ -136,10 +148,10 @@ fn border(triangles: &[[u32; 3]]) -> Vec<u32> {
 /// continuous tangents only.
 #[test]
 fn a_fold_becomes_smooth() {
-    for (fabric, indices) in [grid(9, 9), triangles()] {
-        let positions = lifted(&fabric, |at| libm::sinf(6.0 * at.x) * 0.2);
+    for of_steps in [|steps| grid([9, 9], steps), triangles] {
         let turn = |steps: u32| {
-            let subdivision = Subdivision::new(&fabric, &indices, steps);
+            let Drawn { rest, subdivision } = of_steps(steps);
+            let positions = lifted(&rest, |at| libm::sinf(6.0 * at.x) * 0.2);
             let [drawn, _] = surface(&subdivision, &positions);
             let edges = subdivision.triangles().iter().flat_map(|&[a, b, c]| {
                 let [at, to, third] = [a, b, c].map(|corner| drawn[corner as usize]);
@@ -159,20 +171,26 @@ fn a_fold_becomes_smooth() {
 
 #[test]
 fn triangles_face_to_the_front_and_attributes_keep_their_place() {
-    for (fabric, indices) in [grid(7, 5), disc(), triangles()] {
-        let subdivision = Subdivision::new(&fabric, &indices, STEPS);
-        let rest = fabric.rest_positions();
-        let [drawn, _] = surface(&subdivision, rest);
-        let area = |&corners: &[u32; 3]| {
-            let [a, b, c] = corners.map(|corner| drawn[corner as usize]);
+    for (Drawn { rest, subdivision }, drawn_before) in [
+        (grid([7, 5], STEPS), grid([7, 5], 0)),
+        (disc(STEPS), disc(0)),
+        (triangles(STEPS), triangles(0)),
+    ] {
+        let [drawn, _] = surface(&subdivision, &rest);
+        let area = |at: &[Vec3], corners: &[u32; 3]| {
+            let [a, b, c] = corners.map(|corner| at[corner as usize]);
             0.5 * (b - a).cross(c - a).z
         };
-        let areas: Vec<f32> = subdivision.triangles().iter().map(area).collect();
-        assert!(areas.iter().all(|&area| area > 0.0));
-        assert!((areas.iter().sum::<f32>() - fabric.area()).abs() < 1e-4 * fabric.area());
+        let areas = |at: &[Vec3], of: &Subdivision| -> Vec<f32> {
+            of.triangles().iter().map(|corners| area(at, corners)).collect()
+        };
+        let found = areas(&drawn, &subdivision);
+        assert!(found.iter().all(|&area| area > 0.0));
+        let [found, before] =
+            [found, areas(&rest, &drawn_before.subdivision)].map(|areas| areas.iter().sum::<f32>());
+        assert!((found / before - 1.0).abs() < 1e-4);
         for (row, at) in subdivision.attributes().rows().zip(&drawn) {
-            let of = |vertex: u32| rest[fabric.particle_of_vertex()[vertex as usize] as usize];
-            let mean: Vec3 = row.iter().map(|&(vertex, weight)| of(vertex) * weight).sum();
+            let mean: Vec3 = row.iter().map(|&(at, weight)| rest[at as usize] * weight).sum();
             assert!((mean - *at).length() < ROUNDING, "{mean} {at}");
         }
     }
@@ -180,9 +198,8 @@ fn triangles_face_to_the_front_and_attributes_keep_their_place() {
 
 #[test]
 fn instruction_sets_that_fuse_give_the_same_bits() {
-    let (fabric, indices) = grid(17, 13);
-    let subdivision = Subdivision::new(&fabric, &indices, STEPS);
-    let positions = lifted(&fabric, |at| libm::sinf(7.0 * at.x) * libm::cosf(5.0 * at.y));
+    let Drawn { rest, subdivision } = grid([17, 13], STEPS);
+    let positions = lifted(&rest, |at| libm::sinf(7.0 * at.x) * libm::cosf(5.0 * at.y));
     let surface = || surface(&subdivision, &positions);
     let all = with_every_instruction_set(|| has_fused_products().then(surface));
     let all: Vec<_> = all.into_iter().flatten().collect();

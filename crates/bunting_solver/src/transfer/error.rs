@@ -4,19 +4,9 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TransferError {
-    /// The fabrics are no grids, so that their shared vertices must be given.
-    #[error("the fabrics are no grids: say which vertices they share")]
+    /// The fabrics are no grids.
+    #[error("the fabrics are no grids: use `LevelTransfer::of_surface`")]
     NotAGrid,
-    /// The vertices of the coarser fabric are not some of the finer one's.
-    #[error(
-        "{given} shared vertices do not fit a fabric of {expected}, or are not the finer one's"
-    )]
-    NotShared {
-        /// Number of given shared vertices.
-        given: usize,
-        /// Number of vertices of the coarser fabric.
-        expected: usize,
-    },
     /// A fabric has no triangles that can be searched.
     #[error("the surface of a fabric cannot be searched: its triangles have no area")]
     NoSurface,

@@ -68,48 +68,14 @@ impl LevelTransfer {
         Self::of_grids(Settler::new(fine), Settler::new(coarse))
     }
 
-    /// The correspondence of a fabric and a fabric whose mesh has some of the vertices of its mesh.
-    /// `vertices` holds for each vertex of the coarser mesh the vertex of the finer one, as in
-    /// [`CoarserMesh::vertices`](crate::CoarserMesh::vertices). Grids correspond as in
-    /// [`between`](Self::between), other meshes by the positions of their particles at rest.
+    /// The correspondence of this transfer's coarser grid and the next coarser one, as by [`between`](Self::between). Both transfers
+    /// share the batch in which cloths of the fabric between them settle.
     ///
     /// # Errors
     ///
-    /// The vertices are not those of the coarser fabric, or a grid is not half of the other.
-    pub fn nested(
-        fine: &Arc<Fabric>,
-        coarse: &Arc<Fabric>,
-        vertices: &[u32],
-    ) -> Result<Self, TransferError> {
-        Self::of_any(Settler::new(fine), Settler::new(coarse), vertices)
-    }
-
-    /// The correspondence of this transfer's coarser fabric and the next coarser one, as by
-    /// [`nested`](Self::nested). Both transfers share the batch in which cloths of the fabric between them
-    /// settle.
-    ///
-    /// # Errors
-    ///
-    /// As for [`nested`](Self::nested).
-    pub fn then(&self, coarser: &Arc<Fabric>, vertices: &[u32]) -> Result<Self, TransferError> {
-        Self::of_any(Arc::clone(&self.coarse), Settler::new(coarser), vertices)
-    }
-
-    fn of_any(
-        fine: Arc<Settler>,
-        coarse: Arc<Settler>,
-        vertices: &[u32],
-    ) -> Result<Self, TransferError> {
-        if fine.fabric().grid().is_some() && coarse.fabric().grid().is_some() {
-            return Self::of_grids(fine, coarse);
-        }
-        let shared = shared_particles(fine.fabric(), coarse.fabric(), vertices);
-        let expected = coarse.fabric().particle_of_vertex().len();
-        let error = TransferError::NotShared { given: vertices.len(), expected };
-        let shared = shared.ok_or(error)?;
-        let (rows, offsets) =
-            mesh::nearest(fine.fabric(), coarse.fabric(), &shared).ok_or(error)?;
-        Ok(Self::new(fine, coarse, shared, [rows.clone(), rows], offsets))
+    /// As for [`between`](Self::between).
+    pub fn then(&self, coarser: &Arc<Fabric>) -> Result<Self, TransferError> {
+        Self::of_grids(Arc::clone(&self.coarse), Settler::new(coarser))
     }
 
     /// The correspondence of two fabrics of one surface, whose particles need not be at the same positions: those of a mesh that was
@@ -134,7 +100,7 @@ impl LevelTransfer {
 
     fn of_one_surface(fine: Arc<Settler>, coarse: Arc<Settler>) -> Result<Self, TransferError> {
         let nearest =
-            |of: &Fabric, on: &Fabric| mesh::nearest(of, on, &[]).ok_or(TransferError::NoSurface);
+            |of: &Fabric, on: &Fabric| mesh::nearest(of, on).ok_or(TransferError::NoSurface);
         let (rows, offsets) = nearest(fine.fabric(), coarse.fabric())?;
         let picked = nearest(coarse.fabric(), fine.fabric())?;
         let heaviest = |row: &[(u32, f32)]| {
@@ -300,19 +266,6 @@ impl LevelTransfer {
     pub(super) fn shares_settler_with(&self, next: &Self) -> bool {
         Arc::ptr_eq(&self.coarse, &next.fine)
     }
-}
-
-/// For each coarse particle, the fine particle at the same position, given the fine vertex of each coarse
-/// vertex; none if the vertices do not fit.
-fn shared_particles(fine: &Fabric, coarse: &Fabric, vertices: &[u32]) -> Option<Vec<u32>> {
-    if vertices.len() != coarse.particle_of_vertex().len() {
-        return None;
-    }
-    let mut shared = vec![0; coarse.particle_count()];
-    for (&particle, &vertex) in coarse.particle_of_vertex().iter().zip(vertices) {
-        shared[particle as usize] = *fine.particle_of_vertex().get(vertex as usize)?;
-    }
-    Some(shared)
 }
 
 /// A cloth before its change of level.

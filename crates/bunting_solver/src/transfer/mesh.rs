@@ -1,4 +1,4 @@
-//! Interpolation between any mesh and a mesh with some of its vertices.
+//! Interpolation between two meshes of one surface.
 
 use glam::Vec3;
 use parry3d::query::PointQueryWithLocation;
@@ -14,24 +14,12 @@ const FLAT: f32 = 1e-4;
 
 /// For each fine particle: barycentric weights on the coarse triangle nearest to it at rest, and its offset
 /// from this triangle. None if the coarse mesh has no triangles that can be searched.
-pub(super) fn nearest(
-    fine: &Fabric,
-    coarse: &Fabric,
-    shared: &[u32],
-) -> Option<(Interpolation, RestOffsets)> {
+pub(super) fn nearest(fine: &Fabric, coarse: &Fabric) -> Option<(Interpolation, RestOffsets)> {
     let mesh = TriMesh::new(coarse.rest_positions().to_vec(), coarse.triangles().to_vec()).ok()?;
     let mut interpolation = Interpolation::default();
     let mut offsets = RestOffsets::default();
-    let mut coarse_of = vec![None; fine.particle_count()];
-    for (particle, &of) in shared.iter().enumerate() {
-        coarse_of[of as usize] = Some(particle as u32);
-    }
     let extent = fine.area().sqrt();
     for (particle, &rest) in fine.rest_positions().iter().enumerate() {
-        if let Some(same) = coarse_of[particle] {
-            interpolation.push([(same, 1.0)]);
-            continue;
-        }
         let (point, (triangle, location)) = mesh.project_local_point_and_get_location(rest, false);
         let corners = coarse.triangles()[triangle as usize];
         let weights = location.barycentric_coordinates()?;
@@ -84,7 +72,7 @@ mod tests {
     use glam::{Quat, Vec3};
 
     use crate::batch::snapshot::ClothSnapshot;
-    use crate::fabric::{CoarserMesh, FabricBuilder, FabricMaterial, Grid};
+    use crate::fabric::{FabricBuilder, FabricMaterial, Grid, Resolution};
     use crate::transfer::LevelTransfer;
 
     /// A quarter of a tube, as a mesh of triangles, held along one side, and its next level.
@@ -96,12 +84,11 @@ mod tests {
         };
         let positions = grid.positions().iter().map(bend).collect();
         let triangles = grid.triangles(false).into_iter().flatten().collect();
-        let fine = FabricBuilder::new(positions, triangles).uv(grid.uvs());
-        let fine = fine.pin_where(|_, uv| uv.y == 0.0);
-        let CoarserMesh { builder, vertices } = fine.coarser().expect("a level");
-        let fine = Arc::new(fine.build().expect("a cape"));
-        let coarse = Arc::new(builder.build().expect("a cape"));
-        let transfer = LevelTransfer::nested(&fine, &coarse, &vertices).expect("nested");
+        let cape = FabricBuilder::new(positions, triangles).uv(grid.uvs());
+        let cape = cape.pin_where(|_, uv| uv.y == 0.0);
+        let [fine, coarse] = [0.0625, 0.125]
+            .map(|size| cape.resampled(Resolution::CellSize(size)).expect("a cape").fabric);
+        let transfer = LevelTransfer::of_surface(&fine, &coarse).expect("one surface");
         (fine, coarse, transfer)
     }
 

@@ -270,10 +270,10 @@ fn a_chain_of_transfers_shares_its_settlers() {
     let coarse = middle.builder.coarser().expect("a level");
     let [fine, between, last] = [&builder, &middle.builder, &coarse.builder]
         .map(|builder| Arc::new(builder.clone().build().expect("a good fabric")));
-    let first = LevelTransfer::nested(&fine, &between, &middle.vertices).expect("nested");
-    let second = first.then(&last, &coarse.vertices).expect("nested");
+    let first = LevelTransfer::between(&fine, &between).expect("nested");
+    let second = first.then(&last).expect("nested");
     assert!(first.shares_settler_with(&second));
-    let apart = LevelTransfer::nested(&between, &last, &coarse.vertices).expect("nested");
+    let apart = LevelTransfer::between(&between, &last).expect("nested");
     assert!(!first.shares_settler_with(&apart));
     let state = flown(&between);
     let restricted =

@@ -8,7 +8,7 @@ use bunting_solver::{
 };
 use glam::{Quat, Vec3};
 
-use crate::common::{drive, material};
+use crate::common::{drive, material, net};
 
 const TICK: f32 = 1.0 / 60.0;
 const GRAVITY: f32 = 9.81;
@@ -32,13 +32,13 @@ fn grid(is_pinned: bool) -> Arc<Fabric> {
     Arc::new(builder.build().expect("a good fabric"))
 }
 
-/// The same cloth as a mesh that lies on a background grid, and a ball of a few triangles, which does not.
+/// The same cloth as a mesh of triangles.
 fn mesh() -> Arc<Fabric> {
     let grid = FabricBuilder::grid(Grid::new(12, 10, 1.2, 0.8));
     let mesh = FabricBuilder::new(grid.positions().to_vec(), grid.indices().to_vec())
         .uv(Grid::new(12, 10, 1.2, 0.8).uvs())
         .pin_where(|_, uv| uv.x == 0.0);
-    Arc::new(mesh.build().expect("a good fabric"))
+    net(&mesh)
 }
 
 fn undamped() -> FabricMaterial {

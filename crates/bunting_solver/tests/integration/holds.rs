@@ -8,18 +8,18 @@ use bunting_solver::{
 };
 use glam::{Quat, Vec3};
 
+use crate::common::net;
+
 const TICK: f32 = 1.0 / 60.0;
 const COLUMNS: u32 = 17;
 
-/// A sheet without pins: a grid, or a mesh with the same particles.
+/// A sheet without pins: a grid, or a mesh with about as many particles.
 fn sheet(is_grid: bool) -> Arc<Fabric> {
     let grid = FabricBuilder::grid(Grid::new(COLUMNS, COLUMNS, 1.0, 1.0));
-    let fabric = if is_grid {
-        grid.build()
-    } else {
-        FabricBuilder::new(grid.positions().to_vec(), grid.indices().to_vec()).build()
-    };
-    Arc::new(fabric.expect("a good sheet"))
+    if is_grid {
+        return Arc::new(grid.build().expect("a good sheet"));
+    }
+    net(&FabricBuilder::new(grid.positions().to_vec(), grid.indices().to_vec()))
 }
 
 /// A batch of one cloth with the given damping, 1/s.
@@ -38,20 +38,28 @@ fn weight(fabric: &Fabric) -> f32 {
 
 /// Springs from the particles of the upper edge to their places at rest, with a given stiffness of all together, N/m.
 fn springs(fabric: &Fabric, stiffness: f32, max_force: f32) -> Vec<Hold> {
-    let share = 1.0 / COLUMNS as f32;
+    let upper = upper(fabric);
+    let share = 1.0 / upper.len() as f32;
     let spring = |particle: u32| {
         let place = [fabric.rest_positions()[particle as usize]; 2];
         let by =
             Holder::Spring { place, stiffness: share * stiffness, max_force: share * max_force };
         Hold { particle, by }
     };
-    (0..COLUMNS).map(spring).collect()
+    upper.into_iter().map(spring).collect()
+}
+
+/// The particles of the upper edge.
+fn upper(fabric: &Fabric) -> Vec<u32> {
+    let particles = (0..).zip(fabric.rest_positions());
+    particles.filter(|(_, rest)| rest.y > -1e-5).map(|(particle, _)| particle).collect()
 }
 
 /// Mean of the upper edge's positions, m.
 fn edge(batch: &ClothBatch) -> Vec3 {
     let positions = batch.snapshot(0).positions;
-    positions[..COLUMNS as usize].iter().sum::<Vec3>() / COLUMNS as f32
+    let upper = upper(batch.fabric());
+    upper.iter().map(|at| positions[*at as usize]).sum::<Vec3>() / upper.len() as f32
 }
 
 #[test]
@@ -135,7 +143,7 @@ fn a_ring_slides_down_an_inclined_rail() {
             particle,
             by: Holder::Ring { rail: Arc::clone(&rail), pose, mass: 0.005, friction },
         };
-        batch.hold(0, (0..COLUMNS).map(ring).collect()).expect("good holds");
+        batch.hold(0, upper(&fabric).into_iter().map(ring).collect()).expect("good holds");
         let start = edge(&batch);
         const TICKS: u32 = 120;
         (0..TICKS).for_each(|_| batch.step(TICK, StepSettings::default()));

@@ -1,11 +1,11 @@
 //! Tests of the solver through its public types, in one binary.
 
+mod acting;
 mod cloth_group;
 mod common;
 mod contact;
 mod curved;
 mod drawn_out;
-mod following;
 mod free;
 mod guides;
 mod hard;

@@ -38,6 +38,8 @@ pub const TOP: Vec3 = Vec3::new(-1.05, 2.2, -0.55);
 pub fn spawn(commands: &mut Commands) {
     commands.spawn((
         mesh(),
+        // Five cells or more in each pleat.
+        ClothResolution::CellSize(0.045),
         ClothMaterial(FabricMaterial { area_density: 0.16, ..FabricMaterial::COTTON }),
         Attachment::in_place(AttachedVertices::List(rings().collect())),
         Transform::from_translation(TOP),

@@ -8,6 +8,10 @@ use super::*;
 /// Departure of a pinned vertex from its place, m: rounding.
 const ROUNDING: f32 = 1e-5;
 
+/// By how much the cape's curve departs from the chord between two particles, h²/8R, m: cells of 3.5 cm on a radius of 0.22 m. A
+/// vertex between particles is that far above their chord, in a direction that turns with the cloth.
+const CURVE: f32 = 7e-4;
+
 #[test]
 fn the_flag_flies_as_its_file_says() {
     let mut app = app(&assets());
@@ -26,10 +30,11 @@ fn the_flag_flies_as_its_file_says() {
     assert_eq!(app.world().get::<WindField>(wind).expect("a wind").velocity.x, 5.0);
     // The left column is pinned to the halyard, and the rest flies.
     let rest = rest(&app, flag);
-    let at = app.world().get::<ClothState>(flag).expect("it is simulated").positions();
-    assert_eq!(at.len(), 17 * 11);
-    for (vertex, at) in at.iter().enumerate() {
-        let moved = at.distance(rest[vertex]);
+    let state = app.world().get::<ClothState>(flag).expect("it is simulated");
+    assert_eq!(rest.len(), 17 * 11);
+    for (vertex, rest) in rest.iter().enumerate() {
+        let at = state.vertex_position(vertex as u32).expect("a vertex");
+        let moved = at.distance(*rest);
         assert_eq!(moved < ROUNDING, vertex.is_multiple_of(17), "vertex {vertex}: {moved} m");
     }
     let place = |app: &App| app.world().get::<Transform>(flag).expect("placed").translation;
@@ -58,7 +63,7 @@ fn the_cape_hangs_on_its_skeleton_with_the_artists_pins_and_play() {
     let mesh = world.get::<ClothMesh>(cape).expect("a cloth");
     let play = &world.get::<SkinLimits>(cape).expect("limits").max_distance;
     let ByVertex::Each(play) = play else { panic!("{play:?}") };
-    let at = world.get::<ClothState>(cape).expect("it is simulated").positions();
+    let state = world.get::<ClothState>(cape).expect("it is simulated");
     let rest = rest(&app, cape);
     let mut farthest: f32 = 0.0;
     for vertex in 0..13 * 17 {
@@ -66,9 +71,11 @@ fn the_cape_hangs_on_its_skeleton_with_the_artists_pins_and_play() {
         let v = (vertex / 13) as f32 / 16.0;
         assert_eq!(mesh.weights()[vertex] == 0.0, is_pinned, "vertex {vertex}");
         assert!((play[vertex] - (0.01 + 0.49 * v)).abs() < ROUNDING, "{}", play[vertex]);
-        let moved = at[vertex].distance(rest[vertex]);
+        let at = state.vertex_position(vertex as u32).expect("a vertex");
+        let moved = at.distance(rest[vertex]);
         farthest = farthest.max(moved);
-        assert!(if is_pinned { moved < ROUNDING } else { moved < play[vertex] + ROUNDING });
+        let most = CURVE + if is_pinned { 0.0 } else { play[vertex] };
+        assert!(moved < most, "vertex {vertex}: {moved} m of {most} m");
     }
     assert!(farthest > 0.01, "the hem falls, not only by {farthest} m");
     let shown = app.world().get::<Mesh3d>(cape).expect("it is shown");

@@ -55,13 +55,16 @@ fn a_mesh_becomes_a_cloth_when_it_is_loaded_and_keeps_what_the_artist_made() {
     assert_eq!(colors(shown), colors(&artists));
     assert_eq!(shown.attribute(Mesh::ATTRIBUTE_UV_0), artists.attribute(Mesh::ATTRIBUTE_UV_0));
     assert!(shown.contains_attribute(Mesh::ATTRIBUTE_TANGENT) && shown.contains_attribute(PIN));
+    let [coarse, fine] = [cloth, other].map(|cloth| surface(&app, cloth).positions.len());
+    assert!(2 * coarse < fine, "{coarse}, {fine}");
     let coarse = mesh(&app, cloth);
-    assert!(coarse.count_vertices() < 45 && coarse.contains_attribute(PIN));
-    assert!(colors(coarse).iter().all(|color| colors(&artists).contains(color)));
+    assert!(coarse.contains_attribute(PIN));
+    assert_eq!(colors(coarse), colors(&artists));
     // Pinned vertices stay, others are blown away, and the file's own mesh is not written.
     let (now, rest) = (positions(&app, other), values(&artists, Mesh::ATTRIBUTE_POSITION));
     for vertex in 0..45 {
-        assert_eq!(now[vertex] == rest[vertex], vertex % 9 == 0, "vertex {vertex}");
+        let moved = Vec3::from(now[vertex]).distance(Vec3::from(rest[vertex]));
+        assert_eq!(moved < ROUNDING, vertex % 9 == 0, "vertex {vertex}: {moved} m");
     }
     let source = app.world().resource::<Assets<Mesh>>().get(&handle_of_file).expect("kept");
     assert_eq!(values(source, Mesh::ATTRIBUTE_POSITION), rest);
@@ -185,7 +188,10 @@ fn a_defective_mesh_is_repaired_if_asked() {
     );
     let shown = mesh_colors(&app, repaired);
     assert_eq!(shown, [0.0, 2.0, 3.0, 4.0, 5.0, 2.0]);
-    assert_eq!(surface(&app, repaired).positions.len(), 6, "the split vertex is two particles");
+    // The split vertex is in two places, which part in the air.
+    let state = app.world().get::<ClothState>(repaired).expect("a cloth");
+    let [one, other] = [1, 5].map(|vertex| state.particle_of_vertex(vertex));
+    assert_ne!(one, other);
 }
 
 /// The green channels of a cloth's mesh.

@@ -52,7 +52,7 @@ fn a_seam_is_written_on_both_sides() {
     let cloth = app.world_mut().spawn((shape, attachment, ClothSubdivision::NONE)).id();
     run(&mut app, 20);
     let at = positions(&app, cloth);
-    assert_eq!((at.len(), surface(&app, cloth).positions.len()), (8, 6));
+    assert_eq!(at.len(), 8);
     assert_eq!((at[1], at[3]), (at[4], at[6]));
     assert_ne!(at[1], [1.0, 0.0, 0.0]);
 }

@@ -12,7 +12,6 @@ mod levels;
 mod parts;
 pub(crate) mod reflect;
 mod resolution;
-mod simplified;
 mod subdivided;
 mod written;
 
@@ -106,8 +105,17 @@ fn surface(app: &App, cloth: Entity) -> &ClothSurface {
     app.world().get(cloth).expect("the cloth is drawn")
 }
 
+/// Whether each vertex is drawn where the surface has it.
 fn is_current(app: &App, cloth: Entity) -> bool {
-    *positions(app, cloth) == arrays(&surface(app, cloth).positions)
+    let surface = surface(app, cloth);
+    let state = app.world().get::<ClothState>(cloth).expect("a cloth");
+    let levels = state.levels.as_ref().expect("it is simulated");
+    let (drawn, level) = (positions(app, cloth), surface.level());
+    let vertices = &levels.topology(level).vertices;
+    let place = |vertex: u32| levels.vertex_position(level, vertex, &surface.positions);
+    let mut pairs = vertices.iter().zip(drawn);
+    drawn.len() == vertices.len()
+        && pairs.all(|(&vertex, at)| place(vertex).is_none_or(|place| place.to_array() == *at))
 }
 
 fn failures(app: &App) -> &[ClothError] {

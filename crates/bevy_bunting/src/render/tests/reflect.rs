@@ -142,7 +142,6 @@ fn a_cloth_of_a_mesh_makes_the_round_trip() {
         repair: true,
         ignore_uv: true,
         weights,
-        max_vertices: Some(600),
         max_distance,
         held: vec![PaintedVertices { paint, least: 0.3 }],
         ..ClothFromMesh::default()

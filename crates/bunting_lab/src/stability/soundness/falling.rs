@@ -9,7 +9,7 @@ use bunting_solver::{
 use glam::{DVec2, Vec3};
 
 use super::{GRAVITY, advance, pulled, standard};
-use crate::meshes::{Sheet, Triangulation};
+use crate::meshes::{Sheet, Triangulation, net};
 use crate::product::TICK;
 use crate::stability::case::HardCase;
 
@@ -22,19 +22,18 @@ const APART: f64 = 1e-3;
 /// Cases of sheets, tubes with and without holes, and trousers.
 pub(super) fn cases() -> Vec<HardCase> {
     let sheet = Sheet::new(Triangulation::Delaunay, [24, 24], DVec2::ONE, 1);
-    let built = |mesh: FabricBuilder| mesh.build().expect("a good mesh");
     let disk = FabricBuilder::new(sheet.round(0.5), sheet.indices.clone());
     vec![
-        case("sheet with a hole", [built(sheet.with_hole(0.2))]),
-        case("disk", [built(disk)]),
+        case("sheet with a hole", [net(&sheet.with_hole(0.2))]),
+        case("disk", [net(&disk)]),
         case("tubes", tubes(0.0)),
         case("tubes with a hole", tubes(0.22)),
-        case("pair of trousers", [built(pulled::trousers())]),
+        case("pair of trousers", [net(&pulled::trousers())]),
     ]
 }
 
 /// Tubes of various heights and numbers of vertices without texture, with a hole of a radius, in units of their girth.
-fn tubes(radius: f32) -> Vec<Fabric> {
+fn tubes(radius: f32) -> Vec<Arc<Fabric>> {
     let mut tubes = Vec::new();
     for (triangulation, columns) in [Triangulation::Delaunay, Triangulation::Scan]
         .into_iter()
@@ -47,21 +46,20 @@ fn tubes(radius: f32) -> Vec<Fabric> {
         for height in [0.7, 1.0, 1.6] {
             let corners = around.iter().map(|at| *at * Vec3::new(1.0, height, 1.0)).collect();
             let mesh = FabricBuilder::new(corners, sheet.indices.clone()).weld_distance(1e-5);
-            tubes.push(mesh.build().expect("a good mesh"));
+            tubes.push(net(&mesh));
         }
     }
     tubes
 }
 
 /// Case of the greatest distance of a particle of some meshes from where it falls to by itself.
-fn case(name: &str, meshes: impl IntoIterator<Item = Fabric>) -> HardCase {
+fn case(name: &str, meshes: impl IntoIterator<Item = Arc<Fabric>>) -> HardCase {
     let apart = meshes.into_iter().map(apart).fold(0.0, f64::max);
     HardCase::new(format!("{name}: free fall"), 0, "greatest distance, m", apart, APART)
 }
 
 /// The greatest distance of a particle from where it falls to by itself, m; infinite if it is not a number.
-fn apart(mesh: Fabric) -> f64 {
-    let mesh = Arc::new(mesh);
+fn apart(mesh: Arc<Fabric>) -> f64 {
     let settings = StepLimits::default().of_fabric(&mesh, TICK, GRAVITY);
     let mut batch = ClothBatch::new(Arc::clone(&mesh), LaneCount::One);
     let material = FabricMaterial { warp_stiffness: 1e3, weft_stiffness: 1e3, ..standard() };

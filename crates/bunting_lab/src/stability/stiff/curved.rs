@@ -8,7 +8,7 @@ use glam::{DVec2, Vec3};
 use super::rests;
 use crate::{
     flight::almost_at_rest,
-    meshes::{Sheet, Triangulation, around, clothes::disk},
+    meshes::{Sheet, Triangulation, around, clothes::disk, net},
     stability::{case::HardCase, lone::Lone},
 };
 
@@ -48,11 +48,11 @@ fn hung(name: String, fabric: &Arc<Fabric>, material: FabricMaterial) -> HardCas
 /// A tube with a level axis, held by one rim.
 fn tube() -> Arc<Fabric> {
     let ([radius, length], count) = TUBE;
-    let mesh = around(count, count, false, |along, azimuth| {
+    let mesh = around(count, count, |along, azimuth| {
         let (sin, cos) = libm::sincosf(azimuth);
         Vec3::new(length * along, radius * cos, radius * sin)
     });
-    Arc::new(mesh.pin_where(|at, _| at.x < 1e-6).build().expect("a good mesh"))
+    net(&mesh.pin_where(|at, _| at.x < 1e-6))
 }
 
 /// A round napkin, level, whose middle lies on a pedestal.
@@ -62,7 +62,7 @@ fn napkin() -> Arc<Fabric> {
     let level = |at: &Vec3| Vec3::new(at.x, 0.0, -at.y);
     let positions = disk.positions.iter().map(level).collect();
     let mesh = FabricBuilder::new(positions, disk.indices).uv(disk.uv);
-    Arc::new(mesh.pin_where(|at, _| at.length() < pedestal).build().expect("a good mesh"))
+    net(&mesh.pin_where(|at, _| at.length() < pedestal))
 }
 
 /// An irregular sheet in a frame that is a little too large.

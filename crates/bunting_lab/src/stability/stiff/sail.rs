@@ -8,6 +8,7 @@ use bunting_solver::{
 use glam::{Vec2, Vec3};
 
 use crate::{
+    meshes::net,
     product::TICK,
     scenes::ticks,
     stability::{case::HardCase, lone::Lone},
@@ -47,7 +48,7 @@ pub(super) fn cases() -> impl Iterator<Item = HardCase> {
 
 /// Strain, belly and force of a sail.
 fn sail(stiffness: f32, limits: StepLimits) -> [f64; 3] {
-    let (fabric, luff) = cut();
+    let (fabric, clew) = cut();
     let material = FabricMaterial {
         area_density: 0.25,
         warp_stiffness: stiffness,
@@ -60,7 +61,7 @@ fn sail(stiffness: f32, limits: StepLimits) -> [f64; 3] {
     let drive = Drive { wind: WIND, ..Drive::default() };
     let start = ClothSnapshot::at_rest(&fabric);
     let mut sail = Lone::new(&fabric, &start, material, drive).within(limits);
-    let groups = Arc::new(PinGroups::new(&fabric, &[luff, vec![CELLS]]));
+    let groups = Arc::new(PinGroups::new(&fabric, &[Vec::new(), vec![clew]]));
     let pivots = || vec![[Vec3::ZERO; 2]; 2];
     sail.batch.report_pins(0, Some((&groups, pivots()))).expect("a lane");
     sail.run(FULL[0]);
@@ -83,8 +84,8 @@ fn sail(stiffness: f32, limits: StepLimits) -> [f64; 3] {
     [100.0 * percentile(&strains, 0.99), belly, force]
 }
 
-/// The sail with the vertices of its luff. The tack is the origin, the clew vertex `CELLS`.
-fn cut() -> (Arc<Fabric>, Vec<u32>) {
+/// The sail, held by its luff and its clew, with the particle of the latter. The tack is the origin.
+fn cut() -> (Arc<Fabric>, u32) {
     let row = |up: u32| (0..up).map(|row| CELLS + 1 - row).sum::<u32>();
     let cell = SIZE / CELLS as f32;
     let vertices = (0..=CELLS).flat_map(|up| (0..=CELLS - up).map(move |along| (along, up)));
@@ -101,8 +102,8 @@ fn cut() -> (Arc<Fabric>, Vec<u32>) {
         }
     }
     let uv = positions.iter().map(|at| Vec2::new(at.x, -at.y)).collect();
-    let luff: Vec<u32> = (0..=CELLS).map(row).collect();
-    let held = luff.iter().copied().chain([CELLS]);
-    let sail = FabricBuilder::new(positions, indices).uv(uv).pin(held);
-    (Arc::new(sail.build().expect("a good mesh")), luff)
+    let held = (0..=CELLS).map(row).chain([CELLS]);
+    let fabric = net(&FabricBuilder::new(positions, indices).uv(uv).pin(held));
+    let clew = fabric.particle_of_vertex()[CELLS as usize];
+    (fabric, clew)
 }

@@ -27,11 +27,9 @@ pub(crate) struct Cells<P: Pack> {
 }
 
 impl<P: Pack> Cells<P> {
-    /// The cells of a fabric, which has none if it is a background grid; none unless its patches are the cells of a
-    /// grid, row by row.
+    /// The cells of a fabric; none unless its patches are the cells of a grid, row by row.
     pub fn new(fabric: &Fabric, shape: GridShape) -> Option<Self> {
-        let is_background = fabric.patches().is_empty();
-        let columns = if is_background { 1 } else { fabric.patch_grid_columns()? - 1 };
+        let columns = fabric.patch_grid_columns()? - 1;
         let stride = shape.row_stride;
         let rows = fabric.patches().chunks(columns);
         let corner_areas = rows.flat_map(|row| {

@@ -137,8 +137,7 @@ impl<P: Pack> ChainPacks<P> {
     /// The chains of a grid; none if its yarns do not run straight.
     pub fn new(fabric: &Fabric, shape: GridShape) -> Option<Self> {
         let grid = fabric.grid()?;
-        let is_joined = fabric.is_closed();
-        let mut packer = Packer { shape, is_joined, classes: Vec::new(), known: HashMap::new() };
+        let mut packer = Packer { shape, classes: Vec::new(), known: HashMap::new() };
         let mut colours: Vec<(LinkFamily, Vec<Chain<P>>)> = Vec::new();
         let mut orders = Vec::new();
         for range in fabric.yarn_colours().ranges() {
@@ -209,8 +208,6 @@ fn diagonal_lengths<P: Pack>(cells: &[Cell], shape: GridShape, rest: &[Vec3]) ->
 /// Packs neighbouring yarns.
 struct Packer {
     shape: GridShape,
-    /// Whether the ends of columns are at one place.
-    is_joined: bool,
     classes: Vec<LaneIndices>,
     /// The class with these classes of the fabric in its lanes.
     known: HashMap<LaneIndices, u32>,
@@ -263,7 +260,7 @@ impl Packer {
             particles: (begin..=end).map(at).collect(),
             links: chain_links,
             sweep_order: sweep.concat(),
-            is_closed: self.is_joined && direction == Direction { columns: 0, rows: 1 },
+            is_closed: false,
             leading: 0,
         })
     }

@@ -2,7 +2,7 @@
 
 use super::grid_shape::{GridShape, MARGIN};
 use super::vector_grid::VectorGrid;
-use crate::batch::layout::{Order, Particles, Positions, visit_packs};
+use crate::batch::layout::{Order, Particles, Positions};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
@@ -96,17 +96,6 @@ impl<P: Pack> Positions<P> for PositionGrids<P> {
     fn overwritten(&mut self) -> &mut [Pack3<P>] {
         self.order = None;
         &mut self.packs
-    }
-
-    /// Without a copy from the arrays to the packs and back.
-    #[inline(always)]
-    fn visit_coordinates(&mut self, mut visit: impl FnMut(&mut [f32])) {
-        let arrays = match self.order {
-            None => return visit_packs(&mut self.packs, visit),
-            Some(Order::RowMajor) => &mut self.row_major,
-            Some(Order::ColumnMajor) => &mut self.column_major,
-        };
-        arrays.position.coordinates_mut().into_iter().for_each(&mut visit);
     }
 
     fn particles<'a>(

@@ -8,9 +8,12 @@
 
 mod bend_lines;
 mod chains;
+mod in_order;
 mod node_packs;
 mod pack_lanes;
+mod patches;
 mod positions;
+mod vectors;
 
 use core::ops::Range;
 use std::sync::Arc;
@@ -20,11 +23,10 @@ use glam::Vec3;
 use self::bend_lines::BendLinePacks;
 use self::chains::ChainPacks;
 use self::node_packs::{NodePack, NodePacks};
+use self::patches::PatchPacks;
 use self::positions::NetPositions;
+use self::vectors::{pack_constants, pack_count, read_packs, read_vectors, write_packs};
 use crate::batch::layout::{Layout, OfCloth, Order};
-use crate::batch::single_mesh::{
-    PatchPacks, locate, pack_constants, pack_count, read_packs, read_vectors, write_packs,
-};
 use crate::batch::single_tethers::TetherPacks;
 use crate::batch::tether_pack::TetherPack;
 use crate::constraints::bend_factors::BendFactors;
@@ -65,7 +67,7 @@ pub(crate) struct SingleNet {
 impl SingleNet {
     /// The layout of a fabric; none unless it is a net.
     pub fn of(fabric: &Fabric) -> Option<Self> {
-        let rest = fabric.rest_bends().filter(|_| fabric.is_net())?;
+        let rest = fabric.rest_bends()?;
         let particles = fabric.particle_count();
         let mut nodes = NodePacks::new(particles);
         let chains = ChainPacks::new(fabric, &mut nodes);
@@ -105,6 +107,12 @@ impl SingleNet {
             neighbours,
         })
     }
+}
+
+/// The pack and the lane of a particle.
+#[inline]
+fn locate(particle: usize) -> (usize, usize) {
+    (particle / Pack8::WIDTH, particle % Pack8::WIDTH)
 }
 
 /// The elements of a list of the fabric that the lanes' indices refer to.

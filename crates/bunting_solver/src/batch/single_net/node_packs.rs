@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::batch::single_mesh::pack_count;
+use super::vectors::pack_count;
 use crate::simd::lane::Pack;
 use crate::simd::registers::Pack8;
 

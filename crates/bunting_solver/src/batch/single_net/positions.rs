@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::Vec3;
 
 use super::node_packs::NodePack;
+use super::vectors::{read_vectors, write_vectors};
 use crate::batch::layout::{Order, Particles, Positions};
-use crate::batch::single_mesh::{read_vectors, write_vectors};
 use crate::simd::lane::{Lane, Pack};
 use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::{Pack3, V3, splat3};

@@ -7,8 +7,6 @@
 use super::fold::{Fold, fold};
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Order, Particles, Positions};
-use crate::constraints::corrections::CorrectedParticles;
-use crate::constraints::direction::sweep_order;
 use crate::fabric::Fabric;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::V3;
@@ -22,36 +20,6 @@ impl<P: Pack> LaneBatch<P> {
             multiplier: &mut self.layout.hinge_multiplier,
             particles: self.positions.particles(Order::RowMajor, &self.masses.inverse, &[]),
             accumulate,
-            backwards: false,
-        });
-    }
-
-    /// Projects every hinge, and once more in the opposite order: a symmetric Gauss–Seidel sweep.
-    pub fn solve_dihedral_both_ways(&mut self) {
-        self.begin_lone_mesh();
-        if let Some(mesh) = &mut self.lone_mesh {
-            mesh.solve_hinges(self.layout.hinge_compliance.iter().map(|pack| pack.lanes()[0]));
-        } else {
-            self.layout.hinge_multiplier.fill(P::splat(0.0));
-            self.correct_by_hinges(false);
-            self.correct_by_hinges(true);
-        }
-        self.apply_corrections();
-    }
-
-    /// Projects every hinge, and adds to the sums of corrections.
-    fn correct_by_hinges(&mut self, backwards: bool) {
-        P::run(Dihedral {
-            fabric: &self.fabric,
-            compliance: &self.layout.hinge_compliance,
-            multiplier: &mut self.layout.hinge_multiplier,
-            particles: CorrectedParticles {
-                inverse_masses: &self.masses.inverse,
-                predicted: self.positions.packs(),
-                correction: &mut self.correction,
-            },
-            accumulate: true,
-            backwards,
         });
     }
 }
@@ -62,16 +30,12 @@ struct Dihedral<'a, P: Pack, S: Particles<P>> {
     multiplier: &'a mut [P],
     particles: S,
     accumulate: bool,
-    /// Whether the hinges are projected in the opposite order.
-    backwards: bool,
 }
 
 impl<P: Pack, S: Particles<P>> Kernel<P> for Dihedral<'_, P, S> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(mut self, token: L::Token) {
-        let hinges = self.fabric.hinges();
-        for index in sweep_order(hinges.len(), self.backwards) {
-            let (hinge, multiplier) = (&hinges[index], &mut self.multiplier[index]);
+        for (hinge, multiplier) in self.fabric.hinges().iter().zip(self.multiplier) {
             let mut at = [V3::<L>::splat(token, 0.0); 4];
             let mut masses = [L::splat(token, 0.0); 4];
             for (corner, &particle) in hinge.particles.iter().enumerate() {

@@ -7,7 +7,6 @@ impl<P: Pack> LaneBatch<P> {
     /// Solves bending, stretch and contacts once in each pass of the settings.
     pub fn solve_gauss_seidel(&mut self) {
         let passes = self.clock.settings.passes;
-        // A mesh with a background grid has no chains, and so no targets yet.
         let links = self.fabric.links().len();
         self.link_target.resize(self.link_target.len().max(links), P::splat(0.0));
         // With a single pass no later pass reads the multipliers.

@@ -37,7 +37,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         origin: Vec3,
         start: &mut [Vec3],
     ) {
-        self.access_particles(cloth);
+        self.disturb(cloth);
         member.set_pose(self.part_of_tick(), origin);
         self.copy_common(cloth, &member.pose, start);
         if let Some(state) = &mut self.lanes[cloth] {

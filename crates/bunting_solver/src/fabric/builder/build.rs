@@ -1,35 +1,44 @@
 //! The steps from a builder to a fabric.
 
+use super::resampled::{Resolution, check_sides};
 use super::source::FabricBuilder;
 use crate::fabric::error::FabricError;
 use crate::fabric::fabric::Fabric;
-use crate::fabric::mesh::RestMesh;
+use crate::fabric::mesh::{RestMesh, Surface};
 
 impl FabricBuilder {
-    /// Builds the fabric.
+    /// Builds the fabric: of a grid one whose particles are the grid's, of any other mesh one with particles of its own, at the
+    /// default [`Resolution`]. [`resampled`](Self::resampled) tells how such a mesh follows its particles, too.
     ///
     /// # Errors
     ///
     /// A [`FabricError`] names the defect of the mesh and its location.
     pub fn build(self) -> Result<Fabric, FabricError> {
-        self.validate()?;
-        let welded = self.weld();
-        let (mesh, surface) =
-            RestMesh::new(&self.positions, &self.uv, &self.indices, self.pinned, welded)?;
-        Ok(Fabric::new(mesh, &surface, self.grid, self.tethered))
+        let Some(grid) = self.grid else {
+            return self.laid(Resolution::default()).map(|laid| laid.fabric);
+        };
+        let (mesh, surface) = self.rest_mesh()?;
+        Ok(Fabric::of_grid(mesh, &surface, grid, 1.0, self.tethered))
     }
-}
 
-impl FabricBuilder {
-    /// Checks whether a fabric can be built, which takes much less time than to build it.
+    /// Checks the mesh, which takes much less time than to build a fabric.
     ///
     /// # Errors
     ///
-    /// Those of [`build`](Self::build).
+    /// Those of [`build`](Self::build), but for [`FabricError::Cells`].
     pub fn check(&self) -> Result<(), FabricError> {
+        let (mesh, surface) = self.rest_mesh()?;
+        if self.grid.is_some() {
+            return Ok(());
+        }
+        check_sides(&mesh, &surface, &self.weld().vertex_of_particle)
+    }
+
+    /// The mesh with its vertices merged.
+    pub(in crate::fabric) fn rest_mesh(&self) -> Result<(RestMesh, Surface), FabricError> {
         self.validate()?;
         let pinned = self.pinned.iter().copied();
-        RestMesh::new(&self.positions, &self.uv, &self.indices, pinned, self.weld()).map(|_| ())
+        RestMesh::new(&self.positions, &self.uv, &self.indices, pinned, self.weld())
     }
 }
 

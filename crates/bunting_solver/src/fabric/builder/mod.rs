@@ -2,15 +2,10 @@
 
 mod build;
 mod coarser;
-#[cfg(feature = "mesh_levels")]
-mod flattened;
+mod rectangle;
 mod repair;
 mod resampled;
 mod rest_normals;
-#[cfg(feature = "mesh_levels")]
-mod simplified;
-#[cfg(feature = "mesh_levels")]
-mod slivers;
 mod source;
 mod validate;
 

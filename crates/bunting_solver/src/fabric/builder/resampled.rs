@@ -4,14 +4,15 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::rectangle::Rectangle;
 use super::source::FabricBuilder;
-use crate::fabric::background::{Interpolation, Term};
 use crate::fabric::carried::Carried;
 use crate::fabric::error::FabricError;
 use crate::fabric::fabric::Fabric;
-use crate::fabric::mesh::RestMesh;
-use crate::fabric::quads::Net;
-use crate::fabric::remesh::{Nodes, Refined, Source};
+use crate::fabric::interpolation::{Interpolation, Term};
+use crate::fabric::mesh::{RestMesh, Surface};
+use crate::fabric::net::Net;
+use crate::fabric::remesh::{Nodes, OnNodes, Refined, Source};
 
 /// Greatest length of an edge of the mesh on which a lattice is found, in cells. Longer: where lines of the lattice end, holes as
 /// large as a triangle are left.
@@ -20,9 +21,15 @@ const LONGEST_EDGE: f32 = 2.5;
 /// Greatest number of particles. More: a size of cells that was meant in other units makes the memory overflow.
 const MOST_PARTICLES: u32 = 1_000_000;
 
+/// Number of particles by default: a square then has some thirty cells along its sides, as many as folds need to look like cloth.
+const PARTICLES: u32 = 1000;
+
 /// How finely a mesh is simulated.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Resolution {
+    /// About a thousand particles.
+    #[default]
+    Auto,
     /// Size of the cells between particles, m.
     CellSize(f32),
     /// About as many particles.
@@ -30,17 +37,17 @@ pub enum Resolution {
 }
 
 /// A fabric whose particles lie on lines along warp and weft, whatever the triangles of the mesh that it was made from, and how
-/// that mesh follows it. Made by [`FabricBuilder::resampled`].
+/// that mesh follows it. Made by [`FabricBuilder::resampled`]. [`Fabric::particle_of_vertex`] tells the particle at each vertex,
+/// or the nearest one; of a pinned vertex the nearest pinned one.
 #[derive(Clone, Debug)]
 pub struct Resampled {
     /// What is simulated.
     pub fabric: Arc<Fabric>,
     /// How the mesh follows.
     pub carried: Carried,
-    /// The particle at each vertex of the mesh, or the nearest one; of a pinned vertex the nearest pinned one.
-    pub particles: Vec<u32>,
-    /// The vertex of the mesh that is nearest to each particle.
-    pub nearest_vertices: Vec<u32>,
+    /// The vertices of the mesh around each particle with their weights, whose sum is 1: those of the triangle that it lies on, by
+    /// which what is known of vertices is interpolated.
+    pub corners: Vec<Vec<(u32, f32)>>,
     /// Size of the cells between particles, m.
     pub cell_size: f32,
 }
@@ -68,50 +75,133 @@ impl FabricBuilder {
     /// Those of [`build`](Self::build); [`FabricError::OneSided`] of a mesh without front; [`FabricError::CellSize`], and
     /// [`FabricError::Cells`] where the surface can't be divided into cells.
     pub fn resampled(&self, resolution: Resolution) -> Result<Resampled, FabricError> {
-        self.validate()?;
-        let welded = self.weld();
-        let vertex_of_place = welded.vertex_of_particle.clone();
-        let pinned = self.pinned.iter().copied();
-        let (mesh, surface) =
-            RestMesh::new(&self.positions, &self.uv, &self.indices, pinned, welded)?;
-        let given = Source::new(&mesh, &surface);
-        if let Some(ends) = given.one_sided_edge() {
-            let [a, b] = ends.map(|place| vertex_of_place[place as usize]);
-            return Err(FabricError::OneSided { a, b });
-        }
+        self.laid(resolution).map(|Laid { fabric, carried, corners, cell_size }| Resampled {
+            fabric: Arc::new(fabric),
+            carried,
+            corners,
+            cell_size,
+        })
+    }
+
+    /// The same before the fabric is shared.
+    pub(super) fn laid(&self, resolution: Resolution) -> Result<Laid, FabricError> {
+        let (mesh, surface) = self.rest_mesh()?;
+        let vertex_of_place = self.weld().vertex_of_particle;
+        check_sides(&mesh, &surface, &vertex_of_place)?;
+        let source = Source::new(&mesh, &surface);
         let size = match resolution {
+            Resolution::Auto => source.cell_size(f64::from(PARTICLES)),
             Resolution::CellSize(size) => f64::from(size),
-            Resolution::Particles(count) => given.cell_size(f64::from(count)),
+            Resolution::Particles(count) => source.cell_size(f64::from(count)),
         };
-        let count = given.node_count(size);
+        let count = source.node_count(size);
         if !(size > 0.0 && count > 0.0 && count <= f64::from(MOST_PARTICLES)) {
             let (size, particles) = (size as f32, count as f32);
             return Err(FabricError::CellSize { size, particles, most: MOST_PARTICLES });
         }
-        let refined = Refined::of(&mesh, &surface, LONGEST_EDGE * size as f32);
-        let original = |place: u32| {
-            let of_refined = refined.as_ref().map(|it| it.origins[place as usize]);
-            vertex_of_place[of_refined.unwrap_or(place) as usize]
+        let at = |place: u32| FabricError::Cells {
+            vertex: vertex_of_place[place as usize],
+            size: size as f32,
         };
-        let at = |place: u32| FabricError::Cells { vertex: original(place), size: size as f32 };
-        let of_refined = refined.as_ref().map(|it| Source::new(&it.mesh, &it.surface));
-        let source = of_refined.unwrap_or(given);
-        let nodes = Nodes::on_lattice(&source, size).map_err(at)?;
-        let (net, cells) = Net::of_nodes(&nodes).ok_or_else(|| at(0))?;
-        let cells = cells.iter().map(|cell| &cell[..]);
-        let (rows, heights) = nodes.carried(&source, cells, mesh.positions.len()).map_err(at)?;
-        let particles = particles_of_places(&mesh, &nodes, &rows);
-        let nearest = nodes.nearest_vertices.iter();
-        let nearest_vertices = nearest.map(|&place| original(place)).collect();
+        let on_grid = match Rectangle::of(&mesh, &source, size as f32) {
+            Some(rectangle) => rectangle.laid(&mesh, self.tethered)?,
+            None => None,
+        };
+        let OnSurface { mut fabric, on_nodes, particles, corners } = match on_grid {
+            Some(on_grid) => on_grid,
+            None => on_lattice(&mesh, &surface, source, size, self.tethered).map_err(at)?,
+        };
+        let OnNodes { rows, heights, held } = on_nodes;
         let RestMesh { particle_of_vertex: place_of_vertex, triangles, .. } = mesh;
-        Ok(Resampled {
-            fabric: Arc::new(Fabric::of_nodes(net, self.tethered)),
-            particles: place_of_vertex.iter().map(|&place| particles[place as usize]).collect(),
-            nearest_vertices,
-            carried: Carried { rows, heights, place_of_vertex, triangles },
+        fabric.set_vertices(&place_of_vertex, &particles);
+        let corners = corners.iter().map(|row| {
+            let inside = || row.iter().filter(|term| term.weight > 0.0);
+            let sum: f32 = inside().map(|term| term.weight).sum();
+            let of_vertex = |it: &Term| (vertex_of_place[it.from as usize], it.weight / sum);
+            inside().map(of_vertex).collect()
+        });
+        Ok(Laid {
+            fabric,
+            corners: corners.collect(),
+            carried: Carried { rows, heights, held, place_of_vertex, triangles },
             cell_size: size as f32,
         })
     }
+}
+
+/// A fabric, and how the places of the mesh that it was made from follow.
+pub(super) struct OnSurface {
+    pub fabric: Fabric,
+    /// How places follow the particles.
+    pub on_nodes: OnNodes,
+    /// The particle at each place, or one near it.
+    pub particles: Vec<u32>,
+    /// The places around each particle with their weights.
+    pub corners: Vec<Vec<Term>>,
+}
+
+/// A net on a surface, in cells of a size, m.
+///
+/// # Errors
+///
+/// A place where there can't be cells.
+fn on_lattice(
+    mesh: &RestMesh,
+    surface: &Surface,
+    given: Source,
+    size: f64,
+    tethered: bool,
+) -> Result<OnSurface, u32> {
+    let refined = Refined::of(mesh, surface, LONGEST_EDGE * size as f32);
+    let original = |place: u32| {
+        let of_refined = refined.as_ref().map(|it| Term::heaviest(&it.origins[place as usize]));
+        of_refined.flatten().map_or(place, |it| it.from)
+    };
+    let of_refined = refined.as_ref().map(|it| Source::new(&it.mesh, &it.surface));
+    let source = of_refined.unwrap_or(given);
+    let nodes = Nodes::on_lattice(&source, size).map_err(original)?;
+    let (net, cells) = Net::of(&nodes).ok_or(0_u32)?;
+    let cells = cells.iter().map(|cell| &cell[..]);
+    let count = mesh.positions.len();
+    let on_nodes = nodes.carried(&source, cells, count).map_err(original)?;
+    let particles = particles_of_places(mesh, &nodes, &on_nodes.rows);
+    let corners = nodes.corners.iter().map(|row| match &refined {
+        Some(refined) => {
+            let origins = |it: &Term| (&refined.origins[it.from as usize][..], it.weight);
+            Term::sum(row.iter().map(origins))
+        }
+        None => row.clone(),
+    });
+    let corners = corners.collect();
+    let fabric = Fabric::of_nodes(net, tethered);
+    Ok(OnSurface { fabric, on_nodes, particles, corners })
+}
+
+/// Checks that the triangles of a mesh agree on its front, given the vertex at each place.
+///
+/// # Errors
+///
+/// [`FabricError::OneSided`].
+pub(super) fn check_sides(
+    mesh: &RestMesh,
+    surface: &Surface,
+    vertex_of_place: &[u32],
+) -> Result<(), FabricError> {
+    match mesh.one_sided_edge(&surface.edges) {
+        Some(ends) => {
+            let [a, b] = ends.map(|place| vertex_of_place[place as usize]);
+            Err(FabricError::OneSided { a, b })
+        }
+        None => Ok(()),
+    }
+}
+
+/// [`Resampled`] with a fabric that nothing shares yet.
+pub(super) struct Laid {
+    pub fabric: Fabric,
+    carried: Carried,
+    corners: Vec<Vec<(u32, f32)>>,
+    cell_size: f32,
 }
 
 /// The node at each place, or that with the greatest weight there; the nearest pinned one of a pinned place.

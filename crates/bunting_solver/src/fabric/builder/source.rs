@@ -129,6 +129,12 @@ impl FabricBuilder {
         &self.positions
     }
 
+    /// Texture coordinates of the vertices; empty without.
+    #[must_use]
+    pub fn uvs(&self) -> &[Vec2] {
+        &self.uv
+    }
+
     /// Three vertices per triangle.
     #[must_use]
     pub fn indices(&self) -> &[u32] {

@@ -1,9 +1,9 @@
-//! The cell of nodes that a particle lies in, and its weights there.
+//! The cell of nodes that a place lies in, and its weights there.
 
 use glam::{DMat2, DVec2, DVec3, Vec3};
 
 use super::{barycentric, nearest};
-use crate::fabric::background::{Height, Term};
+use crate::fabric::interpolation::{Height, Term};
 
 /// Most steps from cell to cell.
 const STEPS: usize = 20;
@@ -11,14 +11,14 @@ const STEPS: usize = 20;
 /// Steps of Newton's method.
 const NEWTON_STEPS: usize = 6;
 
-/// Least distance of a particle from the surface between nodes that counts, in cells.
+/// Least distance of a place from the surface between nodes that counts, in cells.
 const LEAST_HEIGHT: f32 = 1e-5;
 
-/// A particle in a cell.
+/// A place in a cell.
 pub(super) struct InCell {
     /// The weights of the cell's nodes.
     pub terms: Vec<Term>,
-    /// The particle's distance from the surface between them, if it has one.
+    /// The place's distance from the surface between them, if it has one.
     pub height: Option<Height>,
 }
 
@@ -42,8 +42,8 @@ impl<'a, 'b> Cells<'a, 'b> {
         Self { cells, positions, around, size }
     }
 
-    /// The cell nearest to a particle, given its normal and a node near it; none without cells.
-    pub fn of(&self, particle: u32, at: DVec3, normal: DVec3, node: u32) -> Option<InCell> {
+    /// The cell nearest to a place, given its normal and a node near it; none without cells.
+    pub fn of(&self, place: u32, at: DVec3, normal: DVec3, node: u32) -> Option<InCell> {
         let cell = self.nearest(at, normal, node)?;
         let corners = self.corners(cell);
         let (weights, nodes) = match (*cell, &corners[..]) {
@@ -60,7 +60,7 @@ impl<'a, 'b> Cells<'a, 'b> {
         let terms = cell.iter().zip(&weights);
         Some(InCell {
             terms: terms.map(|(&from, &weight)| Term { from, weight: weight as f32 }).collect(),
-            height: self.height(particle, nodes, (at - below).as_vec3()),
+            height: self.height(place, nodes, (at - below).as_vec3()),
         })
     }
 
@@ -103,11 +103,11 @@ impl<'a, 'b> Cells<'a, 'b> {
         cell.iter().map(|at| self.positions[*at as usize].as_dvec3()).collect()
     }
 
-    fn height(&self, particle: u32, nodes: [u32; 4], away: Vec3) -> Option<Height> {
+    fn height(&self, place: u32, nodes: [u32; 4], away: Vec3) -> Option<Height> {
         if away.length() < LEAST_HEIGHT * self.size as f32 {
             return None;
         }
-        Height::of(particle, nodes, nodes.map(|at| self.positions[at as usize]), away)
+        Height::of(place, nodes, nodes.map(|at| self.positions[at as usize]), away)
     }
 }
 

@@ -2,7 +2,8 @@
 
 use glam::{DQuat, DVec2, DVec3};
 
-use crate::fabric::laid_yarns::{Directions, Faces, Towards};
+use crate::fabric::directions::{Directions, Towards};
+use crate::fabric::faces::Faces;
 
 /// Directions in the plane of the surface at a vertex: along warp or weft, at right angles to it, and along the normal; unit vectors.
 #[derive(Clone, Copy, Debug)]

@@ -1,15 +1,14 @@
-//! Nodes in place of the vertices of a mesh that no grid can carry, so that lines through the nodes run straight along warp and weft: of clothes
-//! of triangles, balls, sheets with slits. What solves these is the net of their quads (`fabric/quads/`).
+//! Nodes in place of the vertices of a mesh, so that lines through the nodes run straight along warp and weft. What solves these is the
+//! net of their quads (`fabric/net/`).
 //!
-//! A mesh of uneven quads keeps its quads, and `fair` moves its nodes beside the vertices. On other meshes `frames` finds the
-//! directions of warp and weft at each vertex, `steps` the edges along these, `phases` and `relaxation` a lattice, `places` nodes on the
-//! lattice and the border, and `triangulation` joins the nodes. `node_rows` and `embedding` find the weights of particles in nodes, and of
-//! nodes in particles.
+//! `refined` halves the long edges of the mesh, `frames` finds the directions of warp and weft at each vertex, `steps` the edges along
+//! these, `phases` and `relaxation` a lattice, `places` nodes on the lattice and the border, and `triangulation` joins the nodes.
+//! `node_rows` places them on the smooth surface, and `embedding` finds the places of the mesh's vertices between them.
 
 mod border;
 mod boxes;
 mod embedding;
-mod fair;
+mod fit;
 mod frames;
 mod node_rows;
 mod phases;
@@ -28,8 +27,9 @@ use self::embedding::Cells;
 use self::phases::Lattice;
 use self::places::{Choice, Place};
 use self::triangulation::Triangulation;
-use super::background::{GridTransfer, Height, Interpolation, Term};
-use super::laid_yarns::{Directions, Faces, Towards};
+use super::directions::{Directions, Towards};
+use super::faces::Faces;
+use super::interpolation::{Height, Interpolation, Term};
 use super::mesh::RestMesh;
 use super::topology::{self, Edge};
 
@@ -39,9 +39,6 @@ pub(super) use self::source::Source;
 /// Least weight of free particles in a node that is free.
 const LEAST_FREE: f64 = 0.01;
 
-/// How far a node of a mesh of quads is moved at least to be no vertex, in cells.
-const LEAST_MOVE: f64 = 1e-3;
-
 /// Nodes on a mesh, and triangles between them.
 pub(super) struct Nodes {
     /// The nodes as particles, without areas.
@@ -49,49 +46,16 @@ pub(super) struct Nodes {
     pub edges: Vec<Edge>,
     /// The directions in each triangle.
     pub directions: Directions,
-    /// Of each node the particles that it is interpolated from.
-    rows: Interpolation,
     /// Of each particle the node that it is, and a node near it.
     pub node_of: Vec<Option<u32>>,
     node_near: Vec<Option<u32>>,
-    /// Of each node the particle that is nearest to it.
-    pub nearest_vertices: Vec<u32>,
+    /// Of each node the particles around it with their weights: those of the triangle that it lies on.
+    pub corners: Vec<Vec<Term>>,
     /// Size of a cell, m.
     size: f64,
 }
 
 impl Nodes {
-    /// One beside each vertex of a mesh of quads, given each three consecutive vertices of lines. They have the triangles of the mesh.
-    pub fn faired(source: &Source, threes: &[[u32; 3]]) -> Self {
-        let Source { mesh, positions, .. } = source;
-        let count = positions.len();
-        let size = (source.area / count as f64).sqrt();
-        let moved = fair::faired(source, threes);
-        let is_moved = |at: &usize| moved[*at].distance(positions[*at]) > LEAST_MOVE * size;
-        let node_of: Vec<Option<u32>> =
-            (0..count).map(|at| (!is_moved(&at)).then_some(at as u32)).collect();
-        let place =
-            |at: usize| Place { at: moved[at], vertex: node_of[at], ..source.at_vertex(at as u32) };
-        let places: Vec<Place> = (0..count).map(place).collect();
-        // A node that no polynomial places stays at its vertex.
-        let of_vertex = |node: usize| vec![Term { from: node as u32, weight: 1.0 }];
-        let rows = node_rows::rows(&places, source, size, |_| false, of_vertex);
-        let mesh = RestMesh { positions: source.interpolated(&rows), ..(*mesh).clone() };
-        let faces = Faces::new(&mesh.positions, &mesh.triangles, source.edges);
-        let warps = (0..faces.count() as u32)
-            .map(|triangle| source.directions.of_triangle(triangle, Towards::Warp));
-        Self {
-            directions: Directions::of_warps(&faces, warps.collect()),
-            mesh,
-            edges: source.edges.to_vec(),
-            rows,
-            node_of,
-            node_near: (0..count as u32).map(Some).collect(),
-            nearest_vertices: (0..count as u32).collect(),
-            size,
-        }
-    }
-
     /// On a lattice with cells of a size, m, along warp and weft, and on the border.
     ///
     /// # Errors
@@ -127,12 +91,12 @@ impl Nodes {
         let node_near = node_near.collect();
 
         let is_pinned = |node: usize| source.free_part(&places[node]) < LEAST_FREE;
-        let of_triangle = |node: usize| source.terms(&places[node]);
+        let corners: Vec<Vec<Term>> = places.iter().map(|it| source.terms(it)).collect();
+        let of_triangle = |node: usize| corners[node].clone();
         let rows = node_rows::rows(&places, source, size, is_pinned, of_triangle);
-        let nearest_vertices: Vec<u32> =
-            places.iter().map(|it| source.nearest_vertex(it)).collect();
+        let nearest = |[node, _]: [u32; 2]| Term::heaviest(&corners[node as usize]);
         let edges =
-            topology::edges(&triangles).map_err(|[node, _]| nearest_vertices[node as usize])?;
+            topology::edges(&triangles).map_err(|of| nearest(of).map_or(0, |it| it.from))?;
         let count = places.len();
         let mesh = RestMesh {
             positions: source.interpolated(&rows),
@@ -148,68 +112,75 @@ impl Nodes {
             directions: Directions::of_warps(&node_faces, warps),
             mesh,
             edges,
-            rows,
             node_of,
             node_near,
-            nearest_vertices,
+            corners,
             size,
         })
     }
 
-    /// How particles follow the nodes, and take these along, given the cells of nodes; none where a particle has no cell near it.
-    pub fn transfer<'a>(
-        &self,
-        source: &Source,
-        cells: impl Iterator<Item = &'a [u32]>,
-    ) -> Option<GridTransfer> {
-        let count = source.positions.len();
-        let (particles, mut heights) = self.carried(source, cells, count).ok()?;
-        let is_free = |particle: usize| !source.mesh.is_pinned(particle as u32);
-        let particles = particles.rows_where(is_free).grouped();
-        heights.retain(|height| is_free(height.particle as usize));
-        let is_free = |node: usize| !self.mesh.is_pinned(node as u32);
-        let mut transfer = GridTransfer {
-            held: self.rows.rows_where(|node| !is_free(node)).grouped(),
-            nodes: self.rows.clone().grouped(),
-            particles,
-            means: Interpolation::default(),
-            moved_areas: Vec::new(),
-            heights,
-            joined: Vec::new(),
-        };
-        transfer.moved_areas = transfer.node_masses(&source.mesh.free_areas());
-        let means = transfer.particles.adjoint(&source.mesh.areas, &transfer.moved_areas, is_free);
-        transfer.means = means.grouped();
-        Some(transfer)
-    }
-
-    /// How the first particles of the mesh follow the nodes, given the cells of nodes.
+    /// How the first places of the mesh follow the nodes, given the cells of nodes.
     ///
     /// # Errors
     ///
-    /// A particle that has no cell near it.
+    /// A place that has no cell near it.
     pub fn carried<'a>(
         &self,
         source: &Source,
         cells: impl Iterator<Item = &'a [u32]>,
         count: usize,
-    ) -> Result<(Interpolation, Vec<Height>), u32> {
+    ) -> Result<OnNodes, u32> {
         let cells = Cells::new(cells, &self.mesh.positions, self.size);
-        let mut particles = Interpolation::default();
-        let mut heights = Vec::new();
-        for (particle, &at) in (0_u32..).zip(&source.positions[..count]) {
-            if let Some(from) = self.node_of[particle as usize] {
-                particles.push([Term { from, weight: 1.0 }]);
+        let pins: Vec<u32> = (0..self.mesh.positions.len() as u32)
+            .filter(|node| self.mesh.is_pinned(*node))
+            .collect();
+        let mut on_nodes = OnNodes::default();
+        for (place, &at) in (0_u32..).zip(&source.positions[..count]) {
+            if let Some(from) = self.node_of[place as usize] {
+                on_nodes.rows.push([Term { from, weight: 1.0 }]);
+            } else if let (true, Some(terms)) =
+                (source.mesh.is_pinned(place), self.between_pins(&pins, at))
+            {
+                let position = |term: &Term| self.mesh.positions[term.from as usize] * term.weight;
+                let beside: Vec3 = terms.iter().map(position).sum();
+                on_nodes.held.push((place, at.as_vec3() - beside));
+                on_nodes.rows.push(terms);
             } else {
-                let normal = source.normals[particle as usize];
-                let near = self.node_near[particle as usize].ok_or(particle)?;
-                let within = cells.of(particle, at, normal, near).ok_or(particle)?;
-                particles.push(within.terms);
-                heights.extend(within.height);
+                let normal = source.normals[place as usize];
+                let near = self.node_near[place as usize].ok_or(place)?;
+                let within = cells.of(place, at, normal, near).ok_or(place)?;
+                on_nodes.rows.push(within.terms);
+                on_nodes.heights.extend(within.height);
             }
         }
-        Ok((particles.grouped(), heights))
+        Ok(on_nodes)
     }
+
+    /// The weights of the two pinned nodes nearest to a pinned place, on the line between them; none without pinned nodes.
+    fn between_pins(&self, pins: &[u32], at: DVec3) -> Option<[Term; 2]> {
+        let place = |node: u32| self.mesh.positions[node as usize].as_dvec3();
+        let nearest = |but: Option<u32>| {
+            let others = pins.iter().copied().filter(|node| Some(*node) != but);
+            let away = |node: u32| place(node).distance_squared(at);
+            others.min_by(|one, other| away(*one).total_cmp(&away(*other)))
+        };
+        let first = nearest(None)?;
+        let second = nearest(Some(first)).unwrap_or(first);
+        let part = part_along(at, place(first), place(second)).clamp(0.0, 1.0) as f32;
+        let weights = [(first, 1.0 - part), (second, part)];
+        Some(weights.map(|(from, weight)| Term { from, weight }))
+    }
+}
+
+/// How places follow nodes.
+#[derive(Default)]
+pub(super) struct OnNodes {
+    /// Of each place the nodes that it is interpolated from.
+    pub rows: Interpolation,
+    /// How far places lie above the surface between nodes.
+    pub heights: Vec<Height>,
+    /// How far pinned places lie from the line between the pinned nodes beside them, m.
+    pub held: Vec<(u32, Vec3)>,
 }
 
 /// The warp in each triangle between nodes, given a triangle of the mesh near it: that of the nearest triangle of the mesh which

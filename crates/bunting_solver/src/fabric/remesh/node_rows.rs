@@ -1,14 +1,15 @@
 //! The particles that nodes are interpolated from.
 //!
 //! A node within a triangle of a curved mesh would lie below the surface. The value of a polynomial that is fitted to the particles
-//! around lies on it up to fifth or third order, as on background grids (`background/smooth.rs`).
+//! around lies on it up to fifth or third order, (`fit.rs`).
 
 use glam::DVec3;
 
 use super::boxes::Boxes;
+use super::fit::{GREATEST_SUM, RADIUS, fit_smooth};
 use super::places::Place;
 use super::source::Source;
-use crate::fabric::background::{GREATEST_SUM, Interpolation, RADIUS, Term, fit_smooth};
+use crate::fabric::interpolation::{Interpolation, Term};
 
 /// Least cosine of the angle between the normals of a node and a particle that counts.
 const ALIKE: f64 = 0.5;

@@ -6,7 +6,7 @@ use super::boxes::Boxes;
 use super::nearest;
 use super::phases::Lattice;
 use super::source::Source;
-use crate::fabric::laid_yarns::Faces;
+use crate::fabric::faces::Faces;
 
 /// Least distance between two nodes along the surface, in cells. Larger: gaps. Smaller: short links, which need more substeps.
 pub(super) const LEAST_DISTANCE: f64 = 0.6;

@@ -4,6 +4,7 @@ use std::collections::{BinaryHeap, HashMap};
 
 use glam::{Vec2, Vec3};
 
+use crate::fabric::interpolation::Term;
 use crate::fabric::mesh::{RestMesh, Surface};
 use crate::fabric::topology::{self, ascending};
 
@@ -11,8 +12,8 @@ use crate::fabric::topology::{self, ascending};
 pub(in crate::fabric) struct Refined {
     pub mesh: RestMesh,
     pub surface: Surface,
-    /// Of each vertex one of the mesh that it was made from, near it.
-    pub origins: Vec<u32>,
+    /// Of each vertex those of the mesh that it was made from, with their weights.
+    pub origins: Vec<Vec<Term>>,
 }
 
 /// An edge that is to be halved: the longest one first, which keeps triangles from becoming slivers (Rivara 1984).
@@ -23,7 +24,7 @@ struct Halving {
     positions: Vec<Vec3>,
     uv: Vec<Vec2>,
     is_pinned: Vec<bool>,
-    origins: Vec<u32>,
+    origins: Vec<Vec<Term>>,
     triangles: Vec<[u32; 3]>,
     corner_uv: Vec<[Vec2; 3]>,
     /// The triangles at each edge.
@@ -40,7 +41,9 @@ impl Refined {
             positions: mesh.positions.clone(),
             uv: mesh.uv.clone(),
             is_pinned: (0..mesh.positions.len() as u32).map(|at| mesh.is_pinned(at)).collect(),
-            origins: (0..mesh.positions.len() as u32).collect(),
+            origins: (0..mesh.positions.len() as u32)
+                .map(|from| vec![Term { from, weight: 1.0 }])
+                .collect(),
             triangles: mesh.triangles.clone(),
             corner_uv: surface.corner_uv.clone(),
             at_edges: HashMap::new(),
@@ -80,7 +83,7 @@ impl Halving {
         self.positions.push(self.positions[one].midpoint(self.positions[other]));
         self.uv.push(self.uv[one].midpoint(self.uv[other]));
         self.is_pinned.push(self.is_pinned[one] && self.is_pinned[other]);
-        self.origins.push(self.origins[one]);
+        self.origins.push(Term::sum([one, other].map(|end| (&self.origins[end][..], 0.5))));
         let mut halves = [Vec::new(), Vec::new()];
         for triangle in triangles {
             let corners = self.triangles[triangle as usize];

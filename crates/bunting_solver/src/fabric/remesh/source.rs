@@ -3,10 +3,11 @@
 use glam::{DVec3, Vec2, Vec3};
 
 use super::places::Place;
-use crate::fabric::background::{Interpolation, Term};
-use crate::fabric::laid_yarns::{Directions, Faces};
+use crate::fabric::directions::Directions;
+use crate::fabric::faces::Faces;
+use crate::fabric::interpolation::{Interpolation, Term};
 use crate::fabric::mesh::{RestMesh, Surface};
-use crate::fabric::topology::{Edge, Side};
+use crate::fabric::topology::Edge;
 
 /// A mesh with what nodes on it are found from.
 pub(in crate::fabric) struct Source<'a> {
@@ -53,24 +54,6 @@ impl<'a> Source<'a> {
     /// About how many nodes a lattice with cells of a size, m, has.
     pub fn node_count(&self, size: f64) -> f64 {
         self.area / (size * size)
-    }
-
-    /// The ends of an edge whose two triangles face opposite ways, if there is one, as on a Möbius strip.
-    pub fn one_sided_edge(&self) -> Option<[u32; 2]> {
-        let runs_along = |side: Side, [from, to]: [u32; 2]| {
-            let corners = self.mesh.triangles[side.triangle as usize];
-            (0..3).any(|at| [corners[at], corners[(at + 1) % 3]] == [from, to])
-        };
-        let faces_both = |edge: &&Edge| {
-            let other = edge.other_side.is_some_and(|it| runs_along(it, edge.ends));
-            edge.other_side.is_some() && runs_along(edge.side, edge.ends) == other
-        };
-        self.edges.iter().find(faces_both).map(|edge| edge.ends)
-    }
-
-    /// The vertex that is nearest to a place, of those of its triangle.
-    pub(super) fn nearest_vertex(&self, place: &Place) -> u32 {
-        Term::heaviest(&self.terms(place)).map_or(0, |term| term.from)
     }
 
     /// The place of a vertex, in no triangle of its own.

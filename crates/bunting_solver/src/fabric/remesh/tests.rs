@@ -1,8 +1,8 @@
-use glam::{DVec3, Mat3, Vec3};
+use glam::{DVec3, Vec3};
 
 use super::{barycentric, nearest};
 use crate::fabric::topology;
-use crate::fabric::{Background, Fabric, FabricBuilder, Height};
+use crate::fabric::{FabricBuilder, Resampled, Resolution};
 
 /// Columns and rows of quads of a sheet, and the row in which a slit from below ends.
 const COLUMNS: u32 = 24;
@@ -87,14 +87,9 @@ fn ball() -> FabricBuilder {
     FabricBuilder::new(positions, indices).weld_distance(1e-4).pin_where(|at, _| at.y > 0.095)
 }
 
-fn built(builder: FabricBuilder) -> Fabric {
-    builder.build().expect("a good fabric")
-}
-
-fn net(fabric: &Fabric) -> &Background {
-    let background = fabric.background().expect("a net");
-    assert!(background.fabric.is_net());
-    background
+fn resampled(builder: &FabricBuilder) -> Resampled {
+    let resolution = Resolution::Particles(builder.particle_count() as u32);
+    builder.resampled(resolution).expect("a good mesh")
 }
 
 /// Vertices less edges plus triangles.
@@ -103,64 +98,38 @@ fn euler(triangles: &[[u32; 3]], count: usize) -> i64 {
     (count + triangles.len()) as i64 - edges as i64
 }
 
-/// Where the net puts a particle while its nodes are at rest.
-fn followed(fabric: &Fabric, particle: usize) -> Vec3 {
-    let Background { fabric: net, transfer, .. } = net(fabric);
-    let row = transfer.particles.row(particle).iter();
-    let below: Vec3 = row.map(|term| net.rest_positions()[term.from as usize] * term.weight).sum();
-    let height = transfer.heights.iter().find(|height| height.particle as usize == particle);
-    let above = height.map(|Height { nodes, along, height, .. }| {
-        let [a, b, c, d] = nodes.map(|node| net.rest_positions()[node as usize]);
-        let (one, other) = (b - a, d - c);
-        let frame = Mat3::from_cols(one, other, one.cross(other).normalize());
-        frame * Vec3::new(along[0], along[1], *height)
-    });
-    below + above.unwrap_or_default()
-}
-
-#[test]
-fn particles_follow_nodes_at_rest_to_their_own_places() {
-    for fabric in [built(slit_sheet(0.15)), built(slit_sheet(0.45)), built(ball())] {
-        for (particle, rest) in fabric.rest_positions().iter().enumerate() {
-            let away = followed(&fabric, particle).distance(*rest);
-            assert!(fabric.is_pinned(particle) || away < 1e-6, "{particle}: {away} m");
-        }
-    }
-}
-
 #[test]
 fn nodes_have_the_topology_of_the_mesh() {
-    for fabric in [built(slit_sheet(0.45)), built(ball())] {
-        let net = &net(&fabric).fabric;
+    for builder in [slit_sheet(0.45), ball()] {
+        let (mesh, _) = builder.rest_mesh().expect("a good mesh");
+        let net = resampled(&builder).fabric;
         assert_eq!(
             euler(net.triangles(), net.particle_count()),
-            euler(fabric.triangles(), fabric.particle_count()),
+            euler(&mesh.triangles, mesh.positions.len()),
         );
     }
 }
 
-/// A node on one side of a slit moves with no particle of the other side.
+/// A vertex on one side of a slit follows no particle of the other side.
 #[test]
 fn a_lattice_ends_at_a_slit() {
-    let fabric = built(slit_sheet(0.45));
-    let Background { fabric: net, transfer, .. } = net(&fabric);
+    let builder = slit_sheet(0.45);
+    let Resampled { fabric, carried, .. } = resampled(&builder);
     let slit = 0.5 + 2.5e-4;
     let below_tip = |at: Vec3| at.y < -(TIP as f32 + 3.0) / COLUMNS as f32;
-    for (particle, rest) in fabric.rest_positions().iter().enumerate() {
-        for term in transfer.particles.row(particle) {
-            let node = net.rest_positions()[term.from as usize];
-            let is_beyond = (node.x < slit) != (rest.x < slit);
-            assert!(!(below_tip(*rest) && is_beyond), "{rest} follows {node}");
-        }
+    let far = |at: &Vec3| if at.x < slit { *at } else { *at + Vec3::Z };
+    let opened: Vec<Vec3> = fabric.rest_positions().iter().map(far).collect();
+    for (at, rest) in carried.positions(&opened).iter().zip(builder.positions()) {
+        let expected = if rest.x < slit { 0.0 } else { 1.0 };
+        assert!(!below_tip(*rest) || (at.z - expected).abs() < 1e-5, "{rest} goes to {at}");
     }
 }
 
-/// Lines of uneven quads are straight, with nodes beside the vertices or on a lattice.
+/// Lines through uneven quads are straight.
 #[test]
 fn links_along_lines_are_alike() {
     for moved in [0.15, 0.45] {
-        let fabric = built(slit_sheet(moved));
-        let net = &net(&fabric).fabric;
+        let net = resampled(&slit_sheet(moved)).fabric;
         let lines = net.yarns().iter().filter(|yarn| yarn.links.len() > 1);
         let turns = lines.flat_map(|line| line.particles.windows(3)).map(|three| {
             let [a, b, c] = [0, 1, 2].map(|at| net.rest_positions()[three[at] as usize]);

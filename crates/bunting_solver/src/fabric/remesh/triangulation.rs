@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::places::Place;
 use super::{barycentric, cotangent};
-use crate::fabric::laid_yarns::Faces;
+use crate::fabric::faces::Faces;
 
 /// Least barycentric coordinate of a place inside a triangle; with less it lies on an edge or a vertex.
 const ON_EDGE: f64 = 0.05;

@@ -1,6 +1,8 @@
 //! An irregular mesh.
 
-use bunting_solver::{Fabric, FabricBuilder};
+use std::sync::Arc;
+
+use bunting_solver::{Fabric, FabricBuilder, Resolution};
 use glam::{Vec2, Vec3};
 
 /// Numbers from 0 to 1, one after the other (xorshift, Marsaglia 2003).
@@ -17,7 +19,7 @@ impl Noise {
 
 /// A square metre of `n` × `n` vertices, moved by up to a fifth of a cell, in cells that are cut either way, hung from
 /// its top. The warp runs at an angle to the top, rad.
-pub fn irregular(n: u32, angle: f32) -> Fabric {
+pub fn irregular(n: u32, angle: f32) -> FabricBuilder {
     let mut noise = Noise(7);
     let spacing = 1.0 / (n - 1) as f32;
     let inner = |index: u32| index > 0 && index < n - 1;
@@ -43,5 +45,11 @@ pub fn irregular(n: u32, angle: f32) -> Fabric {
     let turned = |at: &Vec3| Vec2::new(cos * at.x - sin * at.y, sin * at.x + cos * at.y);
     let uv = positions.iter().map(turned).collect();
     let builder = FabricBuilder::new(positions, indices).uv(uv);
-    builder.pin_where(|at, _| at.y == 0.0).build().expect("a good fabric")
+    builder.pin_where(|at, _| at.y == 0.0)
+}
+
+/// A mesh simulated with about as many particles as it has vertices.
+pub fn net(mesh: &FabricBuilder) -> Arc<Fabric> {
+    let resolution = Resolution::Particles(mesh.particle_count() as u32);
+    mesh.resampled(resolution).expect("a good mesh").fabric
 }

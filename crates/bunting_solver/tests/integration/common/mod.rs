@@ -5,5 +5,5 @@ mod irregular;
 mod trousers;
 
 pub use drives::{drive, material};
-pub use irregular::irregular;
+pub use irregular::{irregular, net};
 pub use trousers::trousers;

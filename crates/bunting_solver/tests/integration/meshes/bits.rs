@@ -9,8 +9,7 @@ use glam::Vec3;
 
 use super::shapes::*;
 use super::{GRAVITY, TICK};
-use crate::common::irregular;
-use crate::common::trousers;
+use crate::common::{irregular, net, trousers};
 
 /// Positions of the last of some cloths, each in its own wind, m/s, after half a second.
 fn flown(
@@ -50,7 +49,6 @@ fn a_mesh_has_the_same_bits_at_every_width() {
         cap(&flat),
         of_two_pieces(&flat, |at| at.y == 0.0),
         with_a_slit(&flat, |at| at.y == 0.0),
-        // Uneven meshes without pins have laid yarns.
         unpinned(&with_a_slit(&flat, |at| at.y == 0.0)),
         trousers(),
         bent(&with_a_hole(&flat), CLOSED),
@@ -59,7 +57,7 @@ fn a_mesh_has_the_same_bits_at_every_width() {
         bent_with(&irregular(12, 0.0), CLOSED, Vec::new()),
         funnel(&irregular(20, 0.0), [CLOSED, 2.0 * CLOSED]),
     ];
-    for fabric in fabrics.map(Arc::new) {
+    for fabric in fabrics.iter().map(net) {
         for material in [limp, stiff] {
             let alone = flown(&fabric, material, LaneCount::One, &[6.0]);
             assert!(alone.iter().all(|at| at.is_finite()));
@@ -86,7 +84,7 @@ fn a_mesh_that_moves_to_another_batch_keeps_its_bits() {
     for fabric in [plane, holed, disk, pieces, unpinned(&slit), slit, trousers()]
         .into_iter()
         .chain(curved)
-        .map(Arc::new)
+        .map(|mesh| net(&mesh))
     {
         let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
         let wind = Vec3::new(6.0, 0.0, 4.0);

@@ -11,13 +11,13 @@ use glam::{Quat, Vec3};
 
 use super::shapes::*;
 use super::{GRAVITY, ISOTROPIC, TICK};
-use crate::common::irregular;
+use crate::common::{irregular, net};
 
 /// Both halves hang on their own: in a wind from the front the lower ends of the slit part.
 #[test]
 fn a_slit_is_not_sewn_up() {
     let at_sides = |at: Vec3| at.y == 0.0 && (at.x - 0.5).abs() > 0.4;
-    let fabric = Arc::new(with_a_slit(&irregular(21, 0.0), at_sides));
+    let fabric = net(&with_a_slit(&irregular(21, 0.0), at_sides));
     let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
     batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::FLAG_POLYESTER).expect("room");
     batch.drive(0, Drive { wind: Vec3::Z * 4.0, ..Drive::default() }).expect("a lane");
@@ -26,14 +26,14 @@ fn a_slit_is_not_sewn_up() {
     }
     let at = batch.snapshot(0).positions;
     let ends = fabric.rest_positions().iter().zip(&at);
-    let ends = ends.filter(|(rest, _)| rest.y == -1.0 && (rest.x - 0.5).abs() < 1e-3);
+    let ends = ends.filter(|(rest, _)| rest.y < -1.0 + 1e-5 && (rest.x - 0.5).abs() < 1e-3);
     let ends: Vec<Vec3> = ends.map(|(_, at)| *at).collect();
     assert!(ends.len() == 2 && ends[0].distance(ends[1]) > 0.02, "{ends:?}");
 }
 
 /// The 99.9 % strain and the greatest one of a cloth's edges in a wind, over some ticks.
-fn strains_in_wind(fabric: Fabric, ticks: Range<u32>) -> [f32; 2] {
-    let fabric = Arc::new(fabric);
+fn strains_in_wind(mesh: &FabricBuilder, ticks: Range<u32>) -> [f32; 2] {
+    let fabric = net(mesh);
     let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY);
     let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
     batch.insert(&ClothSnapshot::at_rest(&fabric), FabricMaterial::FLAG_POLYESTER).expect("room");
@@ -51,24 +51,23 @@ fn strains_in_wind(fabric: Fabric, ticks: Range<u32>) -> [f32; 2] {
     [strains[strains.len() * 999 / 1000], strains[strains.len() - 1]]
 }
 
-/// The first and the last row of nodes are one. Where they are not joined the seam opens: 38 % and 67 %.
 #[test]
 fn a_closed_mesh_does_not_open_at_its_seam() {
     let closed = bent_with(&irregular(17, 0.0), CLOSED, Vec::new());
-    let [large, greatest] = strains_in_wind(closed, 0..240);
+    let [large, greatest] = strains_in_wind(&closed, 0..240);
     assert!(large < 0.33 && greatest < 0.5, "99.9 %: {large}, greatest: {greatest}");
 }
 
 #[test]
 fn a_flag_with_a_slit_keeps_its_edges_in_wind() {
     let flag = with_a_slit(&irregular(17, 0.0), |at| at.x == 0.0);
-    let [large, greatest] = strains_in_wind(flag, 121..480);
+    let [large, greatest] = strains_in_wind(&flag, 121..480);
     assert!(large < 0.08 && greatest < 0.2, "99.9 %: {large}, greatest: {greatest}");
 }
 
 /// Displacement of each particle from rest after 20 ticks without air.
-fn moved_by(gravity: Vec3, fabric: Fabric) -> Vec<Vec3> {
-    let fabric = Arc::new(fabric);
+fn moved_by(gravity: Vec3, mesh: &FabricBuilder) -> Vec<Vec3> {
+    let fabric = net(mesh);
     let mut batch = ClothBatch::new(Arc::clone(&fabric), LaneCount::One);
     let rest = ClothSnapshot::at_rest(&fabric);
     let undamped = FabricMaterial { damping: 0.0, ..FabricMaterial::FLAG_POLYESTER };
@@ -86,7 +85,7 @@ fn moved_by(gravity: Vec3, fabric: Fabric) -> Vec<Vec3> {
 #[test]
 fn a_mesh_without_loads_keeps_its_shape() {
     for (name, fabric) in of_all_kinds() {
-        let moved = moved_by(Vec3::ZERO, fabric).into_iter().map(Vec3::length).fold(0.0, f32::max);
+        let moved = moved_by(Vec3::ZERO, &fabric).into_iter().map(Vec3::length).fold(0.0, f32::max);
         let most = if name == "cap" { 1e-4 } else { 3e-5 };
         assert!(moved < most, "{name}: {moved} m");
     }
@@ -97,18 +96,18 @@ fn a_mesh_without_loads_keeps_its_shape() {
 fn closed_meshes_of_many_sizes_keep_their_shape() {
     for n in 12..36 {
         let fabric = unpinned(&bent(&irregular(n, 0.0), CLOSED));
-        let moved = moved_by(Vec3::ZERO, fabric).into_iter().map(Vec3::length).fold(0.0, f32::max);
+        let moved = moved_by(Vec3::ZERO, &fabric).into_iter().map(Vec3::length).fold(0.0, f32::max);
         assert!(moved < 3e-5, "{n}: {moved} m");
     }
 }
 
-/// Nothing holds a mesh without pins. Closed ones hung from nodes in the middle of their holes, where there is no cloth.
+/// Nothing holds a mesh without pins.
 #[test]
 fn a_mesh_without_pins_falls() {
     for (name, fabric) in of_all_kinds() {
         let time = 20.0 * TICK;
         let height = 0.5 * GRAVITY * time * time;
-        for moved in moved_by(Vec3::NEG_Y * GRAVITY, unpinned(&fabric)) {
+        for moved in moved_by(Vec3::NEG_Y * GRAVITY, &unpinned(&fabric)) {
             // In its first substep BDF2 has the error of backward Euler.
             assert!((moved + Vec3::Y * height).length() < 0.02 * height, "{name}: {moved} m");
         }
@@ -122,10 +121,9 @@ fn energy(fabric: &Fabric, state: &ClothSnapshot) -> f32 {
     particles.map(of).sum::<f32>() / fabric.area()
 }
 
-/// A mesh whose nodes were found from its particles anew gained 0.6 J/kg in a second of 32 substeps a tick.
 #[test]
 fn a_swinging_mesh_keeps_its_energy_at_any_substeps() {
-    let fabric = Arc::new(irregular(33, 0.0));
+    let fabric = net(&irregular(33, 0.0));
     let material = FabricMaterial { damping: 0.0, ..ISOTROPIC };
     let (sin, cos) = (libm::sinf(0.5), libm::cosf(0.5));
     let mut start = ClothSnapshot::at_rest(&fabric);
@@ -145,12 +143,7 @@ fn a_swinging_mesh_keeps_its_energy_at_any_substeps() {
 /// The motion of a free mesh in the world does not depend on the frame in which it is computed.
 #[test]
 fn a_mesh_moves_alike_in_a_moving_frame() {
-    let flat = irregular(13, 0.0);
-    let free = FabricBuilder::new(
-        flat.rest_positions().to_vec(),
-        flat.triangles().iter().flatten().copied().collect(),
-    );
-    let fabric = Arc::new(free.build().expect("a good fabric"));
+    let fabric = net(&unpinned(&irregular(13, 0.0)));
     let mut start = ClothSnapshot::at_rest(&fabric);
     let swirl = |at: &Vec3| Vec3::new(0.3 * at.y, -0.5 * at.x, libm::sinf(9.0 * at.x) * at.y);
     start.velocities = start.positions.iter().map(swirl).collect();
@@ -180,8 +173,8 @@ fn a_mesh_moves_alike_in_a_moving_frame() {
 }
 
 #[test]
-fn gauss_seidel_holds_a_mesh_with_a_background_grid() {
-    let fabric = Arc::new(irregular(13, 0.0));
+fn gauss_seidel_holds_a_mesh() {
+    let fabric = net(&irregular(13, 0.0));
     for lanes in [LaneCount::One, LaneCount::Eight] {
         let mut batch = ClothBatch::new(Arc::clone(&fabric), lanes);
         batch.insert(&ClothSnapshot::at_rest(&fabric), ISOTROPIC).expect("room");

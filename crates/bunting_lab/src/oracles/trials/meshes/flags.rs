@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bunting_solver::{Drive, Fabric, FabricMaterial};
 use glam::{DVec3, Vec2, Vec3};
 
-use super::{Cloth, REST, STANDARD, TRIANGULATIONS, bound, square};
+use super::{Cloth, REST, ROUNDING, STANDARD, TRIANGULATIONS, bound, square};
 use crate::{meshes::Triangulation, oracles::Case};
 
 /// How much more than the grid's a mesh's strain in wind may be.
@@ -16,17 +16,17 @@ const GRID: usize = 33;
 /// 3 mm.
 const DEFLECTIONS: [f32; 3] = [1e-4, 2e-4, -1e-4];
 
-/// Mean position of the edge of evenly spaced particles that rest at x = 1 m, m. Corners stand for half as much of the edge
-/// as others.
+/// Mean position of the edge that rests at x = 1 m, between whose particles it is straight, m.
 fn mean_of_edge(cloth: &Cloth) -> DVec3 {
-    let at_edge = cloth.fabric.rest_positions().iter().zip(&cloth.positions);
-    let (mut sum, mut length) = (DVec3::ZERO, 0.0);
-    for (rest, at) in at_edge.filter(|(rest, _)| rest.x == 1.0) {
-        let part = if rest.y == 0.0 || rest.y == -1.0 { 0.5 } else { 1.0 };
-        sum += at.as_dvec3() * part;
-        length += part;
-    }
-    sum / length
+    let particles = cloth.fabric.rest_positions().iter().zip(&cloth.positions);
+    let at_edge = particles.filter(|(rest, _)| rest.x > 1.0 - ROUNDING);
+    let mut edge: Vec<(f32, DVec3)> = at_edge.map(|(rest, at)| (rest.y, at.as_dvec3())).collect();
+    edge.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    let pieces = edge.windows(2).map(|ends| {
+        let [(from, a), (to, b)] = [ends[0], ends[1]];
+        a.midpoint(b) * f64::from(to - from)
+    });
+    pieces.sum::<DVec3>() / f64::from(edge[edge.len() - 1].0 - edge[0].0)
 }
 
 /// A flag in a wind, and its surface in each tick.

@@ -37,6 +37,8 @@ const ISOTROPIC: FabricMaterial = FabricMaterial {
 };
 /// The fabric of the standard scenes.
 const STANDARD: FabricMaterial = FabricMaterial { shear_stiffness: 200.0, ..ISOTROPIC };
+/// Greatest distance of a border's particles from the border, m.
+const ROUNDING: f32 = 1e-5;
 /// Speed at rest, m/s RMS, and distance from the grid, m, that pass.
 const REST: [f64; 2] = [1e-3, 5e-3];
 
@@ -72,6 +74,11 @@ fn square(
 
 fn at_top(at: Vec3) -> bool {
     at.y == 0.0
+}
+
+/// Whether a particle of a sheet rests at the lower end of a metre's height.
+fn at_bottom(at: Vec3) -> bool {
+    at.y < -1.0 + ROUNDING
 }
 
 /// One cloth, and what it is driven by.

@@ -3,15 +3,14 @@
 use std::{
     f32::consts::{FRAC_PI_4, PI, TAU},
     f64::consts::FRAC_PI_2,
-    sync::Arc,
 };
 
 use bunting_solver::{Drive, FabricBuilder, FabricMaterial};
 use glam::{DVec2, Vec3};
 
-use super::{Cloth, ISOTROPIC, REST, STANDARD, at_top, bound, square};
+use super::{Cloth, ISOTROPIC, REST, ROUNDING, STANDARD, at_bottom, at_top, bound, square};
 use crate::{
-    meshes::{Sheet, Triangulation},
+    meshes::{Sheet, Triangulation, net},
     oracles::{
         Case,
         bending::Cantilever,
@@ -29,7 +28,7 @@ const DROOP: f64 = 0.05;
 const ARC_RADIUS: f32 = 0.3;
 /// Part of its width that the tapered sheet loses over its height. Larger: stress is not along the height.
 const TAPER: f64 = 0.2;
-/// Part of its width that a pennant loses. It does not map onto a rectangle, and its grid is cut by its border.
+/// Part of its width that a pennant loses.
 const POINTED: f64 = 0.95;
 /// Radii of the rims of a funnel of a metre's height, m.
 const FUNNEL: [f32; 2] = [0.4, 0.1];
@@ -72,6 +71,7 @@ fn hung(triangulation: Triangulation, n: usize) -> Vec<Case> {
     let stiff_warp = FabricMaterial { weft_stiffness: 1e3, shear_stiffness: 200.0, ..ISOTROPIC };
     let stiff_weft = FabricMaterial { warp_stiffness: 1e3, shear_stiffness: 200.0, ..ISOTROPIC };
     let quarter = FRAC_PI_2 as f32;
+    let sheet = Sheet::new(triangulation, [n, n], DVec2::ONE, 1);
     let trials = [
         ("isotropic, weft", 0.0, ISOTROPIC, 1e4, STRETCH[0]),
         ("isotropic, warp", quarter, ISOTROPIC, 1e4, STRETCH[0]),
@@ -83,13 +83,12 @@ fn hung(triangulation: Triangulation, n: usize) -> Vec<Case> {
     ];
     let case =
         |(name, warp, material, stiffness, tolerance): (_, f32, FabricMaterial, f64, f64)| {
-            let mut cloth =
-                Cloth::new(square(Some(triangulation), n, warp, at_top), material, |at| at);
+            let mut cloth = Cloth::new(sheet.fabric(warp, at_top), material, |at| at);
             cloth.run(4.0);
             Case::new(
                 format!("mesh hung from an edge, {triangulation:?}, {name}, n = {}", n * n),
                 hung_strip(f64::from(material.area_density), GRAVITY, 1.0, stiffness),
-                -1.0 - cloth.mean(|at| at.y == -1.0).y,
+                -1.0 - cloth.mean(at_bottom).y,
                 tolerance,
             )
         };
@@ -101,7 +100,7 @@ fn cylinder(triangulation: Triangulation) -> [Case; 2] {
     let sheet = Sheet::new(triangulation, [33, 33], DVec2::ONE, 1);
     let mut cloth = Cloth::new(sheet.rolled_up(at_top), ISOTROPIC, |at| at);
     cloth.run(4.0);
-    let stretch = -1.0 - cloth.mean(|at| at.y == -1.0).y;
+    let stretch = -1.0 - cloth.mean(at_bottom).y;
     let expected = hung_strip(f64::from(ISOTROPIC.area_density), GRAVITY, 1.0, 1e4);
     let name = format!("cylinder with a seam, hung from its rim, {triangulation:?}");
     let speed = cloth.speed();
@@ -112,18 +111,18 @@ fn cylinder(triangulation: Triangulation) -> [Case; 2] {
 }
 
 /// δ/L of meshes whose textures do not say how they lie in the plane, hung from their tops, of a cloth that stretches by a
-/// thousandth, and their speeds at rest: an arc without texture, two pieces whose warps are at right angles, and a sheet with a slit,
-/// whose nodes lie beside its vertices.
+/// thousandth, and their speeds at rest: an arc without texture, two pieces whose warps are at right angles, and a sheet with a
+/// slit.
 fn without_chart(triangulation: Triangulation) -> [Case; 6] {
     let material = SOFT;
     let sheet = Sheet::new(triangulation, [33, 33], DVec2::ONE, 1);
     let arc = FabricBuilder::new(sheet.bent(ARC_RADIUS), sheet.indices.clone());
-    let arc = Arc::new(arc.pin_where(|at, _| at_top(at)).build().expect("a cloth"));
+    let arc = net(&arc.pin_where(|at, _| at_top(at)));
     let expected = hung_strip(f64::from(material.area_density), GRAVITY, 1.0, 1e3);
     let of_cloth = |(name, fabric)| {
         let mut cloth = Cloth::new(fabric, material, |at| at);
         cloth.run(4.0);
-        let stretch = -1.0 - cloth.mean(|at| at.y == -1.0).y;
+        let stretch = -1.0 - cloth.mean(at_bottom).y;
         let name = format!("{name}, hung from its top, {triangulation:?}");
         let speed = cloth.speed();
         [
@@ -152,7 +151,7 @@ fn tapered(triangulation: Triangulation, taper: f64, material: FabricMaterial) -
     let fabric = sheet.fabric(0.0, at_top);
     let mut cloth = Cloth::new(fabric, material, |at| at);
     cloth.run(4.0);
-    let stretch = -1.0 - cloth.mean(|at| at.y == -1.0).y;
+    let stretch = -1.0 - cloth.mean(at_bottom).y;
     // At a depth of y of a sheet of width w₀ (1 − t y) hang σ g w₀ ((1 − y) − t (1 − y²)/2), on that width.
     let strain = |y: f64| ((1.0 - y) - 0.5 * taper * (1.0 - y * y)) / (1.0 - taper * y);
     let strains: Vec<f64> =
@@ -179,13 +178,13 @@ fn funnel(triangulation: Triangulation, material: FabricMaterial) -> [Case; 2] {
     };
     let positions = sheet.positions.iter().map(roll).collect();
     let mesh = FabricBuilder::new(positions, sheet.indices).weld_distance(1e-5);
-    let fabric = Arc::new(mesh.pin_where(|at, _| at_top(at)).build().expect("a cloth"));
+    let fabric = net(&mesh.pin_where(|at, _| at_top(at)));
     let mut cloth = Cloth::new(fabric, material, |at| at);
     cloth.run(4.0);
     let stiffness = f64::from(material.warp_stiffness);
     let density = f64::from(material.area_density);
     let expected = hung_funnel(density, GRAVITY, FUNNEL.map(f64::from), 1.0, stiffness);
-    let sunk = -1.0 - cloth.mean(|at| at.y == -1.0).y;
+    let sunk = -1.0 - cloth.mean(at_bottom).y;
     let name = format!("funnel, hung from its wide rim, {triangulation:?}, Y = {stiffness} N/m");
     let speed = cloth.speed();
     [
@@ -210,7 +209,7 @@ fn droop(triangulation: Triangulation, gamma: f64, warp: f32) -> f64 {
     }
     cloth.run(5.0);
     let last = (1.0 + CELL) as f32;
-    let tip = cloth.mean(|at| at.x > last - 1e-5);
+    let tip = cloth.mean(|at| at.x > last - ROUNDING);
     -tip.y / (tip.x - CELL)
 }
 

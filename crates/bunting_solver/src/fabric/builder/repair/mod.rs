@@ -143,7 +143,9 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
-    use crate::fabric::{Fabric, Grid};
+    use crate::fabric::mesh::RestMesh;
+    use crate::fabric::topology::Edge;
+    use crate::fabric::{Grid, Resolution};
 
     fn repaired(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> (FabricBuilder, MeshRepair) {
         let positions = positions.iter().copied().map(Vec3::from).collect();
@@ -151,8 +153,15 @@ mod tests {
         builder.repair().expect("a mesh that can be repaired")
     }
 
-    fn built(builder: FabricBuilder) -> Fabric {
-        builder.build().expect("a good fabric")
+    /// The mesh with its vertices merged, and its edges.
+    fn merged(builder: &FabricBuilder) -> (RestMesh, Vec<Edge>) {
+        let (mesh, surface) = builder.rest_mesh().expect("a good mesh");
+        (mesh, surface.edges)
+    }
+
+    /// Number of edges of two triangles.
+    fn joined(edges: &[Edge]) -> usize {
+        edges.iter().filter(|edge| edge.other_side.is_some()).count()
     }
 
     /// A square of two triangles, and places beside it.
@@ -181,7 +190,7 @@ mod tests {
         let (builder, report) =
             repaired(&AT[..4], &[SQUARE[0], SQUARE[1], [2, 1, 0], [0, 1, 1], [3, 2, 1]]);
         assert_eq!((&report.duplicates[..], &report.degenerate[..]), (&[2, 4][..], &[3][..]));
-        assert_eq!(built(builder).triangles().len(), 2);
+        assert_eq!(merged(&builder).0.triangles.len(), 2);
     }
 
     #[test]
@@ -190,9 +199,9 @@ mod tests {
         let (builder, report) = repaired(&AT[..5], &[[0, 1, 4], [0, 4, 3], [0, 3, 2]]);
         assert_eq!(report.flipped, [0]);
         assert!(report.degenerate.is_empty() && report.loose.is_empty());
-        let fabric = built(builder);
-        assert_eq!((fabric.triangles().len(), fabric.particle_count()), (3, 5));
-        assert!((fabric.area() - 1.5).abs() < 1e-6);
+        let (mesh, _) = merged(&builder);
+        assert_eq!((mesh.triangles.len(), mesh.positions.len()), (3, 5));
+        assert!((mesh.areas.iter().sum::<f32>() - 1.5).abs() < 1e-6);
     }
 
     #[test]
@@ -211,10 +220,9 @@ mod tests {
         assert_eq!(report.split_edges, [[1, 2]]);
         assert_eq!(report.split_vertices, [1, 2]);
         assert_eq!((builder.positions.len(), &report.loose[..]), (7, &[4][..]));
-        let fabric = built(builder);
-        assert_eq!(fabric.particle_count(), 7);
-        assert_eq!(fabric.hinge_count(), 1);
-        let [_, one, other] = fabric.triangles() else { panic!("three triangles") };
+        let (mesh, edges) = merged(&builder);
+        assert_eq!((mesh.positions.len(), joined(&edges)), (7, 1));
+        let [_, one, other] = &mesh.triangles[..] else { panic!("three triangles") };
         let common = one.iter().filter(|corner| other.contains(corner)).count();
         assert_eq!(common, 2, "the square stays joined");
     }
@@ -230,9 +238,9 @@ mod tests {
         assert_eq!(report.loose, [2, 4, 5]);
         assert_eq!(report.vertices, [0, 1, 3, 6, 7, 3]);
         assert_eq!(builder.uv[5], Vec2::ONE);
-        let fabric = built(builder);
-        let pinned: Vec<usize> = (0..6).filter(|&particle| fabric.is_pinned(particle)).collect();
-        assert_eq!((fabric.particle_count(), &pinned[..]), (6, &[2, 5][..]));
+        let (mesh, _) = merged(&builder);
+        let pinned: Vec<u32> = (0..6).filter(|&particle| mesh.is_pinned(particle)).collect();
+        assert_eq!((mesh.positions.len(), &pinned[..]), (6, &[2, 5][..]));
     }
 
     #[test]
@@ -241,13 +249,13 @@ mod tests {
         let positions = [AT[0], AT[1], AT[2], AT[1], AT[3], AT[2], AT[5]];
         let (builder, report) = repaired(&positions, &[[0, 1, 2], [3, 4, 5], [1, 2, 6]]);
         assert_eq!(report.split_edges.len(), 1);
-        let fabric = built(builder.clone());
-        assert_eq!((fabric.particle_count(), fabric.hinge_count()), (7, 1));
+        let (mesh, edges) = merged(&builder);
+        assert_eq!((mesh.positions.len(), joined(&edges)), (7, 1));
         assert!(builder.rest_normals().is_ok_and(|normals| normals[0] == Vec3::Z));
     }
 
     #[test]
-    fn sheets_that_cross_are_two_sheets_at_every_level() {
+    fn sheets_that_cross_are_two_sheets_at_any_resolution() {
         let grid = Grid::new(9, 9, 1.0, 1.0);
         let flat = grid.positions();
         let across = flat.iter().map(|at| Vec3::new(0.5, at.y, at.x - 0.5));
@@ -260,9 +268,11 @@ mod tests {
         assert!(matches!(builder.clone().build(), Err(FabricError::NonManifoldEdge { .. })));
         let (builder, report) = builder.repair().expect("a mesh that can be repaired");
         assert_eq!(report.split_edges.len(), 8);
-        let coarser = builder.coarser().expect("a level").builder;
-        assert_eq!(built(builder).particle_count(), 162);
-        assert!((built(coarser).area() - 2.0).abs() < 1e-5);
+        assert_eq!(merged(&builder).0.positions.len(), 162);
+        for size in [0.05, 0.1] {
+            let fabric = builder.resampled(Resolution::CellSize(size)).expect("a mesh").fabric;
+            assert!((fabric.area() - 2.0).abs() < 0.01, "{} m²", fabric.area());
+        }
     }
 
     #[test]

@@ -1,0 +1,93 @@
+//! The net between nodes: lines along the sides of quads, which go on from quad to quad, along the whole cloth in most cases, around it in
+//! others. They are solved as the rows and columns of a grid are, whatever their number at a node and wherever they end.
+//!
+//! `cells` finds the quads among the triangles, `lines` follows their sides, `links` and `bending` measure how much cloth each side
+//! stands for.
+
+mod bending;
+mod cells;
+mod lines;
+mod links;
+
+use glam::Vec3;
+
+use super::bending::Bending;
+use super::links::Links;
+use super::mesh::RestMesh;
+use super::remesh::Nodes;
+use super::rest_bends::RestBends;
+use super::topology::Edge;
+use super::yarns::Yarns;
+
+/// A net before it is a fabric.
+pub(super) struct Net {
+    /// The nodes as particles.
+    pub mesh: RestMesh,
+    pub edges: Vec<Edge>,
+    pub links: Links,
+    pub yarns: Yarns,
+    /// The corners of each quad: the first and the last one are opposite.
+    pub corners: Vec<[u32; 4]>,
+    pub bending: Bending,
+    pub rest_bends: RestBends,
+}
+
+/// A quad of two triangles, or a triangle without partner.
+#[derive(Clone, Debug)]
+struct Cell {
+    /// Counter-clockwise.
+    nodes: Vec<u32>,
+    triangles: Vec<u32>,
+}
+
+impl Cell {
+    /// The ends of each side.
+    fn sides(&self) -> impl Iterator<Item = [u32; 2]> {
+        let count = self.nodes.len();
+        (0..count).map(move |at| [self.nodes[at], self.nodes[(at + 1) % count]])
+    }
+
+    /// Each node between those before and after it.
+    fn threes(&self) -> impl Iterator<Item = [u32; 3]> {
+        let count = self.nodes.len();
+        (0..count).map(move |at| [0, 1, 2].map(|by| self.nodes[(at + by) % count]))
+    }
+
+    /// m².
+    fn area(&self, positions: &[Vec3]) -> f32 {
+        let at = |node: usize| positions[self.nodes[node] as usize];
+        match self.nodes.len() {
+            4 => 0.5 * (at(2) - at(0)).cross(at(3) - at(1)).length(),
+            _ => 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).length(),
+        }
+    }
+}
+
+impl Net {
+    /// The net of nodes, and the cells between them; none if two of their triangles face opposite ways, or where the sides of cells
+    /// don't make lines.
+    pub fn of(nodes: &Nodes) -> Option<(Self, Vec<Vec<u32>>)> {
+        let Nodes { edges, directions, .. } = nodes;
+        let mut mesh = nodes.mesh.clone();
+        let cells = cells::cells(&mesh, edges)?;
+        let lines = lines::lines(&cells, &mesh.positions)?;
+        mesh.set_areas(areas(&cells, &mesh.positions));
+        let (unlisted, sides) = links::links(&mesh, &cells, directions);
+        let (links, yarns) = links::listed(&mesh, &lines, unlisted, &sides);
+        let (bending, rest_bends) = bending::bending(&mesh, &cells, &lines, directions, &sides);
+        let quads = cells.iter().filter_map(|cell| <[u32; 4]>::try_from(&cell.nodes[..]).ok());
+        let corners = quads.map(|[a, b, c, d]| [a, b, d, c]).collect();
+        let net = Self { corners, edges: edges.clone(), mesh, links, yarns, bending, rest_bends };
+        Some((net, cells.into_iter().map(|cell| cell.nodes).collect()))
+    }
+}
+
+/// Area of each node, m²: its share of each cell that it borders.
+fn areas(cells: &[Cell], positions: &[Vec3]) -> Vec<f32> {
+    let mut areas = vec![0.0; positions.len()];
+    for cell in cells {
+        let share = cell.area(positions) / cell.nodes.len() as f32;
+        cell.nodes.iter().for_each(|at| areas[*at as usize] += share);
+    }
+    areas
+}
