@@ -262,24 +262,23 @@ impl ClothLevels {
     #[cfg(feature = "render")]
     pub fn halvings_to_cells(&self, level: usize) -> u32 {
         let level = self.level(level);
-        let triangles = |indices: usize| (indices / 3).max(1) as f32;
-        let simulated = triangles(3 * level.fabric.triangles().len());
-        let ratio = simulated / triangles(level.topology.indices.len());
-        match level.own {
-            Some(_) => (0.5 * ratio.log2()).round().max(0.0) as u32,
-            None => 0,
+        if level.own.is_none() {
+            return 0;
         }
+        let drawn = (level.topology.indices.len() / 3).max(1);
+        let ratio = level.fabric.triangles().len() as f32 / drawn as f32;
+        (0.5 * ratio.log2()).round().max(0.0) as u32
     }
 
     /// The points that a subdivision of a level is evaluated from, m: those that are drawn, and behind them the particles if these
     /// [lie closer](Self::halvings_to_cells).
     #[cfg(feature = "render")]
-    pub fn points<'a>(&'a self, level: usize, positions: &'a [Vec3]) -> Cow<'a, [Vec3]> {
-        let drawn = self.drawn(level, positions).positions;
-        match self.halvings_to_cells(level) {
-            0 => drawn,
-            _ => drawn.iter().chain(positions).copied().collect(),
+    pub fn points<'a>(&'a self, level: usize, positions: &'a [Vec3]) -> DrawnPoints<'a> {
+        let mut points = self.drawn(level, positions);
+        if self.halvings_to_cells(level) > 0 {
+            points.positions.to_mut().extend(positions);
         }
+        points
     }
 
     /// How the mesh follows a level; none of a grid, whose particles are its vertices.

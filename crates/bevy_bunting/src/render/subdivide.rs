@@ -63,7 +63,7 @@ pub fn subdivide_cloths(
             };
             let mut mesh = subdivided_mesh::new(base, &subdivision);
             let points = levels.points(level, &surface.positions);
-            subdivided_mesh::write(&mut mesh, &subdivision, &points, &mut buffers);
+            subdivided_mesh::write(&mut mesh, &subdivision, &points.positions, &mut buffers);
             let mesh = meshes.add(mesh);
             let made = SubdividedMesh { level, halvings, subdivision, mesh };
             level_meshes.subdivided.push(Arc::new(made));

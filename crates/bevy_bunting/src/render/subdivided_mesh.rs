@@ -4,6 +4,7 @@ use bevy_math::Vec3;
 use bevy_mesh::{Indices, Mesh, VertexAttributeValues};
 use bunting_solver::{Stencils, Subdivision, SubdivisionBuffers};
 
+use crate::fabric::levels::DrawnPoints;
 use crate::render::level_mesh::with_vertices;
 
 /// Makes the mesh of a subdivision of a level's mesh. Attributes of floats are interpolated; those of other formats
@@ -45,18 +46,13 @@ fn sums<const N: usize>(weights: &Stencils, values: &[[f32; N]]) -> Vec<[f32; N]
     weights.rows().map(sum).collect()
 }
 
-/// Whether a mesh shows positions of particles (m), given with the mesh's vertices of the level.
-pub fn is_current(
-    mesh: &Mesh,
-    subdivision: &Subdivision,
-    particle_of_vertex: &[u32],
-    positions: &[Vec3],
-) -> bool {
+/// Whether a mesh shows the points of a level.
+pub fn is_current(mesh: &Mesh, subdivision: &Subdivision, points: &DrawnPoints) -> bool {
     match mesh.try_attribute(Mesh::ATTRIBUTE_POSITION) {
         Ok(VertexAttributeValues::Float32x3(drawn)) => {
-            let mut vertices = subdivision.kept().iter().zip(particle_of_vertex);
-            vertices.all(|(&vertex, &particle)| {
-                drawn[vertex as usize] == positions[particle as usize].to_array()
+            let mut vertices = subdivision.kept().iter().zip(points.point_of_vertex);
+            vertices.all(|(&vertex, &point)| {
+                drawn[vertex as usize] == points.positions[point as usize].to_array()
             })
         }
         _ => true,

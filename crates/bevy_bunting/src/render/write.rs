@@ -36,16 +36,8 @@ pub fn write_visible(
     mut commands: Commands,
 ) {
     for (entity, state, surface, visibility, mut level_meshes, shown) in &mut cloths {
-        let levels = levels_to_write(state, surface, visibility, &level_meshes, shown.id());
-        let Some(levels) = levels else { continue };
-        let subdivided = level_meshes.subdivided_mesh(shown.id()).cloned();
-        let to_write = ToWrite {
-            entity,
-            levels: &levels,
-            subdivided: subdivided.as_deref(),
-            surface,
-            is_skinned: state.is_skinned,
-        };
+        let to_write = ToWrite::of(entity, state, surface, visibility, &level_meshes, shown.id());
+        let Some(to_write) = to_write else { continue };
         let Some(mut mesh) = meshes.get_mut(shown.id()) else { continue };
         match to_write.write(mesh.bypass_change_detection(), &mut buffers) {
             Ok(true) => {
@@ -67,16 +59,8 @@ pub fn write_newly_visible(
     mut commands: Commands,
 ) {
     for (entity, state, surface, visibility, mut level_meshes, mut shown) in &mut cloths {
-        let levels = levels_to_write(state, surface, visibility, &level_meshes, shown.id());
-        let Some(levels) = levels else { continue };
-        let subdivided = level_meshes.subdivided_mesh(shown.id()).cloned();
-        let to_write = ToWrite {
-            entity,
-            levels: &levels,
-            subdivided: subdivided.as_deref(),
-            surface,
-            is_skinned: state.is_skinned,
-        };
+        let to_write = ToWrite::of(entity, state, surface, visibility, &level_meshes, shown.id());
+        let Some(to_write) = to_write else { continue };
         let Some(mesh) = meshes.get_mut_untracked(shown.id()) else { continue };
         match to_write.write(mesh, &mut buffers) {
             Ok(true) => {
@@ -87,22 +71,6 @@ pub fn write_newly_visible(
             Err(error) => refuse(&mut level_meshes, error, &mut commands, entity),
         }
     }
-}
-
-/// Returns the levels of a cloth that is visible and has a surface and a mesh that fit these levels.
-fn levels_to_write(
-    state: &ClothState,
-    surface: &ClothSurface,
-    visibility: &ViewVisibility,
-    level_meshes: &LevelMeshes,
-    shown: AssetId<Mesh>,
-) -> Option<Arc<ClothLevels>> {
-    state.fabric()?;
-    let levels = &level_meshes.levels;
-    let fits = surface.positions.len() == levels.fabric(surface.level()).particle_count();
-    let is_own = level_meshes.origin != MeshOrigin::Refused && level_meshes.contains(shown);
-    let is_written = visibility.get() && fits && is_own;
-    is_written.then(|| Arc::clone(levels))
 }
 
 fn refuse(
@@ -125,19 +93,42 @@ pub struct WriteBuffers {
 /// A surface, and the mesh that shows it.
 struct ToWrite<'a> {
     entity: Entity,
-    levels: &'a ClothLevels,
+    levels: Arc<ClothLevels>,
     /// The subdivision that the mesh shows; none if it shows the particles.
-    subdivided: Option<&'a SubdividedMesh>,
+    subdivided: Option<Arc<SubdividedMesh>>,
     surface: &'a ClothSurface,
     /// Whether the cloth is blended with the animated places instead of those at rest.
     is_skinned: bool,
 }
 
-impl ToWrite<'_> {
+impl<'a> ToWrite<'a> {
+    /// That of a cloth; none if the cloth is not visible, or its surface or the mesh does not fit its levels.
+    fn of(
+        entity: Entity,
+        state: &ClothState,
+        surface: &'a ClothSurface,
+        visibility: &ViewVisibility,
+        level_meshes: &LevelMeshes,
+        shown: AssetId<Mesh>,
+    ) -> Option<Self> {
+        state.fabric()?;
+        let levels = &level_meshes.levels;
+        let fits = surface.positions.len() == levels.fabric(surface.level()).particle_count();
+        let is_own = level_meshes.origin != MeshOrigin::Refused && level_meshes.contains(shown);
+        let is_written = visibility.get() && fits && is_own;
+        is_written.then(|| Self {
+            entity,
+            levels: Arc::clone(levels),
+            subdivided: level_meshes.subdivided_mesh(shown).cloned(),
+            surface,
+            is_skinned: state.is_skinned,
+        })
+    }
+
     /// Writes positions and normals into the mesh, and tangents if it has any. Returns whether the mesh has
     /// changed.
     fn write(&self, mesh: &mut Mesh, buffers: &mut WriteBuffers) -> Result<bool, ClothError> {
-        let changed = match self.subdivided {
+        let changed = match &self.subdivided {
             Some(subdivided) => {
                 self.write_subdivided(mesh, &subdivided.subdivision, &mut buffers.subdivision)?
             }
@@ -150,9 +141,9 @@ impl ToWrite<'_> {
     }
 
     fn write_particles(&self, mesh: &mut Mesh) -> Result<bool, ClothError> {
-        let Self { entity, levels, surface, .. } = *self;
+        let Self { levels, surface, .. } = self;
         let topology = levels.topology(surface.level());
-        check_mesh(entity, mesh, topology.vertex_count())?;
+        check_mesh(self.entity, mesh, topology.vertex_count())?;
         let drawn = levels.drawn(surface.level(), &surface.positions);
         let vertices = || topology.simulated.iter().zip(drawn.point_of_vertex);
         let normals = levels.drawn_normals(
@@ -181,12 +172,11 @@ impl ToWrite<'_> {
     ) -> Result<bool, ClothError> {
         check_mesh(self.entity, mesh, subdivision.attributes().rows().len())?;
         let level = self.surface.level();
-        let point_of_vertex = self.levels.drawn(level, &self.surface.positions).point_of_vertex;
         let points = self.levels.points(level, &self.surface.positions);
-        if subdivided_mesh::is_current(mesh, subdivision, point_of_vertex, &points) {
+        if subdivided_mesh::is_current(mesh, subdivision, &points) {
             return Ok(false);
         }
-        subdivided_mesh::write(mesh, subdivision, &points, buffers);
+        subdivided_mesh::write(mesh, subdivision, &points.positions, buffers);
         Ok(true)
     }
 }
