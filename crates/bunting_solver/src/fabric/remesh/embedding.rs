@@ -88,8 +88,9 @@ impl<'a, 'b> Cells<'a, 'b> {
 
     /// Distance of a place from a cell, m; farther if the cell faces another way.
     fn distance(&self, cell: u32, at: DVec3, normal: DVec3) -> f64 {
-        let corners = self.corners(self.cells[cell as usize]);
-        let halves = (1..corners.len() - 1).map(|at| [corners[0], corners[at], corners[at + 1]]);
+        let corners = self.cells[cell as usize];
+        let corner = |node: u32| self.positions[node as usize].as_dvec3();
+        let halves = corners[1..].windows(2).map(|ends| [corners[0], ends[0], ends[1]].map(corner));
         let of_half = |half: [DVec3; 3]| {
             let [a, b, c] = half;
             let is_alike = (b - a).cross(c - a).dot(normal) > 0.0;

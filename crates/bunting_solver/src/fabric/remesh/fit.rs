@@ -32,12 +32,14 @@ pub(super) fn fit_smooth(near: &[(u32, DVec3)], greatest: f32) -> Option<Vec<Ter
 /// Weights of the values at places, given relative to the node with a weight as third coordinate, in the value at the
 /// node of the polynomial that is fitted to them; none if they do not determine it.
 fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
+    // The normal equations are symmetric: their upper half is enough.
     let mut system = [[0.0; TERMS]; TERMS];
     for (_, at) in near {
         let powers = powers::<TERMS>(at);
-        for (row, one) in system.iter_mut().zip(powers) {
-            for (element, other) in row.iter_mut().zip(powers) {
-                *element += at.z * one * other;
+        for (index, row) in system.iter_mut().enumerate() {
+            let factor = at.z * powers[index];
+            for (element, other) in row[index..].iter_mut().zip(&powers[index..]) {
+                *element += factor * other;
             }
         }
     }
@@ -46,22 +48,23 @@ fn fit<const TERMS: usize>(near: &[(u32, DVec3)]) -> Option<Vec<Term>> {
     solution[0] = 1.0;
     let least = LEAST_PIVOT * system[0][0];
     for pivot in 0..TERMS {
-        if system[pivot][pivot] <= least {
+        let row = system[pivot];
+        if row[pivot] <= least {
             return None;
         }
-        let (row, value) = (system[pivot], solution[pivot]);
-        for (index, other) in system.iter_mut().enumerate() {
-            if index != pivot {
-                let factor = other[pivot] / row[pivot];
-                for (element, of_pivot) in other[pivot..].iter_mut().zip(&row[pivot..]) {
-                    *element -= factor * of_pivot;
-                }
-                solution[index] -= factor * value;
+        for index in pivot + 1..TERMS {
+            let factor = row[index] / row[pivot];
+            for (element, of_pivot) in system[index][index..].iter_mut().zip(&row[index..]) {
+                *element -= factor * of_pivot;
             }
+            solution[index] -= factor * solution[pivot];
         }
     }
-    for (index, value) in solution.iter_mut().enumerate() {
-        *value /= system[index][index];
+    for index in (0..TERMS).rev() {
+        let after = index + 1..;
+        let known = system[index][after.clone()].iter().zip(&solution[after]);
+        let sum: f64 = known.map(|(factor, value)| factor * value).sum();
+        solution[index] = (solution[index] - sum) / system[index][index];
     }
     let weight = |at: &DVec3| {
         let powers = powers::<TERMS>(at).into_iter();

@@ -20,6 +20,7 @@ mod steps;
 #[cfg(test)]
 mod tests;
 mod triangulation;
+mod walk;
 
 use glam::{DVec3, Vec3};
 

@@ -3,9 +3,9 @@
 use glam::{DVec2, DVec3};
 
 use super::boxes::Boxes;
-use super::nearest;
 use super::phases::Lattice;
 use super::source::Source;
+use super::walk::Walks;
 use crate::fabric::faces::Faces;
 
 /// Least distance between two nodes along the surface, in cells. Larger: gaps. Smaller: short links, which need more substeps.
@@ -61,9 +61,7 @@ impl Choice<'_> {
                 chosen.add(place, LEAST_DISTANCE);
             }
         }
-        for place in at_vertices {
-            chosen.add(place, GAP);
-        }
+        chosen.fill(self.source, &at_vertices, GAP);
         chosen.places
     }
 
@@ -147,47 +145,56 @@ impl Choice<'_> {
 
 /// Places that are chosen.
 struct Chosen<'a> {
-    faces: &'a Faces<'a>,
     size: f64,
     places: Vec<Place>,
     /// Indices of places, with a reach of a cell.
     boxes: Boxes,
+    walks: Walks<'a>,
 }
 
 impl<'a> Chosen<'a> {
     fn new(faces: &'a Faces<'a>, size: f64) -> Self {
-        Self { faces, size, places: Vec::new(), boxes: Boxes::new(size) }
+        Self { size, places: Vec::new(), boxes: Boxes::new(size), walks: Walks::on(faces) }
     }
 
     /// Adds a place unless one is nearer than a distance along the surface, in cells.
     fn add(&mut self, place: Place, least: f64) {
         let reach = least * self.size;
         let near = self.boxes.near(place.at).iter().map(|&at| &self.places[at as usize]);
-        let near = near.filter(|other| other.at.distance(place.at) < reach);
+        let near = near.filter(|other| other.at.distance_squared(place.at) < reach * reach);
         let near: Vec<u32> = near.map(|other| other.triangle).collect();
-        if near.is_empty() || !self.reaches(&place, reach, &near) {
+        let from = (place.triangle, place.at);
+        if near.is_empty() || !self.walks.any_within(from, reach, |it| near.contains(&it)) {
             self.boxes.add(place.at, self.places.len() as u32);
             self.places.push(place);
         }
     }
 
-    /// Whether one of some triangles is reached from a place through triangles within a distance, m.
-    fn reaches(&self, place: &Place, distance: f64, triangles: &[u32]) -> bool {
-        let mut reached = vec![place.triangle];
-        let mut next = 0;
-        while let Some(&triangle) = reached.get(next) {
-            if triangles.contains(&triangle) {
-                return true;
-            }
-            next += 1;
-            for other in self.faces.neighbours(triangle) {
-                let corners = self.faces.corners(other).map(|corner| corner.as_dvec3());
-                let is_near = || nearest(place.at, corners).distance(place.at) < distance;
-                if !reached.contains(&other) && is_near() {
-                    reached.push(other);
-                }
+    /// Adds those of some places, which lie at the vertices of a mesh in their order, that are farther from all others than a
+    /// distance along the surface, in cells. One walk from each place marks the vertices near it: a dense mesh has many more
+    /// vertices than places.
+    fn fill(&mut self, source: &Source, vertices: &[Place], least: f64) {
+        let reach = least * self.size;
+        let mut is_near = vec![false; source.positions.len()];
+        self.places
+            .iter()
+            .for_each(|it| mark_near(&mut self.walks, source, it, reach, &mut is_near));
+        for place in vertices {
+            if place.vertex.is_some_and(|vertex| !is_near[vertex as usize]) {
+                mark_near(&mut self.walks, source, place, reach, &mut is_near);
+                self.places.push(*place);
             }
         }
-        false
     }
+}
+
+/// Marks the vertices within a distance of a place along the surface, m.
+fn mark_near(walks: &mut Walks, source: &Source, place: &Place, reach: f64, is_near: &mut [bool]) {
+    walks.any_within((place.triangle, place.at), reach, |triangle| {
+        for corner in source.faces.particles(triangle) {
+            let away = source.positions[corner as usize].distance_squared(place.at);
+            is_near[corner as usize] |= away < reach * reach;
+        }
+        false
+    });
 }

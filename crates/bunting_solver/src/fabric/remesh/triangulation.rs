@@ -175,13 +175,11 @@ impl Triangulation {
         self.origins[triangle as usize]
     }
 
-    /// The neighbours of a vertex.
-    fn near(&self, vertex: u32) -> Vec<u32> {
-        let mut near: Vec<u32> = self.around[vertex as usize]
-            .iter()
-            .flat_map(|&triangle| self.corners(triangle))
-            .filter(|&at| at != vertex)
-            .collect();
+    /// The neighbours of a vertex, in memory that is used again.
+    fn near(&self, vertex: u32, mut near: Vec<u32>) -> Vec<u32> {
+        near.clear();
+        let corners = self.around[vertex as usize].iter().flat_map(|&it| self.corners(it));
+        near.extend(corners.filter(|&at| at != vertex));
         near.sort_unstable();
         near.dedup();
         near
@@ -189,11 +187,12 @@ impl Triangulation {
 
     /// Collapses the edge from a vertex for which the triangles around it keep most quality; false if none may collapse.
     fn collapse(&mut self, vertex: u32, least: f64) -> bool {
-        let near = self.near(vertex);
+        let near = self.near(vertex, Vec::new());
         let is_border = near.len() > self.around[vertex as usize].len();
         let allows = |&&(_, into): &&(f64, u32)| {
             let between = self.at_edge(vertex, into).count();
-            let shared = self.near(into).into_iter().filter(|at| near.contains(at)).count();
+            let is_shared = |at: &&u32| **at != into && self.at_edge(into, **at).next().is_some();
+            let shared = near.iter().filter(is_shared).count();
             shared == between && (!is_border || between == 1)
         };
         let with_quality = near.iter().map(|&into| (self.quality_after(vertex, into), into));
@@ -257,8 +256,10 @@ impl Triangulation {
         let mut flips = 0;
         let none = vec![false; self.positions.len()];
         let is_changed = core::mem::replace(&mut self.is_changed, none);
+        let mut near = Vec::new();
         for vertex in (0..self.positions.len() as u32).filter(|at| is_changed[*at as usize]) {
-            for other in self.near(vertex) {
+            near = self.near(vertex, near);
+            for &other in &near {
                 if vertex < other || !is_changed[other as usize] {
                     flips += usize::from(self.flip(vertex, other));
                 }
