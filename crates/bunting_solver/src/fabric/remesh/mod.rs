@@ -10,6 +10,7 @@ mod boxes;
 mod embedding;
 mod fit;
 mod frames;
+mod narrow;
 mod node_rows;
 mod phases;
 mod places;

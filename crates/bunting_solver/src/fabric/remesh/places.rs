@@ -14,6 +14,9 @@ pub(super) const LEAST_DISTANCE: f64 = 0.6;
 /// The same from a place on the border, on which distances are measured along it, too.
 const LEAST_AT_BORDER: f64 = 0.1;
 
+/// The same from a place in the middle of a strip, in widths of the strip, which are two cells there.
+const LEAST_IN_STRIP: f64 = 0.4;
+
 /// The same between pins. Larger: nodes beside a pin that is none do not follow it.
 const LEAST_BETWEEN_PINS: f64 = 0.4;
 
@@ -53,8 +56,10 @@ impl Choice<'_> {
         for (place, _) in at_vertices.iter().zip(&is_given).filter(|(_, is_given)| **is_given) {
             chosen.add(*place, LEAST_BETWEEN_PINS);
         }
-        for place in self.on_border(&is_given) {
-            chosen.add(place, LEAST_AT_BORDER);
+        let on_border = self.on_border(&is_given);
+        on_border.iter().for_each(|place| chosen.add(*place, LEAST_AT_BORDER));
+        for (place, width) in self.along_strips(&on_border) {
+            chosen.add(place, LEAST_IN_STRIP * width);
         }
         for triangle in 0..faces.count() as u32 {
             for place in self.within(triangle) {
