@@ -5,7 +5,7 @@ use bunting_solver::{
 };
 use glam::Vec3;
 
-/// Chooses the substeps of one cloth tick by tick, from its frame's motion in the tick and from air, motion and
+/// Chooses the substeps of one cloth tick by tick, from its frame's motion in the tick and from air, motion, tension and
 /// contacts in the tick before.
 #[derive(Clone, Debug, Default)]
 pub struct Need {
@@ -50,6 +50,7 @@ impl Need {
         self.frame = drive.motion;
         self.loads.air = Loads::of_air(drive, material, tick);
         self.loads.motion = Loads::of_motion(batch.fabric(), before, after, tick);
+        self.loads.note_tension(Loads::of_tension(batch.fabric(), material, after), tick);
         self.loads.contacts = batch.contact_load(0);
     }
 

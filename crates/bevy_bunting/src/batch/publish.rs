@@ -2,6 +2,7 @@
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
+use bevy_time::Time;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::error::ClothError;
@@ -49,6 +50,7 @@ pub(crate) fn publish_states(
     mut cloths: Query<(&mut ClothState, &mut ClothEffort)>,
     mut batches: ResMut<ClothBatches>,
     mut diverged: ResMut<Diverged>,
+    time: Res<Time>,
 ) {
     batches.copy_surfaces();
     for (entity, surface) in batches.surfaces() {
@@ -60,7 +62,7 @@ pub(crate) fn publish_states(
         core::mem::swap(&mut state.normals, &mut surface.normals);
         state.blend();
         state.moved = true;
-        effort.note_tick(surface.motion, surface.contacts);
+        effort.note_tick(surface, time.delta_secs());
         if !surface.is_finite {
             diverged.0.push(entity);
         }

@@ -1,7 +1,9 @@
 //! The effort of each cloth: its substeps follow from the loads that act on it now.
 
 use bevy_ecs::prelude::*;
-use bunting_solver::{Effort, EffortCause, EffortClass, FrameMotion, Loads, StepSettings};
+use bunting_solver::{
+    Effort, EffortCause, EffortClass, FrameMotion, LaneSurface, Loads, StepSettings,
+};
 
 use crate::cloth::instance::ClothInstance;
 use crate::motion::inertia::ClothInertia;
@@ -99,9 +101,10 @@ impl ClothEffort {
         self.loads.air = air;
     }
 
-    /// Notes the loads of turning links and of colliders in this tick, m/s².
-    pub(crate) fn note_tick(&mut self, motion: f32, contacts: f32) {
-        self.loads.motion = motion;
-        self.loads.contacts = contacts;
+    /// Notes the loads of turning links, of tension and of colliders in a tick of `tick` seconds.
+    pub(crate) fn note_tick(&mut self, surface: &LaneSurface, tick: f32) {
+        self.loads.motion = surface.motion;
+        self.loads.note_tension(surface.tension, tick);
+        self.loads.contacts = surface.contacts;
     }
 }

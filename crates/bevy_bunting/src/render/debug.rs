@@ -2,7 +2,7 @@
 
 use bevy_app::{App, Plugin, PostUpdate};
 use bevy_camera::visibility::{ViewVisibility, VisibilitySystems};
-use bevy_color::palettes::css::{AQUA, BLUE, LIME, MAGENTA, ORANGE, RED, WHITE, YELLOW};
+use bevy_color::palettes::css::{AQUA, BLUE, LIME, MAGENTA, ORANGE, RED, VIOLET, WHITE, YELLOW};
 use bevy_color::{Mix, Srgba};
 use bevy_ecs::prelude::*;
 use bevy_gizmos::AppGizmoBuilder;
@@ -180,6 +180,7 @@ fn draw_effort(effort: &ClothEffort, at: Vec3, gizmos: &mut Gizmos<ClothGizmos>)
         EffortCause::Air => AQUA,
         EffortCause::Frame => ORANGE,
         EffortCause::Motion => RED,
+        EffortCause::Tension => VIOLET,
         EffortCause::Contacts => YELLOW,
     };
     let [of_pass, apart] = STROKE;

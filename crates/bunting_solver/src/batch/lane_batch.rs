@@ -11,7 +11,6 @@ use crate::batch::masses::Masses;
 use crate::batch::mixed::Mixed;
 use crate::batch::probe_motion::ProbeMotion;
 use crate::batch::side_by_side::SideBySide;
-use crate::constraints::order::{Order, order_of};
 use crate::constraints::rest_bends::RestBendPacks;
 use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
@@ -39,8 +38,6 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     /// For each lane that can hold a cloth, the cloth that it holds.
     pub lanes: Vec<Option<LaneState>>,
     pub layout: Y,
-    /// The stages in which constraints are solved.
-    pub order: Order,
 
     /// Positions in the cloth's frame, m.
     pub positions: Y::Positions,
@@ -151,7 +148,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 layout.constants(fabric.inverse_areas()),
                 layout.pack_count(),
             ),
-            order: order_of(&fabric),
             partial_sums: layout.partial_sums(),
             parameters: Parameters::new(),
             clock: Clock::default(),

@@ -4,9 +4,11 @@
 //! solves that reads the same backwards is self-adjoint, too, and a product of two such sequences still has real eigenvalues from 0 to
 //! 1, like an implicit step of a stiffer cloth. A product of three different projections has complex eigenvalues: circulatory forces, which
 //! make a cloth at rest vibrate and spin. Bending, lines, tethers and sweep are four: nets that hung from one vertex swung ever wider.
-//! Therefore every second substep of a net reverses the order, so that its circulatory forces are those of the substep before with the
+//! Therefore every second substep reverses the order, so that its circulatory forces are those of the substep before with the
 //! opposite sign: but for the place of the sweep, which ends both, one order is the reverse of the other, and the eigenvalues of a product
-//! are those of its factors in cyclic order. Grids, whose rows and columns hardly act on one another, need no second order.
+//! are those of its factors in cyclic order. Rows and columns of a calm grid hardly act on one another, and need no second order; those of a
+//! grid that is stiff, twisted or drawn out do. Such grids take many substeps ([`Loads`](crate::Loads)), which only make them rattle the
+//! more in one order.
 
 use crate::fabric::Fabric;
 
@@ -21,7 +23,7 @@ pub(crate) enum Stage {
     Lines,
     /// The same of a grid of a few columns or rows, two lines at once (`strip.rs`).
     Strips,
-    /// Warp, weft and shear of a net, in an order that reads the same backwards (`both_ways.rs`).
+    /// Warp, weft and shear in an order that reads the same backwards (`both_ways.rs`).
     LinesBothWays,
     /// Tethers to pins (`tether.rs`).
     Tethers,
@@ -44,29 +46,33 @@ pub(crate) type Order = [&'static [Stage]; 2];
 
 const GRID: Order = [&[Bending, Lines, Tethers, Sweep, Overlong]; 2];
 const NARROW_GRID: Order = [&[Bending, Strips, Tethers, Sweep, Overlong]; 2];
-const NET: Order = [
+const BOTH_ORDERS: Order = [
     &[Tethers, LinesBothWays, BendingOfTautLines, SweepBackwards, Overlong],
     &[Bending, LinesBothWays, Tethers, Sweep, Overlong],
 ];
 
-/// The order of a fabric's cloths.
-pub(crate) fn order_of(fabric: &Fabric) -> Order {
-    if fabric.is_net() {
-        NET
-    } else if fabric.strips().is_empty() {
-        GRID
-    } else {
+/// Most substeps in a tick with which a grid is solved in one order. Fewer: fine grids in a storm pay for the second one without need.
+/// More: stiff bands that are twisted vibrate for ever.
+const MOST_IN_ONE_ORDER: u32 = 8;
+
+/// The order of a fabric's cloths in ticks of a number of substeps.
+pub(crate) fn order_of(fabric: &Fabric, substeps: u32) -> Order {
+    if !fabric.strips().is_empty() {
         NARROW_GRID
+    } else if fabric.is_net() || substeps > MOST_IN_ONE_ORDER {
+        BOTH_ORDERS
+    } else {
+        GRID
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{NET, Stage};
+    use super::{BOTH_ORDERS, Stage};
 
     /// But for the sweeps, which correct what the lines leave.
     #[test]
-    fn every_second_substep_of_a_net_has_the_reverse_order() {
+    fn every_second_substep_has_the_reverse_order() {
         let main = |stages: &[Stage]| -> Vec<Stage> {
             let kinds = stages.iter().map(|stage| match stage {
                 Stage::BendingOfTautLines => Stage::Bending,
@@ -75,8 +81,8 @@ mod tests {
             let sweeps = [Stage::Sweep, Stage::SweepBackwards, Stage::Overlong];
             kinds.filter(|stage| !sweeps.contains(stage)).collect()
         };
-        let mut reverse = main(NET[1]);
+        let mut reverse = main(BOTH_ORDERS[1]);
         reverse.reverse();
-        assert_eq!(main(NET[0]), reverse);
+        assert_eq!(main(BOTH_ORDERS[0]), reverse);
     }
 }

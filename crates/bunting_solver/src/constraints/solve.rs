@@ -6,7 +6,7 @@ use crate::batch::mixed::Mixed;
 use crate::batch::side_by_side::SideBySide;
 use crate::batch::single_cloth::SingleCloth;
 use crate::batch::single_net::SingleNet;
-use crate::constraints::order::Stage;
+use crate::constraints::order::{Stage, order_of};
 use crate::simd::lane::Pack;
 use crate::step::Scheme;
 
@@ -67,7 +67,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// The stages of the substep that has begun.
     fn stages(&self) -> &'static [Stage] {
         let is_even = self.clock.begun.is_multiple_of(2);
-        self.order[usize::from(is_even)]
+        order_of(&self.fabric, self.clock.settings.substeps)[usize::from(is_even)]
     }
 
     fn solve_stage(&mut self, stage: Stage) {

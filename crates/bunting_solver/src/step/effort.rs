@@ -8,6 +8,8 @@
 //! - *Air and frame*: (½ρ C_t u²/σ + |a| + (Ω² + |dΩ/dt|) L)/3, with u the wind relative to the frame, a the
 //!   acceleration of the frame's origin and Ω its angular velocity. Along a streaming cloth tension is that of skin
 //!   friction. One third, since vibration is seen on cloth that hangs still only.
+//! - *Tension*: T/(σ L), with the mean tension T of warp and weft, by their strains: of pins that draw a cloth out or twist it,
+//!   of wind in a sail. Links that are compressed buckle, and count as slack.
 //! - *Motion*: ¾ ω² l, with ω the rate at which links turn (root mean square). Directions of links are frozen in a
 //!   pass, and what a turn leaves unsolved is carried along the L/l links of a chain: N = T ω √(L/l).
 //! - *Contacts*: what chains pull into a collider in a substep h, contacts push out again, and links there are strained
@@ -65,12 +67,19 @@ const FLUNG_RATE: f32 = 300.0;
 /// time. Longer: a jerk is paid for longer.
 const HELD: f32 = 0.5;
 
+/// Time over which tension is averaged, s. Shorter: cloth that flutters takes more substeps at each crack. Longer: cloth that is
+/// drawn out is too heavy for as long.
+const MEAN_OF_TENSION: f32 = 0.25;
+
+/// Greatest stiffness by which a strain counts as tension, N/m. Larger: the rounding of positions counts.
+const STIFFEST: f32 = 1e6;
+
 /// Number of classes of effort.
 const CLASSES: u8 = 9;
 
-/// The highest class that loads other than contacts lead to. Lower: whips gain energy. Higher: flung flags whose links
+/// The highest class that air, frame and motion lead to. Lower: whips gain energy. Higher: flung flags whose links
 /// are longer than 10 cm take more substeps.
-const HIGHEST_WITHOUT_CONTACTS: u8 = 6;
+const HIGHEST_OF_MOTION: u8 = 6;
 
 /// The reason for which a cloth takes the substeps that it takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -84,6 +93,8 @@ pub enum EffortCause {
     Frame,
     /// Its own motion.
     Motion,
+    /// Tension by pins that are too far apart, or by wind in cloth that can't yield.
+    Tension,
     /// Colliders that it is pressed against.
     Contacts,
 }
@@ -105,6 +116,8 @@ pub struct Loads {
     pub frame: f32,
     /// Turn of the links, see [`of_motion`](Self::of_motion).
     pub motion: f32,
+    /// Mean tension, see [`note_tension`](Self::note_tension).
+    pub tension: f32,
     /// Pressure of colliders, see [`ClothBatch::contact_load`](crate::ClothBatch::contact_load).
     pub contacts: f32,
 }
@@ -150,6 +163,43 @@ impl Loads {
         Self::of_probes(fabric, turns, displacements, tick)
     }
 
+    /// Takes the tension at the end of a tick of `tick` seconds into the mean over time, from [`of_tension`](Self::of_tension).
+    pub fn note_tension(&mut self, now: f32, tick: f32) {
+        self.tension += (now - self.tension) * (tick / MEAN_OF_TENSION).min(1.0);
+    }
+
+    /// The acceleration T/(σ L) of a fabric's cloth of length L with the mean tension T of warp and weft at positions of its
+    /// particles, m/s². Links that are compressed count as slack.
+    #[must_use]
+    pub fn of_tension(fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> f32 {
+        if positions.len() != fabric.particle_count() {
+            return 0.0;
+        }
+        let mut strains = [0.0; 2];
+        for probe in fabric.probes() {
+            let [from, to] = probe.particles.map(|particle| positions[particle as usize]);
+            let squared = (to - from).length_squared() * probe.inverse_length_squared;
+            strains[usize::from(!probe.is_warp)] += (squared.sqrt() - 1.0).max(0.0);
+        }
+        Self::of_strains(fabric, material, strains)
+    }
+
+    /// The same from the sums of the strains of the probes along warp and weft.
+    pub(crate) fn of_strains(
+        fabric: &Fabric,
+        material: &FabricMaterial,
+        [warp, weft]: [f32; 2],
+    ) -> f32 {
+        let probes = fabric.probes().len();
+        if probes == 0 || fabric.reach() <= 0.0 {
+            return 0.0;
+        }
+        let [of_warp, of_weft] = [material.warp_stiffness, material.weft_stiffness]
+            .map(|stiffness| stiffness.min(STIFFEST));
+        let tension = (of_warp * warp + of_weft * weft) / probes as f32;
+        tension / (material.area_density * fabric.reach())
+    }
+
     /// The load κ p l/L of colliders that press the cloth with an acceleration p, m/s².
     #[must_use]
     pub(crate) fn of_contacts(fabric: &Fabric, pressing: f32) -> f32 {
@@ -180,21 +230,21 @@ impl Loads {
     #[must_use]
     pub fn class(&self) -> (EffortClass, EffortCause) {
         let steady = PART_OF_AIR_AND_FRAME * (self.air + self.frame);
-        let of_contacts = EffortClass::of(self.contacts, CLASSES - 1);
-        let of_others = EffortClass::of(steady.max(self.motion), HIGHEST_WITHOUT_CONTACTS);
-        let class = of_contacts.max(of_others);
-        let cause = if class == EffortClass::default() {
-            EffortCause::Weight
-        } else if of_contacts > of_others || self.contacts >= steady.max(self.motion) {
-            EffortCause::Contacts
-        } else if self.motion >= steady {
-            EffortCause::Motion
-        } else if self.air >= self.frame {
-            EffortCause::Air
-        } else {
-            EffortCause::Frame
-        };
-        (class, cause)
+        let of_steady = if self.air >= self.frame { EffortCause::Air } else { EffortCause::Frame };
+        let needs = [
+            (self.contacts, CLASSES - 1, EffortCause::Contacts),
+            (self.tension, CLASSES - 1, EffortCause::Tension),
+            (self.motion, HIGHEST_OF_MOTION, EffortCause::Motion),
+            (steady, HIGHEST_OF_MOTION, of_steady),
+        ];
+        let mut greatest = (EffortClass::default(), 0.0, EffortCause::Weight);
+        for (load, highest, cause) in needs {
+            let class = EffortClass::of(load, highest);
+            if class > EffortClass::default() && (class, load) > (greatest.0, greatest.1) {
+                greatest = (class, load, cause);
+            }
+        }
+        (greatest.0, greatest.2)
     }
 }
 
@@ -380,7 +430,7 @@ mod tests {
         let class = |loads: Loads| loads.class().0.index();
         assert_eq!(class(Loads { contacts: 1e4, ..Loads::default() }), EffortClass::COUNT - 1);
         let others = Loads { air: 1e5, frame: 1e5, motion: 1e5, contacts: 0.0 };
-        assert_eq!(class(others), usize::from(HIGHEST_WITHOUT_CONTACTS));
+        assert_eq!(class(others), usize::from(HIGHEST_OF_MOTION));
         assert_eq!(Loads { contacts: 1e4, ..others }.class().1, EffortCause::Contacts);
     }
 

@@ -72,10 +72,10 @@ impl From<StepSettings> for StepLimits {
 }
 
 impl Default for StepLimits {
-    /// The scheme of yarns with one to sixteen substeps of two passes, at least 120 a second.
+    /// The scheme of yarns with one to 24 substeps of two passes, at least 120 a second.
     fn default() -> Self {
         let StepSettings { scheme, passes, .. } = StepSettings::default();
-        Self { scheme, substeps: 1..=16, rate: 120, passes }
+        Self { scheme, substeps: 1..=24, rate: 120, passes }
     }
 }
 
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn long_ticks_are_divided() {
-        for (rate, expected) in [(240, 1), (120, 1), (119, 2), (64, 2), (60, 2), (30, 4), (4, 16)] {
+        for (rate, expected) in [(240, 1), (120, 1), (119, 2), (64, 2), (60, 2), (30, 4), (4, 24)] {
             let tick = 1.0 / rate as f32;
             assert_eq!(substeps(&StepLimits::default(), 9, tick, 9.81), expected, "{rate}");
         }
