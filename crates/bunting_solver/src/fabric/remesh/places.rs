@@ -3,9 +3,10 @@
 use glam::{DVec2, DVec3};
 
 use super::boxes::Boxes;
-use super::nearest;
 use super::phases::Lattice;
+use super::place::Place;
 use super::source::Source;
+use super::triangle::nearest;
 use crate::fabric::faces::Faces;
 
 /// Least distance between two nodes along the surface, in cells. Larger: gaps. Smaller: short links, which need more substeps.
@@ -22,18 +23,6 @@ const GAP: f64 = 0.9;
 
 /// How far a place may lie outside of a triangle in which it counts, as a part of it.
 const OUTSIDE: f64 = 1e-3;
-
-/// A place on a triangle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
-    pub triangle: u32,
-    /// Barycentric coordinates.
-    pub weights: [f64; 3],
-    pub at: DVec3,
-    pub normal: DVec3,
-    /// The vertex that it is.
-    pub vertex: Option<u32>,
-}
 
 /// What places are chosen from.
 pub(super) struct Choice<'a> {

@@ -1,8 +1,10 @@
-//! The motion of all cloths of a batch in a tick, by which their effort is chosen: see [`Loads::of_motion`].
+//! What moved and pressed the cloths of a batch in a tick, by which their effort is chosen: see [`Loads::of_motion`] and
+//! [`Loads::of_contacts`].
 
 use glam::Vec3;
 
 use crate::batch::lane_batch::LaneBatch;
+use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::batch::probe_motion::ProbeMotion;
 use crate::fabric::Fabric;
@@ -55,6 +57,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             let tick = self.probe_motion.tick;
             Loads::of_probes(fabric, turns.lanes()[cloth], displacements.lanes()[cloth], tick)
         })
+    }
+
+    /// Load of the colliders that pressed a cloth in this tick, m/s².
+    pub fn contact_load(&self, cloth: usize, state: &LaneState) -> f32 {
+        Loads::of_contacts(&self.fabric_of(cloth).fabric, state.pressing.mean())
     }
 }
 
