@@ -11,7 +11,9 @@ pub fn tokens(source: &str) -> Vec<&str> {
             (after(rest, "\n"), false)
         } else if rest.starts_with("/*") {
             (after(rest, "*/"), false)
-        } else if tokens.last() == Some(&"r") && rest[hashes..].starts_with('"') {
+        } else if matches!(tokens.last(), Some(&("r" | "br" | "cr")))
+            && rest[hashes..].starts_with('"')
+        {
             let opened = hashes + 1;
             (opened + after(&rest[opened..], &format!("\"{}", &rest[..hashes])), false)
         } else if first == '"'
