@@ -8,7 +8,7 @@ use bunting_examples::render::stage::Stage;
 use bunting_examples::render::title::Title;
 use bunting_examples::{Example, Record};
 
-use crate::{NEXT, PREVIOUS};
+use crate::exit::{NEXT, PREVIOUS};
 
 /// An example, with keys that leave it for another one.
 pub struct Hall<'e, E>(pub &'e E);

@@ -9,6 +9,7 @@
 //! Each example has its own process, since it is a whole app: it adds systems, and sets resources.
 
 mod exhibit;
+mod exit;
 #[cfg(feature = "render")]
 mod hall;
 
@@ -20,10 +21,7 @@ use bunting_examples::Options;
 use clap::{Parser, ValueEnum};
 
 use crate::exhibit::Exhibit;
-
-/// Exit codes of a window in which a key asked for another example; others end the gallery.
-const NEXT: u8 = 10;
-const PREVIOUS: u8 = 11;
+use crate::exit::{NEXT, PREVIOUS};
 
 /// All examples, one after the other.
 #[derive(Debug, Parser)]

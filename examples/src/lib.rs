@@ -7,15 +7,21 @@ pub mod durations;
 mod example;
 pub mod headless;
 pub mod limits;
+mod options;
 mod orbit_example;
 #[cfg(feature = "render")]
 pub mod render;
+mod run;
 pub mod scenes;
 pub mod strain;
 pub mod table;
+mod view;
 
-pub use example::{Example, Options, Record, run};
-pub use orbit_example::{OrbitExample, View};
+pub use example::{Example, Record};
+pub use options::Options;
+pub use orbit_example::OrbitExample;
+pub use run::run;
+pub use view::View;
 
 /// Folder of scenes and models.
 pub const ASSETS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../assets");

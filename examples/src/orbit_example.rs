@@ -7,24 +7,7 @@ use bevy_bunting::prelude::*;
 use crate::limits::{Limit, LimitRecord};
 #[cfg(feature = "render")]
 use crate::render::{control_orbit, stage::Stage};
-use crate::{Example, Record};
-
-/// Where a viewer is, and what it looks at.
-#[derive(Clone, Copy, Debug)]
-pub struct View {
-    /// Position of the viewer, m.
-    pub eye: Vec3,
-    /// The point at which the viewer looks, m.
-    pub centre: Vec3,
-}
-
-impl View {
-    /// The pose of a viewer.
-    #[must_use]
-    pub fn pose(self) -> Transform {
-        Transform::from_translation(self.eye).looking_at(self.centre, Vec3::Y)
-    }
-}
+use crate::{Example, Record, View};
 
 /// An [`Example`] of one place, with values that must stay within limits. In a window the mouse turns the camera
 /// around the view's centre.

@@ -168,10 +168,9 @@ pub use environment::forces::impulse::{ClothImpulse, Push};
 pub use environment::forces::plugin::ForcePlugin;
 pub use environment::group_cloths::ClothCollisionPlugin;
 pub use environment::layers::{ClothFeatures, ClothLayers};
-pub use environment::reactions::{
-    ClothParted, ClothReaction, ClothReactions, ClothTouched, ReactionPlugin,
-};
+pub use environment::reactions::{ClothParted, ClothReaction, ClothReactions, ClothTouched};
 pub use environment::self_collision::SelfCollision;
+pub use environment::sum_reactions::ReactionPlugin;
 pub use environment::wind::blast::WindBlast;
 pub use environment::wind::fan::WindFan;
 pub use environment::wind::field::{GustTravel, WindField};

@@ -7,7 +7,7 @@ use bevy_ecs::system::SystemParam;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 
-use crate::push::FormerReaction;
+use crate::former_reaction::FormerReaction;
 
 /// Cloth pushes and pulls this avian rigid body: insert this component beside its `RigidBody`. Without it, cloth follows
 /// the body, and the body does not feel it.

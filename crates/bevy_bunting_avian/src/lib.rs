@@ -53,6 +53,7 @@
 mod colliders;
 mod error;
 mod feels;
+mod former_reaction;
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/guide/avian.md")]
 mod guide {}

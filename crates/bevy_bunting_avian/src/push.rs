@@ -5,12 +5,13 @@ use avian3d::prelude::{
 };
 use bevy_bunting::{AnchorReaction, AnchorReactions, Attachment, ClothReactions};
 use bevy_ecs::prelude::*;
-use bevy_math::{Dir3, Vec3};
+use bevy_math::Dir3;
 use bevy_time::Time;
 use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
 
 use crate::feels::{Carriers, FeelsCloth, target_of};
+use crate::former_reaction::FormerReaction;
 
 /// Speed at which cloth may throw a body back, of the speed at which the body came. Larger: bodies on taut cloth, whose
 /// force comes a tick late, bounce ever higher. Smaller: a trampoline is none.
@@ -23,15 +24,6 @@ const REMEMBERED: f32 = 0.9;
 /// Acceleration that cloth may give a body at rest by contact, m/s². Not more than gravity: cloth carries nothing. Larger:
 /// bodies on taut cloth tremble.
 const LIFT: f32 = 20.0;
-
-/// What cloth did to a collider in the tick before the last one: N and N·m.
-#[derive(Component, Clone, Copy, Debug, Default)]
-pub(crate) struct FormerReaction {
-    force: Vec3,
-    torque: Vec3,
-    /// Greatest speed at which the collider came towards the cloth lately, m/s.
-    approach: f32,
-}
 
 /// Pushes bodies by the cloth that touches their colliders.
 ///

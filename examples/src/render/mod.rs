@@ -4,6 +4,7 @@
 mod inspector;
 pub mod keys;
 pub mod orbit;
+pub mod picture_options;
 pub mod pictures;
 pub mod print;
 mod sky;

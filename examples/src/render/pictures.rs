@@ -22,44 +22,18 @@ use bevy::world_serialization::WorldInstanceReady;
 use bevy_bunting::prelude::*;
 use bevy_bunting::{CostTable, LodCosts};
 use bunting_scenes::Model;
-use clap::Args;
 
 use crate::headless::{self, ONE_TICK};
 #[cfg(feature = "inspector")]
 use crate::render::inspector;
+use crate::render::picture_options::PictureOptions;
 use crate::render::viewer;
 use crate::{ASSETS, Example, Options};
 
 /// Number of frames after which waiting for a model or a picture ends.
 const MAX_FRAMES: u32 = 10_000;
 
-/// Selection of the pictures, and their folder.
-#[derive(Clone, Debug, Args)]
-pub struct PictureOptions {
-    /// Write pictures as PNG into this directory.
-    #[arg(long, value_name = "DIR", requires = "headless")]
-    pictures: Option<PathBuf>,
-    /// Simulated times of the pictures, in seconds.
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        value_delimiter = ',',
-        default_value = "9,10,11",
-        requires = "pictures"
-    )]
-    at: Vec<f64>,
-    /// Width in pixels; the height is 9/16 of it.
-    #[arg(long, default_value_t = 1280, value_parser = clap::value_parser!(u32).range(16..=8192), requires = "pictures")]
-    width: u32,
-}
-
 impl PictureOptions {
-    /// These options for one picture at a time (s).
-    #[must_use]
-    pub fn at(&self, time: f64) -> Self {
-        Self { at: vec![time], ..self.clone() }
-    }
-
     /// Prepares pictures whose names begin with `name`. None if no pictures are wanted, or if none can be
     /// written; the reason is then printed.
     #[must_use]

@@ -18,7 +18,7 @@ pub(crate) fn place(world: &World, entity: Entity) -> String {
 #[cfg(feature = "render")]
 fn file(world: &World, entity: Entity) -> Option<String> {
     let entity = world.get_entity(entity).ok()?;
-    let source = entity.get::<crate::render::cloth_from_mesh::SourceMesh>();
+    let source = entity.get::<crate::render::source_mesh::SourceMesh>();
     let source = source.and_then(|it| it.source().path());
     let shown = || entity.get::<bevy_mesh::Mesh3d>().and_then(|it| it.0.path());
     let path = source.or_else(shown);

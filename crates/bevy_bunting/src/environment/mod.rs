@@ -12,5 +12,6 @@ pub mod group_cloths;
 pub(crate) mod layers;
 pub(crate) mod reactions;
 pub(crate) mod self_collision;
+pub(crate) mod sum_reactions;
 pub(crate) mod surroundings;
 pub mod wind;

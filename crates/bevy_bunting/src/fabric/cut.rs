@@ -1,5 +1,6 @@
 //! Builds the fabrics of a cloth's levels from its mesh.
 
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 use bunting_solver::{
@@ -9,7 +10,6 @@ use bunting_solver::{
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::resolution::ClothResolution;
 use crate::fabric::levels::{ClothLevels, Level, Shortage};
-use crate::fabric::same_surface::surface_key;
 use crate::fabric::simulated::SimulatedPart;
 
 /// Part of a finer level's particles that a coarser one has at most. More: it hardly takes less time.
@@ -33,6 +33,18 @@ pub(super) fn cut_levels(
     };
     cut.surface = surface_key(mesh);
     Ok(cut)
+}
+
+/// What tells a surface from others; none of a grid, whose particles do not depend on what is held.
+fn surface_key(mesh: &ClothMesh) -> Option<u64> {
+    let ClothMesh::Triangles { positions, indices, weights, merged, .. } = mesh else {
+        return None;
+    };
+    let mut hasher = DefaultHasher::new();
+    (indices, merged).hash(&mut hasher);
+    positions.iter().for_each(|at| at.to_array().map(f32::to_bits).hash(&mut hasher));
+    weights.iter().for_each(|weight| weight.to_bits().hash(&mut hasher));
+    Some(hasher.finish())
 }
 
 /// Levels of a grid, of half as many cells along each side each.

@@ -14,10 +14,10 @@ use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::display::surface::ClothSurface;
 use crate::fabric::levels::ClothLevels;
-use crate::render::cloth_from_mesh::SourceMesh;
 use crate::render::deformer::ClothDeformer;
 use crate::render::level_mesh;
 use crate::render::level_meshes::{LevelMeshes, MeshOrigin, check_mesh};
+use crate::render::source_mesh::SourceMesh;
 use crate::render::subdivision::ClothSubdivision;
 
 type ShownCloth = (

@@ -18,9 +18,9 @@ use crate::cloth::instance::ClothInstance;
 use crate::display::surface::ClothSurface;
 use crate::fabric::levels::ClothLevels;
 use crate::render::binding::{Binding, SurfaceVertices};
-use crate::render::cloth_from_mesh::SourceMesh;
 use crate::render::level_meshes::LevelMeshes;
 use crate::render::mesh_content::{changed_meshes, content_of};
+use crate::render::source_mesh::SourceMesh;
 use crate::render::tangents::TangentSums;
 
 /// Number of halvings of the finest level's edges in the surface that carries meshes.

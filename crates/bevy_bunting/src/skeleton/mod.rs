@@ -9,4 +9,5 @@ pub mod particles;
 pub mod plugin;
 pub mod show;
 pub mod skin;
+mod skinned_particle;
 mod vertex_skins;

@@ -5,8 +5,8 @@ use bunting_solver::Backstop;
 
 use crate::cloth::mesh::ClothMesh;
 use crate::skeleton::limits::{SkinLimits, VertexLimits};
-use crate::skeleton::particles::SkinnedParticle;
 use crate::skeleton::skin::{ClothSkin, SkinError};
+use crate::skeleton::skinned_particle::SkinnedParticle;
 
 /// A valid skin and its limits, which are kept while the cloth's present ones are invalid.
 #[derive(Debug, Default)]

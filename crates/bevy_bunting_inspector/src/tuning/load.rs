@@ -4,19 +4,17 @@ use core::any::TypeId;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use bevy_bunting::CompleteReader;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::reflect::{AppTypeRegistry, ReflectComponent};
-use bevy_reflect::serde::TypedReflectDeserializer;
-use bevy_reflect::{PartialReflect, TypeRegistration, TypeRegistry};
+use bevy_reflect::{PartialReflect, TypeRegistry};
 use ron::value::RawValue;
-use serde::de::DeserializeSeed;
 use serde::{Deserialize, Deserializer};
 
 use crate::parameters::{CLOTH, RESOURCES, WIND, resource_entity, winds};
 use crate::tuning::error::{Failed, TuningError, TuningProblem};
 use crate::tuning::pins::{hold, read_pins};
+use crate::tuning::value::read_value;
 
 /// The texts of the values of one entity, by the names of their types.
 type Texts<'a> = BTreeMap<String, &'a RawValue>;
@@ -140,25 +138,4 @@ fn change<'a>(
     };
     let value = read_value(key, text, registration, types)?;
     Ok(Change { entity, component, value })
-}
-
-/// A value of a type from its text.
-pub(super) fn read_value(
-    key: String,
-    text: &RawValue,
-    registration: &TypeRegistration,
-    types: &TypeRegistry,
-) -> Result<Box<dyn PartialReflect>, Failed> {
-    let mut path = serde_path_to_error::Track::new();
-    let mut reader = CompleteReader::default();
-    let seed = TypedReflectDeserializer::with_processor(registration, types, &mut reader);
-    let read = ron::Deserializer::from_str(text.get_ron()).map_err(|error| error.code);
-    let read = read.and_then(|mut from| {
-        seed.deserialize(serde_path_to_error::Deserializer::new(&mut from, &mut path))
-    });
-    read.map_err(|error| {
-        let path = path.path();
-        let inner = path.iter().next().map_or_else(String::new, |_| format!(".{path}"));
-        (key + &inner, TuningProblem::Value(Box::new(error)))
-    })
 }

@@ -4,3 +4,4 @@ pub mod error;
 pub mod load;
 mod pins;
 pub mod save;
+mod value;

@@ -8,7 +8,7 @@ use bevy_reflect::{FromReflect, TypeRegistry};
 use ron::value::RawValue;
 
 use crate::tuning::error::{Failed, TuningProblem};
-use crate::tuning::load::read_value;
+use crate::tuning::value::read_value;
 
 /// The key of the pins.
 const KEY: &str = "pins";

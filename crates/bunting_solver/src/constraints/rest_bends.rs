@@ -4,7 +4,6 @@
 //! differences at rest (`fabric/rest_bends.rs`), which are constant in this frame, are then constant vectors of the systems'
 //! right-hand sides.
 
-use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Order, Particles, Positions};
 use crate::constants::LEAST_LENGTH;
 use crate::fabric::Fabric;
@@ -78,18 +77,11 @@ impl<P: Pack, Y: Layout<P>> RestBendPacks<P, Y> {
         let [rows, columns] = &mut self.turned;
         if are_rows { rows } else { columns }.particles(order, masses, linked)
     }
-}
 
-impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Turns the second differences at rest of nets with the nodes at their present positions.
-    pub(super) fn turn_rest_bends(&mut self) {
-        let Some(rest) = &mut self.rest_bends else { return };
-        let (masses, linked) = (&self.masses.inverse, self.layout.linked());
-        P::run(TurnRestBends {
-            frames: &rest.frames,
-            turned: rest.turned.each_mut().map(|vectors| vectors.overwritten()),
-            nodes: self.positions.particles(Order::RowMajor, masses, linked),
-        });
+    /// Turns them with the nodes, in row-major order.
+    pub fn turn(&mut self, nodes: <Y::Positions as Positions<P>>::Particles<'_>) {
+        let turned = self.turned.each_mut().map(|vectors| vectors.overwritten());
+        P::run(TurnRestBends { frames: &self.frames, turned, nodes });
     }
 }
 

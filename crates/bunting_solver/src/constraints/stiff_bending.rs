@@ -12,7 +12,7 @@
 //! oscillated for ever.
 
 use crate::batch::lane_batch::LaneBatch;
-use crate::batch::layout::{Layout, Positions};
+use crate::batch::layout::{Layout, Order, Positions};
 use crate::constraints::chain::Pass;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
@@ -60,6 +60,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 shift: &self.stretch_shift,
             });
         }
+    }
+
+    /// Turns the second differences at rest of nets with the nodes at their present positions.
+    fn turn_rest_bends(&mut self) {
+        let Some(rest) = &mut self.rest_bends else { return };
+        let (masses, linked) = (&self.masses.inverse, self.layout.linked());
+        rest.turn(self.positions.particles(Order::RowMajor, masses, linked));
     }
 
     fn bend(&mut self) {

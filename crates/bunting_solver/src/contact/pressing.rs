@@ -1,12 +1,6 @@
-//! How hard colliders press a cloth, by which its effort is chosen: see [`Loads::of_contacts`].
+//! How hard colliders press a cloth, by which its effort is chosen: see [`Loads::of_contacts`](crate::step::effort::Loads::of_contacts).
 
 use glam::Vec3;
-
-use crate::batch::lane_batch::LaneBatch;
-use crate::batch::lane_state::LaneState;
-use crate::batch::layout::Layout;
-use crate::simd::lane::Pack;
-use crate::step::effort::Loads;
 
 /// Sums over a cloth's contacts in a tick of the accelerations by steady pushes.
 #[derive(Clone, Copy, Debug, Default)]
@@ -27,15 +21,8 @@ impl Pressing {
 
     /// The mean of the accelerations, each weighted by its square, m/s²: what presses where the cloth is pressed most. Neither
     /// the particles that nothing touches count nor those along which a shape brushes.
-    fn mean(&self) -> f32 {
+    pub fn mean(&self) -> f32 {
         if self.squares > 0.0 { (self.cubes / self.squares) as f32 } else { 0.0 }
-    }
-}
-
-impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Load of the colliders that pressed a cloth in this tick, m/s².
-    pub fn contact_load(&self, cloth: usize, state: &LaneState) -> f32 {
-        Loads::of_contacts(&self.fabric_of(cloth).fabric, state.pressing.mean())
     }
 }
 

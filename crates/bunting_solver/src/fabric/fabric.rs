@@ -7,14 +7,15 @@ use super::chains::Chains;
 use super::colour::Colours;
 use super::grid::Grid;
 use super::hinges::{Hinge, HingeClass, Hinges};
-use super::links::{Link, LinkClass, Links, Probe};
+use super::links::{Link, LinkClass, LinkFamily, Links, Probe};
 use super::material::FabricMaterial;
 use super::mesh::{RestMesh, Surface};
 use super::patches::{self, Patch};
-use super::pin_paths::PinPaths;
+use super::pin::Pin;
+use super::pin_distances::PinDistances;
 use super::rest_bends::RestBends;
 use super::strip::{self, StripRow};
-use super::tethers::{Pin, Tether, Tethers};
+use super::tethers::{Tether, Tethers};
 use super::twist::{Ribbon, RibbonProfile, Twist};
 use super::yarns::{Yarn, Yarns};
 use crate::constants::FREE_LENGTH;
@@ -38,7 +39,7 @@ pub struct Fabric {
     pub(super) twist: Twist,
     pub(super) rest_bends: Option<RestBends>,
     pub(super) tethers: Tethers,
-    pub(super) pin_paths: PinPaths,
+    pub(super) pin_distances: PinDistances,
     pub(super) tautness: f32,
     pub(super) shortest: f32,
     pub(super) probes: Vec<Probe>,
@@ -90,7 +91,7 @@ impl Fabric {
             yarns,
             chains,
             tethers,
-            pin_paths: PinPaths::default(),
+            pin_distances: PinDistances::default(),
             topology: None,
             warp_cos2,
         };
@@ -319,6 +320,17 @@ impl Fabric {
     /// Length of the shortest link of warp and weft, m.
     pub(crate) fn shortest_link(&self) -> f32 {
         self.shortest
+    }
+
+    /// Length of the diagonals at rest, m, the mean of a net's.
+    pub(crate) fn diagonal(&self) -> f32 {
+        if let Some(grid) = self.grid() {
+            return grid.diagonal();
+        }
+        let diagonals = self.links().iter().filter(|it| it.family == LinkFamily::Diagonal);
+        let (count, sum) =
+            diagonals.fold((0.0, 0.0), |(count, sum), it| (count + 1.0, sum + it.rest_length));
+        sum / f32::max(count, 1.0)
     }
 
     /// Some links of warp and weft, spread over the cloth.

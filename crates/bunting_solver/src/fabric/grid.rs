@@ -3,7 +3,6 @@
 use glam::{Vec2, Vec3};
 
 use super::error::FabricError;
-use super::links::LinkFamily;
 
 /// A rectangular grid of particles.
 ///
@@ -39,18 +38,6 @@ impl Grid {
     /// Length of the diagonals of cells at rest, m.
     pub(crate) fn diagonal(&self) -> f32 {
         libm::hypotf(self.width / (self.columns - 1) as f32, self.height / (self.rows - 1) as f32)
-    }
-
-    /// The family of a link between two particles of a cell. Of two columns a diagonal joins consecutive particles, too.
-    pub(super) fn family(&self, ends: [u32; 2]) -> LinkFamily {
-        let [one, other] = ends.map(|end| (end % self.columns, end / self.columns));
-        if one.1 == other.1 {
-            LinkFamily::Warp
-        } else if one.0 == other.0 {
-            LinkFamily::Weft
-        } else {
-            LinkFamily::Diagonal
-        }
     }
 
     /// Index of the particle in a column and row.

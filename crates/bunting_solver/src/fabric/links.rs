@@ -57,6 +57,20 @@ pub enum LinkFamily {
     Diagonal,
 }
 
+impl LinkFamily {
+    /// That of a link between two particles of a cell. Of two columns a diagonal joins consecutive particles, too.
+    fn on_grid(grid: &Grid, ends: [u32; 2]) -> Self {
+        let [one, other] = ends.map(|end| (end % grid.columns, end / grid.columns));
+        if one.1 == other.1 {
+            Self::Warp
+        } else if one.0 == other.0 {
+            Self::Weft
+        } else {
+            Self::Diagonal
+        }
+    }
+}
+
 /// Stiffness of a link for any material.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LinkClass {
@@ -145,9 +159,9 @@ impl Links {
                 add_triangle(&mut sums, mesh, triangle, uv, 0.5);
             }
         }
-        let links = sums
-            .sorted()
-            .map(|(ends, sum)| (ends, LinkClass { warp_cos2, ..sum.class() }, grid.family(ends)));
+        let links = sums.sorted().map(|(ends, sum)| {
+            (ends, LinkClass { warp_cos2, ..sum.class() }, LinkFamily::on_grid(grid, ends))
+        });
         Self::of_classes(mesh, links)
     }
 

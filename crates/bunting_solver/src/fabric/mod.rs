@@ -35,6 +35,8 @@ mod net;
 mod normals;
 mod of_nodes;
 mod patches;
+mod pin;
+mod pin_distances;
 mod pin_paths;
 mod remesh;
 mod rest_bends;
@@ -52,7 +54,7 @@ pub(crate) use chains::{CHAINS_PER_PAIR, Cell, Chain, ChainLink, ChainPair, Chai
 #[cfg(test)]
 pub(crate) use hinges::angle as hinge_angle;
 pub(crate) use patches::Patch;
-pub(crate) use pin_paths::DistancesFromPin;
+pub(crate) use pin_distances::DistancesFromPin;
 pub(crate) use rest_bends::RestBends;
 pub(crate) use strip::{StripLink, StripRow};
 pub(crate) use tethers::Tether;

@@ -5,7 +5,7 @@ use super::fabric::{Fabric, tautness};
 use super::hinges::Hinges;
 use super::net::Net;
 use super::patches;
-use super::pin_paths::PinPaths;
+use super::pin_distances::PinDistances;
 use super::tethers::Tethers;
 use super::twist::Twist;
 
@@ -24,7 +24,7 @@ impl Fabric {
             twist: Twist::default(),
             rest_bends: Some(rest_bends),
             hinges: Hinges::of(&mesh, &edges),
-            pin_paths: PinPaths::default(),
+            pin_distances: PinDistances::default(),
             tautness: tautness(reach, shortest),
             shortest,
             probes: links.probes(),

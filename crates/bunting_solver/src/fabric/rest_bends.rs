@@ -6,9 +6,6 @@
 
 use glam::Vec3;
 
-use super::fabric::Fabric;
-use super::links::LinkFamily;
-
 /// The second differences at rest of a grid's nodes.
 #[derive(Clone, Debug)]
 pub(crate) struct RestBends {
@@ -49,19 +46,6 @@ impl RestBends {
     /// Whether a node has a neighbour on one of its sides: before it, after it, above and below it.
     pub fn has_neighbour(&self, node: usize, side: usize) -> bool {
         self.neighbours[node][side] as usize != node
-    }
-}
-
-impl Fabric {
-    /// Length of the diagonals at rest, m, the mean of a net's.
-    pub(crate) fn diagonal(&self) -> f32 {
-        if let Some(grid) = self.grid() {
-            return grid.diagonal();
-        }
-        let diagonals = self.links().iter().filter(|it| it.family == LinkFamily::Diagonal);
-        let (count, sum) =
-            diagonals.fold((0.0, 0.0), |(count, sum), it| (count + 1.0, sum + it.rest_length));
-        sum / f32::max(count, 1.0)
     }
 }
 

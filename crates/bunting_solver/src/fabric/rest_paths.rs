@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::tethers::Pin;
+use super::pin::Pin;
 
 /// How paths run over a fabric at rest.
 pub(super) enum RestPaths<'a> {

@@ -9,6 +9,7 @@ use glam::Vec3;
 
 use super::farthest::Places;
 use super::mesh::RestMesh;
+use super::pin::Pin;
 use super::rest_paths::RestPaths;
 use super::topology::Edge;
 
@@ -32,15 +33,6 @@ const SLACK_TO_LINE: f32 = 0.005;
 /// along diagonals, and a cloth that hangs from points shears and hangs farther from them than its rest shape
 /// says. Smaller: the tether stops that shear. Larger: the tether catches later.
 const SLACK_UNDER_SHEAR: f32 = 0.05;
-
-/// A pinned particle.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Pin {
-    /// The particle.
-    pub particle: u32,
-    /// Whether no edge joins it to another pinned particle.
-    pub isolated: bool,
-}
 
 /// The pins of a fabric and the tethers to them.
 #[derive(Clone, Debug)]

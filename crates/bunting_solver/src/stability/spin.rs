@@ -12,29 +12,9 @@ use crate::batch::layout::{Layout, Positions};
 use crate::simd::constant::Constant;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
+use crate::stability::disturbance::Disturbance;
 use crate::step::parameters::ParameterInputs;
 use crate::step::rigid_motion::RigidMotion;
-
-/// Number of substeps in which a change of velocity has an effect by extrapolation. Each leaves √0.1 of it (the root of
-/// z² − γ₁ z − γ₂), so that 10⁻⁵ remains. Smaller: a part of what has acted is taken back.
-const EXTRAPOLATED: u8 = 10;
-
-/// Number of substeps, the present one included, in which what has acted from outside changes the angular momentum, by
-/// itself or by extrapolation.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Disturbance(u8);
-
-impl Disturbance {
-    /// Begins a substep in which something acts on the cloth from outside, or nothing.
-    pub fn begin_substep(&mut self, acts: bool) {
-        self.0 = if acts { EXTRAPOLATED } else { self.0.saturating_sub(1) };
-    }
-
-    /// Something else acts on the cloth in this substep.
-    pub fn disturb(&mut self) {
-        self.0 = EXTRAPOLATED;
-    }
-}
 
 impl LaneState {
     /// Whether anything but gravity, which has no moment, acts on a cloth without pins in this substep.
@@ -43,7 +23,7 @@ impl LaneState {
     }
 
     fn keeps_spin(&self) -> bool {
-        self.history.disturbance == Disturbance(0)
+        self.history.disturbance == Disturbance::default()
     }
 }
 

@@ -2,8 +2,8 @@
 
 use crate::constants::{BETA, GRAVITY};
 use crate::simd::lane::Pack;
+use crate::stability::disturbance::Disturbance;
 use crate::stability::pole::PoleTurn;
-use crate::stability::spin::Disturbance;
 use crate::step::Scheme;
 
 /// A backward differentiation formula of order one or two. With Δ and Δ₋₁ the last two changes of x, and ẋ

@@ -2,11 +2,8 @@
 
 use glam::Vec3;
 
-use crate::batch::BatchError;
-use crate::batch::lane_batch::LaneBatch;
-use crate::batch::layout::Layout;
 use crate::simd::lane::Pack;
-use crate::simd::vec3::{Pack3, set_lane3, splat3};
+use crate::simd::vec3::{Pack3, splat3};
 
 /// The animated place of a particle during a tick, and the limits that hold a free particle near it. Between start and
 /// end, place and limits move evenly along straight lines in the cloth's frame.
@@ -35,7 +32,7 @@ pub struct Guide {
 
 impl Guide {
     /// Whether the numbers can be simulated.
-    fn is_valid(&self) -> bool {
+    pub(super) fn is_valid(&self) -> bool {
         let Self { places: [from, to], normals: [before, after], max_distance, backstop } = *self;
         let Backstop { distance, radius } = backstop;
         // Zero times a number that is not finite is not zero: one test for all instead of one for each of fourteen.
@@ -45,7 +42,7 @@ impl Guide {
     }
 
     /// Centres of the backstop, m.
-    fn behind(&self) -> [Vec3; 2] {
+    pub(super) fn behind(&self) -> [Vec3; 2] {
         let depth = self.backstop.distance + self.backstop.radius;
         [0, 1].map(|end| self.places[end] - self.normals[end] * depth)
     }
@@ -73,13 +70,13 @@ pub struct Backstop {
 /// The guides of one cloth.
 #[derive(Clone, Debug)]
 pub(crate) struct ClothGuides {
-    guides: Vec<Guide>,
-    phase: Phase,
+    pub(super) guides: Vec<Guide>,
+    pub(super) phase: Phase,
 }
 
 /// Where the guides of a cloth are in their tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Phase {
+pub(super) enum Phase {
     /// Their tick has not begun.
     Ahead,
     /// They move in this tick.
@@ -93,7 +90,7 @@ enum Phase {
 pub(crate) struct Guides<P: Pack> {
     pub packs: Vec<GuidePack<P>>,
     /// Whether each cloth has guides.
-    guided: Vec<bool>,
+    pub(super) guided: Vec<bool>,
 }
 
 /// The guides of a pack of particles.
@@ -112,7 +109,7 @@ pub(crate) struct GuidePack<P: Pack> {
 }
 
 impl<P: Pack> GuidePack<P> {
-    fn unlimited() -> Self {
+    pub(super) fn unlimited() -> Self {
         Self {
             places: [splat3(Vec3::ZERO); 2],
             behind: [splat3(Vec3::ZERO); 2],
@@ -123,7 +120,7 @@ impl<P: Pack> GuidePack<P> {
     }
 
     /// Writes the limits of one lane.
-    fn set(&mut self, lane: usize, max_distance: f32, radius: f32) {
+    pub(super) fn set(&mut self, lane: usize, max_distance: f32, radius: f32) {
         self.max_distance.lanes_mut()[lane] = max_distance;
         self.radius.lanes_mut()[lane] = radius;
     }
@@ -144,75 +141,5 @@ impl ClothGuides {
         }
         let limited = self.guides.iter().filter(|guide| guide.max_distance < f32::INFINITY);
         limited.map(|guide| guide.places[0].distance(guide.places[1])).fold(0.0, f32::max)
-    }
-}
-
-impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Sets the guides of a cloth in the next tick, one for each particle; none if the list is empty.
-    pub fn set_guides(&mut self, cloth: usize, guides: Vec<Guide>) -> Result<(), BatchError> {
-        let expected = self.fabrics[Y::fabric_of(cloth)].fabric.particle_count();
-        if !guides.is_empty() && guides.len() != expected {
-            return Err(BatchError::ParticleCount { given: guides.len(), expected });
-        }
-        if let Some(bad) = guides.iter().position(|guide| !guide.is_valid()) {
-            return Err(BatchError::Guide { particle: bad as u32 });
-        }
-        if let Some(state) = &mut self.lanes[cloth] {
-            state.guides =
-                (!guides.is_empty()).then_some(ClothGuides { guides, phase: Phase::Ahead });
-        }
-        Ok(())
-    }
-
-    /// Begins a tick: guides of this tick begin their motion, and those of earlier ticks come to rest.
-    pub fn begin_guides(&mut self) {
-        let is_guided = self.lanes.iter().flatten().any(|cloth| cloth.guides.is_some());
-        if !is_guided {
-            self.guides = None;
-            return;
-        }
-        let (count, lanes) = (self.layout.pack_count(), self.lanes.len());
-        let guides = self.guides.get_or_insert_with(|| {
-            Box::new(Guides {
-                packs: vec![GuidePack::unlimited(); count],
-                guided: vec![false; lanes],
-            })
-        });
-        for cloth in 0..lanes {
-            let fabric = &self.fabrics[Y::fabric_of(cloth)].fabric;
-            match self.lanes[cloth].as_mut().and_then(|state| state.guides.as_mut()) {
-                Some(ClothGuides { phase: Phase::Resting, .. }) => {}
-                Some(ClothGuides { guides: of_cloth, phase }) => {
-                    let (from, next) = match phase {
-                        Phase::Ahead => (0, Phase::Moving),
-                        Phase::Moving | Phase::Resting => (1, Phase::Resting),
-                    };
-                    *phase = next;
-                    guides.guided[cloth] = true;
-                    for (particle, guide) in of_cloth.iter().enumerate() {
-                        let (pack, lane) = self.layout.locate(particle, cloth);
-                        let pack = &mut guides.packs[pack];
-                        let behind = guide.behind();
-                        for (end, source) in [from, 1].into_iter().enumerate() {
-                            set_lane3(&mut pack.places[end], lane, guide.places[source]);
-                            set_lane3(&mut pack.behind[end], lane, behind[source]);
-                        }
-                        set_lane3(&mut pack.normal, lane, guide.normals[1]);
-                        // A pinned particle is where it is held.
-                        if !fabric.is_pinned(particle) {
-                            pack.set(lane, guide.max_distance, guide.backstop.radius);
-                        }
-                    }
-                }
-                None if guides.guided[cloth] => {
-                    guides.guided[cloth] = false;
-                    for particle in 0..fabric.particle_count() {
-                        let (pack, lane) = self.layout.locate(particle, cloth);
-                        guides.packs[pack].set(lane, f32::INFINITY, 0.0);
-                    }
-                }
-                None => {}
-            }
-        }
     }
 }

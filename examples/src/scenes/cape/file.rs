@@ -9,7 +9,7 @@ use bevy_bunting::prelude::*;
 use bunting_scenes::{Design, Model};
 
 use crate::scenes::cape::cloak::CRIMSON;
-use crate::scenes::cape::gait::Walker;
+use crate::scenes::cape::walker::Walker;
 
 /// The file.
 const FILE: &str = "cloths/caped_figure.gltf";

@@ -5,12 +5,7 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use bevy::prelude::*;
 
 use crate::scenes::cape::skeleton::{ANKLE, Joint, LEG, Side};
-
-/// Speed of the walk, m/s.
-const WALK: f32 = 1.4;
-
-/// Speed of the run, m/s.
-const RUN: f32 = 4.2;
+use crate::scenes::cape::walker::{RUN, WALK, Walker};
 
 /// Height of the hips in a run, and the amplitude by which they bob, m.
 const RUN_HEIGHT: f32 = 0.91;
@@ -21,27 +16,6 @@ const CHANGES: [[f32; 3]; 3] = [[1.5, 0.7, WALK], [6.5, 1.0, RUN - WALK], [11.0,
 
 /// Turns: the time at which each begins, s, its duration, s, and its angle to the left, rad.
 const TURNS: [[f32; 3]; 3] = [[3.8, 1.2, FRAC_PI_2], [8.6, 0.9, -FRAC_PI_2], [12.4, 0.7, PI * 0.6]];
-
-/// A figure on its way.
-#[derive(Component, Clone, Copy, Debug, Default)]
-pub struct Walker {
-    /// Phase of the gait, rad: one turn for two steps.
-    pub phase: f32,
-    /// m/s.
-    speed: f32,
-}
-
-impl Walker {
-    /// How much of a walk the gait is, from 0 to 1.
-    pub fn walk(&self) -> f32 {
-        (self.speed / WALK).clamp(0.0, 1.0)
-    }
-
-    /// How much of a run the walk is, from 0 to 1.
-    pub fn run(&self) -> f32 {
-        ((self.speed - WALK) / (RUN - WALK)).clamp(0.0, 1.0)
-    }
-}
 
 /// The sum of changes up to a time, each smooth.
 fn sum(changes: &[[f32; 3]], time: f32) -> f32 {

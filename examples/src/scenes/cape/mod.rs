@@ -10,6 +10,7 @@ mod file;
 mod gait;
 mod measure;
 mod skeleton;
+mod walker;
 
 use crate::limits::{Limit, LimitRecord};
 #[cfg(feature = "render")]
@@ -80,7 +81,7 @@ impl Example for Cape {
 
 /// Keeps the viewer beside the figure.
 fn follow(
-    figure: Single<&Transform, (With<gait::Walker>, Without<LodViewer>)>,
+    figure: Single<&Transform, (With<walker::Walker>, Without<LodViewer>)>,
     mut viewers: Query<&mut Transform, With<LodViewer>>,
 ) {
     for mut viewer in &mut viewers {

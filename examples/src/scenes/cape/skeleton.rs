@@ -2,7 +2,7 @@
 
 use bevy::prelude::*;
 
-use crate::scenes::cape::gait::Walker;
+use crate::scenes::cape::walker::Walker;
 
 /// A joint.
 #[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]

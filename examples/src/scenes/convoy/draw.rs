@@ -10,8 +10,8 @@ use bevy::mesh::{Indices, PrimitiveTopology};
 use bevy::prelude::*;
 
 use crate::scenes::convoy::ground::{Ground, LENGTH, WIDTH, height, places};
-use crate::scenes::convoy::suspension::{RADIUS, Wheel};
 use crate::scenes::convoy::vehicle::{Load, Part, Pole, Vehicle};
+use crate::scenes::convoy::wheel::{RADIUS, Wheel};
 
 /// Sky, ground and light of a wide field.
 pub const STAGE: Stage = Stage {

@@ -6,6 +6,7 @@ mod draw;
 mod ground;
 mod suspension;
 mod vehicle;
+mod wheel;
 
 use crate::limits::{Limit, LimitRecord, greatest};
 use crate::scenes::convoy::vehicle::{Load, SPEED, Tarpaulin, Vehicle};

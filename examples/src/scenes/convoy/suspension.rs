@@ -6,13 +6,10 @@ use avian3d::prelude::{
 use bevy::prelude::*;
 
 use crate::scenes::convoy::ground::Ground;
-use crate::scenes::convoy::vehicle::{HALF_TRACK, HALF_WHEELBASE, MASS, SPEED, Vehicle};
+use crate::scenes::convoy::vehicle::{MASS, SPEED, Vehicle};
+use crate::scenes::convoy::wheel::{RADIUS, Wheel};
 
-/// Radius of a wheel, m.
-pub const RADIUS: f32 = 0.42;
-
-/// Height of the springs' upper ends in the vehicle, and length of an unloaded spring with its wheel, m.
-const MOUNT: f32 = 0.1;
+/// Length of an unloaded spring with its wheel, m.
 const LENGTH: f32 = 1.0;
 
 /// Stiffness of a spring, N/m, and its damping, N·s/m.
@@ -27,16 +24,6 @@ const LANE: f32 = 0.03;
 /// Stiffness of the steering, N·m/rad, and its damping, N·m·s/rad.
 const STEERING: f32 = 60_000.0;
 const STEERING_DAMPING: f32 = 25_000.0;
-
-/// A wheel: its place in the vehicle, m, with the height at which the ground holds it.
-#[derive(Component, Clone, Copy, Debug)]
-pub struct Wheel(pub Vec3);
-
-/// Places of the wheels' mounts in the vehicle, m.
-pub fn mounts() -> [Vec3; 4] {
-    let mount = |x: f32, z: f32| Vec3::new(x * HALF_TRACK, MOUNT, z * HALF_WHEELBASE);
-    [mount(-1.0, -1.0), mount(1.0, -1.0), mount(-1.0, 1.0), mount(1.0, 1.0)]
-}
 
 /// Springs push the vehicles away from the ground, and hold the wheels on it.
 pub fn carry(

@@ -9,17 +9,13 @@ use bevy_bunting_avian::FeelsCloth;
 use bunting_scenes::Design;
 
 use crate::scenes::convoy::ground;
-use crate::scenes::convoy::suspension::{Wheel, mounts};
+use crate::scenes::convoy::wheel::{Wheel, mounts};
 
 /// Speed of the convoy, m/s.
 pub const SPEED: f32 = 25.0;
 
 /// Mass of a vehicle, kg: that of its chassis.
 pub const MASS: f32 = 2_500.0;
-
-/// Half of the distances of the wheels across and along the vehicle, m.
-pub const HALF_TRACK: f32 = 0.9;
-pub const HALF_WHEELBASE: f32 = 1.5;
 
 /// Places of the vehicles at the start, m, the first one's first.
 const STARTS: [Vec2; 3] = [Vec2::new(-190.0, 0.0), Vec2::new(-198.0, -1.5), Vec2::new(-206.0, 0.5)];

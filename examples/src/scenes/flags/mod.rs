@@ -2,6 +2,7 @@
 
 #[cfg(feature = "render")]
 mod draw;
+mod measurements;
 mod record;
 mod table;
 

@@ -11,23 +11,13 @@ use bevy_bunting::{ClothCounts, ClothTimings};
 use bunting_scenes::Scene;
 use bunting_solver::LinkFamily;
 
+use crate::scenes::flags::measurements::Measurements;
 use crate::scenes::flags::table;
 
-/// Measurements of a run.
+/// The record of a run.
 #[derive(Debug)]
 pub struct FlagsRecord {
-    /// Particles along an edge of a flag at each level, the finest first.
-    pub particles: Vec<u32>,
-    /// Durations of each set.
-    pub sets: Vec<(ClothSystems, Durations)>,
-    /// Durations of whole ticks.
-    pub total: Durations,
-    /// Number of flags at each level at the end of each second.
-    pub counts: Vec<Vec<usize>>,
-    /// Strain along the warp in all ticks.
-    pub warp: Strain,
-    /// Strain along the weft in all ticks.
-    pub weft: Strain,
+    measured: Measurements,
     /// Strain along warp and weft in the ticks of the current second.
     second: Strain,
     ticks: usize,
@@ -39,12 +29,14 @@ impl FlagsRecord {
     pub fn new(scene: &Scene, ticks_per_second: usize) -> Self {
         let levels = 0..=scene.levels.switch_distances.len();
         Self {
-            particles: levels.map(|level| ((scene.levels.finest - 1) >> level) + 1).collect(),
-            sets: ClothSystems::ORDER.map(|set| (set, Durations::default())).to_vec(),
-            total: Durations::default(),
-            counts: Vec::new(),
-            warp: Strain::default(),
-            weft: Strain::default(),
+            measured: Measurements {
+                particles: levels.map(|level| ((scene.levels.finest - 1) >> level) + 1).collect(),
+                sets: ClothSystems::ORDER.map(|set| (set, Durations::default())).to_vec(),
+                total: Durations::default(),
+                counts: Vec::new(),
+                warp: Strain::default(),
+                weft: Strain::default(),
+            },
             second: Strain::default(),
             ticks: 0,
             ticks_per_second,
@@ -54,20 +46,21 @@ impl FlagsRecord {
     /// Ends a second. Returns a line that summarises it.
     fn end_second(&mut self, world: &World) -> String {
         let mut counts = world.resource::<ClothCounts>().0.clone();
-        counts.resize(self.particles.len(), 0);
+        counts.resize(self.measured.particles.len(), 0);
         let levels: Vec<String> = self
+            .measured
             .particles
             .iter()
             .zip(&counts)
             .map(|(particles, count)| format!("{particles}² × {count}"))
             .collect();
-        self.counts.push(counts);
+        self.measured.counts.push(counts);
         let strain = mem::take(&mut self.second);
         format!(
             "{:>3} s  {}  {:.3} ms a tick  strain {:.2} %, at most {:.1} %",
-            self.counts.len(),
+            self.measured.counts.len(),
             levels.join("  "),
-            self.total.last(self.ticks_per_second).quantile(0.5),
+            self.measured.total.last(self.ticks_per_second).quantile(0.5),
             100.0 * strain.mean(),
             100.0 * strain.greatest(),
         )
@@ -77,13 +70,13 @@ impl FlagsRecord {
 impl Record for FlagsRecord {
     fn add_tick(&mut self, world: &mut World) -> Option<String> {
         let timings = world.resource::<ClothTimings>();
-        for (set, durations) in &mut self.sets {
+        for (set, durations) in &mut self.measured.sets {
             durations.push(timings.of(*set));
         }
-        self.total.push(timings.total());
+        self.measured.total.push(timings.total());
         for cloth in world.query::<&ClothState>().iter(world) {
-            self.warp.add(cloth, LinkFamily::Warp);
-            self.weft.add(cloth, LinkFamily::Weft);
+            self.measured.warp.add(cloth, LinkFamily::Warp);
+            self.measured.weft.add(cloth, LinkFamily::Weft);
             self.second.add(cloth, LinkFamily::Warp);
             self.second.add(cloth, LinkFamily::Weft);
         }
@@ -92,7 +85,7 @@ impl Record for FlagsRecord {
     }
 
     fn print(&self) -> bool {
-        table::print(self);
+        table::print(&self.measured);
         true
     }
 }

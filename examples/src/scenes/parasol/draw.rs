@@ -4,7 +4,7 @@ use crate::render::{print, stage};
 use bevy::prelude::*;
 
 use crate::scenes::parasol::canopy::{self, RIBS};
-use crate::scenes::parasol::{HEIGHT, Parasol};
+use crate::scenes::parasol::stand::{HEIGHT, Parasol};
 
 /// Radius of the pole, m.
 const POLE: f32 = 0.022;

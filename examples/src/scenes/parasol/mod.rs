@@ -3,18 +3,17 @@
 mod canopy;
 #[cfg(feature = "render")]
 mod draw;
+mod stand;
 
 use std::f32::consts::TAU;
 
 use crate::limits::{Limit, greatest};
+use crate::scenes::parasol::stand::{HEIGHT, Parasol};
 use crate::{OrbitExample, View};
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bunting_scenes::Design;
-
-/// Height of the top of the canopy, m.
-const HEIGHT: f32 = 2.5;
 
 /// Feet of the parasols, m, and the colour of every second panel.
 const PARASOLS: [(Vec3, [u8; 3]); 3] = [
@@ -35,10 +34,6 @@ const SWAY: f32 = 0.02;
 
 /// Frequency of a parasol's sway, 1/s.
 const SWAY_FREQUENCY: f32 = 0.7;
-
-/// A parasol in the frame of its foot.
-#[derive(Component, Clone, Copy, Debug)]
-struct Parasol;
 
 /// Parasols in the wind.
 #[derive(Clone, Copy, Debug)]

@@ -7,7 +7,8 @@ use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 
 use crate::render::stage::{self, Stage};
-use crate::scenes::swatches::{RAIL, SIZE, SPACING, Swatch};
+use crate::scenes::swatches::rail::{RAIL, SPACING};
+use crate::scenes::swatches::swatch::{SIZE, Swatch};
 
 /// A low sun behind the cloths.
 pub const STAGE: Stage =

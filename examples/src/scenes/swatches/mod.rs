@@ -2,46 +2,21 @@
 
 #[cfg(feature = "render")]
 mod draw;
+mod rail;
+mod swatch;
 
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 
 use crate::limits::Limit;
+use crate::scenes::swatches::rail::{RAIL, SPACING};
+use crate::scenes::swatches::swatch::{SIZE, Swatch};
 use crate::strain::greatest_mean;
 use crate::{OrbitExample, View};
 
-/// Width and height of a cloth, m.
-const SIZE: Vec2 = Vec2::new(0.36, 0.5);
-
-/// Distance from the middle of one cloth to that of the next, m.
-const SPACING: f32 = 0.3;
-
-/// Height of the rail, m.
-const RAIL: f32 = 1.55;
-
 /// Limit of the mean strain of a cloth: larger strain would be visible.
 const STRAIN_LIMIT: f32 = 0.01;
-
-/// A cloth, and how it looks.
-#[cfg_attr(
-    not(feature = "render"),
-    expect(dead_code, reason = "only the fabric counts where nothing is drawn")
-)]
-#[derive(Component, Clone, Copy, Debug)]
-struct Swatch {
-    fabric: FabricMaterial,
-    /// Red, green, blue in sRGB.
-    colour: [f32; 3],
-    /// Threads in a metre: coarse ones, which a camera at a metre's distance can see.
-    threads: f32,
-    /// Height of the threads, in distances of two threads.
-    relief: f32,
-    /// Part of the light that passes through the gaps between threads.
-    gaps: f32,
-    /// Part of the light that passes through the threads.
-    transmission: f32,
-}
 
 const SWATCHES: [Swatch; 3] = [
     Swatch {

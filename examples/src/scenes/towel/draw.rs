@@ -3,7 +3,7 @@
 use crate::render::{print, stage};
 use bevy::prelude::*;
 
-use crate::scenes::towel::{RAIL, RAIL_SIZE};
+use crate::scenes::towel::rail::{RAIL, RAIL_SIZE};
 
 /// Draws the rail and prints the towels.
 pub fn plugin(app: &mut App) {

@@ -2,22 +2,18 @@
 
 #[cfg(feature = "render")]
 mod draw;
+mod rail;
 
 use std::f32::consts::FRAC_PI_2;
 
 use crate::limits::{Limit, greatest};
+use crate::scenes::towel::rail::{RAIL, RAIL_SIZE};
 use crate::strain::greatest_mean;
 use crate::{OrbitExample, View};
 use bevy::ecs::schedule::ScheduleLabel;
 use bevy::prelude::*;
 use bevy_bunting::prelude::*;
 use bunting_scenes::Design;
-
-/// Middle of the rail, m, which lies along x.
-const RAIL: Vec3 = Vec3::new(-0.45, 0.95, 0.0);
-
-/// Half the length and radius of the rail, m.
-const RAIL_SIZE: [f32; 2] = [0.36, 0.018];
 
 /// Extents of a towel, m.
 const TOWEL: Vec2 = Vec2::new(0.5, 1.0);

@@ -13,7 +13,7 @@ use super::{
         rig::{GRAVITY, Trial},
         row::Row,
     },
-    LAYERS,
+    layers::LAYERS,
     watch::Watch,
 };
 use crate::product::TICK;

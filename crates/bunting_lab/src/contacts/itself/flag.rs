@@ -8,7 +8,7 @@ use super::{
         rig::{GRAVITY, Trial, hoisted, turning_wind},
         row::Row,
     },
-    LAYERS,
+    layers::LAYERS,
     watch::Watch,
 };
 use crate::product::TICK;

@@ -11,7 +11,7 @@ use super::{
         rig::{GRAVITY, Trial, cotton, sheet},
         row::Row,
     },
-    LAYERS,
+    layers::LAYERS,
     watch::Watch,
 };
 use crate::product::TICK;

@@ -3,13 +3,11 @@
 mod cape;
 mod flag;
 mod fold;
+mod layers;
 mod towel;
 mod watch;
 
 use super::row::Row;
-
-/// Distance that layers of cloth keep from one another, m.
-const LAYERS: f32 = 5e-3;
 
 pub(super) fn rows(quick: bool) -> Vec<Row> {
     let mut rows = fold::rows();

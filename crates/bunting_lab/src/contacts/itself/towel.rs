@@ -9,7 +9,7 @@ use super::{
         rig::{GRAVITY, Trial, sheet, substeps},
         row::Row,
     },
-    LAYERS,
+    layers::LAYERS,
     watch::Watch,
 };
 use crate::product::TICK;

@@ -8,7 +8,8 @@ use bunting_solver::{
 };
 use glam::{DVec2, Vec3};
 
-use super::{GRAVITY, advance, pulled, standard};
+use super::pulled;
+use super::run::{GRAVITY, advance, standard};
 use crate::meshes::{Sheet, Triangulation, net};
 use crate::product::TICK;
 use crate::stability::case::HardCase;

@@ -7,7 +7,7 @@ use bunting_solver::{
     StepSettings,
 };
 
-use super::{AT_REST, advance, fastest};
+use super::run::{AT_REST, advance, fastest};
 use crate::meshes::{around, net, sphere};
 use crate::product::DEFAULT;
 use crate::stability::case::HardCase;

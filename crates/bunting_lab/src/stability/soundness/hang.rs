@@ -8,7 +8,7 @@ use bunting_solver::{
 };
 use glam::Vec3;
 
-use super::{GRAVITY, advance};
+use super::run::{GRAVITY, advance};
 use crate::product::{DEFAULT, TICK};
 use crate::stability::case::HardCase;
 

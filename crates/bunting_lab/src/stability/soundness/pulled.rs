@@ -8,7 +8,7 @@ use bunting_solver::{
 };
 use glam::{DVec2, Vec3};
 
-use super::{AT_REST, GRAVITY, advance, fastest};
+use super::run::{AT_REST, GRAVITY, advance, fastest};
 use crate::meshes::{Sheet, Triangulation, around, ball_with_poles, net, sphere, torus};
 use crate::product::TICK;
 use crate::stability::case::HardCase;

@@ -8,7 +8,7 @@ use bunting_solver::{
 };
 use glam::Vec3;
 
-use super::{GRAVITY, standard};
+use super::run::{GRAVITY, standard};
 use crate::product::{DEFAULT, rms_speed};
 use crate::stability::case::HardCase;
 

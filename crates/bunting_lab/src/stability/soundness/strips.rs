@@ -7,7 +7,7 @@ use bunting_solver::{
 };
 use glam::Vec3;
 
-use super::{AT_REST, GRAVITY, advance, fastest, standard};
+use super::run::{AT_REST, GRAVITY, advance, fastest, standard};
 use crate::product::DEFAULT;
 use crate::stability::case::HardCase;
 

@@ -8,7 +8,7 @@ use std::{
 use bunting_solver::{ClothSnapshot, Drive, Fabric, FabricBuilder, FabricMaterial, Grid};
 use glam::{Vec2, Vec3};
 
-use super::rests;
+use super::rests::rests;
 use crate::{
     flight::almost_at_rest,
     stability::{case::HardCase, lone::Lone},

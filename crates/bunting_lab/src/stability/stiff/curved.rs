@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bunting_solver::{Drive, Fabric, FabricBuilder, FabricMaterial};
 use glam::{DVec2, Vec3};
 
-use super::rests;
+use super::rests::rests;
 use crate::{
     flight::almost_at_rest,
     meshes::{Sheet, Triangulation, around, clothes::disk, net},

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, HashMap};
 use glam::Vec3;
 
 use super::grid_shape::GridShape;
-use super::{LaneIndices, MOST_LANES, NO_INDEX};
+use super::lane_indices::{LaneIndices, MOST_LANES, NO_INDEX};
 use crate::batch::layout::Order;
 use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Grid, Link, LinkFamily, Yarn};
 use crate::simd::constant::Constant;

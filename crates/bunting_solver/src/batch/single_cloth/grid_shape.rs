@@ -1,6 +1,6 @@
 //! The arrangement of a grid's arrays in memory, in row-major and in column-major order.
 
-use super::MOST_LANES;
+use super::lane_indices::MOST_LANES;
 use crate::batch::layout::Order;
 use crate::fabric::Grid;
 use crate::simd::lane::Pack;

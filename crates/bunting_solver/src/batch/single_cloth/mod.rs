@@ -12,6 +12,7 @@ mod bend_lines;
 mod cells;
 mod chains;
 mod grid_shape;
+mod lane_indices;
 mod position_grids;
 mod ribbons;
 mod vector_grid;
@@ -24,6 +25,7 @@ use self::bend_lines::BendLinePacks;
 use self::cells::Cells;
 use self::chains::ChainPacks;
 use self::grid_shape::GridShape;
+use self::lane_indices::{LaneIndices, NO_INDEX};
 use self::position_grids::PositionGrids;
 use self::ribbons::RibbonPacks;
 use self::vector_grid::VectorGrid;
@@ -38,15 +40,6 @@ use crate::fabric::{BendLine, Chains, Fabric, Ribbon};
 use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
-
-/// For each lane of a pack an index into a list of the fabric; [`NO_INDEX`] in lanes without a constraint.
-type LaneIndices = [u32; MOST_LANES];
-
-/// Index of no element.
-const NO_INDEX: u32 = u32::MAX;
-
-/// Number of lanes of the widest pack.
-const MOST_LANES: usize = 16;
 
 /// One cloth across the lanes, with the constraints of its grid in packs.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@
 use core::array;
 
 use super::grid_shape::GridShape;
-use super::{LaneIndices, NO_INDEX};
+use super::lane_indices::{LaneIndices, NO_INDEX};
 use crate::batch::layout::Order;
 use crate::fabric::{Fabric, Ribbon};
 use crate::simd::lane::Pack;

@@ -1,8 +1,8 @@
 //! Bend lines of a single net, in packs of lines that share no node.
 
 use super::in_order::packs_in_order;
+use super::lane_indices::{LaneIndices, NO_INDEX};
 use super::node_packs::NodePacks;
-use super::{LaneIndices, NO_INDEX};
 use crate::fabric::{BendLine, Fabric};
 use crate::simd::lane::Pack;
 use crate::simd::registers::Pack8;

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
+use super::lane_indices::{LaneIndices, NO_INDEX};
 use super::node_packs::NodePacks;
 use super::pack_lanes::{PackLane, lanes_of_open, packs_of_rings};
-use super::{LaneIndices, NO_INDEX};
 use crate::fabric::{Cell, Chain, ChainLink, Chains, Fabric, Yarn, ascending};
 use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;

@@ -9,6 +9,7 @@
 mod bend_lines;
 mod chains;
 mod in_order;
+mod lane_indices;
 mod node_packs;
 mod pack_lanes;
 mod patches;
@@ -22,6 +23,7 @@ use glam::Vec3;
 
 use self::bend_lines::BendLinePacks;
 use self::chains::ChainPacks;
+use self::lane_indices::{LaneIndices, NO_INDEX};
 use self::node_packs::{NodePack, NodePacks};
 use self::patches::PatchPacks;
 use self::positions::NetPositions;
@@ -37,12 +39,6 @@ use crate::simd::constant::Constant;
 use crate::simd::lane::Pack;
 use crate::simd::registers::{Pack4, Pack8};
 use crate::simd::vec3::Pack3;
-
-/// For each lane of a pack an index into a list of the fabric; [`NO_INDEX`] in lanes without a constraint.
-type LaneIndices = [u32; Pack8::WIDTH];
-
-/// Index of no element.
-const NO_INDEX: u32 = u32::MAX;
 
 /// One net across the lanes, with its lines in packs.
 #[derive(Clone, Debug)]

@@ -2,6 +2,7 @@
 
 mod build;
 mod coarser;
+mod on_surface;
 mod rectangle;
 mod repair;
 mod resampled;

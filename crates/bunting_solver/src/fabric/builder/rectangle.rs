@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use glam::{Vec2, Vec3};
 
-use super::resampled::OnSurface;
+use super::on_surface::OnSurface;
 use super::source::FabricBuilder;
 use crate::fabric::directions::Towards;
 use crate::fabric::error::FabricError;

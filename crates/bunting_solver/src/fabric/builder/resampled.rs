@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec3;
 
+use super::on_surface::OnSurface;
 use super::rectangle::Rectangle;
 use super::source::FabricBuilder;
 use crate::fabric::carried::Carried;
@@ -127,17 +128,6 @@ impl FabricBuilder {
             cell_size: size as f32,
         })
     }
-}
-
-/// A fabric, and how the places of the mesh that it was made from follow.
-pub(super) struct OnSurface {
-    pub fabric: Fabric,
-    /// How places follow the particles.
-    pub on_nodes: OnNodes,
-    /// The particle at each place, or one near it.
-    pub particles: Vec<u32>,
-    /// The places around each particle with their weights.
-    pub corners: Vec<Vec<Term>>,
 }
 
 /// A net on a surface, in cells of a size, m.

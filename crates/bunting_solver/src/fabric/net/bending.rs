@@ -3,7 +3,7 @@
 use core::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Cell;
+use super::cell::Cell;
 use super::lines::Line;
 use super::links::Side;
 use crate::fabric::bending::{BendLine, BendProfile, Bending};

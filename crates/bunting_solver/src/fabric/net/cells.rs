@@ -2,7 +2,7 @@
 
 use core::f32::consts::FRAC_PI_2;
 
-use super::Cell;
+use super::cell::Cell;
 use crate::fabric::mesh::RestMesh;
 use crate::fabric::topology::Edge;
 

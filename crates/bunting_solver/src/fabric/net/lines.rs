@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use super::Cell;
+use super::cell::Cell;
 use crate::fabric::topology::ascending;
 
 /// Least cosine of the angle by which a line turns at a node. Larger: lines end at sharp folds. Smaller: they turn back.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Cell;
+use super::cell::Cell;
 use super::lines::Line;
 use crate::fabric::directions::{Directions, Towards};
 use crate::fabric::edge_sums::EdgeSums;

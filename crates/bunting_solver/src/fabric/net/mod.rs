@@ -5,12 +5,14 @@
 //! stands for.
 
 mod bending;
+mod cell;
 mod cells;
 mod lines;
 mod links;
 
 use glam::Vec3;
 
+use self::cell::Cell;
 use super::bending::Bending;
 use super::links::Links;
 use super::mesh::RestMesh;
@@ -30,37 +32,6 @@ pub(super) struct Net {
     pub corners: Vec<[u32; 4]>,
     pub bending: Bending,
     pub rest_bends: RestBends,
-}
-
-/// A quad of two triangles, or a triangle without partner.
-#[derive(Clone, Debug)]
-struct Cell {
-    /// Counter-clockwise.
-    nodes: Vec<u32>,
-    triangles: Vec<u32>,
-}
-
-impl Cell {
-    /// The ends of each side.
-    fn sides(&self) -> impl Iterator<Item = [u32; 2]> {
-        let count = self.nodes.len();
-        (0..count).map(move |at| [self.nodes[at], self.nodes[(at + 1) % count]])
-    }
-
-    /// Each node between those before and after it.
-    fn threes(&self) -> impl Iterator<Item = [u32; 3]> {
-        let count = self.nodes.len();
-        (0..count).map(move |at| [0, 1, 2].map(|by| self.nodes[(at + by) % count]))
-    }
-
-    /// m².
-    fn area(&self, positions: &[Vec3]) -> f32 {
-        let at = |node: usize| positions[self.nodes[node] as usize];
-        match self.nodes.len() {
-            4 => 0.5 * (at(2) - at(0)).cross(at(3) - at(1)).length(),
-            _ => 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).length(),
-        }
-    }
 }
 
 impl Net {

@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use super::places::{Choice, LEAST_DISTANCE, Place};
+use super::place::Place;
+use super::places::{Choice, LEAST_DISTANCE};
 use super::source::Source;
 
 /// Least sine of the turn of a border at a corner.

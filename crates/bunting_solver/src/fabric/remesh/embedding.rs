@@ -2,7 +2,7 @@
 
 use glam::{DMat2, DVec2, DVec3, Vec3};
 
-use super::{barycentric, nearest};
+use super::triangle::{barycentric, nearest};
 use crate::fabric::interpolation::{Height, Term};
 
 /// Most steps from cell to cell.

@@ -13,6 +13,7 @@ mod frames;
 mod narrow;
 mod node_rows;
 mod phases;
+mod place;
 mod places;
 mod refined;
 mod relaxation;
@@ -20,6 +21,7 @@ mod source;
 mod steps;
 #[cfg(test)]
 mod tests;
+mod triangle;
 mod triangulation;
 mod walk;
 
@@ -27,7 +29,9 @@ use glam::{DVec3, Vec3};
 
 use self::embedding::Cells;
 use self::phases::Lattice;
-use self::places::{Choice, Place};
+use self::place::Place;
+use self::places::Choice;
+use self::triangle::part_along;
 use self::triangulation::Triangulation;
 use super::directions::{Directions, Towards};
 use super::faces::Faces;
@@ -207,48 +211,4 @@ fn nearest_warps(source: &Source, of: &Faces, near: impl Iterator<Item = u32>) -
         warp.unwrap_or_else(|| (b - a).normalize_or(Vec3::X))
     };
     (0..of.count() as u32).zip(near).map(warp).collect()
-}
-
-/// The cotangent of the angle at the last corner of a triangle.
-fn cotangent([one, other, corner]: [DVec3; 3]) -> f64 {
-    let (one, other) = (one - corner, other - corner);
-    one.dot(other) / one.cross(other).length().max(f64::MIN_POSITIVE)
-}
-
-/// Barycentric coordinates of a point in the plane of a triangle; on a triangle without area those of the nearest point of
-/// the line of its longest side.
-fn barycentric(at: DVec3, corners: [DVec3; 3]) -> [f64; 3] {
-    let [a, b, c] = corners;
-    let normal = (b - a).cross(c - a);
-    let squared = normal.length_squared();
-    if squared > 0.0 {
-        let part = |from: DVec3, to: DVec3| (to - from).cross(at - from).dot(normal) / squared;
-        return [part(b, c), part(c, a), part(a, b)];
-    }
-    let length = |side: usize| corners[side].distance_squared(corners[(side + 1) % 3]);
-    let longest =
-        (1..3).fold(0, |longest, side| if length(side) > length(longest) { side } else { longest });
-    let end = (longest + 1) % 3;
-    let mut weights = [0.0; 3];
-    weights[end] = part_along(at, corners[longest], corners[end]);
-    weights[longest] = 1.0 - weights[end];
-    weights
-}
-
-/// The part of the way between two points at which the line through both is nearest to a third; zero where both are one.
-fn part_along(at: DVec3, from: DVec3, to: DVec3) -> f64 {
-    (at - from).dot(to - from) / (to - from).length_squared().max(f64::MIN_POSITIVE)
-}
-
-/// The point of a triangle nearest to another.
-fn nearest(at: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
-    let weights = barycentric(at, [a, b, c]);
-    if weights.iter().all(|weight| *weight >= 0.0) {
-        return a * weights[0] + b * weights[1] + c * weights[2];
-    }
-    let on_side = |from: DVec3, to: DVec3| from.lerp(to, part_along(at, from, to).clamp(0.0, 1.0));
-    let nearer = |one: DVec3, other: DVec3| {
-        if other.distance_squared(at) < one.distance_squared(at) { other } else { one }
-    };
-    nearer(nearer(on_side(a, b), on_side(b, c)), on_side(c, a))
 }

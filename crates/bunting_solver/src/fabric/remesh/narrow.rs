@@ -3,9 +3,10 @@
 use glam::DVec3;
 
 use super::boxes::Boxes;
-use super::places::{Choice, Place};
+use super::place::Place;
+use super::places::Choice;
+use super::triangle::{barycentric, nearest};
 use super::walk::Walks;
-use super::{barycentric, nearest};
 
 /// Greatest width of a strip, cells. Larger: a line of the lattice runs between its borders in most places.
 const WIDEST: f64 = 1.6;

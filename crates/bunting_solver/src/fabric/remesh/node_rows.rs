@@ -6,7 +6,7 @@
 use glam::DVec3;
 
 use super::fit::{GREATEST_SUM, RADIUS, fit_smooth};
-use super::places::Place;
+use super::place::Place;
 use super::source::Source;
 use super::walk::Walks;
 use crate::fabric::interpolation::{Interpolation, Term};

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::boxes::Boxes;
 use super::phases::Lattice;
+use super::place::Place;
 use super::source::Source;
 use super::walk::Walks;
 use crate::fabric::faces::Faces;
@@ -25,18 +26,6 @@ const GAP: f64 = 0.9;
 
 /// How far a place may lie outside of a triangle in which it counts, as a part of it.
 const OUTSIDE: f64 = 1e-3;
-
-/// A place on a triangle.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
-    pub triangle: u32,
-    /// Barycentric coordinates.
-    pub weights: [f64; 3],
-    pub at: DVec3,
-    pub normal: DVec3,
-    /// The vertex that it is.
-    pub vertex: Option<u32>,
-}
 
 /// What places are chosen from.
 pub(super) struct Choice<'a> {

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec2, Vec3};
 
-use super::places::Place;
+use super::place::Place;
 use crate::fabric::directions::Directions;
 use crate::fabric::faces::Faces;
 use crate::fabric::interpolation::{Interpolation, Term};

@@ -4,8 +4,8 @@ use core::ops::Range;
 
 use glam::{DVec2, DVec3};
 
-use super::cotangent;
 use super::frames::{Frame, turned};
+use super::triangle::cotangent;
 use crate::fabric::topology::{Edge, Side};
 
 /// Bounds of the weight of an edge. Without them those of slivers rule.

@@ -1,6 +1,6 @@
 use glam::{DVec3, Vec3};
 
-use super::{barycentric, nearest};
+use super::triangle::{barycentric, nearest};
 use crate::fabric::topology;
 use crate::fabric::{FabricBuilder, Resampled, Resolution};
 

@@ -4,8 +4,8 @@
 
 use glam::DVec3;
 
-use super::places::Place;
-use super::{barycentric, cotangent};
+use super::place::Place;
+use super::triangle::{barycentric, cotangent};
 use crate::fabric::faces::Faces;
 
 /// Least barycentric coordinate of a place inside a triangle; with less it lies on an edge or a vertex.

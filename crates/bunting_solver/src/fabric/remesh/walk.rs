@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::nearest;
+use super::triangle::nearest;
 use crate::fabric::faces::Faces;
 
 /// Walks over the triangles of a mesh, with what is remembered from one to the next.

@@ -5,7 +5,8 @@ use std::f64::consts::FRAC_PI_2;
 use bunting_solver::{Drive, FabricBuilder, FabricMaterial, Resampled};
 use glam::{DVec2, Vec2, Vec3};
 
-use super::{Cloth, ISOTROPIC};
+use super::cloth::Cloth;
+use super::materials::ISOTROPIC;
 use crate::{
     meshes::{Sheet, Triangulation, resampled},
     oracles::{Case, bending::quarter_arc},

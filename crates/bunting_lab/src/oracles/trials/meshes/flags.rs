@@ -5,7 +5,10 @@ use std::sync::Arc;
 use bunting_solver::{Drive, Fabric, FabricMaterial};
 use glam::{DVec3, Vec2, Vec3};
 
-use super::{Cloth, REST, ROUNDING, STANDARD, TRIANGULATIONS, bound, square};
+use super::cloth::Cloth;
+use super::limits::{REST, bound};
+use super::materials::STANDARD;
+use super::square::{ROUNDING, TRIANGULATIONS, square};
 use crate::{meshes::Triangulation, oracles::Case};
 
 /// How much more than the grid's a mesh's strain in wind may be.

@@ -3,7 +3,9 @@
 use bunting_solver::{Drive, FabricBuilder};
 use glam::Vec3;
 
-use super::{Cloth, ISOTROPIC, ROUNDING};
+use super::cloth::Cloth;
+use super::materials::ISOTROPIC;
+use super::square::ROUNDING;
 use crate::{
     meshes::{Sheet, net},
     oracles::{Case, stretch::hung_strip},

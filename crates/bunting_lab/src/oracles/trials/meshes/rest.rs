@@ -8,7 +8,10 @@ use std::{
 use bunting_solver::{Drive, FabricBuilder, FabricMaterial};
 use glam::{DVec2, Vec3};
 
-use super::{Cloth, ISOTROPIC, REST, ROUNDING, STANDARD, at_bottom, at_top, bound, square};
+use super::cloth::Cloth;
+use super::limits::{REST, bound};
+use super::materials::{ISOTROPIC, STANDARD};
+use super::square::{ROUNDING, at_bottom, at_top, square};
 use crate::{
     meshes::{Sheet, Triangulation, net},
     oracles::{

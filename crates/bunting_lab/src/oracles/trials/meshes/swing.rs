@@ -3,7 +3,10 @@
 use bunting_solver::{FabricMaterial, StepSettings};
 use glam::{DVec3, Vec3};
 
-use super::{Cloth, ISOTROPIC, STANDARD, TRIANGULATIONS, at_top, bound, square};
+use super::cloth::Cloth;
+use super::limits::bound;
+use super::materials::{ISOTROPIC, STANDARD};
+use super::square::{TRIANGULATIONS, at_top, square};
 use crate::{meshes::Triangulation, oracles::Case, product::TICK, stats::mean};
 
 /// Distance of the swing's mean from the grid's that passes, m, after 0.4 s.

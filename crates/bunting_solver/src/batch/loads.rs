@@ -1,4 +1,4 @@
-//! Motion and tension of all cloths of a batch in a tick, by which their effort is chosen: see [`Loads`].
+//! What moved, strained and pressed the cloths of a batch in a tick, by which their effort is chosen: see [`Loads`].
 
 use glam::Vec3;
 
@@ -63,6 +63,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 tension: state.as_ref().map_or(0.0, tension),
             }
         })
+    }
+
+    /// Load of the colliders that pressed a cloth in this tick, m/s².
+    pub fn contact_load(&self, cloth: usize, state: &LaneState) -> f32 {
+        Loads::of_contacts(&self.fabric_of(cloth).fabric, state.pressing.mean())
     }
 }
 

@@ -1,0 +1,30 @@
+//! A figure that walks.
+
+use bevy::prelude::*;
+
+/// Speed of the walk, m/s.
+pub const WALK: f32 = 1.4;
+
+/// Speed of the run, m/s.
+pub const RUN: f32 = 4.2;
+
+/// A figure on its way.
+#[derive(Component, Clone, Copy, Debug, Default)]
+pub struct Walker {
+    /// Phase of the gait, rad: one turn for two steps.
+    pub phase: f32,
+    /// m/s.
+    pub speed: f32,
+}
+
+impl Walker {
+    /// How much of a walk the gait is, from 0 to 1.
+    pub fn walk(&self) -> f32 {
+        (self.speed / WALK).clamp(0.0, 1.0)
+    }
+
+    /// How much of a run the walk is, from 0 to 1.
+    pub fn run(&self) -> f32 {
+        ((self.speed - WALK) / (RUN - WALK)).clamp(0.0, 1.0)
+    }
+}
