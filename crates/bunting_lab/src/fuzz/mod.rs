@@ -3,11 +3,13 @@
 mod garments;
 mod meshes;
 mod pieces;
+mod rest;
 mod sag;
 mod trial;
 mod verdicts;
 
 pub use meshes::Family;
+pub use rest::Rest;
 pub use sag::Sag;
-pub use trial::{Figures, Trial, of_seed};
+pub use trial::{Asked, Figures, Trial, of_seed};
 pub use verdicts::{SEEDS, verdicts};
