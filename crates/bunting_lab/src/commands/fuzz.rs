@@ -89,6 +89,7 @@ fn summary(trials: &[Trial]) -> Table {
         headers: vec![
             "meshes",
             "cloths",
+            "with pieces that fall",
             "> 1; 5; 20 mm/s",
             "link > 30; 100 % at rest",
             "> 100 % in wind",
@@ -109,6 +110,7 @@ fn group(family: String, cloths: &[&Figures]) -> Vec<String> {
     vec![
         family,
         cloths.len().to_string(),
+        cloths.iter().filter(|it| it.unheld > 0).count().to_string(),
         counts(&SPEEDS, &|it| it.speed * 1e3),
         counts(&STRAINS, &|it| it.stretch[1]),
         counts(&[BLOWN], &|it| it.stretch[0]),

@@ -1,6 +1,7 @@
 //! Cloths at random: meshes, pins, materials, winds and jerks that no other case knows. What fails here becomes a row.
 
 mod garments;
+mod held;
 mod meshes;
 mod pieces;
 mod rest;

@@ -5,14 +5,14 @@ use std::sync::Arc;
 use bunting_solver::{Drive, Fabric, FabricMaterial};
 use serde::Serialize;
 
-use super::trial::Cloth;
-use crate::{flight::almost_at_rest, product::rms_speed};
+use super::{held, trial::Cloth};
+use crate::flight::almost_at_rest;
 
 /// Times after which the speed is taken, s: of a swing that decays by damping alone a fifth is left after the first, at .3/s, and
 /// a four-hundredth after the second.
 const HUNG: [f32; 2] = [10.0, 40.0];
 
-/// RMS speeds of a cloth that was let go almost at rest, m/s.
+/// RMS speeds of what hangs of a cloth that was let go almost at rest, m/s.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Rest {
     /// After 10 s and after 40 s.
@@ -26,7 +26,7 @@ impl Rest {
         let [first, second] = HUNG;
         let speeds = [first, second - first].map(|seconds| {
             cloth.advance(seconds, Drive::default());
-            rms_speed(&cloth.batch, 0)
+            held::speed(&cloth.batch)
         });
         Self { speeds }
     }

@@ -10,6 +10,7 @@ use glam::Vec3;
 use serde::Serialize;
 
 use super::{
+    held,
     meshes::{Family, mesh},
     rest::Rest,
     sag::Sag,
@@ -17,7 +18,7 @@ use super::{
 use crate::{
     meshes::{Random, resampled},
     need::Need,
-    product::{TICK, rms_speed, yarn_strains},
+    product::{TICK, yarn_strains},
     scenes::GRAVITY,
     stats::{Strain, worse},
 };
@@ -57,7 +58,9 @@ pub struct Figures {
     pub blown: Strain,
     /// Greatest stretch of a link in the wind and at the end.
     pub stretch: [f64; 2],
-    /// RMS speed at the end, m/s.
+    /// Particles of pieces that nothing holds.
+    pub unheld: usize,
+    /// RMS speed at the end of what hangs, m/s.
     pub speed: f64,
     /// How far it sinks without wind, if that was asked for.
     pub sag: Option<Sag>,
@@ -131,7 +134,8 @@ fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random, asked: Asked) -
         tick,
         blown,
         stretch: [stretch_in_wind, cloth.greatest_stretch()],
-        speed: rms_speed(&cloth.batch, 0),
+        unheld: held::held(&fabric).iter().filter(|is_held| !**is_held).count(),
+        speed: held::speed(&cloth.batch),
         sag,
         rest,
     }

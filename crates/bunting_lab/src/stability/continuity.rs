@@ -22,6 +22,9 @@ const RIPPLE: f32 = 1e-3;
 const WAVES: Vec3 = Vec3::new(5.0, 3.0, 0.0);
 /// Greatest change as a part of the size.
 const LIMIT: f64 = 0.01;
+/// Least distance of the tip's vertices from pins, over the greatest: where folds lie along a hem is not given by the cloth, as
+/// waves twice as high show, so that of a skirt it is the whole hem.
+const FARTHEST: f32 = 0.99;
 
 /// Cases of a sheet, a disk, a skirt and a cape, each changed in several ways, and, for comparison, begun otherwise.
 pub fn cases(_quick: bool) -> Vec<HardCase> {
@@ -33,12 +36,12 @@ pub fn cases(_quick: bool) -> Vec<HardCase> {
 
 fn of_garment(garment: &Garment) -> Vec<HardCase> {
     let before = hung(garment, RIPPLE);
-    let tip = tip(garment);
-    let size = size(garment);
+    let (tip, size) = (tip(garment), size(garment));
     let compare = |name: &str, now: &[Vec3]| {
         let name = format!("{}, {name}", garment.name);
         let sunk = (lowest(now) - lowest(&before)).abs() / size;
-        let moved = f64::from(now[tip].distance(before[tip])) / size;
+        let [then, there] = [&before[..], now].map(|positions| middle(positions, &tip));
+        let moved = f64::from(there.distance(then)) / size;
         [
             HardCase::new(
                 format!("{name}: sag"),
@@ -50,7 +53,7 @@ fn of_garment(garment: &Garment) -> Vec<HardCase> {
             HardCase::new(
                 format!("{name}: tip"),
                 0,
-                "way of the vertex farthest from pins, of the size",
+                "way of the mean of what is farthest from pins, of the size",
                 moved,
                 LIMIT,
             ),
@@ -82,22 +85,19 @@ fn hung(garment: &Garment, ripple: f32) -> Vec<Vec3> {
     carried.positions(&cloth.positions)
 }
 
-/// The vertex that is farthest from those that are held.
-fn tip(garment: &Garment) -> usize {
-    let held: Vec<Vec3> = garment
-        .positions
-        .iter()
-        .zip(&garment.is_held)
-        .filter(|(_, is_held)| **is_held)
-        .map(|(at, _)| *at)
-        .collect();
-    let away = |vertex: &usize| {
-        let at = garment.positions[*vertex];
-        held.iter().map(|held| held.distance(at)).fold(f32::INFINITY, f32::min)
-    };
-    (0..garment.positions.len())
-        .max_by(|one, other| away(one).total_cmp(&away(other)))
-        .expect("vertices")
+/// The vertices that are farthest from those that are held.
+fn tip(garment: &Garment) -> Vec<usize> {
+    let with_pins = || garment.positions.iter().zip(&garment.is_held);
+    let held: Vec<Vec3> = with_pins().filter(|(_, is_held)| **is_held).map(|(at, _)| *at).collect();
+    let away = |at: &Vec3| held.iter().map(|pin| pin.distance(*at)).fold(f32::INFINITY, f32::min);
+    let away: Vec<f32> = garment.positions.iter().map(away).collect();
+    let farthest = away.iter().copied().fold(0.0, f32::max);
+    (0..away.len()).filter(|vertex| away[*vertex] >= FARTHEST * farthest).collect()
+}
+
+/// Mean position of vertices, m.
+fn middle(positions: &[Vec3], vertices: &[usize]) -> Vec3 {
+    vertices.iter().map(|at| positions[*at]).sum::<Vec3>() / vertices.len() as f32
 }
 
 /// The longest side of the box around a garment at rest, m.
