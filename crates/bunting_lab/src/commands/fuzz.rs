@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::progress;
 use crate::{
-    fuzz::{self, Figures, Sag, Trial},
+    fuzz::{self, Asked, Figures, Rest, Sag, Trial},
     output::{
         Outcome,
         table::{Table, figure},
@@ -40,24 +40,30 @@ pub struct Selection {
     /// Also let each hang without wind, and compare how far it sinks with a high effort, which takes ten times as long.
     #[arg(long)]
     sag: bool,
+    /// Also let each hang without wind at the damping of a flag, and tell how fast it still is.
+    #[arg(long)]
+    rest: bool,
 }
 
 /// Tries them.
 #[must_use]
-pub fn run(Selection { first, count, sag }: &Selection) -> Outcome {
-    let trials = trials(*first..first + count, *sag);
+pub fn run(&Selection { first, count, sag, rest }: &Selection) -> Outcome {
+    let trials = trials(first..first + count, Asked { sag, rest });
     let mut tables = vec![summary(&trials), worst(&trials), refused(&trials)];
-    if *sag {
+    if sag {
         tables.extend([sags(&trials), worst_sags(&trials)]);
+    }
+    if rest {
+        tables.extend([rests(&trials), worst_rests(&trials)]);
     }
     Outcome { json: json!({ "trials": trials }), tables, plots: Vec::new() }
 }
 
-fn trials(seeds: Range<u64>, sags: bool) -> Vec<Trial> {
+fn trials(seeds: Range<u64>, asked: Asked) -> Vec<Trial> {
     let seeds: Vec<u64> = seeds.collect();
     let bar = progress(seeds.len());
     let trials = parallel::map(&seeds, |seed| {
-        let trial = fuzz::of_seed(*seed, sags);
+        let trial = fuzz::of_seed(*seed, asked);
         bar.inc(1);
         trial
     });
@@ -83,6 +89,7 @@ fn summary(trials: &[Trial]) -> Table {
         headers: vec![
             "meshes",
             "cloths",
+            "with pieces that fall",
             "> 1; 5; 20 mm/s",
             "link > 30; 100 % at rest",
             "> 100 % in wind",
@@ -103,6 +110,7 @@ fn group(family: String, cloths: &[&Figures]) -> Vec<String> {
     vec![
         family,
         cloths.len().to_string(),
+        cloths.iter().filter(|it| it.unheld > 0).count().to_string(),
         counts(&SPEEDS, &|it| it.speed * 1e3),
         counts(&STRAINS, &|it| it.stretch[1]),
         counts(&[BLOWN], &|it| it.stretch[0]),
@@ -167,6 +175,52 @@ fn worst_sags(trials: &[Trial]) -> Table {
         name: "fuzz_worst_sag".into(),
         title: "Those that sink most wrongly".into(),
         headers: IDENTITY.into_iter().chain(["sag, mm", "at a high effort"]).collect(),
+        rows: sorted.into_iter().take(LISTED).map(row).collect(),
+    }
+}
+
+/// How fast cloths still are without wind, by their family.
+fn rests(trials: &[Trial]) -> Table {
+    let mut groups: BTreeMap<String, Vec<Rest>> = BTreeMap::new();
+    for (trial, figures) in measured(trials) {
+        groups.entry(format!("{:?}", trial.family)).or_default().extend(figures.rest);
+        groups.entry("all".into()).or_default().extend(figures.rest);
+    }
+    let row = |(family, rests): (String, Vec<Rest>)| {
+        let of_time = |time: usize| rests.iter().map(|rest| rest.speeds[time] * 1e3).collect();
+        let speeds: [Vec<f64>; 2] = [0, 1].map(of_time);
+        let cells = speeds
+            .into_iter()
+            .flat_map(|speeds| [counts(&SPEEDS, &speeds), figure(percentile(speeds, 0.5))]);
+        [family, rests.len().to_string()].into_iter().chain(cells).collect()
+    };
+    Table {
+        name: "fuzz_rest".into(),
+        title: "How fast they are without wind at the damping of a flag".into(),
+        headers: vec![
+            "meshes",
+            "cloths",
+            "> 1; 5; 20 mm/s after 10 s",
+            "median, mm/s",
+            "after 40 s",
+            "median, mm/s",
+        ],
+        rows: groups.into_iter().map(row).collect(),
+    }
+}
+
+/// The cloths that are fastest without wind.
+fn worst_rests(trials: &[Trial]) -> Table {
+    let mut sorted: Vec<(&Trial, &Figures, [f64; 2])> =
+        measured(trials).filter_map(|(trial, of)| Some((trial, of, of.rest?.speeds))).collect();
+    sorted.sort_by(|(_, _, a), (_, _, b)| b[0].total_cmp(&a[0]));
+    let row = |(trial, figures, speeds): (&Trial, &Figures, [f64; 2])| {
+        identity(trial, figures).into_iter().chain(speeds.map(|it| figure(it * 1e3))).collect()
+    };
+    Table {
+        name: "fuzz_worst_rest".into(),
+        title: "Those that are fastest without wind after 10 s".into(),
+        headers: IDENTITY.into_iter().chain(["mm/s after 10 s", "after 40 s"]).collect(),
         rows: sorted.into_iter().take(LISTED).map(row).collect(),
     }
 }

@@ -1,22 +1,24 @@
 //! Error over time of the grid and of meshes, each solved by yarns and by Gauss–Seidel.
 //!
 //! All are the square metre of the scene `swing`, so that one reference holds for all of them: the converged grid,
-//! whose surface is interpolated at the places of a mesh's particles.
+//! whose surface is interpolated at the places of particles, and of the vertices that they carry. A square of triangles
+//! becomes a grid; without one of its lower corners, which the swing hardly feels, it becomes a net.
 
 use std::sync::Arc;
 
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, LaneCount, StepSettings,
+    Carried, ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, LaneCount, Resampled,
+    StepSettings,
 };
 use glam::{DVec2, DVec3, Vec3};
 use serde::Serialize;
 
 use crate::{
-    meshes::{Sheet, Triangulation},
+    meshes::{Sheet, Triangulation, resampled},
     observation::COMPARED_TICKS,
     output::{
         plot::{Axes, Mark, Plot, Series},
-        table::{Table, figure},
+        table::{Table, figure, figure_or_dash},
     },
     product::{TICK, fabric, material},
     reference::Reference,
@@ -45,27 +47,89 @@ const RAPIER: [usize; 3] = [4, 10, 20];
 pub struct MeshRow {
     /// Mesh.
     pub mesh: &'static str,
+    /// Number of particles.
+    pub particles: usize,
     /// Method.
     pub method: &'static str,
     /// Substeps a tick.
     pub substeps: usize,
     /// Passes a substep.
     pub passes: usize,
-    /// Shortest time of a tick, µs.
-    pub us_min: f64,
-    /// Distance from the reference after 0.4 s, m RMS.
-    pub rms_error_m: f64,
+    /// Errors and times.
+    #[serde(flatten)]
+    pub measured: Measured,
 }
 
-/// The grid and two meshes of as many particles.
-fn specimens(scene: &Scene) -> [(&'static str, Arc<Fabric>); 3] {
-    let at_top = |at: Vec3| at.y == 0.0;
-    let sheet = |triangulation| Sheet::new(triangulation, [SIZE; 2], DVec2::ONE, 1);
-    [
-        ("grid", fabric(scene)),
-        ("Delaunay", sheet(Triangulation::Delaunay).fabric(0.0, at_top)),
-        ("random quads", sheet(Triangulation::Quads).fabric(0.0, at_top)),
-    ]
+/// What is measured of a method.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Measured {
+    /// Shortest time of a tick, µs.
+    pub us_min: f64,
+    /// Shortest time in which the mesh's vertices are carried, µs; none if they are the particles.
+    pub us_carry: Option<f64>,
+    /// Distance of the particles from the reference after 0.4 s, m RMS.
+    pub rms_error_m: f64,
+    /// The same of the mesh's vertices, which lie on chords between particles.
+    pub rms_carried_m: f64,
+}
+
+/// A cloth of the scene.
+struct Subject {
+    mesh: &'static str,
+    fabric: Arc<Fabric>,
+    /// How vertices follow; none if they are the particles.
+    carried: Option<Carried>,
+    /// Converged positions of particles and of vertices, m.
+    converged: [Vec<DVec3>; 2],
+}
+
+impl Subject {
+    fn of_grid(scene: &Scene, surface: &[DVec3]) -> Self {
+        let fabric = fabric(scene);
+        let converged = all_interpolated(surface, fabric.rest_positions());
+        Self { mesh: "grid", fabric, carried: None, converged: [converged.clone(), converged] }
+    }
+
+    fn of_sheet(mesh: &'static str, sheet: &Sheet, surface: &[DVec3]) -> Self {
+        let resampled = resampled(&sheet.builder(0.0, |at| at.y == 0.0));
+        let Resampled { fabric, carried, .. } = resampled.expect("a cloth");
+        let places = [fabric.rest_positions(), &sheet.positions];
+        let converged = places.map(|places| all_interpolated(surface, places));
+        Self { mesh, fabric, carried: Some(carried), converged }
+    }
+
+    /// The grid, a square of as many vertices, which becomes a grid, and one that becomes a net as it lacks a corner.
+    fn all(scene: &Scene, surface: &[DVec3]) -> [Self; 3] {
+        let sheet = Sheet::new(Triangulation::Delaunay, [SIZE; 2], DVec2::ONE, 1);
+        [
+            Self::of_grid(scene, surface),
+            Self::of_sheet("Delaunay", &sheet, surface),
+            Self::of_sheet("net", &sheet.clone().without_corner(), surface),
+        ]
+    }
+
+    /// The shortest times and the errors of a method.
+    fn measure<S: Simulation>(&self, start: impl Fn() -> S) -> Measured {
+        let (mut time, mut carrying) = (Timing::default(), Timing::default());
+        let mut errors = [f64::NAN; 2];
+        let [converged, converged_vertices] = &self.converged;
+        for _ in 0..RUNS {
+            let mut cloth = start();
+            (0..COMPARED_TICKS[COMPARED]).for_each(|_| time.time(|| cloth.tick()));
+            errors = [rms_distance(&in_double(cloth.positions()), converged); 2];
+            if let Some(carried) = &self.carried {
+                let mut vertices = Vec::new();
+                carrying.time(|| vertices = carried.positions(cloth.positions()));
+                errors[1] = rms_distance(&in_double(&vertices), converged_vertices);
+            }
+        }
+        Measured {
+            us_min: time.min(),
+            us_carry: self.carried.is_some().then(|| carrying.min()),
+            rms_error_m: errors[0],
+            rms_carried_m: errors[1],
+        }
+    }
 }
 
 /// Every method on every mesh.
@@ -79,37 +143,30 @@ pub fn rows() -> Vec<MeshRow> {
     });
     let gauss_seidel = GAUSS_SEIDEL.map(|it| ("Gauss–Seidel", StepSettings::gauss_seidel(it)));
     let mut rows = Vec::new();
-    for (mesh, fabric) in specimens(&scene) {
-        let converged: Vec<DVec3> =
-            fabric.rest_positions().iter().map(|at| interpolated(surface, *at)).collect();
+    for subject in Subject::all(&scene, surface) {
+        let Subject { mesh, fabric, .. } = &subject;
+        let row = |method, [substeps, passes]: [usize; 2], measured| MeshRow {
+            mesh,
+            particles: fabric.particle_count(),
+            method,
+            substeps,
+            passes,
+            measured,
+        };
         for (method, settings) in yarns.into_iter().chain(gauss_seidel) {
-            let start = || Cloth::new(&fabric, material(&scene), settings);
-            let (us_min, rms_error_m) = measure(start, &converged);
-            let [substeps, passes] = [settings.substeps, settings.passes].map(|it| it as usize);
-            rows.push(MeshRow { mesh, method, substeps, passes, us_min, rms_error_m });
+            let measured = subject.measure(|| Cloth::new(fabric, material(&scene), settings));
+            let effort = [settings.substeps, settings.passes].map(|it| it as usize);
+            rows.push(row(method, effort, measured));
         }
         #[cfg(feature = "peers")]
         for substeps in RAPIER {
             use crate::peers::rapier::{Elasticity, Rapier};
             let start =
-                || Rapier::of(&fabric, &level(&fabric), &scene, Elasticity::Constraints, substeps);
-            let (us_min, rms_error_m) = measure(start, &converged);
-            let (method, passes) = ("rapier 0.36", 1);
-            rows.push(MeshRow { mesh, method, substeps, passes, us_min, rms_error_m });
+                || Rapier::of(fabric, &level(fabric), &scene, Elasticity::Constraints, substeps);
+            rows.push(row("rapier 0.36", [substeps, 1], subject.measure(start)));
         }
     }
     rows
-}
-
-/// Shortest time of a tick, µs, and distance from the converged positions, m RMS.
-fn measure<S: Simulation>(start: impl Fn() -> S, converged: &[DVec3]) -> (f64, f64) {
-    let (mut time, mut error) = (Timing::default(), f64::NAN);
-    for _ in 0..RUNS {
-        let mut cloth = start();
-        (0..COMPARED_TICKS[COMPARED]).for_each(|_| time.time(|| cloth.tick()));
-        error = rms_distance(&in_double(cloth.positions()), converged);
-    }
-    (time.min(), error)
 }
 
 /// The particles of a fabric in the scene's level pose, m.
@@ -152,6 +209,11 @@ impl Simulation for Cloth {
     }
 }
 
+/// The surface between the vertices of a grid at places of the square at rest, m.
+fn all_interpolated(vertices: &[DVec3], places: &[Vec3]) -> Vec<DVec3> {
+    places.iter().map(|at| interpolated(vertices, *at)).collect()
+}
+
 /// The surface between the vertices of a grid at a place of the square at rest, m: cubic along both axes (Catmull and
 /// Rom 1974), since chords between vertices lie beside a curved surface by as much as good methods err.
 fn interpolated(vertices: &[DVec3], rest: Vec3) -> DVec3 {
@@ -183,17 +245,30 @@ pub fn table(rows: &[MeshRow]) -> Table {
     let cells = |row: &MeshRow| {
         vec![
             row.mesh.into(),
+            row.particles.to_string(),
             row.method.into(),
             row.substeps.to_string(),
             row.passes.to_string(),
-            figure(row.us_min),
-            figure(row.rms_error_m),
+            figure(row.measured.us_min),
+            figure_or_dash(row.measured.us_carry),
+            figure(row.measured.rms_error_m),
+            figure(row.measured.rms_carried_m),
         ]
     };
     Table {
         name: "pareto_meshes".into(),
-        title: format!("swing, grid and meshes of {SIZE} × {SIZE} particles, alone"),
-        headers: vec!["mesh", "method", "substeps", "passes", "least µs/tick", "RMS error m"],
+        title: format!("swing, grid and meshes of {SIZE} × {SIZE} vertices, alone"),
+        headers: vec![
+            "mesh",
+            "particles",
+            "method",
+            "substeps",
+            "passes",
+            "least µs/tick",
+            "µs to carry the mesh",
+            "RMS error m",
+            "of the carried mesh",
+        ],
         rows: rows.iter().map(cells).collect(),
     }
 }
@@ -205,15 +280,15 @@ pub fn plot(rows: &[MeshRow]) -> Plot {
         |one: &MeshRow, other: &MeshRow| (one.mesh, one.method) == (other.mesh, other.method);
     let series = rows.chunk_by(of_series).map(|rows| Series {
         name: format!("{}, {}", rows[0].method, rows[0].mesh),
-        points: rows.iter().map(|row| (row.us_min, row.rms_error_m)).collect(),
+        points: rows.iter().map(|row| (row.measured.us_min, row.measured.rms_error_m)).collect(),
         mark: Mark::Line,
     });
     Plot {
         name: "pareto_meshes".into(),
-        title: format!("A grid and meshes of {} particles swing: error over time", SIZE * SIZE),
+        title: format!("A grid and meshes of {} vertices swing: error over time", SIZE * SIZE),
         labels: [
             "least time of one cloth's tick, µs".into(),
-            "RMS position error after 0.4 s, m".into(),
+            "RMS position error of particles after 0.4 s, m".into(),
         ],
         axes: Axes::Logarithmic,
         series: series.collect(),

@@ -10,13 +10,15 @@ use glam::Vec3;
 use serde::Serialize;
 
 use super::{
+    held,
     meshes::{Family, mesh},
+    rest::Rest,
     sag::Sag,
 };
 use crate::{
     meshes::{Random, resampled},
     need::Need,
-    product::{TICK, rms_speed, yarn_strains},
+    product::{TICK, yarn_strains},
     scenes::GRAVITY,
     stats::{Strain, worse},
 };
@@ -56,21 +58,34 @@ pub struct Figures {
     pub blown: Strain,
     /// Greatest stretch of a link in the wind and at the end.
     pub stretch: [f64; 2],
-    /// RMS speed at the end, m/s.
+    /// Particles of pieces that nothing holds.
+    pub unheld: usize,
+    /// RMS speed at the end of what hangs, m/s.
     pub speed: f64,
     /// How far it sinks without wind, if that was asked for.
     pub sag: Option<Sag>,
+    /// How fast it is without wind, if that was asked for.
+    pub rest: Option<Rest>,
 }
 
-/// The trial of a seed; it `sags`, too, where that is asked for.
-pub fn of_seed(seed: u64, sags: bool) -> Trial {
+/// What is asked for besides, of the same cloth begun anew.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Asked {
+    /// How far it sinks.
+    pub sag: bool,
+    /// How fast it is at rest.
+    pub rest: bool,
+}
+
+/// The trial of a seed, and what is asked for besides.
+pub fn of_seed(seed: u64, asked: Asked) -> Trial {
     let mut random = Random::of_seed(seed);
     let family = Family::ALL[random.below(Family::ALL.len())];
     let builder = mesh(family, &mut random);
     let start = Instant::now();
     let resampled = resampled(&builder);
     let build = start.elapsed().as_secs_f64();
-    let measured = resampled.map(|it| figures(it.fabric, build, &mut random, sags));
+    let measured = resampled.map(|it| figures(it.fabric, build, &mut random, asked));
     Trial { seed, family, outcome: measured.map_err(|error| error.to_string()) }
 }
 
@@ -86,7 +101,7 @@ pub fn time_to_build(seed: u64) -> f64 {
 }
 
 /// Blows at a cloth, pulls it, and lets it rest.
-fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random, sags: bool) -> Figures {
+fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random, asked: Asked) -> Figures {
     let particles = fabric.particle_count();
     let settings = StepLimits::default().of_fabric(&fabric, TICK, GRAVITY as f32);
     let stiffness = 10_f64.powf(random.within(2.5, 5.0)) as f32;
@@ -99,15 +114,16 @@ fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random, sags: bool) -> 
     };
     let mut vector = |size: f32| Vec3::from([0; 3].map(|_| random.within(-1.0, 1.0) as f32)) * size;
     let (wind, jerk) = (vector(20.0), vector(0.5));
-    let sag =
-        sags.then(|| Sag::of(&fabric, FabricMaterial { damping: DAMPING, ..material }, settings));
-    let mut cloth = Cloth::new(fabric, material);
+    let damped = FabricMaterial { damping: DAMPING, ..material };
+    let sag = asked.sag.then(|| Sag::of(&fabric, damped, settings));
+    let rest = asked.rest.then(|| Rest::of(&fabric, material));
+    let mut cloth = Cloth::new(&fabric, &ClothSnapshot::at_rest(&fabric), material);
     let still = Drive::default();
     cloth.advance(BLOWN, Drive { wind, ..still });
     let tick = cloth.time_of_tick(settings) / particles as f64;
     let blown = Strain::of(cloth.strains());
     let stretch_in_wind = cloth.greatest_stretch();
-    cloth.set_material(FabricMaterial { damping: DAMPING, ..material });
+    cloth.set_material(damped);
     let motion = FrameMotion { translation: jerk, ..FrameMotion::NONE };
     cloth.advance(TICK, Drive { motion, ..still });
     cloth.advance(SETTLING, still);
@@ -118,25 +134,27 @@ fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random, sags: bool) -> 
         tick,
         blown,
         stretch: [stretch_in_wind, cloth.greatest_stretch()],
-        speed: rms_speed(&cloth.batch, 0),
+        unheld: held::held(&fabric).iter().filter(|is_held| !**is_held).count(),
+        speed: held::speed(&cloth.batch),
         sag,
+        rest,
     }
 }
 
 /// A cloth that is alone, with substeps by need.
-struct Cloth {
-    batch: ClothBatch,
+pub(super) struct Cloth {
+    pub batch: ClothBatch,
     material: FabricMaterial,
     need: Need,
     positions: Vec<Vec3>,
 }
 
 impl Cloth {
-    fn new(fabric: Arc<Fabric>, material: FabricMaterial) -> Self {
-        let rest = ClothSnapshot::at_rest(&fabric);
-        let mut batch = ClothBatch::new(fabric, LaneCount::One);
-        batch.insert(&rest, material).expect("a good cloth");
-        let positions = rest.positions;
+    /// A cloth in a state.
+    pub fn new(fabric: &Arc<Fabric>, start: &ClothSnapshot, material: FabricMaterial) -> Self {
+        let mut batch = ClothBatch::new(Arc::clone(fabric), LaneCount::One);
+        batch.insert(start, material).expect("a good cloth");
+        let positions = start.positions.clone();
         Self { batch, material, need: Need::within(StepLimits::default()), positions }
     }
 
@@ -145,7 +163,8 @@ impl Cloth {
         self.material = material;
     }
 
-    fn advance(&mut self, seconds: f32, drive: Drive) {
+    /// Some seconds under what drives it.
+    pub fn advance(&mut self, seconds: f32, drive: Drive) {
         self.batch.drive(0, drive).expect("a good drive");
         for _ in 0..(seconds / TICK).round() as usize {
             let settings = self.need.settings(self.batch.fabric(), &drive, TICK);

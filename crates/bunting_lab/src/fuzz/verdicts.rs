@@ -2,7 +2,7 @@
 
 use std::panic;
 
-use super::trial::{Figures, of_seed, time_to_build};
+use super::trial::{Asked, Figures, of_seed, time_to_build};
 use crate::{contacts::Row, stats::worse};
 
 /// Seeds of the cloths that the gate tries.
@@ -20,7 +20,7 @@ const BUILDS: usize = 2;
 /// refused, or panics, has the first row only.
 #[must_use]
 pub fn verdicts(seed: u64) -> Vec<Row> {
-    let trial = panic::catch_unwind(|| of_seed(seed, false));
+    let trial = panic::catch_unwind(|| of_seed(seed, Asked::default()));
     let figures = trial.ok().and_then(|trial| trial.outcome.ok());
     let stretch = figures.as_ref().map_or(f64::NAN, |it| worse(it.stretch[0], it.stretch[1]));
     let row = |aspect: &str, quantity, figure, limit| {

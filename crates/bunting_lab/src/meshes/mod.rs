@@ -1,5 +1,6 @@
 //! Triangle meshes that are no grids, for trials of what artists model.
 
+pub(crate) mod changes;
 pub(crate) mod clothes;
 pub(crate) mod delaunay;
 mod graded;
@@ -180,11 +181,16 @@ impl Sheet {
     /// When it is not a cloth.
     #[must_use]
     pub fn fabric(&self, warp: f32, is_pinned: impl Fn(Vec3) -> bool) -> Arc<Fabric> {
+        net(&self.builder(warp, is_pinned))
+    }
+
+    /// The builder of that fabric.
+    pub fn builder(&self, warp: f32, is_pinned: impl Fn(Vec3) -> bool) -> FabricBuilder {
         let (sin, cos) = warp.sin_cos();
         let turned = |at: &Vec3| Vec2::new(cos * at.x - sin * at.y, sin * at.x + cos * at.y);
         let uv = self.positions.iter().map(turned).collect();
         let builder = FabricBuilder::new(self.positions.clone(), self.indices.clone()).uv(uv);
-        net(&builder.pin_where(|at, _| is_pinned(at)))
+        builder.pin_where(|at, _| is_pinned(at))
     }
 }
 

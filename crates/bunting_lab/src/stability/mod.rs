@@ -4,6 +4,7 @@
 //! limit.
 
 mod case;
+mod continuity;
 mod crumple;
 mod flags;
 mod garments;
@@ -25,7 +26,7 @@ pub use case::{HardCase, Status};
 pub type Family = fn(quick: bool) -> Vec<HardCase>;
 
 /// Every family with its name.
-pub const ALL: [(&str, Family); 14] = [
+pub const ALL: [(&str, Family); 15] = [
     ("sweeps of size, passes and rate", sweeps::cases),
     ("motion of pins and frames", motion::cases),
     ("wind and weight", weather::cases),
@@ -36,6 +37,7 @@ pub const ALL: [(&str, Family); 14] = [
     ("sleep", sleep::cases),
     ("soundness", soundness::cases),
     ("garments", garments::cases),
+    ("continuity of meshes", continuity::cases),
     ("stiff cloth at rest", stiff::at_rest),
     ("taut cloth", stiff::taut),
     ("flights of flags", flags::flights),
