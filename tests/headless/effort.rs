@@ -178,6 +178,27 @@ fn levels_become_coarser_where_a_storm_needs_more_substeps() {
 }
 
 #[test]
+fn cloth_that_is_drawn_out_is_solved_finer() {
+    let mut app = app();
+    let mast = app.world_mut().spawn(Transform::IDENTITY).id();
+    let right = Anchor::new(mast, ClothEdge::Right);
+    let held = Attachment::in_place(ClothEdge::Left).with_anchor(right);
+    let cloth = app.world_mut().spawn((ClothMesh::grid(33, 33, 1.0, 1.0), held)).id();
+    run(&mut app, A_WHILE);
+    assert_eq!((effort(&app, cloth).cause(), substeps(&app, cloth)), (EffortCause::Weight, 2));
+
+    let mut draw_out = |by: f32, ticks: usize| {
+        let at = Transform::from_translation(Vec3::X * by);
+        *app.world_mut().get_mut::<Transform>(mast).expect("a mast") = at;
+        run(&mut app, ticks);
+        (effort(&app, cloth).cause(), substeps(&app, cloth))
+    };
+    let (cause, substeps) = draw_out(0.05, A_WHILE);
+    assert!(cause == EffortCause::Tension && substeps > 8, "{cause:?}, {substeps}");
+    assert_eq!(draw_out(0.0, 4 * A_WHILE), (EffortCause::Weight, 2));
+}
+
+#[test]
 fn cloth_that_is_pulled_against_a_shape_is_solved_finer() {
     /// Radius of the ball, m, and its way into the sheet.
     const RADIUS: f32 = 0.1;

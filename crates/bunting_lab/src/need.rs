@@ -25,6 +25,13 @@ impl Need {
         Self { limits, ..Self::default() }
     }
 
+    /// Substeps of a cloth that begins in a state.
+    #[must_use]
+    pub fn from(self, fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> Self {
+        let tension = Loads::of_tension(fabric, material, positions);
+        Self { loads: Loads { tension, ..self.loads }, ..self }
+    }
+
     /// Settings for a tick of `tick` seconds.
     pub fn settings(&mut self, fabric: &Fabric, drive: &Drive, tick: f32) -> StepSettings {
         self.loads.frame = Loads::of_frame(&self.frame, &drive.motion, fabric, tick);

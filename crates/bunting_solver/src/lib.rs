@@ -91,9 +91,11 @@ pub use fabric::{
     LinkFamily, MeshRepair, Resampled, Resolution,
 };
 pub use simd::level::{has_fused_products, instruction_set, with_every_instruction_set};
-pub use step::effort::{Effort, EffortCause, EffortClass, Loads};
+pub use step::effort::Effort;
+pub use step::effort_class::{EffortCause, EffortClass};
 pub use step::frame::FrameMotion;
 pub use step::limits::StepLimits;
+pub use step::loads::Loads;
 pub use step::{Backstop, Drive, Guide, MovingPin, Scheme, StepSettings};
 pub use subdivision::{Stencils, Subdivision, SubdivisionBuffers};
 pub use transfer::{LevelTransfer, TransferError};

@@ -11,8 +11,8 @@ use crate::motion::pose::PoseHistory;
 
 /// The substeps of a cloth, and the reason for them; read only.
 ///
-/// A cloth takes more substeps than its weight needs while strong wind, an acceleration of its frame, its own motion or
-/// colliders that it is pulled against need them, within [`ClothSettings::steps`](crate::ClothSettings::steps). It gets
+/// A cloth takes more substeps than its weight needs while strong wind, an acceleration of its frame, its own motion, pins that
+/// draw it out or colliders that it is pulled against need them, within [`ClothSettings::steps`](crate::ClothSettings::steps). It gets
 /// more at once, and fewer after half a second. It may take more than it needs, to share a batch with cloths that need
 /// more, see [`ClothSettings::share_batches`](crate::ClothSettings::share_batches).
 #[derive(Component, Clone, Debug, Default)]
@@ -70,6 +70,13 @@ impl ClothEffort {
         frame: &PoseHistory,
         tick: f32,
     ) -> bool {
+        // A cloth that begins drawn out must not wait for a tick that has shown it.
+        if let (true, Some(fabric), Some(begun)) =
+            (self.loads == Loads::default(), instance.fabric(), instance.snapshot())
+        {
+            let material = &instance.material;
+            self.loads.tension = Loads::of_tension(fabric, material, &begun.positions);
+        }
         let of_frame = if frame.rests() && self.motion.is_none() {
             0.0
         } else {

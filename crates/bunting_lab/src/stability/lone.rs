@@ -38,12 +38,15 @@ impl Lone {
         batch.insert(start, material).expect("a good cloth");
         batch.drive(0, drive).expect("a good drive");
         let positions = start.positions.clone();
-        Self { batch, positions, material, drive, need: Need::within(StepLimits::default()) }
+        let need = Need::default().from(fabric, &material, &positions);
+        Self { batch, positions, material, drive, need }
     }
 
     /// The cloth within other limits.
     pub fn within(self, limits: StepLimits) -> Self {
-        Self { need: Need::within(limits), ..self }
+        let need = Need::within(limits);
+        let need = need.from(self.batch.fabric(), &self.material, &self.positions);
+        Self { need, ..self }
     }
 
     pub fn tick(&mut self) {

@@ -9,7 +9,7 @@ use crate::batch::probe_motion::ProbeMotion;
 use crate::fabric::Fabric;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3, lane3, splat3};
-use crate::step::effort::Loads;
+use crate::step::loads::Loads;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Notes the ends of the probes at the beginning of a tick of `tick` seconds.

@@ -68,7 +68,15 @@ pub(crate) fn order_of(fabric: &Fabric, substeps: u32) -> Order {
 
 #[cfg(test)]
 mod tests {
-    use super::{BOTH_ORDERS, Stage};
+    use super::{BOTH_ORDERS, GRID, MOST_IN_ONE_ORDER, Stage, order_of};
+    use crate::fabric::{FabricBuilder, Grid};
+
+    #[test]
+    fn grids_that_take_many_substeps_have_both_orders() {
+        let grid = FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0)).build().expect("a good grid");
+        assert_eq!(order_of(&grid, MOST_IN_ONE_ORDER), GRID);
+        assert_eq!(order_of(&grid, MOST_IN_ONE_ORDER + 1), BOTH_ORDERS);
+    }
 
     /// But for the sweeps, which correct what the lines leave.
     #[test]

@@ -1,4 +1,4 @@
-//! How hard colliders press a cloth, by which its effort is chosen: see [`Loads::of_contacts`](crate::step::effort::Loads::of_contacts).
+//! How hard colliders press a cloth, by which its effort is chosen: see [`Loads::of_contacts`](crate::step::loads::Loads::of_contacts).
 
 use glam::Vec3;
 

@@ -16,11 +16,13 @@ use crate::common::{drive, material};
 
 const TICK: f32 = 1.0 / 60.0;
 
-const EVERY_SCHEME: [StepSettings; 4] = [
+const EVERY_SCHEME: [StepSettings; 5] = [
     StepSettings::gauss_seidel(5),
     StepSettings { passes: 3, ..StepSettings::gauss_seidel(2) },
     StepSettings::yarns(3),
     StepSettings { passes: 2, ..StepSettings::yarns(2) },
+    // Both orders of the stages.
+    StepSettings::yarns(9),
 ];
 
 fn flag() -> Arc<Fabric> {
@@ -291,6 +293,8 @@ fn surfaces_are_copies_of_the_lanes() {
             assert_eq!((&surface.positions, &surface.normals), (&positions, &normals), "{lane}");
             let motion = Loads::of_motion(&fabric, &before[lane], &positions, TICK);
             assert!(motion > 0.0 && surface.motion == motion, "{motion} {}", surface.motion);
+            let tension = Loads::of_tension(&fabric, &material(lane), &positions);
+            assert!(tension > 0.0 && surface.tension == tension, "{tension} {}", surface.tension);
         }
     }
 }

@@ -12,8 +12,12 @@ use parry3d::shape::SharedShape;
 use crate::common::{drive, material};
 
 const TICK: f32 = 1.0 / 60.0;
-const SETTINGS: [StepSettings; 2] =
-    [StepSettings::yarns(3), StepSettings { passes: 2, ..StepSettings::yarns(2) }];
+const SETTINGS: [StepSettings; 3] = [
+    StepSettings::yarns(3),
+    StepSettings { passes: 2, ..StepSettings::yarns(2) },
+    // Both orders of the stages.
+    StepSettings::yarns(9),
+];
 
 /// Which particles are pinned.
 #[derive(Clone, Copy, Debug)]
@@ -186,5 +190,7 @@ fn motion_is_measured_by_the_links_of_each_cloth() {
         let before = fabrics[lane].rest_positions();
         let motion = Loads::of_motion(&fabrics[lane], before, &surface.positions, TICK);
         assert!(motion > 0.0 && surface.motion == motion, "{motion} {}", surface.motion);
+        let tension = Loads::of_tension(&fabrics[lane], &material(lane), &surface.positions);
+        assert!(tension > 0.0 && surface.tension == tension, "{tension} {}", surface.tension);
     }
 }

@@ -160,3 +160,31 @@ fn triangles_without_area_have_nearest_points() {
     assert_eq!(nearest(at, [b; 3]), b);
     assert_eq!(barycentric(at, [b; 3]).iter().sum::<f64>(), 1.0);
 }
+
+/// A strap around half a ring, of one quad across its width, m.
+fn strap(width: f32) -> FabricBuilder {
+    const ALONG: u32 = 40;
+    const RADIUS: f32 = 0.15;
+    let ends = |at: u32| {
+        let (sin, cos) = libm::sincosf(core::f32::consts::PI * at as f32 / ALONG as f32);
+        [RADIUS, RADIUS + width].map(|radius| Vec3::new(radius * cos, -radius * sin, 0.0))
+    };
+    let quads = (0..ALONG).map(|at| 2 * at).flat_map(|a| [a, a + 2, a + 1, a + 1, a + 2, a + 3]);
+    let strap = FabricBuilder::new((0..=ALONG).flat_map(ends).collect(), quads.collect());
+    strap.pin([0, 1, 2 * ALONG, 2 * ALONG + 1])
+}
+
+#[test]
+fn straps_have_nodes_along_their_middle() {
+    const WIDTH: f32 = 0.02;
+    for cells in [0.7, 1.0, 1.4, 2.5] {
+        let strap = strap(WIDTH).resampled(Resolution::CellSize(WIDTH * cells)).expect("good");
+        let mut counts = [0; 3];
+        for at in strap.fabric.rest_positions() {
+            let across = (at.length() - 0.15) / WIDTH;
+            counts[(2.0 * across).round() as usize] += 1;
+        }
+        let [inner, middle, _] = counts;
+        assert!(2 * middle >= inner && middle <= inner + 2, "{counts:?} in cells of {cells}");
+    }
+}
