@@ -2,6 +2,7 @@
 
 mod build;
 mod coarser;
+mod points;
 mod rectangle;
 mod repair;
 mod resampled;
@@ -10,6 +11,7 @@ mod source;
 mod validate;
 
 pub use coarser::CoarserMesh;
+pub use points::MeshPoint;
 pub use repair::MeshRepair;
 pub use resampled::{Resampled, Resolution};
 pub use source::FabricBuilder;

@@ -13,6 +13,7 @@ mod frames;
 mod node_rows;
 mod phases;
 mod places;
+mod points;
 mod refined;
 mod relaxation;
 mod source;
@@ -33,6 +34,7 @@ use super::interpolation::{Height, Interpolation, Term};
 use super::mesh::RestMesh;
 use super::topology::{self, Edge};
 
+pub(super) use self::points::PointOn;
 pub(super) use self::refined::Refined;
 pub(super) use self::source::Source;
 
@@ -119,6 +121,31 @@ impl Nodes {
         })
     }
 
+    /// The pinned nodes but those at points beside the first vertices of the mesh: points hold nothing else.
+    pub fn pins_of_vertices(&self, source: &Source, count: usize) -> impl Iterator<Item = u32> {
+        let beside = source.points.iter().map(|at| *at as usize).filter(move |at| *at >= count);
+        let at_points: Vec<u32> = beside.filter_map(|at| self.node_of[at]).collect();
+        let pinned =
+            (0..self.mesh.positions.len() as u32).filter(|node| self.mesh.is_pinned(*node));
+        pinned.filter(move |node| !at_points.contains(node))
+    }
+
+    /// The node at each point; the nearest one, of a pinned point the nearest pinned one, of a point at which there is none.
+    pub fn of_points(&self, source: &Source) -> Vec<u32> {
+        let nearest = |point: u32| {
+            let away = |node: &u32| {
+                let at = self.mesh.positions[*node as usize].as_dvec3();
+                at.distance_squared(source.positions[point as usize])
+            };
+            let nodes = 0..self.mesh.positions.len() as u32;
+            let held =
+                nodes.filter(|node| self.mesh.is_pinned(*node) || !source.mesh.is_pinned(point));
+            held.min_by(|one, other| away(one).total_cmp(&away(other)))
+        };
+        let of_point = |&point: &u32| self.node_of[point as usize].or_else(|| nearest(point));
+        source.points.iter().map(|point| of_point(point).unwrap_or(0)).collect()
+    }
+
     /// How the first places of the mesh follow the nodes, given the cells of nodes.
     ///
     /// # Errors
@@ -131,9 +158,7 @@ impl Nodes {
         count: usize,
     ) -> Result<OnNodes, u32> {
         let cells = Cells::new(cells, &self.mesh.positions, self.size);
-        let pins: Vec<u32> = (0..self.mesh.positions.len() as u32)
-            .filter(|node| self.mesh.is_pinned(*node))
-            .collect();
+        let pins: Vec<u32> = self.pins_of_vertices(source, count).collect();
         let mut on_nodes = OnNodes::default();
         for (place, &at) in (0_u32..).zip(&source.positions[..count]) {
             if let Some(from) = self.node_of[place as usize] {
@@ -239,14 +264,30 @@ fn part_along(at: DVec3, from: DVec3, to: DVec3) -> f64 {
 }
 
 /// The point of a triangle nearest to another.
-fn nearest(at: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
-    let weights = barycentric(at, [a, b, c]);
+fn nearest(at: DVec3, corners: [DVec3; 3]) -> DVec3 {
+    of_weights(nearest_weights(at, corners), corners)
+}
+
+/// The point of a triangle with some weights of its corners.
+fn of_weights(weights: [f64; 3], [a, b, c]: [DVec3; 3]) -> DVec3 {
+    a * weights[0] + b * weights[1] + c * weights[2]
+}
+
+/// The weights of the corners of a triangle at the point of it nearest to another.
+pub(super) fn nearest_weights(at: DVec3, corners: [DVec3; 3]) -> [f64; 3] {
+    let weights = barycentric(at, corners);
     if weights.iter().all(|weight| *weight >= 0.0) {
-        return a * weights[0] + b * weights[1] + c * weights[2];
+        return weights;
     }
-    let on_side = |from: DVec3, to: DVec3| from.lerp(to, part_along(at, from, to).clamp(0.0, 1.0));
-    let nearer = |one: DVec3, other: DVec3| {
-        if other.distance_squared(at) < one.distance_squared(at) { other } else { one }
+    let on_side = |from: usize| {
+        let to = (from + 1) % 3;
+        let part = part_along(at, corners[from], corners[to]).clamp(0.0, 1.0);
+        let mut weights = [0.0; 3];
+        (weights[from], weights[to]) = (1.0 - part, part);
+        weights
     };
-    nearer(nearer(on_side(a, b), on_side(b, c)), on_side(c, a))
+    let away = |weights: &[f64; 3]| of_weights(*weights, corners).distance_squared(at);
+    let nearer =
+        |one: [f64; 3], other: [f64; 3]| if away(&other) < away(&one) { other } else { one };
+    nearer(nearer(on_side(0), on_side(1)), on_side(2))
 }
