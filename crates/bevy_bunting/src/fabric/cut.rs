@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use bunting_solver::{
-    CoarserMesh, Fabric, FabricBuilder, FabricError, LevelTransfer, Resampled, Resolution,
+    CoarserMesh, Fabric, FabricBuilder, FabricError, Grid, LevelTransfer, Resampled, Resolution,
 };
 
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::resolution::ClothResolution;
+use crate::fabric::attached::Attached;
 use crate::fabric::levels::{ClothLevels, Level, Shortage};
 use crate::fabric::same_surface::surface_key;
 use crate::fabric::simulated::SimulatedPart;
@@ -15,22 +16,28 @@ use crate::fabric::simulated::SimulatedPart;
 /// Part of a finer level's particles that a coarser one has at most. More: it hardly takes less time.
 const MOST_OF_FINER: f32 = 0.6;
 
-/// Builds the levels that are asked for, or as many as the mesh allows, with attached vertices pinned.
+/// Builds the levels that are asked for, or as many as the mesh allows, with what is attached pinned. A grid that is held beside
+/// its vertices is resampled to about as many particles as it has.
 ///
 /// # Errors
 ///
 /// The finest fabric cannot be built.
 pub(super) fn cut_levels(
     mesh: &ClothMesh,
-    attached: &[u32],
+    attached: &Attached,
     asked: usize,
     resolution: ClothResolution,
 ) -> Result<ClothLevels, FabricError> {
     let part = SimulatedPart::of(mesh, attached)?;
+    let points = part.points.clone();
     let mut cut = match mesh.as_grid() {
-        Some(_) => of_grid(part, asked)?,
+        Some(_) if points.is_empty() => of_grid(part, asked)?,
+        Some(Grid { columns, rows, .. }) => {
+            resampled(part, Resolution::Particles(columns * rows), asked)?
+        }
         None => resampled(part, resolution.of_solver(), asked)?,
     };
+    cut.points = points;
     cut.surface = surface_key(mesh);
     Ok(cut)
 }

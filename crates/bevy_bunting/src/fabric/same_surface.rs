@@ -11,16 +11,20 @@ use crate::cloth::mesh::ClothMesh;
 /// Part of pins from which on a particle between them was held itself. Less: it may have been moved by the cloth.
 const WAS_PINNED: f32 = 0.99;
 
-/// What tells a surface from others; none of a grid, whose particles do not depend on what is held.
-pub(super) fn surface_key(mesh: &ClothMesh) -> Option<u64> {
-    let ClothMesh::Triangles { positions, indices, weights, merged, .. } = mesh else {
-        return None;
-    };
+/// What tells a surface from others.
+pub(super) fn surface_key(mesh: &ClothMesh) -> u64 {
     let mut hasher = DefaultHasher::new();
-    (indices, merged).hash(&mut hasher);
-    positions.iter().for_each(|at| at.to_array().map(f32::to_bits).hash(&mut hasher));
-    weights.iter().for_each(|weight| weight.to_bits().hash(&mut hasher));
-    Some(hasher.finish())
+    match mesh {
+        ClothMesh::Grid { columns, rows, width, height } => {
+            (columns, rows, width.to_bits(), height.to_bits()).hash(&mut hasher);
+        }
+        ClothMesh::Triangles { positions, indices, weights, merged, .. } => {
+            (indices, merged).hash(&mut hasher);
+            positions.iter().for_each(|at| at.to_array().map(f32::to_bits).hash(&mut hasher));
+            weights.iter().for_each(|weight| weight.to_bits().hash(&mut hasher));
+        }
+    }
+    hasher.finish()
 }
 
 /// A state on other particles, and whether all its pins were pins before.
