@@ -193,14 +193,14 @@ fn bad_points_are_reported_and_others_do_as_before() {
         app.world().resource::<Seen<ClothFailed>>().0.iter().map(|it| it.error).collect();
     assert_eq!(errors.len(), 5, "{errors:?}");
     for cloth in cloths {
-        let of_cloth = |error: &&ClothError| {
-            matches!(error, ClothError::Mesh { entity, .. } if *entity == cloth)
-        };
+        let of_cloth = |error: &&ClothError| matches!(error, ClothError::Mesh { entity, .. } if *entity == cloth);
         let error = errors.iter().find(of_cloth).expect("an error").to_string();
         assert!(error.contains("point") && error.contains(&cloth.to_string()), "{error}");
     }
     let is = |test: &dyn Fn(&FabricError) -> bool| {
-        errors.iter().filter(|it| matches!(it, ClothError::Mesh { source, .. } if test(source)))
+        errors
+            .iter()
+            .filter(|it| matches!(it, ClothError::Mesh { source, .. } if test(source)))
             .count()
     };
     assert_eq!(is(&|it| matches!(it, FabricError::PointOutOfRange { vertex: 9, .. })), 1);

@@ -94,6 +94,7 @@ impl ClothLevels {
         held.dedup_by_key(|it| it.particle);
         held
     }
+
     /// The particle of a level at a point; none if the fabrics do not know it.
     pub fn particle_of_point(&self, level: usize, point: &MeshPoint) -> Option<usize> {
         let at = self.points.iter().position(|known| known == point)?;
