@@ -27,6 +27,7 @@ mod memory;
 mod off_screen;
 mod order;
 mod pauses;
+mod points;
 mod reactions;
 mod resolution;
 mod rest;

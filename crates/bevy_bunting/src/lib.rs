@@ -255,7 +255,7 @@ pub mod prelude {
     pub use crate::{ClothDragPlugin, ClothDragSettings, PinBrush, PinStroke};
     #[cfg(feature = "weave")]
     pub use crate::{Weave, WeavePlugin, WovenMaterial};
-    pub use bunting_solver::{FabricMaterial, StepLimits, StepSettings};
+    pub use bunting_solver::{FabricMaterial, MeshPoint, StepLimits, StepSettings};
 }
 
 /// All plugins that cloth needs, one for each concern.

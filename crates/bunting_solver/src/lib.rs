@@ -88,7 +88,7 @@ pub use contact::points::{ContactPoint, Touched};
 pub use contact::reaction::ContactReaction;
 pub use fabric::{
     Carried, CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link,
-    LinkFamily, MeshRepair, Resampled, Resolution,
+    LinkFamily, MeshPoint, MeshRepair, Resampled, Resolution,
 };
 pub use simd::level::{has_fused_products, instruction_set, with_every_instruction_set};
 pub use step::effort::Effort;

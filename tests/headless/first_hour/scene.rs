@@ -117,6 +117,7 @@ fn cloths_make_the_round_trip() {
         AttachedVertices::Edge(ClothEdge::Top),
         AttachedVertices::Corners(vec![ClothCorner::TopLeft, ClothCorner::BottomRight]),
         AttachedVertices::List(vec![0, 9, 18]),
+        AttachedVertices::Points(vec![MeshPoint::middle([0, 9, 10]), MeshPoint::at_vertex(8)]),
         AttachedVertices::Within { low: Vec2::ZERO, high: Vec2::new(0.2, 1.0) },
         AttachedVertices::Rigid,
     ];

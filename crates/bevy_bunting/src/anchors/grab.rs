@@ -12,6 +12,7 @@ use bevy_transform::components::Transform;
 use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
 use crate::motion::anchor_hold::infinite_force;
+use crate::motion::held_group::HeldGroup;
 use crate::motion::pose::PoseHistory;
 
 /// Stiffness with which a hand grabs unless another is given, N/m.
@@ -171,7 +172,7 @@ impl Grabbed {
         let fabric = levels.fabric(level);
         let is_chosen: Box<dyn Fn(usize) -> bool> = match &grab.vertices {
             GrabbedVertices::List(vertices) => {
-                let held = levels.held(level, core::slice::from_ref(vertices));
+                let held = levels.held(level, &[HeldGroup::of_vertices(vertices.clone())]);
                 let particles: HashSet<usize> = held.iter().map(|it| it.particle).collect();
                 Box::new(move |particle| particles.contains(&particle))
             }

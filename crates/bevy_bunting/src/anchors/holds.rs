@@ -7,6 +7,7 @@ use bevy_math::Vec3;
 
 use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
+use crate::motion::held_group::HeldGroup;
 
 /// A cloth that is held by springs or rails, of anchors or of grabs.
 #[derive(Component, Debug, Default)]
@@ -38,13 +39,13 @@ impl ClothHolds {
         self.of.as_ref().is_some_and(|of| of.is(levels, level))
     }
 
-    /// Finds the particles of a level, given the vertices that each anchor holds by springs or on a rail, and the rails.
+    /// Finds the particles of a level, given what each anchor holds by springs or on a rail, and the rails.
     /// A level without any of an anchor's vertices is held where it is nearest to the first one.
     pub fn find(
         &mut self,
         levels: &Arc<ClothLevels>,
         level: usize,
-        groups: &[Vec<u32>],
+        groups: &[HeldGroup],
         rails: Vec<Option<Arc<[Vec3]>>>,
     ) {
         self.of = Some(KnownLevel::new(levels, level));
@@ -57,7 +58,9 @@ impl ClothHolds {
             let of_group = held.iter().filter(|it| it.group() == anchor);
             let mut particles: Vec<usize> = of_group.map(|it| it.particle).collect();
             if particles.is_empty() {
-                particles.extend(group.first().and_then(|&vertex| nearest(levels, level, vertex)));
+                particles.extend(
+                    group.vertices.first().and_then(|&vertex| nearest(levels, level, vertex)),
+                );
             }
             self.counts.push(particles.len());
             let holds = particles.into_iter().map(|at| (anchor, at as u32, rest[at]));

@@ -10,6 +10,7 @@ use bunting_solver::PinGroups;
 
 use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
+use crate::motion::held_group::HeldGroup;
 
 /// What a cloth does to that which holds it: insert this component beside its [`Attachment`](crate::Attachment), and read
 /// it after each tick. Cloths without it cost nothing for it.
@@ -67,8 +68,8 @@ impl PinReporting {
         self.of.as_ref().is_some_and(|of| of.is(levels, level))
     }
 
-    /// Finds the groups of a level, given the vertices that are held on each target.
-    pub fn find(&mut self, levels: &Arc<ClothLevels>, level: usize, held: &[Vec<u32>]) {
+    /// Finds the groups of a level, given what is held on each target.
+    pub fn find(&mut self, levels: &Arc<ClothLevels>, level: usize, held: &[HeldGroup]) {
         let mut groups = vec![Vec::new(); held.len()];
         for of_level in levels.held(level, held) {
             groups[of_level.group()].push(of_level.particle as u32);

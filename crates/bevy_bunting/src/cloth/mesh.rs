@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Vec2, Vec3};
 use bevy_reflect::Reflect;
 use bevy_transform::components::Transform;
-use bunting_solver::{FabricBuilder, FabricError, Grid, MeshRepair};
+use bunting_solver::{FabricBuilder, FabricError, Grid, MeshPoint, MeshRepair};
 
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::material::ClothMaterial;
@@ -192,6 +192,13 @@ impl ClothMesh {
         }
     }
 
+    /// The point of the mesh at rest nearest to a position in its own frame, m, for
+    /// [`AttachedVertices::Points`](crate::AttachedVertices::Points); none without triangles.
+    #[must_use]
+    pub fn nearest_point(&self, to: Vec3) -> Option<MeshPoint> {
+        self.builder().nearest_point(to)
+    }
+
     /// Texture coordinates of all vertices; empty for triangles without.
     pub(crate) fn uvs(&self) -> Vec<Vec2> {
         match self {
@@ -226,6 +233,7 @@ impl From<Grid> for ClothMesh {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::fabric::attached::Attached;
     use crate::fabric::simulated::SimulatedPart;
 
     #[test]
@@ -248,7 +256,7 @@ mod tests {
         assert_eq!(mesh.uvs()[5], Vec2::ONE);
         let places = |builder: &FabricBuilder| builder.particle_count();
         assert_eq!(places(&mesh.builder()), 6, "the split vertex is in two places");
-        let part = SimulatedPart::of(&mesh, &[]).expect("a part");
+        let part = SimulatedPart::of(&mesh, &Attached::default()).expect("a part");
         assert_eq!(places(&part.builder), 6, "in parts, too");
         let weighted = mesh.with_weights(vec![1.0; 6]);
         assert_eq!(places(&weighted.builder()), 6, "and stays in two");

@@ -10,7 +10,8 @@ use bunting_solver::Resolution;
 /// Triangles are made for the eye, and seldom good for cloth: those of a game's cape are too coarse to drape, those of a
 /// garment too fine, and loads do not run along their edges. Such a mesh is simulated with particles of the simulation's own,
 /// on lines along warp and weft at about the same distance everywhere, and its vertices follow. Coarser levels of detail have
-/// cells twice as large each. A [`ClothMesh::grid`](crate::ClothMesh::grid) is simulated as it is, whatever the resolution.
+/// cells twice as large each. A [`ClothMesh::grid`](crate::ClothMesh::grid) is simulated as it is, whatever the resolution; if it is
+/// held at [points](crate::AttachedVertices::Points) beside its vertices, with about as many particles of its own.
 ///
 /// What is drawn has the triangles of the mesh; a `ClothSubdivision` (feature `render`) halves those that are larger than the cells of the
 /// simulation, whose folds they would hide.

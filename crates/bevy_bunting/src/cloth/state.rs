@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bunting_solver::Fabric;
+use bunting_solver::{Fabric, MeshPoint};
 
 use crate::cloth::activity::ClothActivity;
 use crate::fabric::levels::ClothLevels;
@@ -16,8 +16,8 @@ use crate::fabric::levels::ClothLevels;
 /// entity's own. After [`ClothSystems::Publish`] and after each frame, the `GlobalTransform` follows the
 /// target's current pose.
 ///
-/// A grid has one particle for each vertex. The particles of a mesh of triangles are others, see
-/// [`ClothResolution`](crate::ClothResolution): its vertices lie between them, see [`vertex_position`](Self::vertex_position).
+/// A grid has one particle for each vertex. The particles of a mesh of triangles, and of a grid that is held beside its vertices, are
+/// others, see [`ClothResolution`](crate::ClothResolution): its vertices lie between them, see [`vertex_position`](Self::vertex_position).
 /// Rigid vertices have none. Particles with a weight below 1 are blended with their position at rest, see
 /// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights): this component holds the blended surface.
 ///
@@ -114,6 +114,13 @@ impl ClothState {
     #[must_use]
     pub fn particle_of_vertex(&self, vertex: u32) -> Option<usize> {
         self.levels.as_ref()?.particle(self.level, vertex)
+    }
+
+    /// The particle at a point that the cloth's attachment holds, see [`AttachedVertices::Points`](crate::AttachedVertices::Points):
+    /// an index into [`positions`](Self::positions). None of other points, and of points at vertices.
+    #[must_use]
+    pub fn particle_of_point(&self, point: &MeshPoint) -> Option<usize> {
+        self.levels.as_ref()?.particle_of_point(self.level, point)
     }
 
     /// Position of a vertex of the [`ClothMesh`](crate::ClothMesh) after the last tick, m, in the cloth's frame: that of its

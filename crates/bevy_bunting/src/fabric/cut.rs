@@ -4,47 +4,58 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::Arc;
 
 use bunting_solver::{
-    CoarserMesh, Fabric, FabricBuilder, FabricError, LevelTransfer, Resampled, Resolution,
+    CoarserMesh, Fabric, FabricBuilder, FabricError, Grid, LevelTransfer, Resampled, Resolution,
 };
 
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::resolution::ClothResolution;
+use crate::fabric::attached::Attached;
 use crate::fabric::levels::{ClothLevels, Level, Shortage};
 use crate::fabric::simulated::SimulatedPart;
 
 /// Part of a finer level's particles that a coarser one has at most. More: it hardly takes less time.
 const MOST_OF_FINER: f32 = 0.6;
 
-/// Builds the levels that are asked for, or as many as the mesh allows, with attached vertices pinned.
+/// Builds the levels that are asked for, or as many as the mesh allows, with what is attached pinned. A grid that is held beside
+/// its vertices is resampled to about as many particles as it has.
 ///
 /// # Errors
 ///
 /// The finest fabric cannot be built.
 pub(super) fn cut_levels(
     mesh: &ClothMesh,
-    attached: &[u32],
+    attached: &Attached,
     asked: usize,
     resolution: ClothResolution,
 ) -> Result<ClothLevels, FabricError> {
     let part = SimulatedPart::of(mesh, attached)?;
+    let points = part.points.clone();
     let mut cut = match mesh.as_grid() {
-        Some(_) => of_grid(part, asked)?,
+        Some(_) if points.is_empty() => of_grid(part, asked)?,
+        Some(Grid { columns, rows, .. }) => {
+            resampled(part, Resolution::Particles(columns * rows), asked)?
+        }
         None => resampled(part, resolution.of_solver(), asked)?,
     };
+    cut.points = points;
     cut.surface = surface_key(mesh);
     Ok(cut)
 }
 
-/// What tells a surface from others; none of a grid, whose particles do not depend on what is held.
-fn surface_key(mesh: &ClothMesh) -> Option<u64> {
-    let ClothMesh::Triangles { positions, indices, weights, merged, .. } = mesh else {
-        return None;
-    };
+/// What tells a surface from others.
+fn surface_key(mesh: &ClothMesh) -> u64 {
     let mut hasher = DefaultHasher::new();
-    (indices, merged).hash(&mut hasher);
-    positions.iter().for_each(|at| at.to_array().map(f32::to_bits).hash(&mut hasher));
-    weights.iter().for_each(|weight| weight.to_bits().hash(&mut hasher));
-    Some(hasher.finish())
+    match mesh {
+        ClothMesh::Grid { columns, rows, width, height } => {
+            (columns, rows, width.to_bits(), height.to_bits()).hash(&mut hasher);
+        }
+        ClothMesh::Triangles { positions, indices, weights, merged, .. } => {
+            (indices, merged).hash(&mut hasher);
+            positions.iter().for_each(|at| at.to_array().map(f32::to_bits).hash(&mut hasher));
+            weights.iter().for_each(|weight| weight.to_bits().hash(&mut hasher));
+        }
+    }
+    hasher.finish()
 }
 
 /// Levels of a grid, of half as many cells along each side each.

@@ -1,14 +1,20 @@
-//! The particles that groups of vertices hold.
+//! The particles that groups of vertices and points hold.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+
+use bunting_solver::MeshPoint;
 
 use crate::fabric::levels::ClothLevels;
+use crate::motion::held_group::HeldGroup;
 
 /// Part of a free particle's vertices that must be held if it is to be, too. Less: what is held spreads into the cloth. More:
 /// rounding lets go of particles between held vertices.
 const NEARLY_ALL: f32 = 0.99;
 
-/// A particle that groups of vertices hold.
+/// Weight of a vertex from which on a particle is at it. Less: the particle at a point beside it is held with it.
+const AT_VERTEX: f32 = 0.9999;
+
+/// A particle that groups hold.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct HeldParticle {
     pub particle: usize,
@@ -38,23 +44,26 @@ impl HeldParticle {
 }
 
 impl ClothLevels {
-    /// The particles of a level that groups of vertices hold, ascending: those at these vertices or nearest to them, and those on
-    /// edges and triangles between them. A vertex of several groups is the first one's. The level has pinned particles between
+    /// The particles of a level that groups hold, ascending: those at vertices or nearest to them, those on edges and triangles
+    /// between them, and those at points. A vertex of several groups is the first one's. The level has pinned particles between
     /// pinned vertices of one group and others, too: they are held in part.
-    pub fn held(&self, level: usize, groups: &[Vec<u32>]) -> Vec<HeldParticle> {
+    pub fn held(&self, level: usize, groups: &[HeldGroup]) -> Vec<HeldParticle> {
         let fabric = self.fabric(level);
+        let beside = self.particles_beside_vertices(level);
+        let at_point = |point| self.particle_of_point(level, point);
         let level = self.level(level);
         let mut group_of: HashMap<u32, usize> = HashMap::new();
-        for (group, vertices) in groups.iter().enumerate() {
-            for place in vertices.iter().filter_map(|&vertex| level.place(vertex)) {
+        for (group, held) in groups.iter().enumerate() {
+            for place in held.vertices.iter().filter_map(|&vertex| level.place(vertex)) {
                 group_of.entry(place).or_insert(group);
             }
         }
         let mut held: Vec<HeldParticle> = Vec::new();
-        if group_of.is_empty() {
+        if groups.iter().all(HeldGroup::is_empty) {
             return held;
         }
-        for particle in 0..fabric.particle_count() {
+        let all = 0..fabric.particle_count();
+        for particle in all.filter(|particle| !beside.contains(particle)) {
             let mut found = HeldParticle { particle, shares: Vec::new() };
             for (vertex, weight) in level.corners(particle) {
                 let place = level.place(vertex);
@@ -71,17 +80,32 @@ impl ClothLevels {
             }
         }
         let is_known: Vec<usize> = held.iter().map(|it| it.particle).collect();
-        for (group, &vertex) in
-            groups.iter().enumerate().flat_map(|(group, of)| of.iter().map(move |it| (group, it)))
-        {
-            let Some(particle) = level.particle(vertex) else { continue };
-            if is_known.binary_search(&particle).is_err() {
-                held.push(HeldParticle { particle, shares: vec![(group, 1.0)] });
-            }
+        for (group, of) in groups.iter().enumerate() {
+            let at_vertices = of.vertices.iter().filter_map(|&vertex| level.particle(vertex));
+            let at_points = of.points.iter().filter_map(at_point);
+            let unknown =
+                at_vertices.chain(at_points).filter(|it| is_known.binary_search(it).is_err());
+            held.extend(
+                unknown.map(|particle| HeldParticle { particle, shares: vec![(group, 1.0)] }),
+            );
         }
         // Of vertices that share a particle the first one holds it: the sort is stable.
         held.sort_by_key(|it| it.particle);
         held.dedup_by_key(|it| it.particle);
         held
+    }
+
+    /// The particle of a level at a point; none if the fabrics do not know it.
+    pub fn particle_of_point(&self, level: usize, point: &MeshPoint) -> Option<usize> {
+        let at = self.points.iter().position(|known| known == point)?;
+        Some(self.fabric(level).particle_of_point()[at] as usize)
+    }
+
+    /// The particles of a level at points, but for those that are at vertices, too.
+    fn particles_beside_vertices(&self, level: usize) -> HashSet<usize> {
+        let particles = self.fabric(level).particle_of_point().iter().map(|at| *at as usize);
+        let is_at_vertex =
+            |particle: &usize| self.corners(level, *particle).any(|(_, weight)| weight > AT_VERTEX);
+        particles.filter(|particle| !is_at_vertex(particle)).collect()
     }
 }

@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bunting_solver::{Carried, Fabric, FabricBuilder, Grid, LevelTransfer, Resampled};
+use bunting_solver::{Carried, Fabric, FabricBuilder, Grid, LevelTransfer, MeshPoint, Resampled};
 
 #[cfg(feature = "render")]
 use crate::fabric::level_topology::LevelTopology;
@@ -20,8 +20,10 @@ pub(crate) struct ClothLevels {
     /// Transfer between each level and the next coarser one: one fewer than levels.
     pub(super) transfers: Vec<LevelTransfer>,
     pub(super) rigid: RigidPart,
-    /// What tells the surface from others; none of a grid.
-    pub(super) surface: Option<u64>,
+    /// What tells the surface from others.
+    pub(super) surface: u64,
+    /// The points at which there are particles, in the order of the fabrics.
+    pub(super) points: Vec<MeshPoint>,
     /// Number of levels that the [`LodSet`](crate::LodSet) asks for.
     pub(super) asked: usize,
     /// Reason why there are fewer levels than asked for; none if there are not.
@@ -201,7 +203,8 @@ impl ClothLevels {
             levels: vec![finest],
             transfers: Vec::new(),
             rigid,
-            surface: None,
+            surface: 0,
+            points: Vec::new(),
             asked,
             shortage: None,
             is_shortage_told: false.into(),
@@ -218,9 +221,15 @@ impl ClothLevels {
         self.levels.iter().map(|level| &level.fabric)
     }
 
-    /// Whether other levels have particles of their own on the same surface.
+    /// Whether other levels are those of the same surface, and either has particles of its own: those of a grid do not depend on
+    /// what is held.
     pub fn has_surface_of(&self, other: &Self) -> bool {
-        self.surface.is_some() && self.surface == other.surface
+        (self.has_own_particles() || other.has_own_particles()) && self.surface == other.surface
+    }
+
+    /// Whether particles are no vertices.
+    fn has_own_particles(&self) -> bool {
+        self.levels[0].own.is_some()
     }
 
     /// Number of levels that the [`LodSet`](crate::LodSet) asks for.
@@ -338,6 +347,7 @@ impl ClothLevels {
     pub fn tell_fewer(&self, entity: Entity, grid: Option<Grid>) -> Option<FewerLevels> {
         let shortage = self.shortage?;
         let (built, asked) = (self.levels.len(), self.asked);
+        let grid = grid.filter(|_| !self.has_own_particles());
         let is_told = self.is_shortage_told.swap(true, Ordering::Relaxed);
         (!is_told).then_some(match (shortage, grid) {
             (Shortage::Pins, _) => FewerLevels::Pins { entity, built, asked },

@@ -11,6 +11,7 @@ use crate::cloth::error::ClothError;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::resolution::ClothResolution;
 use crate::cloth::weights::check_weights;
+use crate::fabric::attached::Attached;
 use crate::fabric::awaited::{AwaitedLevels, ContentKey};
 use crate::fabric::cut::cut_levels;
 use crate::fabric::levels::ClothLevels;
@@ -137,20 +138,14 @@ impl FabricLibrary {
         lods: &LodSet,
         resolution: ClothResolution,
     ) -> Result<Found, ClothError> {
-        let groups = |attachment: &Attachment| {
-            let mut groups = attachment.groups(&mesh.uvs());
-            let is_held = groups.iter().any(|group| !group.is_empty());
-            attachment.keep_pinned(&mut groups);
-            (groups.concat(), is_held)
-        };
-        let attached = attachment.map(groups);
+        let attached = attachment.map(|attachment| Attached::of(attachment, mesh));
         check_weights(mesh.weights(), mesh.vertex_count())
             .map_err(|source| ClothError::Weights { entity, source })?;
-        let holds = |(_, is_held): &(Vec<u32>, bool)| *is_held || mesh.weights().contains(&0.0);
-        if !attached.as_ref().is_none_or(holds) {
+        let is_rigid = || mesh.weights().contains(&0.0);
+        if matches!(attached, Some(None)) && !is_rigid() {
             return Err(ClothError::NoVertices { entity });
         }
-        let attached = attached.map(|(pinned, _)| pinned).unwrap_or_default();
+        let attached = attached.flatten().unwrap_or_default();
         let key = content_key(mesh, &attached, lods.levels(), resolution);
         if let Some(levels) = self.cut.get(&key).and_then(Weak::upgrade) {
             return Ok(Found::Levels(levels));
@@ -169,7 +164,7 @@ impl FabricLibrary {
         &mut self,
         key: &ContentKey,
         mesh: &ClothMesh,
-        (attached, resolution): (Vec<u32>, ClothResolution),
+        (attached, resolution): (Attached, ClothResolution),
         lods: &LodSet,
     ) -> Option<Result<ClothLevels, FabricError>> {
         if self.is_cutting_key(key, lods) {
@@ -179,7 +174,7 @@ impl FabricLibrary {
         if let Some(cutting) = self.cutting.remove(key) {
             return Some(cutting.levels.take());
         }
-        let vertices = work(mesh, resolution);
+        let vertices = work(mesh, &attached, resolution);
         let fits = self.expected == 0 || self.expected + vertices <= VERTICES_PER_TICK;
         // Small cloths are built at once and do not wait for large ones.
         let is_large = vertices >= ASYNC_VERTICES;
@@ -199,8 +194,11 @@ impl FabricLibrary {
 }
 
 /// Number of a grid's vertices whose levels take about as long as those of a mesh.
-fn work(mesh: &ClothMesh, resolution: ClothResolution) -> usize {
-    let ClothMesh::Triangles { positions, indices, .. } = mesh else { return mesh.vertex_count() };
+fn work(mesh: &ClothMesh, attached: &Attached, resolution: ClothResolution) -> usize {
+    let ClothMesh::Triangles { positions, indices, .. } = mesh else {
+        let dearer = if attached.points.is_empty() { 1.0 } else { DEARER };
+        return (dearer * mesh.vertex_count() as f32) as usize;
+    };
     let area = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|corner| positions.get(corner as usize).copied());
         let area = a.zip(b).zip(c).map(|((a, b), c)| 0.5 * (b - a).cross(c - a).length());
@@ -220,7 +218,7 @@ fn work(mesh: &ClothMesh, resolution: ClothResolution) -> usize {
 
 fn content_key(
     mesh: &ClothMesh,
-    attached: &[u32],
+    attached: &Attached,
     levels: usize,
     resolution: ClothResolution,
 ) -> ContentKey {
@@ -241,7 +239,7 @@ fn content_key(
             key.extend(merged);
         }
     }
-    key.extend(attached);
+    attached.add_key(&mut key);
     key
 }
 

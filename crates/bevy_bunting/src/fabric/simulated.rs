@@ -1,8 +1,9 @@
 //! The simulated part of a mesh, separated from the rigid part by the weights of the vertices (thesis, 6.1).
 
-use bunting_solver::{FabricBuilder, FabricError};
+use bunting_solver::{FabricBuilder, FabricError, MeshPoint};
 
 use crate::cloth::mesh::ClothMesh;
+use crate::fabric::attached::Attached;
 use crate::fabric::rigid::{RestVertex, RigidPart};
 
 /// The simulated part of a mesh, and the rigid part.
@@ -12,6 +13,8 @@ pub(crate) struct SimulatedPart {
     pub builder: FabricBuilder,
     /// The part's vertices as indices in the mesh, ascending.
     pub vertices: Vec<u32>,
+    /// The points of the part at which there are particles, by the vertices of the mesh.
+    pub points: Vec<MeshPoint>,
     /// The part's triangles as indices in the mesh; empty where the part is the whole mesh.
     triangles: Vec<usize>,
     /// The rigid part of the mesh.
@@ -19,19 +22,21 @@ pub(crate) struct SimulatedPart {
 }
 
 impl SimulatedPart {
-    /// Separates the simulated part from a mesh with valid weights, and pins attached vertices. Triangles
+    /// Separates the simulated part from a mesh with valid weights, and pins what is attached. Triangles
     /// whose corners all have weight 0 are left out; vertices of weight 0 on the other triangles are pinned.
     ///
     /// # Errors
     ///
-    /// The lists of the mesh do not fit one another, or a position is not finite.
-    pub fn of(mesh: &ClothMesh, attached: &[u32]) -> Result<Self, FabricError> {
-        let whole = mesh.builder().pin(attached.iter().copied());
+    /// The lists of the mesh do not fit one another, a position is not finite, or a point is bad.
+    pub fn of(mesh: &ClothMesh, attached: &Attached) -> Result<Self, FabricError> {
+        let whole = with_points(mesh.builder(), attached.points.iter().copied());
+        let whole = whole.pin(attached.vertices.iter().copied());
         let weights = mesh.weights();
         if weights.is_empty() {
             let vertices = (0..mesh.vertex_count() as u32).collect();
             let (triangles, rigid) = (Vec::new(), RigidPart::default());
-            return Ok(Self { builder: whole, vertices, triangles, rigid });
+            let points = attached.points.iter().map(|(point, _)| *point).collect();
+            return Ok(Self { builder: whole, vertices, points, triangles, rigid });
         }
         let normals = whole.rest_normals()?;
         let corners = whole.indices().as_chunks::<3>().0;
@@ -60,8 +65,13 @@ impl SimulatedPart {
                 rigid.blended.push((rest, weight));
             }
         }
-        let builder = part_builder(mesh, &whole, attached, (&vertices, &triangles), &rigid);
-        Ok(Self { builder, vertices, triangles, rigid })
+        let is_rigid = |vertex: u32| weights[vertex as usize] == 0.0;
+        let mut points = attached.points.clone();
+        points.retain(|(point, _)| !point.vertices.into_iter().all(is_rigid));
+        let attached = Attached { points, vertices: attached.vertices.clone() };
+        let builder = part_builder(mesh, &whole, &attached, (&vertices, &triangles), &rigid);
+        let points = attached.points.into_iter().map(|(point, _)| point).collect();
+        Ok(Self { builder, vertices, points, triangles, rigid })
     }
 
     /// Converts an error of the part's fabric: the part's indices become the mesh's.
@@ -115,7 +125,7 @@ pub(crate) fn renumbered(
 fn part_builder(
     mesh: &ClothMesh,
     whole: &FabricBuilder,
-    attached: &[u32],
+    attached: &Attached,
     (vertices, triangles): (&[u32], &[usize]),
     rigid: &RigidPart,
 ) -> FabricBuilder {
@@ -124,13 +134,29 @@ fn part_builder(
     let (uv, merged) = (mesh.uvs(), mesh.merged());
     let held = rigid.blended.iter().filter(|(_, weight)| *weight == 0.0);
     let held = held.filter_map(|(rest, _)| index(&rest.vertex));
-    FabricBuilder::new(
+    let points = attached.points.iter().map(|(point, is_pinned)| {
+        let vertices = point.vertices.map(|vertex| index(&vertex).unwrap_or(vertex));
+        (MeshPoint { vertices, ..*point }, *is_pinned)
+    });
+    let part = FabricBuilder::new(
         vertices.iter().map(|&vertex| whole.positions()[vertex as usize]).collect(),
         corners.filter_map(index).collect(),
-    )
-    .uv(vertices.iter().filter_map(|&vertex| uv.get(vertex as usize).copied()).collect())
-    .merge(vertices.iter().filter_map(|&vertex| merged.get(vertex as usize).copied()).collect())
-    .pin(attached.iter().filter_map(index).chain(held))
+    );
+    with_points(part, points)
+        .uv(vertices.iter().filter_map(|&vertex| uv.get(vertex as usize).copied()).collect())
+        .merge(vertices.iter().filter_map(|&vertex| merged.get(vertex as usize).copied()).collect())
+        .pin(attached.vertices.iter().filter_map(index).chain(held))
+}
+
+/// The builder with points, and whether these are pinned.
+fn with_points(
+    builder: FabricBuilder,
+    points: impl Iterator<Item = (MeshPoint, bool)>,
+) -> FabricBuilder {
+    points.fold(builder, |builder, (point, is_pinned)| match is_pinned {
+        true => builder.pin_points([point]),
+        false => builder.free_points([point]),
+    })
 }
 
 #[cfg(test)]
@@ -157,7 +183,7 @@ mod tests {
 
     #[test]
     fn the_part_has_the_triangles_with_a_simulated_corner() {
-        let part = SimulatedPart::of(&strip(), &[0, 4]).expect("a part");
+        let part = SimulatedPart::of(&strip(), &Attached::of_vertices(&[0, 4])).expect("a part");
         assert_eq!(part.vertices, [2, 3, 4, 7, 8, 9]);
         assert_eq!(part.rigid.triangles.len(), 4);
         let rigid: Vec<u32> = part.rigid.vertices.iter().map(|rest| rest.vertex).collect();
@@ -176,7 +202,7 @@ mod tests {
     #[test]
     fn errors_of_a_part_have_the_indices_of_the_mesh() {
         let error = |mesh: ClothMesh| {
-            let part = SimulatedPart::of(&mesh, &[])?;
+            let part = SimulatedPart::of(&mesh, &Attached::default())?;
             part.builder.clone().build().map_err(|error| part.renumber(error)).map(|_| ())
         };
         let flat = edit(|positions, _| positions[9] = positions[4]);
@@ -193,7 +219,7 @@ mod tests {
         assert_eq!(error(fan), Err(FabricError::NonManifoldEdge { a: 3, b: 8 }));
         let far = edit(|_, indices| indices[0] = 12);
         assert!(matches!(error(far), Err(FabricError::IndexOutOfRange { vertex: 12, .. })));
-        let attached = SimulatedPart::of(&strip(), &[10]).map(|_| ());
+        let attached = SimulatedPart::of(&strip(), &Attached::of_vertices(&[10])).map(|_| ());
         assert_eq!(attached, Err(FabricError::PinOutOfRange { vertex: 10, vertices: 10 }));
     }
 
@@ -214,7 +240,7 @@ mod tests {
         weights.extend([0.5; 2]);
         (weights[3], weights[8]) = (0.5, 0.5);
         let mesh = ClothMesh::triangles(positions, indices, Vec::new()).with_weights(weights);
-        let part = SimulatedPart::of(&mesh, &[]).expect("a part");
+        let part = SimulatedPart::of(&mesh, &Attached::default()).expect("a part");
         let mut made = part.builder.resampled(Resolution::CellSize(0.25)).expect("a fabric");
         for (vertex, _) in made.corners.iter_mut().flatten() {
             *vertex = part.vertices[*vertex as usize];

@@ -9,6 +9,7 @@ use bunting_solver::{Fabric, MovingPin};
 use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
 use crate::motion::anchor_poses::AnchorPoses;
+use crate::motion::held_group::HeldGroup;
 
 /// Distance of a pin from its place at which it begins to move there over a while, m. Smaller: a change of level,
 /// after which pins are interpolated, counts. Larger: pins visibly jump.
@@ -43,12 +44,12 @@ impl AnchorPins {
         self.of.as_ref().is_some_and(|of| of.is(levels, level))
     }
 
-    /// Finds the pins of a level, given the vertices that each anchor holds and the positions of all particles, m.
+    /// Finds the pins of a level, given what each anchor holds and the positions of all particles, m.
     pub fn find(
         &mut self,
         levels: &Arc<ClothLevels>,
         level: usize,
-        groups: &[Vec<u32>],
+        groups: &[HeldGroup],
         positions: &[Vec3],
     ) {
         self.of = Some(KnownLevel::new(levels, level));

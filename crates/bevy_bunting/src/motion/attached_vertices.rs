@@ -1,7 +1,8 @@
-//! The vertices that an attachment holds: an edge, corners, a list, a rectangle.
+//! The vertices that an attachment holds: an edge, corners, a list, a rectangle, points on triangles.
 
 use bevy_math::Vec2;
 use bevy_reflect::Reflect;
+use bunting_solver::MeshPoint;
 
 use crate::cloth::mesh::ClothMesh;
 
@@ -57,8 +58,8 @@ pub enum ClothCorner {
 
 /// The vertices that an [`Attachment`](crate::Attachment) holds.
 ///
-/// A coarser level of a grid holds those of the vertices that it has. A mesh that is no grid is held at all of them at each level,
-/// and between those that an edge joins.
+/// A coarser level of a grid holds those of the vertices that it has. A mesh that is no grid is held at all of them and at all points at
+/// each level, and between those vertices that an edge joins.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;
@@ -86,6 +87,32 @@ pub enum AttachedVertices {
         /// Greatest u and v.
         high: Vec2,
     },
+    /// Points on the triangles of the [`ClothMesh`](crate::ClothMesh), each held where it is told as exactly as a vertex, by a
+    /// particle of the simulation's own. Two points hold nothing between them. The vertices of the mesh, which is drawn, stay as they
+    /// are.
+    ///
+    /// A [`ClothMesh::grid`](crate::ClothMesh::grid) with points beside its vertices is simulated with about as many particles of
+    /// the simulation's own as it has vertices, as other meshes are, see [`ClothResolution`](crate::ClothResolution); this takes more
+    /// time. With points at vertices alone it stays a grid.
+    ///
+    /// ```
+    /// use bevy_bunting::prelude::*;
+    /// use bevy_math::Vec3;
+    ///
+    /// // A sheet of two triangles hangs by two pegs, neither of them at a vertex.
+    /// let corners = [Vec3::ZERO, Vec3::X, Vec3::NEG_Y, Vec3::new(1.0, -1.0, 0.0)];
+    /// let sheet = ClothMesh::triangles(corners.to_vec(), vec![0, 2, 1, 1, 2, 3], vec![]);
+    /// let pegs = vec![
+    ///     // In the middle of the first triangle, and on its upper edge, a tenth of the way from vertex 1.
+    ///     MeshPoint::middle([0, 2, 1]),
+    ///     MeshPoint { vertices: [0, 2, 1], weights: [0.1, 0.0, 0.9] },
+    /// ];
+    /// let held = Attachment::in_place(AttachedVertices::Points(pegs));
+    /// // Or where a place is known, but no triangle.
+    /// let peg = sheet.nearest_point(Vec3::new(0.4, -0.2, 0.0));
+    /// # assert!(peg.is_some_and(|peg| peg.vertex().is_none()) && held.anchors.is_empty());
+    /// ```
+    Points(Vec<MeshPoint>),
     /// Only the rigid vertices, of weight 0, see [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
     Rigid,
 }
@@ -115,11 +142,21 @@ impl AttachedVertices {
                 corners.iter().filter_map(|corner| nearest(uv, corner.of(low, high))).collect()
             }
             Self::List(vertices) => vertices.clone(),
+            Self::Points(points) => points.iter().filter_map(MeshPoint::vertex).collect(),
             Self::Within { low, high } => {
                 all_where(&|at: Vec2| at.cmpge(*low).all() && at.cmple(*high).all())
             }
             Self::Rigid => Vec::new(),
         }
+    }
+
+    /// The held points that are not at vertices.
+    pub(crate) fn points(&self) -> impl Iterator<Item = MeshPoint> {
+        let points = match self {
+            Self::Points(points) => &points[..],
+            _ => &[],
+        };
+        points.iter().copied().filter(|point| point.vertex().is_none())
     }
 }
 

@@ -20,4 +20,10 @@ fn edges_corners_and_predicates() {
     let list = AttachedVertices::list_where(&mesh, |uv| uv.x > 0.4 && uv.y > 0.5);
     assert_eq!(choose(list), [4, 5]);
     assert_eq!(choose(AttachedVertices::List(vec![4])), [4]);
+    // Points at vertices are these.
+    let beside = MeshPoint { vertices: [0, 1, 3], weights: [0.5, 0.5, 0.0] };
+    let at_corner = MeshPoint { vertices: [0, 1, 3], weights: [0.0, 0.0, 1.0] };
+    let points = AttachedVertices::Points(vec![beside, at_corner]);
+    assert_eq!(points.points().collect::<Vec<_>>(), [beside]);
+    assert_eq!(choose(points), [3]);
 }

@@ -9,9 +9,11 @@ use bevy_math::{Vec2, Vec3};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
+use bunting_solver::MeshPoint;
 
 use crate::motion::anchor_hold::{AnchorHold, infinite_force};
 use crate::motion::attached_vertices::AttachedVertices;
+use crate::motion::held_group::HeldGroup;
 
 /// Default of [`Attachment::teleport_speed`], m/s: no vehicle changes its velocity by as much between two
 /// frames. Smaller: hard manoeuvres count as teleports and do not swing the cloth. Larger: jumps whip it.
@@ -209,36 +211,33 @@ impl Attachment {
         self
     }
 
-    /// The vertices that are held on each target: those of the attachment, then those of each anchor. A vertex occurs once.
-    pub(crate) fn groups(&self, uv: &[Vec2]) -> Vec<Vec<u32>> {
-        let mut taken = HashSet::new();
+    /// What is held on each target: by the attachment, then by each anchor. A vertex or a point occurs once.
+    pub(crate) fn groups(&self, uv: &[Vec2]) -> Vec<HeldGroup> {
+        let (mut taken, mut taken_points) = (HashSet::new(), HashSet::new());
         let anchored = self.anchors.iter().map(|anchor| &anchor.vertices);
-        let mut of_group = |vertices: &AttachedVertices| {
-            let mut group = vertices.choose(uv);
-            group.retain(|&vertex| taken.insert(vertex));
-            group
+        let mut of_group = |chosen: &AttachedVertices| {
+            let mut vertices = chosen.choose(uv);
+            vertices.retain(|&vertex| taken.insert(vertex));
+            let bits = |point: &MeshPoint| (point.vertices, point.weights.map(f32::to_bits));
+            let points = chosen.points().filter(|point| taken_points.insert(bits(point)));
+            HeldGroup { vertices, points: points.collect() }
         };
         core::iter::once(&self.vertices).chain(anchored).map(&mut of_group).collect()
     }
 
-    /// The vertices that are pinned on each target, in the order of [`groups`](Self::groups).
-    pub(crate) fn pinned_groups(&self, uv: &[Vec2]) -> Vec<Vec<u32>> {
+    /// What is pinned on each target, in the order of [`groups`](Self::groups).
+    pub(crate) fn pinned_groups(&self, uv: &[Vec2]) -> Vec<HeldGroup> {
         let mut groups = self.groups(uv);
-        self.keep_pinned(&mut groups);
-        groups
-    }
-
-    /// Removes those [`groups`](Self::groups) that are held by springs or on a rail.
-    pub(crate) fn keep_pinned(&self, groups: &mut [Vec<u32>]) {
         for (group, anchor) in groups[1..].iter_mut().zip(&self.anchors) {
             if !anchor.hold.is_rigid() {
                 group.clear();
             }
         }
+        groups
     }
 
-    /// The vertices that each anchor holds by springs or on a rail.
-    pub(crate) fn sprung_groups(&self, uv: &[Vec2]) -> Vec<Vec<u32>> {
+    /// What each anchor holds by springs or on a rail.
+    pub(crate) fn sprung_groups(&self, uv: &[Vec2]) -> Vec<HeldGroup> {
         let mut groups = self.groups(uv).split_off(1);
         for (group, anchor) in groups.iter_mut().zip(&self.anchors) {
             if anchor.hold.is_rigid() || !anchor.hold.is_valid() {

@@ -8,6 +8,7 @@ pub mod attachment;
 pub mod follow;
 pub mod follow_anchors;
 pub mod frame;
+pub(crate) mod held_group;
 pub mod inertia;
 pub mod lead;
 pub mod lost_target;

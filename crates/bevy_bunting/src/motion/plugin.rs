@@ -7,6 +7,7 @@ use bevy_transform::TransformSystems;
 use bevy_transform::systems::{
     mark_dirty_trees, propagate_parent_transforms, sync_simple_transforms,
 };
+use bunting_solver::MeshPoint;
 
 use crate::environment::drive::drive_cloths;
 use crate::fabric::prepare::change_materials;
@@ -35,6 +36,7 @@ impl Plugin for AttachmentPlugin {
         app.register_type::<Attachment>()
             .register_type::<Anchor>()
             .register_type::<AttachedVertices>()
+            .register_type::<MeshPoint>()
             .register_type::<ClothEdge>()
             .register_type::<ClothCorner>()
             .register_type::<TargetLost>()

@@ -9,6 +9,7 @@ use bevy_picking::events::{Move, Pointer, Press};
 use bevy_picking::pointer::{PointerButton, PointerMap, PointerPress};
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
+use bunting_solver::{FabricBuilder, MeshPoint};
 
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
@@ -42,7 +43,8 @@ pub enum PinStroke {
 /// How pointers paint pins: while the primary button is pressed, the vertices under the pointer are added to those of
 /// the cloth's [`Attachment`], or removed from them. [`ClothDragPlugin`](crate::ClothDragPlugin) does both.
 ///
-/// Painted vertices become an [`AttachedVertices::List`]; those of further anchors stay theirs. They are held where
+/// Painted vertices become an [`AttachedVertices::List`], or beside points [`AttachedVertices::Points`]; those of further anchors
+/// stay theirs. They are held where
 /// all attached vertices are, at their places in the [`ClothMesh`] seen from the cloth's frame, and move there
 /// gently. A cloth without an [`Attachment`] gets one to its own `Transform`; one whose last pin is erased loses it,
 /// unless it has further anchors.
@@ -121,17 +123,30 @@ impl PaintPins<'_, '_> {
         };
         let held = attachment.as_ref().map(|it| it.vertices.choose(&mesh.uvs()));
         let held: BTreeSet<u32> = held.into_iter().flatten().collect();
-        let near = near(mesh, instance, hit, self.brush.radius);
+        let points = attachment.iter().flat_map(|it| it.vertices.points());
+        let points: Vec<MeshPoint> = points.collect();
+        let builder = bake(mesh, instance.scale).builder();
+        let (near, reach) = near(&builder, hit, self.brush.radius);
+        let mut kept = points.clone();
         let pins: BTreeSet<u32> = match self.brush.stroke {
             PinStroke::Off => return,
             PinStroke::Paint => held.union(&near).copied().collect(),
-            PinStroke::Erase => held.difference(&near).copied().collect(),
+            PinStroke::Erase => {
+                let place = |point: &MeshPoint| builder.place(point);
+                kept.retain(|it| place(it).is_none_or(|at| at.distance(hit.at_rest) > reach));
+                held.difference(&near).copied().collect()
+            }
         };
-        if pins == held {
+        if pins == held && kept == points {
             return;
         }
-        let is_free = pins.is_empty();
-        let vertices = AttachedVertices::List(pins.into_iter().collect());
+        let is_free = pins.is_empty() && kept.is_empty();
+        let vertices = if kept.is_empty() {
+            AttachedVertices::List(pins.into_iter().collect())
+        } else {
+            kept.extend(pins.into_iter().map(MeshPoint::at_vertex));
+            AttachedVertices::Points(kept)
+        };
         match attachment {
             Some(it) if is_free && it.anchors.is_empty() => {
                 self.commands.entity(cloth).remove::<Attachment>();
@@ -144,14 +159,13 @@ impl PaintPins<'_, '_> {
     }
 }
 
-/// The vertices of a mesh within a radius (m), and the nearest one. Distances are those at rest, so that layers
-/// behind one another are not painted together. Vertices that the level of detail lacks are among them.
-fn near(mesh: &ClothMesh, instance: &ClothInstance, hit: &ClothHit, radius: f32) -> BTreeSet<u32> {
-    let mesh = bake(mesh, instance.scale);
-    let builder = mesh.builder();
+/// The vertices of a mesh within a radius (m), and the nearest one; and the distance (m) within which they lie. Distances are those at
+/// rest, so that layers behind one another are not painted together. Vertices that the level of detail lacks are among them.
+fn near(builder: &FabricBuilder, hit: &ClothHit, radius: f32) -> (BTreeSet<u32>, f32) {
     let distances = builder.positions().iter().map(|at| at.distance(hit.at_rest));
     let distances: Vec<f32> = distances.collect();
     let nearest = distances.iter().copied().fold(f32::INFINITY, f32::min);
     let reach = radius.max(nearest);
-    (0..).zip(distances).filter(|(_, distance)| *distance <= reach).map(|(it, _)| it).collect()
+    let near = (0..).zip(distances).filter(|(_, distance)| *distance <= reach);
+    (near.map(|(it, _)| it).collect(), reach)
 }

@@ -8,6 +8,7 @@ use bevy_mesh::{Indices, Mesh};
 use crate::cloth::error::ClothError;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::weights::check_weights;
+use crate::fabric::attached::Attached;
 use crate::fabric::simulated::{SimulatedPart, renumbered};
 use crate::render::cloth_from_mesh::ClothFromMesh;
 use crate::render::level_mesh::with_vertices;
@@ -101,6 +102,6 @@ impl ClothFromMesh {
 fn check_shape(entity: Entity, shape: &ClothMesh) -> Result<(), ClothError> {
     check_weights(shape.weights(), shape.vertex_count())
         .map_err(|source| ClothError::Weights { entity, source })?;
-    let defect = SimulatedPart::of(shape, &[]).and_then(|part| part.check());
+    let defect = SimulatedPart::of(shape, &Attached::default()).and_then(|part| part.check());
     defect.map_err(|source| ClothError::Mesh { entity, source })
 }

@@ -28,6 +28,7 @@ pub fn read_pins(
     let vertices = mesh.vertex_count();
     match &pins {
         AttachedVertices::List(list) if list.is_empty() => Err(failed(TuningProblem::NoPins)),
+        AttachedVertices::Points(points) if points.is_empty() => Err(failed(TuningProblem::NoPins)),
         AttachedVertices::List(list) => match list.iter().find(|&&it| it as usize >= vertices) {
             Some(&vertex) => Err(failed(TuningProblem::NoVertex { vertex, vertices })),
             None => Ok(pins),

@@ -122,6 +122,35 @@ pub enum FabricError {
         "vertices were pinned by a predicate before the texture coordinates were set: set them first"
     )]
     PinnedBeforeUv,
+    /// A point is to lie between vertices of which one is past the last.
+    #[error("a point on vertex {vertex} cannot be held: there are {vertices} vertices")]
+    PointOutOfRange {
+        /// The index that is out of range.
+        vertex: u32,
+        /// Number of vertices given.
+        vertices: usize,
+    },
+    /// A point is to lie between vertices that are not the corners of one triangle.
+    #[error(
+        "a point between vertices {vertices:?} cannot be held: no triangle has these corners; name those of the triangle that it lies on"
+    )]
+    PointOffMesh {
+        /// The vertices.
+        vertices: [u32; 3],
+    },
+    /// The weights of a point are no barycentric coordinates of a place on its triangle.
+    #[error(
+        "a point between vertices {vertices:?} cannot have the weights {weights:?}: give three from 0 to 1 with the sum 1"
+    )]
+    PointWeights {
+        /// The corners of its triangle.
+        vertices: [u32; 3],
+        /// Their weights.
+        weights: [f32; 3],
+    },
+    /// Points were chosen before the mesh was repaired, which numbers its vertices anew.
+    #[error("points were chosen before the mesh was repaired: repair it first")]
+    PointsBeforeRepair,
     /// A grid needs at least two particles and a positive length along both sides.
     #[error(
         "a grid of {columns} × {rows} particles over {width} m × {height} m is not a cloth: give at least 2 × 2 and a positive size"

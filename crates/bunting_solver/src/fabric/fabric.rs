@@ -28,6 +28,8 @@ use crate::constants::FREE_LENGTH;
 pub struct Fabric {
     pub(super) grid: Option<Grid>,
     pub(super) mesh: RestMesh,
+    /// The particle at each point.
+    pub(super) particle_of_point: Vec<u32>,
     pub(super) patches: Vec<Patch>,
     pub(super) patch_grid_columns: Option<usize>,
     pub(super) links: Links,
@@ -86,6 +88,7 @@ impl Fabric {
             rest_bends: None,
             grid: Some(grid),
             mesh,
+            particle_of_point: Vec::new(),
             patches,
             links,
             yarns,
@@ -128,6 +131,14 @@ impl Fabric {
     #[must_use]
     pub fn particle_of_vertex(&self) -> &[u32] {
         &self.mesh.particle_of_vertex
+    }
+
+    /// The particle at each point of [`FabricBuilder::pin_points`](crate::FabricBuilder::pin_points) and
+    /// [`free_points`](crate::FabricBuilder::free_points), in the order in which they were given. A point at a vertex is that vertex,
+    /// and of points that lie closer together than a fiftieth of a cell the first one has a particle.
+    #[must_use]
+    pub fn particle_of_point(&self) -> &[u32] {
+        &self.particle_of_point
     }
 
     /// Number of particles.

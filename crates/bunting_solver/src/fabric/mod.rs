@@ -62,7 +62,7 @@ pub(crate) use topology::ascending;
 pub(crate) use twist::{Ribbon, RibbonProfile};
 pub(crate) use yarns::Yarn;
 
-pub use builder::{CoarserMesh, FabricBuilder, MeshRepair, Resampled, Resolution};
+pub use builder::{CoarserMesh, FabricBuilder, MeshPoint, MeshRepair, Resampled, Resolution};
 pub use carried::Carried;
 pub use error::FabricError;
 pub use fabric::Fabric;

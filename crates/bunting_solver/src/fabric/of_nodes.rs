@@ -36,6 +36,7 @@ impl Fabric {
             grid: None,
             tethers,
             mesh,
+            particle_of_point: Vec::new(),
             links,
             yarns,
             chains,

@@ -4,6 +4,7 @@ use super::resampled::{Resolution, check_sides};
 use super::source::FabricBuilder;
 use crate::fabric::error::FabricError;
 use crate::fabric::fabric::Fabric;
+use crate::fabric::grid::Grid;
 use crate::fabric::mesh::{RestMesh, Surface};
 
 impl FabricBuilder {
@@ -14,8 +15,10 @@ impl FabricBuilder {
     ///
     /// A [`FabricError`] names the defect of the mesh and its location.
     pub fn build(self) -> Result<Fabric, FabricError> {
-        let Some(grid) = self.grid else {
-            return self.laid(Resolution::default()).map(|laid| laid.fabric);
+        let Some(grid) = self.own_grid() else {
+            let count = self.grid.map(|Grid { columns, rows, .. }| columns * rows);
+            let resolution = count.map_or(Resolution::default(), Resolution::Particles);
+            return self.laid(resolution).map(|laid| laid.fabric);
         };
         let (mesh, surface) = self.rest_mesh()?;
         Ok(Fabric::of_grid(mesh, &surface, grid, 1.0, self.tethered))
@@ -28,7 +31,7 @@ impl FabricBuilder {
     /// Those of [`build`](Self::build), but for [`FabricError::Cells`].
     pub fn check(&self) -> Result<(), FabricError> {
         let (mesh, surface) = self.rest_mesh()?;
-        if self.grid.is_some() {
+        if self.own_grid().is_some() {
             return Ok(());
         }
         check_sides(&mesh, &surface, &self.weld().vertex_of_particle)

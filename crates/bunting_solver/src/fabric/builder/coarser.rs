@@ -27,7 +27,7 @@ impl FabricBuilder {
     /// whose coarser levels are [resampled](Self::resampled) in larger cells.
     #[must_use]
     pub fn coarser(&self) -> Option<CoarserMesh> {
-        let grid = self.grid?;
+        let grid = self.own_grid()?;
         let halved = grid.halved()?;
         let vertices: Vec<u32> = (0..halved.rows)
             .flat_map(|row| (0..halved.columns).map(move |column| (column, row)))

@@ -3,6 +3,7 @@
 mod build;
 mod coarser;
 mod on_surface;
+mod points;
 mod rectangle;
 mod repair;
 mod resampled;
@@ -11,6 +12,7 @@ mod source;
 mod validate;
 
 pub use coarser::CoarserMesh;
+pub use points::MeshPoint;
 pub use repair::MeshRepair;
 pub use resampled::{Resampled, Resolution};
 pub use source::FabricBuilder;

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use glam::Vec3;
-
 use super::on_surface::OnSurface;
 use super::rectangle::Rectangle;
 use super::source::FabricBuilder;
@@ -13,7 +11,7 @@ use crate::fabric::fabric::Fabric;
 use crate::fabric::interpolation::{Interpolation, Term};
 use crate::fabric::mesh::{RestMesh, Surface};
 use crate::fabric::net::Net;
-use crate::fabric::remesh::{Nodes, OnNodes, Refined, Source};
+use crate::fabric::remesh::{Nodes, OnNodes, PointOn, Refined, Source};
 
 /// Greatest length of an edge of the mesh on which a lattice is found, in cells. Longer: where lines of the lattice end, holes as
 /// large as a triangle are left.
@@ -89,7 +87,8 @@ impl FabricBuilder {
         let (mesh, surface) = self.rest_mesh()?;
         let vertex_of_place = self.weld().vertex_of_particle;
         check_sides(&mesh, &surface, &vertex_of_place)?;
-        let source = Source::new(&mesh, &surface);
+        let points = self.points_on_triangles()?;
+        let source = Source::new(&mesh, &surface, &[]);
         let size = match resolution {
             Resolution::Auto => source.cell_size(f64::from(PARTICLES)),
             Resolution::CellSize(size) => f64::from(size),
@@ -104,13 +103,16 @@ impl FabricBuilder {
             vertex: vertex_of_place[place as usize],
             size: size as f32,
         };
-        let on_grid = match Rectangle::of(&mesh, &source, size as f32) {
+        let rectangle = || Rectangle::of(&mesh, &source, size as f32);
+        let on_grid = match points.is_empty().then(rectangle).flatten() {
             Some(rectangle) => rectangle.laid(&mesh, self.tethered)?,
             None => None,
         };
         let OnSurface { mut fabric, on_nodes, particles, corners } = match on_grid {
             Some(on_grid) => on_grid,
-            None => on_lattice(&mesh, &surface, source, size, self.tethered).map_err(at)?,
+            None => {
+                on_lattice(&mesh, &surface, (source, &points), size, self.tethered).map_err(at)?
+            }
         };
         let OnNodes { rows, heights, held } = on_nodes;
         let RestMesh { particle_of_vertex: place_of_vertex, triangles, .. } = mesh;
@@ -138,23 +140,24 @@ impl FabricBuilder {
 fn on_lattice(
     mesh: &RestMesh,
     surface: &Surface,
-    given: Source,
+    (given, points): (Source, &[PointOn]),
     size: f64,
     tethered: bool,
 ) -> Result<OnSurface, u32> {
-    let refined = Refined::of(mesh, surface, LONGEST_EDGE * size as f32);
+    let refined = Refined::of(mesh, surface, LONGEST_EDGE * size as f32, points);
     let original = |place: u32| {
         let of_refined = refined.as_ref().map(|it| Term::heaviest(&it.origins[place as usize]));
         of_refined.flatten().map_or(place, |it| it.from)
     };
-    let of_refined = refined.as_ref().map(|it| Source::new(&it.mesh, &it.surface));
+    let of_refined = refined.as_ref().map(|it| Source::new(&it.mesh, &it.surface, &it.points));
     let source = of_refined.unwrap_or(given);
     let nodes = Nodes::on_lattice(&source, size).map_err(original)?;
     let (net, cells) = Net::of(&nodes).ok_or(0_u32)?;
     let cells = cells.iter().map(|cell| &cell[..]);
     let count = mesh.positions.len();
     let on_nodes = nodes.carried(&source, cells, count).map_err(original)?;
-    let particles = particles_of_places(mesh, &nodes, &on_nodes.rows);
+    let pins: Vec<u32> = nodes.pins_of_vertices(&source, count).collect();
+    let particles = particles_of_places(mesh, &nodes, &pins, &on_nodes.rows);
     let corners = nodes.corners.iter().map(|row| match &refined {
         Some(refined) => {
             let origins = |it: &Term| (&refined.origins[it.from as usize][..], it.weight);
@@ -163,7 +166,8 @@ fn on_lattice(
         None => row.clone(),
     });
     let corners = corners.collect();
-    let fabric = Fabric::of_nodes(net, tethered);
+    let mut fabric = Fabric::of_nodes(net, tethered);
+    fabric.particle_of_point = nodes.of_points(&source);
     Ok(OnSurface { fabric, on_nodes, particles, corners })
 }
 
@@ -194,17 +198,17 @@ pub(super) struct Laid {
     cell_size: f32,
 }
 
-/// The node at each place, or that with the greatest weight there; the nearest pinned one of a pinned place.
-fn particles_of_places(mesh: &RestMesh, nodes: &Nodes, rows: &Interpolation) -> Vec<u32> {
-    let pins: Vec<(u32, Vec3)> = (0..)
-        .zip(&nodes.mesh.positions)
-        .filter(|(node, _)| nodes.mesh.is_pinned(*node))
-        .map(|(node, at)| (node, *at))
-        .collect();
+/// The node at each place, or that with the greatest weight there; of a pinned place the nearest one of the pins of vertices.
+fn particles_of_places(
+    mesh: &RestMesh,
+    nodes: &Nodes,
+    pins: &[u32],
+    rows: &Interpolation,
+) -> Vec<u32> {
     let nearest_pin = |place: u32| {
         let at = mesh.positions[place as usize];
-        let away = |pin: &(u32, Vec3)| pin.1.distance_squared(at);
-        pins.iter().min_by(|one, other| away(one).total_cmp(&away(other))).map(|(node, _)| *node)
+        let away = |pin: &u32| nodes.mesh.positions[*pin as usize].distance_squared(at);
+        pins.iter().copied().min_by(|one, other| away(one).total_cmp(&away(other)))
     };
     let places = (0..).zip(&nodes.node_of).zip(rows.rows());
     let of_place = |((place, node), row): ((u32, &Option<u32>), &[Term])| {

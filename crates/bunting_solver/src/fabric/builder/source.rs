@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::{Vec2, Vec3};
 
+use super::points::MeshPoint;
 use crate::fabric::grid::Grid;
 use crate::fabric::weld::{Weld, default_distance, weld};
 
@@ -25,6 +26,8 @@ pub struct FabricBuilder {
     /// Texture coordinates, one for each vertex or none.
     pub(super) uv: Vec<Vec2>,
     pub(super) pinned: BTreeSet<u32>,
+    /// Points with particles, and whether these are pinned.
+    pub(super) points: Vec<(MeshPoint, bool)>,
     /// Welding distance, m; by default a fraction of the mesh's extent.
     pub(super) weld_distance: Option<f32>,
     /// For each vertex a number that it shares with those that are merged with it; without it vertices are merged by
@@ -47,6 +50,7 @@ impl FabricBuilder {
             indices,
             uv: Vec::new(),
             pinned: BTreeSet::new(),
+            points: Vec::new(),
             weld_distance: None,
             merged: None,
             pinned_before_uv: false,
@@ -157,6 +161,11 @@ impl FabricBuilder {
     /// Distance in metres at which vertices are merged.
     pub(super) fn effective_weld_distance(&self) -> f32 {
         self.weld_distance.unwrap_or_else(|| default_distance(&self.positions))
+    }
+
+    /// The grid whose vertices are the particles; none of a grid with points between its vertices.
+    pub(super) fn own_grid(&self) -> Option<Grid> {
+        self.grid.filter(|_| self.points.is_empty())
     }
 
     /// Merges vertices into particles.

@@ -48,7 +48,7 @@ impl FabricBuilder {
             Some(distance) if !(distance >= 0.0 && distance.is_finite()) => {
                 Err(FabricError::WeldDistance { distance })
             }
-            _ => Ok(()),
+            _ => self.check_points(),
         }
     }
 }

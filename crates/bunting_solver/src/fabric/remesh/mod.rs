@@ -15,6 +15,7 @@ mod node_rows;
 mod phases;
 mod place;
 mod places;
+mod points;
 mod refined;
 mod relaxation;
 mod source;
@@ -39,8 +40,10 @@ use super::interpolation::{Height, Interpolation, Term};
 use super::mesh::RestMesh;
 use super::topology::{self, Edge};
 
+pub(super) use self::points::PointOn;
 pub(super) use self::refined::Refined;
 pub(super) use self::source::Source;
+pub(super) use self::triangle::nearest_weights;
 
 /// Least weight of free particles in a node that is free.
 const LEAST_FREE: f64 = 0.01;
@@ -125,6 +128,31 @@ impl Nodes {
         })
     }
 
+    /// The pinned nodes but those at points beside the first vertices of the mesh: points hold nothing else.
+    pub fn pins_of_vertices(&self, source: &Source, count: usize) -> impl Iterator<Item = u32> {
+        let beside = source.points.iter().map(|at| *at as usize).filter(move |at| *at >= count);
+        let at_points: Vec<u32> = beside.filter_map(|at| self.node_of[at]).collect();
+        let pinned =
+            (0..self.mesh.positions.len() as u32).filter(|node| self.mesh.is_pinned(*node));
+        pinned.filter(move |node| !at_points.contains(node))
+    }
+
+    /// The node at each point; the nearest one, of a pinned point the nearest pinned one, of a point at which there is none.
+    pub fn of_points(&self, source: &Source) -> Vec<u32> {
+        let nearest = |point: u32| {
+            let away = |node: &u32| {
+                let at = self.mesh.positions[*node as usize].as_dvec3();
+                at.distance_squared(source.positions[point as usize])
+            };
+            let nodes = 0..self.mesh.positions.len() as u32;
+            let held =
+                nodes.filter(|node| self.mesh.is_pinned(*node) || !source.mesh.is_pinned(point));
+            held.min_by(|one, other| away(one).total_cmp(&away(other)))
+        };
+        let of_point = |&point: &u32| self.node_of[point as usize].or_else(|| nearest(point));
+        source.points.iter().map(|point| of_point(point).unwrap_or(0)).collect()
+    }
+
     /// How the first places of the mesh follow the nodes, given the cells of nodes.
     ///
     /// # Errors
@@ -137,9 +165,7 @@ impl Nodes {
         count: usize,
     ) -> Result<OnNodes, u32> {
         let cells = Cells::new(cells, &self.mesh.positions, self.size);
-        let pins: Vec<u32> = (0..self.mesh.positions.len() as u32)
-            .filter(|node| self.mesh.is_pinned(*node))
-            .collect();
+        let pins: Vec<u32> = self.pins_of_vertices(source, count).collect();
         let mut on_nodes = OnNodes::default();
         for (place, &at) in (0_u32..).zip(&source.positions[..count]) {
             if let Some(from) = self.node_of[place as usize] {

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::boxes::Boxes;
 use super::place::Place;
 use super::places::Choice;
-use super::triangle::{barycentric, nearest};
+use super::triangle::{nearest, nearest_weights};
 use super::walk::Walks;
 
 /// Greatest width of a strip, cells. Larger: a line of the lattice runs between its borders in most places.
@@ -79,10 +79,7 @@ impl Choice<'_> {
             false
         });
         let (_, triangle) = best.filter(|_| is_reached)?;
-        let corners = self.points(triangle);
-        let weights = barycentric(nearest(middle, corners), corners).map(|it| it.max(0.0));
-        let sum: f64 = weights.iter().sum();
-        Some(self.place(triangle, weights.map(|weight| weight / sum)))
+        Some(self.place(triangle, nearest_weights(middle, self.points(triangle))))
     }
 
     fn points(&self, triangle: u32) -> [DVec3; 3] {

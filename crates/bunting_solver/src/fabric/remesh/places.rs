@@ -21,6 +21,9 @@ const LEAST_IN_STRIP: f64 = 0.4;
 /// The same between pins. Larger: nodes beside a pin that is none do not follow it.
 const LEAST_BETWEEN_PINS: f64 = 0.4;
 
+/// The same between a point and pins. Larger: points that lie close together have one node. Smaller: triangles between nodes become slivers.
+const LEAST_BETWEEN_POINTS: f64 = 0.02;
+
 /// Least distance of a vertex in a gap from nodes, in cells.
 const GAP: f64 = 0.9;
 
@@ -43,7 +46,8 @@ impl Choice<'_> {
         let at_vertices = self.at_vertices();
         let is_given = self.given();
         for (place, _) in at_vertices.iter().zip(&is_given).filter(|(_, is_given)| **is_given) {
-            chosen.add(*place, LEAST_BETWEEN_PINS);
+            let is_point = place.vertex.is_some_and(|at| self.source.points.contains(&at));
+            chosen.add(*place, if is_point { LEAST_BETWEEN_POINTS } else { LEAST_BETWEEN_PINS });
         }
         let on_border = self.on_border(&is_given);
         on_border.iter().for_each(|place| chosen.add(*place, LEAST_AT_BORDER));
@@ -59,10 +63,10 @@ impl Choice<'_> {
         chosen.places
     }
 
-    /// Whether each vertex is a node: pins, but for those between pins at the border, on whose edges nodes are pinned, too, and
+    /// Whether each vertex is a node: points, and pins but for those between pins at the border, on whose edges nodes are pinned, too, and
     /// those among pins.
     fn given(&self) -> Vec<bool> {
-        let Source { mesh, faces, positions, .. } = self.source;
+        let Source { mesh, faces, positions, points, .. } = self.source;
         let mut free_near = vec![0; positions.len()];
         let mut pins_beside = vec![0; positions.len()];
         for triangle in 0..faces.count() as u32 {
@@ -82,7 +86,9 @@ impl Choice<'_> {
             let is_between = pins_beside[vertex] == 2 || free_near[vertex] == 0;
             mesh.is_pinned(vertex as u32) && !is_between
         };
-        (0..positions.len()).map(is_given).collect()
+        let mut are_given: Vec<bool> = (0..positions.len()).map(is_given).collect();
+        points.iter().for_each(|point| are_given[*point as usize] = true);
+        are_given
     }
 
     /// A place at each vertex.

@@ -19,16 +19,19 @@ pub(in crate::fabric) struct Source<'a> {
     pub(super) positions: Vec<DVec3>,
     /// Unit normals of the vertices.
     pub(super) normals: Vec<DVec3>,
+    /// Vertices at points, which are nodes.
+    pub(super) points: &'a [u32],
     /// m².
     pub(super) area: f64,
 }
 
 impl<'a> Source<'a> {
-    pub fn new(mesh: &'a RestMesh, surface: &'a Surface) -> Self {
+    pub fn new(mesh: &'a RestMesh, surface: &'a Surface, points: &'a [u32]) -> Self {
         let faces = Faces::new(&mesh.positions, &mesh.triangles, &surface.edges);
         let normals = mesh.normals_at(&mesh.positions);
         Self {
             mesh,
+            points,
             edges: &surface.edges,
             corner_uv: &surface.corner_uv,
             directions: Directions::of(&faces, &surface.corner_uv),

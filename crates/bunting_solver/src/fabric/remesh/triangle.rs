@@ -34,14 +34,30 @@ pub(super) fn part_along(at: DVec3, from: DVec3, to: DVec3) -> f64 {
 }
 
 /// The point of a triangle nearest to another.
-pub(super) fn nearest(at: DVec3, [a, b, c]: [DVec3; 3]) -> DVec3 {
-    let weights = barycentric(at, [a, b, c]);
+pub(super) fn nearest(at: DVec3, corners: [DVec3; 3]) -> DVec3 {
+    of_weights(nearest_weights(at, corners), corners)
+}
+
+/// The point of a triangle with some weights of its corners.
+fn of_weights(weights: [f64; 3], [a, b, c]: [DVec3; 3]) -> DVec3 {
+    a * weights[0] + b * weights[1] + c * weights[2]
+}
+
+/// The weights of the corners of a triangle at the point of it nearest to another.
+pub(in crate::fabric) fn nearest_weights(at: DVec3, corners: [DVec3; 3]) -> [f64; 3] {
+    let weights = barycentric(at, corners);
     if weights.iter().all(|weight| *weight >= 0.0) {
-        return a * weights[0] + b * weights[1] + c * weights[2];
+        return weights;
     }
-    let on_side = |from: DVec3, to: DVec3| from.lerp(to, part_along(at, from, to).clamp(0.0, 1.0));
-    let nearer = |one: DVec3, other: DVec3| {
-        if other.distance_squared(at) < one.distance_squared(at) { other } else { one }
+    let on_side = |from: usize| {
+        let to = (from + 1) % 3;
+        let part = part_along(at, corners[from], corners[to]).clamp(0.0, 1.0);
+        let mut weights = [0.0; 3];
+        (weights[from], weights[to]) = (1.0 - part, part);
+        weights
     };
-    nearer(nearer(on_side(a, b), on_side(b, c)), on_side(c, a))
+    let away = |weights: &[f64; 3]| of_weights(*weights, corners).distance_squared(at);
+    let nearer =
+        |one: [f64; 3], other: [f64; 3]| if away(&other) < away(&one) { other } else { one };
+    nearer(nearer(on_side(0), on_side(1)), on_side(2))
 }

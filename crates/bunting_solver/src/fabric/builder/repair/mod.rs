@@ -111,6 +111,9 @@ impl FabricBuilder {
     /// errors of lists that do not fit one another and of numbers that are not finite; [`FabricError::Empty`] if no
     /// triangle is left.
     pub fn repair(self) -> Result<(Self, MeshRepair), FabricError> {
+        if !self.points.is_empty() {
+            return Err(FabricError::PointsBeforeRepair);
+        }
         self.validate()?;
         let mut report = MeshRepair::default();
         if self.grid.is_some() {
