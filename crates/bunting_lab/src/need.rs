@@ -28,7 +28,7 @@ impl Need {
     /// Substeps of a cloth that begins in a state.
     #[must_use]
     pub fn from(self, fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> Self {
-        let tension = Loads::of_tension(fabric, material, positions);
+        let tension = Loads::of_pins(fabric, material, positions);
         Self { loads: Loads { tension, ..self.loads }, ..self }
     }
 
@@ -57,7 +57,7 @@ impl Need {
         self.frame = drive.motion;
         self.loads.air = Loads::of_air(drive, material, tick);
         self.loads.motion = Loads::of_motion(batch.fabric(), before, after, tick);
-        self.loads.note_tension(Loads::of_tension(batch.fabric(), material, after), tick);
+        self.loads.tension = batch.tension_load(0);
         self.loads.contacts = batch.contact_load(0);
     }
 

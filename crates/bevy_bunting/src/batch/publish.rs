@@ -2,7 +2,6 @@
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
-use bevy_time::Time;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::error::ClothError;
@@ -50,7 +49,6 @@ pub(crate) fn publish_states(
     mut cloths: Query<(&mut ClothState, &mut ClothEffort)>,
     mut batches: ResMut<ClothBatches>,
     mut diverged: ResMut<Diverged>,
-    time: Res<Time>,
 ) {
     batches.copy_surfaces();
     for (entity, surface) in batches.surfaces() {
@@ -62,7 +60,7 @@ pub(crate) fn publish_states(
         core::mem::swap(&mut state.normals, &mut surface.normals);
         state.blend();
         state.moved = true;
-        effort.note_tick(surface, time.delta_secs());
+        effort.note_tick(surface);
         if !surface.is_finite {
             diverged.0.push(entity);
         }

@@ -75,7 +75,7 @@ impl ClothEffort {
             (self.loads == Loads::default(), instance.fabric(), instance.snapshot())
         {
             let material = &instance.material;
-            self.loads.tension = Loads::of_tension(fabric, material, &begun.positions);
+            self.loads.tension = Loads::of_pins(fabric, material, &begun.positions);
         }
         let of_frame = if frame.rests() && self.motion.is_none() {
             0.0
@@ -108,10 +108,10 @@ impl ClothEffort {
         self.loads.air = air;
     }
 
-    /// Notes the loads of turning links, of tension and of colliders in a tick of `tick` seconds.
-    pub(crate) fn note_tick(&mut self, surface: &LaneSurface, tick: f32) {
+    /// Notes the loads of turning links, of pins and of colliders in this tick.
+    pub(crate) fn note_tick(&mut self, surface: &LaneSurface) {
         self.loads.motion = surface.motion;
-        self.loads.note_tension(surface.tension, tick);
+        self.loads.tension = surface.tension;
         self.loads.contacts = surface.contacts;
     }
 }

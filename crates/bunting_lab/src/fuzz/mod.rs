@@ -1,5 +1,6 @@
 //! Cloths at random: meshes, pins, materials, winds and jerks that no other case knows. What fails here becomes a row.
 
+mod alone;
 mod garments;
 mod held;
 mod meshes;

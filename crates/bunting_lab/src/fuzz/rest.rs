@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bunting_solver::{Drive, Fabric, FabricMaterial};
 use serde::Serialize;
 
-use super::{held, trial::Cloth};
+use super::{alone::Cloth, held};
 use crate::flight::almost_at_rest;
 
 /// Times after which the speed is taken, s: of a swing that decays by damping alone a fifth is left after the first, at .3/s, and

@@ -2,14 +2,12 @@
 
 use std::{sync::Arc, time::Instant};
 
-use bunting_solver::{
-    ClothBatch, ClothSnapshot, Drive, Fabric, FabricMaterial, FrameMotion, LaneCount, StepLimits,
-    StepSettings,
-};
+use bunting_solver::{ClothSnapshot, Drive, Fabric, FabricMaterial, FrameMotion, StepLimits};
 use glam::Vec3;
 use serde::Serialize;
 
 use super::{
+    alone::Cloth,
     held,
     meshes::{Family, mesh},
     rest::Rest,
@@ -17,10 +15,9 @@ use super::{
 };
 use crate::{
     meshes::{Random, resampled},
-    need::Need,
-    product::{TICK, yarn_strains},
+    product::TICK,
     scenes::GRAVITY,
-    stats::{Strain, worse},
+    stats::Strain,
 };
 
 /// Time for which the wind blows, s.
@@ -29,8 +26,6 @@ const BLOWN: f32 = 3.0;
 const SETTLING: f32 = 20.0;
 /// Damping in that time, 1/s.
 const DAMPING: f32 = 4.0;
-/// Ticks that are timed, and how many at once.
-const TIMED: [usize; 2] = [6, 10];
 
 /// A mesh at random, and what became of a cloth of it.
 #[derive(Clone, Debug, Serialize)]
@@ -138,62 +133,5 @@ fn figures(fabric: Arc<Fabric>, build: f64, random: &mut Random, asked: Asked) -
         speed: held::speed(&cloth.batch),
         sag,
         rest,
-    }
-}
-
-/// A cloth that is alone, with substeps by need.
-pub(super) struct Cloth {
-    pub batch: ClothBatch,
-    material: FabricMaterial,
-    need: Need,
-    positions: Vec<Vec3>,
-}
-
-impl Cloth {
-    /// A cloth in a state.
-    pub fn new(fabric: &Arc<Fabric>, start: &ClothSnapshot, material: FabricMaterial) -> Self {
-        let mut batch = ClothBatch::new(Arc::clone(fabric), LaneCount::One);
-        batch.insert(start, material).expect("a good cloth");
-        let positions = start.positions.clone();
-        Self { batch, material, need: Need::within(StepLimits::default()), positions }
-    }
-
-    fn set_material(&mut self, material: FabricMaterial) {
-        self.batch.set_material(0, material).expect("a good material");
-        self.material = material;
-    }
-
-    /// Some seconds under what drives it.
-    pub fn advance(&mut self, seconds: f32, drive: Drive) {
-        self.batch.drive(0, drive).expect("a good drive");
-        for _ in 0..(seconds / TICK).round() as usize {
-            let settings = self.need.settings(self.batch.fabric(), &drive, TICK);
-            self.batch.step(TICK, settings);
-            let before = self.positions.clone();
-            self.batch.copy_positions(0, &mut self.positions);
-            self.need.note(&self.batch, &self.material, &drive, [&before, &self.positions], TICK);
-        }
-    }
-
-    /// The least time of a tick under what acts on it now, s.
-    fn time_of_tick(&mut self, settings: StepSettings) -> f64 {
-        let [blocks, ticks] = TIMED;
-        let times = (0..blocks).map(|_| {
-            let start = Instant::now();
-            (0..ticks).for_each(|_| self.batch.step(TICK, settings));
-            start.elapsed().as_secs_f64() / ticks as f64
-        });
-        let least = times.fold(f64::INFINITY, f64::min);
-        self.batch.copy_positions(0, &mut self.positions);
-        least
-    }
-
-    /// Strains of the links along warp and weft.
-    fn strains(&self) -> impl Iterator<Item = f64> {
-        yarn_strains(self.batch.fabric(), &self.positions)
-    }
-
-    fn greatest_stretch(&self) -> f64 {
-        self.strains().fold(0.0, worse)
     }
 }

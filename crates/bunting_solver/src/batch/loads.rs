@@ -46,23 +46,22 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         L::load(token, &lengths)
     }
 
-    /// The loads of each lane's cloth by the links that have turned since the tick began, and by tension. The sums have the
-    /// order and the operations of [`Loads::of_motion`] and [`Loads::of_tension`], so that the bits are the same.
-    pub fn probe_loads(&self) -> impl Iterator<Item = ProbeLoads> + '_ {
-        let mut sums = ProbeSums::default();
-        P::run(SumProbes { batch: self, sums: &mut sums });
-        self.lanes.iter().enumerate().map(move |(cloth, state)| {
+    /// Acceleration of the links of each lane's cloth that have turned since the tick began, m/s². The sums have the
+    /// order and the operations of [`Loads::of_motion`], so that the bits are the same.
+    pub fn motion_loads(&self) -> impl Iterator<Item = f32> + '_ {
+        let (mut turns, mut displacements) = (P::splat(0.0), P::splat(0.0));
+        P::run(SumMotion { batch: self, turns: &mut turns, displacements: &mut displacements });
+        (0..self.lanes.len()).map(move |cloth| {
             let fabric = &self.fabric_of(cloth).fabric;
             let tick = self.probe_motion.tick;
-            let of_cloth = |sum: &P| sum.lanes()[cloth];
-            let (turns, displacements) = (of_cloth(&sums.turns), of_cloth(&sums.displacements));
-            let strains = sums.strains.each_ref().map(of_cloth);
-            let tension = |state: &LaneState| Loads::of_strains(fabric, &state.material, strains);
-            ProbeLoads {
-                motion: Loads::of_probes(fabric, turns, displacements, tick),
-                tension: state.as_ref().map_or(0.0, tension),
-            }
+            Loads::of_probes(fabric, turns.lanes()[cloth], displacements.lanes()[cloth], tick)
         })
+    }
+
+    /// Load of the pins that draw a cloth out, m/s².
+    pub fn tension_load(&self, cloth: usize, state: &LaneState) -> f32 {
+        let fabric = &self.fabric_of(cloth).fabric;
+        Loads::of_pin_strain(fabric, &state.material, &state.pin_strain)
     }
 
     /// Load of the colliders that pressed a cloth in this tick, m/s².
@@ -88,61 +87,30 @@ impl<P: Pack, Y: Layout<P>> Kernel<P> for NoteProbes<'_, P, Y> {
     }
 }
 
-/// Loads of a cloth that its probes tell, m/s².
-pub(crate) struct ProbeLoads {
-    pub motion: f32,
-    pub tension: f32,
-}
-
-/// Sums over the probes in each lane.
-struct ProbeSums<P> {
-    /// Squared turns of the probes, rad².
-    turns: P,
-    /// Squared displacements of their first ends, m².
-    displacements: P,
-    /// Strains along warp and weft.
-    strains: [P; 2],
-}
-
-impl<P: Pack> Default for ProbeSums<P> {
-    fn default() -> Self {
-        let zero = || P::splat(0.0);
-        Self { turns: zero(), displacements: zero(), strains: [zero(), zero()] }
-    }
-}
-
-/// Kernel that sums over the probes. Products are not fused with sums, as they are not in [`Loads::of_motion`].
-struct SumProbes<'a, P: Pack, Y: Layout<P>> {
+/// Kernel that sums, in each lane, the squared turns of all probes times their inverse squared lengths, and the squared
+/// displacements of their first ends. Products are not fused with sums, as they are not in [`Loads::of_motion`].
+struct SumMotion<'a, P: Pack, Y: Layout<P>> {
     batch: &'a LaneBatch<P, Y>,
-    sums: &'a mut ProbeSums<P>,
+    turns: &'a mut P,
+    displacements: &'a mut P,
 }
 
-impl<P: Pack, Y: Layout<P>> Kernel<P> for SumProbes<'_, P, Y> {
+impl<P: Pack, Y: Layout<P>> Kernel<P> for SumMotion<'_, P, Y> {
     #[inline(always)]
     fn run<L: Lane<Pack = P>>(self, token: L::Token) {
-        let zero = L::splat(token, 0.0);
-        let (mut turns, mut displacements, mut strains) = (zero, zero, [zero; 2]);
+        let (mut turns, mut displacements) = (L::splat(token, 0.0), L::splat(token, 0.0));
         let starts = &self.batch.probe_motion.starts;
         for (index, (probe, start)) in self.batch.fabric.probes().iter().zip(starts).enumerate() {
             let [first, second] = probe.particles;
-            let ends = [first, second].map(|end| self.batch.end::<L>(token, end));
-            let from = ends[0] - V3::load(token, &start[0]);
-            let to = ends[1] - V3::load(token, &start[1]);
-            let inverse_squared = self.batch.inverse_squared_length::<L>(token, index);
-            turns = turns + squared(to - from) * inverse_squared;
-            displacements = displacements + squared(from);
-            let stretch = (squared(ends[1] - ends[0]) * inverse_squared).sqrt();
-            let strain = &mut strains[usize::from(!probe.is_warp)];
-            *strain = *strain + (stretch - L::splat(token, 1.0)).max(zero);
+            let from = self.batch.end::<L>(token, first) - V3::load(token, &start[0]);
+            let to = self.batch.end::<L>(token, second) - V3::load(token, &start[1]);
+            let turn = to - from;
+            let squared_turn = turn.x * turn.x + turn.y * turn.y + turn.z * turn.z;
+            let squared_displacement = from.x * from.x + from.y * from.y + from.z * from.z;
+            turns = turns + squared_turn * self.batch.inverse_squared_length::<L>(token, index);
+            displacements = displacements + squared_displacement;
         }
-        turns.store(&mut self.sums.turns);
-        displacements.store(&mut self.sums.displacements);
-        strains.into_iter().zip(&mut self.sums.strains).for_each(|(sum, to)| sum.store(to));
+        turns.store(self.turns);
+        displacements.store(self.displacements);
     }
-}
-
-/// The square of a vector's length, without fused products.
-#[inline(always)]
-fn squared<L: Lane>(of: V3<L>) -> L {
-    of.x * of.x + of.y * of.y + of.z * of.z
 }

@@ -24,7 +24,7 @@ pub struct LaneSurface {
     pub is_finite: bool,
     /// Acceleration of links that turned in the last tick, see [`Loads::of_motion`](crate::Loads::of_motion), m/s².
     pub motion: f32,
-    /// Acceleration by tension at the end of the last tick, see [`Loads::of_tension`](crate::Loads::of_tension), m/s².
+    /// Acceleration by tension, see [`ClothBatch::tension_load`](crate::ClothBatch::tension_load), m/s².
     pub tension: f32,
     /// Load by colliders that pressed the cloth in the last tick, see
     /// [`ClothBatch::contact_load`](crate::ClothBatch::contact_load), m/s².
@@ -43,10 +43,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn copy_surfaces(&self, into: &mut [LaneSurface]) {
         let particles = self.fabric.particle_count();
         let surfaces = &mut into[..self.lanes.len()];
-        for ((cloth, surface), loads) in surfaces.iter_mut().enumerate().zip(self.probe_loads()) {
+        for ((cloth, surface), motion) in surfaces.iter_mut().enumerate().zip(self.motion_loads()) {
             if let Some(state) = &self.lanes[cloth] {
-                surface.motion = loads.motion;
-                surface.tension = loads.tension;
+                surface.motion = motion;
+                surface.tension = self.tension_load(cloth, state);
                 surface.contacts = self.contact_load(cloth, state);
                 surface.is_finite = true;
                 surface.positions.resize(particles, Vec3::ZERO);

@@ -223,6 +223,15 @@ impl ClothBatch {
         })
     }
 
+    /// Load of the pins of a lane's cloth, for [`Loads::tension`](crate::Loads::tension), as of the last tick, see
+    /// [`Loads::of_pins`](crate::Loads::of_pins), m/s²; zero for an empty lane.
+    #[must_use]
+    pub fn tension_load(&self, lane: usize) -> f32 {
+        with_batch!(&self.0, batch => {
+            batch.lanes[lane].as_ref().map_or(0.0, |state| batch.tension_load(lane, state))
+        })
+    }
+
     /// What a lane's cloth did in the last tick to each collider that [`reports_as`](Collider::reports_as) a number, in
     /// the order of the colliders.
     pub fn reactions(&self, lane: usize) -> impl Iterator<Item = ContactReaction> {

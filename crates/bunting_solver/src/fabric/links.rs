@@ -29,14 +29,12 @@ pub struct Link {
     pub family: LinkFamily,
 }
 
-/// A link by which the motion and the tension of a cloth are measured.
+/// A link by which the motion of a cloth is measured.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Probe {
     pub particles: [u32; 2],
     /// One over the square of its length at rest, 1/m².
     pub inverse_length_squared: f32,
-    /// Whether it is one of the warp, else of the weft.
-    pub is_warp: bool,
 }
 
 /// Most [`Probe`]s of a fabric. Fewer: the root mean square over all links is missed by more than a tenth. More: a
@@ -208,7 +206,6 @@ impl Links {
         let probe = |link: &&Link| Probe {
             particles: link.particles,
             inverse_length_squared: 1.0 / (link.rest_length * link.rest_length),
-            is_warp: link.family == LinkFamily::Warp,
         };
         straight.iter().step_by(distance).map(probe).collect()
     }

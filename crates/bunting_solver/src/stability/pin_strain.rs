@@ -34,6 +34,11 @@ struct Pair {
 }
 
 impl PinStrain {
+    /// Mean of the strains about all particles.
+    pub fn mean(&self) -> f32 {
+        self.of_particles.iter().sum::<f32>() / self.of_particles.len().max(1) as f32
+    }
+
     /// The strain of a cloth with its particles at these positions, m.
     pub fn of(fabric: &Fabric, positions: &[Vec3]) -> Self {
         if fabric.are_pins_at_rest(positions) || are_pins_near(fabric, positions) {

@@ -23,7 +23,7 @@ pub enum EffortCause {
     Frame,
     /// Its own motion.
     Motion,
-    /// Tension by pins that are too far apart, or by wind in cloth that can't yield.
+    /// Tension by pins that are farther apart than the cloth between them is long.
     Tension,
     /// Colliders that it is pressed against.
     Contacts,

@@ -8,8 +8,8 @@
 //! - *Air and frame*: (½ρ C_t u²/σ + |a| + (Ω² + |dΩ/dt|) L)/3, with u the wind relative to the frame, a the
 //!   acceleration of the frame's origin and Ω its angular velocity. Along a streaming cloth tension is that of skin
 //!   friction. One third, since vibration is seen on cloth that hangs still only.
-//! - *Tension*: T/(σ L), with the mean tension T of warp and weft, by their strains: of pins that draw a cloth out or twist it,
-//!   of wind in a sail. Links that are compressed buckle, and count as slack.
+//! - *Tension*: T/(σ L), with the tension T = Y ε by pins that are too far apart, as they strain a cloth in every state: ε in the mean of its
+//!   particles.
 //! - *Motion*: ¾ ω² l, with ω the rate at which links turn (root mean square). Directions of links are frozen in a
 //!   pass, and what a turn leaves unsolved is carried along the L/l links of a chain: N = T ω √(L/l).
 //! - *Contacts*: what chains pull into a collider in a substep h, contacts push out again, and links there are strained
@@ -28,6 +28,7 @@ use glam::Vec3;
 use super::effort_class::{EffortCause, EffortClass};
 use crate::constants::{BETA, FREE_LENGTH};
 use crate::fabric::{Fabric, FabricMaterial};
+use crate::stability::pin_strain::PinStrain;
 use crate::step::Drive;
 use crate::step::frame::FrameMotion;
 
@@ -56,11 +57,7 @@ const FLUNG_RADIUS: f32 = 0.2;
 /// Substeps in a second of cloth that is flung, 1/s. Fewer: whips gain energy. More: the change itself does.
 const FLUNG_RATE: f32 = 300.0;
 
-/// Time over which tension is averaged, s. Shorter: cloth that flutters takes more substeps at each crack. Longer: cloth that is
-/// drawn out is too heavy for as long.
-const MEAN_OF_TENSION: f32 = 0.25;
-
-/// Greatest stiffness by which a strain counts as tension, N/m. Larger: the rounding of positions counts.
+/// Greatest stiffness by which a strain counts as tension, N/m. Larger: pins that are apart by rounding are tension.
 const STIFFEST: f32 = 1e6;
 
 /// The highest class that air, frame and motion lead to. Lower: whips gain energy. Higher: flung flags whose links
@@ -84,7 +81,7 @@ pub struct Loads {
     pub frame: f32,
     /// Turn of the links, see [`of_motion`](Self::of_motion).
     pub motion: f32,
-    /// Mean tension, see [`note_tension`](Self::note_tension).
+    /// Tension by pins, see [`of_pins`](Self::of_pins).
     pub tension: f32,
     /// Pressure of colliders, see [`ClothBatch::contact_load`](crate::ClothBatch::contact_load).
     pub contacts: f32,
@@ -131,41 +128,28 @@ impl Loads {
         Self::of_probes(fabric, turns, displacements, tick)
     }
 
-    /// Takes the tension at the end of a tick of `tick` seconds into the mean over time, from [`of_tension`](Self::of_tension).
-    pub fn note_tension(&mut self, now: f32, tick: f32) {
-        self.tension += (now - self.tension) * (tick / MEAN_OF_TENSION).min(1.0);
-    }
-
-    /// The acceleration T/(σ L) of a fabric's cloth of length L with the mean tension T of warp and weft at positions of its
-    /// particles, m/s². Links that are compressed count as slack.
+    /// The acceleration T/(σ L) of a fabric's cloth of length L with the tension T by pins that are farther apart than the cloth between
+    /// them is long, at positions of its particles, m/s². The paths between such pins are searched.
     #[must_use]
-    pub fn of_tension(fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> f32 {
+    pub fn of_pins(fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> f32 {
         if positions.len() != fabric.particle_count() {
             return 0.0;
         }
-        let mut strains = [0.0; 2];
-        for probe in fabric.probes() {
-            let [from, to] = probe.particles.map(|particle| positions[particle as usize]);
-            let squared = (to - from).length_squared() * probe.inverse_length_squared;
-            strains[usize::from(!probe.is_warp)] += (squared.sqrt() - 1.0).max(0.0);
-        }
-        Self::of_strains(fabric, material, strains)
+        Self::of_pin_strain(fabric, material, &PinStrain::of(fabric, positions))
     }
 
-    /// The same from the sums of the strains of the probes along warp and weft.
-    pub(crate) fn of_strains(
+    /// The same, given the strain by pins.
+    pub(crate) fn of_pin_strain(
         fabric: &Fabric,
         material: &FabricMaterial,
-        [warp, weft]: [f32; 2],
+        strain: &PinStrain,
     ) -> f32 {
-        let probes = fabric.probes().len();
-        if probes == 0 || fabric.reach() <= 0.0 {
+        let mean = strain.mean();
+        if mean <= 0.0 || fabric.reach() <= 0.0 {
             return 0.0;
         }
-        let [of_warp, of_weft] = [material.warp_stiffness, material.weft_stiffness]
-            .map(|stiffness| stiffness.min(STIFFEST));
-        let tension = (of_warp * warp + of_weft * weft) / probes as f32;
-        tension / (material.area_density * fabric.reach())
+        let stiffest = material.warp_stiffness.max(material.weft_stiffness).min(STIFFEST);
+        stiffest * mean / (material.area_density * fabric.reach())
     }
 
     /// The load κ p l/L of colliders that press the cloth with an acceleration p, m/s².
@@ -324,8 +308,9 @@ mod tests {
     }
 
     #[test]
-    fn cloth_that_is_drawn_out_is_tense_and_slack_cloth_is_not() {
-        let fabric = flag(33);
+    fn cloth_that_its_pins_draw_out_is_tense_and_other_cloth_is_not() {
+        let grid = FabricBuilder::grid(Grid::new(33, 33, 1.0, 1.0));
+        let fabric = grid.pin_where(|_, uv| uv.x == 0.0 || uv.x == 1.0).build().expect("good");
         let material = FabricMaterial {
             warp_stiffness: 2e3,
             weft_stiffness: 500.0,
@@ -335,27 +320,12 @@ mod tests {
         let load = |stretch: Vec3| {
             let to = |at: &Vec3| *at * stretch;
             let drawn: Vec<Vec3> = fabric.rest_positions().iter().map(to).collect();
-            Loads::of_tension(&fabric, &material, &drawn)
+            Loads::of_pins(&fabric, &material, &drawn)
         };
-        // Half of all links are of the warp.
-        let expected = 0.5 * 2e3 * 0.02 / (0.1 * fabric.reach());
-        let by_warp = load(Vec3::new(1.02, 1.0, 1.0));
-        assert!((by_warp / expected - 1.0).abs() < 0.1, "{by_warp} {expected}");
-        let by_weft = load(Vec3::new(1.0, 1.02, 1.0));
-        assert!((by_weft / (0.25 * expected) - 1.0).abs() < 0.1, "{by_weft} {expected}");
-        assert!(load(Vec3::new(0.9, 0.9, 1.0)) == 0.0 && load(Vec3::ONE) < 1e-2);
-        let cause = Loads { tension: by_warp, ..Loads::default() }.class().1;
-        assert_eq!(cause, EffortCause::Tension);
-    }
-
-    #[test]
-    fn tension_is_averaged_over_time() {
-        let mut loads = Loads::default();
-        loads.note_tension(100.0, TICK);
-        assert!(loads.tension > 0.0 && loads.tension < 10.0);
-        (0..120).for_each(|_| loads.note_tension(100.0, TICK));
-        assert!((loads.tension - 100.0).abs() < 0.1, "{}", loads.tension);
-        loads.note_tension(40.0, 10.0);
-        assert_eq!(loads.tension, 40.0);
+        let tension = load(Vec3::new(1.02, 1.0, 1.0));
+        let expected = 2e3 * 0.02 / (0.1 * fabric.reach());
+        assert!((tension / expected - 1.0).abs() < 0.01, "{tension} {expected}");
+        assert_eq!([load(Vec3::ONE), load(Vec3::splat(0.9))], [0.0; 2]);
+        assert_eq!(Loads { tension, ..Loads::default() }.class().1, EffortCause::Tension);
     }
 }

@@ -2,6 +2,7 @@
 
 mod build;
 mod coarser;
+mod mesh_point;
 mod on_surface;
 mod points;
 mod rectangle;
@@ -12,7 +13,7 @@ mod source;
 mod validate;
 
 pub use coarser::CoarserMesh;
-pub use points::MeshPoint;
+pub use mesh_point::MeshPoint;
 pub use repair::MeshRepair;
 pub use resampled::{Resampled, Resolution};
 pub use source::FabricBuilder;

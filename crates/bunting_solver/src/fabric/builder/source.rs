@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use glam::{Vec2, Vec3};
 
-use super::points::MeshPoint;
+use super::mesh_point::MeshPoint;
 use crate::fabric::grid::Grid;
 use crate::fabric::weld::{Weld, default_distance, weld};
 

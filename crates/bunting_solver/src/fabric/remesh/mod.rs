@@ -15,6 +15,7 @@ mod node_rows;
 mod phases;
 mod place;
 mod places;
+mod point_on;
 mod points;
 mod refined;
 mod relaxation;
@@ -40,7 +41,7 @@ use super::interpolation::{Height, Interpolation, Term};
 use super::mesh::RestMesh;
 use super::topology::{self, Edge};
 
-pub(super) use self::points::PointOn;
+pub(super) use self::point_on::PointOn;
 pub(super) use self::refined::Refined;
 pub(super) use self::source::Source;
 pub(super) use self::triangle::nearest_weights;

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::point_on::PointOn;
 use super::refined::{Halving, Pin, Vertex};
 use super::triangle::barycentric;
 use crate::fabric::interpolation::Term;
@@ -9,15 +10,6 @@ use crate::fabric::topology::ascending;
 
 /// Weight of a corner that is rounding: with less of one a point lies on the edge opposite to it, with less of two at the third one.
 const ROUNDING: f64 = 1e-5;
-
-/// A point on a triangle of a mesh.
-#[derive(Clone, Copy, Debug)]
-pub(in crate::fabric) struct PointOn {
-    pub triangle: u32,
-    /// The weights of its corners, with the sum 1.
-    pub weights: [f64; 3],
-    pub is_pinned: bool,
-}
 
 impl Halving<'_> {
     /// Makes a vertex of a point before edges are halved, or finds the one that is there.

@@ -5,7 +5,7 @@ use std::collections::{BinaryHeap, HashMap};
 
 use glam::{Vec2, Vec3};
 
-use super::points::PointOn;
+use super::point_on::PointOn;
 use crate::fabric::interpolation::Term;
 use crate::fabric::mesh::{RestMesh, Surface};
 use crate::fabric::topology::{self, Edge, ascending};
