@@ -51,9 +51,9 @@ const BOTH_ORDERS: Order = [
     &[Bending, LinesBothWays, Tethers, Sweep, Overlong],
 ];
 
-/// Most substeps in a tick with which a grid is solved in one order. Fewer: fine grids in a storm pay for the second one without need.
-/// More: stiff bands that are twisted vibrate for ever.
-const MOST_IN_ONE_ORDER: u32 = 8;
+/// Most substeps in a tick with which a grid is solved in one order. Fewer: a curtain of 4 m lets a ball of 20 m/s stand out of it by 41 cm in
+/// place of 33. More: stiff bands that are twisted vibrate for ever.
+const MOST_IN_ONE_ORDER: u32 = 16;
 
 /// The order of a fabric's cloths in ticks of a number of substeps.
 pub(crate) fn order_of(fabric: &Fabric, substeps: u32) -> Order {

@@ -22,7 +22,7 @@ const EVERY_SCHEME: [StepSettings; 5] = [
     StepSettings::yarns(3),
     StepSettings { passes: 2, ..StepSettings::yarns(2) },
     // Both orders of the stages.
-    StepSettings::yarns(9),
+    StepSettings::yarns(17),
 ];
 
 fn flag() -> Arc<Fabric> {

@@ -16,7 +16,7 @@ const SETTINGS: [StepSettings; 3] = [
     StepSettings::yarns(3),
     StepSettings { passes: 2, ..StepSettings::yarns(2) },
     // Both orders of the stages.
-    StepSettings::yarns(9),
+    StepSettings::yarns(17),
 ];
 
 /// Which particles are pinned.
