@@ -25,9 +25,14 @@ impl Need {
         Self { limits, ..Self::default() }
     }
 
-    /// Substeps of a cloth that begins in a state.
+    /// The same for a cloth that begins with its particles at these positions, m.
     #[must_use]
-    pub fn from(self, fabric: &Fabric, material: &FabricMaterial, positions: &[Vec3]) -> Self {
+    pub fn beginning_at(
+        self,
+        fabric: &Fabric,
+        material: &FabricMaterial,
+        positions: &[Vec3],
+    ) -> Self {
         let tension = Loads::of_pins(fabric, material, positions);
         Self { loads: Loads { tension, ..self.loads }, ..self }
     }

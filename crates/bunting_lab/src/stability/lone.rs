@@ -38,14 +38,14 @@ impl Lone {
         batch.insert(start, material).expect("a good cloth");
         batch.drive(0, drive).expect("a good drive");
         let positions = start.positions.clone();
-        let need = Need::default().from(fabric, &material, &positions);
+        let need = Need::default().beginning_at(fabric, &material, &positions);
         Self { batch, positions, material, drive, need }
     }
 
     /// The cloth within other limits.
     pub fn within(self, limits: StepLimits) -> Self {
         let need = Need::within(limits);
-        let need = need.from(self.batch.fabric(), &self.material, &self.positions);
+        let need = need.beginning_at(self.batch.fabric(), &self.material, &self.positions);
         Self { need, ..self }
     }
 

@@ -24,8 +24,7 @@ const MOST_IN_SIXTEEN: usize = 65 * 65;
     reflect(Debug, PartialEq, Hash, Clone)
 )]
 pub enum LaneCount {
-    /// One cloth. A cloth on a grid is spread across the lanes of a vector, and so is a mesh that is flat at rest and fills
-    /// a rectangle; other meshes are solved in scalar code.
+    /// One cloth, whose lines are spread across the lanes of a vector.
     One,
     /// Eight cloths: full speed with AVX2.
     #[default]

@@ -15,7 +15,7 @@ pub(super) const LEAST_DISTANCE: f64 = 0.6;
 /// The same from a place on the border, on which distances are measured along it, too.
 const LEAST_AT_BORDER: f64 = 0.1;
 
-/// The same from a place in the middle of a strip, in widths of the strip, which are two cells there.
+/// The same from a place in the middle of a strip, in widths of the strip. From half a width on, its own borders are too near.
 const LEAST_IN_STRIP: f64 = 0.4;
 
 /// The same between pins. Larger: nodes beside a pin that is none do not follow it.
