@@ -14,6 +14,7 @@ use crate::batch::side_by_side::SideBySide;
 use crate::constraints::rest_bends::RestBendPacks;
 use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
+use crate::contact::collider_packs::ColliderPacks;
 use crate::fabric::{CHAINS_PER_PAIR, Fabric};
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
@@ -85,6 +86,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub parameters: Parameters<P>,
     pub clock: Clock,
     pub probe_motion: ProbeMotion<P>,
+    /// Colliders near the cloths in this tick, as far as they are solved in lanes.
+    pub collider_packs: Vec<ColliderPacks<P>>,
     /// The guides of the cloths, if any cloth has them.
     pub guides: Option<Box<Guides<P>>>,
     /// Wind at the particles, where it differs from particle to particle.
@@ -152,6 +155,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             parameters: Parameters::new(),
             clock: Clock::default(),
             probe_motion: ProbeMotion::default(),
+            collider_packs: Vec::new(),
             guides: None,
             local_wind: None,
             fabric,

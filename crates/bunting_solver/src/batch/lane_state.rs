@@ -81,9 +81,14 @@ impl LaneState {
         }
     }
 
+    /// Whether the cloth may touch colliders in this tick.
+    pub fn is_near_colliders(&self) -> bool {
+        self.contacts.iter().any(|candidates| !candidates.is_empty())
+    }
+
     /// Whether something may act on single particles in this tick.
     pub fn is_acted_on(&self) -> bool {
-        self.contacts.iter().any(|candidates| !candidates.is_empty())
+        self.is_near_colliders()
             || self.self_contacts.is_some()
             || self.guides.is_some()
             || self.local_wind.is_some()

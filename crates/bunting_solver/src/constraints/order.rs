@@ -1,4 +1,5 @@
-//! The order of the stages in which a substep solves the constraints of a cloth.
+//! The order of the stages in which a substep solves the constraints of a cloth. Contacts come after each pass over lines
+//! (`contact/passes.rs`), and after all stages.
 //!
 //! Each solve of a line is a projection, self-adjoint in the metric of the masses, with eigenvalues from 0 to 1. A sequence of
 //! solves that reads the same backwards is self-adjoint, too, and a product of two such sequences still has real eigenvalues from 0 to

@@ -1,6 +1,11 @@
 //! What of a cloth may touch a collider in a tick.
 
+use glam::Vec3;
+
 use crate::fabric::Fabric;
+
+/// Particles that a collider has pushed in a substep so far, and their displacements, m, in the cloth's frame.
+pub(crate) type Pushed = Vec<(u32, Vec3)>;
 
 /// What of a cloth may touch a collider in a tick.
 #[derive(Clone, Debug, Default)]
@@ -11,6 +16,15 @@ pub(crate) struct Candidates {
     pub corners: Vec<u32>,
     /// Triangles that features of the shape may cut between the particles, as indices of corners.
     pub triangles: Vec<[u32; 3]>,
+    /// Whether the particles are those of a set of colliders in lanes.
+    pub is_in_lanes: bool,
+    /// Whether contacts are solved at the end of a substep alone, where passes would disturb the cloth: around pins within the collider, since
+    /// pushes that draw cloth off its pins are taken back (`drawn_out.rs`), and beside triangles, which only the end moves.
+    pub wait_for_end: bool,
+    /// Those of the particles that touched the collider when this was last computed in this tick; all of them before.
+    pub touching: Vec<u32>,
+    /// What the collider has pushed particles after the passes of this substep.
+    pub pushed: Pushed,
 }
 
 impl Candidates {
@@ -22,6 +36,10 @@ impl Candidates {
         self.particles.clear();
         self.corners.clear();
         self.triangles.clear();
+        self.is_in_lanes = false;
+        self.wait_for_end = false;
+        self.touching.clear();
+        self.pushed.clear();
     }
 
     /// Adds the selected triangles, given as their particles, unless all of these are pinned.

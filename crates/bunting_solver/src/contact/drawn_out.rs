@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::{Layout, Positions};
-use crate::contact::solve::{Contact, Push};
+use crate::contact::substep::{Contact, Push};
 use crate::fabric::Tether;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::set_lane3;

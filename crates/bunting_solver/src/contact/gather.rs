@@ -1,5 +1,6 @@
 //! The particles and triangles that may touch each collider in a tick.
 
+use glam::Vec3;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 
 use crate::batch::lane_batch::LaneBatch;
@@ -7,7 +8,10 @@ use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::contact::bounds::{dragged_by_anchors, moved_by_forces};
 use crate::contact::candidates::Candidates;
+use crate::contact::closed_form::ClosedForm;
 use crate::contact::collider::Collider;
+use crate::contact::collider_packs::{ColliderPacks, Member};
+use crate::contact::lane_shapes::Kind;
 use crate::contact::near::swept_box;
 use crate::contact::obstacle::Obstacle;
 use crate::contact::pressing::Pressing;
@@ -21,6 +25,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn gather_contacts(&mut self, tick: f32) {
         let positions = self.positions.packs();
         let mut boxes = SweptBoxes::default();
+        let mut sets = Vec::new();
         let (mut at, mut velocities) = (Vec::new(), Vec::new());
         for (cloth, state) in self.lanes.iter_mut().enumerate() {
             let Some(state) = state else { continue };
@@ -46,11 +51,58 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 dragged: dragged_by_anchors(state, |particle| at[particle as usize]),
             };
             boxes.set(&at, &velocities, &sweep);
-            for (collider, candidates) in state.colliders.iter().zip(&mut state.contacts) {
+            for (index, (collider, candidates)) in
+                state.colliders.iter().zip(&mut state.contacts).enumerate()
+            {
                 gather_candidates(&self.fabric, collider, &boxes, candidates);
+                candidates.wait_for_end = !candidates.triangles.is_empty()
+                    || !candidates.is_empty() && contains_pin(&self.fabric, collider, &at);
+                let member = Member { cloth, collider: index };
+                candidates.is_in_lanes = !candidates.wait_for_end
+                    && add_to_sets(
+                        &mut sets,
+                        &self.layout,
+                        member,
+                        collider,
+                        &candidates.particles,
+                    );
             }
         }
+        sets.sort_by_key(|set: &ColliderPacks<P>| set.key);
+        self.collider_packs = sets;
     }
+}
+
+/// Whether a pin of a fabric is within a collider at the start of the tick, given the positions of particles, m.
+fn contains_pin(fabric: &Fabric, collider: &Collider, positions: &[Vec3]) -> bool {
+    let pose = collider.pose_at(0.0);
+    let mut pins = fabric.pins().iter().map(|pin| positions[pin.particle as usize]);
+    pins.any(|pin| collider.shape.contains_local_point(pose.inverse_transform_point(pin)))
+}
+
+/// Adds the particles that may touch a collider to the set of its kind, if there are lanes for it. Returns whether there are.
+fn add_to_sets<P: Pack, Y: Layout<P>>(
+    sets: &mut Vec<ColliderPacks<P>>,
+    layout: &Y,
+    member: Member,
+    collider: &Collider,
+    particles: &[u32],
+) -> bool {
+    let form = ClosedForm::of(&*collider.shape.0);
+    let Some(kind) = form.and_then(|form| Kind::of(&form)).filter(|_| !particles.is_empty()) else {
+        return false;
+    };
+    let key = (member.collider, kind);
+    let found = sets.iter().position(|set| set.key == key);
+    let index = found.unwrap_or_else(|| {
+        sets.push(ColliderPacks::new(key, layout.pack_count()));
+        sets.len() - 1
+    });
+    sets[index].members.push(member);
+    for &particle in particles {
+        sets[index].add(layout.locate(particle as usize, member.cloth));
+    }
+    true
 }
 
 /// Gathers what may touch a collider: particles within reach of the box that the collider sweeps, and triangles whose
@@ -70,6 +122,7 @@ fn gather_candidates(
     let swept = Aabb::new(swept.mins - reach, swept.maxs + reach);
     boxes.meeting(&swept, &mut candidates.particles);
     candidates.particles.retain(|&particle| !fabric.is_pinned(particle as usize));
+    candidates.touching.clone_from(&candidates.particles);
     if collider.features && Obstacle::can_cut(&*collider.shape.0) {
         let is_near = |[a, b, c]: [usize; 3]| {
             let around = boxes.get(a).merged(&boxes.get(b)).merged(&boxes.get(c));

@@ -4,7 +4,8 @@
 use glam::{Quat, Vec3};
 
 use crate::contact::collider::Collider;
-use crate::contact::obstacle::{Obstacle, Plane};
+use crate::contact::obstacle::Obstacle;
+use crate::contact::plane::Plane;
 use crate::fabric::Fabric;
 
 /// Number of sweeps over the triangles. Fewer: a triangle that is cut in two places remains cut in one.

@@ -8,9 +8,11 @@ use parry3d::query::{PointQuery, PointQueryWithLocation};
 use parry3d::shape::{HeightField, Shape, TriMeshFlags, Triangle};
 
 use crate::constants::{LEAST_CLEARANCE, LEAST_LENGTH};
+use crate::contact::closed_form::ClosedForm;
 use crate::contact::collider::Collider;
 use crate::contact::ground;
 use crate::contact::nearest::nearest_point;
+use crate::contact::plane::Plane;
 
 /// Fraction of the particles' clearance that triangles keep. Smaller: cuts that the search misses are
 /// visible. Larger: triangles close to an edge are lifted without need.
@@ -38,29 +40,6 @@ const LEAST_RESPONSE: f32 = 0.1;
 /// Larger: each query visits more cells.
 const GROUND_REACH: f32 = 0.1;
 
-/// The plane of a shape's surface that is nearest to a point, in the shape's frame.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Plane {
-    /// Unit normal, out of the shape.
-    pub normal: Vec3,
-    /// Distance of the plane from the origin along its normal, m.
-    pub offset: f32,
-    /// Distance of the point from the surface, m; negative inside.
-    pub distance: f32,
-}
-
-impl Plane {
-    /// Least height of a triangle's corners above the plane, m.
-    pub fn least_height(&self, corners: &[Vec3; 3]) -> f32 {
-        corners.iter().map(|corner| self.height(*corner)).fold(f32::INFINITY, f32::min)
-    }
-
-    /// Height of a point above the plane, m.
-    pub fn height(&self, at: Vec3) -> f32 {
-        self.normal.dot(at) - self.offset
-    }
-}
-
 /// A point of a triangle that is nearer to a shape than permitted, and must move.
 pub(super) struct Cut {
     /// Barycentric coordinates in the triangle.
@@ -87,6 +66,7 @@ impl Cut {
 /// A shape that triangles do not cut.
 pub(super) struct Obstacle<'a> {
     shape: &'a dyn Shape,
+    closed_form: Option<ClosedForm>,
     /// The shape as ground, if it is a heightfield.
     ground: Option<&'a HeightField>,
     /// Whether a plane of the surface is taken to have the whole shape below it. This is exact for convex shapes. Ground
@@ -118,6 +98,7 @@ impl<'a> Obstacle<'a> {
         let kept = KEPT * (thickness + collider.margin).max(LEAST_CLEARANCE);
         Self {
             shape,
+            closed_form: ClosedForm::of(shape),
             ground: collider.shape.as_heightfield(),
             planes_separate: shape.as_trimesh().is_none(),
             is_convex: shape.is_convex(),
@@ -144,6 +125,9 @@ impl<'a> Obstacle<'a> {
 
     /// The plane of the surface nearest to a point; none on the surface itself, and far above ground.
     pub fn nearest_plane(&self, at: Vec3) -> Option<Plane> {
+        if let Some(form) = &self.closed_form {
+            return form.plane(at);
+        }
         let nearest = match self.ground {
             Some(field) => ground::project(field, at, GROUND_REACH)?,
             None => nearest_point(self.shape, at),

@@ -5,7 +5,7 @@ use glam::Vec3;
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::layout::Layout;
 use crate::contact::cloths::group::ClothGroup;
-use crate::contact::solve::Contact;
+use crate::contact::substep::Contact;
 use crate::simd::lane::Pack;
 
 /// Distance beyond the clearance, or the distance of layers, up to which cloth touches, m: other contacts and rounding lift it.
@@ -43,7 +43,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let mut positions = Vec::new();
         self.copy_positions(cloth, &mut positions);
         for (collider, candidates) in state.colliders.iter().zip(&state.contacts) {
-            let contact = Contact::new(state, collider, &self.clock).widened(TOUCHING);
+            let contact = Contact::new(&state.material, &state.drive, collider, &self.clock)
+                .widened(TOUCHING);
             let particles = candidates.particles.iter().chain(&candidates.corners);
             let mut particles: Vec<u32> = particles.copied().collect();
             particles.sort_unstable();

@@ -40,14 +40,22 @@ impl Reach {
         Self { into_collider: [start * to_old, end], bounds, clearance: clearance + SLACK }
     }
 
-    /// Whether a particle that moves between two points in the cloth's frame cannot touch the collider.
-    pub fn is_missed(&self, start: Vec3, end: Vec3) -> bool {
+    pub fn to_collider(&self) -> &[Affine3A; 2] {
+        &self.into_collider
+    }
+
+    /// Both ends of the path of a particle that moves between two points in the cloth's frame, in the collider's frame, m, so that
+    /// the path is relative to the surface; the first end is taken before the cloth's frame moved. None if the particle cannot
+    /// touch the collider.
+    #[inline]
+    pub fn path(&self, start: Vec3, end: Vec3) -> Option<(Vec3, Vec3)> {
         let [at_start, at_end] = &self.into_collider;
         let from = at_start.transform_point3a(start.into());
         let to = at_end.transform_point3a(end.into());
         let [least, greatest] = self.bounds;
         let outside = (least - to).max(to - greatest).max_element();
-        outside > self.clearance + LONGER * from.distance(to)
+        let is_missed = outside > self.clearance + LONGER * from.distance(to);
+        (!is_missed).then(|| (from.into(), to.into()))
     }
 }
 
@@ -92,7 +100,7 @@ mod tests {
                 let at = path[0].lerp(path[1], part as f32 / 20.0);
                 shape.distance_to_local_point(at, true) < clearance
             });
-            let is_missed = reach.is_missed(from, from + way);
+            let is_missed = reach.path(from, from + way).is_none();
             assert!(!(touches && is_missed), "{path:?}");
             touching += usize::from(touches);
             missed += usize::from(is_missed);

@@ -1,31 +1,24 @@
 //! Contacts: particles and triangles keep their clearance from colliders, and slide along them with friction.
 
-use glam::Vec3;
-use parry3d::math::Pose;
-
 use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
-use crate::constants::LEAST_CLEARANCE;
 use crate::contact::candidates::Candidates;
-use crate::contact::collider::Collider;
-use crate::contact::ground::RISE_SPEED;
-use crate::contact::obstacle::Obstacle;
 use crate::contact::pressing::Pressing;
-use crate::contact::reach::Reach;
 use crate::contact::reaction::ReactionSum;
-use crate::contact::surface::{Projection, Surface};
-use crate::contact::sweep::{Corner, solve_triangles};
+use crate::contact::substep::{Contact, Push};
+use crate::contact::surface::Projection;
+use crate::contact::sweep::Corner;
 use crate::contact::touch::Touch;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
-use crate::step::clock::Clock;
-use crate::step::frame::FrameStep;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Projects every candidate of contacts with colliders once (particles, then triangles), and keeps layers of each
     /// cloth apart that has contacts with itself.
     pub fn solve_contacts(&mut self) {
+        self.take_back_all_pushed();
+        self.solve_sets();
         for cloth in 0..self.lanes.len() {
             // The lane's state is taken out, so that the particles of the batch can be written.
             let touches = |state: &mut LaneState| {
@@ -37,7 +30,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                         self.solve_layers(cloth, &mut state, &mut contacts);
                         state.self_contacts = Some(contacts);
                     }
-                    None => self.solve_colliders(cloth, &mut state),
+                    None => self.solve_colliders_where(cloth, &mut state, |it| !it.is_in_lanes),
                 }
                 self.lanes[cloth] = Some(state);
             }
@@ -46,48 +39,76 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 
     /// Projects every candidate of a cloth's contacts with colliders once.
     pub(in crate::contact) fn solve_colliders(&mut self, cloth: usize, state: &mut LaneState) {
-        let mut reactions = core::mem::take(&mut state.reactions);
-        let mut sums = reactions.iter_mut();
-        for (collider, candidates) in state.colliders.iter().zip(&state.contacts) {
-            let reaction = sums.next().filter(|_| collider.reports_as.is_some());
-            let mut outcome = Outcome { moment: 0.0, pressing: state.pressing, reaction };
-            self.solve_candidates(cloth, state, (collider, candidates), &mut outcome);
-            state.external_moment += outcome.moment;
-            state.pressing = outcome.pressing;
-        }
-        state.reactions = reactions;
+        self.solve_colliders_where(cloth, state, |_| true);
     }
 
-    /// Projects everything that may touch one collider.
-    fn solve_candidates(
+    /// Projects every candidate of a cloth's contacts with some colliders once.
+    fn solve_colliders_where(
         &mut self,
         cloth: usize,
-        state: &LaneState,
-        (collider, candidates): (&Collider, &Candidates),
-        outcome: &mut Outcome,
+        state: &mut LaneState,
+        is_solved: impl Fn(&Candidates) -> bool,
     ) {
-        if let Some(reaction) = &mut outcome.reaction {
+        let mut contacts = core::mem::take(&mut state.contacts);
+        for (collider, candidates) in contacts.iter_mut().enumerate() {
+            if !is_solved(candidates) {
+                continue;
+            }
+            self.solve_collider(
+                cloth,
+                state,
+                (collider, candidates),
+                |batch, contact, particles| {
+                    let pushes = particles
+                        .iter()
+                        .map(|&particle| batch.solve_contact(cloth, particle, contact));
+                    pushes.flatten().collect()
+                },
+            );
+        }
+        state.contacts = contacts;
+    }
+
+    /// Projects everything that may touch a collider, given its index and a function that projects particles.
+    pub(super) fn solve_collider(
+        &mut self,
+        cloth: usize,
+        state: &mut LaneState,
+        (index, candidates): (usize, &mut Candidates),
+        project: impl FnOnce(&mut Self, &Contact, &[u32]) -> Vec<Push>,
+    ) {
+        let collider = &state.colliders[index];
+        let mut reaction = state.reactions.get_mut(index);
+        reaction = reaction.filter(|_| collider.reports_as.is_some());
+        if let Some(reaction) = &mut reaction {
             reaction.begin_substep();
         }
         if candidates.is_empty() {
             return;
         }
-        let contact = Contact::new(state, collider, &self.clock);
-        let mut pushes = Vec::new();
-        for &particle in &candidates.particles {
-            pushes.extend(self.solve_contact(cloth, particle, &contact));
-        }
+        let mut outcome = Outcome { moment: 0.0, pressing: state.pressing, reaction };
+        let contact = Contact::new(&state.material, &state.drive, collider, &self.clock);
+        let mut pushes = project(self, &contact, &candidates.particles);
+        candidates.touching.clear();
+        candidates.touching.extend(pushes.iter().map(|push| push.particle));
         if !candidates.triangles.is_empty() {
             self.solve_triangle_contacts(cloth, candidates, &contact, &mut pushes);
         }
         self.take_back_tearing(cloth, &contact, &mut pushes);
         for push in &pushes {
-            self.change_velocity(cloth, &contact, push, outcome);
+            self.change_velocity(cloth, &contact, push, &mut outcome);
         }
+        state.external_moment += outcome.moment;
+        state.pressing = outcome.pressing;
     }
 
     /// Projects one particle, and returns the push if there is one.
-    fn solve_contact(&mut self, cloth: usize, particle: u32, contact: &Contact) -> Option<Push> {
+    pub(super) fn solve_contact(
+        &mut self,
+        cloth: usize,
+        particle: u32,
+        contact: &Contact,
+    ) -> Option<Push> {
         let (pack, lane) = self.layout.locate(particle as usize, cloth);
         let start = lane3(&self.scratch[pack], lane);
         let before = lane3(&self.positions.packs()[pack], lane);
@@ -198,118 +219,4 @@ struct Outcome<'a> {
     pressing: Pressing,
     /// Reactions of the collider, if it reports them.
     reaction: Option<&'a mut ReactionSum>,
-}
-
-/// The push of a collider to a particle.
-pub(super) struct Push {
-    pub particle: u32,
-    /// Position of the particle before the push, m, in the cloth's frame.
-    pub before: Vec3,
-    /// New position of the particle, m, in the collider's frame.
-    pub to: Vec3,
-    touch: Touch,
-}
-
-impl Push {
-    /// Adds a push of triangles that has moved the particle on. The normal stays that of the surface nearest to the particle.
-    fn append(&mut self, next: Self) {
-        self.to = next.to;
-        self.touch.sticks |= next.touch.sticks;
-    }
-}
-
-/// A collider and a cloth in a substep.
-pub(super) struct Contact<'a> {
-    collider: &'a Collider,
-    /// Thickness of the cloth, m.
-    thickness: f32,
-    /// Area density of the cloth, kg/m².
-    density: f32,
-    surface: Surface<'a>,
-    reach: Reach,
-    /// The collider's poses at the beginning and at the end of the substep, each in the cloth's frame as it
-    /// was then.
-    old_pose: Pose,
-    pose: Pose,
-    /// Motion of the cloth's frame in the substep.
-    frame: FrameStep,
-}
-
-impl<'a> Contact<'a> {
-    pub fn new(cloth: &LaneState, collider: &'a Collider, clock: &Clock) -> Self {
-        let Clock { settings, begun, .. } = *clock;
-        // `integrate` has counted this substep already.
-        let index = begun - 1;
-        let pose_after =
-            |substeps: u32| collider.pose_at(substeps as f32 / settings.substeps as f32);
-        let (old_pose, pose) = (pose_after(index), pose_after(begun));
-        let frame = cloth.drive.motion.substep(index, settings.substeps);
-        let clearance = (cloth.material.thickness + collider.margin).max(LEAST_CLEARANCE);
-        Self {
-            collider,
-            thickness: cloth.material.thickness,
-            density: cloth.material.area_density,
-            surface: Surface {
-                shape: &*collider.shape.0,
-                ground: collider.shape.as_heightfield(),
-                rise: RISE_SPEED * clock.step,
-                clearance,
-                friction: (cloth.material.surface_friction * collider.friction).sqrt(),
-            },
-            reach: Reach::new(collider, [&old_pose, &pose], &frame, clearance),
-            old_pose,
-            pose,
-            frame,
-        }
-    }
-
-    /// The contact with a clearance that is larger by some distance, m.
-    pub fn widened(mut self, by: f32) -> Self {
-        self.surface.clearance += by;
-        self
-    }
-
-    /// Whether a point of the cloth's frame, m, is within the shape at the end of the substep.
-    pub fn contains(&self, at: Vec3) -> bool {
-        self.surface.contains(self.pose.inverse_transform_point(at))
-    }
-
-    /// Normal of the surface, in the cloth's frame, near a point at the end of the substep, m; none beyond the clearance.
-    pub fn normal_at(&self, at: Vec3) -> Option<Vec3> {
-        let normal = self.surface.normal_at(self.pose.inverse_transform_point(at))?;
-        Some(self.pose.transform_vector(normal))
-    }
-
-    /// Both ends of a particle's path between two points in the cloth's frame, in the collider's frame, m, so that the
-    /// path is relative to the surface; the first end is taken before the cloth's frame moved.
-    fn path(&self, start: Vec3, end: Vec3) -> (Vec3, Vec3) {
-        let from = self.old_pose.inverse_transform_point(self.frame.to_old(start));
-        (from, self.pose.inverse_transform_point(end))
-    }
-
-    /// Projects a particle that moves between two points in the cloth's frame, m.
-    fn project(&self, start: Vec3, end: Vec3) -> Option<Projection> {
-        if self.reach.is_missed(start, end) {
-            return None;
-        }
-        let (from, to) = self.path(start, end);
-        self.surface.project(from, to)
-    }
-
-    /// Projects triangles, given as indices of corners.
-    fn solve_triangles(&self, triangles: &[[u32; 3]], corners: &mut [Corner]) {
-        let obstacle = Obstacle::new(self.collider, self.thickness);
-        solve_triangles(&obstacle, self.surface.friction, triangles, corners);
-    }
-
-    /// Position of a particle after a push, m, in the cloth's frame.
-    pub fn end(&self, push: &Push) -> Vec3 {
-        self.pose.transform_point(push.to)
-    }
-
-    /// Motion of a point of the collider in the substep, m, in the cloth's present frame.
-    pub fn surface_motion(&self, point: Vec3) -> Vec3 {
-        let before = self.frame.to_new(self.old_pose.transform_point(point));
-        self.pose.transform_point(point) - before
-    }
 }

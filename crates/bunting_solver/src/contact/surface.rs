@@ -2,28 +2,28 @@
 
 use glam::Vec3;
 use parry3d::query::Ray;
-use parry3d::shape::{HeightField, Segment, Shape};
+use parry3d::shape::{HeightField, Shape};
 
 use crate::constants::LEAST_LENGTH;
+use crate::contact::closed_form::ClosedForm;
 use crate::contact::ground;
 use crate::contact::nearest::nearest_point;
-
-/// How much longer than it is a path is taken to be where it is found out whether it reaches a shape: more than rounding.
-const REACH: f32 = 1.001;
+use crate::contact::plane::Plane;
 
 /// Part of the clearance by which a particle may be farther from a shape than it must be and touches it. Larger:
 /// particles that a fast shape hits slide around it. Smaller: by rounding, particles that are pressed against a shape
 /// count as hit by it, and slide whatever the friction.
-const TOUCHING: f32 = 0.1;
+pub(super) const TOUCHING: f32 = 0.1;
 
 /// Depth up to which a particle that touches a shape is pressed into it within a substep, in clearances. Larger:
 /// particles in front of a fast edge slide around it, substep by substep. Smaller: taut cloth that is pulled against a
 /// shape is held by more than friction.
-const PRESSED: f32 = 6.0;
+pub(super) const PRESSED: f32 = 6.0;
 
 /// The surface of a shape, in the shape's frame.
 pub(super) struct Surface<'a> {
     pub shape: &'a dyn Shape,
+    pub closed_form: Option<ClosedForm>,
     /// The shape as ground, if it is a heightfield.
     pub ground: Option<&'a HeightField>,
     /// Distance by which a particle deep in the ground rises in this substep, m.
@@ -55,9 +55,16 @@ pub(super) struct Projection {
 impl Surface<'_> {
     /// Projects a particle that moves from one point to another, m; none if it stays outside the clearance.
     pub fn project(&self, from: Vec3, to: Vec3) -> Option<Projection> {
+        if let Some(plane) = self.closed_form.and_then(|form| form.plane(to)) {
+            // A convex shape lies below the plane: a path whose ends are above it does not enter the shape.
+            if plane.distance > 0.0 && plane.height(from) > 0.0 {
+                let overlap = self.overlap_of(&plane)?;
+                return Some(self.slide(from, to, &overlap));
+            }
+        }
         match self.cross(from, to) {
             Some(projection) => Some(projection),
-            None => self.slide(from, to),
+            None => Some(self.slide(from, to, &self.overlap(from, to)?)),
         }
     }
 
@@ -66,17 +73,11 @@ impl Surface<'_> {
     /// within the substep. A particle that touched the shape before, and does not come far into it, is pressed against
     /// it and rubs.
     fn cross(&self, from: Vec3, to: Vec3) -> Option<Projection> {
-        if self.is_out_of_reach(from, to) || self.contains(from) {
-            return None;
-        }
-        let path = Ray::new(from, to - from);
-        let hit = self.shape.cast_local_ray_and_get_normal(&path, 1.0, true)?;
-        let entry = path.point_at(hit.time_of_impact);
-        let above = |at: Vec3| hit.normal.dot(at - entry) - self.clearance;
+        let (entry, normal) = self.entry(from, to)?;
+        let above = |at: Vec3| normal.dot(at - entry) - self.clearance;
         if above(to) >= 0.0 {
             return None;
         }
-        let normal = hit.normal;
         let depth = -above(to);
         let is_pressed =
             above(from) < TOUCHING * self.clearance && depth < PRESSED * self.clearance;
@@ -92,23 +93,23 @@ impl Surface<'_> {
         Some(Projection { to, normal, sticks: !is_pressed })
     }
 
-    /// Whether a path is known to end farther from the shape than it is long. Only capsules are asked, at which rays are
-    /// cast by iteration.
-    fn is_out_of_reach(&self, from: Vec3, to: Vec3) -> bool {
-        let Some(capsule) = self.shape.as_capsule() else { return false };
-        let Segment { a, b } = capsule.segment;
-        let along = b - a;
-        let part =
-            ((to - a).dot(along) / along.length_squared().max(f32::MIN_POSITIVE)).clamp(0.0, 1.0);
-        let reach = capsule.radius + REACH * from.distance(to);
-        (a + along * part).distance_squared(to) > reach * reach
+    /// The first point of the surface on a path that begins outside, and the unit normal there.
+    fn entry(&self, from: Vec3, to: Vec3) -> Option<(Vec3, Vec3)> {
+        if let Some(form) = &self.closed_form {
+            return form.entry(from, to);
+        }
+        if self.contains(from) {
+            return None;
+        }
+        let path = Ray::new(from, to - from);
+        let hit = self.shape.cast_local_ray_and_get_normal(&path, 1.0, true)?;
+        Some((path.point_at(hit.time_of_impact), hit.normal))
     }
 
     /// Projects a particle that comes closer than the clearance.
-    fn slide(&self, from: Vec3, to: Vec3) -> Option<Projection> {
-        let overlap = self.overlap(from, to)?;
-        let to = self.pushed(from, to, &overlap);
-        Some(Projection { to, normal: overlap.normal, sticks: false })
+    fn slide(&self, from: Vec3, to: Vec3, overlap: &Overlap) -> Projection {
+        let to = self.pushed(from, to, overlap);
+        Projection { to, normal: overlap.normal, sticks: false }
     }
 
     /// The end of a particle's path, m, moved out of an overlap, with friction.
@@ -125,8 +126,17 @@ impl Surface<'_> {
         Some(self.overlap(at, at)?.normal)
     }
 
+    /// The overlap with what lies below a plane, if that is closer than the clearance.
+    fn overlap_of(&self, plane: &Plane) -> Option<Overlap> {
+        let depth = self.clearance - plane.distance;
+        (depth > 0.0).then_some(Overlap { normal: plane.normal, depth })
+    }
+
     /// The plane of the surface nearest to `to`, if it is closer than the clearance.
     fn overlap(&self, from: Vec3, to: Vec3) -> Option<Overlap> {
+        if let Some(plane) = self.closed_form.and_then(|form| form.plane(to)) {
+            return self.overlap_of(&plane);
+        }
         let nearest = match self.ground {
             Some(field) => ground::project(field, to, self.clearance)?,
             None => nearest_point(self.shape, to),
@@ -137,7 +147,7 @@ impl Surface<'_> {
         if signed >= self.clearance {
             return None;
         }
-        // On the surface itself, and at the centre of a ball, the path determines the side.
+        // On the surface itself, and where several planes are nearest, the path determines the side.
         let normal =
             if distance > LEAST_LENGTH { away / distance } else { (from - to).try_normalize()? };
         let depth = self.clearance - signed;
@@ -159,7 +169,7 @@ mod tests {
     use glam::Vec3;
     use parry3d::shape::Cuboid;
 
-    use super::Surface;
+    use super::{ClosedForm, Surface};
 
     /// Where a particle ends that moves from a height above a slab to a place within it, m, and whether it sticks.
     fn pressed(height: f32, slide: f32, friction: f32) -> (Vec3, bool) {
@@ -169,7 +179,9 @@ mod tests {
     fn pressed_to(height: f32, slide: f32, end: f32, friction: f32) -> (Vec3, bool) {
         let slab = Cuboid::new(Vec3::new(1.0, 1.0, 0.1));
         let (clearance, rise) = (2e-3, 0.0);
-        let surface = Surface { shape: &slab, ground: None, rise, clearance, friction };
+        let closed_form = ClosedForm::of(&slab);
+        let surface =
+            Surface { shape: &slab, closed_form, ground: None, rise, clearance, friction };
         let at = |x: f32, z: f32| Vec3::new(x, 0.0, 0.1 + z);
         let projection = surface.project(at(0.0, height), at(slide, end)).expect("a contact");
         (projection.to, projection.sticks)

@@ -5,7 +5,8 @@
 use glam::Vec3;
 
 use crate::constants::LEAST_LENGTH;
-use crate::contact::obstacle::{Cut, Obstacle, Plane, barycentric};
+use crate::contact::obstacle::{Cut, Obstacle, barycentric};
+use crate::contact::plane::Plane;
 use crate::contact::touch::Touch;
 
 /// Number of sweeps in each solve: the first over all triangles, the others over those of which a corner has moved since.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bunting_solver::{
     Backstop, ClothBatch, ClothSnapshot, Collider, Drive, Fabric, FabricBuilder, FabricMaterial,
-    Grid, Guide, Hold, Holder, LaneCount, MovingPin, StepSettings,
+    Grid, Guide, Hold, Holder, LaneCount, LinkFamily, MovingPin, StepSettings,
 };
 use glam::{Quat, Vec3};
 use parry3d::shape::SharedShape;
@@ -432,6 +432,96 @@ fn triangle_contacts_have_the_same_bits_at_every_width() {
     };
     let one = bits(LaneCount::One);
     assert!(LaneCount::available().iter().all(|&lanes| bits(lanes) == one));
+}
+
+/// Shapes of every kind of which contacts are solved in lanes, and others.
+fn shapes() -> [SharedShape; 8] {
+    [
+        SharedShape::ball(0.2),
+        SharedShape::halfspace(Vec3::new(0.0, 0.6, 0.8)),
+        SharedShape::cuboid(0.15, 0.2, 0.1),
+        SharedShape::capsule(Vec3::new(-0.3, 0.0, 0.0), Vec3::new(0.2, 0.1, 0.1), 0.1),
+        SharedShape::round_cuboid(0.1, 0.15, 0.1, 0.05),
+        SharedShape::cylinder(0.3, 0.1),
+        SharedShape::round_cylinder(0.3, 0.1, 0.03),
+        SharedShape::cone(0.2, 0.2),
+    ]
+}
+
+/// Sheets that fall on two moving shapes each. Cloths that share a batch touch other kinds in other orders.
+#[test]
+fn every_kind_of_shape_gives_the_same_bits_at_every_width() {
+    let fabric = horizontal(9, false);
+    let shapes = shapes();
+    let colliders = |seed: usize, tick: usize| {
+        let place = |time: f32, side: f32| {
+            let turn = Quat::from_rotation_y(0.3 * seed as f32 + 0.5 * time);
+            (Vec3::new(0.5 + 0.3 * side, -0.4 + 0.2 * time, -0.3), turn)
+        };
+        let [from, to] = [tick, tick + 1].map(|tick| tick as f32 * TICK);
+        let of = |shape: usize, side: f32| {
+            let shape = shapes[shape % shapes.len()].clone();
+            let (from, to) = (place(from, side), place(to, side));
+            Collider { from, to, ..Collider::fixed(shape, from.0, from.1) }
+        };
+        [of(seed, -1.0), of(3 * seed + 1, 1.0)]
+    };
+    let states = |lanes: LaneCount, seeds: &[usize]| -> Vec<Vec<u32>> {
+        let mut batch = ClothBatch::new(fabric.clone(), lanes);
+        for _ in seeds {
+            let lane = batch.insert(&ClothSnapshot::at_rest(&fabric), material()).expect("a lane");
+            batch.drive(lane, fall()).expect("a good drive");
+        }
+        for tick in 0..40 {
+            for (lane, &seed) in seeds.iter().enumerate() {
+                batch.set_colliders(lane, colliders(seed, tick)).expect("good shapes");
+            }
+            batch.step(TICK, StepSettings::default());
+        }
+        let bits = |state: ClothSnapshot| -> Vec<u32> {
+            assert!(state.is_finite());
+            let vectors = state.positions.into_iter().chain(state.velocities);
+            vectors.flat_map(|vector| vector.to_array().map(f32::to_bits)).collect()
+        };
+        (0..seeds.len()).map(|lane| bits(batch.snapshot(lane))).collect()
+    };
+    let seeds: Vec<usize> = (0..16).collect();
+    let alone: Vec<_> = seeds.iter().flat_map(|&seed| states(LaneCount::One, &[seed])).collect();
+    for &lanes in LaneCount::available() {
+        let batches = seeds.chunks(lanes.get());
+        let together: Vec<_> = batches.flat_map(|seeds| states(lanes, seeds)).collect();
+        for seed in &seeds {
+            assert!(alone[*seed] == together[*seed], "{lanes:?}, cloth {seed}");
+        }
+    }
+}
+
+/// Lines pull a sheet that hangs over a ball into it. Contacts at the end of a substep alone strain it by 8 %.
+#[test]
+fn contacts_after_each_pass_leave_a_sheet_on_a_ball_unstrained() {
+    let fabric = horizontal(33, false);
+    let mut batch = cloth(&fabric, FabricMaterial::COTTON);
+    let at = Vec3::new(0.5, -0.5, -0.32);
+    let ball = Collider::fixed(SharedShape::ball(0.3), at, Quat::IDENTITY);
+    batch.set_colliders(0, [ball]).expect("a good shape");
+    let mut greatest = 0.0_f32;
+    for tick in 0..240 {
+        batch.step(TICK, StepSettings::default());
+        if tick < 120 {
+            continue;
+        }
+        let positions = batch.snapshot(0).positions;
+        let straight = fabric.links().iter().filter(|link| link.family != LinkFamily::Diagonal);
+        let mut strains: Vec<f32> = straight
+            .map(|link| {
+                let [from, to] = link.particles.map(|end| positions[end as usize]);
+                (from.distance(to) / link.rest_length - 1.0).abs()
+            })
+            .collect();
+        strains.sort_by(f32::total_cmp);
+        greatest = greatest.max(strains[strains.len() * 999 / 1000]);
+    }
+    assert!(greatest < 0.04, "{greatest}");
 }
 
 /// The impulses on a floor are the sheet's weight times the tick at rest, and its momentum as it lands.

@@ -1,0 +1,124 @@
+//! Contacts in lanes: sets of colliders of one kind, one in each lane.
+
+use crate::batch::lane_batch::LaneBatch;
+use crate::batch::lane_state::LaneState;
+use crate::batch::layout::{Layout, Positions};
+use crate::contact::collider_packs::{ColliderPacks, LaneTouch, Member};
+use crate::contact::substep::{Contact, Push};
+use crate::contact::touch::Touch;
+use crate::simd::lane::Pack;
+use crate::simd::vec3::{lane3, set_lane3};
+
+impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
+    /// Moves particles out of the colliders of all sets after a pass over lines.
+    pub(super) fn press_sets(&mut self) {
+        let mut sets = core::mem::take(&mut self.collider_packs);
+        let mut entering = Vec::new();
+        for set in &mut sets {
+            set.solved = P::splat(1.0);
+            self.fill_set(set);
+            set.press(&self.scratch, self.positions.packs_mut(), &mut entering);
+            for index in entering.drain(..) {
+                self.press_entering(set, index);
+            }
+        }
+        self.collider_packs = sets;
+    }
+
+    /// Solves the contacts of all sets at the end of a substep. Those of cloths that have contacts with themselves or with other cloths are
+    /// solved together with these, after the pushes of passes are taken back here.
+    pub(super) fn solve_sets(&mut self) {
+        let mut sets = core::mem::take(&mut self.collider_packs);
+        let mut entering = Vec::new();
+        for set in &mut sets {
+            set.solved = P::splat(0.0);
+            for member in &set.members {
+                let alone = |state| f32::from(!Self::has_other_contacts(state));
+                let is_solved = self.lanes[member.cloth].as_ref().map_or(0.0, alone);
+                set.solved.lanes_mut()[Y::lanes(member.cloth)].fill(is_solved);
+            }
+            self.fill_set(set);
+            set.press(&self.scratch, self.positions.packs_mut(), &mut entering);
+            for at in 0..set.members.len() {
+                self.solve_member(set, set.members[at]);
+            }
+            set.forget_pushes();
+        }
+        self.collider_packs = sets;
+    }
+
+    fn has_other_contacts(state: &LaneState) -> bool {
+        state.self_contacts.is_some() || state.is_grouped
+    }
+
+    /// Writes the colliders of a set as they are in this substep.
+    fn fill_set(&self, set: &mut ColliderPacks<P>) {
+        for at in 0..set.members.len() {
+            let member = set.members[at];
+            if let Some(contact) = self.contact_of(member) {
+                set.fill(&Y::lanes(member.cloth), &contact);
+            }
+        }
+    }
+
+    fn contact_of(&self, member: Member) -> Option<Contact<'_>> {
+        let state = self.lanes[member.cloth].as_ref()?;
+        let collider = state.colliders.get(member.collider)?;
+        Some(Contact::new(&state.material, &state.drive, collider, &self.clock))
+    }
+
+    /// Moves particles of a pack, given its index in the set, that enter their colliders.
+    fn press_entering(&mut self, set: &mut ColliderPacks<P>, index: usize) {
+        let pack = set.near[index].pack as usize;
+        for at in 0..set.members.len() {
+            let member = set.members[at];
+            for lane in Y::lanes(member.cloth) {
+                if set.near[index].touch(lane) != LaneTouch::Enters {
+                    continue;
+                }
+                let Some(contact) = self.contact_of(member) else { continue };
+                let start = lane3(&self.scratch[pack], lane);
+                let before = lane3(&self.positions.packs()[pack], lane);
+                let Some(projection) = contact.project(start, before) else { continue };
+                let after = contact.pose.transform_point(projection.to);
+                set_lane3(&mut self.positions.packs_mut()[pack], lane, after);
+                set_lane3(&mut set.near[index].pushed, lane, after - before);
+            }
+        }
+    }
+
+    /// Solves what is left of a cloth's contacts with a collider after its particles have been pressed.
+    fn solve_member(&mut self, set: &ColliderPacks<P>, member: Member) {
+        let Member { cloth, collider } = member;
+        let Some(mut state) = self.lanes[cloth].take_if(|state| !Self::has_other_contacts(state))
+        else {
+            return;
+        };
+        let mut candidates = core::mem::take(&mut state.contacts[collider]);
+        let candidates_of = (collider, &mut candidates);
+        self.solve_collider(cloth, &mut state, candidates_of, |batch, contact, particles| {
+            let mut pushes = Vec::new();
+            for &particle in particles {
+                let (pack, lane) = batch.layout.locate(particle as usize, cloth);
+                let near = set.of_pack(pack);
+                match near.touch(lane) {
+                    LaneTouch::None => {}
+                    LaneTouch::Slides => {
+                        let after = lane3(&batch.positions.packs()[pack], lane);
+                        let to = contact.pose.inverse_transform_point(after);
+                        let normal = lane3(&near.normal, lane);
+                        let before = after - lane3(&near.pushed, lane);
+                        let touch = Touch { normal, at: to, sticks: false };
+                        pushes.push(Push { particle, before, to, touch });
+                    }
+                    LaneTouch::Enters => {
+                        pushes.extend(batch.solve_contact(cloth, particle, contact));
+                    }
+                }
+            }
+            pushes
+        });
+        state.contacts[collider] = candidates;
+        self.lanes[cloth] = Some(state);
+    }
+}
