@@ -94,7 +94,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         else {
             return;
         };
-        let mut candidates = core::mem::take(&mut state.contacts[collider]);
+        let Some(candidates) = state.contacts.get_mut(collider) else {
+            self.lanes[cloth] = Some(state);
+            return;
+        };
+        let mut candidates = core::mem::take(candidates);
         let candidates_of = (collider, &mut candidates);
         self.solve_collider(cloth, &mut state, candidates_of, |batch, contact, particles| {
             let mut pushes = Vec::new();

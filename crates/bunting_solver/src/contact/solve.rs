@@ -77,7 +77,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         (index, candidates): (usize, &mut Candidates),
         project: impl FnOnce(&mut Self, &Contact, &[u32]) -> Vec<Push>,
     ) {
-        let collider = &state.colliders[index];
+        // A host may have taken it away since the tick began.
+        let Some(collider) = state.colliders.get(index) else { return };
         let mut reaction = state.reactions.get_mut(index);
         reaction = reaction.filter(|_| collider.reports_as.is_some());
         if let Some(reaction) = &mut reaction {
@@ -89,8 +90,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let mut outcome = Outcome { moment: 0.0, pressing: state.pressing, reaction };
         let contact = Contact::new(&state.material, &state.drive, collider, &self.clock);
         let mut pushes = project(self, &contact, &candidates.particles);
-        candidates.touching.clear();
-        candidates.touching.extend(pushes.iter().map(|push| push.particle));
+        if !candidates.is_in_lanes {
+            candidates.touching.clear();
+            candidates.touching.extend(pushes.iter().map(|push| push.particle));
+        }
         if !candidates.triangles.is_empty() {
             self.solve_triangle_contacts(cloth, candidates, &contact, &mut pushes);
         }
