@@ -19,7 +19,8 @@ pub(crate) struct Candidates {
     /// Whether the particles are those of a set of colliders in lanes.
     pub is_in_lanes: bool,
     /// Whether contacts are solved at the end of a substep alone, where passes would disturb the cloth: around pins within the collider, since
-    /// pushes that draw cloth off its pins are taken back (`drawn_out.rs`), and beside triangles, which only the end moves.
+    /// pushes that draw cloth off its pins are taken back (`drawn_out.rs`); beside triangles, which only the end moves; and before a shape that
+    /// moves farther in the tick than a link is long, since lines pull back what it carries along.
     pub wait_for_end: bool,
     /// Those of the particles that touched the collider when this was last computed in this tick; all of them before.
     pub touching: Vec<u32>,

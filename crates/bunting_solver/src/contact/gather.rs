@@ -55,7 +55,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 state.colliders.iter().zip(&mut state.contacts).enumerate()
             {
                 gather_candidates(&self.fabric, collider, &boxes, candidates);
+                let way = collider.from.0.distance(collider.to.0);
                 candidates.wait_for_end = !candidates.triangles.is_empty()
+                    || way > self.fabric.shortest_link()
                     || !candidates.is_empty() && contains_pin(&self.fabric, collider, &at);
                 let member = Member { cloth, collider: index };
                 candidates.is_in_lanes = !candidates.wait_for_end
