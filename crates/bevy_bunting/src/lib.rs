@@ -122,6 +122,7 @@ mod motion;
 mod picking;
 #[cfg(feature = "render")]
 mod render;
+mod save;
 mod schedule;
 mod settings;
 mod skeleton;
@@ -222,6 +223,13 @@ pub use render::plugin::{ClothRenderPlugin, ClothRenderSystems};
 pub use render::subdivision::ClothSubdivision;
 #[cfg(feature = "weave")]
 pub use render::weave::{Weave, WeavePlugin, WovenMaterial};
+#[cfg(feature = "serialize")]
+pub use save::bytes::SnapshotBytesError;
+pub use save::cloth::ClothSnapshot;
+pub use save::error::SnapshotError;
+pub use save::plugin::SavePlugin;
+pub use save::saves::ClothSaves;
+pub use save::world::ClothWorldSnapshot;
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
@@ -318,6 +326,7 @@ impl PluginGroup for ClothPlugins {
             .add(EasingPlugin)
             .add(LiftPlugin)
             .add(SurfacePlugin)
+            .add(SavePlugin)
             .add(ClothDiagnosticsPlugin);
         #[cfg(feature = "render")]
         let group = group.add(ClothRenderPlugin);

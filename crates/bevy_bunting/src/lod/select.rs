@@ -1,18 +1,23 @@
 //! The system that chooses levels: examines cloths, sends unseen ones to sleep, asks the governor,
 //! and changes levels.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use bevy_app::{App, Plugin};
+use bevy_ecs::change_detection::Tick;
 use bevy_ecs::prelude::*;
-use bevy_ecs::system::SystemParam;
+use bevy_ecs::system::{SystemChangeTick, SystemParam};
 use bevy_platform::time::Instant;
 use bevy_time::Time;
 use bevy_transform::helper::TransformHelper;
+use bunting_solver::EffortClass;
 
 use crate::batch::assign::assign_lanes;
 use crate::batch::batches::ClothBatches;
 use crate::cloth::activity::ClothActivity;
+use crate::cloth::instance::has_changed;
+use crate::fabric::levels::ClothLevels;
 use crate::lod::budget::{ClothBudget, LodCosts};
 use crate::lod::candidate::{Candidate, Limits};
 use crate::lod::cost_model::CostModel;
@@ -21,7 +26,7 @@ use crate::lod::governor::{Choice, Governor};
 use crate::lod::level_tables::LevelTables;
 use crate::lod::lod_cloth::{EXAMINED_EVERY, LodCloth, LodClothItem};
 use crate::lod::lod_set::{LodChoice, LodSet};
-use crate::lod::record::LodRecord;
+use crate::lod::record::{LodRecord, SavedRecord};
 use crate::lod::report::{ClothCounts, LodReport};
 use crate::lod::view::{Sight, Sighting, View};
 use crate::lod::viewer::LodViewer;
@@ -69,9 +74,11 @@ pub(crate) struct LevelSelector {
     /// Entities of the candidates.
     entities: Vec<Entity>,
     /// Number of the present tick.
-    tick: u32,
+    pub tick: u32,
+    /// When levels were last chosen, as a tick of change.
+    pub ran: Tick,
     /// Number of cloths so far; it staggers the examinations of cloths over ticks.
-    cloths: u32,
+    pub cloths: u32,
     /// Whether there were cloths in the last tick that had not been simulated yet.
     has_fresh: bool,
     /// Tabulated overhead of the last tick: its cost besides batches and changes of level, µs.
@@ -91,6 +98,7 @@ pub(crate) struct Conditions<'w, 's> {
     time: Res<'w, Time>,
     budget: Res<'w, ClothBudget>,
     timings: Option<Res<'w, ClothTimings>>,
+    change_tick: SystemChangeTick,
 }
 
 /// Inputs of the examination of a cloth, besides the cloth.
@@ -111,6 +119,7 @@ pub(crate) fn select_levels(
 ) {
     let began = Instant::now();
     let selector = &mut *selector;
+    selector.ran = conditions.change_tick.this_run();
     let table = selector.learn(&conditions, &mut batches);
     let empty_tick = selector.model.empty_tick(&table);
     let examination = conditions.examination(empty_tick);
@@ -169,6 +178,17 @@ impl LevelSelector {
         self.tables.forget_unused();
     }
 
+    /// The record of a restored cloth with these levels, in a class of effort.
+    pub fn restore(
+        &mut self,
+        saved: &SavedRecord,
+        levels: &Arc<ClothLevels>,
+        class: EffortClass,
+    ) -> LodRecord {
+        let table = self.tables.index_of(levels, class);
+        LodRecord::restored(levels, (table, self.tables.radius(table)), saved, self.tick)
+    }
+
     /// Learns from the last tick's measurements, decides whether this tick is measured, and returns the table
     /// of costs.
     fn learn(&mut self, conditions: &Conditions, batches: &mut ClothBatches) -> CostTable {
@@ -222,8 +242,8 @@ impl LevelSelector {
     /// Whether a cloth is to be examined: if it changed, or in its turn unless it stays off the screen.
     fn is_due(&self, cloth: &mut LodClothItem, views: &[View]) -> bool {
         let is_its_turn = cloth.record.phase.wrapping_add(self.tick).is_multiple_of(EXAMINED_EVERY);
-        cloth.instance.is_changed()
-            || cloth.lods.is_changed()
+        has_changed(&cloth.instance, |pending| pending.levels)
+            || cloth.frame.has_new(&cloth.lods)
             || (is_its_turn && !cloth.stays_off_screen(views))
     }
 
