@@ -95,6 +95,12 @@
 //! for each level, updates its bounds, and puts a [`LodViewer`] on cameras. Its documentation says which
 //! settings the material needs. With the feature `weave`, `WovenMaterial` is one that shows threads. `ClothDebugPlugin`, which is not among [`ClothPlugins`], draws gizmos.
 //!
+//! # Saving
+//!
+//! [`ClothSaves`] takes and restores [`ClothSnapshot`]s of single cloths and [`ClothWorldSnapshot`]s of all, between any two
+//! ticks: for saved games, servers and rollback. Cloth goes on with the same bits. With the feature `serialize` they are
+//! written as bytes.
+//!
 //! # Determinism
 //!
 //! The same world in the same ticks gives the same bits, whatever the number of threads. The bits of a cloth depend on those
@@ -248,11 +254,12 @@ pub mod prelude {
         ClothCollision, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
         ClothFeatures, ClothGrab, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged,
         ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
-        ClothReactions, ClothResolution, ClothSeed, ClothSettings, ClothSkin, ClothState,
-        ClothSurface, ClothSystems, ClothTargetLost, ClothTick, ClothTouched, GrabbedVertices,
-        LodSet, LodViewer, SelfCollision, SkinError, SkinLimits, TargetLost, TeleportCloth,
-        TeleportMode, WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindPerParticle,
-        WindRegion, WindShape, WindWake,
+        ClothReactions, ClothResolution, ClothSaves, ClothSeed, ClothSettings, ClothSkin,
+        ClothSnapshot, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick,
+        ClothTouched, ClothWorldSnapshot, GrabbedVertices, LodSet, LodViewer, SelfCollision,
+        SkinError, SkinLimits, SnapshotError, TargetLost, TeleportCloth, TeleportMode,
+        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindPerParticle, WindRegion,
+        WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{

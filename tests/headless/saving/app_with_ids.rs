@@ -7,9 +7,10 @@ use bevy_bunting::ClothSurface;
 use bevy_bunting::prelude::*;
 use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
 use bevy_time::{Time, Virtual};
 use bevy_transform::prelude::*;
-use bunting_tests::{Bits, TICK, app, bits};
+use bunting_tests::{Bits, TICK, app, bits, state};
 
 /// Numbers of ticks and frames so far.
 #[derive(Resource, Clone, Copy, Debug, Default)]
@@ -82,9 +83,33 @@ pub struct Others {
     transforms: Vec<(Id, Transform)>,
 }
 
-/// The positions of all cloths after each tick, and of their surfaces in each frame.
-#[derive(Debug, PartialEq, Eq)]
-pub struct Trace(Vec<Vec<(Bits, Vec<[u32; 3]>)>>);
+/// What is read of a cloth after a tick: positions, those of its surface, what it does to its anchors, and whether it sleeps.
+#[derive(Debug, PartialEq)]
+struct Read {
+    positions: Bits,
+    surface: Vec<[u32; 3]>,
+    reactions: Option<AnchorReactions>,
+    activity: ClothActivity,
+    level: usize,
+}
+
+impl Read {
+    fn of(app: &App, cloth: Entity) -> Self {
+        let surface = app.world().get::<ClothSurface>(cloth);
+        let surface = surface.into_iter().flat_map(|surface| &surface.positions);
+        Self {
+            positions: bits(app, cloth),
+            surface: surface.map(|at| at.to_array().map(f32::to_bits)).collect(),
+            reactions: app.world().get::<AnchorReactions>(cloth).cloned(),
+            activity: state(app, cloth).activity(),
+            level: state(app, cloth).level(),
+        }
+    }
+}
+
+/// What is read of cloths and colliders after each tick.
+#[derive(Debug, PartialEq)]
+pub struct Trace(Vec<(Vec<Read>, Vec<Vec3>)>);
 
 impl AppWithIds {
     /// An app whose entities differ from those of another by so many.
@@ -143,29 +168,65 @@ impl AppWithIds {
         }
     }
 
+    /// Forces on colliders, N, in the order of their numbers.
+    fn forces(&self) -> Vec<Vec3> {
+        let reactions = self
+            .ids()
+            .into_iter()
+            .filter_map(|(_, entity)| Some(self.world().get::<ClothReactions>(entity)?.force));
+        reactions.collect()
+    }
+
     /// Runs a number of updates of one tick each.
     pub fn trace(&mut self, cloths: &[Entity], updates: usize) -> Trace {
-        let surface = |app: &App, cloth: Entity| {
-            let surface = app.world().get::<ClothSurface>(cloth);
-            let positions = surface.into_iter().flat_map(|surface| &surface.positions);
-            positions.map(|at| at.to_array().map(f32::to_bits)).collect()
-        };
         let trace = (0..updates).map(|_| {
             self.update();
-            cloths.iter().map(|&cloth| (bits(self, cloth), surface(self, cloth))).collect()
+            (cloths.iter().map(|&cloth| Read::of(self, cloth)).collect(), self.forces())
         });
         Trace(trace.collect())
     }
 }
 
 impl Trace {
-    /// The first update in which a cloth differs, and the cloth's number among all.
-    pub fn first_difference(&self, other: &Self) -> Option<(usize, usize)> {
+    /// The first update in which something differs, the number of the cloth if it is one, and what differs there.
+    pub fn first_difference(&self, other: &Self) -> Option<String> {
         assert_eq!(self.0.len(), other.0.len());
         let updates = self.0.iter().zip(&other.0).enumerate();
         updates.into_iter().find_map(|(update, (one, other))| {
-            let cloth = one.iter().zip(other).position(|(one, other)| one != other)?;
-            Some((update, cloth))
+            let mut cloths = one.0.iter().zip(&other.0).enumerate();
+            let cloth =
+                cloths.find(|(_, (one, other))| one != other).map(|(cloth, (one, other))| {
+                    let differs = [
+                        ("positions", one.positions != other.positions),
+                        ("surface", one.surface != other.surface),
+                        ("reactions", one.reactions != other.reactions),
+                        ("activity", one.activity != other.activity),
+                        ("level", one.level != other.level),
+                    ];
+                    let names = differs.iter().filter(|it| it.1).map(|it| it.0).collect::<Vec<_>>();
+                    format!("update {update}, cloth {cloth}: {names:?}")
+                });
+            let forces = || (one.1 != other.1).then(|| format!("update {update}: forces"));
+            cloth.or_else(forces)
         })
+    }
+
+    /// Whether any cloth does this in any tick.
+    pub fn has(&self, does: ClothActivity) -> bool {
+        self.0.iter().flat_map(|tick| &tick.0).any(|read| read.activity == does)
+    }
+
+    /// The levels of all cloths in all ticks, without repetitions.
+    pub fn levels(&self) -> Vec<usize> {
+        let mut levels: Vec<usize> =
+            self.0.iter().flat_map(|tick| &tick.0).map(|read| read.level).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        levels
+    }
+
+    /// Whether any collider is touched.
+    pub fn touches(&self) -> bool {
+        self.0.iter().flat_map(|tick| &tick.1).any(|force| force.length() > 0.0)
     }
 }

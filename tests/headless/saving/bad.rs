@@ -1,10 +1,8 @@
 //! Snapshots that cannot be taken or restored: each is an error that says what to do, and changes nothing.
 
 use bevy_app::App;
+use bevy_bunting::SnapshotBytesError;
 use bevy_bunting::prelude::*;
-use bevy_bunting::{
-    ClothSaves, ClothSnapshot, ClothWorldSnapshot, SnapshotBytesError, SnapshotError,
-};
 use bevy_ecs::prelude::*;
 use bevy_math::{Mat4, Vec3};
 use bevy_transform::prelude::*;

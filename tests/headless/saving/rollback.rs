@@ -5,7 +5,6 @@ use std::time::Duration;
 
 use bevy_app::prelude::*;
 use bevy_bunting::prelude::*;
-use bevy_bunting::{ClothSaves, ClothWorldSnapshot};
 use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::ScheduleLabel;
 use bevy_math::{Quat, Vec3};

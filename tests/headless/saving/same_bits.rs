@@ -1,18 +1,18 @@
 //! Cloth goes on with the same bits after it is restored, in the same app and in another.
 
-use bevy_bunting::{ClothSaves, ClothWorldSnapshot};
+use bevy_bunting::prelude::*;
 use bevy_ecs::entity::MapEntities;
 use bevy_ecs::prelude::*;
-use bunting_tests::run;
+use bunting_tests::{run, state};
 
-use super::app_with_ids::AppWithIds;
+use super::app_with_ids::{AppWithIds, Trace};
 use super::scenes;
 
 /// Ticks that are compared after each restoration.
 const COMPARED: usize = 60;
 
 /// Saves a scene after a number of updates, and compares how it goes on with how it goes on after it is restored.
-fn goes_on(build: fn(&mut AppWithIds) -> Vec<Entity>, updates: usize) {
+fn goes_on(build: fn(&mut AppWithIds) -> Vec<Entity>, updates: usize) -> Trace {
     let mut app = AppWithIds::new(0);
     let cloths = build(&mut app);
     run(&mut app, updates);
@@ -47,6 +47,7 @@ fn goes_on(build: fn(&mut AppWithIds) -> Vec<Entity>, updates: usize) {
             "in another app, after {updates} updates"
         );
     }
+    expected
 }
 
 #[test]
@@ -61,7 +62,7 @@ fn in_gusts() {
 
 #[test]
 fn on_colliders() {
-    goes_on(scenes::colliders, 45);
+    assert!(goes_on(scenes::colliders, 45).touches());
 }
 
 #[test]
@@ -72,7 +73,8 @@ fn with_skins() {
 #[test]
 fn with_levels() {
     for updates in [30, 50, 70] {
-        goes_on(scenes::levels, updates);
+        let levels = goes_on(scenes::levels, updates).levels();
+        assert!(levels.len() > 1, "{levels:?}");
     }
 }
 
@@ -86,9 +88,28 @@ fn with_anchors() {
     goes_on(scenes::anchors, 50);
 }
 
+/// The first update after which a cloth of a scene is at rest.
+fn comes_to_rest(build: fn(&mut AppWithIds) -> Vec<Entity>, cloth: usize) -> usize {
+    let mut app = AppWithIds::new(0);
+    let cloth = build(&mut app)[cloth];
+    let rests = |app: &AppWithIds| state(app, cloth).activity() == ClothActivity::AtRest;
+    let updates = (1..2000).find(|_| {
+        run(&mut app, 1);
+        rests(&app)
+    });
+    updates.expect("it comes to rest")
+}
+
 #[test]
 fn at_rest() {
-    for updates in [64 * 6, 64 * 9, 64 * 12, 64 * 19] {
-        goes_on(scenes::rest, updates);
+    let [first, second] = [0, 1].map(|cloth| comes_to_rest(scenes::rest, cloth));
+    assert_ne!(first, second);
+    // Before one of them falls asleep, just after that, and before the third one is woken by its pole.
+    let woken = scenes::POLE_MOVES as usize;
+    for updates in [first - 20, second - 1, second, second + 1, woken - 20] {
+        let trace = goes_on(scenes::rest, updates);
+        assert!(trace.has(ClothActivity::AtRest), "after {updates} updates");
+        let changes = [first - 20, woken - 20].contains(&updates);
+        assert!(!changes || trace.has(ClothActivity::Ticking), "after {updates} updates");
     }
 }

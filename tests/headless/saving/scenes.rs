@@ -7,8 +7,12 @@ use bevy_bunting::{ClothSurface, CostTable, LodCosts};
 use bevy_ecs::prelude::*;
 use bevy_math::{Mat4, Quat, Vec3};
 use bevy_transform::prelude::*;
+use bunting_tests::TICK;
 
 use super::app_with_ids::{AppWithIds, InFrames, InTicks};
+
+/// Tick in which the pole of the sheets at rest begins to move.
+pub const POLE_MOVES: f32 = 1280.0;
 
 /// A flag.
 const FLAG: ClothMesh = ClothMesh::grid(17, 9, 1.5, 1.0);
@@ -77,7 +81,7 @@ pub fn colliders(app: &mut AppWithIds) -> Vec<Entity> {
     app.spawn((ball, Transform::default(), InTicks(goes_round), ClothReactions::default()));
     app.spawn((
         ClothCollider::capsule(0.4, 0.15),
-        Transform::from_xyz(0.3, -0.6, 0.4),
+        Transform::from_xyz(0.2, -0.6, -0.8),
         ClothReactions::default(),
     ));
     let lies = |x: f32, z: f32| {
@@ -210,7 +214,7 @@ fn poses_target(poles: [Entity; 2]) -> Entity {
 /// Sheets that come to rest one after the other, and a pole that moves late.
 pub fn rest(app: &mut AppWithIds) -> Vec<Entity> {
     fn waits(time: f32) -> Transform {
-        Transform::from_xyz(3.0, (time - 20.0).max(0.0), 0.0)
+        Transform::from_xyz(3.0, 0.5 * (time - POLE_MOVES * TICK).max(0.0), 0.0)
     }
     app.spawn((ClothCollider::ball(0.2), Transform::from_xyz(9.0, 3.0, 0.0)));
     let pole = app.spawn((Transform::default(), InTicks(waits)));

@@ -1,7 +1,6 @@
 //! Single cloths are saved and restored among others.
 
 use bevy_app::App;
-use bevy_bunting::ClothSaves;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;

@@ -177,10 +177,7 @@ impl FabricLibrary {
         self.at_once = true;
         let found = self.levels(entity, mesh, attachment, lods, resolution);
         self.at_once = false;
-        Ok(match found? {
-            Found::Levels(levels) => Some(levels),
-            Found::Awaited(_) => None,
-        })
+        Ok(if let Found::Levels(levels) = found? { Some(levels) } else { None })
     }
 
     /// Builds levels now, or takes them in the tick in which they are due; none before.

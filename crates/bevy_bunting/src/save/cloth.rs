@@ -23,7 +23,7 @@ use crate::skeleton::joints::SavedJoint;
 /// cloth of the same components, in the same app or in another, that cloth goes on with the same bits.
 ///
 /// It is taken and restored by [`ClothSaves`](crate::ClothSaves). With the feature `serialize` it is written
-/// [as bytes](Self::to_bytes), which hold a version and a checksum, and implements serde's traits by these bytes.
+/// as bytes (`to_bytes`), which hold a version and a checksum, and implements serde's traits by these bytes.
 ///
 /// Clones share their content.
 ///
@@ -32,7 +32,6 @@ use crate::skeleton::joints::SavedJoint;
 ///
 /// use bevy_app::prelude::*;
 /// use bevy_bunting::prelude::*;
-/// use bevy_bunting::{ClothSaves, SnapshotError};
 /// use bevy_time::{TimePlugin, TimeUpdateStrategy};
 /// use bevy_transform::prelude::*;
 ///
@@ -130,4 +129,6 @@ pub(crate) struct SavedSkin {
 pub(crate) struct SavedReactions {
     pub target: AnchorReaction,
     pub anchors: Vec<AnchorReaction>,
+    /// Velocities of the pins at the end of the last tick, m/s.
+    pub pin_velocities: Vec<Vec3>,
 }

@@ -10,15 +10,21 @@ use crate::cloth::restored::RestoredAt;
 use crate::lod::effort::ClothEffort;
 use crate::lod::sleep::Changes;
 use crate::motion::pose::PoseHistory;
+use crate::save::cloth::SavedCloth;
 use crate::save::plugin::Restorations;
 use crate::settings::ClothSettings;
 
-/// Puts cloths that wait for lanes into them.
-pub(super) fn enter_lanes(world: &mut World, cloths: impl IntoIterator<Item = Entity>) {
+/// Puts restored cloths that had lanes into lanes.
+pub(super) fn enter_lanes<'a>(
+    world: &mut World,
+    cloths: impl IntoIterator<Item = (Entity, &'a SavedCloth)>,
+) {
+    let cloths = cloths.into_iter().filter(|(_, saved)| saved.in_lane);
+    let cloths: Vec<(Entity, &SavedCloth)> = cloths.collect();
     let lanes = world.resource::<ClothSettings>().lanes;
     let mut assigned: Vec<(Entity, LaneHandle)> = Vec::new();
     world.resource_scope(|world, mut batches: Mut<ClothBatches>| {
-        for entity in cloths {
+        for &(entity, _) in &cloths {
             let mut cloth = world.entity_mut(entity);
             let Some(steps) = cloth.get::<ClothEffort>().map(|effort| effort.settings) else {
                 continue;
@@ -41,6 +47,14 @@ pub(super) fn enter_lanes(world: &mut World, cloths: impl IntoIterator<Item = En
             instance.unmoved = false;
         }
     }
+    world.resource_scope(|world, mut batches: Mut<ClothBatches>| {
+        for (entity, saved) in cloths {
+            let lane = world.get::<ClothInstance>(entity).and_then(ClothInstance::lane);
+            if let (Some(lane), Some(reactions)) = (lane, &saved.reactions) {
+                batches.lane(lane).set_pin_velocities(reactions.pin_velocities.clone());
+            }
+        }
+    });
 }
 
 /// Marks entities as restored now: what was changed before is no change since the last tick.

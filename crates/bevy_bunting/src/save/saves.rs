@@ -21,7 +21,7 @@ use crate::save::world::ClothWorldSnapshot;
 ///
 /// ```
 /// use bevy_app::prelude::*;
-/// use bevy_bunting::{ClothSaves, ClothWorldSnapshot};
+/// use bevy_bunting::prelude::*;
 /// use bevy_ecs::prelude::*;
 ///
 /// /// The last eight ticks, the latest last.
@@ -101,7 +101,7 @@ impl ClothSaves for World {
     ) -> Result<(), SnapshotError> {
         let fitting = check(self, cloth, &snapshot.0)?;
         apply(self, &fitting, &snapshot.0);
-        enter_lanes(self, snapshot.0.in_lane.then_some(cloth));
+        enter_lanes(self, [(cloth, &*snapshot.0)]);
         mark(self, [cloth]);
         Ok(())
     }

@@ -125,6 +125,9 @@ pub(super) fn take(world: &World, entity: Entity) -> Result<SavedCloth, Snapshot
         reactions: cloth.get::<AnchorReactions>().map(|reactions| SavedReactions {
             target: reactions.target,
             anchors: reactions.anchors.clone(),
+            pin_velocities: instance.lane().map_or_else(Vec::new, |lane| {
+                batches.batch(lane).pin_velocities(lane.lane).to_vec()
+            }),
         }),
         surface: SavedSurface::of(cloth, shown),
     })

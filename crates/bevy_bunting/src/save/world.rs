@@ -21,7 +21,7 @@ use crate::save::take::take;
 /// were spawned anew, [`MapEntities`] puts the entities of now in the places of those that were saved. One that has no
 /// counterpart is mapped to [`Entity::PLACEHOLDER`], and left out.
 ///
-/// With the feature `serialize` it is written [as bytes](Self::to_bytes), which hold a version and a checksum, and implements
+/// With the feature `serialize` it is written as bytes (`to_bytes`), which hold a version and a checksum, and implements
 /// serde's traits by these bytes.
 #[derive(Clone, Debug)]
 #[cfg_attr(
@@ -100,8 +100,7 @@ impl ClothWorldSnapshot {
         for (fitting, saved) in &cloths {
             apply(world, fitting, saved);
         }
-        let with_lanes = cloths.iter().filter(|(_, saved)| saved.in_lane);
-        enter_lanes(world, with_lanes.map(|(fitting, _)| fitting.entity));
+        enter_lanes(world, cloths.iter().map(|(fitting, saved)| (fitting.entity, *saved)));
         for other in others {
             other.restore(world, &clocks.times, &now);
         }
