@@ -148,11 +148,6 @@ impl ClothBatches {
         self.groups[lane.group].batches[lane.batch].batch.near_colliders(lane.lane)
     }
 
-    /// Whether the cloth in a lane could touch any collider in the last tick.
-    pub(crate) fn touches_colliders(&self, lane: LaneHandle) -> bool {
-        self.near_colliders(lane).next().is_some()
-    }
-
     /// Where the cloth in a lane touches colliders, and itself unless it is among several cloths, in its frame.
     #[cfg(feature = "render")]
     pub(crate) fn contact_points(&self, lane: LaneHandle) -> Vec<ContactPoint> {

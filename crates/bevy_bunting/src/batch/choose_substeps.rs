@@ -75,7 +75,7 @@ fn share_batches(
         };
         let touches = match &instance.restored {
             Some(restored) => restored.touches,
-            None => lane.is_some_and(|lane| batches.touches_colliders(lane)),
+            None => lane.is_some_and(|lane| batches.near_colliders(lane).next().is_some()),
         };
         let loads = effort.loads();
         Some(Member {

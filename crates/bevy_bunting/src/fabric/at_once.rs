@@ -11,7 +11,7 @@ use crate::cloth::error::ClothError;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::resolution::ClothResolution;
 use crate::fabric::levels::ClothLevels;
-use crate::fabric::library::FabricLibrary;
+use crate::fabric::library::{FabricLibrary, Found};
 use crate::fabric::scale::{ScaleBaked, bake, scale_of};
 use crate::lod::lod_set::LodSet;
 use crate::motion::attachment::Attachment;
@@ -49,6 +49,8 @@ pub(crate) fn levels_at_once(
     };
     let mesh = bake(mesh, scale);
     let resolution = resolution.copied().unwrap_or_default();
-    let levels = library.levels_at_once(entity, &mesh, attachment, lods, resolution)?;
-    Ok(levels.map(|levels| (levels, scale)))
+    library.at_once = true;
+    let found = library.levels(entity, &mesh, attachment, lods, resolution);
+    library.at_once = false;
+    Ok(if let Found::Levels(levels) = found? { Some((levels, scale)) } else { None })
 }

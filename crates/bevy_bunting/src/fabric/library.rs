@@ -53,7 +53,7 @@ pub(crate) struct FabricLibrary {
     /// Whether a cloth waits for its levels, or for levels that replace its present ones.
     pub awaited: bool,
     /// Whether levels are built now, however long that takes.
-    at_once: bool,
+    pub at_once: bool,
     /// Whether levels of cloths whose choice of levels is automatic may be taken later than they are due, so that no
     /// tick waits for another thread.
     pub may_be_late: bool,
@@ -159,25 +159,6 @@ impl FabricLibrary {
         let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
         self.cut.insert(key, Arc::downgrade(&levels));
         Ok(Found::Levels(levels))
-    }
-
-    /// Returns the levels of a cloth with a valid [`LodSet`], built now if they are not there.
-    ///
-    /// # Errors
-    ///
-    /// The mesh, its weights or the attachment's vertices are invalid.
-    pub fn levels_at_once(
-        &mut self,
-        entity: Entity,
-        mesh: &ClothMesh,
-        attachment: Option<&Attachment>,
-        lods: &LodSet,
-        resolution: ClothResolution,
-    ) -> Result<Option<Arc<ClothLevels>>, ClothError> {
-        self.at_once = true;
-        let found = self.levels(entity, mesh, attachment, lods, resolution);
-        self.at_once = false;
-        Ok(if let Found::Levels(levels) = found? { Some(levels) } else { None })
     }
 
     /// Builds levels now, or takes them in the tick in which they are due; none before.

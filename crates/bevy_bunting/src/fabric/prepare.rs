@@ -173,11 +173,7 @@ impl CutClothItem<'_, '_> {
         self.history.has_new(&self.mesh)
             || self.resolution() != self.instance.resolution
             || self.history.has_new(&self.lods)
-            || self.has_new_attachment()
-    }
-
-    fn has_new_attachment(&self) -> bool {
-        self.attachment.as_ref().is_some_and(|attachment| self.history.has_new(attachment))
+            || self.attachment.as_ref().is_some_and(|it| self.history.has_new(it))
     }
 
     /// Whether the fabrics must be looked up or built again.
@@ -202,7 +198,7 @@ impl CutClothItem<'_, '_> {
         batches: &mut ClothBatches,
         commands: &mut Commands,
     ) {
-        let is_edited = self.has_new_attachment();
+        let is_edited = self.attachment.as_ref().is_some_and(|it| self.history.has_new(it));
         let known = self.instance.refusal.as_deref();
         let is_reported = known.is_some_and(|known| known.error == error);
         let refusal = Refusal {

@@ -1,7 +1,6 @@
 //! The system that chooses levels: examines cloths, sends unseen ones to sleep, asks the governor,
 //! and changes levels.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use bevy_app::{App, Plugin};
@@ -11,13 +10,11 @@ use bevy_ecs::system::{SystemChangeTick, SystemParam};
 use bevy_platform::time::Instant;
 use bevy_time::Time;
 use bevy_transform::helper::TransformHelper;
-use bunting_solver::EffortClass;
 
 use crate::batch::assign::assign_lanes;
 use crate::batch::batches::ClothBatches;
 use crate::cloth::activity::ClothActivity;
 use crate::cloth::instance::has_changed;
-use crate::fabric::levels::ClothLevels;
 use crate::lod::budget::{ClothBudget, LodCosts};
 use crate::lod::candidate::{Candidate, Limits};
 use crate::lod::cost_model::CostModel;
@@ -26,7 +23,7 @@ use crate::lod::governor::{Choice, Governor};
 use crate::lod::level_tables::LevelTables;
 use crate::lod::lod_cloth::{EXAMINED_EVERY, LodCloth, LodClothItem};
 use crate::lod::lod_set::{LodChoice, LodSet};
-use crate::lod::record::{LodRecord, SavedRecord};
+use crate::lod::record::LodRecord;
 use crate::lod::report::{ClothCounts, LodReport};
 use crate::lod::view::{Sight, Sighting, View};
 use crate::lod::viewer::LodViewer;
@@ -69,7 +66,7 @@ impl Plugin for LodPlugin {
 pub(crate) struct LevelSelector {
     governor: Governor,
     model: CostModel,
-    tables: LevelTables,
+    pub tables: LevelTables,
     candidates: Vec<Candidate>,
     /// Entities of the candidates.
     entities: Vec<Entity>,
@@ -176,17 +173,6 @@ impl LevelSelector {
     /// Forgets the tables of levels that no cloth has any more.
     pub fn forget_unused(&mut self) {
         self.tables.forget_unused();
-    }
-
-    /// The record of a restored cloth with these levels, in a class of effort.
-    pub fn restore(
-        &mut self,
-        saved: &SavedRecord,
-        levels: &Arc<ClothLevels>,
-        class: EffortClass,
-    ) -> LodRecord {
-        let table = self.tables.index_of(levels, class);
-        LodRecord::restored(levels, (table, self.tables.radius(table)), saved, self.tick)
     }
 
     /// Learns from the last tick's measurements, decides whether this tick is measured, and returns the table

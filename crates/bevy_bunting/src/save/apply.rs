@@ -159,8 +159,11 @@ fn restore_choices(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
     let gravity = world.resource::<ClothSettings>().gravity.length();
     let mut selector = world.resource_mut::<LevelSelector>();
     let class = saved.effort.class();
-    let record = saved.record.as_ref();
-    let record = record.map(|record| selector.restore(record, &fitting.levels, class));
+    let record = saved.record.as_ref().map(|record| {
+        let table = selector.tables.index_of(&fitting.levels, class);
+        let of_levels = (table, selector.tables.radius(table));
+        LodRecord::restored(&fitting.levels, of_levels, record, selector.tick)
+    });
     let limits = world.resource::<ClothSettings>().limits(saved.level);
     let fabric = fitting.levels.fabric(saved.level);
     let acceleration = class.acceleration(gravity);

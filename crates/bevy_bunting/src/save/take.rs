@@ -90,7 +90,7 @@ pub(super) fn take(world: &World, entity: Entity) -> Result<SavedCloth, Snapshot
     let wakes = is_exposed && instance.activity == ClothActivity::AtRest;
     let touches = match (&instance.restored, instance.lane()) {
         (Some(restored), _) => restored.touches,
-        (None, lane) => lane.is_some_and(|lane| batches.touches_colliders(lane)),
+        (None, lane) => lane.is_some_and(|lane| batches.near_colliders(lane).next().is_some()),
     };
     let anchors = cloth.get::<AnchorPoses>();
     Ok(SavedCloth {
