@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use bevy_math::{Affine3A, Mat3, Vec3};
+use bevy_math::{Affine3A, Vec3};
 use bunting_solver::FabricMaterial;
 
 use crate::anchors::reactions::AnchorReaction;
@@ -88,7 +88,6 @@ pub(crate) struct SavedCloth {
     pub in_lane: bool,
     pub seed: ClothSeed,
     pub unmoved: bool,
-    pub scale: Mat3,
     pub activity: ClothActivity,
     pub material: FabricMaterial,
     /// m/s².

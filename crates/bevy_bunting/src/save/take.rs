@@ -104,7 +104,6 @@ pub(super) fn take(world: &World, entity: Entity) -> Result<SavedCloth, Snapshot
         in_lane: instance.lane().is_some(),
         seed: instance.seed,
         unmoved: instance.unmoved,
-        scale: instance.scale,
         activity: if wakes { ClothActivity::Ticking } else { instance.activity },
         material: instance.material,
         gravity: instance.gravity,
