@@ -31,6 +31,7 @@ mod points;
 mod reactions;
 mod resolution;
 mod rest;
+mod saving;
 mod schedules;
 mod skeleton_changes;
 mod skeletons;

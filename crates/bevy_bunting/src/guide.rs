@@ -27,6 +27,10 @@ mod effort {}
 #[doc = include_str!("../../../docs/guide/determinism.md")]
 mod determinism {}
 
+#[cfg(feature = "serialize")]
+#[doc = include_str!("../../../docs/guide/saving.md")]
+mod saving {}
+
 #[doc = include_str!("../../../docs/guide/performance.md")]
 mod performance {}
 

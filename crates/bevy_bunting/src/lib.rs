@@ -95,6 +95,12 @@
 //! for each level, updates its bounds, and puts a [`LodViewer`] on cameras. Its documentation says which
 //! settings the material needs. With the feature `weave`, `WovenMaterial` is one that shows threads. `ClothDebugPlugin`, which is not among [`ClothPlugins`], draws gizmos.
 //!
+//! # Saving
+//!
+//! [`ClothSaves`] takes and restores [`ClothSnapshot`]s of single cloths and [`ClothWorldSnapshot`]s of all, between any two
+//! ticks: for saved games, servers and rollback. Cloth goes on with the same bits. With the feature `serialize` they are
+//! written as bytes.
+//!
 //! # Determinism
 //!
 //! The same world in the same ticks gives the same bits, whatever the number of threads. The bits of a cloth depend on those
@@ -122,6 +128,7 @@ mod motion;
 mod picking;
 #[cfg(feature = "render")]
 mod render;
+mod save;
 mod schedule;
 mod settings;
 mod skeleton;
@@ -222,6 +229,13 @@ pub use render::plugin::{ClothRenderPlugin, ClothRenderSystems};
 pub use render::subdivision::ClothSubdivision;
 #[cfg(feature = "weave")]
 pub use render::weave::{Weave, WeavePlugin, WovenMaterial};
+#[cfg(feature = "serialize")]
+pub use save::bytes::SnapshotBytesError;
+pub use save::cloth::ClothSnapshot;
+pub use save::error::SnapshotError;
+pub use save::plugin::SavePlugin;
+pub use save::saves::ClothSaves;
+pub use save::world::ClothWorldSnapshot;
 pub use schedule::{
     ClothSubstep, ClothSubstepSystems, ClothSystems, ClothTick, SchedulePlugin, run_cloth_tick,
 };
@@ -240,11 +254,12 @@ pub mod prelude {
         ClothCollision, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
         ClothFeatures, ClothGrab, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged,
         ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
-        ClothReactions, ClothResolution, ClothSeed, ClothSettings, ClothSkin, ClothState,
-        ClothSurface, ClothSystems, ClothTargetLost, ClothTick, ClothTouched, GrabbedVertices,
-        LodSet, LodViewer, SelfCollision, SkinError, SkinLimits, TargetLost, TeleportCloth,
-        TeleportMode, WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindPerParticle,
-        WindRegion, WindShape, WindWake,
+        ClothReactions, ClothResolution, ClothSaves, ClothSeed, ClothSettings, ClothSkin,
+        ClothSnapshot, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick,
+        ClothTouched, ClothWorldSnapshot, GrabbedVertices, LodSet, LodViewer, SelfCollision,
+        SkinError, SkinLimits, SnapshotError, TargetLost, TeleportCloth, TeleportMode,
+        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindPerParticle, WindRegion,
+        WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{
@@ -318,6 +333,7 @@ impl PluginGroup for ClothPlugins {
             .add(EasingPlugin)
             .add(LiftPlugin)
             .add(SurfacePlugin)
+            .add(SavePlugin)
             .add(ClothDiagnosticsPlugin);
         #[cfg(feature = "render")]
         let group = group.add(ClothRenderPlugin);

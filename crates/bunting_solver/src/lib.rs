@@ -69,6 +69,8 @@ mod constraints;
 mod contact;
 mod fabric;
 mod geometry;
+#[cfg(feature = "serde")]
+pub mod packed;
 mod simd;
 mod stability;
 mod step;

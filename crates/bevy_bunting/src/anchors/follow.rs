@@ -10,6 +10,7 @@ use crate::cloth::events::ClothFailed;
 use crate::cloth::mesh::ClothMesh;
 use crate::lod::sleep::WakeCloth;
 use crate::motion::attachment::Attachment;
+use crate::motion::pose::PoseHistory;
 
 /// Gives cloths with springs or rails [`ClothHolds`], and those with anchors that may break [`AnchorReactions`]. Reports
 /// anchors that cannot be used.
@@ -36,14 +37,14 @@ pub(super) fn follow_holds(
 
 /// Gives cloths that are grabbed [`ClothHolds`], and wakes them. Reports grabs that cannot be used.
 pub(super) fn follow_grabs(
-    mut grabs: Query<(Entity, Ref<ClothGrab>, &mut Grabbed)>,
+    mut grabs: Query<(Entity, Ref<ClothGrab>, &mut Grabbed, &PoseHistory)>,
     cloths: Query<Has<ClothHolds>, With<ClothMesh>>,
     mut commands: Commands,
 ) {
-    for (hand, grab, mut grabbed) in &mut grabs {
+    for (hand, grab, mut grabbed, history) in &mut grabs {
         let entity = grab.cloth;
         let has_holds = cloths.get(entity).ok().filter(|_| grab.is_valid());
-        if grab.is_changed() {
+        if history.has_new(&grab) {
             *grabbed = Grabbed::default();
             match has_holds {
                 Some(_) => commands.trigger(WakeCloth { entity }),

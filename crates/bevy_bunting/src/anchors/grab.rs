@@ -126,9 +126,11 @@ fn map_cloth<M: EntityMapper>(grab: &mut ClothGrab, mapper: &mut M) {
 }
 
 /// What a [`ClothGrab`] holds, and how hard the cloth pulls.
-#[derive(Component, Debug, Default)]
+#[derive(Component, Clone, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct Grabbed {
     /// The levels and the level of the particles.
+    #[cfg_attr(feature = "serialize", serde(skip))]
     of: Option<KnownLevel>,
     /// Positions at rest of the particles that were grabbed, and their places in the frame of the entity, m.
     grabbed: Vec<(Vec3, Vec3)>,
@@ -159,6 +161,14 @@ impl Grabbed {
     /// Whether the particles are those of a level.
     pub(crate) fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
         self.of.as_ref().is_some_and(|of| of.is(levels, level))
+    }
+
+    /// What was saved of a grab of a cloth at this level; nothing is held that the level does not have.
+    pub(crate) fn restored(mut self, levels: &Arc<ClothLevels>, level: usize) -> Self {
+        let count = levels.fabric(level).particle_count();
+        self.held.retain(|&(particle, _)| (particle as usize) < count);
+        self.of = Some(KnownLevel::new(levels, level));
+        self
     }
 
     /// Grabs: chooses the particles at the present level, given the places of all particles in the frame of the entity, m.

@@ -17,6 +17,7 @@ use crate::lod::sleep::send_to_sleep;
 use crate::motion::anchor_hold::AnchorHold;
 use crate::motion::lead::lead_pins;
 use crate::motion::lost_target::handle_lost_targets;
+use crate::motion::observe::observe_ticks;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// Holds cloths by springs and rails, and reports what cloths do to that which holds them.
@@ -38,7 +39,8 @@ impl Plugin for AnchorPlugin {
                     (follow_holds, follow_grabs)
                         .chain()
                         .in_set(ClothSystems::Prepare)
-                        .after(change_materials),
+                        .after(change_materials)
+                        .before(observe_ticks),
                     (hold_cloths, ask_for_reactions)
                         .chain()
                         .in_set(ClothSystems::Drive)

@@ -46,6 +46,7 @@ pub struct AnchorReactions {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct AnchorReaction {
     /// Mean force over the last tick, N, in the world.
     pub force: Vec3,

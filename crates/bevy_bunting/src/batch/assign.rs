@@ -3,7 +3,9 @@
 use core::ops::RangeInclusive;
 
 use bevy_app::{App, Plugin};
+use bevy_ecs::change_detection::Tick;
 use bevy_ecs::prelude::*;
+use bevy_ecs::system::SystemChangeTick;
 use bevy_reflect::{ReflectDeserialize, ReflectSerialize};
 use bevy_time::Time;
 
@@ -13,9 +15,20 @@ use crate::batch::lane_handle::LaneHandle;
 use crate::batch::occupancy::PendingCloth;
 use crate::batch::shared_substeps::Member;
 use crate::cloth::activity::{ClothActivity, ClothPaused};
-use crate::cloth::instance::{ClothInstance, StateStorage};
+use crate::cloth::instance::{ClothInstance, StateStorage, has_changed};
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
+
+/// The tick in which lanes were last assigned.
+#[derive(Resource, Clone, Debug, Default)]
+pub(crate) struct LastAssignment {
+    /// Its length, s; zero before the first.
+    pub tick: f32,
+    /// The settings in it.
+    pub settings: Option<ClothSettings>,
+    /// When it was, as a tick of change.
+    pub ran: Tick,
+}
 
 /// Assigns cloths to lanes of batches.
 #[derive(Debug, Default)]
@@ -29,6 +42,7 @@ impl Plugin for LanePlugin {
             .register_type::<ClothPaused>()
             .init_resource::<ClothSettings>()
             .init_resource::<ClothBatches>()
+            .init_resource::<LastAssignment>()
             .add_observer(mark_paused)
             .add_observer(mark_resumed)
             .add_systems(ClothTick, assign_lanes.in_set(ClothSystems::SelectLod));
@@ -54,18 +68,23 @@ pub(crate) fn assign_lanes(
     mut cloths: Query<SteppedCloth>,
     settings: Res<ClothSettings>,
     time: Res<Time>,
-    mut last_tick: Local<f32>,
+    (mut last, change_tick): (ResMut<LastAssignment>, SystemChangeTick),
     mut members: Local<Vec<Member>>,
     mut batches: ResMut<ClothBatches>,
 ) {
     let tick = time.delta_secs();
-    let reassign_all = settings.is_changed() || tick != *last_tick;
-    *last_tick = tick;
+    let has_new_settings = last.settings.as_ref() != Some(&*settings);
+    // Before the first tick no cloth has a lane that it does not keep.
+    let reassign_all = last.settings.is_some() && (has_new_settings || tick != last.tick);
+    if has_new_settings {
+        last.settings = Some(settings.clone());
+    }
+    (last.tick, last.ran) = (tick, change_tick.this_run());
     if choose_substeps(&mut cloths, &settings, tick, reassign_all, &batches, &mut members) {
         for (entity, mut instance, effort, paused, _) in &mut cloths {
             let steps = effort.settings;
             let differs = |lane: LaneHandle| batches.settings(lane) != steps;
-            let is_changed = instance.is_changed() || reassign_all;
+            let is_changed = has_changed(&instance, |pending| pending.lanes) || reassign_all;
             if !is_changed && !instance.lane().is_some_and(differs) {
                 continue;
             }

@@ -7,7 +7,7 @@ use crate::batch::batches::ClothBatches;
 use crate::batch::cost_kind::CostKind;
 use crate::batch::shared_substeps::{Member, share};
 use crate::cloth::activity::{ClothActivity, ClothPaused};
-use crate::cloth::instance::ClothInstance;
+use crate::cloth::instance::{ClothInstance, has_changed};
 use crate::environment::cloth_collision::ClothCollision;
 use crate::environment::self_collision::SelfCollision;
 use crate::lod::batch_costs::BatchCosts;
@@ -37,7 +37,7 @@ pub(crate) fn choose_substeps(
     let gravity = settings.gravity.length();
     let mut is_due = batches.has_changed();
     for (_, instance, mut effort, paused, _) in &mut *cloths {
-        if !instance.is_changed() && !all {
+        if !has_changed(&instance, |pending| pending.lanes) && !all {
             continue;
         }
         is_due = true;
@@ -73,7 +73,10 @@ fn share_batches(
             Some(lane) => batches.kind(lane),
             None => batches.kind_of(fabric, effort.needed)?,
         };
-        let touches = lane.is_some_and(|lane| batches.near_colliders(lane).next().is_some());
+        let touches = match &instance.restored {
+            Some(restored) => restored.touches,
+            None => lane.is_some_and(|lane| batches.near_colliders(lane).next().is_some()),
+        };
         let loads = effort.loads();
         Some(Member {
             entity,

@@ -212,6 +212,12 @@ impl LaneMut<'_> {
         self.occupied.batch.report_pins(self.lane, groups).expect("an occupied lane");
     }
 
+    /// Sets the velocities of the pins at the end of the last tick, m/s, of a cloth that is new in its lane.
+    pub fn set_pin_velocities(&mut self, velocities: Vec<Vec3>) {
+        let batch = &mut self.occupied.batch;
+        batch.set_pin_velocities(self.lane, velocities).expect("an occupied lane");
+    }
+
     /// Sets the shapes that the cloth may touch in the next tick. Shapes with numbers that are not finite are
     /// ignored.
     pub fn set_colliders(&mut self, colliders: impl IntoIterator<Item = Collider>) {

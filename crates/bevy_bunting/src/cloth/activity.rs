@@ -26,6 +26,7 @@ pub struct ClothPaused;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Default, Debug, PartialEq, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub enum ClothActivity {
     /// The cloth is simulated.
     #[default]

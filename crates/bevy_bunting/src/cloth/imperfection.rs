@@ -37,6 +37,7 @@ const WAVES: [f32; 4] = [1.3, 2.1, 3.4, 5.5];
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothSeed(pub u32);
 
 impl ClothSeed {

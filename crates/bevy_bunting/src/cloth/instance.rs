@@ -14,6 +14,7 @@ use crate::cloth::activity::ClothActivity;
 use crate::cloth::error::ClothError;
 use crate::cloth::imperfection::{ClothSeed, almost_at_rest};
 use crate::cloth::resolution::ClothResolution;
+use crate::cloth::restored::{Pending, Restored};
 use crate::cloth::state::ClothState;
 use crate::fabric::awaited::AwaitedLevels;
 use crate::fabric::levels::ClothLevels;
@@ -112,6 +113,8 @@ pub(crate) struct ClothInstance {
     pub is_posed: bool,
     /// Whether a pose that is not finite was reported.
     pub pose_reported: bool,
+    /// Until the next tick ends, what a restoration has brought.
+    pub restored: Option<Box<Restored>>,
 }
 
 /// Gives a clone of a cloth its own copy of the original's state.
@@ -299,5 +302,14 @@ impl ClothInstance {
     pub fn clear(&mut self, batches: &mut ClothBatches) {
         self.leave_lane(batches);
         *self = Self::default();
+    }
+}
+
+/// Whether a cloth has changed since a system last ran; of a restored cloth, since it was restored, or if the system is to
+/// see a change from before it was saved.
+pub(crate) fn has_changed(instance: &Mut<ClothInstance>, is_pending: fn(&Pending) -> bool) -> bool {
+    match &instance.restored {
+        None => instance.is_changed(),
+        Some(it) => is_pending(&it.pending) || it.at.is_before(instance.last_changed()),
     }
 }

@@ -11,5 +11,6 @@ pub mod place;
 pub mod preroll;
 pub mod reflect;
 pub mod resolution;
+pub mod restored;
 pub mod state;
 pub mod weights;

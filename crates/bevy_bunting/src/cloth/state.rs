@@ -54,12 +54,16 @@ pub struct ClothState {
 
 /// The surface of a cloth before a change of level, in the cloth's frame.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ReplacedSurface {
     pub level: usize,
     /// Positions after the last tick, m.
+    #[cfg_attr(feature = "serialize", serde(with = "bunting_solver::packed"))]
     pub positions: Vec<Vec3>,
     /// Positions before that tick, m.
+    #[cfg_attr(feature = "serialize", serde(with = "bunting_solver::packed"))]
     pub previous_positions: Vec<Vec3>,
+    #[cfg_attr(feature = "serialize", serde(with = "bunting_solver::packed"))]
     pub normals: Vec<Vec3>,
 }
 

@@ -9,6 +9,7 @@ const RATE: f32 = 28.0;
 /// A value x that decays to zero by x‴ = −3ω x″ − 3ω² x′ − ω³ x with ω = 28/s: critically damped, and of
 /// third order, so that x stays smooth when its rate is changed.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Decay {
     pub value: Vec3,
     /// Change of the value per second.

@@ -23,9 +23,11 @@ const FADE: f32 = 4.0;
 /// At the change, the offsets are the differences between the shown surface and that of the new level, and
 /// their rates are the differences of the velocities, so that neither positions nor velocities of the shown
 /// surface jump. The surface has the vertices of the finest level that takes part.
-#[derive(Component, Debug, Default)]
+#[derive(Component, Clone, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ClothEasing {
     /// The levels of the cloth while a change is eased; none otherwise.
+    #[cfg_attr(feature = "serialize", serde(skip))]
     levels: Option<Arc<ClothLevels>>,
     /// The level whose vertices the surface has.
     level: usize,
@@ -35,10 +37,14 @@ pub(crate) struct ClothEasing {
     offsets: Vec<Decay>,
     normal_offsets: Vec<Decay>,
     /// Positions after the last tick, m.
+    #[cfg_attr(feature = "serialize", serde(with = "bunting_solver::packed"))]
     pub positions: Vec<Vec3>,
     /// Positions before the last tick, m.
+    #[cfg_attr(feature = "serialize", serde(with = "bunting_solver::packed"))]
     pub previous_positions: Vec<Vec3>,
+    #[cfg_attr(feature = "serialize", serde(with = "bunting_solver::packed"))]
     pub normals: Vec<Vec3>,
+    #[cfg_attr(feature = "serialize", serde(with = "bunting_solver::packed"))]
     pub previous_normals: Vec<Vec3>,
 }
 
@@ -48,7 +54,17 @@ impl ClothEasing {
         self.is_active().then_some(self.level)
     }
 
-    pub(super) fn is_active(&self) -> bool {
+    /// The easing of a cloth with these levels, when it was saved. None if it does not fit them.
+    pub fn of_levels(mut self, levels: &Arc<ClothLevels>) -> Option<Self> {
+        let count = levels.fabric(self.level).particle_count();
+        let is_of_surface =
+            [&self.offsets, &self.normal_offsets].iter().all(|it| it.len() == count)
+                && [&self.positions, &self.normals].iter().all(|it| it.len() == count);
+        self.levels = Some(Arc::clone(levels));
+        is_of_surface.then_some(self)
+    }
+
+    pub fn is_active(&self) -> bool {
         self.levels.is_some()
     }
 

@@ -5,7 +5,8 @@ use bevy_math::Vec3;
 
 /// Displacements (m) that lift the triangles of a displayed surface out of colliders, with the indices of the
 /// displaced particles.
-#[derive(Component, Debug, Default)]
+#[derive(Component, Clone, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ClothLift {
     /// The level whose particles are displaced.
     pub(super) level: usize,

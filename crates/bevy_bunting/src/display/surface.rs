@@ -63,13 +63,19 @@ impl Plugin for SurfacePlugin {
 }
 
 /// End and length of the last tick, s.
-#[derive(Resource, Debug, Default)]
+#[derive(Resource, Clone, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct LastTick {
     end: f64,
     length: f64,
 }
 
 impl LastTick {
+    /// The same tick on a clock that reads so many seconds more.
+    pub fn moved_by(self, time: f64) -> Self {
+        Self { end: self.end + time, ..self }
+    }
+
     /// The fraction of the last tick whose surfaces are shown now.
     pub fn fraction(&self, time: &Time<Virtual>) -> f32 {
         if self.length <= 0.0 {

@@ -18,7 +18,7 @@ const FARTHEST: f32 = 1e9;
 
 /// The boxes of all colliders in this tick.
 #[derive(Resource, Default)]
-pub(super) struct ColliderTree {
+pub(crate) struct ColliderTree {
     tree: Bvh,
     workspace: BvhWorkspace,
     /// The entity of each leaf; none for a leaf that is free.
@@ -62,6 +62,31 @@ impl ColliderTree {
                 }
             }
         }
+    }
+
+    /// The colliders in the order of their leaves, none for a leaf that is free; and the free leaves, the last of which is
+    /// taken first.
+    pub fn order(&self) -> (&[Option<Entity>], &[u32]) {
+        (&self.entities, &self.free)
+    }
+
+    /// Puts colliders in an order, and those that are not in it behind them. Each gets its box in the next tick.
+    pub fn restore(&mut self, order: &[Option<Entity>], free: &[u32]) {
+        let known = core::mem::take(&mut self.entities);
+        *self = Self::default();
+        for (leaf, &entity) in (0..).zip(order) {
+            let entity = entity.filter(|entity| !self.leaves.contains_key(entity));
+            match entity {
+                Some(entity) => _ = self.leaves.insert(entity, leaf),
+                None if !free.contains(&leaf) => self.free.push(leaf),
+                None => {}
+            }
+            self.entities.push(entity);
+        }
+        let is_free = |&&leaf: &&u32| matches!(self.entities.get(leaf as usize), Some(None));
+        self.free.extend(free.iter().filter(is_free));
+        known.into_iter().flatten().for_each(|entity| _ = self.leaf_of(entity));
+        self.moving.extend(self.entities.iter().flatten());
     }
 
     fn leaf_of(&mut self, entity: Entity) -> u32 {

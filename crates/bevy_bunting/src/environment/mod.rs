@@ -2,7 +2,7 @@
 
 pub(crate) mod cloth_collision;
 pub mod collider;
-mod collider_tree;
+pub(crate) mod collider_tree;
 pub mod drive;
 pub mod drive_colliders;
 pub mod drive_self_collisions;

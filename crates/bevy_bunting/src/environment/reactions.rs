@@ -24,6 +24,7 @@ use bevy_reflect::std_traits::ReflectDefault;
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothReactions {
     /// Mean force of all cloths on the collider over the last tick, N, in the world.
     pub force: Vec3,
@@ -32,14 +33,16 @@ pub struct ClothReactions {
     /// Area of cloth that touches the collider at the end of the tick, m².
     pub area: f32,
     /// The cloths that touch, in the order of their indices.
-    pub(super) by_cloth: Vec<ClothReaction>,
+    pub(crate) by_cloth: Vec<ClothReaction>,
 }
 
 /// What one cloth does to a collider.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothReaction {
     /// The cloth.
+    #[cfg_attr(feature = "serialize", serde(with = "crate::save::entity_bits"))]
     pub cloth: Entity,
     /// Mean force on the collider over the last tick, N, in the world.
     pub force: Vec3,

@@ -2,8 +2,8 @@
 
 #[cfg(feature = "render")]
 use std::borrow::Cow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
@@ -12,6 +12,7 @@ use bunting_solver::{Carried, Fabric, FabricBuilder, Grid, LevelTransfer, MeshPo
 #[cfg(feature = "render")]
 use crate::fabric::level_topology::LevelTopology;
 use crate::fabric::rigid::{Blend, RigidPart};
+use crate::waves::mix;
 
 /// The fabrics of a cloth, the finest first, and the transfers between neighbouring levels.
 #[derive(Debug)]
@@ -41,6 +42,8 @@ pub(super) struct Level {
     pub vertices: Vec<u32>,
     /// The particles of a mesh that is no grid.
     own: Option<OwnParticles>,
+    /// What tells the fabric from others, once it has been asked for.
+    fingerprint: OnceLock<u32>,
     #[cfg(feature = "render")]
     topology: LevelTopology,
 }
@@ -71,6 +74,7 @@ impl Level {
             fabric,
             vertices,
             own: None,
+            fingerprint: OnceLock::new(),
         }
     }
 
@@ -98,7 +102,20 @@ impl Level {
                 corners,
             }),
             fabric,
+            fingerprint: OnceLock::new(),
         }
+    }
+
+    /// A number by which positions at rest and pins are told from others, in every run and on every machine.
+    fn fingerprint(&self) -> u32 {
+        *self.fingerprint.get_or_init(|| {
+            let at_rest = self.fabric.rest_positions().iter().enumerate();
+            let of_particle = |(particle, at): (usize, &Vec3)| {
+                let [x, y, z] = at.to_array().map(f32::to_bits);
+                [x, y, z, u32::from(self.fabric.is_pinned(particle))]
+            };
+            at_rest.flat_map(of_particle).fold(1, |hash, bits| mix(hash ^ bits))
+        })
     }
 
     /// The index among the level's vertices of a vertex of the [`ClothMesh`](crate::ClothMesh).
@@ -214,6 +231,11 @@ impl ClothLevels {
     /// Fabric of a level. A level that could not be built has the fabric of the coarsest level.
     pub fn fabric(&self, level: usize) -> &Arc<Fabric> {
         &self.level(level).fabric
+    }
+
+    /// A number by which the fabric of a level is told from others, in every run and on every machine.
+    pub fn fingerprint(&self, level: usize) -> u32 {
+        self.level(level).fingerprint()
     }
 
     /// The fabrics of all levels.

@@ -52,6 +52,8 @@ pub(crate) struct FabricLibrary {
     expected: usize,
     /// Whether a cloth waits for its levels, or for levels that replace its present ones.
     pub awaited: bool,
+    /// Whether levels are built now, however long that takes.
+    pub at_once: bool,
     /// Whether levels of cloths whose choice of levels is automatic may be taken later than they are due, so that no
     /// tick waits for another thread.
     pub may_be_late: bool,
@@ -167,12 +169,15 @@ impl FabricLibrary {
         (attached, resolution): (Attached, ClothResolution),
         lods: &LodSet,
     ) -> Option<Result<ClothLevels, FabricError>> {
-        if self.is_cutting_key(key, lods) {
+        if !self.at_once && self.is_cutting_key(key, lods) {
             return None;
         }
         let asked = lods.levels();
         if let Some(cutting) = self.cutting.remove(key) {
             return Some(cutting.levels.take());
+        }
+        if self.at_once {
+            return Some(cut_levels(mesh, &attached, asked, resolution));
         }
         let vertices = work(mesh, &attached, resolution);
         let fits = self.expected == 0 || self.expected + vertices <= VERTICES_PER_TICK;

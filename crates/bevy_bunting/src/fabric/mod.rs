@@ -1,5 +1,6 @@
 //! Fabrics: built from meshes, one for each level of detail, and shared by cloths of equal content.
 
+pub mod at_once;
 pub(crate) mod attached;
 pub mod awaited;
 pub mod cut;

@@ -170,10 +170,10 @@ impl CutClothItem<'_, '_> {
 
     /// Whether the user has changed an input of the fabrics.
     fn is_edited(&self) -> bool {
-        self.mesh.is_changed()
+        self.history.has_new(&self.mesh)
             || self.resolution() != self.instance.resolution
-            || self.lods.is_changed()
-            || self.attachment.as_ref().is_some_and(|attachment| attachment.is_changed())
+            || self.history.has_new(&self.lods)
+            || self.attachment.as_ref().is_some_and(|it| self.history.has_new(it))
     }
 
     /// Whether the fabrics must be looked up or built again.
@@ -198,7 +198,7 @@ impl CutClothItem<'_, '_> {
         batches: &mut ClothBatches,
         commands: &mut Commands,
     ) {
-        let is_edited = self.attachment.as_ref().is_some_and(|attachment| attachment.is_changed());
+        let is_edited = self.attachment.as_ref().is_some_and(|it| self.history.has_new(it));
         let known = self.instance.refusal.as_deref();
         let is_reported = known.is_some_and(|known| known.error == error);
         let refusal = Refusal {

@@ -16,6 +16,7 @@ pub(crate) struct LevelTable {
 
 /// A simulated cloth.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Candidate {
     /// Index of the cloth's level table.
     pub table: u32,

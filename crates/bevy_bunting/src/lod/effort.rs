@@ -16,6 +16,7 @@ use crate::motion::pose::PoseHistory;
 /// more at once, and fewer after half a second. It may take more than it needs, to share a batch with cloths that need
 /// more, see [`ClothSettings::share_batches`](crate::ClothSettings::share_batches).
 #[derive(Component, Clone, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothEffort {
     effort: Effort,
     loads: Loads,

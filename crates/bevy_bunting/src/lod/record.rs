@@ -45,6 +45,39 @@ impl LodRecord {
         Self { has_fewer_levels, levels, radius, phase, changed: now, seen: now, ..Self::default() }
     }
 
+    /// The record of a cloth with these levels and a radius, m, of which a saved record is known in tick `now`. `table` is
+    /// the index of its level table.
+    pub fn restored(
+        levels: &Arc<ClothLevels>,
+        (table, radius): (usize, f32),
+        saved: &SavedRecord,
+        now: u32,
+    ) -> Self {
+        let candidate = saved.candidate.map(|it| Candidate { table: table as u32, ..it });
+        Self {
+            candidate,
+            activity: saved.activity,
+            middle: saved.middle,
+            centre: saved.centre,
+            changed: now.wrapping_sub(saved.since_change),
+            seen: now.wrapping_sub(saved.since_seen),
+            ..Self::new(levels, radius, saved.turn.wrapping_sub(now), now)
+        }
+    }
+
+    /// What of the record outlives the cloth in tick `now`; none if the cloth has not been examined with these levels.
+    pub fn saved(&self, levels: &Arc<ClothLevels>, now: u32) -> Option<SavedRecord> {
+        self.is_of(levels).then(|| SavedRecord {
+            candidate: self.candidate,
+            activity: self.activity,
+            middle: self.middle,
+            centre: self.centre,
+            turn: self.phase.wrapping_add(now),
+            since_change: now.wrapping_sub(self.changed),
+            since_seen: now.wrapping_sub(self.seen),
+        })
+    }
+
     /// The cloth has no levels any more.
     pub fn forget_levels(&mut self) {
         (self.levels, self.has_fewer_levels) = (0, false);
@@ -54,6 +87,19 @@ impl LodRecord {
     pub fn is_of(&self, levels: &Arc<ClothLevels>) -> bool {
         self.levels == Arc::as_ptr(levels).addr()
     }
+}
+
+/// A record of a saved cloth: ticks are counted back from that in which it was saved.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct SavedRecord {
+    candidate: Option<Candidate>,
+    activity: ClothActivity,
+    middle: Vec3,
+    centre: Vec3,
+    turn: u32,
+    since_change: u32,
+    since_seen: u32,
 }
 
 /// State that the sleep at rest keeps for a cloth.

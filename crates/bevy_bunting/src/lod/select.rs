@@ -4,8 +4,9 @@
 use std::time::Duration;
 
 use bevy_app::{App, Plugin};
+use bevy_ecs::change_detection::Tick;
 use bevy_ecs::prelude::*;
-use bevy_ecs::system::SystemParam;
+use bevy_ecs::system::{SystemChangeTick, SystemParam};
 use bevy_platform::time::Instant;
 use bevy_time::Time;
 use bevy_transform::helper::TransformHelper;
@@ -13,6 +14,7 @@ use bevy_transform::helper::TransformHelper;
 use crate::batch::assign::assign_lanes;
 use crate::batch::batches::ClothBatches;
 use crate::cloth::activity::ClothActivity;
+use crate::cloth::instance::has_changed;
 use crate::lod::budget::{ClothBudget, LodCosts};
 use crate::lod::candidate::{Candidate, Limits};
 use crate::lod::cost_model::CostModel;
@@ -64,14 +66,16 @@ impl Plugin for LodPlugin {
 pub(crate) struct LevelSelector {
     governor: Governor,
     model: CostModel,
-    tables: LevelTables,
+    pub tables: LevelTables,
     candidates: Vec<Candidate>,
     /// Entities of the candidates.
     entities: Vec<Entity>,
     /// Number of the present tick.
-    tick: u32,
+    pub tick: u32,
+    /// When levels were last chosen, as a tick of change.
+    pub ran: Tick,
     /// Number of cloths so far; it staggers the examinations of cloths over ticks.
-    cloths: u32,
+    pub cloths: u32,
     /// Whether there were cloths in the last tick that had not been simulated yet.
     has_fresh: bool,
     /// Tabulated overhead of the last tick: its cost besides batches and changes of level, µs.
@@ -91,6 +95,7 @@ pub(crate) struct Conditions<'w, 's> {
     time: Res<'w, Time>,
     budget: Res<'w, ClothBudget>,
     timings: Option<Res<'w, ClothTimings>>,
+    change_tick: SystemChangeTick,
 }
 
 /// Inputs of the examination of a cloth, besides the cloth.
@@ -111,6 +116,7 @@ pub(crate) fn select_levels(
 ) {
     let began = Instant::now();
     let selector = &mut *selector;
+    selector.ran = conditions.change_tick.this_run();
     let table = selector.learn(&conditions, &mut batches);
     let empty_tick = selector.model.empty_tick(&table);
     let examination = conditions.examination(empty_tick);
@@ -222,8 +228,8 @@ impl LevelSelector {
     /// Whether a cloth is to be examined: if it changed, or in its turn unless it stays off the screen.
     fn is_due(&self, cloth: &mut LodClothItem, views: &[View]) -> bool {
         let is_its_turn = cloth.record.phase.wrapping_add(self.tick).is_multiple_of(EXAMINED_EVERY);
-        cloth.instance.is_changed()
-            || cloth.lods.is_changed()
+        has_changed(&cloth.instance, |pending| pending.levels)
+            || cloth.frame.has_new(&cloth.lods)
             || (is_its_turn && !cloth.stays_off_screen(views))
     }
 

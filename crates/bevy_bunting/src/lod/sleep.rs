@@ -1,8 +1,11 @@
 //! Sleep at rest: cloths at rest fall asleep, and wake when anything that acts on them changes.
 
 use bevy_app::{App, Plugin};
+use bevy_ecs::change_detection::Tick;
 use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
+use bevy_ecs::system::SystemChangeTick;
 use bevy_math::{Isometry3d, Vec3};
 use bevy_time::Time;
 
@@ -68,7 +71,9 @@ impl Plugin for SleepPlugin {
             .add_observer(wake)
             .add_observer(wake_bared::<WindInfluence>)
             .add_observer(wake_bared::<WindPerParticle>)
-            .add_observer(wake_bared::<ClothAcceleration>);
+            .add_observer(wake_bared::<ClothAcceleration>)
+            .add_observer(note_removed::<ClothCollider>)
+            .add_observer(note_removed::<ClothCollision>);
         app.add_systems(
             ClothTick,
             (
@@ -98,9 +103,55 @@ pub(crate) struct Changes {
     /// Number of cloths asleep at rest; some may have been woken since.
     asleep: usize,
     wind: TickWind,
+    /// The settings in the last tick; none before the first.
+    settings: Option<ClothSettings>,
+    /// Whether something was removed since the last tick that acted on cloth, or was to be noted in a tick before which the
+    /// world was saved.
+    is_pending: bool,
+    /// When changes were last noted, as a tick of change.
+    noted: Tick,
+}
+
+/// What of the changes outlives the world.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct SavedChanges {
+    unchanged_ticks: u32,
+    wind: TickWind,
+    is_pending: bool,
+    has_settings: bool,
 }
 
 impl Changes {
+    /// What outlives the world, whose settings are these, given whether any collider or layer has [changed](Self::is_since)
+    /// since the last tick.
+    pub fn saved(&self, settings: &ClothSettings, has_changed: bool) -> SavedChanges {
+        SavedChanges {
+            unchanged_ticks: self.unchanged_ticks,
+            wind: self.wind.clone(),
+            is_pending: self.is_pending || has_changed,
+            has_settings: self.settings.as_ref() == Some(settings),
+        }
+    }
+
+    /// Takes over what was saved of a world with the same settings.
+    pub fn restore(&mut self, saved: &SavedChanges, settings: &ClothSettings) {
+        self.unchanged_ticks = saved.unchanged_ticks;
+        self.wind.clone_from(&saved.wind);
+        self.is_pending = saved.is_pending;
+        self.settings = saved.has_settings.then(|| settings.clone());
+    }
+
+    /// Some cloths may have been put to sleep: they are counted in the next tick.
+    pub fn count_again(&mut self) {
+        self.asleep += 1;
+    }
+
+    /// Whether a change has not been noted yet, given the present tick of change.
+    pub fn is_since(&self, changed: Tick, now: Tick) -> bool {
+        changed.is_newer_than(self.noted, now)
+    }
+
     /// Whether a change affects a cloth with a radius (m): of its frame, or of a collider or a wind
     /// near it.
     fn act_on(
@@ -140,11 +191,30 @@ fn wake_bared<C: Component>(
 type HasNewExposure =
     Or<(Changed<WindInfluence>, Changed<WindPerParticle>, Changed<ClothAcceleration>)>;
 
-fn wake_exposed(mut cloths: Query<(&mut ClothInstance, &mut RestTimer), HasNewExposure>) {
-    for (mut instance, mut timer) in &mut cloths {
-        timer.ticks = 0;
-        instance.wake();
+/// The components of a cloth on which the effect of its surroundings depends.
+type Exposed = (
+    Option<Ref<'static, WindInfluence>>,
+    Option<Ref<'static, WindPerParticle>>,
+    Option<Ref<'static, ClothAcceleration>>,
+);
+
+fn wake_exposed(
+    mut cloths: Query<(&mut ClothInstance, &mut RestTimer, &PoseHistory, Exposed), HasNewExposure>,
+) {
+    for (mut instance, mut timer, history, (influence, per_particle, acceleration)) in &mut cloths {
+        let has_new = influence.is_some_and(|it| history.has_new(&it))
+            || per_particle.is_some_and(|it| history.has_new(&it))
+            || acceleration.is_some_and(|it| history.has_new(&it));
+        if has_new {
+            timer.ticks = 0;
+            instance.wake();
+        }
     }
+}
+
+/// Notes that something is removed that acts on cloth.
+fn note_removed<C: Component>(_: On<Remove, C>, mut changes: ResMut<Changes>) {
+    changes.is_pending = true;
 }
 
 /// Filter of cloths and colliders that touch others than before.
@@ -155,24 +225,48 @@ type HasNewLayers = Or<(
     Changed<ClothCollision>,
 )>;
 
+/// The components of a cloth or a collider by which it touches others.
+type Layers = (
+    Option<&'static PoseHistory>,
+    Option<Ref<'static, ClothLayers>>,
+    Option<Ref<'static, ClothFeatures>>,
+    Option<Ref<'static, SelfCollision>>,
+    Option<Ref<'static, ClothCollision>>,
+);
+
+/// Whether a cloth or a collider touches others than before.
+fn has_new_layers(
+    (history, layers, features, own, others): <Layers as QueryData>::Item<'_, '_>,
+) -> bool {
+    let Some(history) = history else { return true };
+    layers.is_some_and(|it| history.has_new(&it))
+        || features.is_some_and(|it| history.has_new(&it))
+        || own.is_some_and(|it| history.has_new(&it))
+        || others.is_some_and(|it| history.has_new(&it))
+}
+
 fn note_changes(
     colliders: Query<(Ref<ClothCollider>, &PoseHistory)>,
-    mut removed: RemovedComponents<ClothCollider>,
-    mut freed: RemovedComponents<ClothCollision>,
-    layers: Query<(), HasNewLayers>,
+    layers: Query<Layers, HasNewLayers>,
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
     mut changes: ResMut<Changes>,
+    ticks: SystemChangeTick,
 ) {
     let changes = &mut *changes;
-    changes.everywhere = settings.is_changed() || wind.changed_everywhere(&changes.wind);
-    changes.everywhere |= removed.read().count() > 0 || !layers.is_empty();
-    changes.everywhere |= freed.read().count() > 0;
+    changes.noted = ticks.this_run();
+    changes.everywhere = core::mem::take(&mut changes.is_pending);
+    changes.everywhere |= wind.changed_everywhere(&changes.wind);
+    changes.everywhere |= layers.iter().any(has_new_layers);
+    if changes.settings.as_ref() != Some(&*settings) {
+        changes.settings = Some(settings.clone());
+        changes.everywhere = true;
+    }
     changes.disturbed.clear();
     changes.disturbed.extend(wind.changed_balls(&changes.wind));
     changes.wind.clone_from(&wind);
     for (collider, history) in &colliders {
-        changes.everywhere |= collider.is_changed();
+        changes.everywhere |= history.has_new(&collider);
         if !history.rests() {
             let ball = collider.shape.compute_local_bounding_sphere();
             let centre = history.end() * ball.center;

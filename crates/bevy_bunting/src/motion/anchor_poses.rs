@@ -22,6 +22,26 @@ struct AnchorPose {
 }
 
 impl AnchorPoses {
+    /// The poses of anchors whose histories are known, in their order.
+    pub fn restored(anchors: &[Anchor], histories: &[PoseHistory]) -> Self {
+        let poses = anchors.iter().zip(histories);
+        let pose = |(anchor, history): (&Anchor, &PoseHistory)| AnchorPose {
+            target: anchor.target,
+            history: history.clone(),
+        };
+        Self(poses.map(pose).collect())
+    }
+
+    /// The histories of the anchors' poses, in their order.
+    pub fn histories(&self) -> impl Iterator<Item = &PoseHistory> {
+        self.0.iter().map(|pose| &pose.history)
+    }
+
+    /// Moves all times from a clock to another, given the last observation on each.
+    pub fn move_times(&mut self, from: &ObservationTimes, to: &ObservationTimes) {
+        self.0.iter_mut().for_each(|pose| pose.history.move_times(from, to));
+    }
+
     /// Poses of an anchor at the start and the end of the tick. None before its first tick.
     pub fn span(&self, anchor: usize) -> Option<(Isometry3d, Isometry3d)> {
         let history = &self.0.get(anchor)?.history;

@@ -30,6 +30,7 @@ use bunting_solver::{ClothSnapshot, Drive, Fabric, FrameMotion, Loads};
 #[derive(Component, Clone, Copy, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothInertia {
     /// The part of the acceleration of the frame's origin.
     pub linear: f32,

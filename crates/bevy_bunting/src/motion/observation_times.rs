@@ -14,6 +14,7 @@ const HITCH: f64 = 1.5;
 /// Times of the last observation of any entity that was not at rest. An entity at rest would have been
 /// observed at the same times.
 #[derive(Resource, Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ObservationTimes {
     /// Time of the last frame, s.
     pub frame: f64,
@@ -39,6 +40,18 @@ impl ObservationTimes {
     /// The times of a tick that ends at a time (s).
     pub fn in_tick(&self, end: f64) -> Self {
         Self { tick: end, ticks: self.ticks.wrapping_add(1), ..*self }
+    }
+
+    /// These times on another clock, given the last observation on that: the last tick on it is the last one here.
+    pub fn on_clock_of(self, other: &Self) -> Self {
+        let in_frame = self.ticks.wrapping_sub(self.ticks_to_frame);
+        Self {
+            frame: self.frame + (other.tick - self.tick),
+            tick: other.tick,
+            ticks: other.ticks,
+            ticks_to_frame: other.ticks.wrapping_sub(in_frame),
+            ..self
+        }
     }
 
     /// Whether a tick has run in this frame.

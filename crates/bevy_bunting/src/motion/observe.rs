@@ -71,7 +71,8 @@ pub(crate) fn observe_frames<const EARLY: bool>(
     observer.for_each(|entity, history, attachment| {
         let pose = frame_of(entity, attachment.as_deref(), &transforms);
         if let Some(pose) = pose.filter(is_finite) {
-            history.observe_frame(&times, now, pose, teleport_speed(attachment), EARLY);
+            let limit = teleport_speed(history, attachment);
+            history.observe_frame(&times, now, pose, limit, EARLY);
         }
     });
     if !EARLY {
@@ -108,7 +109,8 @@ pub(crate) fn observe_ticks(
         let pose = frame_of(entity, attachment.as_deref(), &transforms);
         match pose.filter(is_finite) {
             Some(pose) => {
-                history.observe_tick(&times, &now, tick, pose, teleport_speed(attachment));
+                let limit = teleport_speed(history, attachment);
+                history.observe_tick(&times, &now, tick, pose, limit);
             }
             None => history.hold(),
         }
@@ -126,9 +128,9 @@ pub(crate) fn observe_ticks(
 }
 
 /// Change of velocity above which a change of pose is a teleport, m/s.
-fn teleport_speed(attachment: Option<Ref<Attachment>>) -> f32 {
+fn teleport_speed(history: &PoseHistory, attachment: Option<Ref<Attachment>>) -> f32 {
     match attachment {
-        Some(it) if it.is_changed() => it.teleport_speed.min(EDIT_SPEED),
+        Some(it) if history.has_new(&it) => it.teleport_speed.min(EDIT_SPEED),
         Some(it) => it.teleport_speed,
         None => TELEPORT_SPEED,
     }

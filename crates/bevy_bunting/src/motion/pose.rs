@@ -5,6 +5,7 @@ use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
 use bunting_solver::FrameMotion;
 
+use crate::cloth::restored::RestoredAt;
 use crate::motion::observation_times::ObservationTimes;
 use crate::motion::track::{Departure, FIRST_SPEED, Teleport, Track};
 
@@ -23,6 +24,7 @@ const QUIET_TICKS: u32 = 4;
 
 /// The schedule in which an entity is moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 enum MovedIn {
     /// A schedule of the fixed loop, once a tick.
     #[default]
@@ -39,6 +41,7 @@ enum MovedIn {
 /// is the length of the longest frames: a delay that followed the length of each frame would shake an entity
 /// that moves evenly.
 #[derive(Component, Clone, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PoseHistory {
     ticks: Track,
     frames: Track,
@@ -64,10 +67,13 @@ pub(crate) struct PoseHistory {
     teleported: bool,
     /// Set while all samples have one pose: the entity is then not observed until it moves.
     rest: Option<Rest>,
+    #[cfg_attr(feature = "serialize", serde(skip))]
+    restored: RestoredAt,
 }
 
 /// An entity at rest.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Rest {
     pose: Isometry3d,
     /// End of the tick in which the rest began, s.
@@ -321,6 +327,34 @@ impl PoseHistory {
                 }
             }
         }
+    }
+
+    /// Moves all times from a clock to another, given the last observation on each.
+    pub fn move_times(&mut self, from: &ObservationTimes, to: &ObservationTimes) {
+        let by = to.tick - from.tick;
+        if by != 0.0 {
+            [&mut self.ticks, &mut self.frames].into_iter().for_each(|track| track.move_times(by));
+        }
+        if let Some(rest) = &mut self.rest {
+            rest.tick += by;
+            rest.ticks = rest.ticks.wrapping_add(to.ticks).wrapping_sub(from.ticks);
+        }
+    }
+
+    /// Notes that the entity was restored at a tick of change.
+    pub fn note_restored(&mut self, at: RestoredAt) {
+        self.restored = at;
+    }
+
+    /// When the entity was restored, if that was since the last tick.
+    pub fn restored(&self) -> RestoredAt {
+        self.restored
+    }
+
+    /// Whether a component of the entity has changed since a system last ran, other than before a restoration: what was
+    /// restored is not new.
+    pub fn has_new<C: Component>(&self, component: &Ref<C>) -> bool {
+        component.is_changed() && self.restored.is_before(component.last_changed())
     }
 
     /// Change of the entity's velocity, m/s, if a motion begins in this tick whose beginning was taken for a teleport.

@@ -13,6 +13,7 @@ const REACH: f32 = 2.0;
 
 /// The way of a pinned particle to its place.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Way {
     particle: u32,
     /// Position when the motion began, m.
@@ -36,6 +37,7 @@ impl Way {
 
 /// Attached vertices on the way to their places.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct TakingUp {
     pins: Vec<Way>,
     /// Velocity when the motion began, m/s: the mean of the pins'. With a velocity of its own, each pin would draw away

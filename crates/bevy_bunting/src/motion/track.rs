@@ -38,6 +38,7 @@ const LONGEST_EXTRAPOLATION: f64 = 0.25;
 
 /// Observed poses of one entity, on one clock.
 #[derive(Clone, Debug, Default)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Track {
     /// Times (s, ascending) and poses.
     samples: VecDeque<(f64, Isometry3d)>,
@@ -51,6 +52,7 @@ pub(super) struct Track {
 
 /// A change of pose that may be the first of a fast motion.
 #[derive(Clone, Copy, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Jump {
     /// Time of the pose after it, s.
     time: f64,
@@ -200,6 +202,12 @@ impl Track {
         };
         let fraction = (time.min(end + LONGEST_EXTRAPOLATION) - start) / (end - start);
         Some(interpolate(a, b, fraction as f32))
+    }
+
+    /// Adds a time (s) to those of all samples.
+    pub fn move_times(&mut self, by: f64) {
+        self.samples.iter_mut().for_each(|(time, _)| *time += by);
+        self.jump.iter_mut().for_each(|jump| jump.time += by);
     }
 
     /// Extends the time of the last sample: the same as [`push`](Self::push) of the pose that all samples

@@ -8,6 +8,7 @@ use crate::cloth::events::ClothFailed;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::state::ClothState;
+use crate::motion::pose::PoseHistory;
 use crate::motion::take_up::TakingUp;
 use crate::skeleton::joints::JointPoses;
 use crate::skeleton::limits::SkinLimits;
@@ -18,19 +19,36 @@ use crate::skeleton::vertex_skins::VertexSkins;
 type CheckedSkin = (
     Entity,
     Ref<'static, ClothSkin>,
-    Option<&'static SkinLimits>,
-    &'static ClothMesh,
+    Option<Ref<'static, SkinLimits>>,
+    Ref<'static, ClothMesh>,
     &'static mut ClothInstance,
     Option<&'static mut SkinnedParticles>,
+    &'static PoseHistory,
 );
 type AnyChanged = Or<(Changed<ClothSkin>, Changed<SkinLimits>, Changed<ClothMesh>)>;
+
+/// What a cloth with a skin needs to be led by it; none if the skin is not valid.
+pub(crate) fn led_by(
+    mesh: &ClothMesh,
+    skin: &ClothSkin,
+    limits: Option<&SkinLimits>,
+) -> Option<(JointPoses, SkinnedParticles)> {
+    let skins = VertexSkins::of(mesh, skin, limits).ok()??;
+    Some((JointPoses::new(skin), SkinnedParticles::of(skins)))
+}
 
 /// Gives cloths with valid skins [`JointPoses`] and [`SkinnedParticles`], and reports bad skins. The last valid one is kept
 /// as long as it fits the mesh.
 pub(super) fn check_skins(mut cloths: Query<CheckedSkin, AnyChanged>, mut commands: Commands) {
-    for (entity, skin, limits, mesh, mut instance, particles) in &mut cloths {
+    for (entity, skin, limits, mesh, mut instance, particles, history) in &mut cloths {
+        let has_new = history.has_new(&skin)
+            || limits.as_ref().is_some_and(|limits| history.has_new(limits))
+            || history.has_new(&mesh);
+        if !has_new && particles.is_some() {
+            continue;
+        }
         instance.wake();
-        let error = match VertexSkins::of(mesh, &skin, limits) {
+        let error = match VertexSkins::of(&mesh, &skin, limits.as_deref()) {
             // Fabrics of the former mesh are kept, if there are any.
             Ok(None) => continue,
             Ok(Some(skins)) => {
@@ -41,8 +59,7 @@ pub(super) fn check_skins(mut cloths: Query<CheckedSkin, AnyChanged>, mut comman
                         particles.set_skins(skins);
                     }
                     _ => {
-                        let mut particles = SkinnedParticles::default();
-                        particles.set_skins(skins);
+                        let particles = SkinnedParticles::of(skins);
                         commands.entity(entity).insert((JointPoses::new(&skin), particles));
                     }
                 }

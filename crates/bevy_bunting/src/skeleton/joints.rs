@@ -43,7 +43,39 @@ impl JointPose {
     }
 }
 
+/// The pose of one joint of a saved cloth.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct SavedJoint {
+    history: PoseHistory,
+    shapes: [Mat3A; 2],
+    is_missed: bool,
+}
+
 impl JointPoses {
+    /// What outlives the cloth, joint by joint.
+    pub fn saved(&self) -> Vec<SavedJoint> {
+        let saved = self.0.iter().map(|pose| SavedJoint {
+            history: pose.history.clone(),
+            shapes: pose.shapes,
+            is_missed: pose.is_missed,
+        });
+        saved.collect()
+    }
+
+    /// Takes over the poses of a saved cloth, joint by joint.
+    pub fn restore(&mut self, saved: &[SavedJoint]) {
+        for (pose, saved) in self.0.iter_mut().zip(saved) {
+            pose.history = saved.history.clone();
+            (pose.shapes, pose.is_missed) = (saved.shapes, saved.is_missed);
+        }
+    }
+
+    /// Moves all times from a clock to another, given the last observation on each.
+    pub fn move_times(&mut self, from: &ObservationTimes, to: &ObservationTimes) {
+        self.0.iter_mut().for_each(|pose| pose.history.move_times(from, to));
+    }
+
     /// The poses of a valid skin's joints, none of which is observed yet.
     pub fn new(skin: &ClothSkin) -> Self {
         let mut is_used = vec![false; skin.joints.len()];

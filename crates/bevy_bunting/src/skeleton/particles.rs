@@ -29,6 +29,11 @@ pub(crate) struct SkinnedParticles {
 }
 
 impl SkinnedParticles {
+    /// The particles of a cloth with a valid skin and its limits, which are found in the next tick.
+    pub fn of(skins: VertexSkins) -> Self {
+        Self { skins, ..Self::default() }
+    }
+
     /// Whether the particles are those of a level.
     pub fn fits(&self, levels: &Arc<ClothLevels>, level: usize) -> bool {
         self.of.as_ref().is_some_and(|of| of.is(levels, level))
@@ -77,6 +82,21 @@ impl SkinnedParticles {
     /// Skinning matrices of the places at the end of the last tick; none before the first.
     pub fn matrices(&self) -> Option<&[Affine3A]> {
         self.matrices.as_deref()
+    }
+
+    /// Takes over the matrices of a saved cloth, whose places in its last tick follow from those of its joints then.
+    pub fn restore(
+        &mut self,
+        levels: &Arc<ClothLevels>,
+        level: usize,
+        matrices: Option<Vec<Affine3A>>,
+        [start, end]: [Vec<Affine3A>; 2],
+    ) {
+        self.find(levels, level);
+        self.begin_at(&start);
+        self.end_at(end);
+        self.matrices = matrices;
+        self.forget();
     }
 
     /// Begins a tick whose places at the start are those of the end of the last one.

@@ -47,9 +47,14 @@ pub(crate) struct PinReports {
 }
 
 impl PinReports {
-    /// Reports of which no tick has begun.
-    pub fn new(groups: Arc<PinGroups>, pivots: Vec<[Vec3; 2]>) -> Self {
-        Self { groups, pivots, sums: Vec::new(), velocities: Vec::new() }
+    /// Reports of which no tick has begun, given the velocities of the pins at the end of the last tick, if they are known.
+    pub fn new(groups: Arc<PinGroups>, pivots: Vec<[Vec3; 2]>, velocities: Vec<Vec3>) -> Self {
+        Self { groups, pivots, sums: Vec::new(), velocities }
+    }
+
+    /// Velocities of the pins at the end of the last tick, m/s; empty before the first one.
+    pub fn velocities(&self) -> &[Vec3] {
+        &self.velocities
     }
 
     /// Forgets all sums: a tick begins.

@@ -249,10 +249,10 @@ impl ClothBatch {
 
     fn check(&self, snapshot: &ClothSnapshot) -> Result<(), BatchError> {
         let expected = self.fabric().particle_count();
-        for given in [snapshot.positions.len(), snapshot.velocities.len()] {
-            if given != expected {
-                return Err(BatchError::ParticleCount { given, expected });
-            }
+        if !snapshot.is_of(expected) {
+            let lists = [&snapshot.positions, &snapshot.velocities].map(Vec::len);
+            let given = lists.into_iter().find(|&given| given != expected);
+            return Err(BatchError::ParticleCount { given: given.unwrap_or_default(), expected });
         }
         if snapshot.is_finite() { Ok(()) } else { Err(BatchError::NotFinite) }
     }

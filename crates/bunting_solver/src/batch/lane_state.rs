@@ -49,6 +49,8 @@ pub(crate) struct LaneState {
     pub holds: Option<Box<Holds>>,
     /// What the cloth does to its pins, if that is asked for.
     pub pin_reports: Option<Box<PinReports>>,
+    /// Velocities of the pins at the end of the last tick, m/s, of a restored cloth whose pins do not report yet.
+    pub pin_velocities: Vec<Vec3>,
     /// Inputs of the lane's parameters; none if the parameters must be computed.
     pub inputs: Option<ParameterInputs>,
     /// Inputs of the lane's inverse masses besides the substep; none if the masses must be computed.
@@ -76,6 +78,7 @@ impl LaneState {
             local_wind: None,
             holds: None,
             pin_reports: None,
+            pin_velocities: Vec::new(),
             inputs: None,
             added_mass: None,
         }

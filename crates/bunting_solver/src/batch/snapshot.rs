@@ -21,21 +21,27 @@ use crate::step::bdf::IntegratorHistory;
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ClothSnapshot {
     /// Positions in the cloth's frame, m.
+    #[cfg_attr(feature = "serde", serde(with = "crate::packed"))]
     pub positions: Vec<Vec3>,
     /// Velocities relative to the world along the axes of the cloth's frame, m/s.
+    #[cfg_attr(feature = "serde", serde(with = "crate::packed"))]
     pub velocities: Vec<Vec3>,
     pub(crate) history: Option<SnapshotHistory>,
 }
 
 /// State of earlier substeps, for the integrator's second order.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct SnapshotHistory {
     pub integrator: IntegratorHistory,
     /// Changes of position in the last substep and in the one before, m.
+    #[cfg_attr(feature = "serde", serde(with = "crate::packed::pair"))]
     pub displacements: [Vec<Vec3>; 2],
     /// Velocities one and two substeps earlier, m/s.
+    #[cfg_attr(feature = "serde", serde(with = "crate::packed::pair"))]
     pub older_velocities: [Vec<Vec3>; 2],
     /// Under-relaxation factor of each particle; empty where all are 1.
     pub relaxation: Vec<f32>,
@@ -96,5 +102,22 @@ impl ClothSnapshot {
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.positions.iter().chain(&self.velocities).all(|vector| vector.is_finite())
+    }
+
+    /// Whether the state is one of so many particles: every list has as many elements, those of the integrator's history
+    /// included.
+    #[must_use]
+    pub fn is_of(&self, particles: usize) -> bool {
+        self.history.as_ref().is_none_or(|history| history.is_of(particles))
+            && [&self.positions, &self.velocities].iter().all(|list| list.len() == particles)
+    }
+}
+
+impl SnapshotHistory {
+    fn is_of(&self, particles: usize) -> bool {
+        let lists = self.displacements.iter().chain(&self.older_velocities);
+        let is_relaxed = !self.relaxation.is_empty();
+        lists.into_iter().all(|list| list.len() == particles)
+            && (!is_relaxed || self.relaxation.len() == particles)
     }
 }

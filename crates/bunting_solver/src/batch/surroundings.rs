@@ -91,8 +91,42 @@ impl ClothBatch {
                         reports.pivots = pivots;
                         reports
                     }
-                    _ => Box::new(PinReports::new(Arc::clone(groups), pivots)),
+                    _ => {
+                        let known = core::mem::take(&mut cloth.pin_velocities);
+                        Box::new(PinReports::new(Arc::clone(groups), pivots, known))
+                    }
                 });
+            }
+        });
+        Ok(())
+    }
+
+    /// Velocities of a lane's pins at the end of the last tick, m/s, from which their inertia in the next one follows; empty
+    /// unless their [reactions are asked for](Self::report_pins).
+    #[must_use]
+    pub fn pin_velocities(&self, lane: usize) -> &[Vec3] {
+        let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref());
+        cloth.map_or(&[], |cloth| match &cloth.pin_reports {
+            Some(reports) => reports.velocities(),
+            None => &cloth.pin_velocities,
+        })
+    }
+
+    /// Sets the [velocities of the pins](Self::pin_velocities) of a cloth that goes on in another lane, before their
+    /// reactions are asked for. An empty lane stays empty.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane.
+    pub fn set_pin_velocities(
+        &mut self,
+        lane: usize,
+        velocities: Vec<Vec3>,
+    ) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        with_batch!(&mut self.0, batch => {
+            if let Some(cloth) = &mut batch.lanes[lane] {
+                cloth.pin_velocities = velocities;
             }
         });
         Ok(())

@@ -15,6 +15,7 @@ use super::error::FabricError;
 /// # assert!(canvas.area_density > FabricMaterial::COTTON.area_density);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FabricMaterial {
     /// Area density: mass per area, kg/m².
     pub area_density: f32,

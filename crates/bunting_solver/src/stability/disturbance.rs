@@ -7,6 +7,7 @@ const EXTRAPOLATED: u8 = 10;
 /// Number of substeps, the present one included, in which what has acted from outside changes the angular momentum, by
 /// itself or by extrapolation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Disturbance(u8);
 
 impl Disturbance {

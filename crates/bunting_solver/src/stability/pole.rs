@@ -100,6 +100,7 @@ impl Pole {
 
 /// A turn about the pole by the corrections of a substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct PoleTurn {
     /// Angle, rad.
     pub angle: f32,

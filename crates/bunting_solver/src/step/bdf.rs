@@ -108,6 +108,7 @@ const LONG: f32 = 1.0;
 
 /// History of a cloth's integrator besides its particles' vectors.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct IntegratorHistory {
     /// Lengths of the last two substeps, s, the latest first; zero before the first ones.
     steps: [f32; 2],

@@ -9,6 +9,7 @@ const HELD: f32 = 0.5;
 
 /// The class of a cloth over time: it rises at once, and falls to what the last half second has needed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Effort {
     class: EffortClass,
     cause: EffortCause,

@@ -13,6 +13,7 @@ const CLASSES: u8 = 9;
 
 /// The reason for which a cloth takes the substeps that it takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum EffortCause {
     /// Its weight or the length of the tick.
     #[default]
@@ -32,6 +33,7 @@ pub enum EffortCause {
 /// A class of effort: cloths of one class and fabric take the same number of substeps. Classes are few, so that
 /// batches are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct EffortClass(u8);
 
 impl EffortClass {

@@ -14,6 +14,7 @@ use glam::{Quat, Vec3};
 /// assert!((motion.translation.length() - 1.0 / 3.0).abs() < 1e-6);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FrameMotion {
     /// Orientation of the new frame in the old one.
     pub rotation: Quat,

@@ -74,6 +74,7 @@ const HIGHEST_OF_MOTION: u8 = 6;
 /// assert!(class > Loads::default().class().0, "{cause:?}");
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Loads {
     /// Skin friction of the air, see [`of_air`](Self::of_air).
     pub air: f32,

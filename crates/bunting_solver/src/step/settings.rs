@@ -13,6 +13,7 @@ use crate::step::frame::FrameMotion;
     type_path = "bunting_solver",
     reflect(Debug, PartialEq, Hash, Clone)
 )]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Scheme {
     /// The thesis's scheme (4.4): Gauss–Seidel over single constraints, and backward Euler. It is PBD, and
     /// XPBD if the material has a compliance. It needs ten substeps or more.
@@ -32,6 +33,7 @@ pub enum Scheme {
 /// # assert_eq!((twice.substeps, twice.passes), (4, 2));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepSettings {
     /// Constraint solver and integrator.
     pub scheme: Scheme,

@@ -34,6 +34,7 @@ const LEAST_SPEED: f32 = 0.05;
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, PoseHistory)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct WindBlast {
     /// Greatest velocity of the air, m/s.
     pub speed: f32,

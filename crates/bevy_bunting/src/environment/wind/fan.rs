@@ -42,6 +42,7 @@ const END_FALL: f32 = 0.25;
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, PoseHistory)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct WindFan {
     /// Velocity of the air at the nozzle, m/s.
     pub speed: f32,

@@ -93,6 +93,7 @@ impl WindField {
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct GustTravel(pub DVec3);
 
 impl Default for WindField {
@@ -104,6 +105,7 @@ impl Default for WindField {
 /// The air of one [`WindField`] in one tick.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct MovingAir {
     /// Mean velocity, m/s.
     velocity: Vec3,

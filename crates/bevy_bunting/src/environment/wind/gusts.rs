@@ -28,6 +28,7 @@ const SPECTRUM: [(f32, f32); WAVES] = [
 /// 1992).
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Gusts {
     /// Wave vectors, 1/m: x, y and z of each wave.
     wave_vectors: [[f32; WAVES]; 3],

@@ -10,6 +10,7 @@ pub(crate) const PLACES: usize = 4;
 /// A frame in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Frame {
     /// Its origin, m.
     origin: Vec3,

@@ -26,6 +26,7 @@ use crate::motion::pose::PoseHistory;
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
 #[require(Transform, PoseHistory)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct WindRegion {
     /// The shape, in the entity's frame.
     pub shape: WindShape,
@@ -45,6 +46,7 @@ pub struct WindRegion {
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Debug, PartialEq, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub enum WindShape {
     /// A box around the origin.
     Box {

@@ -22,6 +22,7 @@ const CORE: f32 = 0.999;
 #[derive(Resource, Debug, Default, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct TickWind {
     pub(super) everywhere: Vec<MovingAir>,
     /// Balls in which local winds blow, beside one another in memory since each cloth is compared with all of them.
@@ -48,6 +49,7 @@ impl Clone for TickWind {
 /// A ball in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct Ball {
     /// Its centre, m.
     centre: Vec3,
@@ -66,6 +68,7 @@ struct Ball {
 )]
 #[derive(Clone, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum LocalAir {
     /// A field bounded to a region, and the region's frame.
     Region(MovingAir, WindRegion, Frame),

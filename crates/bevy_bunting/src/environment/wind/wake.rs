@@ -68,11 +68,13 @@ impl Default for WindWake {
 #[derive(Component, Clone, Debug, Default, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 pub struct WakeTrail(VecDeque<TrailPoint>);
 
 /// A place that the body has passed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
+#[cfg_attr(feature = "serialize", derive(serde::Serialize, serde::Deserialize))]
 struct TrailPoint {
     /// In the world, m.
     at: Vec3,

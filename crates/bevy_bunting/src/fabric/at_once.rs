@@ -1,0 +1,56 @@
+//! Levels of a cloth that are needed before the next tick.
+
+use std::sync::Arc;
+
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::SystemState;
+use bevy_math::Mat3;
+use bevy_transform::helper::TransformHelper;
+
+use crate::cloth::error::ClothError;
+use crate::cloth::mesh::ClothMesh;
+use crate::cloth::resolution::ClothResolution;
+use crate::fabric::levels::ClothLevels;
+use crate::fabric::library::{FabricLibrary, Found};
+use crate::fabric::scale::{ScaleBaked, bake, scale_of};
+use crate::lod::lod_set::LodSet;
+use crate::motion::attachment::Attachment;
+use crate::skeleton::skin::ClothSkin;
+
+type Cut = (
+    &'static ClothMesh,
+    Option<&'static Attachment>,
+    &'static LodSet,
+    Option<&'static ClothResolution>,
+    Has<ScaleBaked>,
+    Has<ClothSkin>,
+);
+
+/// The levels of a cloth by its present components, and the scale that is baked into them. They are looked up, or built on
+/// this thread; the cloth itself does not change. None if the entity is no cloth.
+///
+/// # Errors
+///
+/// The cloth cannot be simulated.
+pub(crate) fn levels_at_once(
+    world: &mut World,
+    entity: Entity,
+) -> Result<Option<(Arc<ClothLevels>, Mat3)>, ClothError> {
+    let mut state = SystemState::<(Query<Cut>, TransformHelper, ResMut<FabricLibrary>)>::new(world);
+    let Ok((cloths, transforms, mut library)) = state.get_mut(world) else { return Ok(None) };
+    let Ok((mesh, attachment, lods, resolution, has_baked, has_skin)) = cloths.get(entity) else {
+        return Ok(None);
+    };
+    lods.validate(entity)?;
+    let scale = if has_baked || has_skin {
+        Mat3::IDENTITY
+    } else {
+        scale_of(entity, attachment, &transforms)?
+    };
+    let mesh = bake(mesh, scale);
+    let resolution = resolution.copied().unwrap_or_default();
+    library.at_once = true;
+    let found = library.levels(entity, &mesh, attachment, lods, resolution);
+    library.at_once = false;
+    Ok(if let Found::Levels(levels) = found? { Some((levels, scale)) } else { None })
+}
