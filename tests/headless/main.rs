@@ -24,6 +24,7 @@ mod levels;
 mod lifecycle;
 mod lost_targets;
 mod memory;
+mod messages;
 mod off_screen;
 mod order;
 mod pauses;

@@ -8,6 +8,7 @@ use bunting_solver::{FabricBuilder, FabricError, Grid, MeshPoint, MeshRepair};
 
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::material::ClothMaterial;
+use crate::cloth::missing_plugins::tell_missing_plugins;
 use crate::cloth::state::ClothState;
 use crate::lod::effort::ClothEffort;
 use crate::lod::lod_set::LodSet;
@@ -43,6 +44,7 @@ use crate::motion::pose::PoseHistory;
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Debug, PartialEq, Clone)]
+#[component(on_add = tell_missing_plugins)]
 #[require(
     Transform,
     ClothMaterial,

@@ -15,6 +15,7 @@ use crate::fabric::attached::Attached;
 use crate::fabric::awaited::{AwaitedLevels, ContentKey};
 use crate::fabric::cut::cut_levels;
 use crate::fabric::levels::ClothLevels;
+use crate::fabric::refusal::refusal;
 use crate::lod::lod_set::{LodChoice, LodSet};
 use crate::motion::attachment::Attachment;
 
@@ -154,7 +155,7 @@ impl FabricLibrary {
             let due = self.cutting[&key].due;
             return Ok(Found::Awaited(AwaitedLevels { key, due }));
         };
-        let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
+        let levels = Arc::new(cut.map_err(|source| refusal(entity, mesh, source))?);
         self.cut.insert(key, Arc::downgrade(&levels));
         Ok(Found::Levels(levels))
     }

@@ -113,7 +113,8 @@ pub enum AttachedVertices {
     /// # assert!(peg.is_some_and(|peg| peg.vertex().is_none()) && held.anchors.is_empty());
     /// ```
     Points(Vec<MeshPoint>),
-    /// Only the rigid vertices, of weight 0, see [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
+    /// No vertices but the rigid ones, which the mesh names itself by a weight of 0, see
+    /// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights): they follow the target.
     Rigid,
 }
 

@@ -297,7 +297,7 @@ pub enum TargetLost {
     /// the cloth hangs from the last pose of its target.
     #[default]
     Freeze,
-    /// The vertices on that target are let go, and all others stay held: an [`Anchor`] of a lost target is removed; an
+    /// The vertices on that target are let go, and the cloth goes on, held by all others or by none: an [`Anchor`] of a lost target is removed; an
     /// [`Attachment`] that has lost its own target holds no vertices on the cloth's own transform, and is removed when no
     /// anchor is left.
     Release,

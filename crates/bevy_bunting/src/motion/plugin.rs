@@ -23,6 +23,7 @@ use crate::motion::lead::lead_pins;
 use crate::motion::observation_times::{ObservationTimes, begin_frame};
 use crate::motion::observe::{observe_end_of_ticks, observe_frames, observe_ticks};
 use crate::motion::place::place_cloths;
+use crate::motion::report_idle::report_idle_attachments;
 use crate::motion::report_inertia::report_inertia;
 use crate::motion::scale::remove_scales;
 use crate::schedule::{ClothSystems, ClothTick, run_cloth_tick};
@@ -61,7 +62,9 @@ impl Plugin for AttachmentPlugin {
                 ClothTick,
                 (
                     (
-                        (follow_targets, follow_anchors).chain().after(change_materials),
+                        (follow_targets, follow_anchors, report_idle_attachments)
+                            .chain()
+                            .after(change_materials),
                         observe_anchors_in_ticks,
                         observe_ticks,
                     )

@@ -19,7 +19,8 @@ const LEAST_GUST_LENGTH: f32 = 2.0;
 /// hypothesis of frozen turbulence). Their length is the distance that the mean wind covers in
 /// 1/`gust_frequency`, at least 2 m, and a cloth downwind feels a gust later. Gusts depend on position, time
 /// and seed, and not on the frame rate. After a change of the mean velocity, gusts travel at the new
-/// velocity. A cloth feels the air at its middle. A field that is not finite is logged and left out.
+/// velocity. A cloth feels the air at its middle. A field that is not finite is reported as
+/// [`ClothError::Wind`](crate::ClothError::Wind) and left out.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;

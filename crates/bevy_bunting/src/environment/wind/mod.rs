@@ -9,5 +9,6 @@ pub mod per_particle;
 pub(crate) mod places;
 pub mod plugin;
 pub mod region;
+mod report;
 pub mod tick_wind;
 pub mod wake;
