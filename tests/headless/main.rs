@@ -30,6 +30,7 @@ mod order;
 mod pauses;
 mod points;
 mod reactions;
+mod reading;
 mod resolution;
 mod rest;
 mod schedules;

@@ -18,6 +18,9 @@ mod wind {}
 #[doc = include_str!("../../../docs/guide/colliders.md")]
 mod colliders {}
 
+#[doc = include_str!("../../../docs/guide/reading.md")]
+mod reading {}
+
 #[doc = include_str!("../../../docs/guide/levels.md")]
 mod levels {}
 

@@ -87,7 +87,7 @@
 //!
 //! [`ClothFailed`], [`ClothLevelChanged`] and [`ClothTargetLost`] are triggered on the cloth;
 //! [`TeleportCloth`], [`WakeCloth`] and [`ClothImpulse`] are triggered by the user. The system parameter [`ClothControl`]
-//! moves single particles between ticks.
+//! moves single particles between ticks; [`ClothSpatialQuery`] finds cloths by rays, points and shapes.
 //!
 //! # Drawing
 //!
@@ -125,6 +125,7 @@ mod render;
 mod schedule;
 mod settings;
 mod skeleton;
+mod spatial;
 mod timings;
 mod waves;
 
@@ -231,6 +232,7 @@ pub use skeleton::by_vertex::ByVertex;
 pub use skeleton::limits::SkinLimits;
 pub use skeleton::plugin::SkeletonPlugin;
 pub use skeleton::skin::{ClothSkin, SkinError};
+pub use spatial::query::{ClothHit, ClothSpatialQuery};
 pub use timings::ClothTimings;
 
 /// The items that most apps need.
@@ -239,13 +241,13 @@ pub mod prelude {
         Anchor, AnchorHold, AnchorReactions, AttachedVertices, Attachment, ByVertex,
         ClothAcceleration, ClothActivity, ClothAnchorBroke, ClothBudget, ClothCollider,
         ClothCollision, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
-        ClothFeatures, ClothGrab, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged,
-        ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
-        ClothReactions, ClothResolution, ClothSeed, ClothSettings, ClothSkin, ClothState,
-        ClothSurface, ClothSystems, ClothTargetLost, ClothTick, ClothTouched, GrabbedVertices,
-        LodSet, LodViewer, SelfCollision, SkinError, SkinLimits, TargetLost, TeleportCloth,
-        TeleportMode, WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindPerParticle,
-        WindRegion, WindShape, WindWake,
+        ClothFeatures, ClothGrab, ClothHit, ClothImpulse, ClothInertia, ClothLayers,
+        ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins,
+        ClothPreroll, ClothReactions, ClothResolution, ClothSeed, ClothSettings, ClothSkin,
+        ClothSpatialQuery, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick,
+        ClothTouched, GrabbedVertices, LodSet, LodViewer, SelfCollision, SkinError, SkinLimits,
+        TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan, WindField,
+        WindInfluence, WindPerParticle, WindRegion, WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{

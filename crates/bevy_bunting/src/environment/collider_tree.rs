@@ -6,11 +6,10 @@ use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
 use bevy_math::Isometry3d;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::math::Pose;
 use parry3d::partitioning::{Bvh, BvhWorkspace};
 
 use crate::environment::collider::ClothCollider;
-use crate::motion::pose::{PoseHistory, pose_parts};
+use crate::motion::pose::{PoseHistory, parry_pose, pose_parts};
 
 /// Greatest coordinate of a box in the tree, m: half spaces have larger ones. Larger: they make all other boxes
 /// useless. Smaller: colliders far from the origin are near every cloth.
@@ -100,15 +99,9 @@ fn swept_box(collider: &ClothCollider, history: &PoseHistory) -> Option<Aabb> {
     (farthest <= FARTHEST).then_some(swept)
 }
 
-/// A pose as parry has it.
-fn pose_of(pose: Isometry3d) -> Pose {
-    let (translation, rotation) = pose_parts(pose);
-    Pose::from_parts(translation, rotation)
-}
-
 /// The box in the world around a box in a frame, at the start and at the end of a tick.
 pub(super) fn in_world(bounds: &Aabb, frame: (Isometry3d, Isometry3d)) -> Aabb {
-    let at = |pose: Isometry3d| bounds.transform_by(&pose_of(pose));
+    let at = |pose: Isometry3d| bounds.transform_by(&parry_pose(pose));
     at(frame.0).merged(&at(frame.1))
 }
 

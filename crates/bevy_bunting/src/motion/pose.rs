@@ -4,6 +4,7 @@
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
 use bunting_solver::FrameMotion;
+use parry3d::math::Pose;
 
 use crate::motion::observation_times::ObservationTimes;
 use crate::motion::track::{Departure, FIRST_SPEED, Teleport, Track};
@@ -79,6 +80,12 @@ struct Rest {
 /// Translation (m) and rotation of a pose.
 pub(crate) fn pose_parts(pose: Isometry3d) -> (Vec3, Quat) {
     (pose.translation.into(), pose.rotation)
+}
+
+/// A pose as parry has it.
+pub(crate) fn parry_pose(pose: Isometry3d) -> Pose {
+    let (translation, rotation) = pose_parts(pose);
+    Pose::from_parts(translation, rotation)
 }
 
 impl PoseHistory {
