@@ -30,6 +30,9 @@ mod effort {}
 #[doc = include_str!("../../../docs/guide/determinism.md")]
 mod determinism {}
 
+#[doc = include_str!("../../../docs/guide/floating-origin.md")]
+mod floating_origin {}
+
 #[doc = include_str!("../../../docs/guide/performance.md")]
 mod performance {}
 

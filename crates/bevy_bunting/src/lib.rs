@@ -86,7 +86,7 @@
 //! # Events
 //!
 //! [`ClothFailed`], [`ClothLevelChanged`] and [`ClothTargetLost`] are triggered on the cloth;
-//! [`TeleportCloth`], [`WakeCloth`] and [`ClothImpulse`] are triggered by the user. The system parameter [`ClothControl`]
+//! [`TeleportCloth`], [`WakeCloth`], [`ClothImpulse`] and [`ShiftOrigin`] are triggered by the user. The system parameter [`ClothControl`]
 //! moves single particles between ticks; [`ClothSpatialQuery`] finds cloths by rays, points and shapes.
 //!
 //! # Drawing
@@ -200,6 +200,7 @@ pub use motion::attached_vertices::{AttachedVertices, ClothCorner, ClothEdge};
 pub use motion::attachment::{Anchor, Attachment, TargetLost};
 pub use motion::inertia::ClothInertia;
 pub use motion::plugin::AttachmentPlugin;
+pub use motion::shift::ShiftOrigin;
 pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
 #[cfg(feature = "picking")]
@@ -245,9 +246,9 @@ pub mod prelude {
         ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins,
         ClothPreroll, ClothReactions, ClothResolution, ClothSeed, ClothSettings, ClothSkin,
         ClothSpatialQuery, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick,
-        ClothTouched, GrabbedVertices, LodSet, LodViewer, SelfCollision, SkinError, SkinLimits,
-        TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan, WindField,
-        WindInfluence, WindPerParticle, WindRegion, WindShape, WindWake,
+        ClothTouched, GrabbedVertices, LodSet, LodViewer, SelfCollision, ShiftOrigin, SkinError,
+        SkinLimits, TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan,
+        WindField, WindInfluence, WindPerParticle, WindRegion, WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{

@@ -10,6 +10,7 @@ use parry3d::partitioning::{Bvh, BvhWorkspace};
 
 use crate::environment::collider::ClothCollider;
 use crate::motion::pose::{PoseHistory, parry_pose, pose_parts};
+use crate::motion::shift::ShiftOrigin;
 
 /// Greatest coordinate of a box in the tree, m: half spaces have larger ones. Larger: they make all other boxes
 /// useless. Smaller: colliders far from the origin are near every cloth.
@@ -29,6 +30,8 @@ pub(super) struct ColliderTree {
     endless: Vec<u32>,
     /// Colliders that moved in the last tick.
     moving: Vec<Entity>,
+    /// Whether the world was moved, so that all boxes are elsewhere.
+    is_shifted: bool,
 }
 
 impl ColliderTree {
@@ -110,6 +113,11 @@ pub(super) fn forget_collider(removed: On<Remove, ClothCollider>, mut tree: ResM
     tree.remove(removed.entity);
 }
 
+/// Makes all boxes anew in the next tick.
+pub(super) fn shift_tree(_: On<ShiftOrigin>, mut tree: ResMut<ColliderTree>) {
+    tree.is_shifted = true;
+}
+
 /// Updates the boxes of colliders that are new, changed or in motion, or moved in the last tick.
 pub(super) fn update_tree(
     colliders: Query<(Entity, Ref<ClothCollider>, &PoseHistory)>,
@@ -120,13 +128,17 @@ pub(super) fn update_tree(
     }
     let tree = &mut *tree;
     let moved = core::mem::take(&mut tree.moving);
+    let is_shifted = core::mem::take(&mut tree.is_shifted);
     for (entity, collider, history) in &colliders {
-        if !history.rests() || collider.is_changed() {
+        let moves = !history.rests() || collider.is_changed();
+        if moves || is_shifted {
             tree.set(entity, &collider, history);
+        }
+        if moves {
             tree.moving.push(entity);
         }
     }
-    let mut is_changed = !tree.moving.is_empty();
+    let mut is_changed = is_shifted || !tree.moving.is_empty();
     for entity in moved {
         if let Ok((entity, collider, history)) = colliders.get(entity)
             && history.rests()

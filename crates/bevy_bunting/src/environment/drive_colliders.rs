@@ -10,7 +10,9 @@ use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::reflect::SharedShapeReflect;
 use crate::environment::collider::ClothCollider;
-use crate::environment::collider_tree::{ColliderTree, forget_collider, in_world, update_tree};
+use crate::environment::collider_tree::{
+    ColliderTree, forget_collider, in_world, shift_tree, update_tree,
+};
 use crate::environment::drive::drive_cloths;
 use crate::environment::layers::{ClothFeatures, ClothLayers};
 use crate::environment::reactions::ClothReactions;
@@ -32,6 +34,7 @@ impl Plugin for ColliderPlugin {
             .register_type::<SharedShapeReflect>()
             .init_resource::<ColliderTree>()
             .add_observer(forget_collider)
+            .add_observer(shift_tree)
             .add_systems(
                 ClothTick,
                 (

@@ -17,7 +17,6 @@ use crate::fabric::cut::cut_levels;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::refusal::refusal;
 use crate::lod::lod_set::{LodChoice, LodSet};
-use crate::motion::attachment::Attachment;
 
 /// Number of vertices, as by [`work`], from which levels are built on another thread, where there are threads: building takes
 /// longer than a tick then. Fewer: cloths appear some ticks late without need.
@@ -125,7 +124,7 @@ impl FabricLibrary {
         self.cutting.values().map(left).max().unwrap_or(0)
     }
 
-    /// Returns the levels of a cloth with a valid [`LodSet`], built now or before. While another thread builds them it returns what the cloth
+    /// Returns the levels of a cloth with a valid [`LodSet`], given what an attachment holds, if there is one: built now or before. While another thread builds them it returns what the cloth
     /// waits for: ask again in a later tick.
     ///
     /// # Errors
@@ -135,11 +134,10 @@ impl FabricLibrary {
         &mut self,
         entity: Entity,
         mesh: &ClothMesh,
-        attachment: Option<&Attachment>,
+        attached: Option<Option<Attached>>,
         lods: &LodSet,
         resolution: ClothResolution,
     ) -> Result<Found, ClothError> {
-        let attached = attachment.map(|attachment| Attached::of(attachment, mesh));
         check_weights(mesh.weights(), mesh.vertex_count())
             .map_err(|source| ClothError::Weights { entity, source })?;
         let is_rigid = || mesh.weights().contains(&0.0);
@@ -229,6 +227,9 @@ fn content_key(
         ClothMesh::Grid { columns, rows, width, height } => {
             key.extend([0, *columns, *rows, width.to_bits(), height.to_bits()]);
         }
+        ClothMesh::Sheet { columns, rows, width, depth } => {
+            key.extend([2, *columns, *rows, width.to_bits(), depth.to_bits()]);
+        }
         ClothMesh::Triangles { positions, indices, uv, weights, merged } => {
             let lengths = [positions.len(), indices.len(), uv.len(), weights.len(), merged.len()];
             key.push(1);
@@ -255,6 +256,7 @@ mod tests {
     use super::*;
     use crate::fabric::levels::FewerLevels;
     use crate::motion::attached_vertices::ClothEdge;
+    use crate::motion::attachment::Attachment;
 
     fn at_once(found: Found) -> Arc<ClothLevels> {
         match found {
@@ -272,7 +274,13 @@ mod tests {
     ) -> Result<Arc<ClothLevels>, ClothError> {
         let attachment = Attachment::in_place(edge);
         library
-            .levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods, ClothResolution::Auto)
+            .levels(
+                Entity::PLACEHOLDER,
+                &FLAG,
+                Some(Attached::of(&attachment, &FLAG)),
+                &lods,
+                ClothResolution::Auto,
+            )
             .map(at_once)
     }
 
@@ -365,7 +373,13 @@ mod tests {
         let attachment = Attachment::in_place(ClothEdge::Left);
         let lods = LodSet::new([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0, 640.0]);
         let levels = FabricLibrary::default()
-            .levels(Entity::PLACEHOLDER, &mesh, Some(&attachment), &lods, ClothResolution::Auto)
+            .levels(
+                Entity::PLACEHOLDER,
+                &mesh,
+                Some(Attached::of(&attachment, &mesh)),
+                &lods,
+                ClothResolution::Auto,
+            )
             .map(at_once)
             .expect("a cloth");
         for level in 0..9 {

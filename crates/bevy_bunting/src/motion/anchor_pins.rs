@@ -10,10 +10,15 @@ use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
 use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::held_group::HeldGroup;
+use crate::motion::pose::PoseHistory;
 
 /// Distance of a pin from its place at which it begins to move there over a while, m. Smaller: a change of level,
 /// after which pins are interpolated, counts. Larger: pins visibly jump.
 const IN_PLACE: f32 = 1e-3;
+
+/// Part of the coordinates of a frame by which a pin may be beside its place where nothing moves. Smaller: the rounding of places
+/// in a world that was moved draws taut cloth aside. Larger: pins stay beside places that have changed.
+const ROUNDING: f32 = 8.0 * f32::EPSILON;
 
 /// Part of a pin from which an anchor holds it alone. Larger: rounding moves it.
 const NEARLY_ALL: f32 = 0.999;
@@ -60,15 +65,15 @@ impl AnchorPins {
         }));
     }
 
-    /// Finds the places of the pins in a tick, given the cloth's frame at its start and at its end. Returns whether all
-    /// are in their places at its start.
+    /// Finds the places of the pins in a tick, given the cloth's frame. Returns whether all are in their places at its start.
     pub fn find_places(
         &mut self,
         fabric: &Fabric,
         poses: &AnchorPoses,
-        (start, end): (Isometry3d, Isometry3d),
+        frame: &PoseHistory,
     ) -> bool {
-        let (start, end) = (start.inverse(), end.inverse());
+        let rounding = ROUNDING * Vec3::from(frame.end().translation).abs().max_element();
+        let (start, end) = (frame.start().inverse(), frame.end().inverse());
         let mut are_in_place = true;
         for pin in &mut self.pins {
             let rest = fabric.rest_positions()[pin.particle as usize];
@@ -80,6 +85,11 @@ impl AnchorPins {
                 between(rest, parts)
             };
             pin.place = place(pin, &|(_, to)| end * (to * rest));
+            let rests = frame.rests() && pin.shares.iter().all(|&(anchor, _)| poses.rests(anchor));
+            if rests && pin.place.distance(pin.at) <= rounding {
+                // The world was moved, and its places were rounded.
+                pin.place = pin.at;
+            }
             let from = place(pin, &|(from, _)| start * (from * rest));
             are_in_place &= from.distance(pin.at) < IN_PLACE;
         }

@@ -1,6 +1,8 @@
 //! The pose of a cloth's frame or of a collider at the time of each tick, for entities that move in fixed
 //! steps or in frames.
 
+mod shift;
+
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
 use bunting_solver::FrameMotion;
@@ -65,6 +67,8 @@ pub(crate) struct PoseHistory {
     teleported: bool,
     /// Set while all samples have one pose: the entity is then not observed until it moves.
     rest: Option<Rest>,
+    /// Distance by which the pose may be another after the world was moved, m; none once it was observed.
+    rounding: Option<f32>,
 }
 
 /// An entity at rest.
@@ -150,6 +154,7 @@ impl PoseHistory {
         limit: f32,
         early: bool,
     ) {
+        self.settle(pose);
         if self.rest.is_some_and(|rest| rest.pose == pose) {
             return;
         }
@@ -184,6 +189,7 @@ impl PoseHistory {
     /// Records the pose after the ticks of a frame, before anything outside the fixed loop moves the entity. If it has
     /// changed since the last tick, the entity is moved in ticks, after the cloths'.
     pub fn observe_end_of_ticks(&mut self, last: &ObservationTimes, pose: Isometry3d) {
+        self.settle(pose);
         if last.has_ticked() && self.last.is_some_and(|last| last != pose) {
             self.end_rest(last);
             self.last = Some(pose);
@@ -225,6 +231,7 @@ impl PoseHistory {
         pose: Isometry3d,
         limit: f32,
     ) {
+        self.settle(pose);
         if self.rest.is_some_and(|rest| rest.pose == pose) {
             return;
         }

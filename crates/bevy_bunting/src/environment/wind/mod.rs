@@ -10,5 +10,6 @@ pub(crate) mod places;
 pub mod plugin;
 pub mod region;
 mod report;
+mod shift;
 pub mod tick_wind;
 pub mod wake;

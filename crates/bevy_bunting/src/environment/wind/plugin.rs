@@ -12,6 +12,7 @@ use crate::environment::wind::influence::{WindInfluence, report_influences};
 use crate::environment::wind::places::Frame;
 use crate::environment::wind::region::{WindRegion, WindShape};
 use crate::environment::wind::report::{report_regions, report_winds};
+use crate::environment::wind::shift::shift_winds;
 use crate::environment::wind::tick_wind::{LocalAir, TickWind};
 use crate::environment::wind::wake::{WakeTrail, WindWake};
 use crate::motion::observe::observe_ticks;
@@ -35,6 +36,7 @@ impl Plugin for WindPlugin {
             .register_type::<WindInfluence>()
             .register_type::<TickWind>()
             .init_resource::<TickWind>()
+            .add_observer(shift_winds)
             .add_systems(
                 ClothTick,
                 (
