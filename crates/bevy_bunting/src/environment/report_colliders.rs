@@ -68,12 +68,12 @@ fn defect(collider: &ClothCollider) -> Option<(&'static str, f32)> {
     bad.map(|extent| ("shape's extent", extent))
 }
 
+/// Filter of colliders whose scale may be another than before.
+type MayBeScaled = (Or<(Changed<ClothCollider>, Changed<Transform>)>, Without<ScaleInShape>);
+
 /// Reports scales of the entities of colliders, once until they have none.
 pub(super) fn report_scales(
-    colliders: Query<
-        (Entity, Ref<ClothCollider>, &Transform),
-        (Or<(Changed<ClothCollider>, Changed<Transform>)>, Without<ScaleInShape>),
-    >,
+    colliders: Query<(Entity, Ref<ClothCollider>, &Transform), MayBeScaled>,
     transforms: TransformHelper,
     mut removed: RemovedComponents<ClothCollider>,
     mut reported: Local<EntityHashSet>,

@@ -16,10 +16,6 @@ use crate::motion::pose::PoseHistory;
 /// after which pins are interpolated, counts. Larger: pins visibly jump.
 const IN_PLACE: f32 = 1e-3;
 
-/// Part of the coordinates of a frame by which a pin may be beside its place where nothing moves. Smaller: the rounding of places
-/// in a world that was moved draws taut cloth aside. Larger: pins stay beside places that have changed.
-const ROUNDING: f32 = 8.0 * f32::EPSILON;
-
 /// Part of a pin from which an anchor holds it alone. Larger: rounding moves it.
 const NEARLY_ALL: f32 = 0.999;
 
@@ -41,6 +37,8 @@ struct AnchoredPin {
     at: Vec3,
     /// Place at the end of the tick, in the cloth's frame at that time, m.
     place: Vec3,
+    /// Whether it is in its place, and neither the frame nor an anchor has moved since.
+    is_settled: bool,
 }
 
 impl AnchorPins {
@@ -61,7 +59,13 @@ impl AnchorPins {
         self.pins.clear();
         self.pins.extend(levels.held(level, groups).into_iter().map(|held| {
             let at = positions[held.particle];
-            AnchoredPin { particle: held.particle as u32, shares: held.shares, at, place: at }
+            AnchoredPin {
+                particle: held.particle as u32,
+                shares: held.shares,
+                at,
+                place: at,
+                is_settled: false,
+            }
         }));
     }
 
@@ -72,7 +76,6 @@ impl AnchorPins {
         poses: &AnchorPoses,
         frame: &PoseHistory,
     ) -> bool {
-        let rounding = ROUNDING * Vec3::from(frame.end().translation).abs().max_element();
         let (start, end) = (frame.start().inverse(), frame.end().inverse());
         let mut are_in_place = true;
         for pin in &mut self.pins {
@@ -86,10 +89,12 @@ impl AnchorPins {
             };
             pin.place = place(pin, &|(_, to)| end * (to * rest));
             let rests = frame.rests() && pin.shares.iter().all(|&(anchor, _)| poses.rests(anchor));
-            if rests && pin.place.distance(pin.at) <= rounding {
-                // The world was moved, and its places were rounded.
+            if rests && pin.is_settled {
+                // Another place is the rounding of a world that was moved.
                 pin.place = pin.at;
+                continue;
             }
+            pin.is_settled = rests && pin.place == pin.at;
             let from = place(pin, &|(from, _)| start * (from * rest));
             are_in_place &= from.distance(pin.at) < IN_PLACE;
         }
