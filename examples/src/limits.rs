@@ -82,10 +82,7 @@ impl Size {
         for (state, mesh) in world.query::<(&ClothState, &ClothMesh)>().iter(world) {
             size.cloths += 1;
             size.particles += state.positions().len();
-            size.vertices += match mesh {
-                ClothMesh::Grid { columns, rows, .. } => (columns * rows) as usize,
-                ClothMesh::Triangles { positions, .. } => positions.len(),
-            };
+            size.vertices += mesh.vertex_count();
         }
         size
     }

@@ -1,5 +1,6 @@
 //! Code shared by the headless tests: an app with manual time, and access to its cloths.
 
+use std::sync::Mutex;
 use std::time::Duration;
 
 use bevy_app::prelude::*;
@@ -42,6 +43,26 @@ where
 {
     app.insert_resource(Seen::<E>(Vec::new()))
         .add_observer(|event: On<E>, mut seen: ResMut<Seen<E>>| seen.0.push(*event.event()));
+}
+
+/// Texts of all messages of all tests of this process that were logged from the first call on.
+pub fn logged() -> Vec<String> {
+    static TEXTS: Mutex<Vec<String>> = Mutex::new(Vec::new());
+    struct Collector;
+    impl log::Log for Collector {
+        fn enabled(&self, _: &log::Metadata) -> bool {
+            true
+        }
+        fn log(&self, record: &log::Record) {
+            TEXTS.lock().expect("no panic in a test's log").push(record.args().to_string());
+        }
+        fn flush(&self) {}
+    }
+    // Of several tests one is the first.
+    if log::set_boxed_logger(Box::new(Collector)).is_ok() {
+        log::set_max_level(log::LevelFilter::Warn);
+    }
+    TEXTS.lock().expect("no panic in a test's log").clone()
 }
 
 /// Runs a number of updates.

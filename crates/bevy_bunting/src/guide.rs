@@ -18,6 +18,9 @@ mod wind {}
 #[doc = include_str!("../../../docs/guide/colliders.md")]
 mod colliders {}
 
+#[doc = include_str!("../../../docs/guide/reading.md")]
+mod reading {}
+
 #[doc = include_str!("../../../docs/guide/levels.md")]
 mod levels {}
 
@@ -30,6 +33,9 @@ mod determinism {}
 #[cfg(feature = "serialize")]
 #[doc = include_str!("../../../docs/guide/saving.md")]
 mod saving {}
+
+#[doc = include_str!("../../../docs/guide/floating-origin.md")]
+mod floating_origin {}
 
 #[doc = include_str!("../../../docs/guide/performance.md")]
 mod performance {}

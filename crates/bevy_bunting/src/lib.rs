@@ -86,8 +86,8 @@
 //! # Events
 //!
 //! [`ClothFailed`], [`ClothLevelChanged`] and [`ClothTargetLost`] are triggered on the cloth;
-//! [`TeleportCloth`], [`WakeCloth`] and [`ClothImpulse`] are triggered by the user. The system parameter [`ClothControl`]
-//! moves single particles between ticks.
+//! [`TeleportCloth`], [`WakeCloth`], [`ClothImpulse`] and [`ShiftOrigin`] are triggered by the user. The system parameter [`ClothControl`]
+//! moves single particles between ticks; [`ClothSpatialQuery`] finds cloths by rays, points and shapes.
 //!
 //! # Drawing
 //!
@@ -132,6 +132,7 @@ mod save;
 mod schedule;
 mod settings;
 mod skeleton;
+mod spatial;
 mod timings;
 mod waves;
 
@@ -149,7 +150,7 @@ pub use batch::publish::PublishPlugin;
 pub use batch::solve::SolverPlugin;
 pub use bunting_solver;
 pub use cloth::activity::{ClothActivity, ClothPaused};
-pub use cloth::error::ClothError;
+pub use cloth::error::{ClothError, NumberRule};
 pub use cloth::events::{ClothAnchorBroke, ClothFailed, ClothLevelChanged, ClothTargetLost};
 pub use cloth::imperfection::ClothSeed;
 pub use cloth::material::ClothMaterial;
@@ -176,6 +177,7 @@ pub use environment::forces::plugin::ForcePlugin;
 pub use environment::group_cloths::ClothCollisionPlugin;
 pub use environment::layers::{ClothFeatures, ClothLayers};
 pub use environment::reactions::{ClothParted, ClothReaction, ClothReactions, ClothTouched};
+pub use environment::report_colliders::ScaleInShape;
 pub use environment::self_collision::SelfCollision;
 pub use environment::sum_reactions::ReactionPlugin;
 pub use environment::wind::blast::WindBlast;
@@ -205,6 +207,7 @@ pub use motion::attached_vertices::{AttachedVertices, ClothCorner, ClothEdge};
 pub use motion::attachment::{Anchor, Attachment, TargetLost};
 pub use motion::inertia::ClothInertia;
 pub use motion::plugin::AttachmentPlugin;
+pub use motion::shift::ShiftOrigin;
 pub use motion::teleport::{TeleportCloth, TeleportMode, TeleportPlugin};
 pub use parry3d;
 #[cfg(feature = "picking")]
@@ -244,6 +247,7 @@ pub use skeleton::by_vertex::ByVertex;
 pub use skeleton::limits::SkinLimits;
 pub use skeleton::plugin::SkeletonPlugin;
 pub use skeleton::skin::{ClothSkin, SkinError};
+pub use spatial::query::{ClothHit, ClothSpatialQuery};
 pub use timings::ClothTimings;
 
 /// The items that most apps need.
@@ -252,14 +256,14 @@ pub mod prelude {
         Anchor, AnchorHold, AnchorReactions, AttachedVertices, Attachment, ByVertex,
         ClothAcceleration, ClothActivity, ClothAnchorBroke, ClothBudget, ClothCollider,
         ClothCollision, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
-        ClothFeatures, ClothGrab, ClothImpulse, ClothInertia, ClothLayers, ClothLevelChanged,
-        ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins, ClothPreroll,
-        ClothReactions, ClothResolution, ClothSaves, ClothSeed, ClothSettings, ClothSkin,
-        ClothSnapshot, ClothState, ClothSurface, ClothSystems, ClothTargetLost, ClothTick,
-        ClothTouched, ClothWorldSnapshot, GrabbedVertices, LodSet, LodViewer, SelfCollision,
-        SkinError, SkinLimits, SnapshotError, TargetLost, TeleportCloth, TeleportMode,
-        WeightsError, WindBlast, WindFan, WindField, WindInfluence, WindPerParticle, WindRegion,
-        WindShape, WindWake,
+        ClothFeatures, ClothGrab, ClothHit, ClothImpulse, ClothInertia, ClothLayers,
+        ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins,
+        ClothPreroll, ClothReactions, ClothResolution, ClothSaves, ClothSeed, ClothSettings,
+        ClothSkin, ClothSnapshot, ClothSpatialQuery, ClothState, ClothSurface, ClothSystems,
+        ClothTargetLost, ClothTick, ClothTouched, ClothWorldSnapshot, GrabbedVertices, LodSet,
+        LodViewer, SelfCollision, ShiftOrigin, SkinError, SkinLimits, SnapshotError, TargetLost,
+        TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan, WindField, WindInfluence,
+        WindPerParticle, WindRegion, WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{

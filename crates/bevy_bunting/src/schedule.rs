@@ -1,10 +1,10 @@
 //! The schedules and sets of a tick.
 
-use bevy_app::{App, FixedPostUpdate, Plugin};
+use bevy_app::{App, FixedPostUpdate, Plugin, PreStartup};
 use bevy_ecs::intern::Interned;
 use bevy_ecs::prelude::*;
 use bevy_ecs::schedule::{LogLevel, ScheduleBuildSettings, ScheduleLabel, SingleThreadedExecutor};
-use bevy_time::Time;
+use bevy_time::{Fixed, Real, Time, Virtual};
 
 /// The schedule of one tick of all cloths. It runs once in each fixed step, in `FixedPostUpdate` or the
 /// schedule given to [`ClothPlugins::new`](crate::ClothPlugins::new).
@@ -124,6 +124,7 @@ impl Plugin for SchedulePlugin {
                 own(schedule)
                     .configure_sets((integrate, forces, solve, constraints, update).chain());
             })
+            .add_systems(PreStartup, tell_missing_clock)
             .add_systems(self.host, run_cloth_tick);
     }
 }
@@ -135,6 +136,21 @@ fn own(schedule: &mut Schedule) -> &mut Schedule {
         ambiguity_detection: LogLevel::Error,
         ..Default::default()
     })
+}
+
+/// Gives an app without a clock one that stands still, and says what is missing: systems that want a clock would stop the app
+/// with a message that does not.
+fn tell_missing_clock(world: &mut World) {
+    if world.contains_resource::<Time<Virtual>>() && world.contains_resource::<Time>() {
+        return;
+    }
+    log::error!(
+        "cloth stands still: this app has no clock; add Bevy's TimePlugin, which DefaultPlugins and MinimalPlugins contain, beside ClothPlugins"
+    );
+    world.init_resource::<Time>();
+    world.init_resource::<Time<Real>>();
+    world.init_resource::<Time<Virtual>>();
+    world.init_resource::<Time<Fixed>>();
 }
 
 /// Runs [`ClothTick`] unless no time has passed. This system is public so that other systems of its schedule

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use avian3d::prelude::{
     Collider, ColliderDisabled, ColliderOf, DefaultFriction, Friction, Position, Rotation, Sensor,
 };
-use bevy_bunting::ClothCollider;
 use bevy_bunting::parry3d::shape::SharedShape;
+use bevy_bunting::{ClothCollider, ScaleInShape};
 use bevy_ecs::prelude::*;
 
 use crate::error::{ClothColliderError, ClothColliderFailed};
@@ -79,10 +79,12 @@ pub(crate) fn copy_colliders(
                 let known = cloth_collider
                     .map_or((new.margin, new.features), |known| (known.margin, known.features));
                 let (margin, features) = known;
-                commands.entity(entity).insert(ClothCollider { margin, friction, features, ..new });
+                commands
+                    .entity(entity)
+                    .insert((ClothCollider { margin, friction, features, ..new }, ScaleInShape));
             }
             Err(error) => {
-                commands.entity(entity).remove::<ClothCollider>();
+                commands.entity(entity).remove::<(ClothCollider, ScaleInShape)>();
                 ClothColliderFailed::report(&mut commands, entity, error);
             }
         }
@@ -95,6 +97,6 @@ pub(crate) fn forget_colliders(
     mut commands: Commands,
 ) {
     for entity in &colliders {
-        commands.entity(entity).remove::<(FromAvian, BadPose, ClothCollider)>();
+        commands.entity(entity).remove::<(FromAvian, BadPose, ClothCollider, ScaleInShape)>();
     }
 }

@@ -72,13 +72,8 @@ struct Strains {
 impl Strains {
     /// None for a cloth without links, or that is not simulated.
     fn of(state: &ClothState) -> Option<Self> {
-        let links = state.fabric()?.links();
-        let strain = |link: &bevy_bunting::bunting_solver::Link| {
-            let [from, to] = link.particles.map(|particle| state.positions()[particle as usize]);
-            f64::from(from.distance(to) / link.rest_length - 1.0)
-        };
-        let greatest = links.iter().map(strain).reduce(f64::max)?;
-        let squares: f64 = links.iter().map(|link| strain(link).powi(2)).sum();
-        Some(Self { greatest, mean: (squares / links.len() as f64).sqrt() })
+        let greatest = state.strains().map(f64::from).reduce(f64::max)?;
+        let squares: f64 = state.strains().map(|strain| f64::from(strain).powi(2)).sum();
+        Some(Self { greatest, mean: (squares / state.strains().count() as f64).sqrt() })
     }
 }

@@ -32,7 +32,8 @@ pub fn plugin(material: StandardMaterial) -> impl Plugin {
                 };
                 let mut cloth = commands.entity(cloth);
                 match *mesh {
-                    ClothMesh::Grid { width, height, .. } => {
+                    ClothMesh::Grid { width, height, .. }
+                    | ClothMesh::Sheet { width, depth: height, .. } => {
                         let size = Vec2::new(width, height);
                         let printed = Weave::new(size, THREADS).on(printed(size));
                         cloth.insert(MeshMaterial3d(woven.add(printed)));

@@ -53,7 +53,7 @@ pub(crate) fn hold_cloths(
         if is_changed || !holds.fits(levels, instance.level) {
             let (groups, rails) = attachment
                 .as_ref()
-                .map(|attachment| (attachment.sprung_groups(&mesh.uvs()), attachment.rails()))
+                .map(|attachment| (attachment.sprung_groups(mesh), attachment.rails()))
                 .unwrap_or_default();
             holds.find(levels, instance.level, &groups, rails);
         }

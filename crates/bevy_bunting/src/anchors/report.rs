@@ -33,7 +33,7 @@ pub(super) fn ask_for_reactions(
         let (Some(lane), Some(levels)) = (instance.lane(), &instance.levels) else { continue };
         let is_changed = attachment.as_ref().is_some_and(|attachment| attachment.is_changed());
         if is_changed || !reporting.fits(levels, instance.level) {
-            let held = attachment.as_ref().map(|attachment| attachment.pinned_groups(&mesh.uvs()));
+            let held = attachment.as_ref().map(|attachment| attachment.pinned_groups(mesh));
             reporting.find(levels, instance.level, &held.unwrap_or_default());
         }
         let anchors = attachment.map_or(0, |attachment| attachment.anchors.len());

@@ -2,6 +2,7 @@
 
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
+use bevy_time::Time;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::error::ClothError;
@@ -49,7 +50,9 @@ pub(crate) fn publish_states(
     mut cloths: Query<(&mut ClothState, &mut ClothEffort)>,
     mut batches: ResMut<ClothBatches>,
     mut diverged: ResMut<Diverged>,
+    time: Res<Time>,
 ) {
+    let tick = time.delta_secs();
     batches.copy_surfaces();
     for (entity, surface) in batches.surfaces() {
         let Ok((mut state, mut effort)) = cloths.get_mut(entity) else { continue };
@@ -60,6 +63,7 @@ pub(crate) fn publish_states(
         core::mem::swap(&mut state.normals, &mut surface.normals);
         state.blend();
         state.moved = true;
+        (state.motion, state.tick) = (effort.motion(), tick);
         effort.note_tick(surface);
         if !surface.is_finite {
             diverged.0.push(entity);

@@ -1,13 +1,14 @@
-//! Reasons why a cloth cannot be simulated or shown as asked.
+//! Reasons why a cloth, or what acts on it, cannot be simulated or shown as asked.
 
 use bevy_ecs::prelude::*;
+use bevy_math::Vec3;
 use bunting_solver::FabricError;
 
 use crate::cloth::weights::WeightsError;
 use crate::skeleton::skin::SkinError;
 
-/// Reason why a cloth is not simulated or shown as asked; the message says what to do. Other cloths are not
-/// affected.
+/// Reason why a cloth is not simulated or shown as asked, or why what should act on cloth does not; the message says what to
+/// do. Other cloths are not affected.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ClothError {
@@ -181,6 +182,78 @@ pub enum ClothError {
         /// The joint.
         joint: Entity,
     },
+    /// An [`Attachment`](crate::Attachment) is on an entity that is no cloth. It holds nothing until the entity gets a
+    /// `ClothMesh`.
+    #[error(
+        "the Attachment of {entity} holds nothing: the entity has no ClothMesh; give it one, or make one of its Mesh3d by ClothFromMesh"
+    )]
+    NoMesh {
+        /// The entity with the attachment.
+        entity: Entity,
+    },
+    /// The triangles of a mesh that could be wound alike are not: those on both sides of an edge face opposite sides. The cloth
+    /// keeps its last valid fabrics; a cloth that never had any is not simulated until its `ClothMesh` changes.
+    #[error(
+        "the triangles on both sides of the edge from vertex {a} to {b} of cloth {entity} face opposite sides: wind them alike, or call ClothMesh::repaired, or set ClothFromMesh::repair"
+    )]
+    Winding {
+        /// The cloth.
+        entity: Entity,
+        /// One end of the edge, a vertex of the `ClothMesh`.
+        a: u32,
+        /// The other end.
+        b: u32,
+    },
+    /// A [`WindRegion`](crate::WindRegion) is on an entity without a [`WindField`](crate::WindField). It bounds nothing until
+    /// the entity gets one.
+    #[error(
+        "the WindRegion of {entity} bounds no wind: give the entity the WindField that blows in it"
+    )]
+    NoField {
+        /// The entity with the region.
+        entity: Entity,
+    },
+    /// A number of a wind cannot be. The wind does not blow until the number changes.
+    #[error(
+        "the {component} of {entity} does not blow with a {name} of {value}: give a finite number{}",
+        .rule.words()
+    )]
+    Wind {
+        /// The entity with the wind.
+        entity: Entity,
+        /// Name of the component.
+        component: &'static str,
+        /// Name of its field.
+        name: &'static str,
+        /// Value of the field.
+        value: f32,
+        /// What the number must be besides finite.
+        rule: NumberRule,
+    },
+    /// The margin, the friction or a length of the shape of a [`ClothCollider`](crate::ClothCollider) cannot be. No cloth feels
+    /// it until it changes.
+    #[error(
+        "no cloth feels the ClothCollider of {entity}: its {name} cannot be {value}; give finite numbers, and lengths that are not negative"
+    )]
+    Collider {
+        /// The entity with the collider.
+        entity: Entity,
+        /// What is wrong.
+        name: &'static str,
+        /// Its value.
+        value: f32,
+    },
+    /// The entity of a [`ClothCollider`](crate::ClothCollider) has a scale, which its shape has not. The collider is as large
+    /// as its shape.
+    #[error(
+        "the scale {scale} of {entity} does not scale its ClothCollider: give the shape its size in metres, or insert ScaleInShape if it has that size already"
+    )]
+    ColliderScale {
+        /// The entity with the collider.
+        entity: Entity,
+        /// Its scale in the world.
+        scale: Vec3,
+    },
     /// The cloth's `Mesh3d` is kept in the render world only. The cloth is simulated, but its mesh is not
     /// written until its `Mesh3d` is replaced.
     #[cfg(feature = "render")]
@@ -259,4 +332,36 @@ pub enum ClothError {
         /// The cloth.
         entity: Entity,
     },
+}
+
+/// What a number must be besides finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NumberRule {
+    /// Nothing else.
+    Finite,
+    /// Zero or greater.
+    NotNegative,
+    /// Greater than zero.
+    Positive,
+}
+
+impl NumberRule {
+    /// Whether a number is as it must be.
+    pub(crate) fn allows(self, number: f32) -> bool {
+        number.is_finite()
+            && match self {
+                Self::Finite => true,
+                Self::NotNegative => number >= 0.0,
+                Self::Positive => number > 0.0,
+            }
+    }
+
+    /// The rule after the words "a finite number".
+    fn words(self) -> &'static str {
+        match self {
+            Self::Finite => "",
+            Self::NotNegative => " that is not negative",
+            Self::Positive => " greater than zero",
+        }
+    }
 }

@@ -7,7 +7,8 @@ use crate::cloth::error::ClothError;
 use crate::cloth::place::place;
 use crate::motion::attachment::TargetLost;
 
-/// A cloth cannot be simulated or shown as asked. Triggered and logged once, when the error is found.
+/// A cloth cannot be simulated or shown as asked, or a wind, a collider or an attachment does not do what it says. Triggered
+/// on the entity that has it, and logged, once, when the error is found.
 ///
 /// ```
 /// use bevy_app::prelude::*;
@@ -19,7 +20,7 @@ use crate::motion::attachment::TargetLost;
 /// ```
 #[derive(EntityEvent, Clone, Copy, Debug)]
 pub struct ClothFailed {
-    /// The cloth.
+    /// The cloth, or the entity with the wind, the collider or the attachment.
     pub entity: Entity,
     /// The reason; its message says what to do.
     pub error: ClothError,

@@ -1,13 +1,14 @@
 //! The shape of a cloth at rest.
 
 use bevy_ecs::prelude::*;
-use bevy_math::{Vec2, Vec3};
+use bevy_math::{Quat, Vec2, Vec3};
 use bevy_reflect::Reflect;
 use bevy_transform::components::Transform;
 use bunting_solver::{FabricBuilder, FabricError, Grid, MeshPoint, MeshRepair};
 
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::material::ClothMaterial;
+use crate::cloth::missing_plugins::tell_missing_plugins;
 use crate::cloth::state::ClothState;
 use crate::lod::effort::ClothEffort;
 use crate::lod::lod_set::LodSet;
@@ -43,6 +44,7 @@ use crate::motion::pose::PoseHistory;
 #[derive(Component, Clone, Debug, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Debug, PartialEq, Clone)]
+#[component(on_add = tell_missing_plugins)]
 #[require(
     Transform,
     ClothMaterial,
@@ -66,6 +68,18 @@ pub enum ClothMesh {
         width: f32,
         /// Extent along a column, m.
         height: f32,
+    },
+    /// A rectangular grid of particles that lies flat, which is simulated as it is. The origin is the middle and the front faces +y; u
+    /// grows along +x, v along +z.
+    Sheet {
+        /// Particles in a row, at least 2.
+        columns: u32,
+        /// Number of rows, at least 2.
+        rows: u32,
+        /// Extent along a row, m.
+        width: f32,
+        /// Extent across the rows, m.
+        depth: f32,
     },
     /// A mesh of triangles. How finely it is simulated is said by a [`ClothResolution`](crate::ClothResolution).
     Triangles {
@@ -93,6 +107,22 @@ impl ClothMesh {
     #[must_use]
     pub const fn grid(columns: u32, rows: u32, width: f32, height: f32) -> Self {
         Self::Grid { columns, rows, width, height }
+    }
+
+    /// A grid of `columns` × `rows` particles over `width` × `depth` metres that lies flat: a tablecloth, a towel, a net. Its middle is
+    /// the origin.
+    ///
+    /// ```
+    /// use bevy_bunting::prelude::*;
+    /// use bevy_transform::prelude::*;
+    ///
+    /// // A tablecloth falls onto the middle of a table.
+    /// let cloth = (ClothMesh::sheet(33, 33, 1.6, 1.6), Transform::from_xyz(0.0, 0.8, 0.0));
+    /// # assert_eq!(cloth.0.vertex_count(), 33 * 33);
+    /// ```
+    #[must_use]
+    pub const fn sheet(columns: u32, rows: u32, width: f32, depth: f32) -> Self {
+        Self::Sheet { columns, rows, width, depth }
     }
 
     /// A mesh of triangles: positions in metres, three indices for each triangle, and texture coordinates,
@@ -159,7 +189,7 @@ impl ClothMesh {
     /// Weights of all vertices; empty where all vertices are simulated.
     pub(crate) fn weights(&self) -> &[f32] {
         match self {
-            Self::Grid { .. } => &[],
+            Self::Grid { .. } | Self::Sheet { .. } => &[],
             Self::Triangles { weights, .. } => weights,
         }
     }
@@ -168,7 +198,7 @@ impl ClothMesh {
     /// position are merged.
     pub(crate) fn merged(&self) -> &[u32] {
         match self {
-            Self::Grid { .. } => &[],
+            Self::Grid { .. } | Self::Sheet { .. } => &[],
             Self::Triangles { merged, .. } => merged,
         }
     }
@@ -179,6 +209,9 @@ impl ClothMesh {
             Self::Grid { columns, rows, width, height } => {
                 Some(Grid::new(columns, rows, width, height))
             }
+            Self::Sheet { columns, rows, width, depth } => {
+                Some(Grid::new(columns, rows, width, depth))
+            }
             Self::Triangles { .. } => None,
         }
     }
@@ -187,7 +220,9 @@ impl ClothMesh {
     #[must_use]
     pub fn vertex_count(&self) -> usize {
         match self {
-            Self::Grid { columns, rows, .. } => *columns as usize * *rows as usize,
+            Self::Grid { columns, rows, .. } | Self::Sheet { columns, rows, .. } => {
+                *columns as usize * *rows as usize
+            }
             Self::Triangles { positions, .. } => positions.len(),
         }
     }
@@ -201,11 +236,9 @@ impl ClothMesh {
 
     /// Texture coordinates of all vertices; empty for triangles without.
     pub(crate) fn uvs(&self) -> Vec<Vec2> {
-        match self {
-            Self::Grid { columns, rows, width, height } => {
-                Grid::new(*columns, *rows, *width, *height).uvs()
-            }
-            Self::Triangles { uv, .. } => uv.clone(),
+        match (self, self.as_grid()) {
+            (Self::Triangles { uv, .. }, _) => uv.clone(),
+            (_, grid) => grid.map_or_else(Vec::new, |grid| grid.uvs()),
         }
     }
 
@@ -214,6 +247,12 @@ impl ClothMesh {
         match self {
             Self::Grid { columns, rows, width, height } => {
                 FabricBuilder::grid(Grid::new(*columns, *rows, *width, *height))
+            }
+            Self::Sheet { columns, rows, width, depth } => {
+                let grid = FabricBuilder::grid(Grid::new(*columns, *rows, *width, *depth));
+                // Its front from +z to +y, its middle to the origin.
+                let lie = Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2);
+                grid.placed(lie, Vec3::new(-0.5 * width, 0.0, -0.5 * depth))
             }
             Self::Triangles { positions, indices, uv, merged, .. } => {
                 FabricBuilder::new(positions.clone(), indices.clone())

@@ -7,6 +7,7 @@ pub mod imperfection;
 pub mod instance;
 pub mod material;
 pub mod mesh;
+mod missing_plugins;
 pub mod place;
 pub mod preroll;
 pub mod reflect;

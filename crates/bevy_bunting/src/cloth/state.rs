@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
-use bunting_solver::{Fabric, MeshPoint};
+use bunting_solver::{Fabric, FabricMaterial, FrameMotion, LinkFamily, MeshPoint};
 
 use crate::cloth::activity::ClothActivity;
 use crate::fabric::levels::ClothLevels;
@@ -50,6 +50,9 @@ pub struct ClothState {
     pub(crate) replaced: Option<ReplacedSurface>,
     /// Whether the cloth follows a skeleton.
     pub(crate) is_skinned: bool,
+    /// Motion of the frame in the last tick in which the cloth was simulated, and the length of that tick, s.
+    pub(crate) motion: FrameMotion,
+    pub(crate) tick: f32,
 }
 
 /// The surface of a cloth before a change of level, in the cloth's frame.
@@ -133,6 +136,54 @@ impl ClothState {
     #[must_use]
     pub fn vertex_position(&self, vertex: u32) -> Option<Vec3> {
         self.levels.as_ref()?.vertex_position(self.level, vertex, &self.positions)
+    }
+
+    /// Velocity of a particle relative to the world, along the axes of the cloth's frame, m/s: the mean over the last tick. Zero
+    /// while the cloth is not simulated, and of a particle that does not exist. Reading it wakes nothing.
+    #[must_use]
+    pub fn velocity(&self, particle: usize) -> Vec3 {
+        let pair = self.positions.get(particle).zip(self.previous_positions.get(particle));
+        let Some((now, before)) = pair.filter(|_| self.moved && self.tick > 0.0) else {
+            return Vec3::ZERO;
+        };
+        let FrameMotion { rotation, translation } = self.motion;
+        (now - rotation.inverse() * (before - translation)) / self.tick
+    }
+
+    /// Velocities of all particles, as [`velocity`](Self::velocity).
+    pub fn velocities(&self) -> impl Iterator<Item = Vec3> {
+        (0..self.positions.len()).map(|particle| self.velocity(particle))
+    }
+
+    /// The strain of each of the [`links`](Fabric::links) of the fabric, in their order: its length after the last tick over
+    /// that at rest, less 1. Negative where the cloth is slack or folded between particles.
+    pub fn strains(&self) -> impl Iterator<Item = f32> {
+        let links = self.fabric().map_or(&[][..], |fabric| fabric.links());
+        // A link of another level has no particles here.
+        let end = |particle: u32| self.positions.get(particle as usize);
+        links.iter().map(move |link| match link.particles.map(end) {
+            [Some(from), Some(to)] => from.distance(*to) / link.rest_length - 1.0,
+            _ => 0.0,
+        })
+    }
+
+    /// The tension of each of the [`links`](Fabric::links) of the fabric, in their order, N for each metre across it: of warp
+    /// and weft the stiffness of a material, that of the cloth's [`ClothMaterial`](crate::ClothMaterial), times the strain. Zero
+    /// where the cloth is slack, of diagonals, and where the material cannot be stretched. As exact as the strain is: it holds
+    /// for cloth that hangs or is blown, and is too great where the effort is too low for what acts on the cloth.
+    pub fn tensions(&self, material: &FabricMaterial) -> impl Iterator<Item = f32> {
+        let links = self.fabric().map_or(&[][..], |fabric| fabric.links());
+        let stiffness = |family| match family {
+            LinkFamily::Warp => material.warp_stiffness,
+            LinkFamily::Weft => material.weft_stiffness,
+            LinkFamily::Diagonal => 0.0,
+        };
+        let stiffnesses: [f32; 3] =
+            [LinkFamily::Warp, LinkFamily::Weft, LinkFamily::Diagonal].map(stiffness);
+        links.iter().zip(self.strains()).map(move |(link, strain)| {
+            let stiffness = stiffnesses[link.family as usize];
+            if stiffness.is_finite() { stiffness * strain.max(0.0) } else { 0.0 }
+        })
     }
 
     /// Sets the surface from simulated positions (m) of a level's particles, without easing from the surface

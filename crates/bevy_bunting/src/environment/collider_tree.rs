@@ -6,11 +6,11 @@ use bevy_ecs::entity::EntityHashMap;
 use bevy_ecs::prelude::*;
 use bevy_math::Isometry3d;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::math::Pose;
 use parry3d::partitioning::{Bvh, BvhWorkspace};
 
 use crate::environment::collider::ClothCollider;
-use crate::motion::pose::{PoseHistory, pose_parts};
+use crate::motion::pose::{PoseHistory, parry_pose, pose_parts};
+use crate::motion::shift::ShiftOrigin;
 
 /// Greatest coordinate of a box in the tree, m: half spaces have larger ones. Larger: they make all other boxes
 /// useless. Smaller: colliders far from the origin are near every cloth.
@@ -30,6 +30,8 @@ pub(crate) struct ColliderTree {
     endless: Vec<u32>,
     /// Colliders that moved in the last tick.
     moving: Vec<Entity>,
+    /// Whether the world was moved, so that all boxes are elsewhere.
+    is_shifted: bool,
 }
 
 impl ColliderTree {
@@ -125,21 +127,20 @@ fn swept_box(collider: &ClothCollider, history: &PoseHistory) -> Option<Aabb> {
     (farthest <= FARTHEST).then_some(swept)
 }
 
-/// A pose as parry has it.
-fn pose_of(pose: Isometry3d) -> Pose {
-    let (translation, rotation) = pose_parts(pose);
-    Pose::from_parts(translation, rotation)
-}
-
 /// The box in the world around a box in a frame, at the start and at the end of a tick.
 pub(super) fn in_world(bounds: &Aabb, frame: (Isometry3d, Isometry3d)) -> Aabb {
-    let at = |pose: Isometry3d| bounds.transform_by(&pose_of(pose));
+    let at = |pose: Isometry3d| bounds.transform_by(&parry_pose(pose));
     at(frame.0).merged(&at(frame.1))
 }
 
 /// Forgets a collider that is removed or despawned.
 pub(super) fn forget_collider(removed: On<Remove, ClothCollider>, mut tree: ResMut<ColliderTree>) {
     tree.remove(removed.entity);
+}
+
+/// Makes all boxes anew in the next tick.
+pub(super) fn shift_tree(_: On<ShiftOrigin>, mut tree: ResMut<ColliderTree>) {
+    tree.is_shifted = true;
 }
 
 /// Updates the boxes of colliders that are new, changed or in motion, or moved in the last tick.
@@ -152,13 +153,17 @@ pub(super) fn update_tree(
     }
     let tree = &mut *tree;
     let moved = core::mem::take(&mut tree.moving);
+    let is_shifted = core::mem::take(&mut tree.is_shifted);
     for (entity, collider, history) in &colliders {
-        if !history.rests() || collider.is_changed() {
+        let moves = !history.rests() || collider.is_changed();
+        if moves || is_shifted {
             tree.set(entity, &collider, history);
+        }
+        if moves {
             tree.moving.push(entity);
         }
     }
-    let mut is_changed = !tree.moving.is_empty();
+    let mut is_changed = is_shifted || !tree.moving.is_empty();
     for entity in moved {
         if let Ok((entity, collider, history)) = colliders.get(entity)
             && history.rests()

@@ -10,10 +10,14 @@ use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::reflect::SharedShapeReflect;
 use crate::environment::collider::ClothCollider;
-use crate::environment::collider_tree::{ColliderTree, forget_collider, in_world, update_tree};
+use crate::environment::collider_tree::{
+    ColliderTree, forget_collider, in_world, shift_tree, update_tree,
+};
 use crate::environment::drive::drive_cloths;
 use crate::environment::layers::{ClothFeatures, ClothLayers};
 use crate::environment::reactions::ClothReactions;
+use crate::environment::report_colliders::{ScaleInShape, report_colliders, report_scales};
+use crate::motion::lost_target::handle_lost_targets;
 use crate::motion::pose::{PoseHistory, pose_parts};
 use crate::schedule::{ClothSystems, ClothTick};
 
@@ -26,13 +30,16 @@ impl Plugin for ColliderPlugin {
         app.register_type::<ClothCollider>()
             .register_type::<ClothLayers>()
             .register_type::<ClothFeatures>()
+            .register_type::<ScaleInShape>()
             .register_type::<SharedShapeReflect>()
             .init_resource::<ColliderTree>()
             .add_observer(forget_collider)
+            .add_observer(shift_tree)
             .add_systems(
                 ClothTick,
                 (
-                    report_bad_colliders.in_set(ClothSystems::Prepare),
+                    (report_colliders, report_scales.after(handle_lost_targets))
+                        .in_set(ClothSystems::Prepare),
                     (update_tree, drive_colliders)
                         .chain()
                         .in_set(ClothSystems::Drive)
@@ -42,19 +49,6 @@ impl Plugin for ColliderPlugin {
         #[cfg(feature = "serialize")]
         app.register_type_data::<SharedShapeReflect, bevy_reflect::ReflectSerialize>()
             .register_type_data::<SharedShapeReflect, bevy_reflect::ReflectDeserialize>();
-    }
-}
-
-/// Reports new and changed colliders with numbers that the solver refuses.
-fn report_bad_colliders(colliders: Query<(Entity, &ClothCollider), Changed<ClothCollider>>) {
-    for (entity, collider) in &colliders {
-        let ClothCollider { margin, friction, .. } = *collider;
-        if !margin.is_finite() || !friction.is_finite() {
-            log::error!(
-                "the ClothCollider of {entity} has a margin of {margin} m and a friction of {friction}: no cloth \
-                 feels it until both are finite"
-            );
-        }
     }
 }
 

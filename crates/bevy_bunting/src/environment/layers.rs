@@ -46,6 +46,7 @@ impl ClothLayers {
 }
 
 impl Default for ClothLayers {
+    /// A member of all layers that touches all, unlike avian's default of one layer: it is the same as no component.
     fn default() -> Self {
         Self::ALL
     }

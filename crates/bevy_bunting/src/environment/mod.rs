@@ -11,6 +11,7 @@ pub mod forces;
 pub mod group_cloths;
 pub(crate) mod layers;
 pub(crate) mod reactions;
+pub mod report_colliders;
 pub(crate) mod self_collision;
 pub(crate) mod sum_reactions;
 pub(crate) mod surroundings;

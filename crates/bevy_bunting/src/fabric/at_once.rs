@@ -10,6 +10,7 @@ use bevy_transform::helper::TransformHelper;
 use crate::cloth::error::ClothError;
 use crate::cloth::mesh::ClothMesh;
 use crate::cloth::resolution::ClothResolution;
+use crate::fabric::attached::Attached;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::library::{FabricLibrary, Found};
 use crate::fabric::scale::{ScaleBaked, bake, scale_of};
@@ -47,10 +48,11 @@ pub(crate) fn levels_at_once(
     } else {
         scale_of(entity, attachment, &transforms)?
     };
+    let attached = attachment.map(|attachment| Attached::of(attachment, mesh));
     let mesh = bake(mesh, scale);
     let resolution = resolution.copied().unwrap_or_default();
     library.at_once = true;
-    let found = library.levels(entity, &mesh, attachment, lods, resolution);
+    let found = library.levels(entity, &mesh, attached, lods, resolution);
     library.at_once = false;
     Ok(if let Found::Levels(levels) = found? { Some((levels, scale)) } else { None })
 }

@@ -17,13 +17,12 @@ pub(crate) struct Attached {
 impl Attached {
     /// Those of an attachment; none if it holds nothing.
     pub fn of(attachment: &Attachment, mesh: &ClothMesh) -> Option<Self> {
-        let uv = mesh.uvs();
-        let groups = attachment.groups(&uv);
+        let groups = attachment.groups(mesh);
         if groups.iter().all(|group| group.is_empty()) {
             return None;
         }
         let mut attached = Self::default();
-        for (all, pinned) in groups.iter().zip(attachment.pinned_groups(&uv)) {
+        for (all, pinned) in groups.iter().zip(attachment.pinned_groups(mesh)) {
             let points = all.points.iter().map(|point| (*point, !pinned.points.is_empty()));
             attached.points.extend(points);
             attached.vertices.extend(pinned.vertices);

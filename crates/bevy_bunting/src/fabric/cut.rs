@@ -49,6 +49,9 @@ fn surface_key(mesh: &ClothMesh) -> u64 {
         ClothMesh::Grid { columns, rows, width, height } => {
             (columns, rows, width.to_bits(), height.to_bits()).hash(&mut hasher);
         }
+        ClothMesh::Sheet { columns, rows, width, depth } => {
+            ("sheet", columns, rows, width.to_bits(), depth.to_bits()).hash(&mut hasher);
+        }
         ClothMesh::Triangles { positions, indices, weights, merged, .. } => {
             (indices, merged).hash(&mut hasher);
             positions.iter().for_each(|at| at.to_array().map(f32::to_bits).hash(&mut hasher));

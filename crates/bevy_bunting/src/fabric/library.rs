@@ -15,8 +15,8 @@ use crate::fabric::attached::Attached;
 use crate::fabric::awaited::{AwaitedLevels, ContentKey};
 use crate::fabric::cut::cut_levels;
 use crate::fabric::levels::ClothLevels;
+use crate::fabric::refusal::refusal;
 use crate::lod::lod_set::{LodChoice, LodSet};
-use crate::motion::attachment::Attachment;
 
 /// Number of vertices, as by [`work`], from which levels are built on another thread, where there are threads: building takes
 /// longer than a tick then. Fewer: cloths appear some ticks late without need.
@@ -126,7 +126,7 @@ impl FabricLibrary {
         self.cutting.values().map(left).max().unwrap_or(0)
     }
 
-    /// Returns the levels of a cloth with a valid [`LodSet`], built now or before. While another thread builds them it returns what the cloth
+    /// Returns the levels of a cloth with a valid [`LodSet`], given what an attachment holds, if there is one: built now or before. While another thread builds them it returns what the cloth
     /// waits for: ask again in a later tick.
     ///
     /// # Errors
@@ -136,11 +136,10 @@ impl FabricLibrary {
         &mut self,
         entity: Entity,
         mesh: &ClothMesh,
-        attachment: Option<&Attachment>,
+        attached: Option<Option<Attached>>,
         lods: &LodSet,
         resolution: ClothResolution,
     ) -> Result<Found, ClothError> {
-        let attached = attachment.map(|attachment| Attached::of(attachment, mesh));
         check_weights(mesh.weights(), mesh.vertex_count())
             .map_err(|source| ClothError::Weights { entity, source })?;
         let is_rigid = || mesh.weights().contains(&0.0);
@@ -156,7 +155,7 @@ impl FabricLibrary {
             let due = self.cutting[&key].due;
             return Ok(Found::Awaited(AwaitedLevels { key, due }));
         };
-        let levels = Arc::new(cut.map_err(|source| ClothError::Mesh { entity, source })?);
+        let levels = Arc::new(cut.map_err(|source| refusal(entity, mesh, source))?);
         self.cut.insert(key, Arc::downgrade(&levels));
         Ok(Found::Levels(levels))
     }
@@ -233,6 +232,9 @@ fn content_key(
         ClothMesh::Grid { columns, rows, width, height } => {
             key.extend([0, *columns, *rows, width.to_bits(), height.to_bits()]);
         }
+        ClothMesh::Sheet { columns, rows, width, depth } => {
+            key.extend([2, *columns, *rows, width.to_bits(), depth.to_bits()]);
+        }
         ClothMesh::Triangles { positions, indices, uv, weights, merged } => {
             let lengths = [positions.len(), indices.len(), uv.len(), weights.len(), merged.len()];
             key.push(1);
@@ -259,6 +261,7 @@ mod tests {
     use super::*;
     use crate::fabric::levels::FewerLevels;
     use crate::motion::attached_vertices::ClothEdge;
+    use crate::motion::attachment::Attachment;
 
     fn at_once(found: Found) -> Arc<ClothLevels> {
         match found {
@@ -276,7 +279,13 @@ mod tests {
     ) -> Result<Arc<ClothLevels>, ClothError> {
         let attachment = Attachment::in_place(edge);
         library
-            .levels(Entity::PLACEHOLDER, &FLAG, Some(&attachment), &lods, ClothResolution::Auto)
+            .levels(
+                Entity::PLACEHOLDER,
+                &FLAG,
+                Some(Attached::of(&attachment, &FLAG)),
+                &lods,
+                ClothResolution::Auto,
+            )
             .map(at_once)
     }
 
@@ -369,7 +378,13 @@ mod tests {
         let attachment = Attachment::in_place(ClothEdge::Left);
         let lods = LodSet::new([5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0, 640.0]);
         let levels = FabricLibrary::default()
-            .levels(Entity::PLACEHOLDER, &mesh, Some(&attachment), &lods, ClothResolution::Auto)
+            .levels(
+                Entity::PLACEHOLDER,
+                &mesh,
+                Some(Attached::of(&attachment, &mesh)),
+                &lods,
+                ClothResolution::Auto,
+            )
             .map(at_once)
             .expect("a cloth");
         for level in 0..9 {

@@ -11,6 +11,7 @@ pub mod level_topology;
 pub mod levels;
 pub mod library;
 pub mod prepare;
+mod refusal;
 pub(crate) mod release;
 pub mod rigid;
 pub(crate) mod same_surface;

@@ -20,6 +20,7 @@ use crate::cloth::mesh::ClothMesh;
 use crate::cloth::place::place;
 use crate::cloth::resolution::ClothResolution;
 use crate::cloth::state::ClothState;
+use crate::fabric::attached::Attached;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::library::{FabricLibrary, Found};
 use crate::fabric::release::{is_due, release_unused};
@@ -100,7 +101,7 @@ fn any_may_be_stale(
 /// The components that fabrics depend on, and those that depend on fabrics.
 #[derive(QueryData)]
 #[query_data(mutable)]
-struct CutCloth {
+pub(crate) struct CutCloth {
     entity: Entity,
     mesh: Ref<'static, ClothMesh>,
     material: Ref<'static, ClothMaterial>,
@@ -117,7 +118,7 @@ struct CutCloth {
 
 /// Builds the fabrics of cloths whose mesh, levels or attachment changed. Those that are invalid are reported: the cloth
 /// keeps its last valid fabrics or, if it never had any, is not simulated, until they change again.
-fn cut_cloths(
+pub(crate) fn cut_cloths(
     mut cloths: Query<CutCloth>,
     targets: Query<(), With<Transform>>,
     transforms: TransformHelper,
@@ -279,7 +280,8 @@ impl CutClothItem<'_, '_> {
         }
         let mesh = bake(&self.mesh, self.instance.scale);
         self.instance.resolution = self.resolution();
-        library.levels(entity, &mesh, attachment, self.valid_lods(), self.resolution())
+        let attached = attachment.map(|attachment| Attached::of(attachment, &self.mesh));
+        library.levels(entity, &mesh, attached, self.valid_lods(), self.resolution())
     }
 
     /// Simulates the cloth with new levels from now on.

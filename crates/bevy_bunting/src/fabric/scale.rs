@@ -58,6 +58,14 @@ pub(crate) fn bake(mesh: &ClothMesh, scale: Mat3) -> Cow<'_, ClothMesh> {
     {
         return Cow::Owned(ClothMesh::grid(columns, rows, width * x, height * y));
     }
+    if let (&ClothMesh::Sheet { columns, rows, width, depth }, Some(Vec3 { x, y, z })) =
+        (mesh, along_axes(scale))
+        && x > 0.0
+        && y > 0.0
+        && z > 0.0
+    {
+        return Cow::Owned(ClothMesh::sheet(columns, rows, width * x, depth * z));
+    }
     let builder = mesh.builder();
     let mut indices = builder.indices().to_vec();
     if scale.determinant() < 0.0 {

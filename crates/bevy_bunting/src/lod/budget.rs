@@ -23,7 +23,8 @@ use crate::lod::cost_table::CostTable;
 #[type_path = "bevy_bunting"]
 #[reflect(Resource, Default, Debug, PartialEq, Clone)]
 pub struct ClothBudget {
-    /// Time that a tick of all cloths may take on one core.
+    /// Time that a tick of all cloths may take on one core: it is named for what it limits, the work of one
+    /// [`ClothTick`](crate::ClothTick), not its length in the game.
     pub tick: Duration,
     /// Source of the costs by which levels are chosen.
     pub costs: LodCosts,

@@ -26,6 +26,7 @@ use crate::lod::record::{LodRecord, RestTimer};
 use crate::lod::select::select_levels;
 use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::pose::PoseHistory;
+use crate::motion::shift::ShiftOrigin;
 use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
 use crate::skeleton::joints::JointPoses;
@@ -69,6 +70,7 @@ impl Plugin for SleepPlugin {
     fn build(&self, app: &mut App) {
         app.init_resource::<Changes>()
             .add_observer(wake)
+            .add_observer(shift_changes)
             .add_observer(wake_bared::<WindInfluence>)
             .add_observer(wake_bared::<WindPerParticle>)
             .add_observer(wake_bared::<ClothAcceleration>)
@@ -158,15 +160,20 @@ impl Changes {
         &self,
         state: &ClothState,
         frame: Isometry3d,
-        timer: &RestTimer,
+        timer: &mut RestTimer,
         radius: f32,
     ) -> bool {
         let middle = state.positions().get(state.positions().len() / 2);
         let middle = frame * middle.copied().unwrap_or_default();
         let is_near =
             |&(centre, other): &(Vec3, f32)| middle.distance(centre) < radius + other + CLEARANCE;
-        timer.pose != Some(frame) || self.disturbed.iter().any(is_near)
+        timer.has_moved_to(frame) || self.disturbed.iter().any(is_near)
     }
+}
+
+/// Moves the last known winds along with the world.
+fn shift_changes(shift: On<ShiftOrigin>, mut changes: ResMut<Changes>) {
+    changes.wind.shift(shift.acting());
 }
 
 fn wake(request: On<WakeCloth>, mut cloths: Query<(&mut ClothInstance, &mut RestTimer)>) {
@@ -292,12 +299,12 @@ pub(crate) fn wake_cloths(mut cloths: Query<RestingCloth>, mut changes: ResMut<C
         return;
     }
     changes.asleep = 0;
-    for (mut instance, state, frame, anchors, joints, timer, record) in &mut cloths {
+    for (mut instance, state, frame, anchors, joints, mut timer, record) in &mut cloths {
         if instance.activity != ClothActivity::AtRest {
             continue;
         }
         if changes.everywhere
-            || changes.act_on(state, frame.end(), &timer, record.radius)
+            || changes.act_on(state, frame.end(), &mut timer, record.radius)
             || anchors.is_some_and(AnchorPoses::may_move)
             || joints.is_some_and(JointPoses::may_move)
         {
@@ -325,7 +332,7 @@ pub(crate) fn send_to_sleep(
             continue;
         }
         let pose = frame.end();
-        let is_disturbed = changes.act_on(state, pose, &timer, record.radius)
+        let is_disturbed = changes.act_on(state, pose, &mut timer, record.radius)
             || anchors.is_some_and(AnchorPoses::may_move)
             || joints.is_some_and(JointPoses::may_move)
             || instance.taking_up.is_some();

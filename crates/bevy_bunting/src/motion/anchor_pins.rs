@@ -10,6 +10,7 @@ use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
 use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::held_group::HeldGroup;
+use crate::motion::pose::PoseHistory;
 
 /// Distance of a pin from its place at which it begins to move there over a while, m. Smaller: a change of level,
 /// after which pins are interpolated, counts. Larger: pins visibly jump.
@@ -36,6 +37,8 @@ struct AnchoredPin {
     at: Vec3,
     /// Place at the end of the tick, in the cloth's frame at that time, m.
     place: Vec3,
+    /// Whether it is in its place, and neither the frame nor an anchor has moved since.
+    is_settled: bool,
 }
 
 impl AnchorPins {
@@ -56,19 +59,24 @@ impl AnchorPins {
         self.pins.clear();
         self.pins.extend(levels.held(level, groups).into_iter().map(|held| {
             let at = positions[held.particle];
-            AnchoredPin { particle: held.particle as u32, shares: held.shares, at, place: at }
+            AnchoredPin {
+                particle: held.particle as u32,
+                shares: held.shares,
+                at,
+                place: at,
+                is_settled: false,
+            }
         }));
     }
 
-    /// Finds the places of the pins in a tick, given the cloth's frame at its start and at its end. Returns whether all
-    /// are in their places at its start.
+    /// Finds the places of the pins in a tick, given the cloth's frame. Returns whether all are in their places at its start.
     pub fn find_places(
         &mut self,
         fabric: &Fabric,
         poses: &AnchorPoses,
-        (start, end): (Isometry3d, Isometry3d),
+        frame: &PoseHistory,
     ) -> bool {
-        let (start, end) = (start.inverse(), end.inverse());
+        let (start, end) = (frame.start().inverse(), frame.end().inverse());
         let mut are_in_place = true;
         for pin in &mut self.pins {
             let rest = fabric.rest_positions()[pin.particle as usize];
@@ -80,6 +88,13 @@ impl AnchorPins {
                 between(rest, parts)
             };
             pin.place = place(pin, &|(_, to)| end * (to * rest));
+            let rests = frame.rests() && pin.shares.iter().all(|&(anchor, _)| poses.rests(anchor));
+            if rests && pin.is_settled {
+                // Another place is the rounding of a world that was moved.
+                pin.place = pin.at;
+                continue;
+            }
+            pin.is_settled = rests && pin.place == pin.at;
             let from = place(pin, &|(from, _)| start * (from * rest));
             are_in_place &= from.distance(pin.at) < IN_PLACE;
         }

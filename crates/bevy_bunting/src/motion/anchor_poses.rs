@@ -1,7 +1,7 @@
 //! The poses of anchors' targets, observed like the frames of cloths.
 
 use bevy_ecs::prelude::*;
-use bevy_math::Isometry3d;
+use bevy_math::{Isometry3d, Vec3};
 use bevy_time::{Time, Virtual};
 use bevy_transform::helper::TransformHelper;
 
@@ -48,6 +48,11 @@ impl AnchorPoses {
         history.is_observed().then(|| (history.start(), history.end()))
     }
 
+    /// Whether an anchor rests.
+    pub fn rests(&self, anchor: usize) -> bool {
+        self.0.get(anchor).is_some_and(|pose| pose.history.rests())
+    }
+
     /// Whether any anchor may move in this tick.
     pub fn may_move(&self) -> bool {
         self.0.iter().any(|pose| !pose.history.rests())
@@ -56,6 +61,11 @@ impl AnchorPoses {
     /// Makes the next change of each pose a teleport.
     pub fn teleport_next(&mut self, last: &ObservationTimes) {
         self.0.iter_mut().for_each(|pose| pose.history.teleport_next(last));
+    }
+
+    /// Moves all poses along with the world, m.
+    pub fn shift(&mut self, by: Vec3) {
+        self.0.iter_mut().for_each(|pose| pose.history.shift(by));
     }
 
     /// Forgets the poses of targets that are no longer those of the anchors. An anchor that moves up in the list, since one
@@ -83,6 +93,7 @@ impl AnchorPoses {
         self.fit(anchors);
         for (pose, anchor) in self.0.iter_mut().zip(anchors) {
             let target = transforms.compute_global_transform(anchor.target).ok();
+            let target = target.filter(|_| !anchor.brings_first);
             let now = target.map(|target| frame_on(&target, &anchor.offset)).filter(is_finite);
             observe(&mut pose.history, now);
         }

@@ -1,10 +1,11 @@
-//! The vertices that an attachment holds: an edge, corners, a list, a rectangle, points on triangles.
+//! The vertices that an attachment holds: an edge, corners, a list, a rectangle, places, a border, points on triangles.
 
-use bevy_math::Vec2;
+use bevy_math::{Vec2, Vec3};
 use bevy_reflect::Reflect;
 use bunting_solver::MeshPoint;
 
 use crate::cloth::mesh::ClothMesh;
+use crate::motion::border::border_near;
 
 /// Greatest distance in texture coordinates of a vertex on an edge from the extreme coordinate. Smaller:
 /// rounding excludes vertices. Larger: an edge holds several rows of fine meshes.
@@ -87,6 +88,22 @@ pub enum AttachedVertices {
         /// Greatest u and v.
         high: Vec2,
     },
+    /// For each of these places in the mesh's own frame, m, the vertex nearest to it at rest.
+    Nearest(Vec<Vec3>),
+    /// All vertices that lie at rest in a box in the mesh's own frame or on its border, m. A box that is flat, but for a tolerance
+    /// of the caller's, holds a line of vertices.
+    InBox {
+        /// Least x, y and z, m.
+        low: Vec3,
+        /// Greatest x, y and z, m.
+        high: Vec3,
+    },
+    /// All vertices on the border that passes nearest to a place in the mesh's own frame at rest, m: the waist of a skirt, the neck
+    /// of a cape, the rim of a hole. A border is followed all around, across doubled vertices.
+    Border {
+        /// A place at or near the border, m.
+        near: Vec3,
+    },
     /// Points on the triangles of the [`ClothMesh`](crate::ClothMesh), each held where it is told as exactly as a vertex, by a
     /// particle of the simulation's own. Two points hold nothing between them. The vertices of the mesh, which is drawn, stay as they
     /// are.
@@ -113,7 +130,8 @@ pub enum AttachedVertices {
     /// # assert!(peg.is_some_and(|peg| peg.vertex().is_none()) && held.anchors.is_empty());
     /// ```
     Points(Vec<MeshPoint>),
-    /// Only the rigid vertices, of weight 0, see [`ClothMesh::with_weights`](crate::ClothMesh::with_weights).
+    /// No vertices but the rigid ones, which the mesh names itself by a weight of 0, see
+    /// [`ClothMesh::with_weights`](crate::ClothMesh::with_weights): they follow the target.
     Rigid,
 }
 
@@ -126,8 +144,38 @@ impl AttachedVertices {
         Self::List(chosen.map(|(vertex, _)| vertex).collect())
     }
 
-    /// Indices of the held vertices, given the texture coordinates of all vertices.
-    pub(crate) fn choose(&self, uv: &[Vec2]) -> Vec<u32> {
+    /// Indices of the held vertices of a mesh.
+    pub(crate) fn choose(&self, mesh: &ClothMesh) -> Vec<u32> {
+        match self {
+            Self::List(vertices) => vertices.clone(),
+            Self::Points(points) => points.iter().filter_map(MeshPoint::vertex).collect(),
+            Self::Nearest(places) => {
+                let builder = mesh.builder();
+                places.iter().filter_map(|&to| nearest_to(builder.positions(), to)).collect()
+            }
+            Self::InBox { low, high } => {
+                let builder = mesh.builder();
+                let within = |at: Vec3| at.cmpge(*low).all() && at.cmple(*high).all();
+                let chosen = (0..).zip(builder.positions()).filter(|&(_, &at)| within(at));
+                chosen.map(|(vertex, _)| vertex).collect()
+            }
+            Self::Border { near } => border_near(mesh, *near),
+            Self::Rigid => Vec::new(),
+            Self::Edge(_) | Self::Corners(_) | Self::Within { .. } => self.by_uv(&mesh.uvs()),
+        }
+    }
+
+    /// Place of what is held first, in the mesh's own frame, m: of a vertex or, where there is none, of a point. None if nothing
+    /// is held.
+    pub(crate) fn first_place(&self, mesh: &ClothMesh) -> Option<Vec3> {
+        let builder = mesh.builder();
+        let vertex = self.choose(mesh).first().copied();
+        let of_vertex = vertex.and_then(|vertex| builder.positions().get(vertex as usize).copied());
+        of_vertex.or_else(|| builder.place(&self.points().next()?))
+    }
+
+    /// Indices of the vertices that are chosen by texture coordinates.
+    fn by_uv(&self, uv: &[Vec2]) -> Vec<u32> {
         let low = uv.iter().copied().reduce(Vec2::min).unwrap_or_default();
         let high = uv.iter().copied().reduce(Vec2::max).unwrap_or_default();
         let all_where = |holds: &dyn Fn(Vec2) -> bool| {
@@ -141,12 +189,10 @@ impl AttachedVertices {
             Self::Corners(corners) => {
                 corners.iter().filter_map(|corner| nearest(uv, corner.of(low, high))).collect()
             }
-            Self::List(vertices) => vertices.clone(),
-            Self::Points(points) => points.iter().filter_map(MeshPoint::vertex).collect(),
             Self::Within { low, high } => {
                 all_where(&|at: Vec2| at.cmpge(*low).all() && at.cmple(*high).all())
             }
-            Self::Rigid => Vec::new(),
+            _ => Vec::new(),
         }
     }
 
@@ -166,6 +212,13 @@ impl From<ClothEdge> for AttachedVertices {
     }
 }
 
+impl From<u32> for AttachedVertices {
+    /// One vertex, by its index in the [`ClothMesh`](crate::ClothMesh).
+    fn from(vertex: u32) -> Self {
+        Self::List(vec![vertex])
+    }
+}
+
 impl From<ClothCorner> for AttachedVertices {
     fn from(corner: ClothCorner) -> Self {
         Self::Corners(vec![corner])
@@ -181,6 +234,14 @@ impl ClothCorner {
             Self::BottomRight => high,
         }
     }
+}
+
+/// The vertex nearest to a place, of equally near ones the first.
+fn nearest_to(positions: &[Vec3], to: Vec3) -> Option<u32> {
+    (0..)
+        .zip(positions)
+        .min_by(|(_, a), (_, b)| a.distance_squared(to).total_cmp(&b.distance_squared(to)))
+        .map(|(vertex, _)| vertex)
 }
 
 fn nearest(uv: &[Vec2], corner: Vec2) -> Option<u32> {

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use bevy_ecs::entity::EntityMapper;
 use bevy_ecs::prelude::*;
-use bevy_math::{Vec2, Vec3};
+use bevy_math::Vec3;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
 use bunting_solver::MeshPoint;
 
+use crate::cloth::mesh::ClothMesh;
 use crate::motion::anchor_hold::{AnchorHold, infinite_force};
 use crate::motion::attached_vertices::AttachedVertices;
 use crate::motion::held_group::HeldGroup;
@@ -70,6 +71,10 @@ pub struct Attachment {
     /// Further vertices, held on further entities: the other mast of a banner, the other shoulder of a cape.
     #[reflect(default)]
     pub anchors: Vec<Anchor>,
+    /// Whether the first of the held vertices is brought to the target, see [`Attachment::at`]. In the tick in which the mesh is
+    /// known this becomes false, and [`offset`](Self::offset) what brings it there.
+    #[reflect(default)]
+    pub brings_first: bool,
 }
 
 /// Vertices of a cloth that are held on an entity besides the [`Attachment`]'s own: its pose times the offset, times the
@@ -108,6 +113,13 @@ pub struct Anchor {
     /// [`Attachment`], and [`ClothAnchorBroke`](crate::ClothAnchorBroke) is triggered on the cloth. Infinite by default.
     #[reflect(default = "infinite_force")]
     pub break_force: f32,
+    /// Fate of the cloth when the anchor's target is despawned; none: that of the [`Attachment`].
+    #[reflect(default)]
+    pub on_lost: Option<TargetLost>,
+    /// Whether the first of the held vertices is brought to the target, see [`Anchor::at`]. In the tick in which the mesh is known
+    /// this becomes false, and [`offset`](Self::offset) what brings it there.
+    #[reflect(default)]
+    pub brings_first: bool,
 }
 
 impl Anchor {
@@ -120,7 +132,38 @@ impl Anchor {
             offset: Transform::IDENTITY,
             hold: AnchorHold::Rigid,
             break_force: f32::INFINITY,
+            on_lost: None,
+            brings_first: false,
         }
+    }
+
+    /// Holds vertices on a target, of which the first is at the target, or at [`offset`](Self::offset) from it, wherever the mesh
+    /// has it. The others keep their places relative to it.
+    ///
+    /// ```
+    /// use bevy_bunting::prelude::*;
+    /// use bevy_ecs::prelude::*;
+    ///
+    /// # let mut world = World::new();
+    /// # let pegs = [(); 2].map(|()| world.spawn(bevy_transform::components::Transform::default()).id());
+    /// // Each corner of a sheet hangs on a peg.
+    /// let [left, right] = pegs;
+    /// let second = Anchor::at(right, ClothCorner::TopRight);
+    /// let held = Attachment::at(left, ClothCorner::TopLeft).with_anchor(second);
+    /// // Or by index.
+    /// let third = Anchor::at(right, 12_u32);
+    /// # assert!(held.brings_first && third.brings_first);
+    /// ```
+    #[must_use]
+    pub fn at(target: Entity, vertices: impl Into<AttachedVertices>) -> Self {
+        Self { brings_first: true, ..Self::new(target, vertices) }
+    }
+
+    /// The anchor with a fate of its own when its target is despawned.
+    #[must_use]
+    pub fn when_lost(mut self, outcome: TargetLost) -> Self {
+        self.on_lost = Some(outcome);
+        self
     }
 
     /// The anchor with springs of a stiffness (N/m), all of them together.
@@ -188,7 +231,15 @@ impl Attachment {
             on_lost: TargetLost::default(),
             teleport_speed: TELEPORT_SPEED,
             anchors: Vec::new(),
+            brings_first: false,
         }
+    }
+
+    /// Holds vertices on a target, of which the first is at the target, or at [`offset`](Self::offset) from it, wherever the mesh
+    /// has it: the cloth is moved so. On the cloth's own [`Transform`] it is as [`in_place`](Self::in_place).
+    #[must_use]
+    pub fn at(target: Entity, vertices: impl Into<AttachedVertices>) -> Self {
+        Self { brings_first: true, ..Self::new(target, vertices) }
     }
 
     /// Holds vertices on the cloth's own [`Transform`].
@@ -212,11 +263,11 @@ impl Attachment {
     }
 
     /// What is held on each target: by the attachment, then by each anchor. A vertex or a point occurs once.
-    pub(crate) fn groups(&self, uv: &[Vec2]) -> Vec<HeldGroup> {
+    pub(crate) fn groups(&self, mesh: &ClothMesh) -> Vec<HeldGroup> {
         let (mut taken, mut taken_points) = (HashSet::new(), HashSet::new());
         let anchored = self.anchors.iter().map(|anchor| &anchor.vertices);
         let mut of_group = |chosen: &AttachedVertices| {
-            let mut vertices = chosen.choose(uv);
+            let mut vertices = chosen.choose(mesh);
             vertices.retain(|&vertex| taken.insert(vertex));
             let bits = |point: &MeshPoint| (point.vertices, point.weights.map(f32::to_bits));
             let points = chosen.points().filter(|point| taken_points.insert(bits(point)));
@@ -226,8 +277,8 @@ impl Attachment {
     }
 
     /// What is pinned on each target, in the order of [`groups`](Self::groups).
-    pub(crate) fn pinned_groups(&self, uv: &[Vec2]) -> Vec<HeldGroup> {
-        let mut groups = self.groups(uv);
+    pub(crate) fn pinned_groups(&self, mesh: &ClothMesh) -> Vec<HeldGroup> {
+        let mut groups = self.groups(mesh);
         for (group, anchor) in groups[1..].iter_mut().zip(&self.anchors) {
             if !anchor.hold.is_rigid() {
                 group.clear();
@@ -237,8 +288,8 @@ impl Attachment {
     }
 
     /// What each anchor holds by springs or on a rail.
-    pub(crate) fn sprung_groups(&self, uv: &[Vec2]) -> Vec<HeldGroup> {
-        let mut groups = self.groups(uv).split_off(1);
+    pub(crate) fn sprung_groups(&self, mesh: &ClothMesh) -> Vec<HeldGroup> {
+        let mut groups = self.groups(mesh).split_off(1);
         for (group, anchor) in groups.iter_mut().zip(&self.anchors) {
             if anchor.hold.is_rigid() || !anchor.hold.is_valid() {
                 group.clear();
@@ -256,11 +307,22 @@ impl Attachment {
         self.anchors.iter().map(rail).collect()
     }
 
+    /// Whether vertices are to be brought to a target.
+    pub(crate) fn brings_any(&self) -> bool {
+        self.brings_first || self.anchors.iter().any(|anchor| anchor.brings_first)
+    }
+
+    /// The fate of the cloth when the target of an anchor is despawned.
+    pub(crate) fn outcome_of(&self, anchor: &Anchor) -> TargetLost {
+        anchor.on_lost.unwrap_or(self.on_lost)
+    }
+
     /// Lets go the vertices on lost targets. Those of anchors that stand stay held; without the attachment's own target the
     /// cloth's frame is its own transform. Returns whether the attachment still does anything.
     pub(crate) fn release(&mut self, lost: &[Entity]) -> bool {
         let is_lost = |target: Entity| lost.contains(&target);
         if is_lost(self.target) {
+            self.brings_first = false;
             self.target = Entity::PLACEHOLDER;
             self.vertices = AttachedVertices::List(Vec::new());
             self.offset = Transform::IDENTITY;
@@ -297,7 +359,7 @@ pub enum TargetLost {
     /// the cloth hangs from the last pose of its target.
     #[default]
     Freeze,
-    /// The vertices on that target are let go, and all others stay held: an [`Anchor`] of a lost target is removed; an
+    /// The vertices on that target are let go, and the cloth goes on, held by all others or by none: an [`Anchor`] of a lost target is removed; an
     /// [`Attachment`] that has lost its own target holds no vertices on the cloth's own transform, and is removed when no
     /// anchor is left.
     Release,

@@ -7,13 +7,16 @@ use bevy_transform::helper::TransformHelper;
 
 use crate::motion::attachment::Attachment;
 
-/// The current frame of a cloth, or the current pose of a collider. None if the target is despawned.
+/// The current frame of a cloth, or the current pose of a collider. None if the target is despawned, or a
+/// vertex is to be brought to it.
 pub(crate) fn frame_of(
     entity: Entity,
     attachment: Option<&Attachment>,
     transforms: &TransformHelper,
 ) -> Option<Isometry3d> {
     let (followed, offset) = match attachment {
+        // Where the cloth will be is not known yet.
+        Some(attachment) if attachment.brings_first => return None,
         Some(attachment) => match attachment.target_other_than(entity) {
             Some(target) => (target, attachment.offset),
             None => (entity, Transform::IDENTITY),

@@ -42,10 +42,10 @@ pub(crate) fn lead_pins(
         if let Some((mesh, attachment, poses, pins)) = &mut anchors {
             let positions = || lane.snapshot().positions;
             if attachment.is_changed() || !pins.fits(&levels, instance.level) {
-                let groups = attachment.pinned_groups(&mesh.uvs());
+                let groups = attachment.pinned_groups(mesh);
                 pins.find(&levels, instance.level, &groups[1..], &positions());
             }
-            let are_in_place = pins.find_places(fabric, poses, (frame.start(), frame.end()));
+            let are_in_place = pins.find_places(fabric, poses, frame);
             if !are_in_place && instance.taking_up.is_none() {
                 instance.taking_up = Some(TakingUp::from_positions(fabric, &positions()));
             }

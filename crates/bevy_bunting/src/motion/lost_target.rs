@@ -29,14 +29,18 @@ pub(crate) fn handle_lost_targets(
         }
         let target = attachment.target_other_than(entity);
         let own = target.filter(|&target| instance.target == Some(target));
-        let followed = own.into_iter().chain(attachment.anchors.iter().map(|it| it.target));
-        let mut lost: Vec<Entity> = followed.filter(|&it| !targets.contains(it)).collect();
+        let followed = own.into_iter().map(|target| (target, attachment.on_lost));
+        let anchors = attachment.anchors.iter().map(|it| (it.target, attachment.outcome_of(it)));
+        let lost = followed.chain(anchors).filter(|it| !targets.contains(it.0));
+        let (mut lost, outcomes): (Vec<Entity>, Vec<TargetLost>) = lost.unzip();
         if lost.is_empty() {
             continue;
         }
         lost.sort_unstable();
         lost.dedup();
-        let outcome = attachment.on_lost;
+        // What is frozen lets go nothing.
+        let freezes = outcomes.contains(&TargetLost::Freeze);
+        let outcome = if freezes { TargetLost::Freeze } else { TargetLost::Release };
         match outcome {
             TargetLost::Freeze => {
                 instance.target_lost = true;

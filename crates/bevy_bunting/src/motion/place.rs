@@ -29,6 +29,9 @@ pub(crate) fn place_cloths(
     placements.clear();
     placements.extend(moved.find(new).iter().filter_map(|&entity| {
         let (attachment, parent) = cloths.get(entity).ok()?;
+        if attachment.is_some_and(|it| it.brings_first) {
+            return None;
+        }
         let target = attachment.and_then(|it| Some((it, it.target_other_than(entity)?)));
         match target {
             Some((attachment, target)) => {

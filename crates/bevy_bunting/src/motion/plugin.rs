@@ -10,21 +10,25 @@ use bevy_transform::systems::{
 use bunting_solver::MeshPoint;
 
 use crate::environment::drive::drive_cloths;
-use crate::fabric::prepare::change_materials;
+use crate::fabric::prepare::{change_materials, cut_cloths};
 use crate::motion::anchor_poses::{
     observe_anchors_at_end_of_ticks, observe_anchors_in_frames, observe_anchors_in_ticks,
 };
 use crate::motion::attached_vertices::{AttachedVertices, ClothCorner, ClothEdge};
 use crate::motion::attachment::{Anchor, Attachment, TargetLost};
+use crate::motion::bring::bring_vertices;
 use crate::motion::follow::{follow_targets, stop_following};
 use crate::motion::follow_anchors::follow_anchors;
 use crate::motion::inertia::ClothInertia;
 use crate::motion::lead::lead_pins;
+use crate::motion::lost_target::handle_lost_targets;
 use crate::motion::observation_times::{ObservationTimes, begin_frame};
 use crate::motion::observe::{observe_end_of_ticks, observe_frames, observe_ticks};
 use crate::motion::place::place_cloths;
+use crate::motion::report_idle::report_idle_attachments;
 use crate::motion::report_inertia::report_inertia;
 use crate::motion::scale::remove_scales;
+use crate::motion::shift::shift_poses;
 use crate::schedule::{ClothSystems, ClothTick, run_cloth_tick};
 
 /// Observes the targets of attachments, and places cloths on them.
@@ -43,6 +47,7 @@ impl Plugin for AttachmentPlugin {
             .register_type::<ClothInertia>()
             .init_resource::<ObservationTimes>()
             .add_observer(stop_following)
+            .add_observer(shift_poses)
             .add_systems(
                 RunFixedMainLoop,
                 (
@@ -61,12 +66,18 @@ impl Plugin for AttachmentPlugin {
                 ClothTick,
                 (
                     (
-                        (follow_targets, follow_anchors).chain().after(change_materials),
+                        (follow_targets, follow_anchors, report_idle_attachments)
+                            .chain()
+                            .after(change_materials),
                         observe_anchors_in_ticks,
                         observe_ticks,
                     )
                         .chain()
                         .in_set(ClothSystems::Prepare),
+                    bring_vertices
+                        .in_set(ClothSystems::Prepare)
+                        .after(handle_lost_targets)
+                        .before(cut_cloths),
                     report_inertia.in_set(ClothSystems::Prepare),
                     lead_pins.in_set(ClothSystems::Drive).before(drive_cloths),
                     place_cloths.in_set(ClothSystems::Publish),

@@ -1,9 +1,12 @@
 //! The pose of a cloth's frame or of a collider at the time of each tick, for entities that move in fixed
 //! steps or in frames.
 
+mod shift;
+
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
 use bunting_solver::FrameMotion;
+use parry3d::math::Pose;
 
 use crate::cloth::restored::RestoredAt;
 use crate::motion::observation_times::ObservationTimes;
@@ -69,6 +72,8 @@ pub(crate) struct PoseHistory {
     rest: Option<Rest>,
     #[cfg_attr(feature = "serialize", serde(skip))]
     restored: RestoredAt,
+    /// Distance by which the pose may be another after the world was moved, m; none once it was observed.
+    rounding: Option<f32>,
 }
 
 /// An entity at rest.
@@ -85,6 +90,12 @@ struct Rest {
 /// Translation (m) and rotation of a pose.
 pub(crate) fn pose_parts(pose: Isometry3d) -> (Vec3, Quat) {
     (pose.translation.into(), pose.rotation)
+}
+
+/// A pose as parry has it.
+pub(crate) fn parry_pose(pose: Isometry3d) -> Pose {
+    let (translation, rotation) = pose_parts(pose);
+    Pose::from_parts(translation, rotation)
 }
 
 impl PoseHistory {
@@ -149,6 +160,7 @@ impl PoseHistory {
         limit: f32,
         early: bool,
     ) {
+        self.settle(pose);
         if self.rest.is_some_and(|rest| rest.pose == pose) {
             return;
         }
@@ -183,6 +195,7 @@ impl PoseHistory {
     /// Records the pose after the ticks of a frame, before anything outside the fixed loop moves the entity. If it has
     /// changed since the last tick, the entity is moved in ticks, after the cloths'.
     pub fn observe_end_of_ticks(&mut self, last: &ObservationTimes, pose: Isometry3d) {
+        self.settle(pose);
         if last.has_ticked() && self.last.is_some_and(|last| last != pose) {
             self.end_rest(last);
             self.last = Some(pose);
@@ -224,6 +237,7 @@ impl PoseHistory {
         pose: Isometry3d,
         limit: f32,
     ) {
+        self.settle(pose);
         if self.rest.is_some_and(|rest| rest.pose == pose) {
             return;
         }

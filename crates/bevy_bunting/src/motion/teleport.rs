@@ -37,7 +37,7 @@ pub struct TeleportCloth {
     pub mode: TeleportMode,
 }
 
-/// Whether a cloth keeps its shape when it is teleported.
+/// What becomes of a cloth's shape when it is teleported: how it gets there is always the same, at once.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;

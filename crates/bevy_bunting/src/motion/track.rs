@@ -136,7 +136,12 @@ impl Track {
 
     /// Moves all samples along with a teleport.
     pub fn carry(&mut self, teleport: &Teleport) {
-        self.samples.iter_mut().for_each(|(_, earlier)| *earlier = teleport.carry(*earlier));
+        self.change_poses(|earlier| teleport.carry(earlier));
+    }
+
+    /// Changes the poses of all samples.
+    pub fn change_poses(&mut self, change: impl Fn(Isometry3d) -> Isometry3d) {
+        self.samples.iter_mut().for_each(|(_, pose)| *pose = change(*pose));
     }
 
     /// Mean velocity from the last pose to a new one, m/s.

@@ -10,10 +10,10 @@ use bevy_picking::backend::{HitData, PointerHits};
 use bevy_transform::components::GlobalTransform;
 use bunting_solver::Fabric;
 use parry3d::query::{Ray, RayCast};
-use parry3d::shape::Triangle;
 
 use crate::cloth::state::ClothState;
 use crate::display::surface::ClothSurface;
+use crate::spatial::surface::Surface;
 
 type PickedCloth = (
     Entity,
@@ -89,34 +89,20 @@ fn cast(
         !parry3d::bounding_volume::Aabb::new(least, greatest)
             .intersects_local_ray(&in_frame, f32::MAX)
     });
-    if is_beside || positions.len() != fabric.particle_count() {
+    if is_beside {
         return None;
     }
-    let mut nearest: Option<(f32, Vec3, [u32; 3])> = None;
-    for &particles in fabric.triangles() {
-        let [a, b, c] = particles.map(|particle| positions[particle as usize]);
-        let farthest = nearest.map_or(f32::MAX, |(distance, ..)| distance);
-        let triangle = Triangle::new(a, b, c);
-        if let Some(hit) = triangle.cast_local_ray_and_get_normal(&in_frame, farthest, false) {
-            nearest = Some((hit.time_of_impact, hit.normal, particles));
-        }
-    }
-    let (distance, normal, particles) = nearest?;
+    let hit = Surface::new(fabric, positions)?.cast_ray(&in_frame, f32::MAX)?;
+    let at_corners = |all: &[Vec3]| hit.particles.map(|particle| all[particle as usize]);
+    let rest = at_corners(fabric.rest_positions());
+    let corners = at_corners(positions).map(|corner| corner.distance(hit.at));
     Some(HitPoint {
-        distance,
-        at: ray.get_point(distance),
-        normal: frame.affine().transform_vector3(normal).normalize_or_zero(),
-        on_cloth: on_triangle(in_frame.point_at(distance), particles, fabric, positions),
+        distance: hit.distance,
+        at: ray.get_point(hit.distance),
+        normal: frame.affine().transform_vector3(hit.normal).normalize_or_zero(),
+        on_cloth: ClothHit {
+            corners: corners.into_iter().fold(0.0, f32::max),
+            at_rest: rest.into_iter().zip(hit.weights).map(|(at, weight)| at * weight).sum(),
+        },
     })
-}
-
-/// A point on a triangle of a cloth, which has an area: a ray has met it.
-fn on_triangle(at: Vec3, particles: [u32; 3], fabric: &Fabric, positions: &[Vec3]) -> ClothHit {
-    let [a, b, c] = particles.map(|particle| positions[particle as usize]);
-    let rest = particles.map(|particle| fabric.rest_positions()[particle as usize]);
-    let normal = (b - a).cross(c - a);
-    let part = |from: Vec3, to: Vec3| (from - at).cross(to - at).dot(normal);
-    let at_rest = part(b, c) * rest[0] + part(c, a) * rest[1] + part(a, b) * rest[2];
-    let corners = [a, b, c].map(|corner| corner.distance(at)).into_iter().fold(0.0, f32::max);
-    ClothHit { corners, at_rest: at_rest / normal.length_squared() }
 }

@@ -121,7 +121,7 @@ impl PaintPins<'_, '_> {
         let Some(hit) = hit.extra_as::<ClothHit>().filter(|_| self.brush.paints(cloth)) else {
             return;
         };
-        let held = attachment.as_ref().map(|it| it.vertices.choose(&mesh.uvs()));
+        let held = attachment.as_ref().map(|it| it.vertices.choose(mesh));
         let held: BTreeSet<u32> = held.into_iter().flatten().collect();
         let points = attachment.iter().flat_map(|it| it.vertices.points());
         let points: Vec<MeshPoint> = points.collect();

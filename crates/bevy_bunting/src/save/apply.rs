@@ -176,7 +176,12 @@ fn restore_choices(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
         *known = record.unwrap_or_default();
     }
     if let Some(mut timer) = cloth.get_mut::<RestTimer>() {
-        *timer = RestTimer { ticks: saved.rest_ticks, group: None, pose: saved.rest_pose };
+        *timer = RestTimer {
+            ticks: saved.rest_ticks,
+            group: None,
+            pose: saved.rest_pose,
+            rounding: saved.rest_rounding,
+        };
     }
     // Other settings than those of the saved world: the cloth gets the substeps that it needs here.
     if saved.in_lane

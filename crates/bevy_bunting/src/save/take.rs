@@ -118,6 +118,7 @@ pub(super) fn take(world: &World, entity: Entity) -> Result<SavedCloth, Snapshot
         record: cloth.get::<LodRecord>().and_then(|record| record.saved(levels, selector.tick)),
         rest_ticks: if is_exposed { 0 } else { timer.ticks },
         rest_pose: timer.pose,
+        rest_rounding: timer.rounding,
         frame: cloth.get::<PoseHistory>().cloned().unwrap_or_default(),
         anchors: anchors.into_iter().flat_map(AnchorPoses::histories).cloned().collect(),
         skin: skin(cloth),

@@ -36,7 +36,7 @@ pub struct StepLimits {
     pub scheme: Scheme,
     /// Least and greatest number of substeps in a tick.
     pub substeps: RangeInclusive<u32>,
-    /// Least number of substeps in a second: longer ticks are divided into more. Faster motion than the
+    /// Least rate of substeps, 1/s, whatever the length of a tick: longer ticks are divided into more. Faster motion than the
     /// substeps resolve is damped.
     pub rate: u32,
     /// Passes in a substep, see [`StepSettings::passes`].

@@ -11,6 +11,7 @@ use crate::cloth::instance::{ClothInstance, StateStorage};
 use crate::environment::falloff::falloff;
 use crate::lod::record::RestTimer;
 use crate::motion::pose::PoseHistory;
+use crate::motion::shift::ShiftOrigin;
 
 /// A change of the velocity of all cloth around a place, or of one cloth. Trigger it anywhere; it acts at the beginning of
 /// the next tick, and wakes cloths that sleep at rest. Pinned particles are not moved.
@@ -111,6 +112,11 @@ pub(super) fn queue_impulse(
         }
         None => log::error!("a ClothImpulse must be finite, with a positive radius: {impulse:?}"),
     }
+}
+
+/// Moves the places of queued impulses along with the world.
+pub(super) fn shift_impulses(shift: On<ShiftOrigin>, mut impulses: ResMut<Impulses>) {
+    impulses.0.iter_mut().for_each(|impulse| impulse.at += shift.acting());
 }
 
 type PushedCloth =

@@ -4,7 +4,9 @@ use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 
 use crate::environment::forces::acceleration::{ClothAcceleration, report_accelerations};
-use crate::environment::forces::impulse::{Impulses, apply_impulses, queue_impulse};
+use crate::environment::forces::impulse::{
+    Impulses, apply_impulses, queue_impulse, shift_impulses,
+};
 use crate::motion::observe::observe_ticks;
 use crate::schedule::{ClothSystems, ClothTick};
 
@@ -17,6 +19,7 @@ impl Plugin for ForcePlugin {
         app.register_type::<ClothAcceleration>()
             .init_resource::<Impulses>()
             .add_observer(queue_impulse)
+            .add_observer(shift_impulses)
             .add_systems(
                 ClothTick,
                 (report_accelerations, apply_impulses)

@@ -20,7 +20,7 @@ const LEAST_SPEED: f32 = 0.05;
 ///
 /// Cloth feels the mean over a tick, so that it gets the whole gust whatever the ticks are. The component is removed when
 /// the blast is over. A value that is not finite, and a duration or a speed of the front that is not positive, make no
-/// wind.
+/// wind and are reported as [`ClothError::Wind`](crate::ClothError::Wind) when the blast is new.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;

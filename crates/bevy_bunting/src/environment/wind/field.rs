@@ -19,7 +19,8 @@ const LEAST_GUST_LENGTH: f32 = 2.0;
 /// hypothesis of frozen turbulence). Their length is the distance that the mean wind covers in
 /// 1/`gust_frequency`, at least 2 m, and a cloth downwind feels a gust later. Gusts depend on position, time
 /// and seed, and not on the frame rate. After a change of the mean velocity, gusts travel at the new
-/// velocity. A cloth feels the air at its middle. A field that is not finite is logged and left out.
+/// velocity. A cloth feels the air at its middle. A field that is not finite is reported as
+/// [`ClothError::Wind`](crate::ClothError::Wind) and left out.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;
@@ -83,13 +84,14 @@ impl WindField {
     }
 
     /// Length of a gust, m.
-    fn gust_length(&self) -> f32 {
+    pub(super) fn gust_length(&self) -> f32 {
         (self.velocity.length() / self.gust_frequency).max(LEAST_GUST_LENGTH)
     }
 }
 
 /// Distance that the mean wind has carried the gusts of a [`WindField`], in lengths of a gust. The distance
-/// is summed tick by tick, so that gusts stay continuous when the field's velocity changes.
+/// is summed tick by tick, so that gusts stay continuous when the field's velocity changes. A [`ShiftOrigin`](crate::ShiftOrigin) adds
+/// its displacement, so that gusts stay where they are.
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Default, Debug, PartialEq, Clone)]
@@ -117,6 +119,13 @@ impl MovingAir {
         let WindField { velocity, gust_strength, seed, .. } = *field;
         let gusts = || Gusts::new(seed, gust_strength, field.gust_length(), travel);
         Self { velocity, gusts: (gust_strength != 0.0).then(gusts) }
+    }
+
+    /// Moves the gusts along with the world, m.
+    pub fn shift(&mut self, by: Vec3) {
+        if let Some(gusts) = &mut self.gusts {
+            gusts.shift(by);
+        }
     }
 
     /// The velocity that this air has everywhere (m/s), unless it has gusts.

@@ -79,6 +79,15 @@ impl Gusts {
         velocities
     }
 
+    /// Moves the gusts along with the world, m.
+    pub fn shift(&mut self, by: Vec3) {
+        for (wave, phase) in self.phases.iter_mut().enumerate() {
+            let [x, y, z] = self.wave_vectors.map(|axis| f64::from(axis[wave]));
+            let moved = f64::from(*phase) - by.as_dvec3().dot(DVec3::new(x, y, z));
+            *phase = (moved - moved.floor()) as f32;
+        }
+    }
+
     /// Scales the amplitudes so that the sum of all waves' crests reaches `strength` (m/s) along the axis
     /// where this sum is greatest.
     fn scale_to(&mut self, strength: f32) {

@@ -9,5 +9,7 @@ pub mod per_particle;
 pub(crate) mod places;
 pub mod plugin;
 pub mod region;
+mod report;
+mod shift;
 pub mod tick_wind;
 pub mod wake;

@@ -25,6 +25,11 @@ impl Frame {
         Self { origin: Vec3::from(pose.translation), axes }
     }
 
+    /// Moves the frame along with the world, m.
+    pub fn shift(&mut self, by: Vec3) {
+        self.origin += by;
+    }
+
     /// A vector along the axes of this frame, along those of the world.
     pub fn to_world(self, vector: Vec3) -> Vec3 {
         self.axes[0] * vector.x + self.axes[1] * vector.y + self.axes[2] * vector.z

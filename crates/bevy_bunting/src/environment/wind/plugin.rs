@@ -11,6 +11,8 @@ use crate::environment::wind::field::{GustTravel, MovingAir, WindField};
 use crate::environment::wind::influence::{WindInfluence, report_influences};
 use crate::environment::wind::places::Frame;
 use crate::environment::wind::region::{WindRegion, WindShape};
+use crate::environment::wind::report::{report_regions, report_winds};
+use crate::environment::wind::shift::shift_winds;
 use crate::environment::wind::tick_wind::{LocalAir, TickWind};
 use crate::environment::wind::wake::{WakeTrail, WindWake};
 use crate::motion::observe::observe_ticks;
@@ -34,11 +36,12 @@ impl Plugin for WindPlugin {
             .register_type::<WindInfluence>()
             .register_type::<TickWind>()
             .init_resource::<TickWind>()
+            .add_observer(shift_winds)
             .add_systems(
                 ClothTick,
                 (
                     (collect_fields, collect_fans, collect_blasts, collect_wakes).chain(),
-                    report_winds,
+                    (report_winds, report_regions).before(collect_fields),
                     report_influences,
                 )
                     .in_set(ClothSystems::Prepare)
@@ -106,24 +109,5 @@ fn collect_wakes(
         if let Some(ball) = trail.ball(wake.drag_area) {
             wind.add_local(ball, LocalAir::Wake(trail.clone(), wake.drag_area));
         }
-    }
-}
-
-/// Logs winds with numbers that are not finite, whenever they change.
-fn report_winds(
-    fields: Query<(Entity, &WindField), Changed<WindField>>,
-    fans: Query<(Entity, &WindFan), Changed<WindFan>>,
-    wakes: Query<(Entity, &WindWake), Changed<WindWake>>,
-) {
-    let of_fields = fields.iter().map(|(entity, field)| {
-        let numbers = [field.gust_strength, field.gust_frequency];
-        (entity, field.velocity.is_finite() && numbers.iter().all(|it| it.is_finite()))
-    });
-    let of_fans = fans.iter().map(|(entity, fan)| {
-        (entity, [fan.speed, fan.radius, fan.reach].iter().all(|it| it.is_finite()))
-    });
-    let of_wakes = wakes.iter().map(|(entity, wake)| (entity, wake.drag_area.is_finite()));
-    for (entity, _) in of_fields.chain(of_fans).chain(of_wakes).filter(|(_, finite)| !finite) {
-        log::error!("the wind of {entity} has a number that is not finite: it does not blow");
     }
 }

@@ -89,6 +89,19 @@ impl LocalAir {
         (radius > 0.0 && radius.is_finite()).then_some((radius, velocity))
     }
 
+    /// Moves this air along with the world, m.
+    fn shift(&mut self, by: Vec3) {
+        match self {
+            Self::Region(air, _, frame) => {
+                air.shift(by);
+                frame.shift(by);
+            }
+            Self::Fan(_, frame) => frame.shift(by),
+            Self::Blast(_, centre, _) => *centre += by,
+            Self::Wake(trail, _) => trail.shift(by),
+        }
+    }
+
     /// Velocities (m/s) at some of four positions in the world (m).
     fn at(&self, positions: &Places, within: BVec4A) -> Places {
         match self {
@@ -171,6 +184,13 @@ impl TickWind {
             new.map(|(ball, _)| (ball.centre, ball.squared_radius.sqrt()))
         };
         changed(self, before).chain(changed(before, self))
+    }
+
+    /// Moves all winds along with the world, m.
+    pub(crate) fn shift(&mut self, by: Vec3) {
+        self.everywhere.iter_mut().for_each(|air| air.shift(by));
+        self.balls.iter_mut().for_each(|ball| ball.centre += by);
+        self.local.iter_mut().for_each(|air| air.shift(by));
     }
 
     /// Removes all winds.

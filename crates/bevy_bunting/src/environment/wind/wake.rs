@@ -102,6 +102,11 @@ impl WakeTrail {
         trail.push_front(TrailPoint { at: to, velocity: (to - from) / tick, age: 0.0 });
     }
 
+    /// Moves the path along with the world, m.
+    pub(super) fn shift(&mut self, by: Vec3) {
+        self.0.iter_mut().for_each(|point| point.at += by);
+    }
+
     /// The place on the path that is nearest to a position (m), and its distance, m.
     fn nearest(&self, position: Vec3) -> (TrailPoint, f32) {
         let mut nearest = (TrailPoint::default(), f32::INFINITY);

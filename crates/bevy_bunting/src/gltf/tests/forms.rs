@@ -7,7 +7,7 @@ use crate::gltf::components::insert_components;
 use crate::render::tests::reflect::public_types;
 
 /// Each public component as an artist may write it, with the fields that have no default; `{}` is a default.
-const COMPONENTS: [(&str, &str); 34] = [
+const COMPONENTS: [(&str, &str); 35] = [
     ("AnchorReactions", "{}"),
     (
         "Attachment",
@@ -42,6 +42,7 @@ const COMPONENTS: [(&str, &str); 34] = [
     ("GustTravel", "[0.0, 0.0, 0.0]"),
     ("LodSet", r#"{"choice": {"Distances": [10.0, 20.0]}}"#),
     ("LodViewer", "{}"),
+    ("ScaleInShape", "{}"),
     ("SelfCollision", "{}"),
     ("SkinLimits", r#"{"max_distance": {"AlongV": {"top": 0.02, "bottom": 0.6}}}"#),
     ("WakeTrail", "[]"),

@@ -35,7 +35,9 @@ impl FabricBuilder {
             .collect();
         let among = (0..).zip(&vertices).filter(|(_, vertex)| self.pinned.contains(vertex));
         let pins: Vec<u32> = among.map(|(at, _)| at).collect();
-        let builder = Self::grid(halved).pin(pins).tethered(self.tethered);
+        // The grid may have been placed somewhere.
+        let positions = vertices.iter().map(|&vertex| self.positions[vertex as usize]).collect();
+        let builder = Self { positions, ..Self::grid(halved) }.pin(pins).tethered(self.tethered);
         Some(CoarserMesh { builder, vertices })
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use glam::{Vec2, Vec3};
+use glam::{Quat, Vec2, Vec3};
 
 use super::mesh_point::MeshPoint;
 use crate::fabric::grid::Grid;
@@ -73,6 +73,23 @@ impl FabricBuilder {
             weld_distance: Some(0.0),
             ..Self::new(grid.positions(), grid.triangles(false).into_iter().flatten().collect())
         }
+    }
+
+    /// Turns all positions about the origin, and then moves them, m. A grid stays a grid, and so do its coarser levels.
+    ///
+    /// ```
+    /// use bunting_solver::{FabricBuilder, Grid};
+    /// use glam::{Quat, Vec3};
+    ///
+    /// // A towel that lies flat on the ground.
+    /// let lie = Quat::from_rotation_x(-core::f32::consts::FRAC_PI_2);
+    /// let towel = FabricBuilder::grid(Grid::new(9, 9, 1.0, 1.0)).placed(lie, Vec3::ZERO);
+    /// assert!(towel.positions().iter().all(|at| at.y.abs() < 1e-6));
+    /// ```
+    #[must_use]
+    pub fn placed(mut self, rotation: Quat, translation: Vec3) -> Self {
+        self.positions.iter_mut().for_each(|at| *at = rotation * *at + translation);
+        self
     }
 
     /// Sets texture coordinates, one for each vertex: the warp runs along u. Without them the warp of each
