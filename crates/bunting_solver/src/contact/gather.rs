@@ -56,11 +56,12 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 dragged: dragged_by_anchors(state, |particle| at[particle as usize]),
             };
             boxes.set(&at, &velocities, &sweep);
+            let frame = state.drive.motion.substep(0, 1);
             for (index, (collider, candidates)) in
                 state.colliders.iter().zip(&mut state.contacts).enumerate()
             {
                 gather_candidates(&self.fabric, collider, &boxes, candidates);
-                let way = collider.to.0 - collider.from.0;
+                let way = collider.to.0 - frame.to_new(collider.from.0);
                 let relative = |&at: &u32| (velocities[at as usize] * tick - way).length_squared();
                 let particles = candidates.particles.iter().chain(&candidates.corners);
                 let farthest = particles.map(relative).fold(0.0, f32::max);

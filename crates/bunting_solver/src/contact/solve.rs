@@ -98,11 +98,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if !candidates.triangles.is_empty() {
             self.solve_triangle_contacts(cloth, candidates, &contact, &mut pushes);
         }
-        // Loose cloth can follow a shape.
-        if state.guides.is_some()
-            || state.holds.is_some()
-            || self.fabric_of(cloth).fabric.has_pins()
-        {
+        // Loose cloth can follow a shape, and guides may prescribe any strain.
+        if state.holds.is_some() || self.fabric_of(cloth).fabric.has_pins() {
             self.take_back_straining(cloth, &contact, &mut pushes);
         }
         for push in &pushes {

@@ -15,10 +15,14 @@ use crate::simd::vec3::set_lane3;
 /// press hard, such as balls of 2 m/s through a curtain. Larger: cloth that is caught stays stretched that far, and trembles.
 const GREATEST_STRAIN: f32 = 0.2;
 
-/// Greatest strain of the cloth between a particle that a shape carries along and its nearest pin. Single links are stretched farther, since what
-/// is hit by such a shape has moved before lines can pull its neighbours along. Smaller: fast shapes come through loose cloth. Larger: they
-/// draw cloth out that far.
-const GREATEST_CARRIED_STRAIN: f32 = 0.5;
+/// Part of the way of the surface in a substep, relative to the nearest pin, by which a link may be longer, since what is pushed has moved before
+/// lines can pull its neighbours along. Smaller: cloth that is dragged against a post passes through it. Larger: balls of 5 m/s and more draw
+/// curtains out farther.
+const DRAWN_ALONG: f32 = 1.0;
+
+/// Greatest strain of the cloth between a particle that a shape carries along and its nearest pin, whose links may be stretched farther. Smaller:
+/// fast shapes come through loose cloth. Larger: they draw cloth out that far.
+const GREATEST_CARRIED_STRAIN: f32 = 2.0;
 
 /// Length of a push, in lengths of the shortest link, up to which links are not looked at: if both ends are pushed so far apart, the strain is
 /// [`GREATEST_STRAIN`].
@@ -33,18 +37,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         pushes: &mut Vec<Push>,
     ) {
         let link = self.fabric_of(cloth).fabric.shortest_link();
-        let is_fast = contact.way() > CARRIED * link;
         let is_short = |push: &Push| push.before.distance(contact.end(push)) <= SHORT * link;
-        if !is_fast && pushes.iter().all(is_short) {
+        if contact.way() <= CARRIED * link && pushes.iter().all(is_short) {
             return;
         }
         // Between a particle whose push is taken back and its neighbours links may be too long then.
         loop {
-            let strains = |&index: &usize| {
-                let push = &pushes[index];
-                self.is_carried_off(cloth, contact, push, is_fast)
-                    || !is_fast && self.strains_links(cloth, push)
-            };
+            let strains = |&index: &usize| self.strains(cloth, contact, &pushes[index]);
             let straining: Vec<usize> = (0..pushes.len()).filter(strains).collect();
             if straining.is_empty() {
                 break;
@@ -57,26 +56,32 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
-    /// Whether a push draws a particle farther from its nearest pin than a fast shape may, or than any may if the pin is within the shape.
-    fn is_carried_off(&self, cloth: usize, contact: &Contact, push: &Push, is_fast: bool) -> bool {
-        let Some(tether) = self.fabric_of(cloth).fabric.tether_of(push.particle) else {
-            return false;
-        };
-        let pin = self.position_of(cloth, tether.pin);
-        let distance = self.position_of(cloth, push.particle).distance(pin);
-        let strain = distance / tether.length - self.stretch_by_loads(cloth);
-        is_fast && strain > GREATEST_CARRIED_STRAIN || strain > 0.0 && contact.contains(pin)
-    }
-
-    /// Whether a push lengthens a link that is too long.
-    fn strains_links(&self, cloth: usize, push: &Push) -> bool {
-        let greatest = self.stretch_by_loads(cloth) + GREATEST_STRAIN;
+    /// Whether a push draws a particle too far from its nearest pin, or lengthens a link that is too long.
+    fn strains(&self, cloth: usize, contact: &Contact, push: &Push) -> bool {
+        let fabric = &self.fabric_of(cloth).fabric;
+        let by_loads = self.stretch_by_loads(cloth);
         let after = self.position_of(cloth, push.particle);
-        self.fabric_of(cloth).fabric.links_at(push.particle).any(|link| {
+        let mut way = contact.surface_motion(push.to);
+        let mut strain_to_pin = 0.0;
+        if let Some(tether) = fabric.tether_of(push.particle) {
+            let pin = self.position_of(cloth, tether.pin);
+            way -= pin - self.start_of(cloth, tether.pin);
+            strain_to_pin = after.distance(pin) / tether.length - by_loads;
+            // Beside a pin within the shape there is no place outside.
+            if strain_to_pin > 0.0 && contact.contains(pin) {
+                return true;
+            }
+        }
+        let way = way.length();
+        if way > CARRIED * fabric.shortest_link() {
+            return strain_to_pin > GREATEST_CARRIED_STRAIN;
+        }
+        fabric.links_at(push.particle).any(|link| {
             let [one, other] = link.particles;
             let end = self.position_of(cloth, if one == push.particle { other } else { one });
             let length = after.distance(end);
-            length > greatest * link.rest_length && length > push.before.distance(end)
+            length > (by_loads + GREATEST_STRAIN) * link.rest_length + DRAWN_ALONG * way
+                && length > push.before.distance(end)
         })
     }
 

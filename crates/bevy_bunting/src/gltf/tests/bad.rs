@@ -59,7 +59,9 @@ fn messages_name_the_file_the_node_and_the_key() {
         ("paint", "COLOR_0", "COLOR_1", mesh, "lacks Vertex_Color"),
     ] {
         let (mut app, messages) = import(case, from, to);
-        let [message] = &messages[..] else { panic!("{case}: {messages:?}") };
+        let [message, others @ ..] = &messages[..] else { panic!("{case}: no message") };
+        // An attachment whose cloth is not imported.
+        assert!(others.iter().all(|it| it.contains("holds nothing")), "{case}: {others:?}");
         assert!(message.starts_with(place), "{case}: {message}");
         assert!(message.contains(said), "{case}: {message}");
         let wind = find(&mut app, "Wind").expect("a node");
