@@ -5,13 +5,9 @@ use core::ops::Range;
 use crate::constants::LEAST_LENGTH;
 use crate::contact::lane_shapes::{Affine, AffinePacks, Kind, ShapePacks};
 use crate::contact::substep::Contact;
+use crate::contact::surface::{PRESSED, TOUCHING};
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::vec3::{Pack3, V3};
-
-/// Part of the clearance by which a particle may be farther from a shape than it must be and touches it. Larger: particles that a shape hits
-/// are pushed along the plane that was nearest before, though they enter it through another one. Smaller: by rounding, particles that are
-/// pressed against a shape count as entering it, and are solved one by one.
-const TOUCHING: f32 = 0.1;
 
 /// A collider of a cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -257,7 +253,7 @@ struct Pressed<L> {
 
 impl<L: Lane> Pressed<L> {
     /// The slide along the plane that was nearest before, and for which particles it holds: as
-    /// [`Surface::project`](crate::contact::surface::Surface::project), others enter the shape from afar, or have been in it.
+    /// [`Surface::project`](crate::contact::surface::Surface::project), others enter the shape fast, or have been in it.
     #[inline(always)]
     fn slide(&self, token: L::Token, shape: &ShapePacks<L::Pack>) -> (L::Mask, Slide<L>) {
         let zero = L::splat(token, 0.0);
@@ -265,12 +261,13 @@ impl<L: Lane> Pressed<L> {
         let depth = self.clearance - (height + normal.dot(self.moved));
         let near = L::splat(token, 1.0 + TOUCHING) * self.clearance;
         let touched = zero.lt(height) & height.lt(near);
+        let is_slow = depth.lt(L::splat(token, PRESSED) * self.clearance);
         let shift = slid(token, self.moved, normal, depth.max(zero), self.friction);
         // Beside an edge this point may lie within another face.
         let (distance, other) = shape.nearest(token, self.to + shift);
         let missing = (self.clearance - distance).max(zero);
         let shift = shift.plus_scaled(other, missing);
-        (touched & zero.lt(depth) & zero.lt(distance), Slide { normal, shift })
+        (touched & is_slow & zero.lt(depth) & zero.lt(distance), Slide { normal, shift })
     }
 }
 

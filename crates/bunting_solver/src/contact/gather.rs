@@ -20,15 +20,10 @@ use crate::contact::swept_boxes::{Sweep, SweptBoxes};
 use crate::fabric::Fabric;
 use crate::simd::lane::Pack;
 
-/// Way of a collider relative to a particle in a substep, in lengths of the shortest link, from which on the collider carries along what it hits.
-/// Smaller: cloth cannot slide over shapes that draw it along, and is stretched. Larger: the cloth in front of balls of 20 m/s opens around them.
-pub(super) const CARRIED: f32 = 0.5;
-
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Gathers, for a tick of `tick` seconds, what may touch each collider.
     pub fn gather_contacts(&mut self, tick: f32) {
         let positions = self.positions.packs();
-        let carried = CARRIED * self.fabric.shortest_link() * self.clock.settings.substeps as f32;
         let mut boxes = SweptBoxes::default();
         let mut sets = Vec::new();
         let (mut at, mut velocities) = (Vec::new(), Vec::new());
@@ -56,18 +51,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 dragged: dragged_by_anchors(state, |particle| at[particle as usize]),
             };
             boxes.set(&at, &velocities, &sweep);
-            let frame = state.drive.motion.substep(0, 1);
             for (index, (collider, candidates)) in
                 state.colliders.iter().zip(&mut state.contacts).enumerate()
             {
                 gather_candidates(&self.fabric, collider, &boxes, candidates);
-                let way = collider.to.0 - frame.to_new(collider.from.0);
-                let relative = |&at: &u32| (velocities[at as usize] * tick - way).length_squared();
-                let particles = candidates.particles.iter().chain(&candidates.corners);
-                let farthest = particles.map(relative).fold(0.0, f32::max);
-                candidates.carries = farthest.sqrt() > carried;
+                let way = collider.from.0.distance(collider.to.0);
                 candidates.wait_for_end = !candidates.triangles.is_empty()
-                    || candidates.carries
+                    || way > self.fabric.shortest_link()
                     || !candidates.is_empty() && contains_pin(&self.fabric, collider, &at);
                 let member = Member { cloth, collider: index };
                 candidates.is_in_lanes = !candidates.wait_for_end

@@ -88,8 +88,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             return;
         }
         let mut outcome = Outcome { moment: 0.0, pressing: state.pressing, reaction };
-        let contact = Contact::new(&state.material, &state.drive, collider, &self.clock)
-            .carrying(candidates.carries);
+        let contact = Contact::new(&state.material, &state.drive, collider, &self.clock);
         let mut pushes = project(self, &contact, &candidates.particles);
         if !candidates.is_in_lanes {
             candidates.touching.clear();
@@ -98,10 +97,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if !candidates.triangles.is_empty() {
             self.solve_triangle_contacts(cloth, candidates, &contact, &mut pushes);
         }
-        // Loose cloth can follow a shape, and guides may prescribe any strain.
-        if state.holds.is_some() || self.fabric_of(cloth).fabric.has_pins() {
-            self.take_back_straining(cloth, &contact, &mut pushes);
-        }
+        self.take_back_tearing(cloth, &contact, &mut pushes);
         for push in &pushes {
             self.change_velocity(cloth, &contact, push, &mut outcome);
         }

@@ -78,7 +78,6 @@ impl<'a> Contact<'a> {
                 closed_form: ClosedForm::of(&*collider.shape.0),
                 ground: collider.shape.as_heightfield(),
                 rise: RISE_SPEED * clock.step,
-                carries: false,
                 clearance,
                 friction: (material.surface_friction * collider.friction).sqrt(),
             },
@@ -113,17 +112,6 @@ impl<'a> Contact<'a> {
     /// Coulomb friction coefficient.
     pub fn friction(&self) -> f32 {
         self.surface.friction
-    }
-
-    /// The contact of a shape that carries along what it hits, or does not.
-    pub fn carrying(mut self, carries: bool) -> Self {
-        self.surface.carries = carries;
-        self
-    }
-
-    /// Way of the collider's origin in the substep, in the cloth's frame, m.
-    pub fn way(&self) -> f32 {
-        self.surface_motion(Vec3::ZERO).length()
     }
 
     /// The contact with a clearance that is larger by some distance, m.

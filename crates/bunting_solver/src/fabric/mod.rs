@@ -29,7 +29,6 @@ mod grid;
 mod hinges;
 mod interpolation;
 mod links;
-mod links_at;
 mod material;
 mod mesh;
 mod net;

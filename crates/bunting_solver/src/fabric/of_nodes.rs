@@ -38,7 +38,6 @@ impl Fabric {
             mesh,
             particle_of_point: Vec::new(),
             links,
-            links_at: Default::default(),
             yarns,
             chains,
         }
