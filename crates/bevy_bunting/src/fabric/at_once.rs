@@ -43,11 +43,7 @@ pub(crate) fn levels_at_once(
         return Ok(None);
     };
     lods.validate(entity)?;
-    let scale = if has_baked || has_skin {
-        Mat3::IDENTITY
-    } else {
-        scale_of(entity, attachment, &transforms)?
-    };
+    let scale = scale_of(entity, attachment, has_baked || has_skin, &transforms)?;
     let attached = attachment.map(|attachment| Attached::of(attachment, mesh));
     let mesh = bake(mesh, scale);
     let resolution = resolution.copied().unwrap_or_default();

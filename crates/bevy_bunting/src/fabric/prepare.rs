@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
-use bevy_math::{Isometry3d, Mat3};
+use bevy_math::Isometry3d;
 use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
 
@@ -272,11 +272,8 @@ impl CutClothItem<'_, '_> {
         }
         let attachment = self.attachment.as_deref();
         if self.instance.cutting.is_none() || self.is_edited() {
-            self.instance.scale = if self.has_baked || self.has_skin {
-                Mat3::IDENTITY
-            } else {
-                scale_of(entity, attachment, transforms)?
-            };
+            let has_scale = self.has_baked || self.has_skin;
+            self.instance.scale = scale_of(entity, attachment, has_scale, transforms)?;
         }
         let mesh = bake(&self.mesh, self.instance.scale);
         self.instance.resolution = self.resolution();

@@ -19,7 +19,7 @@ pub(crate) struct ScaleBaked;
 const STEP: f32 = 1.0 / 16_384.0;
 
 /// Scale and shear of a cloth in its frame: of its own transform and all above it or, if it is attached to another entity,
-/// of the attachment's offset.
+/// of the attachment's offset. None remains where the mesh has its scale already, baked or by a skin.
 ///
 /// # Errors
 ///
@@ -27,8 +27,12 @@ const STEP: f32 = 1.0 / 16_384.0;
 pub(crate) fn scale_of(
     entity: Entity,
     attachment: Option<&Attachment>,
+    has_scale: bool,
     transforms: &TransformHelper,
 ) -> Result<Mat3, ClothError> {
+    if has_scale {
+        return Ok(Mat3::IDENTITY);
+    }
     let attached = attachment.filter(|it| it.target_other_than(entity).is_some());
     let scale = match (attached, transforms.compute_global_transform(entity)) {
         (Some(attachment), _) => Mat3::from_diagonal(attachment.offset.scale),

@@ -1,7 +1,6 @@
 //! Brings the first of held vertices to their targets, once their mesh is known.
 
 use bevy_ecs::prelude::*;
-use bevy_math::Mat3;
 use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
 
@@ -27,12 +26,11 @@ pub(super) fn bring_vertices(
         if !attachment.brings_any() {
             continue;
         }
-        let scale = match has_baked || has_skin {
-            true => Ok(Mat3::IDENTITY),
-            false => scale_of(entity, Some(&attachment), &transforms),
-        };
         // A scale that cannot be is reported where the fabric is built.
-        let Ok(scale) = scale else { continue };
+        let Ok(scale) = scale_of(entity, Some(&attachment), has_baked || has_skin, &transforms)
+        else {
+            continue;
+        };
         let place = |vertices: &AttachedVertices| vertices.first_place(mesh).map(|at| scale * at);
         let offset = |target: Entity, vertices: &AttachedVertices, offset: Transform| {
             let target = transforms.compute_global_transform(target).ok()?;

@@ -94,10 +94,8 @@ impl<'a> Surface<'a> {
         let pose = parry_pose(pose);
         let bounds = shape.compute_aabb(&pose);
         self.triangles().any(|(_, triangle)| {
-            let [a, b, c] = [triangle.a, triangle.b, triangle.c];
-            let around = Aabb::new(a.min(b).min(c), a.max(b).max(c));
             // Of two shapes that parry cannot compare none is found.
-            meet(&around, &bounds)
+            meet(&triangle.local_aabb(), &bounds)
                 && intersection_test(&Pose::IDENTITY, &triangle, &pose, shape).unwrap_or(false)
         })
     }
