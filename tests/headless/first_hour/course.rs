@@ -10,8 +10,8 @@ use bevy_time::Time;
 use bevy_transform::prelude::*;
 use bunting_tests::{app_at, state};
 
-/// Speed of the ball, m/s.
-const SPEED: f32 = 20.0;
+/// Speed of the ball, m/s: a curtain can be pushed aside by it without being strained too far.
+const SPEED: f32 = 5.0;
 
 const RADIUS: f32 = 0.3;
 
@@ -22,7 +22,7 @@ fn lateness(rate: f64) -> f32 {
     app.world_mut().resource_mut::<ClothSettings>().gravity = Vec3::ZERO;
     let held = Attachment::in_place(ClothEdge::Top);
     let curtain = app.world_mut().spawn((ClothMesh::grid(33, 33, 4.0, 4.0), held)).id();
-    let ball = Transform::from_xyz(2.0, -2.0, -8.0);
+    let ball = Transform::from_xyz(2.0, -2.0, -2.0);
     let ball = app.world_mut().spawn((ClothCollider::ball(RADIUS), ball)).id();
     app.add_systems(Update, move |mut balls: Query<&mut Transform>, time: Res<Time>| {
         balls.get_mut(ball).expect("it stays").translation.z += SPEED * time.delta_secs();
@@ -32,7 +32,7 @@ fn lateness(rate: f64) -> f32 {
         app.update();
         let front = app.world().get::<Transform>(ball).expect("it stays").translation.z + RADIUS;
         let pushed = state(&app, curtain).positions().get(16 * 33 + 16).map_or(0.0, |at| at.z);
-        if pushed > 0.2 && front < 1.5 {
+        if pushed > 0.2 && front < 0.8 {
             worst = Some(worst.unwrap_or(f32::MIN).max(front - pushed));
         }
     }

@@ -34,6 +34,8 @@ pub(crate) struct LaneState {
     pub reactions: Vec<ReactionSum>,
     /// How hard colliders press the cloth in this tick.
     pub pressing: Pressing,
+    /// Greatest speed, relative to the frame, of the colliders that are near in this tick, m/s, if pins or springs hold the cloth.
+    pub approach: f32,
     /// Moment about the pole of this substep's corrections from outside the cloth, by contacts and by users, in
     /// units of the density, m⁴.
     pub external_moment: f32,
@@ -69,6 +71,7 @@ impl LaneState {
             is_grouped: false,
             reactions: Vec::new(),
             pressing: Pressing::default(),
+            approach: 0.0,
             external_moment: 0.0,
             history: IntegratorHistory::default(),
             pin_strain: PinStrain::default(),

@@ -64,9 +64,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         Loads::of_pin_strain(fabric, &state.material, &state.pin_strain)
     }
 
-    /// Load of the colliders that pressed a cloth in this tick, m/s².
+    /// Load of the colliders that pressed a cloth in this tick, or come near it, m/s².
     pub fn contact_load(&self, cloth: usize, state: &LaneState) -> f32 {
-        Loads::of_contacts(&self.fabric_of(cloth).fabric, state.pressing.mean())
+        let fabric = &self.fabric_of(cloth).fabric;
+        let of_approach = Loads::of_approach(fabric, state.approach);
+        Loads::of_contacts(fabric, state.pressing.mean()).max(of_approach)
     }
 }
 

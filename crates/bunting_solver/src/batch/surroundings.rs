@@ -248,8 +248,8 @@ impl ClothBatch {
 
     /// Load of the colliders that pressed a lane's cloth in the last tick, for [`Loads::contacts`](crate::Loads::contacts):
     /// κ p l/L, with p the acceleration by which they steadily pressed its particles where they pressed most (the mean over
-    /// contacts, weighted by squares), l the length of the shortest link and L the cloth's length (`step/effort.rs`), m/s²;
-    /// zero for an empty lane.
+    /// contacts, weighted by squares), l the length of the shortest link and L the cloth's length (`step/loads.rs`), or that of colliders that
+    /// come near, if it is larger, m/s²; zero for an empty lane.
     #[must_use]
     pub fn contact_load(&self, lane: usize) -> f32 {
         with_batch!(&self.0, batch => {

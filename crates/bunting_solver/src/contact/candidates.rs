@@ -18,9 +18,11 @@ pub(crate) struct Candidates {
     pub triangles: Vec<[u32; 3]>,
     /// Whether the particles are those of a set of colliders in lanes.
     pub is_in_lanes: bool,
+    /// Whether the collider moves so far in a substep that it carries along what it hits.
+    pub carries: bool,
     /// Whether contacts are solved at the end of a substep alone, where passes would disturb the cloth: around pins within the collider, since
-    /// pushes that draw cloth off its pins are taken back (`drawn_out.rs`); beside triangles, which only the end moves; and before a shape that
-    /// moves farther in the tick than a link is long, since lines pull back what it carries along.
+    /// pushes that draw cloth off its pins are taken back (`strain_limit.rs`); beside triangles, which only the end moves; and before a shape
+    /// that carries cloth along, since lines pull it back.
     pub wait_for_end: bool,
     /// Those of the particles that touched the collider when this was last computed in this tick; all of them before.
     pub touching: Vec<u32>,
@@ -38,6 +40,7 @@ impl Candidates {
         self.corners.clear();
         self.triangles.clear();
         self.is_in_lanes = false;
+        self.carries = false;
         self.wait_for_end = false;
         self.touching.clear();
         self.pushed.clear();

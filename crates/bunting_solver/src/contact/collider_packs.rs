@@ -5,9 +5,13 @@ use core::ops::Range;
 use crate::constants::LEAST_LENGTH;
 use crate::contact::lane_shapes::{Affine, AffinePacks, Kind, ShapePacks};
 use crate::contact::substep::Contact;
-use crate::contact::surface::{PRESSED, TOUCHING};
 use crate::simd::lane::{Kernel, Lane, Mask, Pack};
 use crate::simd::vec3::{Pack3, V3};
+
+/// Part of the clearance by which a particle may be farther from a shape than it must be and touches it. Larger: particles that a shape hits
+/// are pushed along the plane that was nearest before, though they enter it through another one. Smaller: by rounding, particles that are
+/// pressed against a shape count as entering it, and are solved one by one.
+const TOUCHING: f32 = 0.1;
 
 /// A collider of a cloth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,13 +33,17 @@ pub(crate) struct ColliderPacks<P: Pack> {
     places: Vec<u32>,
     shape: ShapePacks<P>,
     /// From the cloth's frame into the collider's, at the start and at the end of the substep.
-    into_collider: [AffinePacks<P>; 2],
+    pub(super) into_collider: [AffinePacks<P>; 2],
     /// From the collider's frame into the cloth's, at the end of the substep.
-    into_cloth: AffinePacks<P>,
+    pub(super) into_cloth: AffinePacks<P>,
+    /// From a point in the collider's frame to its motion in the substep.
+    pub(super) into_motion: AffinePacks<P>,
     clearance: P,
     friction: P,
     /// One in lanes whose contacts are solved here, zero in others.
     pub solved: P,
+    /// Square of the longest push along a surface in each lane, m².
+    longest: P,
 }
 
 const NOT_NEAR: u32 = u32::MAX;
@@ -53,6 +61,10 @@ pub(crate) struct NearPack<P: Pack> {
     pub pushed: Pack3<P>,
     /// Unit normals of the surface where the particles touch, in the collider's frame.
     pub normal: Pack3<P>,
+    /// Sizes of the accelerations by the steady parts of the pushes, m/s².
+    pub steady: P,
+    /// Changes of velocity by the pushes, m/s, of which the collider feels the opposite.
+    pub gained: Pack3<P>,
 }
 
 /// What a particle does.
@@ -72,7 +84,15 @@ const ENTERS: f32 = 2.0;
 impl<P: Pack> NearPack<P> {
     fn new(pack: u32) -> Self {
         let zero = P::splat(0.0);
-        Self { pack, active: zero, touch: zero, pushed: [zero; 3], normal: [zero; 3] }
+        Self {
+            pack,
+            active: zero,
+            touch: zero,
+            pushed: [zero; 3],
+            normal: [zero; 3],
+            steady: zero,
+            gained: [zero; 3],
+        }
     }
 
     pub(super) fn touch(&self, lane: usize) -> LaneTouch {
@@ -82,6 +102,13 @@ impl<P: Pack> NearPack<P> {
             _ => LaneTouch::None,
         }
     }
+}
+
+/// The lanes of a pack whose particles slide.
+#[inline(always)]
+pub(super) fn slides<L: Lane>(token: L::Token, near: &NearPack<L::Pack>) -> L::Mask {
+    let touch = L::load(token, &near.touch);
+    L::splat(token, 0.0).lt(touch) & touch.lt(L::splat(token, ENTERS))
 }
 
 impl<P: Pack> ColliderPacks<P> {
@@ -96,9 +123,11 @@ impl<P: Pack> ColliderPacks<P> {
             shape: ShapePacks::new(key.1),
             into_collider: [AffinePacks::zero(); 2],
             into_cloth: AffinePacks::zero(),
+            into_motion: AffinePacks::zero(),
             clearance: zero,
             friction: zero,
             solved: zero,
+            longest: zero,
         }
     }
 
@@ -126,8 +155,20 @@ impl<P: Pack> ColliderPacks<P> {
             packs.fill(lanes, change);
         }
         self.into_cloth.fill(lanes, &contact.to_cloth());
+        self.into_motion.fill(lanes, &contact.to_motion());
         self.clearance.lanes_mut()[lanes.clone()].fill(contact.clearance());
         self.friction.lanes_mut()[lanes.clone()].fill(contact.friction());
+    }
+
+    /// The longest push along a surface in some lanes, m.
+    pub fn longest_push(&self, lanes: Range<usize>) -> f32 {
+        self.longest.lanes()[lanes].iter().fold(0.0_f32, |most, &of_lane| most.max(of_lane)).sqrt()
+    }
+
+    /// Whether a particle of some lanes enters its collider, or is in it.
+    pub fn enters(&self, lanes: Range<usize>) -> bool {
+        let enters = |near: &NearPack<P>| near.touch.lanes()[lanes.clone()].contains(&ENTERS);
+        self.near.iter().any(enters)
     }
 
     /// Forgets what the collider has pushed.
@@ -169,6 +210,7 @@ impl<P: Pack> Kernel<P> for Press<'_, P> {
         let clearance = L::load(token, &set.clearance);
         let friction = L::load(token, &set.friction);
         let solved = L::load(token, &set.solved);
+        let mut longest = zero;
         for (index, near) in set.near.iter_mut().enumerate() {
             let pack = near.pack as usize;
             let present: V3<L> = V3::load(token, &self.position[pack]);
@@ -202,13 +244,16 @@ impl<P: Pack> Kernel<P> for Press<'_, P> {
             }
             let to = (end + into_cloth.turned(push.shift)).or_where_not(slides, end);
             to.store(&mut self.position[pack]);
-            (to - end).store(&mut near.pushed);
+            let pushed = to - end;
+            longest = longest.max(pushed.dot(pushed));
+            pushed.store(&mut near.pushed);
             push.normal.store(&mut near.normal);
             L::splat(token, SLIDES).or_where_not(slides, entering).store(&mut near.touch);
             if (enters & L::splat(token, SLIDES).lt(L::load(token, &near.touch))).any() {
                 self.entering.push(index);
             }
         }
+        longest.store(&mut set.longest);
     }
 }
 
@@ -253,7 +298,7 @@ struct Pressed<L> {
 
 impl<L: Lane> Pressed<L> {
     /// The slide along the plane that was nearest before, and for which particles it holds: as
-    /// [`Surface::project`](crate::contact::surface::Surface::project), others enter the shape fast, or have been in it.
+    /// [`Surface::project`](crate::contact::surface::Surface::project), others enter the shape from afar, or have been in it.
     #[inline(always)]
     fn slide(&self, token: L::Token, shape: &ShapePacks<L::Pack>) -> (L::Mask, Slide<L>) {
         let zero = L::splat(token, 0.0);
@@ -261,13 +306,12 @@ impl<L: Lane> Pressed<L> {
         let depth = self.clearance - (height + normal.dot(self.moved));
         let near = L::splat(token, 1.0 + TOUCHING) * self.clearance;
         let touched = zero.lt(height) & height.lt(near);
-        let is_slow = depth.lt(L::splat(token, PRESSED) * self.clearance);
         let shift = slid(token, self.moved, normal, depth.max(zero), self.friction);
         // Beside an edge this point may lie within another face.
         let (distance, other) = shape.nearest(token, self.to + shift);
         let missing = (self.clearance - distance).max(zero);
         let shift = shift.plus_scaled(other, missing);
-        (touched & is_slow & zero.lt(depth) & zero.lt(distance), Slide { normal, shift })
+        (touched & zero.lt(depth) & zero.lt(distance), Slide { normal, shift })
     }
 }
 

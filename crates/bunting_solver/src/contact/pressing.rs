@@ -1,7 +1,5 @@
 //! How hard colliders press a cloth, by which its effort is chosen: see [`Loads::of_contacts`](crate::step::loads::Loads::of_contacts).
 
-use glam::Vec3;
-
 /// Sums over a cloth's contacts in a tick of the accelerations by steady pushes.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Pressing {
@@ -12,9 +10,9 @@ pub(crate) struct Pressing {
 }
 
 impl Pressing {
-    /// Adds the acceleration of a particle by the steady part of a push, m/s².
-    pub fn add(&mut self, acceleration: Vec3) {
-        let size = f64::from(acceleration.length());
+    /// Adds the size of a particle's acceleration by the steady part of a push, m/s².
+    pub fn add(&mut self, acceleration: f32) {
+        let size = f64::from(acceleration);
         self.squares += size * size;
         self.cubes += size * size * size;
     }
@@ -35,8 +33,8 @@ mod tests {
     fn what_presses_hard_counts_however_little_it_is() {
         for others in [0, 1000] {
             let mut pressing = Pressing::default();
-            (0..20).for_each(|_| pressing.add(500.0 * Vec3::Y));
-            (0..others).for_each(|_| pressing.add(Vec3::X));
+            (0..20).for_each(|_| pressing.add(500.0));
+            (0..others).for_each(|_| pressing.add(1.0));
             assert!((pressing.mean() / 500.0 - 1.0).abs() < 1e-3, "{}", pressing.mean());
         }
         assert_eq!(Pressing::default().mean(), 0.0);

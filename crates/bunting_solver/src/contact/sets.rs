@@ -6,6 +6,7 @@ use crate::batch::layout::{Layout, Positions};
 use crate::contact::collider_packs::{ColliderPacks, LaneTouch, Member};
 use crate::contact::substep::{Contact, Push};
 use crate::contact::touch::Touch;
+use crate::contact::velocity_packs::ChangeVelocities;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{lane3, set_lane3};
 
@@ -39,9 +40,16 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             }
             self.fill_set(set);
             set.press(&self.scratch, self.positions.packs_mut(), &mut entering);
+            let mut changed = P::splat(0.0);
             for at in 0..set.members.len() {
-                self.solve_member(set, set.members[at]);
+                let member = set.members[at];
+                if self.changes_in_lanes(set, member) {
+                    changed.lanes_mut()[Y::lanes(member.cloth)].fill(1.0);
+                } else {
+                    self.solve_member(set, member);
+                }
             }
+            self.change_velocities(set, changed);
             set.forget_pushes();
         }
         self.collider_packs = sets;
@@ -83,6 +91,79 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 let after = contact.pose.transform_point(projection.to);
                 set_lane3(&mut self.positions.packs_mut()[pack], lane, after);
                 set_lane3(&mut set.near[index].pushed, lane, after - before);
+            }
+        }
+    }
+
+    /// Whether all that is left of a cloth's contacts with a collider is to change velocities in lanes: no particle enters, and no link may be
+    /// strained too far.
+    fn changes_in_lanes(&self, set: &ColliderPacks<P>, member: Member) -> bool {
+        let Some(state) = &self.lanes[member.cloth] else { return false };
+        let Some(contact) = self.contact_of(member) else { return false };
+        let lanes = Y::lanes(member.cloth);
+        let longest = set.longest_push(lanes.clone());
+        let is_held = self.is_held(member.cloth, state);
+        !Self::has_other_contacts(state)
+            && !(is_held && !self.cannot_strain(member.cloth, &contact, longest))
+            && !set.enters(lanes)
+    }
+
+    /// Changes the velocities of particles that slide, in some lanes of a set.
+    fn change_velocities(&mut self, set: &mut ColliderPacks<P>, changed: P) {
+        P::run(ChangeVelocities {
+            set,
+            changed,
+            step: self.clock.step,
+            effective_step: &self.parameters.step,
+            start: &self.scratch,
+            displacement: &self.displacement,
+            position: self.positions.packs(),
+            velocities: [&mut self.velocity, &mut self.older_velocity, &mut self.oldest_velocity],
+        });
+        for &Member { cloth, collider } in &set.members {
+            if changed.lanes()[Y::lanes(cloth).start] == 0.0 {
+                continue;
+            }
+            if let Some(mut state) = self.lanes[cloth].take() {
+                self.note_pushes(set, &mut state, Member { cloth, collider });
+                self.lanes[cloth] = Some(state);
+            }
+        }
+    }
+
+    /// Notes the effects of pushes along a collider besides those on particles.
+    fn note_pushes(&self, set: &ColliderPacks<P>, state: &mut LaneState, member: Member) {
+        let Member { cloth, collider: index } = member;
+        let pole = self.pole_of(cloth);
+        let collider = &state.colliders[index];
+        let contact = Contact::new(&state.material, &state.drive, collider, &self.clock);
+        let mut reaction = state.reactions.get_mut(index);
+        reaction = reaction.filter(|_| collider.reports_as.is_some());
+        if let Some(reaction) = &mut reaction {
+            reaction.begin_substep();
+        }
+        for &particle in &state.contacts[index].particles {
+            let (pack, lane) = self.layout.locate(particle as usize, cloth);
+            let near = set.of_pack(pack);
+            if near.touch(lane) != LaneTouch::Slides {
+                continue;
+            }
+            state.pressing.add(near.steady.lanes()[lane]);
+            if pole.is_none() && reaction.is_none() {
+                continue;
+            }
+            let after = lane3(&self.positions.packs()[pack], lane);
+            let inertia = self.masses.inertia[pack].lanes()[lane];
+            if let Some(pole) = &pole {
+                let before = after - lane3(&near.pushed, lane);
+                let way = lane3(&self.displacement[pack], lane);
+                let predicted = lane3(&self.scratch[pack], lane) + way;
+                state.external_moment += pole.gained(inertia, predicted, [before, after]);
+            }
+            if let Some(reaction) = &mut reaction {
+                let gained = contact.density * inertia * lane3(&near.gained, lane);
+                let at = contact.pose.inverse_transform_point(after);
+                reaction.add(particle as usize, at, contact.pose.rotation.inverse() * -gained);
             }
         }
     }

@@ -79,6 +79,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     ) {
         // A host may have taken it away since the tick began.
         let Some(collider) = state.colliders.get(index) else { return };
+        let is_held = self.is_held(cloth, state);
         let mut reaction = state.reactions.get_mut(index);
         reaction = reaction.filter(|_| collider.reports_as.is_some());
         if let Some(reaction) = &mut reaction {
@@ -88,7 +89,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             return;
         }
         let mut outcome = Outcome { moment: 0.0, pressing: state.pressing, reaction };
-        let contact = Contact::new(&state.material, &state.drive, collider, &self.clock);
+        let contact = Contact::new(&state.material, &state.drive, collider, &self.clock)
+            .carrying(candidates.carries);
         let mut pushes = project(self, &contact, &candidates.particles);
         if !candidates.is_in_lanes {
             candidates.touching.clear();
@@ -97,12 +99,19 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         if !candidates.triangles.is_empty() {
             self.solve_triangle_contacts(cloth, candidates, &contact, &mut pushes);
         }
-        self.take_back_tearing(cloth, &contact, &mut pushes);
+        if is_held {
+            self.take_back_straining(cloth, &contact, &mut pushes);
+        }
         for push in &pushes {
             self.change_velocity(cloth, &contact, push, &mut outcome);
         }
         state.external_moment += outcome.moment;
         state.pressing = outcome.pressing;
+    }
+
+    /// Whether pins or springs hold a cloth: loose cloth can follow a shape, and guides may prescribe any strain.
+    pub(super) fn is_held(&self, cloth: usize, state: &LaneState) -> bool {
+        state.holds.is_some() || self.fabric_of(cloth).fabric.has_pins()
     }
 
     /// Projects one particle, and returns the push if there is one.
@@ -157,7 +166,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Changes the velocity of a particle that a collider has pushed. What the particle and its triangles were pushed
     /// counts as one push: a particle that is put down on the surface and is then raised by a triangle would be left with
     /// a velocity, though it does not move.
-    fn change_velocity(
+    pub(super) fn change_velocity(
         &mut self,
         cloth: usize,
         contact: &Contact,
@@ -202,7 +211,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             outcome.moment += pole.gained(inertia, predicted, [before, after]);
         }
         let steady = given - thrown - impact;
-        outcome.pressing.add(steady / effective_step);
+        outcome.pressing.add(steady.length() / effective_step);
         if let Some(reaction) = &mut outcome.reaction {
             // A steady force acts for the whole substep, of which the formula takes β; an impact changes the velocity
             // once.
@@ -215,11 +224,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
 }
 
 /// The effects of a substep's contacts with one collider besides those on particles.
-struct Outcome<'a> {
+pub(super) struct Outcome<'a> {
     /// Moment of the corrections about the pole, m⁴.
-    moment: f32,
+    pub moment: f32,
     /// How hard this collider and those before it press the cloth in this tick.
-    pressing: Pressing,
+    pub pressing: Pressing,
     /// Reactions of the collider, if it reports them.
-    reaction: Option<&'a mut ReactionSum>,
+    pub reaction: Option<&'a mut ReactionSum>,
 }

@@ -1,6 +1,6 @@
 //! A collider and a cloth in a substep, and what the collider pushes.
 
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, Mat3, Vec3};
 use parry3d::math::Pose;
 
 use crate::constants::LEAST_CLEARANCE;
@@ -78,6 +78,7 @@ impl<'a> Contact<'a> {
                 closed_form: ClosedForm::of(&*collider.shape.0),
                 ground: collider.shape.as_heightfield(),
                 rise: RISE_SPEED * clock.step,
+                carries: false,
                 clearance,
                 friction: (material.surface_friction * collider.friction).sqrt(),
             },
@@ -104,6 +105,16 @@ impl<'a> Contact<'a> {
         Affine3A::from_rotation_translation(self.pose.rotation, self.pose.translation)
     }
 
+    /// From a point in the collider's frame to its [motion](Self::surface_motion) in the substep.
+    pub fn to_motion(&self) -> Affine3A {
+        if self.is_still {
+            return Affine3A::from_mat3_translation(Mat3::ZERO, Vec3::ZERO);
+        }
+        let image = |vector: Vec3| self.surface_motion(vector) - self.surface_motion(Vec3::ZERO);
+        let axes = Mat3::from_cols(image(Vec3::X), image(Vec3::Y), image(Vec3::Z));
+        Affine3A::from_mat3_translation(axes, self.surface_motion(Vec3::ZERO))
+    }
+
     /// Least distance of particles from the shape, m.
     pub fn clearance(&self) -> f32 {
         self.surface.clearance
@@ -112,6 +123,17 @@ impl<'a> Contact<'a> {
     /// Coulomb friction coefficient.
     pub fn friction(&self) -> f32 {
         self.surface.friction
+    }
+
+    /// The contact of a shape that carries along what it hits, or does not.
+    pub fn carrying(mut self, carries: bool) -> Self {
+        self.surface.carries = carries;
+        self
+    }
+
+    /// Way of the collider's origin in the substep, in the cloth's frame, m.
+    pub fn way(&self) -> f32 {
+        self.surface_motion(Vec3::ZERO).length()
     }
 
     /// The contact with a clearance that is larger by some distance, m.

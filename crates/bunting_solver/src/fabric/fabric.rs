@@ -8,6 +8,7 @@ use super::colour::Colours;
 use super::grid::Grid;
 use super::hinges::{Hinge, HingeClass, Hinges};
 use super::links::{Link, LinkClass, LinkFamily, Links, Probe};
+use super::links_at::KnownLinksAt;
 use super::material::FabricMaterial;
 use super::mesh::{RestMesh, Surface};
 use super::patches::{self, Patch};
@@ -33,6 +34,7 @@ pub struct Fabric {
     pub(super) patches: Vec<Patch>,
     pub(super) patch_grid_columns: Option<usize>,
     pub(super) links: Links,
+    pub(super) links_at: KnownLinksAt,
     pub(super) yarns: Yarns,
     pub(super) chains: Chains,
     pub(super) strips: Vec<Vec<StripRow>>,
@@ -91,6 +93,7 @@ impl Fabric {
             particle_of_point: Vec::new(),
             patches,
             links,
+            links_at: Default::default(),
             yarns,
             chains,
             tethers,
@@ -305,9 +308,21 @@ impl Fabric {
         self.pins().iter().all(|pin| is_at_rest(pin.particle as usize))
     }
 
+    /// The links at a particle, diagonals among them.
+    pub(crate) fn links_at(&self, particle: u32) -> impl Iterator<Item = &Link> {
+        let indices = self.links_at.of(particle, &self.links.list, self.particle_count());
+        indices.iter().map(|&index| &self.links.list[index as usize])
+    }
+
     /// Tether of each free particle to its nearest pin.
     pub(crate) fn tethers(&self) -> &[Tether] {
         &self.tethers.near
+    }
+
+    /// Tether of a particle to its nearest pin, if it has one.
+    pub(crate) fn tether_of(&self, particle: u32) -> Option<&Tether> {
+        let index = self.tethers().binary_search_by_key(&particle, |it| it.particle).ok()?;
+        Some(&self.tethers()[index])
     }
 
     /// Tethers to the farthest pins, of particles that lie farther from them than [`reach`](Self::reach) at

@@ -29,6 +29,7 @@ mod grid;
 mod hinges;
 mod interpolation;
 mod links;
+mod links_at;
 mod material;
 mod mesh;
 mod net;

@@ -38,6 +38,7 @@ impl Fabric {
             mesh,
             particle_of_point: Vec::new(),
             links,
+            links_at: Default::default(),
             yarns,
             chains,
         }

@@ -26,7 +26,7 @@ pub enum EffortCause {
     Motion,
     /// Tension by pins that are farther apart than the cloth between them is long.
     Tension,
-    /// Colliders that it is pressed against.
+    /// Colliders that it is pressed against, or that come near.
     Contacts,
 }
 
