@@ -16,6 +16,7 @@ use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::contact::collider_packs::ColliderPacks;
 use crate::fabric::{CHAINS_PER_PAIR, Fabric};
+use crate::pressure::Gradient;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
 use crate::stability::pole::Pole;
@@ -92,6 +93,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub guides: Option<Box<Guides<P>>>,
     /// Wind at the particles, where it differs from particle to particle.
     pub local_wind: Option<Box<LocalWind<P>>>,
+    /// Scratch array of the air inside cloths; empty if no cloth has a pressure.
+    pub gradient: Gradient<P>,
 }
 
 impl<P: Pack> LaneBatch<P> {
@@ -158,6 +161,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             collider_packs: Vec::new(),
             guides: None,
             local_wind: None,
+            gradient: Gradient::new(),
             fabric,
             layout,
         };
