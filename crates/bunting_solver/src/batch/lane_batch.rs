@@ -16,7 +16,6 @@ use crate::constraints::strip_block::StripBlock;
 use crate::constraints::tridiagonal::TridiagonalRow;
 use crate::contact::collider_packs::ColliderPacks;
 use crate::fabric::{CHAINS_PER_PAIR, Fabric};
-use crate::pressure::Gradient;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::{Pack3, lane3, set_lane3, splat3};
 use crate::stability::pole::Pole;
@@ -94,7 +93,7 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     /// Wind at the particles, where it differs from particle to particle.
     pub local_wind: Option<Box<LocalWind<P>>>,
     /// Scratch array of the air inside cloths; empty if no cloth has a pressure.
-    pub gradient: Gradient<P>,
+    pub gradient: Vec<Pack3<P>>,
 }
 
 impl<P: Pack> LaneBatch<P> {
@@ -161,7 +160,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             collider_packs: Vec::new(),
             guides: None,
             local_wind: None,
-            gradient: Gradient::new(),
+            gradient: Vec::new(),
             fabric,
             layout,
         };

@@ -62,7 +62,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     pub fn tension_load(&self, cloth: usize, state: &LaneState) -> f32 {
         let fabric = &self.fabric_of(cloth).fabric;
         let of_pins = Loads::of_pin_strain(fabric, &state.material, &state.pin_strain);
-        of_pins.max(state.inner_air.as_ref().map_or(0.0, |inner| inner.load(fabric, state)))
+        of_pins.max(state.inner_air.as_ref().map_or(0.0, |inner| {
+            inner.load(fabric, state.material.area_density, state.pressure_inside())
+        }))
     }
 
     /// Load of the colliders that pressed a cloth in this tick, m/s².

@@ -7,9 +7,6 @@ use crate::geometry::face::face;
 use crate::simd::lane::{Kernel, Lane, Pack};
 use crate::simd::vec3::{Pack3, V3};
 
-/// Gradients of the particles of a batch, m²: scratch of the substep.
-pub(crate) type Gradient<P> = Vec<Pack3<P>>;
-
 /// A corner of a triangle has a third of its area, and the normal of [`face`] is twice as long as the area.
 const OF_CORNER: f32 = 1.0 / 6.0;
 
@@ -17,8 +14,8 @@ const OF_CORNER: f32 = 1.0 / 6.0;
 const OF_CELL_CORNER: f32 = 1.0 / 8.0;
 
 impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Computes the gradients of all cloths at the present positions.
-    pub(super) fn sum_gradient(&mut self, gradient: &mut Gradient<P>) {
+    /// Computes the gradients of all cloths at the present positions, m².
+    pub(super) fn sum_gradient(&mut self, gradient: &mut [Pack3<P>]) {
         let has_cells = self.fabric.patch_grid_columns().is_some();
         P::run(SumGradient {
             triangles: self.layout.triangles(&self.fabric),

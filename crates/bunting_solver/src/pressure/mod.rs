@@ -24,8 +24,8 @@ mod canopy;
 mod gradient;
 mod push;
 mod sealed;
+mod set;
 mod state;
 
 pub use air::Pressure;
-pub(crate) use gradient::Gradient;
 pub(crate) use state::LanePressure;

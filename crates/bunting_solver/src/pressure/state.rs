@@ -4,11 +4,7 @@ use glam::Vec3;
 
 use super::air::Pressure;
 use crate::batch::BatchError;
-use crate::batch::lane_batch::LaneBatch;
-use crate::batch::lane_state::LaneState;
-use crate::batch::layout::Layout;
 use crate::fabric::Fabric;
-use crate::simd::lane::Pack;
 
 /// Area of the holes, as a part of the cloth's, up to which a cloth counts as closed. Smaller: a ball with a valve is open. Larger:
 /// lids carry a force that the eye misses.
@@ -110,12 +106,12 @@ impl LanePressure {
         2.0 * self.volume().abs() / fabric.area()
     }
 
-    /// Load by the tension that the air causes, for [`Loads::tension`](crate::Loads::tension), m/s²: that of which
-    /// [`StepLimits`](crate::StepLimits) conclude on τ² T/(σ l²).
-    pub fn load(&self, fabric: &Fabric, state: &LaneState) -> f32 {
-        let tension = state.pressure_inside().abs() * self.tension(fabric);
+    /// Load by the tension of a cloth of an area density, kg/m², that has this pressure inside, Pa, for
+    /// [`Loads::tension`](crate::Loads::tension), m/s²: that of which [`StepLimits`](crate::StepLimits) conclude on τ² T/(σ l²).
+    pub fn load(&self, fabric: &Fabric, area_density: f32, pressure: f32) -> f32 {
         let tautness_squared = fabric.tautness() * fabric.tautness();
-        tension / (state.material.area_density * self.spacing_squared * tautness_squared)
+        let weight = area_density * self.spacing_squared * tautness_squared;
+        pressure.abs() * self.tension(fabric) / weight
     }
 
     /// Whether the cloth has no holes, or lids close them.
@@ -126,34 +122,6 @@ impl LanePressure {
     /// The area of the mouth as a vector, m².
     pub fn mouth(&self) -> Vec3 {
         self.gradient.iter().sum()
-    }
-}
-
-impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
-    /// Gives a cloth air, or takes it away.
-    ///
-    /// # Errors
-    ///
-    /// Those of [`LanePressure::new`]; the cloth keeps its air.
-    pub fn set_pressure(&mut self, cloth: usize, air: Option<Pressure>) -> Result<(), BatchError> {
-        let fabric = &self.fabrics[Y::fabric_of(cloth)].fabric;
-        let Some(state) = &mut self.lanes[cloth] else { return Ok(()) };
-        let former = state.inner_air.as_ref().map(|inner| inner.air);
-        if former == air {
-            return Ok(());
-        }
-        state.inner_air = match air {
-            Some(air) => Some(Box::new(LanePressure::new(air, fabric)?)),
-            None => None,
-        };
-        let kind = |air: Option<Pressure>| air.as_ref().map(core::mem::discriminant);
-        // A cloth that is new in its lane comes with the pressure that it had.
-        if former.is_some() && kind(former) != kind(air) {
-            state.history.pressure = None;
-        }
-        // Canopies change the coefficients of the air.
-        state.inputs = None;
-        Ok(())
     }
 }
 
