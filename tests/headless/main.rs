@@ -31,6 +31,7 @@ mod origin;
 mod pauses;
 mod places;
 mod points;
+mod pressure;
 mod reactions;
 mod reading;
 mod resolution;

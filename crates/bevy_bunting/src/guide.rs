@@ -15,6 +15,9 @@ mod skeletons {}
 #[doc = include_str!("../../../docs/guide/wind.md")]
 mod wind {}
 
+#[doc = include_str!("../../../docs/guide/pressure.md")]
+mod pressure {}
+
 #[doc = include_str!("../../../docs/guide/colliders.md")]
 mod colliders {}
 

@@ -169,6 +169,7 @@ pub use environment::cloth_collision::ClothCollision;
 pub use environment::collider::{ClothCollider, ColliderError};
 pub use environment::drive::DrivePlugin;
 pub use environment::drive_colliders::ColliderPlugin;
+pub use environment::drive_pressures::PressurePlugin;
 pub use environment::drive_self_collisions::SelfCollisionPlugin;
 pub use environment::forces::acceleration::ClothAcceleration;
 pub use environment::forces::control::{ClothControl, ControlError, ControlledCloth};
@@ -176,6 +177,7 @@ pub use environment::forces::impulse::{ClothImpulse, Push};
 pub use environment::forces::plugin::ForcePlugin;
 pub use environment::group_cloths::ClothCollisionPlugin;
 pub use environment::layers::{ClothFeatures, ClothLayers};
+pub use environment::pressure::ClothPressure;
 pub use environment::reactions::{ClothParted, ClothReaction, ClothReactions, ClothTouched};
 pub use environment::report_colliders::ScaleInShape;
 pub use environment::self_collision::SelfCollision;
@@ -258,12 +260,12 @@ pub mod prelude {
         ClothCollision, ClothControl, ClothCorner, ClothEdge, ClothError, ClothFailed,
         ClothFeatures, ClothGrab, ClothHit, ClothImpulse, ClothInertia, ClothLayers,
         ClothLevelChanged, ClothMaterial, ClothMesh, ClothParted, ClothPaused, ClothPlugins,
-        ClothPreroll, ClothReactions, ClothResolution, ClothSaves, ClothSeed, ClothSettings,
-        ClothSkin, ClothSnapshot, ClothSpatialQuery, ClothState, ClothSurface, ClothSystems,
-        ClothTargetLost, ClothTick, ClothTouched, ClothWorldSnapshot, GrabbedVertices, LodSet,
-        LodViewer, SelfCollision, ShiftOrigin, SkinError, SkinLimits, SnapshotError, TargetLost,
-        TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan, WindField, WindInfluence,
-        WindPerParticle, WindRegion, WindShape, WindWake,
+        ClothPreroll, ClothPressure, ClothReactions, ClothResolution, ClothSaves, ClothSeed,
+        ClothSettings, ClothSkin, ClothSnapshot, ClothSpatialQuery, ClothState, ClothSurface,
+        ClothSystems, ClothTargetLost, ClothTick, ClothTouched, ClothWorldSnapshot,
+        GrabbedVertices, LodSet, LodViewer, SelfCollision, ShiftOrigin, SkinError, SkinLimits,
+        SnapshotError, TargetLost, TeleportCloth, TeleportMode, WeightsError, WindBlast, WindFan,
+        WindField, WindInfluence, WindPerParticle, WindRegion, WindShape, WindWake,
     };
     #[cfg(feature = "render")]
     pub use crate::{
@@ -330,6 +332,7 @@ impl PluginGroup for ClothPlugins {
             .add(DrivePlugin)
             .add(ColliderPlugin)
             .add(ReactionPlugin)
+            .add(PressurePlugin)
             .add(SelfCollisionPlugin)
             .add(ClothCollisionPlugin)
             .add(SolverPlugin)

@@ -7,13 +7,14 @@ use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 
 /// Parameters of a cloth. Its shape, what holds it and how it starts are none: they are set where it is made.
-pub const CLOTH: [TypeId; 11] = [
+pub const CLOTH: [TypeId; 12] = [
     TypeId::of::<ClothMaterial>(),
     TypeId::of::<LodSet>(),
     TypeId::of::<ClothInertia>(),
     TypeId::of::<ClothAcceleration>(),
     TypeId::of::<WindInfluence>(),
     TypeId::of::<WindPerParticle>(),
+    TypeId::of::<ClothPressure>(),
     TypeId::of::<SelfCollision>(),
     TypeId::of::<ClothCollision>(),
     TypeId::of::<ClothLayers>(),

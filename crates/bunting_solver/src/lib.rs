@@ -71,6 +71,7 @@ mod fabric;
 mod geometry;
 #[cfg(feature = "serde")]
 pub mod packed;
+mod pressure;
 mod simd;
 mod stability;
 mod step;
@@ -92,6 +93,7 @@ pub use fabric::{
     Carried, CoarserMesh, Fabric, FabricBuilder, FabricError, FabricMaterial, Grid, Link,
     LinkFamily, MeshPoint, MeshRepair, Resampled, Resolution,
 };
+pub use pressure::Pressure;
 pub use simd::level::{has_fused_products, instruction_set, with_every_instruction_set};
 pub use step::effort::Effort;
 pub use step::effort_class::{EffortCause, EffortClass};

@@ -107,16 +107,11 @@ impl Group {
     /// What the cost of one of the batches depends on.
     pub fn cost_kind(&self, batch: &OccupiedBatch) -> CostKind {
         CostKind {
-            particles: self.particle_count(),
+            particles: batch.batch.fabric().particle_count(),
             settings: self.settings,
             lanes: batch.width,
             mixed: batch.batch.is_mixed(),
         }
-    }
-
-    /// Number of particles of each cloth.
-    pub fn particle_count(&self) -> usize {
-        self.fabrics[0].fabric.particle_count()
     }
 
     /// Assigns a lane to every cloth, in batches of a given width or of the widths that suit the number

@@ -6,8 +6,8 @@ use std::time::Duration;
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 use bunting_solver::{
-    ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, Guide, Hold, LaneCount,
-    LaneSurface, MovingPin, PinGroups, SelfCollision,
+    BatchError, ClothBatch, ClothSnapshot, Collider, Drive, Entering, FabricMaterial, Guide, Hold,
+    LaneCount, LaneSurface, MovingPin, PinGroups, Pressure, SelfCollision,
 };
 use parry3d::bounding_volume::Aabb;
 
@@ -230,6 +230,15 @@ impl LaneMut<'_> {
         if batch.set_self_collision(self.lane, settings).is_err() {
             batch.set_self_collision(self.lane, None).expect("an occupied lane");
         }
+    }
+
+    /// Gives the cloth air inside, or takes it away.
+    ///
+    /// # Errors
+    ///
+    /// A number cannot be, or the air of an open cloth would be sealed. The cloth keeps its air.
+    pub fn set_pressure(&mut self, air: Option<Pressure>) -> Result<(), BatchError> {
+        self.occupied.batch.set_pressure(self.lane, air)
     }
 
     /// Changes the material, which must be valid.

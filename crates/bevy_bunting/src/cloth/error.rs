@@ -230,6 +230,32 @@ pub enum ClothError {
         /// What the number must be besides finite.
         rule: NumberRule,
     },
+    /// A number of a [`ClothPressure`](crate::ClothPressure) cannot be. The cloth has no air inside until it changes.
+    #[error(
+        "the ClothPressure of cloth {entity} cannot have a {name} of {value}: give a finite number{}",
+        .rule.words()
+    )]
+    Pressure {
+        /// The cloth.
+        entity: Entity,
+        /// Name of the field.
+        name: &'static str,
+        /// Value of the field.
+        value: f32,
+        /// What the number must be besides finite.
+        rule: NumberRule,
+    },
+    /// The [`ClothPressure`](crate::ClothPressure) of a cloth whose mesh is open is `Sealed`. The cloth has no air inside until the
+    /// pressure or the mesh changes.
+    #[error(
+        "air cannot be sealed in cloth {entity}, whose mesh has openings of {area} m²: close the mesh, or give it ClothPressure::Constant, or ClothPressure::CANOPY if wind shall fill it"
+    )]
+    OpenPressure {
+        /// The cloth.
+        entity: Entity,
+        /// Area of the openings, as the length of the sum of all triangles' areas as vectors, m².
+        area: f32,
+    },
     /// The margin, the friction or a length of the shape of a [`ClothCollider`](crate::ClothCollider) cannot be. No cloth feels
     /// it until it changes.
     #[error(

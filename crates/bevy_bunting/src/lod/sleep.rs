@@ -18,6 +18,7 @@ use crate::environment::cloth_collision::ClothCollision;
 use crate::environment::collider::ClothCollider;
 use crate::environment::forces::acceleration::ClothAcceleration;
 use crate::environment::layers::{ClothFeatures, ClothLayers};
+use crate::environment::pressure::ClothPressure;
 use crate::environment::self_collision::SelfCollision;
 use crate::environment::wind::influence::WindInfluence;
 use crate::environment::wind::per_particle::WindPerParticle;
@@ -74,6 +75,7 @@ impl Plugin for SleepPlugin {
             .add_observer(wake_bared::<WindInfluence>)
             .add_observer(wake_bared::<WindPerParticle>)
             .add_observer(wake_bared::<ClothAcceleration>)
+            .add_observer(wake_bared::<ClothPressure>)
             .add_observer(note_removed::<ClothCollider>)
             .add_observer(note_removed::<ClothCollision>);
         app.add_systems(
@@ -195,23 +197,31 @@ fn wake_bared<C: Component>(
 }
 
 /// Filter of cloths on which their surroundings act otherwise than before.
-type HasNewExposure =
-    Or<(Changed<WindInfluence>, Changed<WindPerParticle>, Changed<ClothAcceleration>)>;
+type HasNewExposure = Or<(
+    Changed<WindInfluence>,
+    Changed<WindPerParticle>,
+    Changed<ClothAcceleration>,
+    Changed<ClothPressure>,
+)>;
 
 /// The components of a cloth on which the effect of its surroundings depends.
 type Exposed = (
     Option<Ref<'static, WindInfluence>>,
     Option<Ref<'static, WindPerParticle>>,
     Option<Ref<'static, ClothAcceleration>>,
+    Option<Ref<'static, ClothPressure>>,
 );
 
 fn wake_exposed(
     mut cloths: Query<(&mut ClothInstance, &mut RestTimer, &PoseHistory, Exposed), HasNewExposure>,
 ) {
-    for (mut instance, mut timer, history, (influence, per_particle, acceleration)) in &mut cloths {
+    for (mut instance, mut timer, history, (influence, per_particle, acceleration, air)) in
+        &mut cloths
+    {
         let has_new = influence.is_some_and(|it| history.has_new(&it))
             || per_particle.is_some_and(|it| history.has_new(&it))
-            || acceleration.is_some_and(|it| history.has_new(&it));
+            || acceleration.is_some_and(|it| history.has_new(&it))
+            || air.is_some_and(|it| history.has_new(&it));
         if has_new {
             timer.ticks = 0;
             instance.wake();

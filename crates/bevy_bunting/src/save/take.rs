@@ -15,6 +15,7 @@ use crate::cloth::resolution::ClothResolution;
 use crate::cloth::restored::Pending;
 use crate::cloth::state::ClothState;
 use crate::environment::forces::acceleration::ClothAcceleration;
+use crate::environment::pressure::ClothPressure;
 use crate::environment::wind::influence::WindInfluence;
 use crate::environment::wind::per_particle::WindPerParticle;
 use crate::fabric::levels::ClothLevels;
@@ -86,7 +87,8 @@ pub(super) fn take(world: &World, entity: Entity) -> Result<SavedCloth, Snapshot
     // The next tick would wake it.
     let is_exposed = news.has::<WindInfluence>(entity)
         || news.has::<WindPerParticle>(entity)
-        || news.has::<ClothAcceleration>(entity);
+        || news.has::<ClothAcceleration>(entity)
+        || news.has::<ClothPressure>(entity);
     let wakes = is_exposed && instance.activity == ClothActivity::AtRest;
     let touches = match (&instance.restored, instance.lane()) {
         (Some(restored), _) => restored.touches,

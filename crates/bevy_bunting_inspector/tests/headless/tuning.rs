@@ -72,6 +72,7 @@ fn tune(app: &mut App, flag: Entity) {
         ClothAcceleration(Vec3::new(0.5, -0.25, 0.0)),
         WindInfluence(0.75),
         WindPerParticle,
+        ClothPressure::Constant { pressure: 0.5 },
         SelfCollision { thickness: 0.004, levels: 1 },
         ClothCollision::default(),
         ClothLayers { memberships: 2, filters: 6 },
@@ -113,6 +114,7 @@ fn what_is_saved_is_loaded_and_flies_the_same() {
     assert_eq!(get::<LodSet>(&first, flag), get(&second, copy));
     assert_eq!(get::<ClothInertia>(&first, flag), get(&second, copy));
     assert_eq!(get::<ClothLayers>(&first, flag), get(&second, copy));
+    assert_eq!(get::<ClothPressure>(&first, flag), get(&second, copy));
     assert_eq!(get::<SelfCollision>(&first, flag), get(&second, copy));
     assert_eq!(get::<ClothSubdivision>(&first, flag), get(&second, copy));
     assert_eq!(first.world().resource::<ClothBudget>(), second.world().resource());

@@ -37,6 +37,19 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
     }
 
+    /// Adds the push of the air inside cloths on the pins in this substep. Called when it has been measured.
+    pub fn sum_inner_air_on_pins(&mut self) {
+        for cloth in 0..self.lanes.len() {
+            self.with_reports(cloth, |batch, state, reports| {
+                let Some(inner) = &state.inner_air else { return };
+                let rate = state.history.pressure.unwrap_or_default() * batch.clock.step;
+                batch.add_at_pins(cloth, state, reports, |_, _, particle| {
+                    inner.gradient[particle] * rate
+                });
+            });
+        }
+    }
+
     /// Adds what the constraints do to the pins in this substep: the opposite of what they do to the free particles. Called
     /// after all of them, and before the contacts, which come from outside. At the end of the tick, weight and inertia of
     /// the pins themselves are added.

@@ -66,6 +66,20 @@ pub enum BatchError {
         /// Index of the collider in the given list.
         index: usize,
     },
+    /// A number of a pressure is infinite or not a number, or negative where it cannot be.
+    #[error("the {name} of the pressure is not finite, or negative where it cannot be")]
+    Pressure {
+        /// What the number is.
+        name: &'static str,
+    },
+    /// The air of an open cloth cannot be sealed.
+    #[error(
+        "air cannot be sealed in a cloth whose holes have an area of {area} m²: close its mesh, or give it a constant pressure"
+    )]
+    Open {
+        /// Area of the holes, as a vector's length, m².
+        area: f32,
+    },
     /// The thickness of a self-collision is not finite, or not greater than zero.
     #[error("the thickness of the self-collision must be finite and greater than zero")]
     SelfCollision,

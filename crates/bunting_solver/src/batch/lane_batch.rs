@@ -92,6 +92,8 @@ pub(crate) struct LaneBatch<P: Pack, Y: Layout<P> = SideBySide<P>> {
     pub guides: Option<Box<Guides<P>>>,
     /// Wind at the particles, where it differs from particle to particle.
     pub local_wind: Option<Box<LocalWind<P>>>,
+    /// Scratch array of the air inside cloths; empty if no cloth has a pressure.
+    pub gradient: Vec<Pack3<P>>,
 }
 
 impl<P: Pack> LaneBatch<P> {
@@ -158,6 +160,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             collider_packs: Vec::new(),
             guides: None,
             local_wind: None,
+            gradient: Vec::new(),
             fabric,
             layout,
         };

@@ -10,6 +10,7 @@ use crate::contact::itself::state::SelfContacts;
 use crate::contact::pressing::Pressing;
 use crate::contact::reaction::ReactionSum;
 use crate::fabric::FabricMaterial;
+use crate::pressure::LanePressure;
 use crate::stability::added_mass::AddedMass;
 use crate::stability::pin_strain::PinStrain;
 use crate::step::Drive;
@@ -47,6 +48,8 @@ pub(crate) struct LaneState {
     pub guides: Option<ClothGuides>,
     /// Wind at each particle less that of the drive, m/s, along the frame's axes at the end of the tick.
     pub local_wind: Option<Vec<Vec3>>,
+    /// The air inside the cloth, if it has a pressure.
+    pub inner_air: Option<Box<LanePressure>>,
     /// Springs and rails that hold particles, if any do.
     pub holds: Option<Box<Holds>>,
     /// What the cloth does to its pins, if that is asked for.
@@ -79,6 +82,7 @@ impl LaneState {
             moving_pins: MovingPins::default(),
             guides: None,
             local_wind: None,
+            inner_air: None,
             holds: None,
             pin_reports: None,
             pin_velocities: Vec::new(),
@@ -90,6 +94,11 @@ impl LaneState {
     /// Whether the cloth may touch colliders in this tick.
     pub fn is_near_colliders(&self) -> bool {
         self.contacts.iter().any(|candidates| !candidates.is_empty())
+    }
+
+    /// Pressure of the air inside the cloth in the last substep, Pa.
+    pub fn pressure_inside(&self) -> f32 {
+        self.inner_air.as_ref().and(self.history.pressure).unwrap_or_default()
     }
 
     /// Whether something may act on single particles in this tick.

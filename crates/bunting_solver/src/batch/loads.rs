@@ -58,10 +58,13 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         })
     }
 
-    /// Load of the pins that draw a cloth out, m/s².
+    /// Load of the pins that draw a cloth out, or of the air that draws it taut from inside, m/s².
     pub fn tension_load(&self, cloth: usize, state: &LaneState) -> f32 {
         let fabric = &self.fabric_of(cloth).fabric;
-        Loads::of_pin_strain(fabric, &state.material, &state.pin_strain)
+        let of_pins = Loads::of_pin_strain(fabric, &state.material, &state.pin_strain);
+        of_pins.max(state.inner_air.as_ref().map_or(0.0, |inner| {
+            inner.load(fabric, state.material.area_density, state.pressure_inside())
+        }))
     }
 
     /// Load of the colliders that pressed a cloth in this tick, or come near it, m/s².

@@ -191,7 +191,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Shifts the predicted position of a particle, m, without a correction. The position is computed as
     /// `update_velocities` does, as start plus displacement: a rounding error between the two would count as
     /// a correction and become a velocity.
-    fn shift_prediction(&mut self, pack: usize, lane: usize, change: Vec3) {
+    pub(crate) fn shift_prediction(&mut self, pack: usize, lane: usize, change: Vec3) {
         let start = lane3(&self.scratch[pack], lane);
         let before = lane3(&self.displacement[pack], lane);
         let position = &mut self.positions.packs_mut()[pack];

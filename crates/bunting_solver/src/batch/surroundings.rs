@@ -14,6 +14,7 @@ use crate::contact::collider::Collider;
 use crate::contact::itself::settings::SelfCollision;
 use crate::contact::points::ContactPoint;
 use crate::contact::reaction::ContactReaction;
+use crate::pressure::Pressure;
 use crate::step::{Drive, Guide, MovingPin};
 
 impl ClothBatch {
@@ -69,6 +70,26 @@ impl ClothBatch {
     pub fn set_local_wind(&mut self, lane: usize, winds: Vec<Vec3>) -> Result<(), BatchError> {
         self.check_lane(lane)?;
         with_batch!(&mut self.0, batch => batch.set_local_wind(lane, winds))
+    }
+
+    /// Gives a lane's cloth air inside from the next substep on, or takes it away; at first there is none. An empty lane stays
+    /// empty. The first call for a lane finds the border of its fabric.
+    ///
+    /// # Errors
+    ///
+    /// There is no such lane, a number is not finite or is negative where it cannot be, or the air of a cloth with holes
+    /// of more than a twentieth of its area would be sealed. The lane keeps its air.
+    pub fn set_pressure(&mut self, lane: usize, air: Option<Pressure>) -> Result<(), BatchError> {
+        self.check_lane(lane)?;
+        with_batch!(&mut self.0, batch => batch.set_pressure(lane, air))
+    }
+
+    /// Pressure of the air inside a lane's cloth in the last substep, Pa above the surrounding air's; none without air, or
+    /// before the first substep. It is less than was asked for where the substeps do not resolve that.
+    #[must_use]
+    pub fn pressure(&self, lane: usize) -> Option<f32> {
+        let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref())?;
+        cloth.inner_air.as_ref().and(cloth.history.pressure)
     }
 
     /// Reports what a lane's cloth does to its pins from the next tick on, or ceases to; at first it does not. `pivots` are
@@ -258,7 +279,8 @@ impl ClothBatch {
     }
 
     /// Load of the pins of a lane's cloth, for [`Loads::tension`](crate::Loads::tension), as of the last tick, see
-    /// [`Loads::of_pins`](crate::Loads::of_pins), m/s²; zero for an empty lane.
+    /// [`Loads::of_pins`](crate::Loads::of_pins), or of the [pressure](Self::set_pressure) inside it, if that is greater, m/s²; zero for an
+    /// empty lane.
     #[must_use]
     pub fn tension_load(&self, lane: usize) -> f32 {
         with_batch!(&self.0, batch => {

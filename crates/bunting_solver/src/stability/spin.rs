@@ -19,7 +19,11 @@ use crate::step::rigid_motion::RigidMotion;
 impl LaneState {
     /// Whether anything but gravity, which has no moment, acts on a cloth without pins in this substep.
     pub fn is_disturbed(&self, inputs: &ParameterInputs) -> bool {
-        inputs.air_density != 0.0 || inputs.material.damping != 0.0 || self.is_acted_on()
+        let is_pushed = self.inner_air.as_ref().is_some_and(|inner| !inner.is_closed());
+        inputs.air_density != 0.0
+            || inputs.material.damping != 0.0
+            || is_pushed
+            || self.is_acted_on()
     }
 
     fn keeps_spin(&self) -> bool {

@@ -120,6 +120,8 @@ pub(crate) struct IntegratorHistory {
     vibrated: f32,
     /// Turn of the cloth about its pole by the last substep's corrections, which the next prediction undoes.
     pub pole_turn: PoleTurn,
+    /// Pressure of the air inside the cloth in the last substep, Pa; none before the first one with air.
+    pub pressure: Option<f32>,
     /// Substeps in which actions from outside have an effect on a free cloth's angular momentum.
     pub disturbance: Disturbance,
 }

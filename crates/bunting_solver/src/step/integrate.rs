@@ -37,12 +37,14 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     fn predict_particles(&mut self) -> MotionSums<P> {
         self.move_pins();
         self.free_held();
+        self.shelter_canopies();
         let feels_air = self.parameters.any_feels_air();
         if feels_air {
             self.gather_air();
             self.sum_air_on_pins();
         }
         let sums = self.predict(feels_air);
+        self.push_by_air();
         self.draw_held();
         sums
     }

@@ -22,9 +22,16 @@ pub(crate) struct LoadStretch {
 }
 
 impl LoadStretch {
-    /// Bounds for a cloth that hangs by a length of `reach` metres, and whose pins strain it by `pin_strain`.
-    pub fn new(material: &FabricMaterial, drive: &Drive, reach: f32, pin_strain: f32) -> Self {
-        let tensions = greatest_tensions(material, drive, reach);
+    /// Bounds for a cloth that hangs by a length of `reach` metres, whose pins strain it by `pin_strain`, and on which the air inside pushes
+    /// with a pressure of `inside` Pa.
+    pub fn new(
+        material: &FabricMaterial,
+        drive: &Drive,
+        reach: f32,
+        pin_strain: f32,
+        inside: f32,
+    ) -> Self {
+        let tensions = greatest_tensions(material, drive, reach, inside);
         let strains = |softness: f32| tensions.map(|tension| tension * softness);
         let tether = |[by_weight, by_wind]: [f32; 2]| {
             1.0 + TETHER_MARGIN * (pin_strain + by_weight + by_wind)
@@ -46,10 +53,15 @@ fn diagonal_softness(material: &FabricMaterial) -> f32 {
 }
 
 /// Greatest tensions at the top of a cloth that hangs by a length of `reach` metres, by its weight and by the
-/// wind, N/m.
-fn greatest_tensions(material: &FabricMaterial, drive: &Drive, reach: f32) -> [f32; 2] {
+/// wind and the air inside, N/m.
+fn greatest_tensions(
+    material: &FabricMaterial,
+    drive: &Drive,
+    reach: f32,
+    inside: f32,
+) -> [f32; 2] {
     let weight = material.area_density * drive.gravity.length();
     let coefficients = material.pressure_coefficient + material.friction_coefficient;
     let pressure = 0.5 * drive.air_density * coefficients * drive.wind.length_squared();
-    [weight * reach, pressure * reach]
+    [weight * reach, (pressure + inside) * reach]
 }

@@ -18,6 +18,7 @@ mod moving_frames;
 mod moving_pins;
 mod physics;
 mod points;
+mod pressure;
 mod resampled;
 mod rest_on_edges;
 mod self_contact;

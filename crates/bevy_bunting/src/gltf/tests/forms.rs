@@ -33,6 +33,7 @@ const COMPONENTS: [(&str, &str); 35] = [
     ("ClothMesh", r#"{"Grid": {"columns": 9, "rows": 9, "width": 1.0, "height": 1.0}}"#),
     ("ClothPaused", "{}"),
     ("ClothPreroll", "{}"),
+    ("ClothPressure", r#"{"Constant": {"pressure": 30.0}}"#),
     ("ClothReactions", "{}"),
     ("ClothResolution", r#"{"CellSize": 0.03}"#),
     ("ClothSeed", "7"),
