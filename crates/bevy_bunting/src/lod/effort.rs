@@ -75,14 +75,16 @@ impl ClothEffort {
         if let (true, Some(fabric), Some(begun)) =
             (self.loads == Loads::default(), instance.fabric(), instance.snapshot())
         {
-            let material = &instance.material;
-            self.loads.tension = Loads::of_pins(fabric, material, &begun.positions);
+            let material = instance.acting_material();
+            self.loads.tension = Loads::of_pins(fabric, &material, &begun.positions);
         }
         let of_frame = if frame.rests() && self.motion.is_none() {
             0.0
         } else {
             let Some(fabric) = instance.fabric() else { return false };
-            self.inertia.load(&self.motion, &frame.motion(), fabric, tick)
+            let growth = &instance.growth;
+            let [before, now] = [self.motion, frame.motion()].map(|motion| growth.motion(motion));
+            growth.inertia(self.inertia).load(&before, &now, fabric, tick)
         };
         self.loads.frame = of_frame + self.acceleration;
         let before = self.effort.class();

@@ -46,6 +46,7 @@ pub(super) fn apply(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
     let activity = cloth.get::<ClothInstance>().map(ClothInstance::published_activity);
     if let (Some(mut state), Some(activity)) = (cloth.get_mut::<ClothState>(), activity) {
         state.activity = activity;
+        state.scale = saved.growth.end();
     }
 }
 
@@ -80,6 +81,7 @@ fn restore_instance(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
         material: saved.material,
         gravity: saved.gravity,
         inertia: saved.inertia,
+        growth: saved.growth,
         target,
         target_lost: saved.target_lost,
         frozen: saved.frozen,
