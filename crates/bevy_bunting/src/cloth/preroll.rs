@@ -189,9 +189,13 @@ fn begin_prerolls(
         let drive = growth.drive(surroundings.drive(wind, frame, FrameMotion::NONE, &exposure));
         let material = instance.acting_material();
         let air = Loads::of_air(&drive, &material, tick);
-        let (class, _) =
-            Loads { air, frame: exposure.acceleration().length(), ..Loads::default() }.class();
-        let acceleration = class.acceleration(settings.gravity.length());
+        let (class, _) = Loads {
+            air: growth.end() * air,
+            frame: exposure.acceleration().length(),
+            ..Loads::default()
+        }
+        .class();
+        let acceleration = class.acceleration(settings.gravity.length()) / growth.end();
         let preroll = Preroll {
             settings: settings.limits(instance.level).of_fabric(&fabric, tick, acceleration),
             fabric,

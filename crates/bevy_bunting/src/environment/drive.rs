@@ -59,7 +59,6 @@ pub(crate) fn drive_cloths(
         // Gravity is written in every tick, which must not mark the cloth as changed.
         let instance = instance.bypass_change_detection();
         let growth = instance.growth;
-        let gravity = drive.gravity;
         instance.gravity = growth.drive(drive).gravity;
         let inertia = inertia.map_or_else(ClothInertia::default, |inertia| inertia.acting());
         if instance.inertia.is_some_and(|former| former != inertia) {
@@ -71,10 +70,8 @@ pub(crate) fn drive_cloths(
         }
         let drive = growth.drive(drive);
         let air = Loads::of_air(&drive, &instance.acting_material(), tick);
-        // Smaller cloth falls farther in its units.
-        let heavier = (growth.end().recip() - 1.0).max(0.0) * gravity.length();
-        let acceleration = exposure.acceleration().length() / growth.end() + heavier;
-        effort.note_drive(motion, air, acceleration, inertia);
+        let air = air * growth.end();
+        effort.note_drive(motion, air, exposure.acceleration().length(), inertia);
         let mut lane = batches.lane(lane);
         if let Some(velocity) = frame.launch() {
             let velocity = frame.end().rotation.inverse() * inertia.felt_launch(velocity, tick);

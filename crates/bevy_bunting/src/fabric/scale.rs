@@ -1,4 +1,4 @@
-//! Scales on the way to a cloth are baked into its mesh: frames have no scale.
+//! Scales on the way to a cloth are baked into its mesh when it is made; later ones make its frame larger (`motion/growth.rs`).
 
 use std::borrow::Cow;
 

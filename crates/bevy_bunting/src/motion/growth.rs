@@ -204,12 +204,12 @@ pub(crate) struct SizedFrame {
 
 impl SizedFrame {
     /// A point of the frame in the world, m.
-    pub fn to_world(&self, point: Vec3) -> Vec3 {
+    pub fn to_world(self, point: Vec3) -> Vec3 {
         self.pose * (self.size * point)
     }
 
     /// A point in the world (m) in the frame.
-    pub fn to_local(&self, point: Vec3) -> Vec3 {
+    pub fn to_local(self, point: Vec3) -> Vec3 {
         self.pose.rotation.inverse() * (point - Vec3::from(self.pose.translation)) / self.size
     }
 }

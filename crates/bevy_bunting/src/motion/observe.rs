@@ -108,7 +108,7 @@ pub(crate) fn observe_ticks(
     observer.for_each(|entity, history, attachment| {
         let observed = frame_and_scale_of(entity, attachment.as_deref(), &transforms);
         let (pose, scale) = observed.unzip();
-        if let Some(scale) = scale {
+        if let Some(scale) = scale.filter(|scale| scale.is_finite()) {
             history.observe_scale(&times, scale);
         }
         match pose.filter(is_finite) {

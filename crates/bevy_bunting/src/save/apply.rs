@@ -168,7 +168,7 @@ fn restore_choices(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
     });
     let limits = world.resource::<ClothSettings>().limits(saved.level);
     let fabric = fitting.levels.fabric(saved.level);
-    let acceleration = class.acceleration(gravity);
+    let acceleration = class.acceleration(gravity) / saved.growth.end();
     let needed = limits.of_fabric(fabric, saved.tick, acceleration);
     let mut cloth = world.entity_mut(fitting.entity);
     if let Some(mut effort) = cloth.get_mut::<ClothEffort>() {
