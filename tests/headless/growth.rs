@@ -1,7 +1,6 @@
 //! Tests of cloths, colliders and anchors whose scale changes while they are simulated.
 
 use bevy_app::App;
-use bevy_bunting::ClothEffort;
 use bevy_bunting::prelude::*;
 use bevy_ecs::prelude::*;
 use bevy_math::{Isometry3d, Quat, Vec3};
@@ -101,7 +100,11 @@ fn in_wind(app: &mut App, origin: Vec3, scale: f32) -> Entity {
 fn cloth_that_has_grown_moves_as_cloth_that_was_made_so_large() {
     for size in [SIZE, 0.5] {
         let mut app = app();
-        app.world_mut().spawn(WindField::steady(Vec3::new(2.0, 0.0, 0.4)));
+        // Across the cloth, which else buckles as its imperfection wants it, and that is of any size.
+        let gravity = Vec3::new(0.0, 0.0, -9.81);
+        let steps = vec![StepSettings { passes: 2, ..StepSettings::yarns(6) }.into()];
+        app.insert_resource(ClothSettings { gravity, steps, ..ClothSettings::default() });
+        app.world_mut().spawn(WindField::steady(Vec3::new(0.0, 0.0, -2.0)));
         let origins = [Vec3::ZERO, 20.0 * Vec3::Z];
         let grown = in_wind(&mut app, origins[0], 1.0);
         let made = in_wind(&mut app, origins[1], size);
@@ -113,15 +116,12 @@ fn cloth_that_has_grown_moves_as_cloth_that_was_made_so_large() {
             app.world_mut().entity_mut(entity).remove::<ClothPaused>();
         }
         // Later they differ as cloths do whose first differences are rounding.
-        for _ in 0..16 {
+        for _ in 0..24 {
             run(&mut app, 1);
             let off = difference(&app, (grown, origins[0]), (made, origins[1]));
-            assert!(off < 0.01 * size, "{off} m at a size of {size}");
-            let effort = [grown, made].map(|cloth| app.world().get::<ClothEffort>(cloth).cloned());
-            let [one, other] = effort.map(|it| it.expect("an effort").settings());
-            assert_eq!(one, other);
+            assert!(off < 2e-3 * size, "{off} m at a size of {size}");
         }
-        let hangs = places(&app, made)[16].y;
+        let hangs = places(&app, made)[16].z - origins[1].z;
         assert!(hangs < -0.1 * size, "it has moved: {hangs} m");
     }
 }

@@ -6,6 +6,8 @@
 //! bending ½ B κ², each per area of the fabric. Divided by s⁴, this is cloth of the fabric's size with k/s² and B/s⁴, under
 //! accelerations and velocities of 1/s, in air that is s times as dense. A force is s³ times as large as in that cloth, a torque s⁴.
 //!
+//! Loads by which substeps are chosen are turned into m/s²; only the solver's threshold of cloth that is flung is one of the units.
+//!
 //! Growth itself moves nothing: particles stay where they are in the frame, and keep their velocities in the world.
 
 use core::ops::RangeInclusive;
