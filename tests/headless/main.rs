@@ -17,6 +17,7 @@ mod errors;
 mod first_hour;
 mod forces;
 mod governor;
+mod growth;
 mod holds;
 mod inertia;
 mod last_valid;

@@ -119,20 +119,24 @@ fn colliders_that_cannot_be_are_reported() {
 }
 
 #[test]
-fn a_scale_that_a_collider_ignores_is_reported_once() {
-    let scaled = || Transform::from_scale(Vec3::splat(2.0));
-    let ball = || ClothCollider::ball(0.5);
-    assert_said((ball(), scaled()), &["scale [2, 2, 2]", "ScaleInShape"]);
-    assert_eq!(messages((ball(), scaled(), ScaleInShape)), [""; 0]);
+fn a_scale_that_a_collider_cannot_have_is_reported_once() {
+    let mirrored = || Transform::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+    let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+    let hull = || ClothCollider::convex_hull(&corners).expect("a hull");
+    assert_said((hull(), mirrored()), &["scale [-1, 1, 1]", "ScaleInShape"]);
+    assert_eq!(messages((hull(), mirrored(), ScaleInShape)), [""; 0]);
+    // What is its own mirror image can have it.
+    assert_eq!(messages((ClothCollider::ball(0.5), mirrored())), [""; 0]);
     let mut app = app();
-    let parent = app.world_mut().spawn(scaled()).id();
-    let child = app.world_mut().spawn((ball(), ChildOf(parent))).id();
-    let grows = app.world_mut().spawn(ball()).id();
+    let parent = app.world_mut().spawn(mirrored()).id();
+    let child = app.world_mut().spawn((hull(), ChildOf(parent))).id();
+    let grows = app.world_mut().spawn(hull()).id();
     run(&mut app, 3);
     assert_eq!(failures(&app).iter().map(|it| it.entity).collect::<Vec<_>>(), [child]);
     for tick in 0..5 {
         let mut pose = app.world_mut().get_mut::<Transform>(grows).expect("a pose");
-        *pose = Transform::from_xyz(0.0, tick as f32, 0.0).with_scale(Vec3::splat(1.5));
+        let scale = Vec3::new(-1.0 - tick as f32, 1.0, 1.0);
+        *pose = Transform::from_xyz(0.0, tick as f32, 0.0).with_scale(scale);
         run(&mut app, 1);
     }
     assert_eq!(failures(&app).iter().map(|it| it.entity).collect::<Vec<_>>(), [child, grows]);

@@ -40,6 +40,9 @@ mod saving {}
 #[doc = include_str!("../../../docs/guide/floating-origin.md")]
 mod floating_origin {}
 
+#[doc = include_str!("../../../docs/guide/scale.md")]
+mod scale {}
+
 #[doc = include_str!("../../../docs/guide/performance.md")]
 mod performance {}
 

@@ -13,10 +13,18 @@ use crate::lod::record::RestTimer;
 use crate::motion::anchor_hold::AnchorHold;
 use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::attachment::Attachment;
+use crate::motion::growth::Growth;
 use crate::motion::pose::PoseHistory;
 
 /// Start and end of a tick.
 type Span = (Isometry3d, Isometry3d);
+
+/// The frame of a cloth in a tick, and how large the cloth is.
+#[derive(Clone, Copy)]
+struct Frame {
+    span: Span,
+    growth: Growth,
+}
 
 /// A cloth that is held.
 type HeldCloth = (
@@ -48,7 +56,9 @@ pub(crate) fn hold_cloths(
     grabs.sort_unstable();
     for (entity, instance, mesh, attachment, frame, poses, mut holds, mut timer) in &mut cloths {
         let (Some(lane), Some(levels)) = (instance.lane(), &instance.levels) else { continue };
-        let frame = (frame.start(), frame.end());
+        let growth = instance.growth;
+        let frame = Frame { span: (frame.start(), frame.end()), growth };
+        let size = growth.end();
         let is_changed = attachment.as_ref().is_some_and(|attachment| attachment.is_changed());
         if is_changed || !holds.fits(levels, instance.level) {
             let (groups, rails) = attachment
@@ -67,14 +77,15 @@ pub(crate) fn hold_cloths(
             let share = 1.0 / counts[index] as f32;
             let by = match (&anchor.hold, &rails[index]) {
                 (AnchorHold::Spring { stiffness, max_force }, _) => Holder::Spring {
-                    place: in_frame(frame, pose, place),
-                    stiffness: share * stiffness,
-                    max_force: share * max_force,
+                    place: frame
+                        .place([pose.0 * (growth.start() * place), pose.1 * (size * place)]),
+                    stiffness: share * stiffness / (size * size),
+                    max_force: share * max_force / growth.force(),
                 },
                 (AnchorHold::Rail { ring_mass, friction, .. }, Some(rail)) => Holder::Ring {
                     rail: rail.clone(),
-                    pose: poses_in_frame(frame, pose),
-                    mass: *ring_mass,
+                    pose: frame.poses(pose),
+                    mass: *ring_mass / (size * size),
                     friction: *friction,
                 },
                 _ => continue,
@@ -93,9 +104,10 @@ pub(crate) fn hold_cloths(
             let pose = (pose.start(), pose.end());
             let is_new = grabbed.is_new();
             if is_new || !grabbed.fits(levels, instance.level) {
-                let to_hand = pose.0.inverse() * frame.0;
+                let to_hand = pose.0.inverse() * frame.span.0;
                 let positions = batches.lane(lane).snapshot().positions;
-                let places: Vec<Vec3> = positions.into_iter().map(|at| to_hand * at).collect();
+                let places: Vec<Vec3> =
+                    positions.into_iter().map(|at| to_hand * (growth.start() * at)).collect();
                 if is_new {
                     grabbed.grab(grab, levels, instance.level, &places);
                 } else {
@@ -105,9 +117,9 @@ pub(crate) fn hold_cloths(
             let share = 1.0 / grabbed.held.len().max(1) as f32;
             for &(particle, place) in &grabbed.held {
                 let by = Holder::Spring {
-                    place: in_frame(frame, pose, place),
-                    stiffness: share * grab.stiffness,
-                    max_force: share * grab.max_force,
+                    place: frame.place([pose.0 * place, pose.1 * place]),
+                    stiffness: share * grab.stiffness / (size * size),
+                    max_force: share * grab.max_force / growth.force(),
                 };
                 list.push(Hold { particle, by });
                 owners.push(Owner::Grab(hand));
@@ -121,13 +133,16 @@ pub(crate) fn hold_cloths(
     }
 }
 
-/// A place in a moving pose, in the cloth's frame at the start and at the end of the tick, m.
-fn in_frame(frame: Span, pose: Span, place: Vec3) -> [Vec3; 2] {
-    [frame.0.inverse() * (pose.0 * place), frame.1.inverse() * (pose.1 * place)]
-}
+impl Frame {
+    /// A place in the world at the start and at the end of the tick, m, in the frame at that time.
+    fn place(&self, [start, end]: [Vec3; 2]) -> [Vec3; 2] {
+        self.growth.places([self.span.0.inverse() * start, self.span.1.inverse() * end])
+    }
 
-/// A moving pose in the cloth's frame at the start and at the end of the tick.
-fn poses_in_frame(frame: Span, pose: Span) -> [(Vec3, Quat); 2] {
-    [frame.0.inverse() * pose.0, frame.1.inverse() * pose.1]
-        .map(|pose| (pose.translation.into(), pose.rotation))
+    /// A moving pose in the frame at the start and at the end of the tick.
+    fn poses(&self, pose: Span) -> [(Vec3, Quat); 2] {
+        let poses = [self.span.0.inverse() * pose.0, self.span.1.inverse() * pose.1];
+        let [start, end] = self.growth.places(poses.map(|pose| pose.translation.into()));
+        [(start, poses[0].rotation), (end, poses[1].rotation)]
+    }
 }

@@ -38,6 +38,7 @@ pub(super) fn ask_for_reactions(
         }
         let anchors = attachment.map_or(0, |attachment| attachment.anchors.len());
         let pivots = (0..anchors).map(|anchor| pivot(frame, poses, anchor));
+        let pivots = pivots.map(|places| instance.growth.places(places));
         let pivots = core::iter::once([Vec3::ZERO; 2]).chain(pivots).collect();
         if let Some(groups) = &reporting.groups {
             batches.lane(lane).report_pins(Some((groups, pivots)));
@@ -79,11 +80,11 @@ pub(super) fn publish_reactions(
     hands.iter_mut().for_each(|mut hand| hand.force = Vec3::ZERO);
     for (instance, state, frame, mut reactions, holds, poses) in &mut cloths {
         let Some(lane) = instance.lane() else { continue };
-        let frame = frame.end();
+        let (frame, growth) = (frame.end(), &instance.growth);
         if let Some(reactions) = &mut reactions {
             let mut means = batches.pin_reactions(lane).iter().map(|reaction| AnchorReaction {
-                force: frame.rotation * reaction.impulse / tick,
-                torque: frame.rotation * reaction.angular_impulse / tick,
+                force: frame.rotation * (growth.force() * reaction.impulse) / tick,
+                torque: frame.rotation * (growth.torque() * reaction.angular_impulse) / tick,
             });
             reactions.target = means.next().unwrap_or_default();
             reactions.anchors.clear();
@@ -91,7 +92,7 @@ pub(super) fn publish_reactions(
         }
         let owners = holds.iter().flat_map(|holds| &holds.owners);
         for (owner, &impulse) in owners.zip(batches.hold_impulses(lane)) {
-            let force = frame.rotation * impulse / tick;
+            let force = frame.rotation * (growth.force() * impulse) / tick;
             match *owner {
                 Owner::Grab(hand) => {
                     if let Ok(mut hand) = hands.get_mut(hand) {
@@ -104,7 +105,7 @@ pub(super) fn publish_reactions(
                     };
                     let anchors = reactions.iter_mut().map(|reactions| &mut reactions.anchors);
                     for anchor in anchors.flat_map(|anchors| anchors.get_mut(index)) {
-                        let at = frame * state.positions()[particle as usize];
+                        let at = frame * (growth.end() * state.positions()[particle as usize]);
                         anchor.force += force;
                         anchor.torque += (at - Vec3::from(pose.translation)).cross(force);
                     }

@@ -109,7 +109,7 @@ pub(crate) fn assign_lanes(
                     entity,
                     fabric: 0,
                     snapshot: *snapshot,
-                    material: instance.material,
+                    material: instance.acting_material(),
                 };
                 batches.add(&fabric, steps, pending);
             }

@@ -44,7 +44,8 @@ pub(crate) fn choose_substeps(
         let Some(fabric) = instance.fabric().filter(|_| is_stepped(&instance, paused)) else {
             continue;
         };
-        let acceleration = effort.class().acceleration(gravity);
+        // In the units of the fabric.
+        let acceleration = effort.class().acceleration(gravity) / instance.growth.end();
         let needed = settings.limits(instance.level).of_fabric(fabric, tick, acceleration);
         let takes = effort.settings.substeps;
         let is_sharing = settings.share_batches && !all && instance.lane().is_some();

@@ -10,6 +10,7 @@ use bunting_solver::ParticlesMut;
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::lod::record::RestTimer;
+use crate::motion::growth::SizedFrame;
 use crate::motion::pose::PoseHistory;
 
 /// The particles of cloths in a substep: a system parameter for systems in
@@ -62,6 +63,7 @@ impl ClothParticles<'_, '_> {
         let (instance, history, rest_timer) = self.cloths.get_mut(cloth).ok()?;
         let (particles, fraction) = self.batches.particles_mut(instance.lane()?)?;
         let frame = frame_at(history, fraction);
+        let frame = SizedFrame { pose: frame, size: instance.growth.end() };
         Some(SubstepParticles { particles, frame, rest_timer })
     }
 }
@@ -82,12 +84,16 @@ fn frame_at(history: &PoseHistory, fraction: f32) -> Isometry3d {
 /// positions. Coordinates are those of the cloth's frame in this substep; velocities are relative to the
 /// world, along the axes of the frame.
 ///
+/// Of cloth that has [grown](Self::scale) all lengths are in units of the frame, and masses are those of the fabric: a force on it
+/// is divided by the third power of the scale. [`to_world`](Self::to_world), [`direction_to_local`](Self::direction_to_local) and
+/// their opposites do so with points, velocities and accelerations.
+///
 /// Particles are numbered as in [`ClothState::fabric`](crate::ClothState::fabric). A cloth does not fall asleep
 /// in a tick in which its particles are written.
 #[derive(Debug)]
 pub struct SubstepParticles<'a> {
     particles: ParticlesMut<'a>,
-    frame: Isometry3d,
+    frame: SizedFrame,
     rest_timer: Mut<'a, RestTimer>,
 }
 
@@ -95,31 +101,37 @@ impl SubstepParticles<'_> {
     /// Pose of the cloth's frame in the world (m) at the end of this substep.
     #[must_use]
     pub fn frame(&self) -> Isometry3d {
-        self.frame
+        self.frame.pose
+    }
+
+    /// Metres in a unit of positions, see [`ClothState::scale`](crate::ClothState::scale).
+    #[must_use]
+    pub fn scale(&self) -> f32 {
+        self.frame.size
     }
 
     /// Transforms a point (m) from the cloth's frame to the world.
     #[must_use]
     pub fn to_world(&self, point: Vec3) -> Vec3 {
-        self.frame * point
+        self.frame.to_world(point)
     }
 
     /// Transforms a point (m) from the world to the cloth's frame.
     #[must_use]
     pub fn to_local(&self, point: Vec3) -> Vec3 {
-        self.frame.rotation.inverse() * (point - Vec3::from(self.frame.translation))
+        self.frame.to_local(point)
     }
 
-    /// Rotates a direction, such as a velocity, from the cloth's frame to the world.
+    /// Transforms a direction, such as a velocity, from the cloth's frame to the world.
     #[must_use]
     pub fn direction_to_world(&self, direction: Vec3) -> Vec3 {
-        self.frame.rotation * direction
+        self.frame.pose.rotation * (self.frame.size * direction)
     }
 
-    /// Rotates a direction, such as an acceleration, from the world to the cloth's frame.
+    /// Transforms a direction, such as an acceleration, from the world to the cloth's frame.
     #[must_use]
     pub fn direction_to_local(&self, direction: Vec3) -> Vec3 {
-        self.frame.rotation.inverse() * direction
+        self.frame.pose.rotation.inverse() * direction / self.frame.size
     }
 }
 

@@ -64,7 +64,7 @@ pub(crate) fn publish_states(
         state.blend();
         state.moved = true;
         (state.motion, state.tick) = (effort.motion(), tick);
-        effort.note_tick(surface);
+        effort.note_tick(surface, state.scale);
         if !surface.is_finite {
             diverged.0.push(entity);
         }

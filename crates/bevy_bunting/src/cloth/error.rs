@@ -94,6 +94,28 @@ pub enum ClothError {
         /// The cloth.
         entity: Entity,
     },
+    /// The scale of what the cloth follows has changed as no cloth can follow while it is simulated: by another factor in another
+    /// direction, to a mirror image, or to less than a hundredth or more than a hundred times. The cloth keeps its size.
+    #[error(
+        "cloth {entity} cannot follow the change of scale to {scale}: change it by one positive factor in all directions or, where the scale is its own, insert the ClothMesh again, which makes the cloth anew"
+    )]
+    ScaleChange {
+        /// The cloth.
+        entity: Entity,
+        /// Scale in the world of the cloth, or of the target of its attachment.
+        scale: Vec3,
+    },
+    /// Two cloths with a `ClothCollision` that come near have grown by different factors. They pass through one another. It is
+    /// reported once for each cloth.
+    #[error(
+        "cloths {entity} and {other} have grown by different factors and cannot touch: scale them alike, or insert their ClothMesh again once they have their sizes, which makes them anew"
+    )]
+    CollisionScale {
+        /// The cloth.
+        entity: Entity,
+        /// The other cloth.
+        other: Entity,
+    },
     /// The pose that the cloth should follow is not finite. The cloth keeps its last finite pose.
     #[error(
         "the transform that cloth {entity} follows is not finite: check the systems that write it"
@@ -269,10 +291,10 @@ pub enum ClothError {
         /// Its value.
         value: f32,
     },
-    /// The entity of a [`ClothCollider`](crate::ClothCollider) has a scale, which its shape has not. The collider is as large
-    /// as its shape.
+    /// The entity of a [`ClothCollider`](crate::ClothCollider) has a scale that its shape cannot have: one of zero, or one that
+    /// mirrors a hull or a heightfield. The collider keeps its last size.
     #[error(
-        "the scale {scale} of {entity} does not scale its ClothCollider: give the shape its size in metres, or insert ScaleInShape if it has that size already"
+        "the ClothCollider of {entity} cannot have the scale {scale}: give the entity a scale that is finite, not zero and not mirrored, or insert ScaleInShape and give the shape its size in metres"
     )]
     ColliderScale {
         /// The entity with the collider.

@@ -20,6 +20,7 @@ use crate::fabric::awaited::AwaitedLevels;
 use crate::fabric::levels::ClothLevels;
 use crate::fabric::same_surface::{MovedState, on_other_particles};
 use crate::lod::lod_set::LodSet;
+use crate::motion::growth::Growth;
 use crate::motion::inertia::ClothInertia;
 use crate::motion::take_up::TakingUp;
 
@@ -89,12 +90,14 @@ pub(crate) struct ClothInstance {
     pub unmoved: bool,
     /// Scale and shear that are baked into the fabrics.
     pub scale: Mat3,
+    /// How many times as large as its fabrics the cloth is.
+    pub growth: Growth,
     /// Levels that another thread is building for this cloth.
     pub cutting: Option<AwaitedLevels>,
     pub activity: ClothActivity,
     /// The last valid material.
     pub material: FabricMaterial,
-    /// Gravity in the last tick, along the axes of the cloth's frame, m/s².
+    /// Gravity in the last tick, along the axes of the cloth's frame and in its units, m/s² of cloth that has not grown.
     pub gravity: Vec3,
     /// Inertia in the last tick, on which the meaning of the velocities depends; none before the first.
     pub inertia: Option<ClothInertia>,
@@ -151,6 +154,11 @@ impl ClothInstance {
     /// The fabric of the cloth at its level.
     pub fn fabric(&self) -> Option<&Arc<Fabric>> {
         self.levels.as_ref().map(|levels| levels.fabric(self.level))
+    }
+
+    /// The material with which the solver simulates the cloth, in the units of its frame.
+    pub fn acting_material(&self) -> FabricMaterial {
+        self.growth.material(&self.material)
     }
 
     /// Whether the cloth has fabrics of a former attachment, since the present one was refused.
@@ -212,6 +220,7 @@ impl ClothInstance {
         if let StateStorage::Lane(lane) = self.storage {
             self.storage = batches.remove_without_history(lane).into();
         }
+        let material = self.acting_material();
         if self.unmoved {
             self.level = to;
             self.start_at_rest();
@@ -219,7 +228,7 @@ impl ClothInstance {
             (&self.levels, &mut self.storage)
         {
             let state = core::mem::take(&mut **snapshot);
-            **snapshot = levels.transfer(state, (self.level, to), &self.material, self.gravity);
+            **snapshot = levels.transfer(state, (self.level, to), &material, self.gravity);
         }
         self.level = to;
     }

@@ -19,9 +19,10 @@ use crate::motion::pose::PoseHistory;
 /// needs are required by it and inserted with it.
 ///
 /// Positions are in the cloth's frame: the entity's own [`Transform`] or, with an
-/// [`Attachment`](crate::Attachment) to another entity, the pose of the target times the offset. A frame has no scale: the
+/// [`Attachment`](crate::Attachment) to another entity, the pose of the target times the offset. The
 /// scale of the entity and of all above it, or of the offset, is baked into the cloth when it is made, with shear by
-/// turned non-uniform scales. A later change of scale counts when this component or the attachment changes. A
+/// turned non-uniform scales. A later change of scale by one factor in all directions makes the cloth grow, see
+/// [`ClothState::scale`](crate::ClothState::scale); others are reported, and count when this component is inserted again. A
 /// [`ClothSkin`](crate::ClothSkin) scales the cloth by its joints, and the mesh has the figure's size.
 ///
 /// A mesh that cannot be simulated is reported in a [`ClothFailed`](crate::ClothFailed) event.

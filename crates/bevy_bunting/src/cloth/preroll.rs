@@ -185,16 +185,22 @@ fn begin_prerolls(
         let frame = frame_of(entity, attachment, &transforms).unwrap_or_default();
         let seconds = if preroll.seconds.is_finite() { preroll.seconds } else { 0.0 };
         let wind = surroundings.wind_at(frame * instance.rest_middle);
-        let drive = surroundings.drive(wind, frame, FrameMotion::NONE, &exposure);
-        let air = Loads::of_air(&drive, &instance.material, tick);
-        let (class, _) =
-            Loads { air, frame: exposure.acceleration().length(), ..Loads::default() }.class();
-        let acceleration = class.acceleration(settings.gravity.length());
+        let growth = instance.growth;
+        let drive = growth.drive(surroundings.drive(wind, frame, FrameMotion::NONE, &exposure));
+        let material = instance.acting_material();
+        let air = Loads::of_air(&drive, &material, tick);
+        let (class, _) = Loads {
+            air: growth.end() * air,
+            frame: exposure.acceleration().length(),
+            ..Loads::default()
+        }
+        .class();
+        let acceleration = class.acceleration(settings.gravity.length()) / growth.end();
         let preroll = Preroll {
             settings: settings.limits(instance.level).of_fabric(&fabric, tick, acceleration),
             fabric,
             state: *snapshot,
-            material: instance.material,
+            material,
             drive,
             tick,
             ticks: (seconds.clamp(0.0, LONGEST) / tick) as u32,

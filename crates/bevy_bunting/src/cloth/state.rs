@@ -11,8 +11,8 @@ use crate::fabric::levels::ClothLevels;
 
 /// The simulated surface of a cloth after the last tick; read only.
 ///
-/// Positions and normals are in the cloth's frame, whose pose in the world is the entity's `GlobalTransform`:
-/// the pose of the attachment's target times its offset or, without an [`Attachment`](crate::Attachment), the
+/// Positions and normals are in the cloth's frame, whose pose in the world is the entity's `GlobalTransform`, with the
+/// [`scale`](Self::scale) of cloth that has grown: the pose of the attachment's target times its offset or, without an [`Attachment`](crate::Attachment), the
 /// entity's own. After [`ClothSystems::Publish`] and after each frame, the `GlobalTransform` follows the
 /// target's current pose.
 ///
@@ -35,7 +35,7 @@ use crate::fabric::levels::ClothLevels;
 /// }
 /// # bevy_ecs::system::assert_is_system(lowest);
 /// ```
-#[derive(Component, Clone, Debug, Default)]
+#[derive(Component, Clone, Debug)]
 pub struct ClothState {
     pub(crate) positions: Vec<Vec3>,
     pub(crate) previous_positions: Vec<Vec3>,
@@ -53,6 +53,29 @@ pub struct ClothState {
     /// Motion of the frame in the last tick in which the cloth was simulated, and the length of that tick, s.
     pub(crate) motion: FrameMotion,
     pub(crate) tick: f32,
+    /// Metres in a unit of positions.
+    pub(crate) scale: f32,
+}
+
+impl Default for ClothState {
+    /// The state of a cloth before its first tick.
+    fn default() -> Self {
+        Self {
+            positions: Vec::new(),
+            previous_positions: Vec::new(),
+            normals: Vec::new(),
+            previous_normals: Vec::new(),
+            level: 0,
+            activity: ClothActivity::default(),
+            moved: false,
+            levels: None,
+            replaced: None,
+            is_skinned: false,
+            motion: FrameMotion::NONE,
+            tick: 0.0,
+            scale: 1.0,
+        }
+    }
 }
 
 /// The surface of a cloth before a change of level, in the cloth's frame.
@@ -94,6 +117,13 @@ impl ClothState {
     #[must_use]
     pub fn previous_normals(&self) -> &[Vec3] {
         &self.previous_normals
+    }
+
+    /// How many times as large the cloth is as when it was made: metres in a unit of [`positions`](Self::positions), and the scale
+    /// of the cloth's `GlobalTransform`. It is 1 unless the scale of what the cloth follows has changed since.
+    #[must_use]
+    pub fn scale(&self) -> f32 {
+        self.scale
     }
 
     /// The level of detail; 0 is the finest.
@@ -138,7 +168,8 @@ impl ClothState {
         self.levels.as_ref()?.vertex_position(self.level, vertex, &self.positions)
     }
 
-    /// Velocity of a particle relative to the world, along the axes of the cloth's frame, m/s: the mean over the last tick. Zero
+    /// Velocity of a particle relative to the world, along the axes of the cloth's frame, m/s: the mean over the last tick, without
+    /// that by growth. Zero
     /// while the cloth is not simulated, and of a particle that does not exist. Reading it wakes nothing.
     #[must_use]
     pub fn velocity(&self, particle: usize) -> Vec3 {
@@ -147,6 +178,7 @@ impl ClothState {
             return Vec3::ZERO;
         };
         let FrameMotion { rotation, translation } = self.motion;
+        let [now, before] = [now, before].map(|at| self.scale * at);
         (now - rotation.inverse() * (before - translation)) / self.tick
     }
 

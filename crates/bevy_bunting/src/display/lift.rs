@@ -49,7 +49,7 @@ pub(crate) fn lift_surfaces(
             lift.level = level;
         }
         let near = batches.near_colliders(lane);
-        let thickness = instance.material.thickness;
+        let thickness = instance.acting_material().thickness;
         surface.compute(levels.fabric(level), positions, thickness, near, &mut lift.current);
     }
 }

@@ -9,6 +9,7 @@ use parry3d::math::Vector;
 use parry3d::shape::{SharedShape, TriMesh, TriMeshFlags};
 
 use crate::cloth::reflect::SharedShapeReflect;
+use crate::environment::scaled_shape::ScaledShape;
 use crate::motion::pose::PoseHistory;
 
 /// A shape that no cloth enters. It moves with its entity and pushes cloth; cloth does not push it. A
@@ -26,12 +27,14 @@ use crate::motion::pose::PoseHistory;
 #[derive(Component, Clone, Reflect)]
 #[type_path = "bevy_bunting"]
 #[reflect(Component, Clone)]
-#[require(Transform, PoseHistory)]
+#[require(Transform, PoseHistory, ScaledShape)]
 pub struct ClothCollider {
-    /// The shape in the entity's frame, m; the entity's scale is ignored.
+    /// The shape in the entity's frame. The scale of the entity in the world multiplies it, at any time; without one it is in m. A
+    /// scale that differs from direction to direction makes a round shape a hull of as many corners as it needs, and shear is left
+    /// out.
     #[reflect(remote = SharedShapeReflect)]
     pub shape: SharedShape,
-    /// Distance that cloth keeps from the shape in addition to its thickness, m. A margin rounds edges: a box
+    /// Distance that cloth keeps from the shape in addition to its thickness, m, whatever the entity's scale. A margin rounds edges: a box
     /// with a margin is a round box, and cheaper than parry's round cuboid, whose projections are iterative.
     #[reflect(default)]
     pub margin: f32,
@@ -146,7 +149,7 @@ impl ClothCollider {
     }
 
     /// A mesh of triangles from a Bevy mesh, as [`triangles`](Self::triangles), with its positions multiplied by a
-    /// scale, since colliders ignore that of their entity.
+    /// scale. On an entity that has that scale, insert [`ScaleInShape`](crate::ScaleInShape), too.
     ///
     /// # Errors
     ///
@@ -177,10 +180,15 @@ impl ClothCollider {
         Self::new(SharedShape::halfspace(Vector::Y))
     }
 
-    /// The collider in a tick, at whose start and end it has these poses (positions in m).
-    pub(super) fn between(&self, from: (Vec3, Quat), to: (Vec3, Quat)) -> Collider {
-        let Self { shape, margin, friction, features } = self.clone();
-        Collider { shape, from, to, margin, friction, features, reports_as: None }
+    /// The collider with a shape of its size in a tick, at whose start and end it has these poses (positions in m).
+    pub(super) fn between(
+        &self,
+        shape: &SharedShape,
+        from: (Vec3, Quat),
+        to: (Vec3, Quat),
+    ) -> Collider {
+        let Self { margin, friction, features, .. } = *self;
+        Collider { shape: shape.clone(), from, to, margin, friction, features, reports_as: None }
     }
 }
 

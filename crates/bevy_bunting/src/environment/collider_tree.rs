@@ -7,8 +7,10 @@ use bevy_ecs::prelude::*;
 use bevy_math::Isometry3d;
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::partitioning::{Bvh, BvhWorkspace};
+use parry3d::shape::SharedShape;
 
 use crate::environment::collider::ClothCollider;
+use crate::environment::scaled_shape::ScaledShape;
 use crate::motion::pose::{PoseHistory, parry_pose, pose_parts};
 use crate::motion::shift::ShiftOrigin;
 
@@ -50,9 +52,14 @@ impl ColliderTree {
     }
 
     /// Stores the box that a collider sweeps in this tick.
-    fn set(&mut self, entity: Entity, collider: &ClothCollider, history: &PoseHistory) {
+    fn set(
+        &mut self,
+        entity: Entity,
+        (collider, shape): (&ClothCollider, &ScaledShape),
+        history: &PoseHistory,
+    ) {
         let leaf = self.leaf_of(entity);
-        match swept_box(collider, history) {
+        match swept_box(collider, shape.of(&collider.shape), history) {
             Some(swept) => {
                 self.endless.retain(|&endless| endless != leaf);
                 self.tree.insert_or_update_partially(swept, leaf, 0.0);
@@ -114,12 +121,12 @@ impl ColliderTree {
 
 /// Box around a collider during a tick, in the world, m; none where the collider has no end. The box includes the
 /// margin and the way that particles which the collider pushes may pull others.
-fn swept_box(collider: &ClothCollider, history: &PoseHistory) -> Option<Aabb> {
-    if collider.shape.as_heightfield().is_some() {
+fn swept_box(collider: &ClothCollider, shape: &SharedShape, history: &PoseHistory) -> Option<Aabb> {
+    if shape.as_heightfield().is_some() {
         return None;
     }
     let (from, to) = history.extrapolated();
-    let swept = collider.between(pose_parts(from), pose_parts(to)).swept_box();
+    let swept = collider.between(shape, pose_parts(from), pose_parts(to)).swept_box();
     let reach = collider.margin.max(0.0) + from.translation.distance(to.translation);
     let swept = Aabb::new(swept.mins - reach, swept.maxs + reach);
     let farthest = swept.mins.abs().max(swept.maxs.abs()).max_element();
@@ -145,7 +152,7 @@ pub(super) fn shift_tree(_: On<ShiftOrigin>, mut tree: ResMut<ColliderTree>) {
 
 /// Updates the boxes of colliders that are new, changed or in motion, or moved in the last tick.
 pub(super) fn update_tree(
-    colliders: Query<(Entity, Ref<ClothCollider>, &PoseHistory)>,
+    colliders: Query<(Entity, Ref<ClothCollider>, &ScaledShape, &PoseHistory)>,
     mut tree: ResMut<ColliderTree>,
 ) {
     if colliders.is_empty() {
@@ -154,10 +161,10 @@ pub(super) fn update_tree(
     let tree = &mut *tree;
     let moved = core::mem::take(&mut tree.moving);
     let is_shifted = core::mem::take(&mut tree.is_shifted);
-    for (entity, collider, history) in &colliders {
+    for (entity, collider, shape, history) in &colliders {
         let moves = !history.rests() || collider.is_changed();
         if moves || is_shifted {
-            tree.set(entity, &collider, history);
+            tree.set(entity, (&collider, shape), history);
         }
         if moves {
             tree.moving.push(entity);
@@ -165,10 +172,10 @@ pub(super) fn update_tree(
     }
     let mut is_changed = is_shifted || !tree.moving.is_empty();
     for entity in moved {
-        if let Ok((entity, collider, history)) = colliders.get(entity)
+        if let Ok((entity, collider, shape, history)) = colliders.get(entity)
             && history.rests()
         {
-            tree.set(entity, &collider, history);
+            tree.set(entity, (&collider, shape), history);
             is_changed = true;
         }
     }

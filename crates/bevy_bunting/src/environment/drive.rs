@@ -47,7 +47,7 @@ pub(crate) fn drive_cloths(
 ) {
     let tick = surroundings.tick();
     let middles = cloths.iter().filter_map(|((instance, frame, ..), _)| {
-        instance.lane().map(|_| frame.end() * instance.rest_middle)
+        instance.lane().map(|_| frame.end() * (instance.growth.end() * instance.rest_middle))
     });
     surroundings.winds_at(middles, &mut winds);
     let mut winds = winds.iter();
@@ -58,7 +58,8 @@ pub(crate) fn drive_cloths(
         let mut drive = surroundings.drive(*wind, frame.end(), motion, &exposure);
         // Gravity is written in every tick, which must not mark the cloth as changed.
         let instance = instance.bypass_change_detection();
-        instance.gravity = drive.gravity;
+        let growth = instance.growth;
+        instance.gravity = growth.drive(drive).gravity;
         let inertia = inertia.map_or_else(ClothInertia::default, |inertia| inertia.acting());
         if instance.inertia.is_some_and(|former| former != inertia) {
             replace_inertia(instance, inertia, &effort.motion(), tick, &mut batches);
@@ -67,11 +68,14 @@ pub(crate) fn drive_cloths(
         if !inertia.is_full() {
             inertia.reduce(&mut drive, &effort.motion(), tick);
         }
-        let air = Loads::of_air(&drive, &instance.material, tick);
+        let drive = growth.drive(drive);
+        let air = Loads::of_air(&drive, &instance.acting_material(), tick);
+        let air = air * growth.end();
         effort.note_drive(motion, air, exposure.acceleration().length(), inertia);
         let mut lane = batches.lane(lane);
         if let Some(velocity) = frame.launch() {
-            launch(&mut lane, frame.end().rotation.inverse() * inertia.felt_launch(velocity, tick));
+            let velocity = frame.end().rotation.inverse() * inertia.felt_launch(velocity, tick);
+            launch(&mut lane, velocity / growth.end());
         }
         lane.drive(drive);
     }
@@ -88,7 +92,9 @@ fn replace_inertia(
     let (Some(former), Some(mut state)) = (instance.inertia, instance.state(batches)) else {
         return;
     };
-    inertia.replace(former, &mut state, motion, tick);
+    let growth = &instance.growth;
+    let [former, inertia] = [former, inertia].map(|inertia| growth.inertia(inertia));
+    inertia.replace(former, &mut state, &growth.motion(*motion), tick);
     if state.is_finite() {
         instance.set_state(state, batches);
     }

@@ -16,8 +16,11 @@ use crate::environment::collider_tree::{
 use crate::environment::drive::drive_cloths;
 use crate::environment::layers::{ClothFeatures, ClothLayers};
 use crate::environment::reactions::ClothReactions;
-use crate::environment::report_colliders::{ScaleInShape, report_colliders, report_scales};
-use crate::motion::lost_target::handle_lost_targets;
+use crate::environment::report_colliders::{ScaleInShape, report_colliders};
+use crate::environment::scale_shapes::{scale_again, scale_shapes};
+use crate::environment::scaled_shape::ScaledShape;
+use crate::environment::shapes_in_units::ShapesInUnits;
+use crate::motion::observe::observe_ticks;
 use crate::motion::pose::{PoseHistory, pose_parts};
 use crate::schedule::{ClothSystems, ClothTick};
 
@@ -35,10 +38,11 @@ impl Plugin for ColliderPlugin {
             .init_resource::<ColliderTree>()
             .add_observer(forget_collider)
             .add_observer(shift_tree)
+            .add_observer(scale_again)
             .add_systems(
                 ClothTick,
                 (
-                    (report_colliders, report_scales.after(handle_lost_targets))
+                    (report_colliders, scale_shapes.after(observe_ticks))
                         .in_set(ClothSystems::Prepare),
                     (update_tree, drive_colliders)
                         .chain()
@@ -56,6 +60,7 @@ impl Plugin for ColliderPlugin {
 type NearCollider = (
     Entity,
     &'static ClothCollider,
+    &'static ScaledShape,
     &'static PoseHistory,
     Option<&'static ClothLayers>,
     Has<ClothReactions>,
@@ -63,6 +68,7 @@ type NearCollider = (
 
 /// A cloth that may touch colliders.
 type TouchingCloth = (
+    Entity,
     &'static ClothInstance,
     &'static PoseHistory,
     Option<&'static ClothLayers>,
@@ -80,6 +86,7 @@ pub(super) fn drive_colliders(
     time: Res<Time>,
     mut batches: ResMut<ClothBatches>,
     mut had_any: Local<bool>,
+    mut shapes: Local<ShapesInUnits>,
 ) {
     let has_any = !tree.is_empty();
     if !has_any && !*had_any {
@@ -87,19 +94,32 @@ pub(super) fn drive_colliders(
     }
     *had_any = has_any;
     batches.update_bounds(time.delta_secs());
-    for (instance, frame, layers, features) in &cloths {
+    for (cloth, instance, frame, layers, features) in &cloths {
         let Some(lane) = instance.lane() else { continue };
         let (start, end) = frame.extrapolated();
-        let bounds = batches.bounds(lane).map(|bounds| in_world(&bounds, (start, end)));
+        let growth = &instance.growth;
+        let bounds = batches.bounds(lane).map(|bounds| growth.bounds(&bounds));
+        let bounds = bounds.map(|bounds| in_world(&bounds, (start, end)));
         let near = bounds.iter().flat_map(|bounds| tree.near(bounds));
         let (start, end) = (start.inverse(), end.inverse());
         let layers = layers.copied().unwrap_or_default();
         let has_features = instance.level < features.copied().unwrap_or_default().levels;
         let colliders = colliders.iter_many(near).filter_map(|near| {
-            let (entity, collider, pose, of_collider, reacts) = near;
+            let (entity, collider, shape, pose, of_collider, reacts) = near;
             let touch = layers.touch(of_collider.copied().unwrap_or_default());
             let (from, to) = touch.then(|| pose.extrapolated())?;
-            let collider = collider.between(relative_pose(start, from), relative_pose(end, to));
+            let (from, to) = (relative_pose(start, from), relative_pose(end, to));
+            let [at_start, at_end] = growth.places([from.0, to.0]);
+            let (from, to) = ((at_start, from.1), (at_end, to.1));
+            let own = &collider.shape;
+            let collider = if growth.end() == 1.0 {
+                collider.between(shape.of(own), from, to)
+            } else {
+                let scale = shape.scale() / growth.end();
+                let shape = shapes.shape((cloth, entity), own, scale);
+                let margin = collider.margin / growth.end();
+                Collider { margin, ..collider.between(shape, from, to) }
+            };
             Some(Collider {
                 features: collider.features && has_features,
                 reports_as: reacts.then(|| entity.to_bits()),
@@ -108,6 +128,7 @@ pub(super) fn drive_colliders(
         });
         batches.lane(lane).set_colliders(colliders);
     }
+    shapes.end_tick();
 }
 
 /// A pose relative to a frame, given the inverse of the frame's pose.

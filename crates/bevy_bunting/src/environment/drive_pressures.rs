@@ -71,7 +71,7 @@ fn drive_pressures(
             continue;
         }
         let mut lane = batches.lane(lane);
-        let Err(error) = lane.set_pressure(Some((*air).into())) else {
+        let Err(error) = lane.set_pressure(Some(instance.growth.pressure((*air).into()))) else {
             refused.remove(&entity);
             continue;
         };

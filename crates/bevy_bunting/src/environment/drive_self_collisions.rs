@@ -55,6 +55,7 @@ pub(super) fn drive_self_collisions(
     }
     for (instance, &SelfCollision { thickness, levels }) in &cloths {
         let Some(lane) = instance.lane() else { continue };
+        let thickness = thickness / instance.growth.end();
         let settings = bunting_solver::SelfCollision { thickness };
         batches.lane(lane).set_self_collision((instance.level < levels).then_some(settings));
     }

@@ -1,6 +1,7 @@
 //! Finds the cloths that may touch one another in a tick.
 
 use bevy_app::{App, Plugin};
+use bevy_ecs::entity::EntityHashSet;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use bevy_math::Vec3;
@@ -32,6 +33,10 @@ const REACH: f32 = 0.05;
 
 /// Distance from a sleeping cloth within which a moving one wakes it, m. Smaller: fast cloth enters sleeping cloth.
 const CLEARANCE: f32 = 0.5;
+
+/// Part by which the sizes of cloths that touch one another may differ, of which the solver takes one. Smaller: garments of one
+/// growing figure pass through one another by rounding. Larger: distances between them are visibly wrong.
+const SAME_SIZE: f32 = 1e-3;
 
 /// Keeps cloths with a [`ClothCollision`] from passing through one another.
 #[derive(Debug, Default)]
@@ -88,6 +93,8 @@ struct Awake {
     /// Box around its paths in this tick, in the world, m.
     around: Aabb,
     is_moving: bool,
+    /// Metres in a unit of the frame.
+    size: f32,
     /// Index of the first cloth of its group.
     group: usize,
 }
@@ -97,6 +104,8 @@ fn group_cloths(
     mut cloths: Query<CollidingCloth>,
     time: Res<Time>,
     mut batches: ResMut<ClothBatches>,
+    mut reported: Local<EntityHashSet>,
+    mut commands: Commands,
 ) {
     let mut awake = Vec::new();
     if cloths.iter().len() > 1 {
@@ -105,7 +114,18 @@ fn group_cloths(
         batches.update_bounds_of(&lanes, tick);
         awake.extend(cloths.iter().filter_map(|cloth| cloth.awake(&batches, tick)));
         awake.sort_unstable_by_key(|cloth: &Awake| cloth.entity);
-        unite(&mut awake);
+        for [one, other] in unite(&mut awake) {
+            if reported.insert(one) {
+                let error = ClothError::CollisionScale { entity: one, other };
+                ClothFailed::report(&mut commands, one, error);
+            }
+        }
+        for index in 0..awake.len() {
+            let size = awake[awake[index].group].size;
+            awake[index].cloth.member.start.0 /= size;
+        }
+    } else {
+        reported.clear();
     }
     for mut cloth in &mut cloths {
         let found = awake.binary_search_by_key(&cloth.entity, |awake| awake.entity);
@@ -132,16 +152,21 @@ impl CollidingClothReadOnlyItem<'_, '_> {
             return None;
         }
         let frame = (self.frame.start(), self.frame.end());
-        let around = in_world(&batches.bounds(lane)?, frame).loosened(thickness + REACH);
+        let growth = &self.instance.growth;
+        let around = growth.bounds(&batches.bounds(lane)?);
+        let around = in_world(&around, frame).loosened(thickness + REACH);
         let layers = self.layers.copied().unwrap_or_default();
-        let motion = self.frame.motion();
+        let motion = growth.motion(self.frame.motion());
         let inertia = self.inertia.map_or_else(ClothInertia::default, |it| it.acting());
+        let inertia = growth.inertia(inertia);
+        let start = pose_parts(frame.0);
         let carrier = inertia.carrier(self.instance.rest_middle, &motion, tick);
         let member = GroupMember {
-            thickness,
+            thickness: thickness / growth.end(),
             memberships: layers.memberships,
             filters: layers.filters,
-            start: pose_parts(frame.0),
+            // In m, until the size of the group is known.
+            start,
             motion,
             carrier: frame.1.rotation * carrier,
         };
@@ -151,6 +176,7 @@ impl CollidingClothReadOnlyItem<'_, '_> {
             layers,
             around,
             is_moving: self.timer.ticks == 0,
+            size: growth.end(),
             group: 0,
         })
     }
@@ -160,9 +186,10 @@ impl CollidingClothItem<'_, '_> {
     /// Whether a moving cloth is near.
     fn is_disturbed(&self, awake: &[Awake]) -> bool {
         let middle = self.state.positions().get(self.state.positions().len() / 2);
-        let middle: Vec3 = self.frame.end() * middle.copied().unwrap_or_default();
+        let size = self.instance.growth.end();
+        let middle: Vec3 = self.frame.end() * (size * middle.copied().unwrap_or_default());
         let layers = self.layers.copied().unwrap_or_default();
-        let reach = self.record.radius + CLEARANCE;
+        let reach = size * self.record.radius + CLEARANCE;
         awake.iter().any(|other| {
             let nearest = middle.clamp(other.around.mins, other.around.maxs);
             other.is_moving
@@ -172,8 +199,10 @@ impl CollidingClothItem<'_, '_> {
     }
 }
 
-/// Unites cloths whose boxes intersect: those of a group have the index of its first cloth.
-fn unite(cloths: &mut [Awake]) {
+/// Unites cloths whose boxes intersect: those of a group have the index of its first cloth. Returns pairs that are not united
+/// since they have grown by different factors.
+fn unite(cloths: &mut [Awake]) -> Vec<[Entity; 2]> {
+    let mut of_other_size = Vec::new();
     (0..cloths.len()).for_each(|index| cloths[index].group = index);
     let mut by_start: Vec<usize> = (0..cloths.len()).collect();
     by_start
@@ -185,6 +214,10 @@ fn unite(cloths: &mut [Awake]) {
                 break;
             }
             if first.layers.touch(second.layers) && first.around.intersects(&second.around) {
+                if (first.size - second.size).abs() > SAME_SIZE * first.size {
+                    of_other_size.push([first.entity, second.entity]);
+                    continue;
+                }
                 let roots = [root(cloths, one), root(cloths, other)];
                 cloths[roots[0].max(roots[1])].group = roots[0].min(roots[1]);
             }
@@ -194,6 +227,7 @@ fn unite(cloths: &mut [Awake]) {
     for index in 0..cloths.len() {
         cloths[index].group = cloths[cloths[index].group].group;
     }
+    of_other_size
 }
 
 /// Index of the first cloth of a group so far.

@@ -1,24 +1,15 @@
-//! Reports colliders that no cloth feels, or feels in another size than they seem to have.
+//! Reports colliders that no cloth feels.
 
-use bevy_ecs::entity::EntityHashSet;
 use bevy_ecs::prelude::*;
-use bevy_math::Vec3;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
-use bevy_transform::components::Transform;
-use bevy_transform::helper::TransformHelper;
 
 use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::environment::collider::ClothCollider;
 
-/// Part by which a scale may differ from 1 without a message. Smaller: rounding in turned hierarchies is taken for a scale.
-/// Larger: colliders are of another size than what is drawn.
-const TOLERANCE: f32 = 1e-3;
-
 /// Says that the shape of a [`ClothCollider`] on a scaled entity has its size in metres already, as
-/// `ClothCollider::from_mesh` and avian's shapes have it, so that the scale is not reported as
-/// [`ClothError::ColliderScale`]. It changes nothing else.
+/// `ClothCollider::from_mesh` and avian's shapes have it, so that the scale does not change it.
 ///
 /// ```
 /// use bevy_bunting::ScaleInShape;
@@ -66,32 +57,4 @@ fn defect(collider: &ClothCollider) -> Option<(&'static str, f32)> {
     // True where a number is NaN.
     let bad = extents.into_iter().find(|extent| !(extent.is_finite() && *extent >= 0.0));
     bad.map(|extent| ("shape's extent", extent))
-}
-
-/// Filter of colliders whose scale may be another than before.
-type MayBeScaled = (Or<(Changed<ClothCollider>, Changed<Transform>)>, Without<ScaleInShape>);
-
-/// Reports scales of the entities of colliders, once until they have none.
-pub(super) fn report_scales(
-    colliders: Query<(Entity, Ref<ClothCollider>, &Transform), MayBeScaled>,
-    transforms: TransformHelper,
-    mut removed: RemovedComponents<ClothCollider>,
-    mut reported: Local<EntityHashSet>,
-    mut commands: Commands,
-) {
-    for entity in removed.read() {
-        reported.remove(&entity);
-    }
-    for (entity, collider, own) in &colliders {
-        // The scales above it count when the collider is new: what moves in each tick is only compared.
-        let scale = match collider.is_changed() {
-            true => transforms.compute_global_transform(entity).map_or(own.scale, |it| it.scale()),
-            false => own.scale,
-        };
-        if scale.abs_diff_eq(Vec3::ONE, TOLERANCE) {
-            reported.remove(&entity);
-        } else if reported.insert(entity) {
-            ClothFailed::report(&mut commands, entity, ClothError::ColliderScale { entity, scale });
-        }
-    }
 }

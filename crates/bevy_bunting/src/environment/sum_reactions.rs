@@ -46,8 +46,10 @@ fn sum_reactions(
         let rotation = frame.extrapolated().1.rotation;
         for reaction in batches.reactions(lane).filter(|reaction| reaction.area > 0.0) {
             let ContactReaction { collider, impulse, angular_impulse, area } = reaction;
-            let force = rotation * impulse / tick;
-            let torque = rotation * angular_impulse / tick;
+            let growth = &instance.growth;
+            let force = rotation * (growth.force() * impulse) / tick;
+            let torque = rotation * (growth.torque() * angular_impulse) / tick;
+            let area = area * (growth.end() * growth.end());
             let of_collider = found.entry(Entity::from_bits(collider)).or_default();
             of_collider.push(ClothReaction { cloth, force, torque, area });
         }

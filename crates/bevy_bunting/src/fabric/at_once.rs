@@ -27,7 +27,7 @@ type Cut = (
     Has<ClothSkin>,
 );
 
-/// The levels of a cloth by its present components, and the scale that is baked into them. They are looked up, or built on
+/// The levels of a cloth that is `size` times as large as they are, by its present components, and the scale that is baked into them. They are looked up, or built on
 /// this thread; the cloth itself does not change. None if the entity is no cloth.
 ///
 /// # Errors
@@ -36,6 +36,7 @@ type Cut = (
 pub(crate) fn levels_at_once(
     world: &mut World,
     entity: Entity,
+    size: f32,
 ) -> Result<Option<(Arc<ClothLevels>, Mat3)>, ClothError> {
     let mut state = SystemState::<(Query<Cut>, TransformHelper, ResMut<FabricLibrary>)>::new(world);
     let Ok((cloths, transforms, mut library)) = state.get_mut(world) else { return Ok(None) };
@@ -43,7 +44,7 @@ pub(crate) fn levels_at_once(
         return Ok(None);
     };
     lods.validate(entity)?;
-    let scale = scale_of(entity, attachment, has_baked || has_skin, &transforms)?;
+    let scale = scale_of(entity, attachment, has_baked || has_skin, size, &transforms)?;
     let attached = attachment.map(|attachment| Attached::of(attachment, mesh));
     let mesh = bake(mesh, scale);
     let resolution = resolution.copied().unwrap_or_default();

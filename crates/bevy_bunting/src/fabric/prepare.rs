@@ -5,7 +5,7 @@ use std::sync::Arc;
 use bevy_app::{App, Plugin};
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
-use bevy_math::Isometry3d;
+use bevy_math::{Isometry3d, Vec3};
 use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
 
@@ -29,7 +29,7 @@ use crate::fabric::scale::{ScaleBaked, bake, scale_of};
 use crate::lod::budget::{ClothBudget, LodCosts};
 use crate::lod::lod_set::{LodChoice, LodSet};
 use crate::motion::attachment::Attachment;
-use crate::motion::frame::{frame_of, is_finite};
+use crate::motion::frame::{followed_scale, frame_of, is_finite};
 use crate::motion::lost_target::handle_lost_targets;
 use crate::motion::pose::PoseHistory;
 use crate::motion::take_up::TakingUp;
@@ -270,15 +270,44 @@ impl CutClothItem<'_, '_> {
             let valid = self.material.0.validate();
             valid.map_err(|source| ClothError::Material { entity, source })?;
         }
-        let attachment = self.attachment.as_deref();
         if self.instance.cutting.is_none() || self.is_edited() {
-            let has_scale = self.has_baked || self.has_skin;
-            self.instance.scale = scale_of(entity, attachment, has_scale, transforms)?;
+            self.find_scale(target, transforms)?;
         }
+        let attachment = self.attachment.as_deref();
         let mesh = bake(&self.mesh, self.instance.scale);
         self.instance.resolution = self.resolution();
         let attached = attachment.map(|attachment| Attached::of(attachment, &self.mesh));
         library.levels(entity, &mesh, attached, self.valid_lods(), self.resolution())
+    }
+
+    /// Finds the scale that is baked into the fabrics. A cloth that has grown keeps its fabrics and its size.
+    fn find_scale(
+        &mut self,
+        target: Option<Entity>,
+        transforms: &TransformHelper,
+    ) -> Result<(), ClothError> {
+        let (entity, attachment) = (self.entity, self.attachment.as_deref());
+        let followed = followed_scale(entity, attachment, transforms).unwrap_or(Vec3::ONE);
+        let is_attached = target.is_some_and(|target| target != entity);
+        let instance = &*self.instance;
+        let growth = &instance.growth;
+        // A mesh that is made anew from an asset has the whole scale.
+        let is_whole = self.has_baked && self.history.has_new(&self.mesh);
+        let keeps = growth.is_known()
+            && !is_whole
+            && (instance.target != target || is_attached || growth.with(followed).is_some());
+        let size = if keeps { growth.with(followed).unwrap_or(growth.end()) } else { 1.0 };
+        let has_scale = self.has_baked || self.has_skin;
+        let scale = scale_of(entity, attachment, has_scale, size, transforms)?;
+        let is_other = instance.target != target;
+        let instance = &mut *self.instance;
+        instance.scale = scale;
+        if !keeps {
+            instance.growth.restart(followed);
+        } else if is_other {
+            instance.growth.keep_with(followed);
+        }
+        Ok(())
     }
 
     /// Simulates the cloth with new levels from now on.
@@ -368,7 +397,9 @@ impl CutClothItem<'_, '_> {
             commands.entity(self.entity).remove::<ClothPaused>();
         }
         let change = before.zip(frame).map(|(before, now)| now.inverse() * before);
-        change.filter(is_finite).unwrap_or_default()
+        let mut change = change.filter(is_finite).unwrap_or_default();
+        change.translation /= instance.growth.end();
+        change
     }
 }
 
@@ -389,7 +420,7 @@ pub(crate) fn change_materials(
         instance.material = material.0;
         instance.wake();
         if let Some(lane) = instance.lane() {
-            batches.lane(lane).set_material(material.0);
+            batches.lane(lane).set_material(instance.acting_material());
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Scales on the way to a cloth are baked into its mesh: frames have no scale.
+//! Scales on the way to a cloth are baked into its mesh when it is made; later ones make its frame larger (`motion/growth.rs`).
 
 use std::borrow::Cow;
 
@@ -18,8 +18,8 @@ pub(crate) struct ScaleBaked;
 /// their fabrics. Larger: sizes are visibly wrong.
 const STEP: f32 = 1.0 / 16_384.0;
 
-/// Scale and shear of a cloth in its frame: of its own transform and all above it or, if it is attached to another entity,
-/// of the attachment's offset. None remains where the mesh has its scale already, baked or by a skin.
+/// Scale and shear of a cloth in its frame: of its own transform and all above it, less a `size` by which the cloth has grown,
+/// or, if it is attached to another entity, of the attachment's offset. None remains where the mesh has its scale already, baked or by a skin.
 ///
 /// # Errors
 ///
@@ -28,6 +28,7 @@ pub(crate) fn scale_of(
     entity: Entity,
     attachment: Option<&Attachment>,
     has_scale: bool,
+    size: f32,
     transforms: &TransformHelper,
 ) -> Result<Mat3, ClothError> {
     if has_scale {
@@ -39,7 +40,7 @@ pub(crate) fn scale_of(
         (None, Ok(global)) => {
             let axes = global.affine().matrix3;
             let rotation: Quat = global.rotation();
-            Mat3::from(Mat3A::from_quat(rotation.normalize()).transpose() * axes)
+            Mat3::from(Mat3A::from_quat(rotation.normalize()).transpose() * axes) * size.recip()
         }
         (None, Err(_)) => Mat3::IDENTITY,
     };

@@ -75,14 +75,17 @@ impl ClothEffort {
         if let (true, Some(fabric), Some(begun)) =
             (self.loads == Loads::default(), instance.fabric(), instance.snapshot())
         {
-            let material = &instance.material;
-            self.loads.tension = Loads::of_pins(fabric, material, &begun.positions);
+            let material = instance.acting_material();
+            let tension = Loads::of_pins(fabric, &material, &begun.positions);
+            self.loads.tension = instance.growth.end() * tension;
         }
         let of_frame = if frame.rests() && self.motion.is_none() {
             0.0
         } else {
             let Some(fabric) = instance.fabric() else { return false };
-            self.inertia.load(&self.motion, &frame.motion(), fabric, tick)
+            let growth = &instance.growth;
+            let [before, now] = [self.motion, frame.motion()].map(|motion| growth.motion(motion));
+            growth.end() * growth.inertia(self.inertia).load(&before, &now, fabric, tick)
         };
         self.loads.frame = of_frame + self.acceleration;
         let before = self.effort.class();
@@ -109,10 +112,10 @@ impl ClothEffort {
         self.loads.air = air;
     }
 
-    /// Notes the loads of turning links, of pins and of colliders in this tick.
-    pub(crate) fn note_tick(&mut self, surface: &LaneSurface) {
-        self.loads.motion = surface.motion;
-        self.loads.tension = surface.tension;
-        self.loads.contacts = surface.contacts;
+    /// Notes the loads of turning links, of pins and of colliders in this tick, of a cloth whose units are `size` metres long.
+    pub(crate) fn note_tick(&mut self, surface: &LaneSurface, size: f32) {
+        self.loads.motion = size * surface.motion;
+        self.loads.tension = size * surface.tension;
+        self.loads.contacts = size * surface.contacts;
     }
 }

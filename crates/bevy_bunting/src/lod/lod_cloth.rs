@@ -95,9 +95,15 @@ impl LodClothItem<'_, '_> {
     /// Returns the position in the world of the middle particle when the cloth was last examined, m, and stores it in
     /// the record.
     fn place_middle(&mut self) -> Vec3 {
-        self.record.centre = self.frame.end() * self.record.middle;
+        let size = self.instance.growth.end();
+        self.record.centre = self.frame.end() * (size * self.record.middle);
         self.record.placed = self.frame.last_changed();
         self.record.centre
+    }
+
+    /// Greatest distance of any particle from the middle one in the world, m.
+    pub fn radius(&self) -> f32 {
+        self.instance.growth.end() * self.record.radius
     }
 
     /// Whether the cloth sleeps off the screen and still is off the screen, so that it need not be examined.
@@ -106,7 +112,7 @@ impl LodClothItem<'_, '_> {
             // Poses of many sleeping cloths are not in the cache.
             let has_moved = self.record.placed != self.frame.last_changed();
             let centre = if has_moved { self.place_middle() } else { self.record.centre };
-            Sighting::of(views, centre, self.record.radius).sight == Sight::OffScreen
+            Sighting::of(views, centre, self.radius()).sight == Sight::OffScreen
         }
     }
 

@@ -25,7 +25,7 @@ pub(crate) struct LodRecord {
     pub centre: Vec3,
     /// Change of the cloth's pose for which `centre` was computed.
     pub placed: Tick,
-    /// Greatest distance of any particle from the middle one, m.
+    /// Greatest distance of any particle from the middle one in the frame, m times the size of cloth that has grown.
     pub radius: f32,
     /// Number that decides in which ticks the cloth is examined.
     pub phase: u32,

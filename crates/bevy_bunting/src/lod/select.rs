@@ -260,7 +260,7 @@ impl LevelSelector {
         let views = &examination.views;
         let mut sighting = None;
         let to = if matches!(cloth.instance.lods.choice, LodChoice::Automatic { .. }) {
-            sighting = Some(Sighting::of(views, centre, cloth.record.radius));
+            sighting = Some(Sighting::of(views, centre, cloth.radius()));
             cloth.instance.lods.pinned.unwrap_or(cloth.instance.level)
         } else {
             let nearest = views.iter().map(|view| view.distance(centre)).reduce(f32::min);
@@ -272,12 +272,14 @@ impl LevelSelector {
         let is_taking_up = cloth.instance.taking_up.is_some();
         let to = if is_taking_up { cloth.instance.level } else { to };
         self.change(cloth, to, on_screen, batches, commands);
+        // Errors of levels are those of their fabrics.
+        let size = cloth.instance.growth.end();
         let mut candidate = Candidate {
             table: table as u32,
             level: to as u32,
             pixels_per_metre: sighting
-                .map_or(0.0, |it| it.pixels_per_metre * cloth.instance.lods.bias),
-            importance: sighting.map_or(0.0, |it| importance(&it, cloth.record.radius)),
+                .map_or(0.0, |it| it.pixels_per_metre * size * cloth.instance.lods.bias),
+            importance: sighting.map_or(0.0, |it| importance(&it, cloth.radius())),
             ready: false,
             fresh: cloth.instance.unmoved,
             fixed: sighting.is_none() || cloth.instance.lods.pinned.is_some() || is_taking_up,

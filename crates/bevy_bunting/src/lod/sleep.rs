@@ -19,6 +19,7 @@ use crate::environment::collider::ClothCollider;
 use crate::environment::forces::acceleration::ClothAcceleration;
 use crate::environment::layers::{ClothFeatures, ClothLayers};
 use crate::environment::pressure::ClothPressure;
+use crate::environment::scaled_shape::ScaledShape;
 use crate::environment::self_collision::SelfCollision;
 use crate::environment::wind::influence::WindInfluence;
 use crate::environment::wind::per_particle::WindPerParticle;
@@ -166,7 +167,8 @@ impl Changes {
         radius: f32,
     ) -> bool {
         let middle = state.positions().get(state.positions().len() / 2);
-        let middle = frame * middle.copied().unwrap_or_default();
+        let middle = frame * (state.scale() * middle.copied().unwrap_or_default());
+        let radius = state.scale() * radius;
         let is_near =
             |&(centre, other): &(Vec3, f32)| middle.distance(centre) < radius + other + CLEARANCE;
         timer.has_moved_to(frame) || self.disturbed.iter().any(is_near)
@@ -263,7 +265,7 @@ fn has_new_layers(
 }
 
 fn note_changes(
-    colliders: Query<(Ref<ClothCollider>, &PoseHistory)>,
+    colliders: Query<(Ref<ClothCollider>, &ScaledShape, &PoseHistory)>,
     layers: Query<Layers, HasNewLayers>,
     settings: Res<ClothSettings>,
     wind: Res<TickWind>,
@@ -282,10 +284,10 @@ fn note_changes(
     changes.disturbed.clear();
     changes.disturbed.extend(wind.changed_balls(&changes.wind));
     changes.wind.clone_from(&wind);
-    for (collider, history) in &colliders {
+    for (collider, shape, history) in &colliders {
         changes.everywhere |= history.has_new(&collider);
         if !history.rests() {
-            let ball = collider.shape.compute_local_bounding_sphere();
+            let ball = shape.of(&collider.shape).compute_local_bounding_sphere();
             let centre = history.end() * ball.center;
             changes.disturbed.push((centre, ball.radius + collider.margin));
         }
@@ -376,5 +378,5 @@ pub(crate) fn send_to_sleep(
 fn speed(state: &ClothState, tick: f32) -> f32 {
     let pairs = state.positions().iter().zip(state.previous_positions());
     let squares: f32 = pairs.map(|(now, before)| now.distance_squared(*before)).sum();
-    (squares / state.positions().len().max(1) as f32).sqrt() / tick
+    state.scale() * (squares / state.positions().len().max(1) as f32).sqrt() / tick
 }

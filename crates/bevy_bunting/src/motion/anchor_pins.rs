@@ -9,6 +9,7 @@ use bunting_solver::{Fabric, MovingPin};
 use crate::fabric::known_level::KnownLevel;
 use crate::fabric::levels::ClothLevels;
 use crate::motion::anchor_poses::AnchorPoses;
+use crate::motion::growth::Growth;
 use crate::motion::held_group::HeldGroup;
 use crate::motion::pose::PoseHistory;
 
@@ -69,12 +70,13 @@ impl AnchorPins {
         }));
     }
 
-    /// Finds the places of the pins in a tick, given the cloth's frame. Returns whether all are in their places at its start.
+    /// Finds the places of the pins in a tick, given the cloth's frame and its growth. Returns whether all are in their places at its start.
     pub fn find_places(
         &mut self,
         fabric: &Fabric,
         poses: &AnchorPoses,
         frame: &PoseHistory,
+        growth: &Growth,
     ) -> bool {
         let (start, end) = (frame.start().inverse(), frame.end().inverse());
         let mut are_in_place = true;
@@ -87,7 +89,8 @@ impl AnchorPins {
                     .filter_map(|&(anchor, part)| Some((of(poses.span(anchor)?), part)));
                 between(rest, parts)
             };
-            pin.place = place(pin, &|(_, to)| end * (to * rest));
+            let size = growth.end();
+            pin.place = place(pin, &|(_, to)| end * (to * (size * rest)) / size);
             let rests = frame.rests() && pin.shares.iter().all(|&(anchor, _)| poses.rests(anchor));
             if rests && pin.is_settled {
                 // Another place is the rounding of a world that was moved.
@@ -95,7 +98,8 @@ impl AnchorPins {
                 continue;
             }
             pin.is_settled = rests && pin.place == pin.at;
-            let from = place(pin, &|(from, _)| start * (from * rest));
+            let size = growth.start();
+            let from = place(pin, &|(from, _)| start * (from * (size * rest)) / size);
             are_in_place &= from.distance(pin.at) < IN_PLACE;
         }
         are_in_place

@@ -32,7 +32,8 @@ pub(crate) const TELEPORT_SPEED: f32 = 25.0;
 ///
 /// The target may move in any schedule, by physics or by animation; in `PostUpdate`, before `TransformSystems::Propagate`, else
 /// it counts as moved a frame later. What moves while no time passes, as while `Time<Virtual>` is paused, is teleported. The
-/// target's scale scales the offset's translation and is otherwise ignored.
+/// target's scale scales the offset's translation. The cloth grows with the target, if its scale changes by one factor in all
+/// directions, from the size that it has when it is attached.
 ///
 /// ```
 /// use bevy_bunting::prelude::*;
@@ -103,7 +104,8 @@ pub struct Anchor {
     pub target: Entity,
     /// The vertices that are held.
     pub vertices: AttachedVertices,
-    /// Pose of the vertices' frame relative to the target; the scale is ignored.
+    /// Pose of the vertices' frame relative to the target; the scale is ignored. The target's scale scales the translation, and
+    /// the vertices are as far from one another as the cloth's size has them.
     #[reflect(default)]
     pub offset: Transform,
     /// How the vertices are held: exactly, by springs or on a rail.

@@ -4,14 +4,20 @@ use bevy_ecs::prelude::*;
 use bevy_transform::components::Transform;
 use bevy_transform::helper::TransformHelper;
 
+use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::fabric::scale::{ScaleBaked, scale_of};
 use crate::motion::attached_vertices::AttachedVertices;
 use crate::motion::attachment::Attachment;
 use crate::skeleton::skin::ClothSkin;
 
-type BroughtCloth =
-    (Entity, &'static ClothMesh, &'static mut Attachment, Has<ScaleBaked>, Has<ClothSkin>);
+type BroughtCloth = (
+    Entity,
+    &'static ClothMesh,
+    &'static mut Attachment,
+    &'static ClothInstance,
+    (Has<ScaleBaked>, Has<ClothSkin>),
+);
 
 /// Filter of cloths that may be held at new places.
 type MayBeNew = Or<(Changed<Attachment>, Added<ClothMesh>)>;
@@ -22,15 +28,15 @@ pub(super) fn bring_vertices(
     mut cloths: Query<BroughtCloth, MayBeNew>,
     transforms: TransformHelper,
 ) {
-    for (entity, mesh, mut attachment, has_baked, has_skin) in &mut cloths {
+    for (entity, mesh, mut attachment, instance, (has_baked, has_skin)) in &mut cloths {
         if !attachment.brings_any() {
             continue;
         }
         // A scale that cannot be is reported where the fabric is built.
-        let Ok(scale) = scale_of(entity, Some(&attachment), has_baked || has_skin, &transforms)
-        else {
-            continue;
-        };
+        let size = instance.growth.end();
+        let has_scale = has_baked || has_skin;
+        let scale = scale_of(entity, Some(&attachment), has_scale, size, &transforms);
+        let Ok(scale) = scale.map(|scale| size * scale) else { continue };
         let place = |vertices: &AttachedVertices| vertices.first_place(mesh).map(|at| scale * at);
         let offset = |target: Entity, vertices: &AttachedVertices, offset: Transform| {
             let target = transforms.compute_global_transform(target).ok()?;

@@ -45,7 +45,7 @@ pub(crate) fn lead_pins(
                 let groups = attachment.pinned_groups(mesh);
                 pins.find(&levels, instance.level, &groups[1..], &positions());
             }
-            let are_in_place = pins.find_places(fabric, poses, frame);
+            let are_in_place = pins.find_places(fabric, poses, frame, &instance.growth);
             if !are_in_place && instance.taking_up.is_none() {
                 instance.taking_up = Some(TakingUp::from_positions(fabric, &positions()));
             }

@@ -10,6 +10,8 @@ mod bring;
 pub mod follow;
 pub mod follow_anchors;
 pub mod frame;
+pub(crate) mod grow;
+pub mod growth;
 pub(crate) mod held_group;
 pub mod inertia;
 pub mod lead;

@@ -10,7 +10,7 @@ use crate::cloth::events::ClothFailed;
 use crate::cloth::instance::ClothInstance;
 use crate::motion::attachment::{Attachment, TELEPORT_SPEED};
 use crate::motion::follow::MovedEntities;
-use crate::motion::frame::{frame_of, is_finite};
+use crate::motion::frame::{frame_and_scale_of, frame_of, is_finite};
 use crate::motion::observation_times::ObservationTimes;
 use crate::motion::pose::PoseHistory;
 
@@ -46,14 +46,14 @@ impl Observer<'_, '_> {
         let mut histories = self.histories.p1();
         for &entity in moved {
             let Ok((mut history, attachment)) = histories.get_mut(entity) else { continue };
-            let (rested, ends) = (history.rests(), history.ends());
+            let (rested, ends, scale) = (history.rests(), history.ends(), history.scale());
             observe(entity, history.bypass_change_detection(), attachment);
             if !history.rests() {
                 self.restless.push(entity);
             }
             // Whoever compares ticks of change sees every motion and every teleport. The end of a rest is a change too,
             // since the other observing systems must learn of it.
-            if history.ends() != ends || (rested && !history.rests()) {
+            if history.ends() != ends || (rested && !history.rests()) || history.scale() != scale {
                 history.set_changed();
             }
         }
@@ -106,7 +106,11 @@ pub(crate) fn observe_ticks(
     let now = times.in_tick(time.elapsed_secs_f64());
     let tick = time.delta_secs_f64();
     observer.for_each(|entity, history, attachment| {
-        let pose = frame_of(entity, attachment.as_deref(), &transforms);
+        let observed = frame_and_scale_of(entity, attachment.as_deref(), &transforms);
+        let (pose, scale) = observed.unzip();
+        if let Some(scale) = scale.filter(|scale| scale.is_finite()) {
+            history.observe_scale(&times, scale);
+        }
         match pose.filter(is_finite) {
             Some(pose) => {
                 let limit = teleport_speed(history, attachment);

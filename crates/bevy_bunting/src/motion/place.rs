@@ -2,15 +2,18 @@
 
 use bevy_ecs::hierarchy::ChildOf;
 use bevy_ecs::prelude::*;
+use bevy_math::{Isometry3d, Vec3};
 use bevy_transform::components::{GlobalTransform, Transform};
 use bevy_transform::helper::TransformHelper;
 
+use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::motion::attachment::Attachment;
 use crate::motion::follow::MovedEntities;
-use crate::motion::frame::{frame_of, frame_on, is_finite};
+use crate::motion::frame::{frame_and_scale_of, frame_on, is_finite};
+use crate::motion::growth::Growth;
 
-type PlacedCloth = (Option<&'static Attachment>, Option<&'static ChildOf>);
+type PlacedCloth = (Option<&'static Attachment>, Option<&'static ChildOf>, &'static ClothInstance);
 
 type Transforms<'w, 's> = Query<'w, 's, (&'static mut Transform, &'static mut GlobalTransform)>;
 
@@ -28,7 +31,8 @@ pub(crate) fn place_cloths(
     let (current, mut moved) = transforms.p0();
     placements.clear();
     placements.extend(moved.find(new).iter().filter_map(|&entity| {
-        let (attachment, parent) = cloths.get(entity).ok()?;
+        let (attachment, parent, instance) = cloths.get(entity).ok()?;
+        let growth = &instance.growth;
         if attachment.is_some_and(|it| it.brings_first) {
             return None;
         }
@@ -36,12 +40,12 @@ pub(crate) fn place_cloths(
         match target {
             Some((attachment, target)) => {
                 let parent = parent.map(ChildOf::parent);
-                placement_on(target, &attachment.offset, parent, &current)
+                placement_on(target, &attachment.offset, growth, parent, &current)
                     .map(|(local, global)| (entity, Some(local), global))
             }
             None => {
-                let frame = frame_of(entity, None, &current).filter(is_finite)?;
-                Some((entity, None, GlobalTransform::from_isometry(frame)))
+                let (frame, scale) = frame_and_scale_of(entity, None, &current)?;
+                is_finite(&frame).then(|| (entity, None, sized(frame, growth.present(scale))))
             }
         }
     }));
@@ -56,24 +60,34 @@ pub(crate) fn place_cloths(
     }
 }
 
+/// The transform of a cloth's frame, whose units are metres times a size.
+pub(super) fn sized(frame: Isometry3d, size: f32) -> GlobalTransform {
+    if size == 1.0 {
+        return GlobalTransform::from_isometry(frame);
+    }
+    Transform::from_isometry(frame).with_scale(Vec3::splat(size)).into()
+}
+
 /// The transforms of a cloth at an offset from its target, local to its parent and global. None if the
 /// target or the parent is despawned, or a transform is not finite.
 fn placement_on(
     target: Entity,
     offset: &Transform,
+    growth: &Growth,
     parent: Option<Entity>,
     current: &TransformHelper,
 ) -> Option<(Transform, GlobalTransform)> {
     let target_pose = current.compute_global_transform(target).ok()?;
     let frame = frame_on(&target_pose, offset);
-    let global = GlobalTransform::from_isometry(frame);
+    let size = growth.present(target_pose.scale());
+    let global = sized(frame, size);
     let local = match parent {
         // The offset itself has no rounding error of the target's pose.
         Some(parent) if parent == target => {
-            Transform { scale: target_pose.scale().recip(), ..*offset }
+            Transform { scale: size * target_pose.scale().recip(), ..*offset }
         }
         Some(parent) => global.reparented_to(&current.compute_global_transform(parent).ok()?),
-        None => Transform::from_isometry(frame),
+        None => Transform::from_isometry(frame).with_scale(Vec3::splat(size)),
     };
     (local.is_finite() && global.affine().is_finite()).then_some((local, global))
 }

@@ -9,6 +9,7 @@ use bevy_transform::systems::{
 };
 use bunting_solver::MeshPoint;
 
+use crate::batch::publish::reset_diverged;
 use crate::environment::drive::drive_cloths;
 use crate::fabric::prepare::{change_materials, cut_cloths};
 use crate::motion::anchor_poses::{
@@ -19,6 +20,7 @@ use crate::motion::attachment::{Anchor, Attachment, TargetLost};
 use crate::motion::bring::bring_vertices;
 use crate::motion::follow::{follow_targets, stop_following};
 use crate::motion::follow_anchors::follow_anchors;
+use crate::motion::grow::grow_cloths;
 use crate::motion::inertia::ClothInertia;
 use crate::motion::lead::lead_pins;
 use crate::motion::lost_target::handle_lost_targets;
@@ -71,6 +73,7 @@ impl Plugin for AttachmentPlugin {
                             .after(change_materials),
                         observe_anchors_in_ticks,
                         observe_ticks,
+                        grow_cloths,
                     )
                         .chain()
                         .in_set(ClothSystems::Prepare),
@@ -80,7 +83,7 @@ impl Plugin for AttachmentPlugin {
                         .before(cut_cloths),
                     report_inertia.in_set(ClothSystems::Prepare),
                     lead_pins.in_set(ClothSystems::Drive).before(drive_cloths),
-                    place_cloths.in_set(ClothSystems::Publish),
+                    place_cloths.in_set(ClothSystems::Publish).before(reset_diverged),
                 ),
             )
             // The first part of the propagation, so that it sees whatever a system that runs before the propagation moves.

@@ -20,6 +20,10 @@ const DELAY_RATE: f64 = 0.02;
 /// frames are not moved in every tick.
 const KNOWN_REST: f64 = 1.5;
 
+/// Part of itself by which a scale may be another without a change. Smaller: rounding in turned hierarchies is one. Larger:
+/// growth has visible steps.
+const SCALE_STEP: f32 = 1.0 / 16_384.0;
+
 /// Number of ticks without a change of pose in them after which a change of pose in a frame means that the
 /// entity is moved in frames. Fewer: a target that pauses for a tick is taken for one that is moved in
 /// frames.
@@ -74,6 +78,8 @@ pub(crate) struct PoseHistory {
     restored: RestoredAt,
     /// Distance by which the pose may be another after the world was moved, m; none once it was observed.
     rounding: Option<f32>,
+    /// Scale in the world of the entity that has the pose, in the last tick; none before the first.
+    scale: Option<Vec3>,
 }
 
 /// An entity at rest.
@@ -147,6 +153,22 @@ impl PoseHistory {
     pub fn note_teleport(&mut self, last: &ObservationTimes) {
         self.end_rest(last);
         self.teleported = true;
+    }
+
+    /// Scale in the world of the entity that has the pose, or that the cloth is attached to.
+    pub fn scale(&self) -> Vec3 {
+        self.scale.unwrap_or(Vec3::ONE)
+    }
+
+    /// Records the scale in a tick. A change of it ends the rest.
+    pub fn observe_scale(&mut self, last: &ObservationTimes, scale: Vec3) {
+        let is_same = |known: Vec3| (scale - known).abs().cmple(known.abs() * SCALE_STEP).all();
+        if self.scale.is_some_and(is_same) {
+            return;
+        }
+        if self.scale.replace(scale).is_some() {
+            self.note_teleport(last);
+        }
     }
 
     /// Records the pose in a frame at a time (s); a change of velocity of more than `limit` m/s is a

@@ -2,13 +2,15 @@
 
 use bevy_ecs::hierarchy::Children;
 use bevy_ecs::prelude::*;
-use bevy_math::{Isometry3d, Mat3A};
+use bevy_math::Mat3A;
 use bevy_transform::components::{GlobalTransform, Transform};
 use bevy_transform::helper::TransformHelper;
 
+use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
 use crate::motion::attachment::Attachment;
-use crate::motion::frame::{frame_of, is_finite};
+use crate::motion::frame::{frame_and_scale_of, is_finite};
+use crate::motion::place::sized;
 
 /// Greatest error of the dot products of a frame's axes compared with those of orthogonal unit vectors.
 /// Smaller: rounding counts as a scale. Larger: a scale is shown.
@@ -17,7 +19,7 @@ const ORTHONORMAL_TOLERANCE: f32 = 1e-4;
 type Propagated<'w, 's> = Query<
     'w,
     's,
-    (Entity, Option<&'static Attachment>, &'static GlobalTransform),
+    (Entity, Option<&'static Attachment>, &'static ClothInstance, &'static GlobalTransform),
     (With<ClothMesh>, Changed<GlobalTransform>),
 >;
 
@@ -25,21 +27,21 @@ type Hierarchy<'w, 's> =
     Query<'w, 's, (&'static Transform, Option<&'static Children>, &'static mut GlobalTransform)>;
 
 /// Removes the scales of parents, targets and cloths from the propagated transforms of cloths: a frame has no
-/// scale, and a local transform cannot undo a scale along rotated axes. The children of these cloths are
+/// scale but that by which the cloth has grown, and a local transform cannot undo a scale along rotated axes. The children of these cloths are
 /// corrected with them.
 pub(super) fn remove_scales(
     mut transforms: ParamSet<((TransformHelper, Propagated), Hierarchy)>,
     mut changed: Local<Vec<(Entity, GlobalTransform)>>,
 ) {
     let (current, cloths) = transforms.p0();
-    changed.extend(cloths.iter().filter_map(|(entity, attachment, propagated)| {
+    changed.extend(cloths.iter().filter_map(|(entity, attachment, instance, propagated)| {
         let axes = propagated.affine().matrix3;
         let products = axes.transpose() * axes;
         if products.abs_diff_eq(Mat3A::IDENTITY, ORTHONORMAL_TOLERANCE) {
             return None;
         }
-        let frame: Isometry3d = frame_of(entity, attachment, &current).filter(is_finite)?;
-        Some((entity, GlobalTransform::from_isometry(frame)))
+        let (frame, scale) = frame_and_scale_of(entity, attachment, &current)?;
+        is_finite(&frame).then(|| (entity, sized(frame, instance.growth.present(scale))))
     }));
     let mut hierarchy = transforms.p1();
     while let Some((entity, global)) = changed.pop() {

@@ -126,7 +126,7 @@ impl PaintPins<'_, '_> {
         let points = attachment.iter().flat_map(|it| it.vertices.points());
         let points: Vec<MeshPoint> = points.collect();
         let builder = bake(mesh, instance.scale).builder();
-        let (near, reach) = near(&builder, hit, self.brush.radius);
+        let (near, reach) = near(&builder, hit, self.brush.radius / instance.growth.end());
         let mut kept = points.clone();
         let pins: BTreeSet<u32> = match self.brush.stroke {
             PinStroke::Off => return,

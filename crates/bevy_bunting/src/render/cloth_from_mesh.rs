@@ -16,7 +16,7 @@ use crate::render::painted_weights::{PaintedDistance, PaintedWeights};
 /// A skinned mesh becomes a cloth that its skeleton leads: Bevy's `SkinnedMesh` is replaced by a
 /// [`ClothSkin`](crate::ClothSkin), and the copy has no joints.
 ///
-/// Scales of the entity and its parents, or of the skeleton, are baked into the copy, since a cloth's frame has no scale; a
+/// Scales of the entity and its parents, or of the skeleton, are baked into the copy, as those of any cloth into its fabric; a
 /// scale of zero is ignored. A change of this component, of the `Mesh3d`, or of the mesh asset itself makes the cloth anew.
 ///
 /// # Errors

@@ -46,6 +46,7 @@ pub(super) fn apply(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
     let activity = cloth.get::<ClothInstance>().map(ClothInstance::published_activity);
     if let (Some(mut state), Some(activity)) = (cloth.get_mut::<ClothState>(), activity) {
         state.activity = activity;
+        state.scale = saved.growth.end();
     }
 }
 
@@ -80,6 +81,7 @@ fn restore_instance(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
         material: saved.material,
         gravity: saved.gravity,
         inertia: saved.inertia,
+        growth: saved.growth,
         target,
         target_lost: saved.target_lost,
         frozen: saved.frozen,
@@ -166,7 +168,7 @@ fn restore_choices(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
     });
     let limits = world.resource::<ClothSettings>().limits(saved.level);
     let fabric = fitting.levels.fabric(saved.level);
-    let acceleration = class.acceleration(gravity);
+    let acceleration = class.acceleration(gravity) / saved.growth.end();
     let needed = limits.of_fabric(fabric, saved.tick, acceleration);
     let mut cloth = world.entity_mut(fitting.entity);
     if let Some(mut effort) = cloth.get_mut::<ClothEffort>() {

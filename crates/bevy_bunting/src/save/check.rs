@@ -41,7 +41,7 @@ pub(super) fn check(
     }
     let (levels, scale) = match known_levels(world, cloth, saved) {
         Some(known) => known,
-        None => levels_at_once(world, entity)?.ok_or(not_a_cloth)?,
+        None => levels_at_once(world, entity, saved.growth.end())?.ok_or(not_a_cloth)?,
     };
     let cloth = world.entity(entity);
     let anchors = cloth.get::<Attachment>().map_or(0, |attachment| attachment.anchors.len());

@@ -12,6 +12,7 @@ use crate::cloth::restored::Pending;
 use crate::fabric::levels::ClothLevels;
 use crate::lod::effort::ClothEffort;
 use crate::lod::record::SavedRecord;
+use crate::motion::growth::Growth;
 use crate::motion::inertia::ClothInertia;
 use crate::motion::observation_times::ObservationTimes;
 use crate::motion::pose::PoseHistory;
@@ -106,6 +107,7 @@ pub(crate) struct SavedCloth {
     pub rest_ticks: u32,
     pub rest_pose: Option<bevy_math::Isometry3d>,
     pub rest_rounding: f32,
+    pub growth: Growth,
     pub frame: PoseHistory,
     /// One for each anchor.
     pub anchors: Vec<PoseHistory>,

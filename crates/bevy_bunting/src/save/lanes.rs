@@ -32,7 +32,7 @@ pub(super) fn enter_lanes<'a>(
             let Some(mut instance) = cloth.get_mut::<ClothInstance>() else { continue };
             let Some(fabric) = instance.fabric().cloned() else { continue };
             if let StateStorage::Snapshot(snapshot) = core::mem::take(&mut instance.storage) {
-                let material = instance.material;
+                let material = instance.acting_material();
                 let snapshot = *snapshot;
                 batches.add(&fabric, steps, PendingCloth { entity, fabric: 0, snapshot, material });
             }

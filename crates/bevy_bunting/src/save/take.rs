@@ -110,6 +110,7 @@ pub(super) fn take(world: &World, entity: Entity) -> Result<SavedCloth, Snapshot
         material: instance.material,
         gravity: instance.gravity,
         inertia: instance.inertia,
+        growth: instance.growth,
         target_lost: instance.target_lost,
         frozen: instance.frozen,
         taking_up: instance.taking_up.clone(),

@@ -38,7 +38,7 @@ pub(super) fn lead_skins(
         if !is_found {
             particles.find(&levels, level);
         }
-        let [start, end] = joints.matrices();
+        let [start, end] = instance.growth.matrices(joints.matrices());
         let goes_on = instance.is_posed && particles.matrices() == Some(&start);
         if goes_on && is_found {
             particles.go_on();

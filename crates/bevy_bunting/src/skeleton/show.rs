@@ -4,15 +4,18 @@ use bevy_ecs::prelude::*;
 use bevy_time::{Time, Virtual};
 use bevy_transform::helper::TransformHelper;
 
+use crate::cloth::instance::ClothInstance;
 use crate::display::surface::{ClothSurface, LastTick};
 use crate::motion::attachment::Attachment;
-use crate::motion::frame::{frame_of, is_finite};
+use crate::motion::frame::{frame_and_scale_of, is_finite};
+use crate::motion::growth::shrink;
 use crate::skeleton::joints::JointPoses;
 use crate::skeleton::particles::SkinnedParticles;
 
 type ShownCloth = (
     Entity,
     Option<&'static Attachment>,
+    &'static ClothInstance,
     &'static JointPoses,
     &'static SkinnedParticles,
     &'static mut ClothSurface,
@@ -27,10 +30,12 @@ pub(super) fn show_poses(
     time: Res<Time<Virtual>>,
 ) {
     let fraction = tick.fraction(&time);
-    for (entity, attachment, joints, particles, mut surface) in &mut cloths {
-        let frame = frame_of(entity, attachment, &transforms).filter(is_finite);
-        let (Some(frame), true) = (frame, joints.may_move()) else { continue };
-        let pose = joints.present_matrices(frame, &transforms);
+    for (entity, attachment, instance, joints, particles, mut surface) in &mut cloths {
+        let frame = frame_and_scale_of(entity, attachment, &transforms);
+        let frame = frame.filter(|(frame, _)| is_finite(frame));
+        let (Some((frame, scale)), true) = (frame, joints.may_move()) else { continue };
+        let mut pose = joints.present_matrices(frame, &transforms);
+        shrink(&mut pose, instance.growth.present(scale));
         let level = surface.level;
         particles.show(level, fraction, &pose, &mut surface.positions);
     }

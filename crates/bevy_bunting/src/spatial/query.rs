@@ -10,6 +10,7 @@ use parry3d::query::{PointQuery, Ray, RayCast};
 use parry3d::shape::Shape;
 
 use crate::cloth::state::ClothState;
+use crate::motion::growth::SizedFrame;
 use crate::motion::pose::{PoseHistory, parry_pose};
 use crate::spatial::surface::{PointOnSurface, Surface, meet};
 
@@ -67,7 +68,7 @@ struct Found<'a> {
     surface: Surface<'a>,
     /// Box around the particles in the frame.
     bounds: Aabb,
-    frame: Isometry3d,
+    frame: SizedFrame,
 }
 
 impl ClothSpatialQuery<'_, '_> {
@@ -82,8 +83,9 @@ impl ClothSpatialQuery<'_, '_> {
         let mut first: Option<ClothHit> = None;
         self.for_each(is_meant, |cloth| {
             let within = first.map_or(max_distance, |hit| hit.distance);
-            let to_frame = cloth.frame.inverse();
-            let ray = Ray::new(to_frame * ray.origin, to_frame.rotation * *ray.direction);
+            let SizedFrame { pose, size } = cloth.frame;
+            let direction = pose.rotation.inverse() * *ray.direction / size;
+            let ray = Ray::new(cloth.frame.to_local(ray.origin), direction);
             if cloth.bounds.intersects_local_ray(&ray, within)
                 && let Some(hit) = cloth.surface.cast_ray(&ray, within)
                 && first.is_none_or(|former| hit.distance < former.distance)
@@ -104,10 +106,12 @@ impl ClothSpatialQuery<'_, '_> {
     ) -> Option<ClothHit> {
         let mut nearest: Option<ClothHit> = None;
         self.for_each(is_meant, |cloth| {
-            let within = nearest.map_or(max_distance, |hit| hit.distance);
-            let to = cloth.frame.inverse() * to;
+            let size = cloth.frame.size;
+            let within = nearest.map_or(max_distance, |hit| hit.distance) / size;
+            let to = cloth.frame.to_local(to);
             if cloth.bounds.distance_to_local_point(to, true) <= within
                 && let Some(hit) = cloth.surface.nearest_point(to, within)
+                && let hit = (PointOnSurface { distance: size * hit.distance, ..hit })
                 && nearest.is_none_or(|former| hit.distance < former.distance)
             {
                 nearest = Some(cloth.in_world(hit));
@@ -126,7 +130,18 @@ impl ClothSpatialQuery<'_, '_> {
     ) -> Vec<Entity> {
         let mut found = Vec::new();
         self.for_each(is_meant, |cloth| {
-            let pose = cloth.frame.inverse() * pose;
+            let SizedFrame { pose: frame, size } = cloth.frame;
+            let mut pose = frame.inverse() * pose;
+            let small;
+            let mut shape = shape;
+            if size != 1.0 {
+                pose.translation /= size;
+                // A shape that parry cannot scale is found nowhere.
+                let scaled = shape.scale_dyn(Vec3::splat(size.recip()), 0);
+                let Some(scaled) = scaled else { return };
+                small = scaled;
+                shape = &*small;
+            }
             if meet(&cloth.bounds, &shape.compute_aabb(&parry_pose(pose)))
                 && cloth.surface.overlaps(shape, pose)
             {
@@ -148,7 +163,12 @@ impl ClothSpatialQuery<'_, '_> {
                 *bounds = (changed, Surface::bounds(state.positions()));
             }
             if let Some(bounds) = bounds.1 {
-                look(&Found { entity, surface, bounds, frame: frame.end() });
+                look(&Found {
+                    entity,
+                    surface,
+                    bounds,
+                    frame: SizedFrame { pose: frame.end(), size: state.scale() },
+                });
             }
         }
         // Boxes of cloths that are gone.
@@ -163,8 +183,8 @@ impl Found<'_> {
         ClothHit {
             entity: self.entity,
             distance: hit.distance,
-            point: self.frame * hit.at,
-            normal: self.frame.rotation * hit.normal,
+            point: self.frame.to_world(hit.at),
+            normal: self.frame.pose.rotation * hit.normal,
             particles: hit.particles,
             weights: hit.weights,
         }

@@ -52,7 +52,7 @@ impl<'a> Surface<'a> {
         })
     }
 
-    /// The first point where a ray, whose direction has a length of 1, meets the surface within a distance, m.
+    /// The first point where a ray meets the surface within a distance, in lengths of its direction.
     pub fn cast_ray(&self, ray: &Ray, within: f32) -> Option<PointOnSurface> {
         let mut first: Option<(f32, Vec3, [u32; 3], Triangle)> = None;
         for (particles, triangle) in self.triangles() {

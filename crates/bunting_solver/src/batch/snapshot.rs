@@ -98,6 +98,16 @@ impl ClothSnapshot {
         history.older_velocities.iter_mut().for_each(|velocities| velocities[particle] += change);
     }
 
+    /// Multiplies all velocities, as if the cloth had had the changed ones in the substeps before, too.
+    pub fn scale_velocities(&mut self, factor: f32) {
+        let history = self.history.iter_mut();
+        let of_history =
+            history.flat_map(|it| it.displacements.iter_mut().chain(&mut it.older_velocities));
+        for vectors in of_history.chain([&mut self.velocities]) {
+            vectors.iter_mut().for_each(|vector| *vector *= factor);
+        }
+    }
+
     /// Whether every number is finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {

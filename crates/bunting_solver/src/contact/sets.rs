@@ -104,7 +104,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let longest = set.longest_push(lanes.clone());
         let is_held = self.is_held(member.cloth, state);
         !Self::has_other_contacts(state)
-            && !(is_held && !self.cannot_strain(member.cloth, &contact, longest))
+            && (!is_held || self.cannot_strain(member.cloth, &contact, longest))
             && !set.enters(lanes)
     }
 

@@ -10,6 +10,7 @@ use bunting_solver::{ClothSnapshot, Fabric};
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::lod::record::RestTimer;
+use crate::motion::growth::SizedFrame;
 use crate::motion::pose::PoseHistory;
 
 /// Reason why particles cannot be moved. The cloth is unchanged.
@@ -99,7 +100,12 @@ impl ClothControl<'_, '_> {
         }
         let fabric = instance.fabric().cloned().ok_or(not_simulated)?;
         let state = instance.state(&self.batches).ok_or(not_simulated)?;
-        let mut cloth = ControlledCloth { entity, fabric, state, frame: history.end() };
+        let mut cloth = ControlledCloth {
+            entity,
+            fabric,
+            state,
+            frame: SizedFrame { pose: history.end(), size: instance.growth.end() },
+        };
         let result = edit(&mut cloth)?;
         instance.set_state(cloth.state, &mut self.batches);
         timer.ticks = 0;
@@ -107,7 +113,8 @@ impl ClothControl<'_, '_> {
     }
 }
 
-/// The particles of one cloth between ticks. Positions are in the cloth's frame; velocities are relative to the world, along
+/// The particles of one cloth between ticks. Positions are in the cloth's frame, whose units are longer or shorter than metres
+/// where the cloth has [grown](Self::scale); velocities are relative to the world, along
 /// the axes of the frame. Particles are numbered as in [`ClothState::fabric`](crate::ClothState::fabric). Pinned particles
 /// cannot be moved: values given to them are ignored.
 #[derive(Debug)]
@@ -115,7 +122,7 @@ pub struct ControlledCloth {
     entity: Entity,
     fabric: Arc<Fabric>,
     state: ClothSnapshot,
-    frame: Isometry3d,
+    frame: SizedFrame,
 }
 
 impl ControlledCloth {
@@ -134,25 +141,31 @@ impl ControlledCloth {
     /// Pose of the cloth's frame in the world (m) at the end of the last tick.
     #[must_use]
     pub fn frame(&self) -> Isometry3d {
-        self.frame
+        self.frame.pose
     }
 
-    /// Transforms a point (m) from the cloth's frame to the world.
+    /// Metres in a unit of positions, see [`ClothState::scale`](crate::ClothState::scale).
+    #[must_use]
+    pub fn scale(&self) -> f32 {
+        self.frame.size
+    }
+
+    /// Transforms a point from the cloth's frame to the world, m.
     #[must_use]
     pub fn to_world(&self, point: Vec3) -> Vec3 {
-        self.frame * point
+        self.frame.to_world(point)
     }
 
     /// Transforms a point (m) from the world to the cloth's frame.
     #[must_use]
     pub fn to_local(&self, point: Vec3) -> Vec3 {
-        self.frame.rotation.inverse() * (point - Vec3::from(self.frame.translation))
+        self.frame.to_local(point)
     }
 
     /// Rotates a direction, such as a velocity, from the world to the cloth's frame.
     #[must_use]
     pub fn direction_to_local(&self, direction: Vec3) -> Vec3 {
-        self.frame.rotation.inverse() * direction
+        self.frame.pose.rotation.inverse() * direction
     }
 
     /// Position of a particle, m.
@@ -172,7 +185,7 @@ impl ControlledCloth {
     /// There is no such particle.
     pub fn velocity(&self, particle: usize) -> Result<Vec3, ControlError> {
         self.check(particle, Vec3::ZERO)?;
-        Ok(self.state.velocities[particle])
+        Ok(self.frame.size * self.state.velocities[particle])
     }
 
     /// Moves a particle to a position, m. It keeps its velocity.
@@ -216,7 +229,7 @@ impl ControlledCloth {
     pub fn add_velocity(&mut self, particle: usize, change: Vec3) -> Result<(), ControlError> {
         self.check(particle, self.velocity(particle)? + change)?;
         if !self.fabric.is_pinned(particle) {
-            self.state.add_velocity(particle, change);
+            self.state.add_velocity(particle, change / self.frame.size);
         }
         Ok(())
     }

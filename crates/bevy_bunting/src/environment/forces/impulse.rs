@@ -162,6 +162,8 @@ struct Reached {
     entity: Entity,
     /// Pose of the cloth's frame.
     frame: Isometry3d,
+    /// Metres in a unit of the frame.
+    size: f32,
     /// Particles, and their parts of the change of velocity.
     weights: Vec<(usize, f32)>,
     /// Sum of masses times these parts, kg.
@@ -186,24 +188,26 @@ impl Reached {
                 &in_lane
             }
         };
+        let size = instance.growth.end();
         let weight = |position: &Vec3| {
-            falloff(impulse.radius - impulse.at.distance(frame * *position), impulse.falloff)
+            let at = frame * (size * *position);
+            falloff(impulse.radius - impulse.at.distance(at), impulse.falloff)
         };
         let free =
             positions.iter().enumerate().filter(|(particle, _)| !fabric.is_pinned(*particle));
         let weights = free.map(|(particle, position)| (particle, weight(position)));
         let weights: Vec<_> = weights.filter(|(_, weight)| *weight > 0.0).collect();
-        let density = f64::from(instance.material.area_density);
+        let density = f64::from(instance.material.area_density * size * size);
         let mass = |&(particle, weight): &(usize, f32)| {
             density * f64::from(fabric.particle_areas()[particle]) * f64::from(weight)
         };
         let weighted_mass = weights.iter().map(mass).sum();
-        (!weights.is_empty()).then_some(Self { entity, frame, weights, weighted_mass })
+        (!weights.is_empty()).then_some(Self { entity, frame, size, weights, weighted_mass })
     }
 
     /// Changes the velocities of the particles, by `change` (m/s, along the world's axes) times their parts.
     fn push(&self, state: &mut ClothSnapshot, change: Vec3) {
-        let change = self.frame.rotation.inverse() * change;
+        let change = self.frame.rotation.inverse() * change / self.size;
         for &(particle, weight) in &self.weights {
             state.add_velocity(particle, weight * change);
         }

@@ -7,7 +7,7 @@ use crate::environment::forces::acceleration::{ClothAcceleration, report_acceler
 use crate::environment::forces::impulse::{
     Impulses, apply_impulses, queue_impulse, shift_impulses,
 };
-use crate::motion::observe::observe_ticks;
+use crate::motion::grow::grow_cloths;
 use crate::schedule::{ClothSystems, ClothTick};
 
 /// Handles [`ClothImpulse`](crate::ClothImpulse) and [`ClothAcceleration`].
@@ -24,7 +24,7 @@ impl Plugin for ForcePlugin {
                 ClothTick,
                 (report_accelerations, apply_impulses)
                     .in_set(ClothSystems::Prepare)
-                    .after(observe_ticks),
+                    .after(grow_cloths),
             );
     }
 }

@@ -65,10 +65,12 @@ fn sample(
         }
         let (pose, motion) = (frame.end(), frame.motion());
         let felt = |wind: Vec3| surroundings.felt(wind, pose, &motion, &exposure);
-        let of_middle = felt(surroundings.wind_at(pose * instance.rest_middle));
+        let size = instance.growth.end();
+        let of_middle = felt(surroundings.wind_at(pose * (size * instance.rest_middle)));
         let mut winds = Vec::new();
-        surroundings.winds_at(positions.iter().map(|&position| pose * position), &mut winds);
-        winds.iter_mut().for_each(|wind| *wind = felt(*wind) - of_middle);
+        let places = positions.iter().map(|&position| pose * (size * position));
+        surroundings.winds_at(places, &mut winds);
+        winds.iter_mut().for_each(|wind| *wind = (felt(*wind) - of_middle) / size);
         if winds.iter().all(|wind| *wind == Vec3::ZERO) {
             winds.clear();
         }

@@ -7,7 +7,7 @@ use crate::gltf::components::insert_components;
 use crate::render::tests::reflect::public_types;
 
 /// Each public component as an artist may write it, with the fields that have no default; `{}` is a default.
-const COMPONENTS: [(&str, &str); 35] = [
+const COMPONENTS: [(&str, &str); 36] = [
     ("AnchorReactions", "{}"),
     (
         "Attachment",
