@@ -32,7 +32,7 @@ fn lateness(rate: f64) -> f32 {
         app.update();
         let front = app.world().get::<Transform>(ball).expect("it stays").translation.z + RADIUS;
         let pushed = state(&app, curtain).positions().get(16 * 33 + 16).map_or(0.0, |at| at.z);
-        if pushed > 0.2 && front < 0.8 {
+        if pushed > 0.2 && front < 0.5 {
             worst = Some(worst.unwrap_or(f32::MIN).max(front - pushed));
         }
     }
