@@ -12,8 +12,9 @@ use crate::simd::lane::Pack;
 use crate::simd::vec3::set_lane3;
 
 /// Greatest strain to which a push stretches a link, beyond the strain by weight, wind and pins. Smaller: shapes come through cloth that they
-/// press hard, such as balls of 2 m/s through a curtain. Larger: cloth that is caught stays stretched that far, and trembles.
-const GREATEST_STRAIN: f32 = 0.2;
+/// press hard, such as balls of 2 m/s through a curtain, or the load under a tarpaulin in a jolt. Larger: cloth that is caught stays stretched
+/// that far, and trembles.
+const GREATEST_STRAIN: f32 = 0.3;
 
 /// Part of the way of the surface in a substep, relative to the nearest pin, by which a link may be longer, since what is pushed has moved before
 /// lines can pull its neighbours along. Smaller: cloth that is dragged against a post passes through it, and a ball of 5 m/s passes through a

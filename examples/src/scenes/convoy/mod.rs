@@ -28,8 +28,8 @@ const STRAIN_LIMIT: f32 = 0.03;
 /// Greatest difference of a vehicle's speed from that of the convoy, m/s.
 const SPEED_LIMIT: f32 = 3.0;
 
-/// Greatest depth of the tarpaulin in the load, m: it is drawn above it by its thickness, and yields where a jolt would strain it by more than 20 %.
-const DEPTH_LIMIT: f32 = 0.025;
+/// Greatest depth of the tarpaulin in the load, m: it is drawn above it by its thickness.
+const DEPTH_LIMIT: f32 = 0.02;
 
 /// A convoy over rough ground.
 #[derive(Clone, Copy, Debug)]
