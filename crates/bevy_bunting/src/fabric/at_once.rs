@@ -27,8 +27,8 @@ type Cut = (
     Has<ClothSkin>,
 );
 
-/// The levels of a cloth that is `size` times as large as they are, by its present components, and the scale that is baked into them. They are looked up, or built on
-/// this thread; the cloth itself does not change. None if the entity is no cloth.
+/// The levels of a cloth that is `size` times as large as they are, by its present components, and the scale that is baked into them. They
+/// are looked up, or built on this thread; the cloth itself does not change. None if the entity is no cloth.
 ///
 /// # Errors
 ///

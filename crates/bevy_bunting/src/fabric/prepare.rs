@@ -293,13 +293,13 @@ impl CutClothItem<'_, '_> {
         let growth = &instance.growth;
         // A mesh that is made anew from an asset has the whole scale.
         let is_whole = self.has_baked && self.history.has_new(&self.mesh);
+        let is_other = instance.target != target;
         let keeps = growth.is_known()
             && !is_whole
-            && (instance.target != target || is_attached || growth.with(followed).is_some());
-        let size = if keeps { growth.with(followed).unwrap_or(growth.end()) } else { 1.0 };
+            && (is_other || is_attached || growth.size_with(followed).is_some());
+        let size = if keeps { growth.present(followed) } else { 1.0 };
         let has_scale = self.has_baked || self.has_skin;
         let scale = scale_of(entity, attachment, has_scale, size, transforms)?;
-        let is_other = instance.target != target;
         let instance = &mut *self.instance;
         instance.scale = scale;
         if !keeps {

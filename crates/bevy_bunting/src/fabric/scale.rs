@@ -18,7 +18,7 @@ pub(crate) struct ScaleBaked;
 /// their fabrics. Larger: sizes are visibly wrong.
 const STEP: f32 = 1.0 / 16_384.0;
 
-/// Scale and shear of a cloth in its frame: of its own transform and all above it, less a `size` by which the cloth has grown,
+/// Scale and shear of a cloth in its frame: of its own transform and all above it, divided by the `size` to which the cloth has grown,
 /// or, if it is attached to another entity, of the attachment's offset. None remains where the mesh has its scale already, baked or by a skin.
 ///
 /// # Errors

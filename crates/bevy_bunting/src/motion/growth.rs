@@ -59,7 +59,7 @@ impl Growth {
 
     /// The size where what the cloth follows has a scale; none if it is another in different directions, mirrored, or out of
     /// range.
-    pub fn with(&self, scale: Vec3) -> Option<f32> {
+    pub fn size_with(&self, scale: Vec3) -> Option<f32> {
         let Some(reference) = self.reference else { return Some(self.end()) };
         if scale == reference {
             return Some(1.0);
@@ -79,7 +79,7 @@ impl Growth {
 
     /// The size that is shown where what the cloth follows has a scale now.
     pub fn present(&self, scale: Vec3) -> f32 {
-        self.with(scale).unwrap_or(self.end())
+        self.size_with(scale).unwrap_or(self.end())
     }
 
     /// The cloth keeps its size while what it follows has a scale: it follows something else.
@@ -99,7 +99,7 @@ impl Growth {
 
     /// Gives the cloth the size that it has with a scale. Whether one that it cannot have is to be reported; it keeps its size.
     pub fn follow(&mut self, scale: Vec3) -> bool {
-        let size = self.with(scale);
+        let size = self.size_with(scale);
         self.span[1] = size.unwrap_or(self.end());
         let was_reported = core::mem::replace(&mut self.is_reported, size.is_none());
         size.is_none() && !was_reported

@@ -9,7 +9,7 @@ use crate::contact::collider::Collider;
 use crate::contact::itself::state::SelfContacts;
 use crate::contact::pressing::Pressing;
 use crate::contact::reaction::ReactionSum;
-use crate::fabric::FabricMaterial;
+use crate::fabric::{Fabric, FabricMaterial};
 use crate::pressure::LanePressure;
 use crate::stability::added_mass::AddedMass;
 use crate::stability::pin_strain::PinStrain;
@@ -96,9 +96,14 @@ impl LaneState {
         self.contacts.iter().any(|candidates| !candidates.is_empty())
     }
 
-    /// Pressure of the air inside the cloth in the last substep, Pa.
-    pub fn pressure_inside(&self) -> f32 {
-        self.inner_air.as_ref().and(self.history.pressure).unwrap_or_default()
+    /// Pressure of the air inside the cloth in the last substep, Pa; none without air, or before the first substep.
+    pub fn pressure_inside(&self) -> Option<f32> {
+        self.inner_air.as_ref().and(self.history.pressure)
+    }
+
+    /// Whether pins or springs hold the cloth, which has this fabric: loose cloth can follow a shape, and guides may prescribe any strain.
+    pub fn is_held(&self, fabric: &Fabric) -> bool {
+        self.holds.is_some() || fabric.has_pins()
     }
 
     /// Whether something may act on single particles in this tick.

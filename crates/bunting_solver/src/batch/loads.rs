@@ -63,7 +63,11 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let fabric = &self.fabric_of(cloth).fabric;
         let of_pins = Loads::of_pin_strain(fabric, &state.material, &state.pin_strain);
         of_pins.max(state.inner_air.as_ref().map_or(0.0, |inner| {
-            inner.load(fabric, state.material.area_density, state.pressure_inside())
+            inner.load(
+                fabric,
+                state.material.area_density,
+                state.pressure_inside().unwrap_or_default(),
+            )
         }))
     }
 

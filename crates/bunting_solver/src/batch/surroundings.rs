@@ -88,8 +88,7 @@ impl ClothBatch {
     /// before the first substep. It is less than was asked for where the substeps do not resolve that.
     #[must_use]
     pub fn pressure(&self, lane: usize) -> Option<f32> {
-        let cloth = with_batch!(&self.0, batch => batch.lanes[lane].as_ref())?;
-        cloth.inner_air.as_ref().and(cloth.history.pressure)
+        with_batch!(&self.0, batch => batch.lanes[lane].as_ref())?.pressure_inside()
     }
 
     /// Reports what a lane's cloth does to its pins from the next tick on, or ceases to; at first it does not. `pivots` are

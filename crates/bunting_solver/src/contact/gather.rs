@@ -58,17 +58,16 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             };
             boxes.set(&at, &velocities, &sweep);
             let frame = state.drive.motion.substep(0, 1);
-            // What is loose follows a shape.
-            let is_held = self.fabric.has_pins() || state.holds.is_some();
+            let is_held = state.is_held(&self.fabric);
             for (index, (collider, candidates)) in
                 state.colliders.iter().zip(&mut state.contacts).enumerate()
             {
                 gather_candidates(&self.fabric, collider, &boxes, candidates);
-                let moved = moved(collider);
+                let to_end = to_end_of_tick(collider);
                 let (mut farthest, mut in_frame) = (0.0_f32, 0.0_f32);
                 for &particle in candidates.particles.iter().chain(&candidates.corners) {
                     let (at, velocity) = (at[particle as usize], velocities[particle as usize]);
-                    let surface = moved.transform_point3(at);
+                    let surface = to_end.transform_point3(at);
                     let way = surface - frame.to_new(at) - velocity * tick;
                     farthest = farthest.max(way.length_squared());
                     in_frame = in_frame.max(surface.distance_squared(at));
@@ -96,8 +95,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     }
 }
 
-/// Where the points of a collider, given at the start of the tick, are at its end, each in the cloth's frame as it is then.
-fn moved(collider: &Collider) -> Affine3A {
+/// From the points of a collider at the start of the tick to the same points at its end, each in the cloth's frame as it is then.
+fn to_end_of_tick(collider: &Collider) -> Affine3A {
     let [from, to] = [collider.from, collider.to]
         .map(|(at, turn)| Affine3A::from_rotation_translation(turn, at));
     if from == to { Affine3A::IDENTITY } else { to * from.inverse() }

@@ -2,6 +2,8 @@
 
 use glam::{Quat, Vec3};
 
+use crate::contact::collider::Collider;
+
 /// The sum of a cloth's contacts with one collider over a tick.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactReaction {
@@ -33,9 +35,15 @@ impl ReactionSum {
         self.touching.clear();
     }
 
-    /// Forgets the touching particles: a substep begins.
-    pub fn begin_substep(&mut self) {
-        self.touching.clear();
+    /// The sum of a collider, given its index, in a substep that begins, in which no particle touches it yet; none if it reports nothing.
+    pub fn begin_substep<'a>(
+        sums: &'a mut [Self],
+        index: usize,
+        collider: &Collider,
+    ) -> Option<&'a mut Self> {
+        let sum = sums.get_mut(index).filter(|_| collider.reports_as.is_some())?;
+        sum.touching.clear();
+        Some(sum)
     }
 
     /// Adds the impulse (N·s) that a particle gives to the collider at a point (m).

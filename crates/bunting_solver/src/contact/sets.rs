@@ -4,6 +4,7 @@ use crate::batch::lane_batch::LaneBatch;
 use crate::batch::lane_state::LaneState;
 use crate::batch::layout::{Layout, Positions};
 use crate::contact::collider_packs::{ColliderPacks, LaneTouch, Member};
+use crate::contact::reaction::ReactionSum;
 use crate::contact::substep::{Contact, Push};
 use crate::contact::touch::Touch;
 use crate::contact::velocity_packs::ChangeVelocities;
@@ -99,13 +100,19 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// strained too far.
     fn changes_in_lanes(&self, set: &ColliderPacks<P>, member: Member) -> bool {
         let Some(state) = &self.lanes[member.cloth] else { return false };
-        let Some(contact) = self.contact_of(member) else { return false };
         let lanes = Y::lanes(member.cloth);
-        let longest = set.longest_push(lanes.clone());
-        let is_held = self.is_held(member.cloth, state);
-        !Self::has_other_contacts(state)
-            && (!is_held || self.cannot_strain(member.cloth, &contact, longest))
-            && !set.enters(lanes)
+        // A host may have taken the collider away since the tick began.
+        if member.collider >= state.colliders.len()
+            || Self::has_other_contacts(state)
+            || set.enters(lanes.clone())
+        {
+            return false;
+        }
+        let cannot_strain = |contact: Contact| {
+            self.cannot_strain(member.cloth, &contact, set.longest_push(lanes.clone()))
+        };
+        !state.is_held(&self.fabric_of(member.cloth).fabric)
+            || self.contact_of(member).is_some_and(cannot_strain)
     }
 
     /// Changes the velocities of particles that slide, in some lanes of a set.
@@ -136,12 +143,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         let Member { cloth, collider: index } = member;
         let pole = self.pole_of(cloth);
         let collider = &state.colliders[index];
-        let contact = Contact::new(&state.material, &state.drive, collider, &self.clock);
-        let mut reaction = state.reactions.get_mut(index);
-        reaction = reaction.filter(|_| collider.reports_as.is_some());
-        if let Some(reaction) = &mut reaction {
-            reaction.begin_substep();
-        }
+        let reaction = ReactionSum::begin_substep(&mut state.reactions, index, collider);
+        let contact = || Contact::new(&state.material, &state.drive, collider, &self.clock);
+        let mut reaction = reaction.map(|reaction| (reaction, contact()));
         for &particle in &state.contacts[index].particles {
             let (pack, lane) = self.layout.locate(particle as usize, cloth);
             let near = set.of_pack(pack);
@@ -160,10 +164,10 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 let predicted = lane3(&self.scratch[pack], lane) + way;
                 state.external_moment += pole.gained(inertia, predicted, [before, after]);
             }
-            if let Some(reaction) = &mut reaction {
-                let gained = contact.density * inertia * lane3(&near.gained, lane);
+            if let Some((reaction, contact)) = &mut reaction {
                 let at = contact.pose.inverse_transform_point(after);
-                reaction.add(particle as usize, at, contact.pose.rotation.inverse() * -gained);
+                let on_collider = contact.impulse(inertia, lane3(&near.gained, lane));
+                reaction.add(particle as usize, at, on_collider);
             }
         }
     }

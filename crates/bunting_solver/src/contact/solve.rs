@@ -79,12 +79,8 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     ) {
         // A host may have taken it away since the tick began.
         let Some(collider) = state.colliders.get(index) else { return };
-        let is_held = self.is_held(cloth, state);
-        let mut reaction = state.reactions.get_mut(index);
-        reaction = reaction.filter(|_| collider.reports_as.is_some());
-        if let Some(reaction) = &mut reaction {
-            reaction.begin_substep();
-        }
+        let is_held = state.is_held(&self.fabric_of(cloth).fabric);
+        let reaction = ReactionSum::begin_substep(&mut state.reactions, index, collider);
         if candidates.is_empty() {
             return;
         }
@@ -107,11 +103,6 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
         }
         state.external_moment += outcome.moment;
         state.pressing = outcome.pressing;
-    }
-
-    /// Whether pins or springs hold a cloth: loose cloth can follow a shape, and guides may prescribe any strain.
-    pub(super) fn is_held(&self, cloth: usize, state: &LaneState) -> bool {
-        state.holds.is_some() || self.fabric_of(cloth).fabric.has_pins()
     }
 
     /// Projects one particle, and returns the push if there is one.
@@ -166,7 +157,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
     /// Changes the velocity of a particle that a collider has pushed. What the particle and its triangles were pushed
     /// counts as one push: a particle that is put down on the surface and is then raised by a triangle would be left with
     /// a velocity, though it does not move.
-    pub(super) fn change_velocity(
+    fn change_velocity(
         &mut self,
         cloth: usize,
         contact: &Contact,
@@ -216,19 +207,18 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             // A steady force acts for the whole substep, of which the formula takes β; an impact changes the velocity
             // once.
             let steady = steady * (self.clock.step / effective_step);
-            let gained = contact.density * inertia * (steady + impact);
-            let on_collider = contact.pose.rotation.inverse() * -gained;
+            let on_collider = contact.impulse(inertia, steady + impact);
             reaction.add(push.particle as usize, at, on_collider);
         }
     }
 }
 
 /// The effects of a substep's contacts with one collider besides those on particles.
-pub(super) struct Outcome<'a> {
+struct Outcome<'a> {
     /// Moment of the corrections about the pole, m⁴.
-    pub moment: f32,
+    moment: f32,
     /// How hard this collider and those before it press the cloth in this tick.
-    pub pressing: Pressing,
+    pressing: Pressing,
     /// Reactions of the collider, if it reports them.
-    pub reaction: Option<&'a mut ReactionSum>,
+    reaction: Option<&'a mut ReactionSum>,
 }

@@ -41,7 +41,7 @@ pub(super) struct Contact<'a> {
     /// Thickness of the cloth, m.
     thickness: f32,
     /// Area density of the cloth, kg/m².
-    pub density: f32,
+    density: f32,
     surface: Surface<'a>,
     reach: Reach,
     /// The collider's poses at the beginning and at the end of the substep, each in the cloth's frame as it
@@ -175,6 +175,11 @@ impl<'a> Contact<'a> {
     /// Position of a particle after a push, m, in the cloth's frame.
     pub fn end(&self, push: &Push) -> Vec3 {
         self.pose.transform_point(push.to)
+    }
+
+    /// Impulse on the collider, N·s, in its frame, by a particle of an inertia, m², that gains a velocity, m/s, in the cloth's frame.
+    pub fn impulse(&self, inertia: f32, gained: Vec3) -> Vec3 {
+        self.pose.rotation.inverse() * -(self.density * inertia * gained)
     }
 
     /// Motion of a point of the collider in the substep, m, in the cloth's present frame.

@@ -14,6 +14,7 @@ use crate::batch::layout::Layout;
 use crate::pressure::air::Pressure;
 use crate::simd::lane::Pack;
 use crate::simd::vec3::lane3;
+use crate::step::parameters::air_factor;
 
 /// Depth of a canopy, its volume over the area of its mouth, at which it traps all air, in radii of a round mouth of that area;
 /// less where it is flatter. A hemisphere's is ⅔. Smaller: a canopy that turns inside out jerks. Larger: flat parachutes fall too fast.
@@ -85,9 +86,9 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
                 let dynamic = 0.5 * state.drive.air_density * coefficient * squared;
                 let trapped = state.history.pressure.unwrap_or_default().abs();
                 let open = 1.0 - (trapped / dynamic.max(LEAST)).min(1.0);
-                let air =
-                    0.5 * state.drive.air_density * batch.clock.step / state.material.area_density;
-                let pressure = air * state.material.pressure_coefficient * open;
+                let material = &state.material;
+                let air = air_factor(state.drive.air_density, batch.clock.step, material);
+                let pressure = air * material.pressure_coefficient * open;
                 batch.parameters.pressure.lanes_mut()[Y::lanes(cloth)].fill(pressure);
             });
         }

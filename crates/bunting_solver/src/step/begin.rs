@@ -93,7 +93,7 @@ impl<P: Pack, Y: Layout<P>> LaneBatch<P, Y> {
             &state.drive,
             reach,
             state.pin_strain.greatest,
-            state.pressure_inside().abs(),
+            state.pressure_inside().unwrap_or_default().abs(),
         );
         self.parameters.set_load_stretch(Y::lanes(cloth), &stretch);
     }

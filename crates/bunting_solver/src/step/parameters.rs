@@ -147,7 +147,7 @@ impl<P: Pack> Parameters<P> {
         set(&mut self.step, step);
         set(&mut self.inverse_step, 1.0 / step);
         set(&mut self.bends_stiffly, if bends_stiffly { 1.0 } else { 0.0 });
-        let air = 0.5 * air_density * inputs.step / material.area_density;
+        let air = air_factor(*air_density, inputs.step, material);
         set(&mut self.pressure, air * material.pressure_coefficient);
         set(&mut self.friction, air * material.friction_coefficient);
         // The rigid motion of a pinned cloth is that of its frame.
@@ -214,4 +214,9 @@ impl<P: Pack> Parameters<P> {
         let acts = |pack: &P| pack.lanes().iter().any(|&coefficient| coefficient != 0.0);
         acts(&self.pressure) || acts(&self.friction)
     }
+}
+
+/// Change of a velocity in a substep by the air for each unit of an aerodynamic coefficient and of squared speed, ½ρ h/σ, s/m.
+pub(crate) fn air_factor(air_density: f32, step: f32, material: &FabricMaterial) -> f32 {
+    0.5 * air_density * step / material.area_density
 }
