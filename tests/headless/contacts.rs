@@ -249,3 +249,24 @@ fn cloth_passes_through_itself_again_without_the_component() {
     let after = height(&app);
     assert!(after < before - 2e-3, "{before} m before, {after} m after");
 }
+
+#[test]
+fn a_heap_of_cloth_falls_asleep() {
+    const SECONDS: usize = 10;
+    let mut app = app();
+    let sheet = app.world_mut().spawn((
+        ClothMesh::grid(21, 21, SIDE, SIDE),
+        Transform::from_xyz(0.0, 1.05 * SIDE, 0.0),
+        SelfCollision::default(),
+    ));
+    let sheet = sheet.id();
+    app.world_mut().spawn(floor());
+    let asleep = (0..64 * SECONDS).find(|_| {
+        run(&mut app, 1);
+        state(&app, sheet).activity() == ClothActivity::AtRest
+    });
+    assert!(asleep.is_some_and(|tick| tick > 64), "{asleep:?}");
+    let positions = state(&app, sheet).positions();
+    let highest = positions.iter().map(|at| at.y).fold(f32::NEG_INFINITY, f32::max);
+    assert!(highest < -0.6 * SIDE, "{highest} m: it has fallen");
+}

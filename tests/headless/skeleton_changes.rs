@@ -31,14 +31,14 @@ fn skin([_, left, right]: [Entity; 3]) -> ClothSkin {
         .with_vertices(vertices)
 }
 
-/// A cape on a skeleton, after a second.
+/// A cape on a skeleton, after two seconds.
 fn caped(app: &mut App) -> ([Entity; 3], Entity) {
     let skeleton = skeleton(app, Vec3::Y);
     let cape = ClothMesh::grid(COUNT as u32, COUNT as u32, 1.0, 1.0);
     let held = Attachment::new(skeleton[0], ClothEdge::Top);
     let finest = LodSet { pinned: Some(0), ..LodSet::default() };
     let cape = app.world_mut().spawn((cape, held, finest, skin(skeleton))).id();
-    run(app, 64);
+    run(app, 128);
     (skeleton, cape)
 }
 

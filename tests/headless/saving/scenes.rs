@@ -222,12 +222,13 @@ pub fn rest(app: &mut AppWithIds) -> Vec<Entity> {
         let material = ClothMaterial(FabricMaterial { damping, ..FabricMaterial::COTTON });
         (ClothMesh::grid(9, 9, 1.0, 1.0), material)
     };
+    let swings = Transform::from_rotation(Quat::from_rotation_x(0.2));
     vec![
-        app.spawn((sheet(2.0), Attachment::in_place(ClothEdge::Top))),
+        app.spawn((sheet(2.0), Attachment::in_place(ClothEdge::Top), swings)),
         app.spawn((
             sheet(2.5),
             Attachment::in_place(ClothEdge::Top),
-            Transform::from_xyz(2.0, 0.0, 0.0),
+            Transform { translation: 2.0 * Vec3::X, ..swings },
         )),
         app.spawn((sheet(2.0), Attachment::new(pole, ClothEdge::Top))),
     ]

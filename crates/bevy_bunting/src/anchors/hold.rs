@@ -9,7 +9,7 @@ use crate::anchors::holds::{ClothHolds, Owner};
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
 use crate::cloth::mesh::ClothMesh;
-use crate::lod::record::RestTimer;
+use crate::lod::rest_timer::RestTimer;
 use crate::motion::anchor_hold::AnchorHold;
 use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::attachment::Attachment;
@@ -100,7 +100,7 @@ pub(crate) fn hold_cloths(
             if !grab.is_valid() || !pose.is_observed() {
                 continue;
             }
-            timer.ticks = 0;
+            timer.disturb();
             let pose = (pose.start(), pose.end());
             let is_new = grabbed.is_new();
             if is_new || !grabbed.fits(levels, instance.level) {

@@ -9,7 +9,7 @@ use bunting_solver::ParticlesMut;
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
-use crate::lod::record::RestTimer;
+use crate::lod::rest_timer::RestTimer;
 use crate::motion::growth::SizedFrame;
 use crate::motion::pose::PoseHistory;
 

@@ -12,7 +12,8 @@ use crate::cloth::missing_plugins::tell_missing_plugins;
 use crate::cloth::state::ClothState;
 use crate::lod::effort::ClothEffort;
 use crate::lod::lod_set::LodSet;
-use crate::lod::record::{LodRecord, RestTimer};
+use crate::lod::record::LodRecord;
+use crate::lod::rest_timer::RestTimer;
 use crate::motion::pose::PoseHistory;
 
 /// The shape of a cloth at rest. This component makes an entity a cloth: the other components that a cloth

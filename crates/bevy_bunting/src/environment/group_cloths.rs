@@ -22,7 +22,8 @@ use crate::environment::drive::drive_cloths;
 use crate::environment::drive_colliders::drive_colliders;
 use crate::environment::drive_self_collisions::drive_self_collisions;
 use crate::environment::layers::ClothLayers;
-use crate::lod::record::{LodRecord, RestTimer};
+use crate::lod::record::LodRecord;
+use crate::lod::rest_timer::RestTimer;
 use crate::motion::inertia::ClothInertia;
 use crate::motion::pose::{PoseHistory, pose_parts};
 use crate::schedule::{ClothSystems, ClothTick};
@@ -131,7 +132,7 @@ fn group_cloths(
         let found = awake.binary_search_by_key(&cloth.entity, |awake| awake.entity);
         cloth.timer.group = found.ok().map(|at| awake[awake[at].group].entity);
         if cloth.instance.activity == ClothActivity::AtRest && cloth.is_disturbed(&awake) {
-            cloth.timer.ticks = 0;
+            cloth.timer.disturb();
             cloth.instance.wake();
         }
     }

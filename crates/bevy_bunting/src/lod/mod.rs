@@ -14,6 +14,7 @@ pub mod lod_cloth;
 pub mod lod_set;
 pub mod record;
 pub mod report;
+pub mod rest_timer;
 pub mod select;
 pub mod sleep;
 pub mod view;

@@ -1,10 +1,10 @@
-//! State that the choice of levels and the sleep at rest keep for each cloth from tick to tick.
+//! State that the choice of levels keeps for each cloth from tick to tick.
 
 use std::sync::Arc;
 
 use bevy_ecs::change_detection::Tick;
 use bevy_ecs::prelude::*;
-use bevy_math::{Isometry3d, Vec3};
+use bevy_math::Vec3;
 
 use crate::cloth::activity::ClothActivity;
 use crate::fabric::levels::ClothLevels;
@@ -100,45 +100,4 @@ pub(crate) struct SavedRecord {
     turn: u32,
     since_change: u32,
     since_seen: u32,
-}
-
-/// State that the sleep at rest keeps for a cloth.
-#[derive(Component, Clone, Copy, Debug, Default)]
-pub(crate) struct RestTimer {
-    /// Number of ticks for which the cloth has been at rest.
-    pub ticks: u32,
-    /// First of the cloths that the cloth may touch in this tick, which come to rest together; none without them.
-    pub group: Option<Entity>,
-    /// Pose of the frame at the end of the last tick.
-    pub pose: Option<Isometry3d>,
-    /// Distance by which the frame may be elsewhere since the world was moved, m.
-    pub rounding: f32,
-}
-
-/// Part of the coordinates by which the frame of a cloth that rests may be elsewhere after the world was moved. Smaller:
-/// cloth that is the child of another entity wakes. Larger: a frame that is moved by less does not wake it.
-const ROUNDING: f32 = 4.0 * f32::EPSILON;
-
-impl RestTimer {
-    /// Moves the pose along with the world, m.
-    pub fn shift(&mut self, by: Vec3) {
-        let Some(pose) = &mut self.pose else { return };
-        let before = Vec3::from(pose.translation);
-        let now = before + by;
-        self.rounding = self.rounding.max(ROUNDING * before.abs().max(now.abs()).max_element());
-        pose.translation = now.into();
-    }
-
-    /// Whether the frame of a cloth has moved to a pose, but for rounding in a world that was moved.
-    pub fn has_moved_to(&mut self, pose: Isometry3d) -> bool {
-        let rounding = core::mem::take(&mut self.rounding);
-        let is_near = |it: Isometry3d| {
-            it.rotation.angle_between(pose.rotation) <= ROUNDING
-                && it.translation.distance(pose.translation) <= rounding
-        };
-        if rounding > 0.0 && self.pose.is_some_and(is_near) {
-            self.pose = Some(pose);
-        }
-        self.pose != Some(pose)
-    }
 }

@@ -24,7 +24,8 @@ use crate::environment::self_collision::SelfCollision;
 use crate::environment::wind::influence::WindInfluence;
 use crate::environment::wind::per_particle::WindPerParticle;
 use crate::environment::wind::tick_wind::TickWind;
-use crate::lod::record::{LodRecord, RestTimer};
+use crate::lod::record::LodRecord;
+use crate::lod::rest_timer::RestTimer;
 use crate::lod::select::select_levels;
 use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::pose::PoseHistory;
@@ -33,13 +34,17 @@ use crate::schedule::{ClothSystems, ClothTick};
 use crate::settings::ClothSettings;
 use crate::skeleton::joints::JointPoses;
 
-/// Root mean square speed of the particles below which a cloth rests, m/s: a millimetre in a second is
-/// invisible. Larger: cloth visibly stops.
-const REST_SPEED: f32 = 1e-3;
+/// Root mean square distance from a place, as a part of the cloth's size, within which a cloth rests: it is invisible. Of
+/// cloths larger than a metre as a part of a metre. Larger: cloth visibly stops. Smaller: heaps of cloth, whose folds tremble,
+/// do not fall asleep.
+const REST_PART: f32 = 1e-3;
 
-/// Time for which a cloth must rest before it falls asleep, s: longer than a pendulum is this slow at its
-/// turning points. Shorter: swinging cloth falls asleep there.
-const REST_TIME: f32 = 0.5;
+/// Size from which on the distance does not grow, m.
+const LARGEST: f32 = 1.0;
+
+/// Time for which a cloth must rest before it falls asleep, s: longer than a pendulum is within that distance at its turning
+/// points. Shorter: swinging cloth falls asleep there.
+const REST_TIME: f32 = 1.0;
 
 /// Distance from a cloth beyond which a moving collider does not wake it, m. Smaller: fast colliders enter
 /// sleeping cloth.
@@ -77,6 +82,7 @@ impl Plugin for SleepPlugin {
             .add_observer(wake_bared::<WindPerParticle>)
             .add_observer(wake_bared::<ClothAcceleration>)
             .add_observer(wake_bared::<ClothPressure>)
+            .add_observer(wake_bared::<SelfCollision>)
             .add_observer(note_removed::<ClothCollider>)
             .add_observer(note_removed::<ClothCollision>);
         app.add_systems(
@@ -182,7 +188,7 @@ fn shift_changes(shift: On<ShiftOrigin>, mut changes: ResMut<Changes>) {
 
 fn wake(request: On<WakeCloth>, mut cloths: Query<(&mut ClothInstance, &mut RestTimer)>) {
     if let Ok((mut instance, mut timer)) = cloths.get_mut(request.entity) {
-        timer.ticks = 0;
+        timer.disturb();
         instance.wake();
     }
 }
@@ -193,7 +199,7 @@ fn wake_bared<C: Component>(
     mut cloths: Query<(&mut ClothInstance, &mut RestTimer)>,
 ) {
     if let Ok((mut instance, mut timer)) = cloths.get_mut(removed.entity) {
-        timer.ticks = 0;
+        timer.disturb();
         instance.wake();
     }
 }
@@ -225,7 +231,7 @@ fn wake_exposed(
             || acceleration.is_some_and(|it| history.has_new(&it))
             || air.is_some_and(|it| history.has_new(&it));
         if has_new {
-            timer.ticks = 0;
+            timer.disturb();
             instance.wake();
         }
     }
@@ -349,13 +355,18 @@ pub(crate) fn send_to_sleep(
             || joints.is_some_and(JointPoses::may_move)
             || instance.taking_up.is_some();
         timer.pose = Some(pose);
-        let is_still = !is_disturbed && speed(state, tick) <= REST_SPEED;
-        timer.ticks = if is_still { timer.ticks + 1 } else { 0 };
+        if is_disturbed {
+            timer.disturb();
+        } else {
+            let largest = LARGEST / state.scale();
+            let way = REST_PART * (2.0 * record.radius).min(largest);
+            timer.count(state.positions(), state.previous_positions(), way);
+        }
         let rests = timer.ticks.min(changes.unchanged_ticks) as f32 * tick > REST_TIME;
         match timer.group {
             Some(group) => *rested.entry(group).or_insert(true) &= rests,
             None if rests => {
-                timer.ticks = 0;
+                timer.disturb();
                 instance.activity = ClothActivity::AtRest;
                 changes.asleep += 1;
             }
@@ -366,17 +377,10 @@ pub(crate) fn send_to_sleep(
         for (mut instance, .., mut timer, _) in &mut cloths {
             let rests = |group: Entity| instance.lane().is_some() && rested[&group];
             if timer.group.is_some_and(rests) {
-                timer.ticks = 0;
+                timer.disturb();
                 instance.activity = ClothActivity::AtRest;
                 changes.asleep += 1;
             }
         }
     }
-}
-
-/// Root mean square speed of the particles in the last tick of `tick` seconds, m/s.
-fn speed(state: &ClothState, tick: f32) -> f32 {
-    let pairs = state.positions().iter().zip(state.previous_positions());
-    let squares: f32 = pairs.map(|(now, before)| now.distance_squared(*before)).sum();
-    state.scale() * (squares / state.positions().len().max(1) as f32).sqrt() / tick
 }

@@ -3,7 +3,7 @@
 use bevy_ecs::prelude::*;
 use bevy_math::Vec3;
 
-use crate::lod::record::RestTimer;
+use crate::lod::rest_timer::RestTimer;
 use crate::motion::anchor_poses::AnchorPoses;
 use crate::motion::pose::PoseHistory;
 

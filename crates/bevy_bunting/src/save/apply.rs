@@ -15,7 +15,8 @@ use crate::cloth::restored::Restored;
 use crate::cloth::state::ClothState;
 use crate::lod::effort::ClothEffort;
 use crate::lod::lod_set::LodSet;
-use crate::lod::record::{LodRecord, RestTimer};
+use crate::lod::record::LodRecord;
+use crate::lod::rest_timer::RestTimer;
 use crate::lod::select::LevelSelector;
 use crate::motion::anchor_pins::AnchorPins;
 use crate::motion::anchor_poses::AnchorPoses;
@@ -180,6 +181,7 @@ fn restore_choices(world: &mut World, fitting: &Fitting, saved: &SavedCloth) {
     if let Some(mut timer) = cloth.get_mut::<RestTimer>() {
         *timer = RestTimer {
             ticks: saved.rest_ticks,
+            places: saved.rest_places.clone(),
             group: None,
             pose: saved.rest_pose,
             rounding: saved.rest_rounding,

@@ -105,6 +105,7 @@ pub(crate) struct SavedCloth {
     pub record: Option<SavedRecord>,
     /// Number of ticks for which the cloth has been at rest.
     pub rest_ticks: u32,
+    pub rest_places: Vec<Vec3>,
     pub rest_pose: Option<bevy_math::Isometry3d>,
     pub rest_rounding: f32,
     pub growth: Growth,

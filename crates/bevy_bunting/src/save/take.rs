@@ -21,7 +21,8 @@ use crate::environment::wind::per_particle::WindPerParticle;
 use crate::fabric::levels::ClothLevels;
 use crate::lod::effort::ClothEffort;
 use crate::lod::lod_set::LodSet;
-use crate::lod::record::{LodRecord, RestTimer};
+use crate::lod::record::LodRecord;
+use crate::lod::rest_timer::RestTimer;
 use crate::lod::select::LevelSelector;
 use crate::lod::sleep::Changes;
 use crate::motion::anchor_poses::AnchorPoses;
@@ -83,7 +84,7 @@ pub(super) fn take(world: &World, entity: Entity) -> Result<SavedCloth, Snapshot
     }
     let state = instance.state(batches).ok_or(not_simulated)?;
     let shown = cloth.get::<ClothState>().ok_or(not_simulated)?;
-    let timer = cloth.get::<RestTimer>().copied().unwrap_or_default();
+    let timer = cloth.get::<RestTimer>().cloned().unwrap_or_default();
     // The next tick would wake it.
     let is_exposed = news.has::<WindInfluence>(entity)
         || news.has::<WindPerParticle>(entity)
@@ -120,6 +121,7 @@ pub(super) fn take(world: &World, entity: Entity) -> Result<SavedCloth, Snapshot
         effort: cloth.get::<ClothEffort>().cloned().unwrap_or_default(),
         record: cloth.get::<LodRecord>().and_then(|record| record.saved(levels, selector.tick)),
         rest_ticks: if is_exposed { 0 } else { timer.ticks },
+        rest_places: if is_exposed { Vec::new() } else { timer.places },
         rest_pose: timer.pose,
         rest_rounding: timer.rounding,
         frame: cloth.get::<PoseHistory>().cloned().unwrap_or_default(),

@@ -9,7 +9,7 @@ use bunting_solver::{ClothSnapshot, Fabric};
 
 use crate::batch::batches::ClothBatches;
 use crate::cloth::instance::ClothInstance;
-use crate::lod::record::RestTimer;
+use crate::lod::rest_timer::RestTimer;
 use crate::motion::growth::SizedFrame;
 use crate::motion::pose::PoseHistory;
 
@@ -108,7 +108,7 @@ impl ClothControl<'_, '_> {
         };
         let result = edit(&mut cloth)?;
         instance.set_state(cloth.state, &mut self.batches);
-        timer.ticks = 0;
+        timer.disturb();
         Ok(result)
     }
 }

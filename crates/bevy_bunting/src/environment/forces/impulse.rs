@@ -9,7 +9,7 @@ use crate::cloth::error::ClothError;
 use crate::cloth::events::ClothFailed;
 use crate::cloth::instance::{ClothInstance, StateStorage};
 use crate::environment::falloff::falloff;
-use crate::lod::record::RestTimer;
+use crate::lod::rest_timer::RestTimer;
 use crate::motion::pose::PoseHistory;
 use crate::motion::shift::ShiftOrigin;
 
@@ -149,7 +149,7 @@ pub(super) fn apply_impulses(
             cloth.push(&mut state, change);
             if state.is_finite() {
                 instance.set_state(state, &mut batches);
-                timer.ticks = 0;
+                timer.disturb();
             } else {
                 ClothFailed::report(&mut commands, entity, ClothError::Impulse { entity });
             }
